@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from benchmarks.measure import Settings, progress
 from benchmarks.report import Cell, Column, Figure, Report, Table
-from rigidsym.models.euler_angles import EULER_SEQUENCES, EulerAngles
+from rigidsym.models.parametrisations import EULER_SEQUENCES, EulerAngles
 from rigidsym.motion import derive
 
 DIGITS = 50

@@ -43,9 +43,8 @@ from rigidsym.kernels.lowering.rounding import (
     numbers_and_angles,
     rounding,
 )
-from rigidsym.models.euler_angles import EULER_SEQUENCES
-from rigidsym.models.library import PARAMETRISATIONS
-from rigidsym.models.rotation_text import rotation_from
+from rigidsym.models.library import PARAMETRISATIONS, rotation_from
+from rigidsym.models.parametrisations import EULER_SEQUENCES
 from rigidsym.motion import Motion, derive
 
 BITS = {64: 52, 32: 23}  # of a float, in all: eps is two to minus this

@@ -24,7 +24,7 @@ from benchmarks.sympy_forms import frames
 from rigidsym.algebra.codec import codec_for
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.present import presenter_for
-from rigidsym.models.euler_angles import AXIS_SEQUENCES, EULER_SEQUENCES, EulerAngles
+from rigidsym.models.parametrisations import AXIS_SEQUENCES, EULER_SEQUENCES, EulerAngles
 from rigidsym.models.rotation import TIME
 from rigidsym.motion import derive
 

@@ -14,7 +14,7 @@ from benchmarks import sympy_forms
 from benchmarks.measure import Settings, progress
 from benchmarks.report import Cell, Column, Figure, Report, Table
 from benchmarks.sympy_forms import FACTORED, SIMPLIFIED, Survey, operations
-from rigidsym.models.euler_angles import EULER_SEQUENCES, EulerAngles
+from rigidsym.models.parametrisations import EULER_SEQUENCES, EulerAngles
 from rigidsym.motion import derive
 
 MOST_VELOCITY = 36

@@ -1,246 +1,292 @@
-"""Kernels of every target beside their peers: time, threads, memory, generation, growth, errors.
+"""Kernels beside their peers: `kernels` at large batches, `sizes` from one orientation up.
 
-All sides evaluate the same expressions in float64, on one processor core, by turns. Ours take q as
-one C-contiguous (N, 3) and fill an `out`; each peer has the layout that it is fastest in.
+All sides compute the same values in float64 on one core, by turns. Ours take one orientation a
+row, or a column. A user without us writes np.stack of lambdify's functions (cse) of the columns;
+heyoka's compiled function takes one component a row, its own layout. A plain copy of as many bytes
+is the limit that memory sets. `sizes --size 10000000` goes up to ten million.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache, partial
+from importlib import import_module
+from importlib.util import find_spec
+from time import perf_counter
 from types import ModuleType
 from typing import Any
 
 import numpy as np
+import sympy as sp
+from numpy.typing import NDArray
 
-from benchmarks.kernel_parts import (
-    calls,
-    chains,
-    errors,
-    figures_of_parts,
-    generation,
-    memory,
-    sizes_of_targets,
-    threads,
-)
-from benchmarks.measure import (
-    Settings,
-    Spread,
-    interleaved,
-    on_one_core,
-    progress,
-    ratios,
-    timed,
-)
-from benchmarks.node import node_side
-from benchmarks.peers import PEERS, Array, Side, Task, in_plain_symbols, jitted
-from benchmarks.report import Cell, Column, Figure, Report, Table, spread_columns
+from benchmarks.measure import Settings, Spread, interleaved, on_one_core, progress, ratios, timed
+from benchmarks.report import Cell, Column, Figure, Report, Table, machine, spread_columns
 from rigidsym.kernels.targets import TARGETS
 from rigidsym.motion import Motion, derive
 
-SEQUENCE = "ZXZ"
-QUANTITIES = {"angular_velocity_body": "Ω′", "rotation_matrix": "R"}
-ARRAYS = ("numpy", "numba", "c", "jax")
-OURS = (*ARRAYS, "javascript")  # the last in a process of its own
-REPEATS = 15
+QUANTITIES = {
+    "angular_velocity_body": "Ω′",
+    "rotation_matrix": "R",
+    "rates_from_angular_velocity_body": "inverse rates",
+}
+OURS = ("numpy", "c", "numba", "jax")
+PEER, HEYOKA, SCIPY = "lambdify, cse, stacked", "heyoka cfunc", "SciPy from_euler"
 COPY = "a plain copy of as many bytes"
-LAMBDIFY, JAX, HEYOKA = "lambdify, cse", "JAX jit", "heyoka cfunc"
+SIZES = (*(m * 10**k for k in range(7) for m in (1, 3)), 10**7)
+LAYOUTS: Mapping[str, Any] = {"rows": np.ascontiguousarray, "columns": np.asfortranarray}
+FILLED = "rows, out given"
+DOCUMENTED = (1, 100, 10**4, 10**6)  # of the table in the README, and with `out`
+MOST = {"numpy": 12e-6, "c": 1.5e-6}  # seconds of the smallest call
+LIMITS = (  # of the time of a peer, from which size up
+    ("numpy", PEER, 1, 1.0),
+    ("c", HEYOKA, 1, 1.0),
+    ("c", HEYOKA, 10**4, 0.8),
+)
+LARGE = (("numpy", PEER, 3.0), ("c", HEYOKA, 1.0))  # times as fast, at large batches
+_TURN = 1e-3  # seconds of a turn: a short call is repeated until it lasts as long
 
-
-@dataclass(frozen=True, slots=True)
-class Outcome:
-    """Seconds of each repeat of one case, by side."""
-
-    quantity: str
-    size: int
-    bytes: int  # read and written, each once
-    seconds: Mapping[str, Sequence[float]]
-
-    @property
-    def name(self) -> str:
-        return f"{QUANTITIES[self.quantity]} at {self.size:.0e}".replace("e+0", "e")
-
-    def ratio(self, above: str, below: str) -> Spread | None:
-        """Times of one side over those of another, turn by turn; None where one is missing."""
-        if above not in self.seconds or below not in self.seconds:
-            return None
-        return ratios(self.seconds[above], self.seconds[below])
-
-    def nanoseconds(self, side: str) -> float | None:
-        return (
-            Spread.of(self.seconds[side]).middle / self.size * 1e9 if side in self.seconds else None
-        )
-
-
-def run(settings: Settings) -> Report:
-    """Every case and every part; a line of each that takes long on standard error."""
-    sizes = (settings.size, settings.size // 10)
-    repeats = settings.repeats or REPEATS
-    with on_one_core():
-        outcomes = [measure(q, size, repeats) for size in sizes for q in QUANTITIES]
-        tables, found = calls(motion(), modules(), repeats)
-        grown = chains(repeats, settings.size // 10)
-    parts = [
-        (tables, found),
-        threads(modules(), settings.size, repeats),
-        memory(modules(), settings.size),
-        generation(motion(), present()),
-        grown,
-        errors(present(), settings.samples),
-        sizes_of_targets(),
-    ]
-    return report(outcomes, parts)
+Array = NDArray[np.float64]
+Call = Callable[[], Any]
+Turns = Mapping[str, Sequence[float]]  # seconds of a call of each side, turn by turn
 
 
 @cache
 def motion() -> Motion:
-    return derive(SEQUENCE)
-
-
-def present() -> list[str]:
-    """The targets on arrays that can be loaded here."""
-    return [name for name in ARRAYS if name in TARGETS and not TARGETS[name].missing]
+    return derive("ZXZ", list(QUANTITIES))
 
 
 @cache
 def modules() -> Mapping[str, ModuleType]:
-    found = {}
-    for name in present():
-        progress(f"loading {name}")
-        found[name] = motion().kernels(name).load()
-    return found
+    return {t: motion().kernels(t).load() for t in OURS if not TARGETS[t].missing}
 
 
-def sides(quantity: str, size: int) -> tuple[dict[str, Side], int]:
-    """All sides of one case, and the bytes that it reads and writes."""
-    symbols, plain = in_plain_symbols(motion(), quantity)
-    points = np.random.default_rng(0).uniform(-3.0, 3.0, (size, len(symbols)))
-    task = Task(symbols, plain, points, SEQUENCE)
-    found = {name: _ours(module, quantity, points) for name, module in modules().items()}
-    if not TARGETS["javascript"].missing:
-        batches = np.split(points, points.shape[1] // 3, 1)
-        module = motion().kernels("javascript").source
-        found["javascript"] = node_side(module, quantity, batches, len(plain))
-    for name, peer in PEERS.items():
-        if peer.is_there and (quantity == "rotation_matrix" or peer.package != "scipy"):
-            progress(f"preparing {name}")
-            found[name] = peer.make(task)
-    moved = 8 * size * (len(symbols) + len(plain))
-    source, target = np.ones(moved // 16), np.ones(moved // 16)
-    found[COPY] = Side(lambda: np.copyto(target, source), lambda: target)
-    return found, moved
+def in_plain_symbols(motion: Motion, name: str) -> tuple[list[sp.Symbol], list[sp.Expr]]:
+    """The inputs of a quantity as symbols, and its entries in them, written out.
+
+    The peers know nothing of functions of time and of named intermediate quantities.
+    """
+    step = motion.step(name)
+    entries = list(step.expression)
+    for known in reversed(motion.definitions):
+        entries = [entry.xreplace({known.symbol: known.expression}) for entry in entries]
+    arguments = [motion.argument(vector) for vector in step.quantity.inputs]
+    plain = {s: sp.Symbol(n) for a in arguments for s, n in zip(a.symbols, a.names, strict=True)}
+    return list(plain.values()), [entry.xreplace(plain) for entry in entries]
 
 
-def _ours(module: ModuleType, quantity: str, points: Array) -> Side:
-    """A target's function, on (N, 3) arrays and with an `out` where it takes one."""
-    batches = [np.ascontiguousarray(part) for part in np.split(points, points.shape[1] // 3, 1)]
-    function = getattr(module, quantity)
-    if module.__name__.endswith("_jax"):
-        return jitted(function, batches)
-    out = function(*batches)
-    return Side(lambda: function(*batches, out=out), lambda: out.reshape(len(points), -1))
+@cache
+def _lambdified(name: str) -> Callable[..., Any]:
+    function: Callable[..., Any] = sp.lambdify(*in_plain_symbols(motion(), name), "numpy", cse=True)
+    return function
 
 
-def measure(quantity: str, size: int, repeats: int) -> Outcome:
-    """Times of one case; raises where a side differs in value from the first of ours."""
-    found, moved = sides(quantity, size)
-    first = next(iter(found.values())).values()
-    for name, side in found.items():
-        side.call()
-        if name != COPY and not np.allclose(side.values(), first, rtol=1e-9, atol=1e-9):
-            raise ArithmeticError(f"{quantity}: {name} differs from ours")
-    actions = {name: partial(timed, side.call) for name, side in found.items()}
-    return Outcome(quantity, size, moved, interleaved(actions, repeats, warm_up=2))
+@cache
+def _compiled(name: str) -> Callable[..., Array]:
+    heyoka: Any = import_module("heyoka")
+    symbols, entries = in_plain_symbols(motion(), name)
+    without = [e.replace(sp.cot, lambda angle: sp.cos(angle) / sp.sin(angle)) for e in entries]
+    function: Callable[..., Array] = heyoka.cfunc(
+        list(map(heyoka.from_sympy, without)), heyoka.make_vars(*map(str, symbols))
+    )
+    return function
 
 
-Part = tuple[Sequence[Table], Sequence[Figure]]
+def sides(name: str, size: int, layout: str, *, is_filled: bool) -> dict[str, Call]:
+    """A call of each side on the same orientations; raises where one differs in value."""
+    random, step = np.random.default_rng(1), motion().step(name)
+    arrays = [LAYOUTS[layout](random.uniform(-3, 3, (size, 3))) for _ in step.quantity.inputs]
+    columns = [column for a in arrays for column in a.T]
+    shape = (size, *(n for n in step.expression.shape if n > 1))
+    count = len(step.expression)
+
+    def stacked(out: Array | None = None) -> Array:
+        return np.stack(np.broadcast_arrays(*_lambdified(name)(*columns)), -1, out)
+
+    found: dict[str, Call] = {
+        PEER: partial(stacked, np.empty((size, count)) if is_filled else None)
+    }
+    if find_spec("heyoka"):
+        room: dict[str, Array] = {"outputs": np.empty((count, size))} if is_filled else {}
+        found[HEYOKA] = partial(_compiled(name), np.array(columns), **room)
+    for target, module in modules().items():
+        out = {"out": np.empty(shape)} if is_filled and target != "jax" else {}
+        function = getattr(module, name)
+        found[target] = partial(function, *arrays, **out)
+        if target == "jax":
+            found[target] = _jitted(function, arrays)
+    if name == "rotation_matrix" and find_spec("scipy"):
+        rotations: Any = import_module("scipy.spatial.transform").Rotation
+        found[SCIPY] = lambda: rotations.from_euler("ZXZ", arrays[0]).as_matrix()
+    expected = stacked()
+    for side, call in found.items():
+        values = np.asarray(call())
+        values = values.T if side == HEYOKA else values.reshape(size, count)
+        if not np.allclose(values, expected, rtol=1e-9, atol=1e-9):
+            raise ArithmeticError(f"{name}: {side} differs from lambdify")
+    moved = np.ones(size * (len(columns) + count) // 2)
+    return {**found, COPY: partial(np.copyto, np.empty_like(moved), moved)}
 
 
-def report(outcomes: Sequence[Outcome], parts: Sequence[Part] = ()) -> Report:
-    """Times, ratios and figures; the first table is that of the documentation."""
-    tables = [_table(outcomes), _ratios(outcomes), _bandwidths(outcomes)]
-    figures = [*_figures(outcomes)]
-    for more, found in parts:
-        tables += more
-        figures += found
-    absent = [name for name, peer in PEERS.items() if not peer.is_there]
-    notes = [f"NumPy's vector instructions here: {_vector_instructions()}"]
-    notes += [f"not installed, and so not beside: {', '.join(absent)}"] if absent else []
+def _jitted(function: Callable[..., Any], arrays: Sequence[Array]) -> Call:
+    jax: Any = import_module("jax")
+    jax.config.update("jax_enable_x64", True)
+    compiled, given = jax.jit(function), list(map(jax.numpy.asarray, arrays))
+    return lambda: jax.block_until_ready(compiled(*given))
+
+
+def seconds(call: Call) -> float:
+    """Of one call, from as many as last a millisecond."""
+    count = max(1, int(_TURN / timed(call)))
+    start = perf_counter()
+    for _ in range(count):
+        call()
+    return (perf_counter() - start) / count
+
+
+def measured(name: str, size: int, repeats: int, layout: str = "rows", **options: bool) -> Turns:
+    progress(f"{name}, {layout}, {size}")
+    calls = sides(name, size, layout, **options)
+    return interleaved({side: partial(seconds, call) for side, call in calls.items()}, repeats)
+
+
+# large batches
+
+
+def run(settings: Settings) -> Report:
+    """Every side, Ω′ and R, with `out` given: medians, then ratios turn by turn."""
+    repeats = settings.repeats or 15
+    with on_one_core():
+        cases = {
+            (size, name): measured(name, size, repeats, is_filled=True)
+            for size in (settings.size, settings.size // 10)
+            for name in ("angular_velocity_body", "rotation_matrix")
+        }
+    return report(cases)
+
+
+def report(cases: Mapping[tuple[int, str], Turns]) -> Report:
+    heads = {key: f"{QUANTITIES[key[1]]} at {key[0]:.0e}".replace("e+0", "e") for key in cases}
+    order = (*OURS, PEER, HEYOKA, SCIPY, COPY)
+    there = [side for side in order if any(side in turns for turns in cases.values())]
+    medians = Table(
+        "Medians, one core",
+        (Column("ns an orientation"), *(Column(head, ".1f") for head in heads.values())),
+        tuple(
+            (
+                f"rigidsym {side}" if side in OURS else side,
+                *(
+                    Spread.of(turns[side]).middle / size * 1e9 if side in turns else None
+                    for (size, _), turns in cases.items()
+                ),
+            )
+            for side in there
+        ),
+    )
+    rows: list[tuple[Cell, ...]] = [
+        (heads[key], above, below, *ratios(turns[above], turns[below]).in_order())
+        for key, turns in cases.items()
+        for below in ("numpy", "c")
+        for above in there
+        if above != below and above in turns and below in turns
+    ]
+    titles = (Column("case"), Column("time of"), Column("over ours"), *spread_columns("ratio", 2))
+    figures = [
+        Figure(
+            f"{heads[key]}: {ours} against {peer}",
+            f"at least {least:g} times as fast",
+            "{1:.2f} times ({0:.2f} to {2:.2f})".format(*spread.in_order()),
+            spread.middle >= least,
+        )
+        for key, turns in cases.items()
+        for ours, peer, least in LARGE
+        if ours in turns and peer in turns
+        for spread in [ratios(turns[peer], turns[ours])]
+    ]
     return Report(
         title="Kernels: one core, float64, ZXZ",
+        tables=(medians, Table("Ratios, turn by turn", titles, tuple(rows))),
+        figures=tuple(figures),
+        documented=medians,
+    )
+
+
+# sizes
+
+
+def sizes(settings: Settings) -> Report:
+    """Every size up to that of the settings, in both layouts, and with `out` given."""
+    tables, cases = [], []
+    with on_one_core():
+        for name, symbol in QUANTITIES.items():
+            for layout, is_filled in (("rows", False), ("columns", False), ("rows", True)):
+                chosen = DOCUMENTED if is_filled else SIZES
+                found = {
+                    size: measured(name, size, settings.repeats or 11, layout, is_filled=is_filled)
+                    for size in chosen
+                    if size <= settings.size
+                }
+                tables.append(_table(f"{symbol}, {FILLED if is_filled else layout}", found))
+                cases.append(found)
+    progress()
+    return Report(
+        title="Sizes: time of one call on one core, and as a part of its peers'",
         tables=tuple(tables),
-        figures=(*figures, *figures_of_parts(absent)),
-        notes=tuple(notes),
-        documented=tables[0],
+        figures=(*_smallest(cases), *_limits(cases)),
+        notes=(f"Ratios are turn by turn. Processor: {machine()['processor']}.",),
+        documented=documented("Ω′, rows", cases[0]),
     )
 
 
-def _table(outcomes: Sequence[Outcome]) -> Table:
-    """A side a line, a case a column: medians in nanoseconds an orientation."""
-    names = [*OURS, *PEERS, COPY]
-    there = [name for name in names if any(name in o.seconds for o in outcomes)]
-    ours = {name: f"rigidsym {name}" for name in OURS}
-    rows = tuple(
-        (ours.get(name, name), *(outcome.nanoseconds(name) for outcome in outcomes))
-        for name in there
-    )
-    columns = (Column("ns an orientation"), *(Column(o.name, ".1f") for o in outcomes))
-    return Table("Medians, one core", columns, rows)
+def documented(title: str, found: Mapping[int, Turns]) -> Table:
+    """Shortest times of every side, which other work disturbs least, for the README."""
+    measured = next(iter(found.values()))
+    shown = [side for side in (PEER, HEYOKA, "numpy", "c", "numba") if side in measured]
+    heads = [{PEER: "lambdify", HEYOKA: "heyoka"}.get(side, side) for side in shown]
+    rows: list[tuple[Cell, ...]] = [
+        (size, *(f"{float(f'{min(turns[side]) * 1e6:.3g}'):,.9g}" for side in shown))
+        for size, turns in found.items()
+        if size in DOCUMENTED
+    ]
+    first = f"{title}: orientations, µs a call on one core, {machine()['processor']}"
+    return Table(title, (Column(first, ",d"), *map(Column, heads)), tuple(rows))
 
 
-def _ratios(outcomes: Sequence[Outcome]) -> Table:
-    rows: list[tuple[Cell, ...]] = []
-    for outcome in outcomes:
-        for below in ("numpy", "c"):
-            for above in (*PEERS, *OURS):
-                spread = outcome.ratio(above, below)
-                if above != below and spread is not None:
-                    rows.append((outcome.name, above, below, *spread.in_order()))
-    columns = (Column("case"), Column("time of"), Column("over ours"), *spread_columns("ratio", 2))
-    return Table("Ratios, turn by turn", columns, tuple(rows))
+def _table(title: str, found: Mapping[int, Turns]) -> Table:
+    """Medians of all sides, and the ratios of ours to both peers with their spread."""
+    measured = list(next(iter(found.values())))
+    pairs = [(t, p) for t in ("numpy", "c", "numba") for p in (PEER, HEYOKA)]
+    pairs = [(t, p) for t, p in pairs if t in measured and p in measured]
+    columns = [Column("orientations", ",d"), *(Column(f"{side}, µs", ",.2f") for side in measured)]
+    for target, peer in pairs:
+        columns += [Column(f"{target}/{peer.partition(',')[0]}", ".2f"), *[Column("", ".2f")] * 2]
+    rows = []
+    for size, turns in found.items():
+        cells: list[Cell] = [size, *(Spread.of(turns[side]).middle * 1e6 for side in measured)]
+        for target, peer in pairs:
+            cells += ratios(turns[target], turns[peer]).in_order()
+        rows.append(tuple(cells))
+    return Table(title, tuple(columns), tuple(rows))
 
 
-def _bandwidths(outcomes: Sequence[Outcome]) -> Table:
-    rows: list[tuple[Cell, ...]] = []
-    for outcome in outcomes:
-        limit = outcome.nanoseconds(COPY)
-        for name in OURS:
-            taken = outcome.nanoseconds(name)
-            if taken is not None and limit is not None:
-                per = outcome.bytes / outcome.size
-                rows.append((outcome.name, name, per / taken, per / limit, taken / limit))
-    columns = (
-        Column("case"),
-        Column("target"),
-        Column("GB/s", ".1f"),
-        Column("plain copy GB/s", ".1f"),
-        Column("times the copy's time", ".1f"),
-    )
-    return Table("Bytes read and written, each once, a second", columns, tuple(rows))
+def _smallest(cases: Sequence[Mapping[int, Turns]]) -> Iterator[Figure]:
+    for target, most in MOST.items():
+        found = max((Spread.of(c[1][target]).middle for c in cases if target in c[1]), default=0)
+        name, goal = f"one orientation by {target}", f"at most {most * 1e6:g} µs"
+        yield Figure(name, goal, f"{found * 1e6:.2f} µs", found <= most)
 
 
-def _figures(outcomes: Sequence[Outcome]) -> Iterator[Figure]:
-    for outcome in outcomes:
-        is_large = outcome is outcomes[0] or outcome.size == outcomes[0].size
-        if is_large:
-            yield _figure(outcome, "numpy", LAMBDIFY, 3.0)
-            yield _figure(outcome, "numpy", JAX, 1.0)
-        yield _figure(outcome, "c", HEYOKA, 1.0 if is_large else 1.3)
-
-
-def _figure(outcome: Outcome, ours: str, peer: str, least: float) -> Figure:
-    spread = outcome.ratio(peer, ours)
-    name, reach = f"{outcome.name}: {ours} against {peer}", f"at least {least:g} times as fast"
-    if spread is None:
-        return Figure(name, reach, "one of the two is not here", False)
-    low, middle, high = spread.in_order()
-    found = f"{middle:.2f} times ({low:.2f} to {high:.2f})"
-    return Figure(name, reach, found, middle >= least)
-
-
-def _vector_instructions() -> str:
-    """NumPy's sine and tangent are many times faster with some of them."""
-    found: Any = np.show_config(mode="dicts")  # typed differently from one NumPy to the next
-    extensions = found.get("SIMD Extensions", {})
-    return ", ".join([*extensions.get("baseline", []), *extensions.get("found", [])]) or "unknown"
+def _limits(cases: Sequence[Mapping[int, Turns]]) -> Iterator[Figure]:
+    """The largest middle ratio from a size up, where both sides were measured."""
+    for target, peer, least, most in LIMITS:
+        found = [
+            (ratios(turns[target], turns[peer]).middle, size)
+            for case in cases
+            for size, turns in case.items()
+            if size >= least and target in turns and peer in turns
+        ]
+        if found:
+            ratio, size = max(found)
+            name = f"{target} at every size" + (f" from {least:,} up" if least > 1 else "")
+            goal = f"at most {most:g} of the time of {peer}"
+            yield Figure(name, goal, f"{ratio:.2f} at {size:,}", ratio <= most)

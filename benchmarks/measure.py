@@ -43,9 +43,6 @@ class Settings:
     repeats: int | None = None  # None: each benchmark's own
     size: int = 1_000_000  # orientations in a batch of the kernels
     samples: int = 40  # orientations of each kind whose errors are taken
-    bodies: int = 10_000  # in the ensembles of motion
-    files: int = 100  # inputs of each kind of the campaign "fuzz", kills of "kills"
-    resume: Path | None = None  # what the campaign "fuzz" or "chains" found so far
     fresh: bool = False  # survey SymPy's forms anew
 
 

@@ -6,14 +6,13 @@ import subprocess
 import tempfile
 from collections.abc import Callable, Mapping
 from functools import partial
-from importlib.util import find_spec
 from pathlib import Path
 from statistics import median
 from time import perf_counter
 
 from benchmarks.measure import Settings, interleaved, timed
 from benchmarks.report import Column, Figure, Report, Table
-from rigidsym.models.euler_angles import EULER_SEQUENCES, EulerAngles
+from rigidsym.models.parametrisations import EULER_SEQUENCES, EulerAngles
 from rigidsym.motion import derive
 from rigidsym.notes.formats.pdf import missing_programs, typeset
 from rigidsym.notes.note import Note
@@ -25,18 +24,16 @@ FORMATS: Mapping[str, Callable[[Note], str]] = {
     "LaTeX": Note.latex,
     "HTML": Note.html,
     "Markdown": Note.markdown,
-    "notebook": Note.notebook,
 }
 _TEX = ("latexmk", "-norc", "-pdf", "-interaction=batchmode", "note.tex")
 
 
 def run(settings: Settings) -> Report:
     """Each note is made once, in one process; the PDF a few times, in turns with TeX alone."""
-    formats = {name: FORMATS[name] for name in FORMATS if name != "notebook" or _has_nbformat()}
-    rows = [_seconds(sequence, formats) for sequence in EULER_SEQUENCES]
+    rows = [_seconds(sequence, FORMATS) for sequence in EULER_SEQUENCES]
     total = sum(sum(row) for row in rows)
     each = [sum(column) for column in zip(*rows, strict=True)]
-    names = ("derived and composed", *formats)
+    names = ("derived and composed", *FORMATS)
     tables = [
         Table(
             "24 conventions, seconds together",
@@ -57,10 +54,6 @@ def run(settings: Settings) -> Report:
         tables.append(table)
         figures.append(figure)
     return Report(title="Notes", tables=tuple(tables), figures=tuple(figures))
-
-
-def _has_nbformat() -> bool:
-    return find_spec("nbformat") is not None
 
 
 def _seconds(sequence: str, formats: Mapping[str, Callable[[Note], str]]) -> tuple[float, ...]:

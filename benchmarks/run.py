@@ -32,25 +32,14 @@ PAGES = {  # what --docs writes into
 NAMES = (
     "derivation",
     "form",
-    "energy",
-    "catalogue",
     "cold_start",
     "kernels",
     "sizes",
     "accuracy",
-    "precision",
     "bounds",
-    "identify",
-    "bodies",
     "notes",
     "motion",
     "rosetta",
-    "fuzz",
-    "chains",
-    "kills",
-    "mutation",
-    "kernel_mutants",
-    "versions",
     "certificates",
 )
 
@@ -90,7 +79,8 @@ def write_table(path: Path, name: str, text: str) -> None:
 
 def run(name: str, settings: Settings) -> Report:
     """One benchmark by name; imported here, so that one needs not what another needs."""
-    report: Report = import_module(f"benchmarks.{name}").run(settings)
+    module, _, function = {"sizes": "kernels.sizes"}.get(name, f"{name}.run").partition(".")
+    report: Report = getattr(import_module(f"benchmarks.{module}"), function)(settings)
     return report
 
 
@@ -101,9 +91,6 @@ def _settings(given: argparse.Namespace) -> Settings:
         repeats=given.repeats,
         size=given.size,
         samples=given.samples,
-        bodies=given.bodies,
-        files=given.files,
-        resume=given.resume,
         fresh=given.fresh,
     )
 
@@ -119,16 +106,8 @@ def _parser() -> argparse.ArgumentParser:
         ("--repeats", None, "of each measurement, instead of its own number"),
         ("--size", usual.size, "orientations in a batch of the kernels"),
         ("--samples", usual.samples, "orientations of each kind whose errors are taken"),
-        ("--bodies", usual.bodies, "in the ensembles of motion; 100000 take minutes"),
-        ("--files", usual.files, "inputs of each kind of fuzz, and kills"),
     ):
         parser.add_argument(option, type=_count, default=default, metavar="N", help=about)
-    parser.add_argument(
-        "--resume",
-        type=Path,
-        metavar="FILE",
-        help="the whole of fuzz or chains, going on from FILE",
-    )
     parser.add_argument(
         "--docs", action="store_true", help="put the tables into README.md and docs/reference"
     )

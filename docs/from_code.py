@@ -28,11 +28,10 @@ from rigidsym import errors
 from rigidsym.commands.cli import commands as cli
 from rigidsym.kernels.targets import TARGETS
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
-from rigidsym.mechanics.quantities.kinematics import quantities as kinematics
+from rigidsym.mechanics.quantities.kinematics import KINEMATICS
 from rigidsym.mechanics.quantities.mass import INERTIA_QUANTITIES
-from rigidsym.models.euler_angles import EULER_SEQUENCES, EulerAngles
-from rigidsym.models.library import PARAMETRISATIONS, PRESETS
-from rigidsym.models.rotation_text import rotation_from
+from rigidsym.models.library import PARAMETRISATIONS, PRESETS, rotation_from
+from rigidsym.models.parametrisations import EULER_SEQUENCES, EulerAngles
 from rigidsym.models.solids import SHAPES
 
 
@@ -117,7 +116,7 @@ def presets() -> str:
 def quantities() -> str:
     parts = []
     for title, found in (
-        ("Kinematics", kinematics(passive=False)),
+        ("Kinematics", KINEMATICS),
         ("Mass", INERTIA_QUANTITIES),
         ("Energy and momentum", ENERGY_QUANTITIES),
     ):

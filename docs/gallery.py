@@ -94,7 +94,10 @@ class Item:
             spec = read_spec(text, source=self.name, name=f"solid_{self.name}")
         else:
             spec = read(self.name)
-        return replace(spec, kernels=KERNELS, note=("tex", "html", "page"))
+        motion = spec.dynamics or {}
+        is_shown = not (motion.get("parts") or motion.get("frame_rate"))  # by a page's figure
+        note = ("tex", "html", "page") if is_shown else ("tex", "html")
+        return replace(spec, kernels=KERNELS, note=note)
 
     def write(self, *, pdf: bool) -> str:
         """Write its files and its entry; its folder."""
@@ -134,7 +137,8 @@ class Item:
         figure = wireframe(self.name) if self.kind == "solid" else _first(_FIGURE, note)
         figure = _IDENTIFIER.sub(f"figure-{output.name}", figure)
         _, _, after = note.partition(f'<div class="equation" id="{self.key}"')
-        formulas = _FORMULA.findall(after.partition('<a class="number"')[0])
+        end = ' id="' if self.kind == "solid" else '<a class="number"'  # I₁ = ... come next
+        formulas = _FORMULA.findall(after.partition(end)[0])
         formula = f'<div class="formula" tabindex="0">{"<br>".join(formulas)}</div>'
         title = output.motion.title if self.kind == "file" else self.name
         if self.kind == "solid":

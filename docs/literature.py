@@ -17,14 +17,13 @@ from pathlib import Path
 from typing import Any
 
 import sympy as sp
-from sympy.core.function import AppliedUndef
 
 import rigidsym as rs
 from rigidsym.errors import DerivationError
 from rigidsym.formula.tree import Words
 from rigidsym.mechanics.prove import identity
+from rigidsym.models.library import rotation_from
 from rigidsym.models.rotation import TIME
-from rigidsym.models.rotation_text import rotation_from
 from rigidsym.tools.compare.language import read_formula
 
 FOLDER = Path(__file__).parent / "literature"
@@ -72,7 +71,9 @@ class Claim:
     symbols: str = ""  # that are no coordinates
     let: Mapping[str, str]
     conditions: tuple[str, ...] = ()  # expressions that are zero
+    example: Mapping[str, int] | None = None  # values at which the conditions hold
     repair: Any = None
+    right: Mapping[str, str] | None = None  # a definition, if the repair is an equation for it
     term: Any = None  # what is printed less what is right
     about: str = ""
 
@@ -83,7 +84,7 @@ class Decision:
 
     claim: Claim
     verdict: str
-    residual: sp.Matrix | None = None  # printed less ours, at `POINT`
+    residual: sp.Matrix | None = None  # printed less ours
     is_repaired: bool = False  # the repair is proved, and differs from what is printed by the term
 
 
@@ -116,7 +117,7 @@ def decide(claim: Claim) -> Decision:
     repaired = claim.repair is not None and names.vanishes(names.matrix(claim.repair) - ours)
     if repaired and claim.term is not None:
         repaired = names.vanishes(difference - names.matrix(claim.term))
-    return Decision(claim, "wrong", names.at_point(difference), repaired)
+    return Decision(claim, "wrong", difference, repaired)
 
 
 class Names:
@@ -126,6 +127,7 @@ class Names:
         self.claim = claim
         self.values: dict[str, Any] = {}
         self.conditions: list[sp.Expr] = []
+        self.example: dict[sp.Expr, sp.Expr] = {}
         if claim.rotation or claim.body:
             self._derive()
         for name in claim.symbols.split():
@@ -134,6 +136,8 @@ class Names:
             is_rows = isinstance(given, list)
             self.values[name] = self.matrix(given) if is_rows else value(given, self.values)
         self.conditions += [value(text, self.values) for text in claim.conditions]
+        given = (claim.example or {}).items()
+        self.example |= {self.values[name]: sp.Integer(number) for name, number in given}
 
     def _derive(self) -> None:
         claim = self.claim
@@ -147,6 +151,7 @@ class Names:
         wanted = sorted(words & _quantities())
         motion = rs.derive(claim.rotation or "ZXZ", wanted, **options)
         self.conditions += motion.model.constraints
+        self.example |= dict(motion.model.example)
         found = {name: getattr(motion, name) for name in wanted}
         for coordinate in motion.model.coordinates:
             name = coordinate.func.__name__
@@ -166,19 +171,13 @@ class Names:
     def vanishes(self, residual: sp.Matrix) -> bool:
         """Raises ValueError if the ring cannot tell."""
         try:
-            proof = identity(residual, Words("equality"), self.claim.title, self.conditions)
+            title, example = self.claim.title, tuple(self.example.items())
+            proof = identity(residual, Words("equality"), title, self.conditions, example)
         except DerivationError:
             return False
         if not proof.is_exact:
             raise ValueError(f"{self.claim.title}: undecided; left over: {proof.residual}")
         return True
-
-    def at_point(self, residual: sp.Matrix) -> sp.Matrix:
-        """Its value where the coordinates are 0.4, 0.7, 1.0, ..., and so on for the rest."""
-        atoms = residual.atoms(sp.Derivative, AppliedUndef) | residual.free_symbols - {TIME}
-        ordered = sorted(atoms, key=lambda a: (not isinstance(a, sp.Derivative), str(a)))
-        point = {atom: sp.Rational(4 + 3 * k, 10) for k, atom in enumerate(ordered)}
-        return residual.xreplace(point).evalf(5, chop=True)
 
 
 def value(text: str, names: Mapping[str, Any]) -> Any:
@@ -257,20 +256,22 @@ def sources() -> str:
         lines.append(f"| {title} | {len(of_it)} | {wrong or ''} | {source.seen} |")
         if source.remark:
             remarks.append(f"- {source.title.split(',')[0]}: {source.remark}")
-    found = decisions()
-    total = f"{len(found)} formulas, {sum(d.verdict == 'wrong' for d in found)} of them wrong."
-    return "\n".join([total, "", *lines, "", "Remarks on the sources:", "", *remarks])
+    totals = []
+    for seen, words in SEEN.items():
+        of_it = [d for d in decisions() if d.claim.source.seen == seen]
+        wrong = sum(d.verdict == "wrong" for d in of_it)
+        totals.append(f"- {len(of_it)} formulas {words}: {wrong or 'none'} wrong")
+    return "\n".join([*totals, "", *lines, "", "Remarks on the sources:", "", *remarks])
 
 
 def _wrong(decision: Decision) -> str:
     claim = decision.claim
     parts = [_head(claim, 3), claim.about, *_printed(claim), "The right formula is"]
-    parts.append(_display(latex(claim.repair)))
+    right = claim.right or {"": claim.repair}
+    parts += [_display(f"{_name(k)} = {latex(v)}" if k else latex(v)) for k, v in right.items()]
     if claim.term is not None:
         parts += ["The printed expression exceeds it by", _display(latex(claim.term))]
-    assert decision.residual is not None
-    values = _display(sp.latex(decision.residual))
-    return "\n\n".join([*parts, "The printed minus the derived value at a point is", values])
+    return "\n\n".join(parts)
 
 
 def _entry(decision: Decision) -> str:
@@ -293,10 +294,12 @@ def _printed(claim: Claim) -> list[str]:
     if claim.body and not claim.rotation:
         about = f"For the solid `{claim.body}`,"
     parts = [about, _display(f"{latex(claim.ours)} = {latex(claim.printed)}")]
-    if claim.let:
-        parts.append("with")
-        parts += [_display(f"{_name(name)} = {latex(given)}") for name, given in claim.let.items()]
-    return parts
+    used = {word for text in _texts((claim.ours, claim.printed)) for word in _words(text)}
+    for name in reversed(claim.let):  # each may hold those before it
+        if name in used:
+            used |= {word for text in _texts(claim.let[name]) for word in _words(text)}
+    lets = [_display(f"{_name(n)} = {latex(v)}") for n, v in claim.let.items() if n in used]
+    return [*parts, *(["with", *lets] if lets else [])]
 
 
 def _display(text: str) -> str:

@@ -104,7 +104,6 @@ def schema() -> Schema:
             },
         ),
         "notation": _notation(),
-        "text": _text(),
         "output": _output(),
     }
     return {
@@ -152,7 +151,7 @@ def _rotation() -> Schema:
             "example": {
                 "type": "object",
                 "description": "exact values of coordinates and constants of `matrix`, by name, "
-                "that satisfy the constraints, in case a search finds none",
+                "that satisfy the constraints",
                 "additionalProperties": NUMBER,
             },
             "passive": flag("present Rᵀ, from space to body components"),
@@ -253,26 +252,7 @@ def _notation() -> Schema:
     choices = {
         key: text(f"by default {values[0]}", *values) for key, values in VOCABULARY.choices.items()
     }
-    frames = texts('names of the frames of space and body, such as ["inertial", "spacecraft"]')
-    return obj("The notation of notes and terminal.", choices | {"frames": frames})
-
-
-def _text() -> Schema:
-    names = "by the name of a quantity or the title of a section"
-    return obj(
-        "Your own words in the note; formulas are between dollar signs, [key] cites a source.",
-        {
-            "author": text("author of the note"),
-            "course": text("course"),
-            "date": text("date"),
-            "omit": texts("quantities and sections to leave out"),
-            "before": _by_name(f"sentences before, {names}"),
-            "after": _by_name(f"sentences after, {names}"),
-            "sources": _by_name(
-                "your own sources by key; the key lecture replaces the lecture notes"
-            ),
-        },
-    )
+    return obj("The notation of notes and terminal.", choices)
 
 
 def _output() -> Schema:
@@ -283,12 +263,10 @@ def _output() -> Schema:
             "kernels": texts("languages of the functions, numpy by default", *VOCABULARY.kernels),
             **{name: _target(name) for name in VOCABULARY.target_options},
             "note": texts("formats of the note, tex and html by default", *VOCABULARY.note),
-            "style": text("style of the note, lecture by default", *VOCABULARY.styles),
-            "language": text("language of the note, en by default", *VOCABULARY.languages),
+            "style": text("style of the note: lecture (default), audit, or a template of yours"),
             "conversions": flag("add functions to and from quaternions and matrices"),
             "derivatives": texts('Jacobians, such as "angular_velocity_body by q"'),
-            "degrees": flag("print functions that take and return degrees, in files NAME_deg"),
-            "certificates": flag("add certificates: NAME.cert.json, NAME.v and NAME.lean"),
+            "certificates": flag("add certificates: NAME.cert.json and NAME.v"),
         },
     )
 

@@ -12,29 +12,18 @@
 """
 
 import importlib as _importlib
-import pathlib as _pathlib
-import re as _re
 import typing as _typing
+
+import lazy_loader as _lazy_loader
 
 from rigidsym.version import __version__ as __version__
 
-_STUB = _pathlib.Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8")
-_IMPORTS = _re.findall(r"^from (\S+) import (?:\(([^)]*)\)|(.*))$", _STUB, _re.MULTILINE)
-_HOMES = {
-    name.split()[0]: module
-    for module, *names in _IMPORTS
-    for name in "".join(names).strip(" ,\n").split(",")
-}
-__all__ = sorted(_HOMES)
+_loaded, __dir__, __all__ = _lazy_loader.attach_stub(__name__, __file__)
 
 
 def __getattr__(name: str) -> _typing.Any:
     if name == "kernels":  # the room, which is callable
         return _importlib.import_module("rigidsym.kernels")
-    if name not in _HOMES:
+    if name not in __all__:
         raise AttributeError(f"module 'rigidsym' has no attribute {name!r}")
-    return getattr(_importlib.import_module(_HOMES[name]), name)
-
-
-def __dir__() -> list[str]:
-    return __all__
+    return _loaded(name)

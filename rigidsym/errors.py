@@ -6,6 +6,7 @@ usage, 3 for a file with wrong content, 4 if an outside tool is missing.
 
 from __future__ import annotations
 
+import copyreg
 import re
 from collections.abc import Iterable, Sequence
 from typing import ClassVar, NamedTuple
@@ -43,6 +44,10 @@ class RigidsymError(Exception):
 
     def __str__(self) -> str:
         return printable(super().__str__())
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """As it is, from one process to another: subclasses take arguments of their own."""
+        return copyreg.__newobj__, (type(self), *self.args), vars(self)  # type: ignore[attr-defined]
 
 
 class LimitReached(RigidsymError):
@@ -119,24 +124,22 @@ class Fault(NamedTuple):
     """One thing wrong in a derivation file."""
 
     message: str  # what was found and what was expected
-    line: int = 0  # counted from 1; 0 for the file as a whole
-    path: str = ""  # "rotation.angles[1]", in the file's own keys
+    path: str = ""  # "rotation.angles[1]", in the file's own keys; "" for the file as a whole
 
-    def place(self) -> tuple[int, list[tuple[int, str]]]:
-        """By line, then by path, where entry 2 comes before entry 10."""
+    def place(self) -> list[tuple[int, str]]:
+        """By path, where entry 2 comes before entry 10."""
         parts = re.findall(r"\d+|\D+", self.path)
-        return self.line, [(int(part) if part.isdigit() else 0, part) for part in parts]
+        return [(int(part) if part.isdigit() else 0, part) for part in parts]
 
     def __str__(self) -> str:
-        place = f"line {self.line}: " if self.line else ""
-        return f"{place}{self.path}: {self.message}" if self.path else f"{place}{self.message}"
+        return f"{self.path}: {self.message}" if self.path else self.message
 
 
 class SpecError(RigidsymError):
     """A bad derivation file: all its faults at once."""
 
     exit_code: ClassVar[int] = 3
-    remedy: ClassVar[str] = "Correct the lines that the message names."
+    remedy: ClassVar[str] = "Correct the keys that the message names."
 
     def __init__(self, source: str, faults: Sequence[Fault]) -> None:
         self.source = source
@@ -163,13 +166,6 @@ class MissingExtra(RigidsymError):
         super().__init__(
             f"{what} needs an extra that is missing: pip install '.[{extra}]' in the clone"
         )
-
-
-class ClusterError(RigidsymError):
-    """A Dask scheduler that does not answer or has no workers."""
-
-    exit_code: ClassVar[int] = 4
-    remedy: ClassVar[str] = "Start the scheduler and its workers, or correct its address."
 
 
 class TemplateFault(RigidsymError):

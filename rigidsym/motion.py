@@ -6,7 +6,6 @@ import warnings
 from collections.abc import Collection, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass, fields, replace
-from functools import partial
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
@@ -26,23 +25,21 @@ from rigidsym.mechanics.quantities.dynamics import (
     FLOW_QUANTITIES,
 )
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
-from rigidsym.mechanics.quantities.kinematics import QUANTITY_NAMES
+from rigidsym.mechanics.quantities.kinematics import KINEMATICS
 from rigidsym.mechanics.quantities.mass import BODY_ALONE, INERTIA_QUANTITIES
 from rigidsym.models.forces import forces_on
+from rigidsym.models.library import rotation_from
 from rigidsym.models.rotation import RotationModel
-from rigidsym.models.rotation_text import rotation_from
-from rigidsym.system.cluster import on_cluster
 from rigidsym.system.processes import time_limit
 
 if TYPE_CHECKING:
     from rigidsym.mechanics.conversions.conversions import Conversions
-    from rigidsym.notes.document.own_text import OwnText
     from rigidsym.notes.note import Note
     from rigidsym.simulation.ensemble import Ensemble
     from rigidsym.simulation.trajectory import Trajectory
 
 QUANTITIES = (
-    *(*QUANTITY_NAMES, BODY_ALONE, *INERTIA_QUANTITIES, *ENERGY_QUANTITIES),
+    *(*KINEMATICS, BODY_ALONE, *INERTIA_QUANTITIES, *ENERGY_QUANTITIES),
     *dict.fromkeys((*DYNAMICS_QUANTITIES, *EULER_QUANTITIES, *FLOW_QUANTITIES)),
 )
 _MEANT = {"omega_body": "angular_velocity_body", "omega_space": "angular_velocity_space"}
@@ -83,7 +80,6 @@ class Motion(Derivation):
         *,
         conversions: bool = False,
         derivatives: Asked = (),
-        degrees: bool = False,
         **options: str | bool,
     ) -> KernelModule:
         """The functions in one language: `.source`, `.load()`, `.write(path)`.
@@ -91,10 +87,7 @@ class Motion(Derivation):
         `conversions` adds conversions to and from the unit quaternion and the matrix, and
         `unwrap`. `derivatives` adds functions that return a quantity and its derivative:
         {"angular_velocity_body": ("q", "q_dot")} adds `angular_velocity_body_jacobian_q` and
-        `angular_velocity_body_jacobian_q_dot`; "q jvp" and "q vjp" give products with a vector.
-        With `degrees`, angles are in degrees, rates and angular velocities in deg/s, angular
-        accelerations in deg/s^2, as arguments and as results; other quantities remain in SI units.
-        The name of the module then ends in _deg.
+        `angular_velocity_body_jacobian_q_dot`.
         `options` depend on the target: `kernels("c", precision="double", arrays=False, libm=True)`
         prints lean C for firmware.
         Raises KernelError for an unknown target, option or derivative.
@@ -104,7 +97,6 @@ class Motion(Derivation):
             target,
             conversions=conversions,
             derivatives=derivatives,
-            degrees=degrees,
             **options,
         )
 
@@ -113,7 +105,9 @@ class Motion(Derivation):
 
         Raises DerivationError, with the residual, if they are not.
         """
-        return identity(left - right, Words("equality"), self.name, self.model.constraints)
+        model = self.model
+        difference = left - right
+        return identity(difference, Words("equality"), self.name, model.constraints, model.example)
 
     @property
     def conversions(self) -> Conversions:
@@ -128,16 +122,12 @@ class Motion(Derivation):
         with_kernels: bool = True,
         conversions: bool = False,
         style: str = "lecture",
-        text: OwnText | None = None,
-        language: str = "en",
     ) -> Note:
-        """The note on the derivation: `.latex()`, `.html()`, `.markdown()`, `.notebook()`.
+        """The note on the derivation: `.latex()`, `.html()`, `.markdown()`.
 
-        `style` is "lecture", which explains, "paper", which is terse, or "audit", which shows every
-        identity and, with `with_kernels`, the function of the NumPy module beside its equation.
-        `conversions` adds a section on the unit quaternion and the matrix; `text` adds your own
-        sentences, sources and byline, and leaves parts out. `language` is "en" or "de"; your own
-        text is not translated.
+        `style` is "lecture", which explains, or "audit", which shows every identity and, with
+        `with_kernels`, the function of the NumPy module beside its equation. `conversions` adds
+        a section on the unit quaternion and the matrix.
         """
         from rigidsym.notes.note import note
 
@@ -147,8 +137,6 @@ class Motion(Derivation):
             notation=self.notation,
             conversions=self.conversions if conversions else None,
             style=style,
-            text=text,
-            language=language,
         )
 
     def simulate(
@@ -172,19 +160,14 @@ class Motion(Derivation):
         initial: Mapping[str, Any],
         parameters: Mapping[str, Any],
         t_end: float,
-        *,
-        scheduler: str | None = None,
         **options: Any,
     ) -> Ensemble:
         """Many motions at once: values of `initial` and `parameters` may be arrays, (m,).
 
-        `scheduler` is the address of a Dask cluster that computes them. For the options see
-        `rigidsym.simulation.ensemble.simulate_ensemble`.
+        For the options see `rigidsym.simulation.ensemble.simulate_ensemble`.
         """
         from rigidsym.simulation.ensemble import simulate_ensemble
 
-        if scheduler is not None:
-            options["mapped"] = partial(on_cluster, scheduler)
         return simulate_ensemble(self, initial, parameters, t_end, **options)
 
     def page(
@@ -192,20 +175,18 @@ class Motion(Derivation):
         *,
         with_kernels: bool = True,
         start: Mapping[str, float] | None = None,
-        language: str = "en",
     ) -> str:
         """One HTML file that needs no network: the note, and a figure with sliders.
 
-        `start` contains initial values of coordinates, rates and constants by name, in SI units;
-        `language` is "en" or "de".
+        `start` contains initial values of coordinates, rates and constants by name, in SI units.
         """
         from rigidsym.page.print_page import print_page
 
-        note = self.note(with_kernels=with_kernels, language=language)
+        note = self.note(with_kernels=with_kernels)
         return print_page(self, note.document, start or {})
 
     def with_notation(self, **choices: Any) -> Motion:
-        """The same motion in another notation: `rates`, `vectors`, `body`, `frames`,
+        """The same motion in another notation: `rates`, `vectors`, `body`,
         `angular_velocity`, as in [notation] of a derivation file. Raises ModelError for others.
         """
         return replace(self, notation=replace(self.notation, **choices))
@@ -326,14 +307,12 @@ def kernels(
     body: Body | None = None,
     conversions: bool = False,
     derivatives: Asked = (),
-    degrees: bool = False,
+    **options: str | bool,
 ) -> ModuleType:
     """The functions of a rotation, loaded: `rs.kernels("ZYX").angular_velocity_body(q, q_dot)`.
 
     This is `derive`, `Motion.kernels` and `load` in one step, and raises the same errors.
     """
     motion = derive(model, only, body=body)
-    module = motion.kernels(
-        target, conversions=conversions, derivatives=derivatives, degrees=degrees
-    )
+    module = motion.kernels(target, conversions=conversions, derivatives=derivatives, **options)
     return module.load()

@@ -24,13 +24,12 @@ from rigidsym.kernels.targets import TARGETS
 from rigidsym.mechanics.derivation import Proof
 from rigidsym.models.body import RigidBody
 from rigidsym.motion import CHOICES, DEFAULT, QUANTITIES, Motion, Notation, derive
-from rigidsym.notes.document.own_text import OwnText
 from rigidsym.notes.formats import FORMATS
 from rigidsym.notes.formats.record import record
-from rigidsym.notes.note import STYLES
+from rigidsym.notes.note import check_style
 from rigidsym.spec import derivation_file
 from rigidsym.spec.derivation_spec import DerivationSpec, spec_for
-from rigidsym.spec.tables import Source
+from rigidsym.spec.tables import fault_at
 from rigidsym.spec.vocabulary import Vocabulary
 from rigidsym.system import resources
 
@@ -140,11 +139,9 @@ def vocabulary() -> Vocabulary:
         kernels=tuple(TARGETS),
         target_options={name: target.options for name, target in TARGETS.items() if target.options},
         note=note_formats(),
-        styles=STYLES,
-        languages=resources.languages(),
+        check_style=check_style,
         notation=Notation,
         choices=CHOICES,
-        text=OwnText,
         derivative=read_request,
     )
 
@@ -172,7 +169,7 @@ def motion_of(spec: DerivationSpec) -> Motion:
 def integrated(spec: DerivationSpec) -> DerivationSpec:
     """The specification with the mass distribution of its body integrated, for all its rotations.
 
-    Raises SpecError, with the line of the file, for an impossible body.
+    Raises SpecError, with the key, for an impossible body.
     """
     if spec.body is None or isinstance(spec.body, RigidBody):
         return spec
@@ -181,9 +178,8 @@ def integrated(spec: DerivationSpec) -> DerivationSpec:
     try:
         return replace(spec, body=rigid_body(spec.body))
     except BodyError as error:
-        source = spec.source or Source(spec.name)
-        fault = source.fault(("body", *error.place), str(error))
-        raise SpecError(source.name, [fault]) from None
+        fault = fault_at(("body", *error.place), str(error))
+        raise SpecError(spec.source or spec.name, [fault]) from None
 
 
 # 3. print
@@ -196,7 +192,6 @@ def _printed(motion: Motion, spec: DerivationSpec) -> Iterator[tuple[str, str]]:
             target,
             conversions=spec.conversions,
             derivatives=spec.derivatives,
-            degrees=spec.degrees,
             **spec.target_options.get(target, {}),
         )
         yield from module.files.items()
@@ -206,11 +201,9 @@ def _printed(motion: Motion, spec: DerivationSpec) -> Iterator[tuple[str, str]]:
 
 def _notes(motion: Motion, spec: DerivationSpec) -> Iterator[tuple[str, str]]:
     note = motion.note(
-        with_kernels="numpy" in spec.kernels and not spec.degrees,  # the note is in radians
+        with_kernels="numpy" in spec.kernels,
         conversions=spec.conversions,
         style=spec.style,
-        text=cast("OwnText | None", spec.text),
-        language=spec.language,
     )
     for ending in FORMATS:
         if ending in spec.note or (ending == "tex" and PDF in spec.note):

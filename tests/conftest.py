@@ -1,17 +1,23 @@
-"""Golden files, and the conventions that laws are tested over."""
+"""Golden files, programs that tests need, and two conventions: the algorithm knows none."""
 
 from __future__ import annotations
 
 import gc
-from collections.abc import Callable
+import os
+import shutil
+import sys
+from collections.abc import Callable, Iterator
 from difflib import unified_diff
+from functools import _lru_cache_wrapper
 from pathlib import Path
 
 import pytest
 from hypothesis import settings
+from sympy.core.cache import clear_cache
 
 import rigidsym as rs
 from helpers.motions import derived
+from rigidsym.notes.formats.pdf import missing_programs
 
 # The same examples in every run: a suite that is red today was red yesterday.
 settings.register_profile("same", derandomize=True, deadline=None)
@@ -20,6 +26,8 @@ settings.load_profile("same")
 # Derivations that are kept fill the memory; looking through them often finds no garbage.
 gc.set_threshold(100_000)
 
+MOST_MEMORY = 350e6  # bytes that a process may keep from one file of tests to the next
+
 GOLDEN = Path(__file__).parent / "golden"
 
 
@@ -27,6 +35,73 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
         "--update-golden", action="store_true", help="write the golden files anew from this run"
     )
+
+
+# Fixtures that need programs beside Python and a compiler. They are slow, and rarely fail.
+PROGRAMS = {"tex", "chromium", "java", "coq", "gappa"}
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    for item in items:
+        if PROGRAMS.intersection(getattr(item, "fixturenames", ())):
+            item.add_marker(pytest.mark.campaign)
+
+
+def needed(is_there: bool, name: str) -> None:
+    """Without this program, a test is skipped, or fails where the program is required."""
+    if not is_there:
+        required = os.environ.get(f"RIGIDSYM_REQUIRE_{name.upper()}") == "1"
+        (pytest.fail if required else pytest.skip)(f"{name} is not installed")
+
+
+@pytest.fixture(scope="module", autouse=True)
+def memory() -> Iterator[None]:
+    """Two processes need less than 2 GB, although derivations and compiled functions are kept."""
+    yield
+    statm = Path("/proc/self/statm")
+    if statm.is_file() and int(statm.read_text().split()[1]) * os.sysconf("SC_PAGESIZE") > (
+        MOST_MEMORY
+    ):
+        for name, module in [*sys.modules.items()]:
+            if name.partition(".")[0] in ("rigidsym", "helpers"):
+                for each in [*vars(module).values()]:
+                    if isinstance(each, _lru_cache_wrapper):
+                        each.cache_clear()
+        clear_cache()  # SymPy's
+        if "jax" in sys.modules:
+            sys.modules["jax"].clear_caches()
+        gc.collect()
+
+
+@pytest.fixture
+def tex() -> None:
+    needed(not missing_programs(), "TeX")
+
+
+@pytest.fixture(scope="session")
+def chromium() -> None:
+    needed(shutil.which("chromium") is not None, "Chromium")
+
+
+@pytest.fixture(scope="session")
+def java() -> None:
+    needed(shutil.which("java") is not None, "Java")
+
+
+@pytest.fixture(scope="session")
+def coq() -> None:
+    needed(shutil.which("coqc") is not None, "Coq")
+
+
+@pytest.fixture(scope="session")
+def gappa() -> None:
+    needed(shutil.which("gappa") is not None, "Gappa")
+
+
+@pytest.fixture(scope="session")
+def node() -> None:
+    needed(shutil.which("node") is not None, "Node")
 
 
 @pytest.fixture
@@ -47,13 +122,28 @@ def golden(request: pytest.FixtureRequest) -> Callable[[str, str], None]:
     return compare
 
 
-@pytest.fixture(params=rs.EULER_SEQUENCES)
+@pytest.fixture
+def answered(golden: Callable[[str, str], None]) -> Callable[[str, Callable[[str], str]], None]:
+    """answered(name, answer): tests/golden/name has questions, each with its answer.
+
+    A question ends with a line "---->", and its answer with a line "====". For a new question,
+    write it with an empty answer, and run with --update-golden.
+    """
+
+    def check(name: str, answer: Callable[[str], str]) -> None:
+        pairs = (GOLDEN / name).read_text(encoding="utf-8").split("\n====\n")[:-1]
+        questions = [pair.partition("\n---->\n")[0] for pair in pairs]
+        golden(name, "".join(f"{q}\n---->\n{answer(q)}\n====\n" for q in questions))
+
+    return check
+
+
+@pytest.fixture(params=["ZXZ", "zyx"])
 def sequence(request: pytest.FixtureRequest) -> str:
-    """Each of the 24 Euler sequences."""
+    """One of each kind of Euler sequence; `tests/laws` has all 24."""
     return request.param
 
 
 @pytest.fixture
 def motion(sequence: str) -> rs.Motion:
-    """The derivation for each of the 24 Euler sequences, active."""
     return derived(sequence)

@@ -115,6 +115,8 @@ def angle_of(sine: sp.Expr, cosine: sp.Expr) -> sp.Expr:
             if first.func is sp.sin and second == sp.cos(first.args[0]):
                 angle = sign_of_sine * sign_of_cosine * first.args[0]
                 return angle if sign_of_cosine > 0 else angle + sp.pi
+            if first.func is sp.cos and second == sp.sin(first.args[0]):
+                return sign_of_sine * (sp.pi / 2 - sign_of_cosine * first.args[0])
     return sp.atan2(sine, cosine)
 
 
@@ -165,7 +167,10 @@ def _are_independent(angles: Collection[sp.Expr]) -> bool:
     """Whether no rational combination of the angles vanishes and each sum is of coordinates."""
     atoms = {atom for angle in angles for atom in combination(angle)}
     sums = (atom for angle in angles if angle.is_Add for atom in combination(angle))
-    if len(angles) > len(atoms) or not all(isinstance(atom, AppliedUndef) for atom in sums):
+    factors = (atom.as_independent(AppliedUndef, as_Add=False) for atom in sums)
+    if len(angles) > len(atoms) or not all(
+        number.is_number and isinstance(rest, AppliedUndef) for number, rest in factors
+    ):
         return False
     return bool(coefficients(angles, atoms).rank() == len(angles))
 

@@ -10,8 +10,7 @@ from typing import Any
 
 from sympy.polys.rings import PolyElement
 
-from rigidsym.algebra.ring import Ring
-from rigidsym.algebra.shorten import shortest
+from rigidsym.algebra.ring import Ring, shortest
 
 Row = tuple[PolyElement, ...]
 Origin = tuple[str, tuple[Any, ...]]  # "@", "+", "-", "T" or "*", and what it was applied to

@@ -1,8 +1,19 @@
 """From normal form to textbook form, each choice proved equal before it is returned.
 
-The shortest of the equivalent polynomials is sought, common factors are taken out, quotients of
-sine and cosine become tan and cot. What was chosen is then read back into the ring, and its
-difference from the value must reduce to zero.
+A normal form is for deciding, not for reading. The shortest of the equivalent polynomials is sought
+(`ring.shortest`), and quotients of sine and cosine become tan and cot. Then
+
+1. `folded`: cos α cos β − sin α sin β is written cos(α + β). Terms come in over the generators of a
+   ring and leave over more places: after the generators stand, for every two angles, the cosine and
+   sine of their sum and of their difference.
+2. `collect`: common factors are taken out, in the order of what they save. Terms are Laurent
+   monomials (a negative power divides); the result is a sum of products, each of which may hold a
+   sum in turn.
+3. Quadratic forms keep their squares: ½ vᵀ M v is written ½A(v₁² + v₂²) + ½C v₃², a sum of squares
+   of one weight in the shortest of the forms that are tried: the squares as they come, multiplied
+   out, or with a square completed.
+
+What was chosen is read back into the ring, and its difference from the value must reduce to zero.
 """
 
 from __future__ import annotations
@@ -10,18 +21,19 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import lru_cache, reduce
+from itertools import combinations
 from math import gcd, lcm
 from operator import add, sub
-from typing import Any
+from typing import Any, NamedTuple
 
 import sympy as sp
 from sympy.polys.orderings import lex
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import Codec, codec_for
+from rigidsym.algebra.generators import is_sum_of, is_time_function
 from rigidsym.algebra.matrix import RingMatrix, Row
-from rigidsym.algebra.ring import Monomial, Quotient
-from rigidsym.algebra.shorten import FactoredTerm, Rule, collect, folded, rules, shortest
+from rigidsym.algebra.ring import Monomial, Quotient, shortest
 from rigidsym.errors import AlgebraError
 
 _SHORT_SUM = 12  # terms of a divisor that is factored, since that is done once for many entries
@@ -47,7 +59,10 @@ class Presenter:
         self._sums_below = {
             place: codec.encode(1 / expression)
             for place, expression in enumerate(generators)
-            if expression.is_Pow and expression.exp == -1 and self._is_plain_sum(expression.base)
+            if expression.is_Pow
+            and expression.exp == -1
+            and expression.base.is_Add
+            and sp.sqrt(expression.base) not in self.ring.index  # half powers would divide too
         }
         self._matrices: dict[tuple[tuple[Row, ...], PolyElement], sp.ImmutableMatrix] = {}
         self._products: dict[tuple[Monomial, tuple[FactoredTerm, ...]], sp.Expr] = {}
@@ -122,14 +137,13 @@ class Presenter:
                 above, below = quotient, below.exquo(divisor)
         return above.set_ring(polynomials), below.set_ring(polynomials)
 
-    def _is_plain_sum(self, expression: sp.Expr) -> bool:
-        """Not so a sum whose root is in the ring too: what it divides, half its powers divide."""
-        return bool(expression.is_Add and sp.sqrt(expression) not in self.ring.index)
-
     def _over_one(self, element: PolyElement) -> Iterator[sp.Expr]:
         """Terms that are divided by different powers of one sum, over the highest of them."""
         for place, divisor in self._sums_below.items():
-            above = self._by_power(element, place)
+            above: dict[int, PolyElement] = {}  # power of the generator: what it multiplies
+            for monomial, coefficient in element.items():
+                part = above.setdefault(monomial[place], self.ring.polynomials.zero)
+                part[(*monomial[:place], 0, *monomial[place + 1 :])] = coefficient
             if len(above) > 1:
                 highest = max(above)
                 parts = (part * divisor ** (highest - power) for power, part in above.items())
@@ -139,14 +153,6 @@ class Presenter:
                     rational = sp.Rational(number.numerator, number.denominator)
                     below = self._expressions[place] ** highest
                     yield sp.Mul(rational, self._terms(whole, number), below)
-
-    def _by_power(self, element: PolyElement, place: int) -> dict[int, PolyElement]:
-        """power of a generator: what it multiplies"""
-        found: dict[int, PolyElement] = {}
-        for monomial, coefficient in element.items():
-            part = found.setdefault(monomial[place], self.ring.polynomials.zero)
-            part[(*monomial[:place], 0, *monomial[place + 1 :])] = coefficient
-        return found
 
     def _terms(self, terms: Mapping[Monomial, Any], scale: Fraction = Fraction(1)) -> sp.Expr:
         numbers = terms
@@ -170,14 +176,11 @@ class Presenter:
     def _multiplied(self, given: Monomial, bracket: Sequence[FactoredTerm]) -> sp.Expr:
         powers = list(given)
         factors = self._ratios(powers)
-        factors += [self._power(place, power) for place, power in enumerate(powers) if power]
+        named = self._expressions
+        factors += [named[k] if n == 1 else named[k] ** n for k, n in enumerate(powers) if n]
         if bracket:
             factors.append(self._sum(bracket))
         return sp.Mul(*factors)
-
-    def _power(self, place: int, power: int) -> sp.Expr:
-        expression = self._expressions[place]
-        return expression if power == 1 else expression**power
 
     def _ratios(self, powers: list[int]) -> list[sp.Expr]:
         """tan and cot for sines over cosines and the reverse, taken out of `powers`."""
@@ -274,3 +277,289 @@ def _leading_number(element: PolyElement) -> Fraction:
 def _fraction(coefficient: Any) -> Fraction:
     """A coefficient of Z or Q, whichever number type SymPy holds it in."""
     return Fraction(int(coefficient.numerator), int(coefficient.denominator))
+
+
+# Sums of angles and common factors
+
+
+Angle = tuple[int, int]  # places of sine and cosine
+Number = int | Fraction
+FoldedTerms = dict[Monomial, Number]
+
+
+class Rule(NamedTuple):
+    """first + sign · second = function(alpha ± beta), for products of two generators."""
+
+    first: tuple[int, int]
+    second: tuple[int, int]
+    sign: int
+    function: type[sp.sin] | type[sp.cos]
+    angles: tuple[sp.Expr, sp.Expr]  # α and ±β
+
+    @property
+    def folded(self) -> sp.Expr:
+        """The function of the sum; SymPy takes long to make one, and few are ever needed."""
+        return self.function(sp.Add(*self.angles))
+
+
+def rules(angles: Sequence[Angle], expressions: Sequence[sp.Expr]) -> tuple[Rule, ...]:
+    """The addition theorems of every two angles."""
+    return tuple(rule for a, b in combinations(angles, 2) for rule in _of_two(a, b, expressions))
+
+
+def _of_two(a: Angle, b: Angle, expressions: Sequence[sp.Expr]) -> Iterator[Rule]:
+    alpha, beta = expressions[a[0]].args[0], expressions[b[0]].args[0]
+    if not is_sum_of(alpha + beta, alpha, beta):
+        return  # the angles cancel in part, and the ring has other generators for their sum
+    (s, c), (sine, cosine) = a, b
+    plus, minus = (alpha, beta), (alpha, -beta)
+    yield Rule((c, cosine), (s, sine), -1, sp.cos, plus)
+    yield Rule((c, cosine), (s, sine), 1, sp.cos, minus)
+    yield Rule((s, cosine), (c, sine), 1, sp.sin, plus)
+    yield Rule((s, cosine), (c, sine), -1, sp.sin, minus)
+
+
+def folded(terms: Mapping[Monomial, Number], found: Iterable[Rule]) -> FoldedTerms:
+    """The terms with each pair of an addition theorem made one.
+
+    Places for all rules are added, unless no rule can apply.
+    """
+    if len(terms) < 2:
+        return dict(terms)
+    found = tuple(found)
+    highest = tuple(map(max, zip(*terms, strict=True)))
+    present = {place for place, power in enumerate(highest) if power > 0}
+    may = [
+        (place, rule)
+        for place, rule in enumerate(found, start=len(highest))
+        if present.issuperset(rule.first) and present.issuperset(rule.second)
+    ]
+    if not may:
+        return dict(terms)
+    result = {(*monomial, *[0] * len(found)): value for monomial, value in terms.items()}
+    for place, rule in may:
+        for monomial in list(result):
+            _fold_at(result, monomial, rule, place)
+    return result
+
+
+def _fold_at(terms: FoldedTerms, monomial: Monomial, rule: Rule, place: int) -> None:
+    """Fold the pair that this monomial begins, if its other half is there."""
+    a, b = rule.first
+    if monomial not in terms or monomial[a] < 1 or monomial[b] < 1:
+        return
+    rest = _times(monomial, rule.first, -1)
+    other = _times(rest, rule.second, 1)
+    if terms.get(other) == rule.sign * terms[monomial]:
+        value = terms.pop(monomial)
+        del terms[other]
+        target = _times(rest, (place,), 1)
+        terms[target] = terms.get(target, 0) + value
+
+
+def _times(monomial: Monomial, places: Iterable[int], power: int) -> Monomial:
+    changed = list(monomial)
+    for place in places:
+        changed[place] += power
+    return tuple(changed)
+
+
+Weights = Mapping[int, int]  # place of a generator -> operations that one use of it costs
+
+
+class FactoredTerm(NamedTuple):
+    """coefficient · generators^powers · (sum of the factors in `bracket`, where there is one)."""
+
+    coefficient: Number
+    powers: Monomial
+    bracket: tuple[FactoredTerm, ...] = ()
+
+
+def collect(terms: Mapping[Monomial, Number], weights: Weights) -> tuple[FactoredTerm, ...]:
+    """The terms as a sum of products with common factors taken out."""
+    factor = _best_factor(terms, weights) if len(terms) > 1 else None
+    if factor is None:
+        return tuple(FactoredTerm(coefficient, powers) for powers, coefficient in terms.items())
+    place, sign = factor
+    inside = {m: c for m, c in terms.items() if m[place] * sign > 0}
+    outside = {m: c for m, c in terms.items() if m[place] * sign <= 0}
+    return (_take_out(inside, weights), *(collect(outside, weights) if outside else ()))
+
+
+def _best_factor(terms: Mapping[Monomial, Number], weights: Weights) -> tuple[int, int] | None:
+    """(generator, sign of its power) that saves most, of those that occur in several terms.
+
+    A term saves the factor where its lowest power takes all of it; what is taken out is written
+    once. Ties go to the generator that comes first.
+    """
+    powers: dict[tuple[int, int], list[int]] = {}
+    for monomial in terms:
+        for place, power in enumerate(monomial):
+            if power:
+                powers.setdefault((place, 1 if power > 0 else -1), []).append(abs(power))
+    savings = {
+        key: (found.count(min(found)) - 1) * (weights[key[0]] + 1) for key, found in powers.items()
+    }
+    best = max(savings, key=lambda key: (savings[key], -key[0]), default=None)
+    return best if best and savings[best] else None
+
+
+def _take_out(terms: Mapping[Monomial, Number], weights: Weights) -> FactoredTerm:
+    """All that the terms have in common, times what is left of them."""
+    common = reduce(_common_powers, terms)
+    values = list(terms.values())
+    number = Fraction(
+        gcd(*(abs(value.numerator) for value in values)),
+        lcm(*(value.denominator for value in values)),
+    )
+    if all(value < 0 for value in values):  # fewer minus signs are left
+        number = -number
+    rest = {
+        tuple(map(sub, monomial, common)): coefficient if number == 1 else coefficient / number
+        for monomial, coefficient in terms.items()
+    }
+    return FactoredTerm(number, common, collect(rest, weights))
+
+
+def _common_powers(first: Monomial, second: Monomial) -> Monomial:
+    """Powers that both hold, of one sign: numerators with numerators."""
+    return tuple(
+        (min(a, b) if a > 0 else max(a, b)) if a * b > 0 else 0
+        for a, b in zip(first, second, strict=True)
+    )
+
+
+# Quadratic forms
+
+
+_MOST_TERMS = 60  # of a form that is tried multiplied out; longer ones are no textbook's
+_HALF = sp.Rational(1, 2)
+
+
+Powers = dict[sp.Expr, sp.Expr]
+Scaled = tuple[sp.Rational, sp.Expr]  # a number apart: SymPy would multiply it into a sum
+
+
+def half_form(present: Presenter, matrix: RingMatrix, vector: RingMatrix) -> sp.Expr:
+    """½ vᵀ M v for a constant symmetric M, (3, 3), and v, (3, 1)."""
+    entries = vector.entries
+    by_weight: dict[PolyElement, list[PolyElement]] = {}
+    for k in range(3):
+        if matrix[k, k]:
+            by_weight.setdefault(matrix[k, k], []).append(entries[k])
+    terms = [half_of_squares(present, *group) for group in by_weight.items()]
+    for j, k in combinations(range(3), 2):
+        if matrix[j, k]:
+            products = [matrix[j, k], entries[j], entries[k]]
+            terms.append(sp.Mul(*map(present.element, products)))
+    value = matrix.ring.dot(zip(entries, (matrix @ vector).entries, strict=True))
+    return proved(present, sp.Add(*terms), value, _HALF)
+
+
+def half_of_squares(
+    present: Presenter, weight: PolyElement, elements: Sequence[PolyElement]
+) -> sp.Expr:
+    """½ times a weight times the sum of the squares of some elements, in the shortest form."""
+    kept = squares_kept([present.element(element) for element in elements])
+    total = present.ring.dot((element, element) for element in elements)
+    number, squares = min(
+        [kept, *_multiplied_out(present, total)],
+        key=lambda scaled: _length(scaled[1]) + (scaled[0] != 1),
+    )
+    return sp.Mul(_HALF * number, present.element(weight), squares)
+
+
+def squares_kept(roots: Iterable[sp.Expr]) -> Scaled:
+    """The sum of squares of expressions, what all of them share taken out."""
+    found = [root.as_content_primitive() for root in roots if root != 0]
+    if not found:
+        return sp.S.One, sp.S.Zero
+    number = reduce(sp.gcd, (abs(content) for content, _ in found))
+    powers = [rest.as_powers_dict() for _, rest in found]
+    shares = [set(each.items()) for each in powers]
+    common = dict(pair for pair in powers[0].items() if all(pair in share for share in shares))
+    rests = [
+        sp.Mul(content / number, *(b ** (e - common.get(b, 0)) for b, e in each.items()))
+        for (content, _), each in zip(found, powers, strict=True)
+    ]
+    shared = sp.Mul(*(base ** (2 * exponent) for base, exponent in common.items()))
+    return number**2, sp.Mul(shared, sp.Add(*(rest**2 for rest in rests)))
+
+
+def _multiplied_out(present: Presenter, total: PolyElement) -> Iterator[Scaled]:
+    """A sum of monomials, and the same with a square completed, if they are not too long."""
+    if not total:
+        yield sp.S.One, sp.S.Zero
+        return
+    short = shortest(present.ring, total) if len(total) <= _MOST_TERMS else total
+    if len(short) > _MOST_TERMS:
+        return
+    yield _monomials(present, short)
+    for place, generator in enumerate(present.ring.generators):
+        if generator.expression.is_Derivative and is_time_function(generator.expression):
+            yield from _completed(present, total, place)
+
+
+def _monomials(present: Presenter, element: PolyElement) -> Scaled:
+    """The terms as they are, but for the factor that all of them share."""
+    terms = [present.codec.decode(element.ring.term_new(m, c)) for m, c in element.items()]
+    number = reduce(sp.gcd, (abs(term.as_coeff_Mul()[0]) for term in terms))
+    powers = reduce(lambda one, other: tuple(map(min, one, other)), element)
+    shared = present.codec.decode(element.ring.term_new(powers, 1))
+    return number, sp.Mul(shared, sp.Add(*(term / shared / number for term in terms)))
+
+
+def _completed(present: Presenter, total: PolyElement, place: int) -> Iterator[Scaled]:
+    """n (r + b)² and the rest, for a rate r whose square has a number n before it."""
+    ring = present.ring
+    rate = ring.generator(place)
+    if max(monomial[place] for monomial in total) != 2:
+        return
+    number = total.diff(place).diff(place)
+    if not number.is_ground or not number:
+        return
+    twice = total.diff(place) - number * rate  # 2 n b
+    if not twice:
+        return
+    n = sp.Rational(*map(int, _ratio(number))) / 2
+    slope = present.quotient(Quotient(ring, ring.reduce(twice), ring.reduce(number)))
+    # n (r + b)² = n r² + 2 n b r + (2 n b)²/(4 n)
+    square = Quotient(ring, ring.dot([(twice, twice)]), 2 * number)
+    others = total.ring.from_dict({m: c for m, c in total.items() if not m[place]})
+    rest = Quotient.whole(ring, ring.reduce(others)) - square
+    head = n * (ring.generators[place].expression + slope) ** 2
+    if rest.denominator.is_ground:
+        number_below = sp.Rational(*map(int, _ratio(rest.denominator)))
+        left = ring.reduce(rest.numerator)
+        for scale, tail in _multiplied_out(present, left):
+            yield sp.S.One, head + scale / number_below * tail
+
+
+def _ratio(ground: PolyElement) -> tuple[int, int]:
+    number = ground.LC
+    return number.numerator, number.denominator
+
+
+def shortest_of(forms: Iterable[Sequence[sp.Expr]]) -> sp.ImmutableMatrix:
+    """Of several lists of entries the one with the fewest operations, as a column."""
+    best = min(forms, key=lambda entries: sum(map(_length, entries)))
+    return sp.ImmutableMatrix(len(best), 1, list(best))
+
+
+def proved(
+    present: Presenter, form: sp.Expr, value: PolyElement, number: sp.Rational = sp.S.One
+) -> sp.Expr:
+    """The form, if it equals number · value in the ring; raises AlgebraError if it does not."""
+    ring = present.ring
+    scaled = Quotient.product(
+        ring, [present.codec.encode_quotient(number), Quotient.whole(ring, ring.reduce(value))]
+    )
+    if not present.codec.encode_quotient(form).equals(scaled):
+        raise AlgebraError(f"the form {form} differs from its normal form")
+    return form
+
+
+def agrees(present: Presenter, form: sp.Expr, value: PolyElement) -> bool:
+    """Whether the ring knows a form to equal a value."""
+    known = Quotient.whole(present.ring, present.ring.reduce(value))
+    return present.codec.encode_quotient(form).equals(known)

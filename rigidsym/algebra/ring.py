@@ -9,10 +9,10 @@ form is not zero.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import reduce
-from operator import add, mul, sub
+from operator import add, itemgetter, mul, sub
 from typing import Any, NamedTuple
 
 import sympy as sp
@@ -297,3 +297,66 @@ def _add(total: Terms, coefficient: Any, terms: Terms) -> None:
     """Add a multiple of some terms to a total, in place."""
     for monomial, factor in terms.items():
         total[monomial] = total.get(monomial, 0) + coefficient * factor
+
+
+_MOST_STEPS = 60  # of the walk to a shorter form, each of which tries every relation at every term
+
+
+def shortest(ring: Ring, element: PolyElement) -> PolyElement:
+    """A shortest polynomial found that equals `element` in the ring."""
+    if element.is_ground:
+        return element
+    best = current = element
+    least = length = _size(element)
+    seen = {current}
+    for _ in range(_MOST_STEPS):
+        shorter = [n for n in _neighbours(ring, current, length) if n.length <= length]
+        shorter.sort(key=itemgetter(0))
+        found = ((n.length, current - n.relation.mul_term(n.term)) for n in shorter)
+        fresh = next((neighbour for neighbour in found if neighbour[1] not in seen), None)
+        if fresh is None:
+            break
+        length, current = fresh
+        seen.add(current)
+        if length < least:
+            least, best = fresh
+    return best
+
+
+def _size(element: PolyElement) -> tuple[int, int]:
+    """The number of terms, then the sum of the degrees."""
+    return len(element), sum(map(sum, element))
+
+
+class Neighbour(NamedTuple):
+    """What is left when a multiple of a relation is subtracted; made only where it is short."""
+
+    length: tuple[int, int]
+    relation: PolyElement
+    term: tuple[Monomial, object]  # which multiplies the relation
+
+
+def _neighbours(ring: Ring, element: PolyElement, length: tuple[int, int]) -> Iterator[Neighbour]:
+    """Each polynomial in which one term was replaced by means of one relation."""
+    domain = ring.polynomials.domain
+    highest = tuple(map(max, zip(*element, strict=True)))
+    for part, needed, factor, relation in ring.relation_terms:
+        if any(highest[k] < power for k, power in needed):
+            continue
+        is_one = factor == domain.one
+        for monomial, coefficient in element.items():
+            if any(monomial[k] < power for k, power in needed):
+                continue
+            times, left = (coefficient, None) if is_one else domain.div(coefficient, factor)
+            if left:  # in Z a coefficient may not be divisible
+                continue
+            rest = tuple(map(sub, monomial, part))
+            count, degrees = length
+            for own, number in relation.items():
+                changed = tuple(map(add, own, rest))
+                before = element.get(changed)
+                if before is None:
+                    count, degrees = count + 1, degrees + sum(changed)
+                elif before == number * times:
+                    count, degrees = count - 1, degrees - sum(changed)
+            yield Neighbour((count, degrees), relation, (rest, times))

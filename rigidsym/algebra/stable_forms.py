@@ -1,26 +1,131 @@
 """Forms that keep their digits where a divisor vanishes: Stumpff functions and half angles.
 
-Quotients with removable singularities at n = 0, n = √(v·v), are written without them. An
-expression in sin n, cos n and 1/n without a singularity at n = 0 is a polynomial in the Stumpff
-functions c_k of `series.py` and in the other generators. The form found is put back into the ring,
-and must be equal there.
+The Stumpff functions of n², on which rotation vectors rest, are c₀ = cos n, c₁ = sin n/n,
+c₂ = (1 − cos n)/n², c₃ = (n − sin n)/n³, and on by c_{k+2} = (c_k(0) − c_k)/n². Their closed
+forms are 0/0 at n = 0 and lose digits near it; from c₃ on, a Taylor polynomial in x = n² takes over
+below a switch. Its coefficients follow from SymPy's series of sine and cosine over Q, its length
+from the first term left out (the terms alternate and fall), and the switch from the rounding of the
+closed form, in rational numbers.
+
+Quotients with removable singularities at n = 0, n = √(v·v), are written without them: an
+expression in sin n, cos n and 1/n without a singularity at n = 0 is a polynomial in the functions
+c_k and in the other generators. The form is put back into the ring, and must be equal there.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from functools import lru_cache
+from fractions import Fraction
+from functools import cache, lru_cache
 from typing import Any, NamedTuple
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
+from sympy.polys.ring_series import rs_cos, rs_sin
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import Codec, codec_for
 from rigidsym.algebra.present import presenter_for
 from rigidsym.algebra.ring import Quotient
-from rigidsym.algebra.series import closed_form, taylor
 from rigidsym.errors import AlgebraError
+
+_EPS = Fraction(1, 2**52)  # of float64; a shorter type needs no more terms
+_LEFT_OUT = _EPS / 16  # of the value: the most that the first term left out may be
+_CLOSED = Fraction(4)  # eps: the largest rounding error of a closed form above its switch
+_ELEMENTARY = Fraction(3)  # eps: of c₁ and c₂ by t = tan(n/2) within 1 eps, see `_closed_error`
+_STEP = Fraction(1, 4)
+_FURTHEST = 16  # x = n²: switches beyond gain nothing, and Horner's rule would lose
+_DEGREE = 40  # of the Taylor polynomials of sine and cosine in n
+FIRST_SERIES = 3  # c₀, c₁ and c₂ need none
+
+
+class Series(NamedTuple):
+    """c_k below its switch: Σ coefficients[j] x^j, x = n² < switch."""
+
+    order: int  # k
+    coefficients: tuple[Fraction, ...]
+    switch: Fraction  # in x
+    remainder: Fraction  # bound on what the series leaves out, relative to c_k
+    error: Fraction  # bound on the relative error on both sides of the switch, in eps
+
+
+@cache
+def series_of(order: int) -> Series:
+    """The series of c_k, k ≥ 3, with its switch and its bounds, derived."""
+    switch, closed = _switch(order)
+    value = _enclosed(order, switch)[0]
+    terms = taylor(order)
+    left_out = (abs(term) * switch**place / value for place, term in enumerate(terms))
+    length = next(place for place, size in enumerate(left_out) if size <= _LEFT_OUT)
+    remainder = abs(terms[length]) * switch**length / value
+    # Horner's rule: the term of x^j comes through 2j + 2 roundings of half an eps
+    sizes = (abs(term) * switch**j * (j + 1) for j, term in enumerate(terms[:length]))
+    horner = sum(sizes, Fraction(0)) / value
+    return Series(
+        order=order,
+        coefficients=terms[:length],
+        switch=switch,
+        remainder=remainder,
+        error=max(closed, horner + remainder / _EPS),
+    )
+
+
+@cache
+def taylor(order: int) -> tuple[Fraction, ...]:
+    """The Taylor coefficients of c_k in x = n², exact, from those of sine and cosine."""
+    ring, n = sp.ring("n", sp.QQ)
+    whole = (rs_sin if order % 2 else rs_cos)(n, n, _DEGREE)
+    powers = range(order % 2, _DEGREE, 2)
+    terms = [whole.coeff(n**power if power else ring.one) for power in powers]
+    sign = -1 if (order // 2) % 2 else 1  # each step to c_{k+2} drops a term and turns the signs
+    return tuple(
+        sign * Fraction(int(term.numerator), int(term.denominator)) for term in terms[order // 2 :]
+    )
+
+
+def closed_form(order: int, angle: sp.Expr) -> sp.Expr:
+    """c_k of an angle n in sines and cosines."""
+    if order < 2:
+        return sp.sin(angle) / angle if order else sp.cos(angle)
+    first = taylor(order - 2)[0]
+    start = sp.Rational(first.numerator, first.denominator)
+    return (start - closed_form(order - 2, angle)) / angle**2
+
+
+@cache
+def _switch(order: int) -> tuple[Fraction, Fraction]:
+    """The least x from which on the closed form keeps its bound, and its error there in eps."""
+    x = _STEP
+    while x < _FURTHEST:
+        error = _closed_error(order, x)
+        if error <= _CLOSED:
+            return x, error
+        x += _STEP
+    return x, _closed_error(order, x)
+
+
+def _closed_error(order: int, x: Fraction) -> Fraction:
+    """Bound on the relative rounding error of (c_k(0) − c_k)/x from x on, in eps.
+
+    c_k comes with an error of its own, which counts by its share of the difference; to the right
+    of x that share is smaller still, since c_k is. c₁ = 2t/(1 + t²)/n has four roundings of half an
+    eps and an error of t that is multiplied by (1 − t²)/(1 + t²); c₂ = 2t²/(1 + t²)/n² one more,
+    and the error of t times 2/(1 + t²), at most one where c₂ has a share, n > π/2.
+    """
+    before, above = taylor(order - 2)[0], _enclosed(order - 2, x)[1]
+    inherited = series_of(order - 2).error if order - 2 >= FIRST_SERIES else _ELEMENTARY
+    return inherited * above / (before - above) + 1  # the difference and the quotient
+
+
+def _enclosed(order: int, x: Fraction) -> tuple[Fraction, Fraction]:
+    """Bounds on c_k(x): neighbouring partial sums of an alternating series."""
+    total = Fraction(0)
+    sums = [total := total + term * x**place for place, term in enumerate(taylor(order))]
+    return min(sums[-2:]), max(sums[-2:])
+
+
+# From sines, cosines and 1/n to Stumpff functions
+
 
 _HIGHEST = 8  # c_8: the highest that is tried
 _POWERS = 6  # of 1/n that are looked for below a fraction bar
@@ -53,13 +158,8 @@ def stable_forms(
 
 def at_zero(form: sp.Expr) -> sp.Expr:
     """A form in Stumpff functions at zero coordinates, where n = 0."""
-    flat = form.replace(Stumpff, lambda order, _: sp.Rational(*_start(int(order))))
+    flat = form.replace(Stumpff, lambda k, _: sp.Rational(*taylor(int(k))[0].as_integer_ratio()))
     return flat.xreplace(dict.fromkeys(flat.atoms(AppliedUndef), sp.S.Zero))
-
-
-def _start(order: int) -> tuple[int, int]:
-    first = taylor(order)[0]
-    return first.numerator, first.denominator
 
 
 class _Norm(NamedTuple):
@@ -81,11 +181,16 @@ def rewriter_of(
     return rewriter_for(codec_for(expressions, constraints=constraints, order=2))
 
 
-@lru_cache(maxsize=1024)  # of the same entries for every language
+@lru_cache(maxsize=1 << 14)
 def _has_root(expression: sp.Expr) -> bool:
-    """Whether an angle in it is a multiple of a root."""
-    angles = (f.args[0].as_coeff_Mul()[1] for f in expression.atoms(sp.sin, sp.cos))
-    return any(map(_is_root, angles))
+    """Whether an angle in it is a multiple of a root.
+
+    Remembered part by part: a product of many turns has few different parts, but grows
+    exponentially where each of them is visited wherever it occurs, as `atoms` does.
+    """
+    if isinstance(expression, sp.sin | sp.cos):
+        return _is_root(expression.args[0].as_coeff_Mul()[1])
+    return any(_has_root(part) for part in expression.args)
 
 
 def _is_root(expression: sp.Expr) -> bool:
@@ -169,20 +274,17 @@ class Rewriter:
             if below is not None:
                 above = self._whole(self._times(value.numerator, power))
                 if above is not None:
-                    return self._proved(self._over(above, below), value)
+                    return self._proved(above, below, value)
         return None
 
-    def _over(self, above: sp.Expr, below: sp.Expr) -> sp.Expr:
+    def _proved(self, above: sp.Expr, below: sp.Expr, value: Quotient) -> sp.Expr:
         """The shorter of the equal quotients, with the functions in their places."""
-        numerator, denominator = map(self._plain.encode, (above, below))
-        presenter = presenter_for(self._plain)
-        shown = presenter.quotient(Quotient(self._plain.ring, numerator, denominator))
-        return shown.xreplace(dict(zip(self._symbols, self._functions, strict=True)))
-
-    def _proved(self, found: sp.Expr, value: Quotient) -> sp.Expr:
-        if not self.codec.encode_quotient(found.xreplace(self._closed)).equals(value):
-            raise AlgebraError(f"the form {found} differs from its normal form")
-        return found
+        parts = map(self._plain.encode, (above, below))
+        form = presenter_for(self._plain).quotient(Quotient(self._plain.ring, *parts))
+        form = form.xreplace(dict(zip(self._symbols, self._functions, strict=True)))
+        if not self.codec.encode_quotient(form.xreplace(self._closed)).equals(value):
+            raise AlgebraError(f"the form {form} differs from its normal form")
+        return form
 
     def _times(self, element: PolyElement, power: int) -> PolyElement:
         """The element over n to a power."""

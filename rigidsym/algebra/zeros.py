@@ -2,10 +2,12 @@
 
 Common zeros are solved factor by factor, or not at all.
 
-A factor is solved if it is the sine or the cosine of a rational multiple of one coordinate (or
-of the length n of all of them), 1 plus or minus such a cosine, or a sum of multiples of the two
-whose squares add up to a known square. Some forms are recognised as never zero. Several polynomials
-are solved one after the other, and the zeros of each are substituted into the others.
+The angles are rational multiples of one coordinate, of a sum of coordinates, or of the length n
+of all of them. A factor is solved if it holds one sine or cosine to the first or second power, with
+numbers, or is A cos + B sin with a number for A² + B², where A and B may hold other coordinates:
+sin φ cos θ + cos φ sin θ vanishes where φ is −θ or π − θ. Some forms are recognised as never zero.
+Several polynomials are solved one after the other, and the zeros of each are substituted into the
+others.
 """
 
 from __future__ import annotations
@@ -15,17 +17,14 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 import sympy as sp
+from sympy.core.function import AppliedUndef
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import Codec
-from rigidsym.algebra.configuration import configurations
-from rigidsym.algebra.generators import TIME, angle_of
+from rigidsym.algebra.generators import TIME, angle_of, combination, is_identically_zero
 from rigidsym.algebra.matrix import RingMatrix
-from rigidsym.algebra.ring import Monomial
-from rigidsym.algebra.shorten import shortest
-from rigidsym.errors import AlgebraError, ModelError
-
-_QUARTERS = {0: (0, 1), 1: (1, 0), 2: (0, -1), -1: (-1, 0)}  # quarter turns: sine, cosine
+from rigidsym.algebra.ring import Monomial, shortest
+from rigidsym.errors import AlgebraError
 
 
 class Place(NamedTuple):
@@ -35,7 +34,7 @@ class Place(NamedTuple):
     k = 0, 1, 2, ... alone.
     """
 
-    coordinate: sp.Expr
+    coordinate: sp.Expr  # or a sum of coordinates
     value: sp.Expr  # of an angle in (−period/2, period/2]; of a length the least, above zero
     period: sp.Expr  # 2π, a multiple of it where parts of the angle are turned by, or π
     is_length: bool = False
@@ -65,8 +64,15 @@ class _Angle(NamedTuple):
 def substituted(element: PolyElement, zero: Zero) -> PolyElement:
     """The element at a zero, not in normal form."""
     becomes = [pair for root in zero for pair in root.becomes]
-    if all(isinstance(value, int) for _, value in becomes):
-        return _with_numbers(element, becomes)
+    if all(isinstance(value, int) for _, value in becomes):  # most often, and quickly
+        terms: dict[Monomial, Any] = {}
+        for monomial, coefficient in element.items():
+            rest = list(monomial)
+            for place, value in becomes:
+                coefficient *= value ** rest[place]
+                rest[place] = 0
+            terms[tuple(rest)] = terms.get(tuple(rest), 0) + coefficient
+        return element.new({monomial: c for monomial, c in terms.items() if c})
     result = element.ring.zero
     for monomial, coefficient in element.items():
         powers, factor = list(monomial), element.ring.one
@@ -75,18 +81,6 @@ def substituted(element: PolyElement, zero: Zero) -> PolyElement:
             powers[place] = 0
         result += element.ring.term_new(tuple(powers), coefficient) * factor
     return result
-
-
-def _with_numbers(element: PolyElement, becomes: Sequence[tuple[int, int]]) -> PolyElement:
-    terms: dict[Monomial, Any] = {}
-    for monomial, coefficient in element.items():
-        powers = list(monomial)
-        for place, value in becomes:
-            coefficient *= value ** powers[place]
-            powers[place] = 0
-        rest = tuple(powers)
-        terms[rest] = terms.get(rest, 0) + coefficient
-    return element.new({monomial: c for monomial, c in terms.items() if c})
 
 
 @lru_cache(maxsize=256)
@@ -121,10 +115,10 @@ class FallingRank:
         *,
         bound: RingMatrix | None = None,
         constraints: tuple[sp.Expr, ...] = (),
-        name: str,
+        example: tuple[tuple[sp.Expr, sp.Expr], ...] = (),
     ) -> None:
         self.codec, self.solver = codec, solver_for(codec, coordinates)
-        self._bound, self._constraints, self._name = bound, constraints, name
+        self._bound, self._constraints, self._example = bound, constraints, dict(example)
         self.bound_rank = bound.rank_and_minors()[0] if bound is not None else 0
         self.rank, self.minors = matrix.rank_and_minors()
         self.strata: list[Stratum] = []
@@ -168,14 +162,12 @@ class FallingRank:
         bound = self._bound
         if bound is not None and matrix_at(bound, zero).rank_and_minors()[0] < self.bound_rank:
             return None
-        if not any(c.has(root.place.coordinate) for c in self._constraints for root in zero):
+        there = {root.place.coordinate: root.place.value for root in zero}
+        moving = {atom for pair in there.items() for e in pair for atom in e.atoms(AppliedUndef)}
+        if not any(c.has(*moving) for c in self._constraints):
             return True
-        places = tuple(root.place.coordinate - root.place.value for root in zero)
-        try:
-            configurations(self._name, (*self._constraints, *places), ())
-        except ModelError:
-            return None
-        return True
+        there = self._example | there
+        return all(is_identically_zero(c.xreplace(there)) for c in self._constraints) or None
 
 
 @lru_cache(maxsize=32)
@@ -190,20 +182,18 @@ class Solver:
     def __init__(self, codec: Codec, coordinates: Sequence[sp.Expr]) -> None:
         self._codec = codec
         self._ring = codec.ring
-        self._angles = tuple(self._found(coordinates))
+        length, angles = length_of(coordinates), []
+        for sine, cosine in codec.angle_pairs:
+            argument = self._ring.generators[sine].expression.args[0]
+            fraction, angle = argument.as_coeff_Mul()
+            if angle == length or set(combination(angle)) <= set(coordinates):
+                angles.append(_Angle(sine, cosine, fraction, angle, angle == length))
+        self._angles = tuple(angles)
         self._known: dict[PolyElement, list[Root] | None] = {}
         self.missing: set[sp.Expr] = set()  # roots of numbers that the ring would need for more
         self._constant = {
             place for place, gen in enumerate(self._ring.generators) if not gen.expression.has(TIME)
         }
-
-    def _found(self, coordinates: Sequence[sp.Expr]) -> Iterator[_Angle]:
-        length = length_of(coordinates)
-        for sine, cosine in self._codec.angle_pairs:
-            argument = self._ring.generators[sine].expression.args[0]
-            fraction, coordinate = argument.as_coeff_Mul()
-            if coordinate == length or coordinate in coordinates:
-                yield _Angle(sine, cosine, fraction, coordinate, coordinate == length)
 
     def common(self, elements: Iterable[PolyElement]) -> tuple[list[Zero], bool]:
         """The common zeros of the elements, and whether all were found."""
@@ -220,12 +210,15 @@ class Solver:
         self, elements: Sequence[PolyElement], zero: Zero, found: dict[frozenset[Root], Zero]
     ) -> bool:
         """Enter the common zeros that have the roots of `zero` already; whether these are all."""
-        left = self._left(elements, zero)
+        last = zero[-1:]
+        there = (self._ring.reduce(substituted(e, last)) if last else e for e in elements)
+        left = list(dict.fromkeys(element for element in there if element))
         if not left:
             found[frozenset(zero)] = zero
             return True
         if any(element.is_ground for element in left):
             return True
+        left = list(dict.fromkeys(shortest(self._ring, element) for element in left))
         solved = [roots for element in left if (roots := self._roots(element)) is not None]
         if not solved:
             return False
@@ -234,19 +227,15 @@ class Solver:
             is_complete &= self._search(left, (*zero, root), found)
         return is_complete
 
-    def _left(self, elements: Sequence[PolyElement], zero: Zero) -> list[PolyElement]:
-        """The elements that are not zero yet, in short forms, each once."""
-        last = zero[-1:]
-        there = (self._ring.reduce(substituted(e, last)) if last else e for e in elements)
-        left = list(dict.fromkeys(element for element in there if element))
-        if any(element.is_ground for element in left):
-            return left  # never zero
-        return list(dict.fromkeys(shortest(self._ring, element) for element in left))
-
     def _roots(self, element: PolyElement) -> list[Root] | None:
         """The zeros of one element; None if some factor is not solved."""
         roots: dict[Root, None] = {}
-        for factor in _factors(element):
+        if len(element) == 1:  # a product of generators needs no search for its factors
+            (powers,) = element
+            factors = [gen for gen, power in zip(element.ring.gens, powers, strict=True) if power]
+        else:
+            factors = [factor for factor, _ in element.factor_list()[1]]
+        for factor in factors:
             if factor not in self._known:
                 self._known[factor] = self._roots_of_factor(factor)
             found = self._known[factor]
@@ -262,22 +251,12 @@ class Solver:
             angle for angle in self._angles if any(m[angle.sine] or m[angle.cosine] for m in factor)
         ]
         if len(used) != 1:
-            return None
+            several = (self._of_sum(factor, angle) for angle in used)
+            return next((roots for roots in several if roots is not None), None)
         (angle,) = used
-        for quarters, element in self._simple(angle):
-            if factor.monic() == element:
-                return [
-                    root
-                    for turn in quarters
-                    for root in self._rooted(angle, sp.Rational(turn, 2) * sp.pi, _QUARTERS[turn])
-                ]
-        return self._of_sum(factor, angle) or self._never(factor, angle)
-
-    def _simple(self, angle: _Angle) -> Iterator[tuple[tuple[int, ...], PolyElement]]:
-        """The factors that vanish only at quarter turns, and these quarter turns."""
-        sine, cosine = self._ring.generator(angle.sine), self._ring.generator(angle.cosine)
-        yield from (((0, 2), sine), ((-1, 1), cosine), ((0,), cosine - 1), ((2,), cosine + 1))
-        yield from (((1,), sine - 1), ((-1,), sine + 1))
+        return (
+            self._of_one(factor, angle) or self._of_sum(factor, angle) or self._never(factor, angle)
+        )
 
     def _is_reciprocal(self, factor: PolyElement) -> bool:
         """Whether it is 1/d for a d of the ring: their product is one, so that it is never zero."""
@@ -313,7 +292,7 @@ class Solver:
         return [] if norm.count_roots(-1, 1) == 0 else None
 
     def _of_sum(self, factor: PolyElement, angle: _Angle) -> list[Root] | None:
-        """Roots of A cos + B sin, with constant A and B: cos = ±B/N, sin = ∓A/N, N² = A² + B²."""
+        """Roots of A cos + B sin with N² = A² + B² a number: cos = ±B/N, sin = ∓A/N."""
         parts = self._weights(factor, angle)
         if parts is None:
             return None
@@ -339,15 +318,50 @@ class Solver:
     def _weights(
         self, factor: PolyElement, angle: _Angle
     ) -> tuple[PolyElement, PolyElement] | None:
-        """A and B of A cos + B sin; None for any other factor."""
+        """A and B of A cos + B sin, which may hold other coordinates; None for any other factor."""
         sums = {angle.cosine: self._ring.zero, angle.sine: self._ring.zero}
         for monomial, coefficient in factor.items():
-            moving = [k for k, power in enumerate(monomial) if power and k not in self._constant]
-            if len(moving) != 1 or moving[0] not in sums or monomial[moving[0]] != 1:
+            if monomial[angle.cosine] + monomial[angle.sine] != 1:
                 return None
-            rest = (*monomial[: moving[0]], 0, *monomial[moving[0] + 1 :])
-            sums[moving[0]] += factor.ring.term_new(rest, coefficient)
+            place = angle.cosine if monomial[angle.cosine] else angle.sine
+            rest = (*monomial[:place], 0, *monomial[place + 1 :])
+            sums[place] += factor.ring.term_new(rest, coefficient)
         return sums[angle.cosine], sums[angle.sine]
+
+    def _of_one(self, factor: PolyElement, angle: _Angle) -> list[Root] | None:
+        """Roots of a linear or quadratic polynomial in one sine or one cosine, with numbers."""
+        element = self._ring.reduce(factor)
+        expressions = [generator.expression for generator in self._ring.generators]
+        used = {k for m in element for k, power in enumerate(m) if power}
+        moving = [k for k in used if not expressions[k].is_number]
+        if len(moving) != 1 or max(m[moving[0]] for m in element) > 2:
+            return None
+        (place,), x = moving, sp.Dummy("x")
+        values = [sp.S.Zero]  # of a sine or cosine itself, the commonest
+        if len(element) > 1:
+            polynomial = self._codec.decode(element).xreplace({expressions[place]: x})
+            values = [value for value in sp.roots(polynomial, x) if value.is_real]
+        roots: dict[Root, None] = {}
+        for value in values:
+            if abs(value) > 1:
+                continue
+            other = sp.sqrt(sp.expand(1 - value**2))
+            try:
+                own, beside = (
+                    int(part) if part.is_Integer else self._codec.encode(part)
+                    for part in (value, other)
+                )
+            except AlgebraError:
+                self.missing |= {value, other}
+                return None
+            for sign in (1, -1):
+                if place == angle.cosine:
+                    turned, pair = sign * sp.acos(value), (sign * beside, own)
+                else:
+                    turned = sp.asin(value) if sign > 0 else sp.pi - sp.asin(value)
+                    pair = (own, sign * beside)
+                roots |= dict.fromkeys(self._rooted(angle, turned, pair))
+        return list(roots)
 
     def _rooted(
         self, angle: _Angle, value: sp.Expr, sine_and_cosine: tuple[Any, Any]
@@ -358,8 +372,9 @@ class Solver:
         period = 2 * sp.pi * turns
         for k in range(times):
             coordinate = (value + 2 * sp.pi * k) / angle.fraction
-            if coordinate.is_number:
-                coordinate = _placed(coordinate, period, is_length=angle.is_length)
+            if coordinate.is_number:  # into (−period/2, period/2]; a length above zero
+                lowest = 0 if angle.is_length else -period / 2
+                coordinate -= period * (sp.ceiling((coordinate - lowest) / period) - 1)
             place = Place(
                 coordinate=angle.coordinate,
                 value=coordinate,
@@ -372,20 +387,6 @@ class Solver:
 
 def length_of(coordinates: Sequence[sp.Expr]) -> sp.Expr:
     return sp.sqrt(sp.Add(*(coordinate**2 for coordinate in coordinates)))
-
-
-def _placed(value: sp.Expr, period: sp.Expr, *, is_length: bool) -> sp.Expr:
-    """The same angle in (−period/2, period/2]; of a length, which is not negative, above zero."""
-    lowest = 0 if is_length else -period / 2
-    return value - period * (sp.ceiling((value - lowest) / period) - 1)
-
-
-def _factors(element: PolyElement) -> list[PolyElement]:
-    """The irreducible factors that are not numbers; a product of generators needs no search."""
-    if len(element) == 1:
-        (powers,) = element
-        return [gen for gen, power in zip(element.ring.gens, powers, strict=True) if power]
-    return [factor for factor, _ in element.factor_list()[1]]
 
 
 def _is_positive(factor: PolyElement) -> bool:

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import zip_longest
 from pathlib import Path
-from typing import Any
 
 import click
 
@@ -17,8 +16,9 @@ from rigidsym.commands.output_folder import CERTIFICATE, CERTIFICATES, content_o
 from rigidsym.errors import CheckError
 from rigidsym.notes.formats.record import SCHEMA, SCHEMA_VERSION
 from rigidsym.pipeline import read_record
+from rigidsym.system.files import read_bytes
 from rigidsym.tools.certificate import certificate
-from rigidsym.tools.certificate.checker import BROKEN, verify
+from rigidsym.tools.certificate.checker import BROKEN, Refused, Unreadable, load, printed_in, verify
 
 
 @make("rigidsym check out")
@@ -92,7 +92,7 @@ def _damage(record: Path) -> str:
     if not record.exists():
         return "missing"
     try:
-        json.loads(record.read_text(encoding="utf-8"))
+        json.loads(read_bytes(record).decode("utf-8"))
     except OSError as error:
         why = str(error.strerror)
     except json.JSONDecodeError as error:
@@ -117,7 +117,7 @@ def _compare(record: Path) -> Iterator[Finding]:
     fresh = printed(read_record(content.get("request"), source=str(record)))
     for name, text in fresh.files.items():
         finding = finding_of(record.parent / name, text)
-        yield _certified(finding, content) if name.endswith(CERTIFICATE) else finding
+        yield _certified(finding, record) if name.endswith(CERTIFICATE) else finding
     for file in map(record.with_suffix, (f".{ending}" for ending in CERTIFICATES)):
         if file.name not in fresh.files and file.exists():
             yield Finding(
@@ -125,17 +125,18 @@ def _compare(record: Path) -> Iterator[Finding]:
             )
 
 
-def _certified(finding: Finding, record: Mapping[str, Any]) -> Finding:
+def _certified(finding: Finding, record: Path) -> Finding:
     """What the independent checker says of a certificate that is there, and what it leaves out."""
     if not finding.path.is_file():
         return finding
     try:
-        proved = verify(record, content_of(finding.path))
-    except ValueError as error:
+        content = load(record)
+        proved, printed = verify(content, load(finding.path)), printed_in(content)
+    except (Refused, Unreadable) as error:
         return replace(finding, problem=f"refused: {error}")
     except BROKEN:
         return replace(finding, problem="refused: no certificate of what is printed")
-    rest = [name for name in certificate.printed_names(record) if name not in proved]
+    rest = [name for name in printed if name not in proved]
     note = f"\n  proved: {', '.join(proved)}\n  not covered: {', '.join(rest) or 'nothing'}"
     return replace(finding, note=note)
 

@@ -42,6 +42,9 @@ _FILES = {"eval": "evaluate"}  # where the file is not named after its command
 def main() -> None:
     """The `rigidsym` command: runs, and turns errors into messages and exit codes."""
     gc.set_threshold(_NEW_OBJECTS)
+    for name in ("stdout", "stderr"):  # None if the caller closed them, as `2>&-` does
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # a terminal that cannot show φ shows a ?
             stream.reconfigure(errors="replace")

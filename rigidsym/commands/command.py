@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
 from dataclasses import field, fields
 from functools import wraps
 from itertools import chain
@@ -19,6 +20,14 @@ if TYPE_CHECKING:
 else:  # generic from click 8.2 on
     _Type = click.ParamType
 
+_REMOVED = {  # options that left: what to use instead
+    "--degrees": "functions take radians; convert angles with np.radians and np.degrees, or a log "
+    "with `eval --degrees`",
+    "--language": "a language is a folder of templates, chosen by --style LANGUAGE/NAME",
+    "--scheduler": "use dask.array.apply_gufunc with a kernel, as in docs/howto/cluster.md",
+    "--fragment": "write a template with the sections that you need, chosen by --style NAME",
+    "--frames": "write the names into a template, chosen by --style NAME",
+}
 POSITIVE = click.FloatRange(min=0, min_open=True)
 _LIMITS = (
     click.Option(
@@ -117,7 +126,15 @@ class Command(click.Command):
         for text in args:
             if "\0" in text:
                 raise click.UsageError(f"{text!r}: expected text without null characters", context)
-        _, _, given = self.make_parser(context).parse_args(list(args))
+        try:
+            _, _, given = self.make_parser(context).parse_args(list(args))
+        except click.NoSuchOption as error:
+            if error.option_name not in _REMOVED:
+                raise
+            substitute = _REMOVED[error.option_name]
+            raise click.UsageError(
+                f"there is no {error.option_name}: {substitute}", context
+            ) from None
         for parameter in given:
             is_many = getattr(parameter, "multiple", False) or getattr(parameter, "is_flag", False)
             if not is_many and given.count(parameter) > 1:
@@ -147,5 +164,6 @@ def command(
 
 
 def message(text: str) -> None:
-    """A message on standard error."""
-    click.echo(f"rigidsym: {printable(text)}", err=True)
+    """A message on standard error; if nobody can read it, the exit code still tells."""
+    with suppress(OSError):
+        click.echo(f"rigidsym: {printable(text)}", err=True)

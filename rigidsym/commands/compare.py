@@ -17,7 +17,7 @@ from rigidsym.motion import Motion, derive
 from rigidsym.pipeline import motion_of, read
 from rigidsym.system.processes import bar
 from rigidsym.tools.compare.comparison import compare
-from rigidsym.tools.compare.search import search, source_files
+from rigidsym.tools.compare.search import disappointment, search, source_files
 from rigidsym.tools.compare.targets import KnownQuantity
 
 _OF_BODY = ("mass_matrix", "coriolis_matrix")
@@ -36,6 +36,18 @@ class CompareOptions(RotationOptions):
     quantity: str | None = option(
         "--quantity", metavar="NAME", help="The quantity that the formula should give."
     )
+    expect: str | None = option(
+        "--expect",
+        metavar="ROTATION",
+        help='In programs: the order of axes that is meant, such as "z(yaw) y(pitch) x(roll)".',
+    )
+    expect_active: bool = option(
+        "--expect-active", help="In programs: a transposed (passive) rotation matrix is a fault."
+    )
+    require: int = option(
+        "--require", metavar="N", default=0, help="In programs: fail if fewer formulas are known."
+    )
+    why: bool = option("--why", help="In programs: list what could not be read, with the reason.")
     as_json: bool = option("--json", help="Print the results as JSON.")
 
     def motion(self) -> Motion | str | None:
@@ -72,42 +84,54 @@ def command(context: click.Context, paths: tuple[Path, ...], options: CompareOpt
     it is wrong, `compare` names the smallest repair: a sign, a transpose, sine for cosine, another
     angle or frame, the order of turns, a missing square. Answers are proved wherever possible.
 
-    PATHS are files or folders. In Python, C, C++ and MATLAB, `compare` finds rotation matrices,
-    rate matrices, quaternion kinematics, and the mass and Coriolis matrices of quadcopters. Source
-    code is parsed, never run. The exit code is 1 if a formula is wrong, or if none is known.
+    PATHS are files or folders. In Python, C, C++, JavaScript, TypeScript, MATLAB, Rust, Java and
+    C#, `compare` finds rotation matrices, rate matrices, quaternion kinematics, and the mass and
+    Coriolis matrices of quadcopters. Source code is parsed, never run. The exit code is 1 if a
+    formula is wrong or not as expected.
     """
     if (options.formula is None) == (not paths):
         raise click.UsageError("expected --formula TEXT, or paths")
     motion = options.motion()
     if options.formula is not None:
-        found = compare(options.formula, motion, options.quantity)
-        click.echo(_json(found.record()) if options.as_json else found.text())
-        context.exit(not found.is_equal)
+        result = compare(options.formula, motion, options.quantity)
+        click.echo(_json(result.record()) if options.as_json else result.text())
+        context.exit(not result.is_equal)
     if motion is not None:
         raise click.UsageError("--rotation and --quantity need --formula")
-    context.exit(_searched(paths, as_json=options.as_json))
+    context.exit(_searched(paths, options))
 
 
-def _searched(paths: Sequence[Path], *, as_json: bool) -> bool:
-    """Print the formulas in source files; whether one is wrong, or none was found."""
+def _searched(paths: Sequence[Path], options: CompareOptions) -> bool:
+    """Print the formulas in source files; whether one is wrong, or too few were recognised."""
     body = _quadcopter()
     also = [KnownQuantity(motion=body, rotation=body.name, quantity=name) for name in _OF_BODY]
+    axes = derive(options.expect, "rotation_matrix").model if options.expect else None
     files = list(source_files(paths))
-    wrong, records = False, []
+    is_wrong, records, unreadable = False, [], 0
     with bar("files") as progress:
         for place, file in enumerate(files):
-            for found in search(file, also):
-                wrong |= not found.comparison.is_equal
-                records.append(found.record())
-                if not as_json:
-                    click.echo(str(found))
+            for formula in search(file, also):
+                comparison = formula.comparison
+                if comparison is None:
+                    unreadable += 1
+                    if options.why:
+                        message(str(formula))
+                    continue
+                fault = disappointment(comparison, axes, is_active=options.expect_active)
+                is_wrong |= bool(fault) or not (comparison.is_equal or comparison.is_reflection)
+                records.append(formula.record() | {"unexpected": fault or None})
+                if not options.as_json:
+                    click.echo(f"{formula}; {fault}" if fault else str(formula))
             if progress is not None:
                 progress((place + 1) / len(files))
-    if as_json:
+    if options.as_json:
         click.echo(_json(records))
-    what = counted(len(records), "formula") if records else "no known formula"
-    message(f"{what} in {counted(len(files), 'file')}")
-    return wrong or not records
+    count = counted(len(records), "formula") if records else "no known formula"
+    hint = "" if options.why or not unreadable else "; --why lists them"
+    message(f"{count} in {counted(len(files), 'file')}, {unreadable} not readable{hint}")
+    if len(records) < options.require:
+        message(f"expected at least {options.require} (--require)")
+    return is_wrong or len(records) < options.require
 
 
 def _quadcopter() -> Motion:

@@ -11,23 +11,16 @@ from pathlib import Path
 
 import click
 
-from rigidsym.commands.command import (
-    command as make,
-    message,
-    option,
-    unique,
-    with_options,
-)
+from rigidsym.commands.command import command as make, option, unique, with_options
 from rigidsym.commands.options import RotationOptions
-from rigidsym.data.chunk import Missing
 from rigidsym.data.columns import counted
+from rigidsym.data.tables import Missing
 from rigidsym.errors import ModelError
 from rigidsym.motion import Motion, derive
 from rigidsym.pipeline import integrated, read
 from rigidsym.spec.derivation_spec import DerivationSpec
 from rigidsym.system.processes import bar
-from rigidsym.tools.evaluate.callables import derived_for
-from rigidsym.tools.evaluate.evaluation import Evaluated, evaluation
+from rigidsym.tools.evaluate import Evaluated, derived_for, evaluate
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,9 +56,6 @@ class EvaluationOptions(RotationOptions):
     threads: int = option(
         "--threads", type=click.IntRange(1), default=1, help="Number of worker threads."
     )
-    scheduler: str | None = option(
-        "--scheduler", metavar="ADDRESS", help="Compute on a Dask cluster."
-    )
 
 
 @make("rigidsym eval ZYX log.csv --degrees --out rates.npy")
@@ -94,23 +84,20 @@ def _evaluated(spec: DerivationSpec, source: Path, options: EvaluationOptions) -
         raise ModelError(f"{spec.name} has {len(spec.models)} rotations; expected one")
     quantities = unique(options.quantities)
     motion = derive(spec.models[0], only=derived_for(quantities), body=integrated(spec).body)
-    work = evaluation(
-        motion,
-        quantities,
-        sys.stdin.buffer if str(source) == "-" else source,
-        sys.stdout.buffer if str(options.out) == "-" else options.out,
-        columns=options.columns,
-        given=_known(motion, quantities) | dict(options.given),
-        keep=options.keep or (),
-        missing=options.missing,
-        degrees=options.degrees,
-        threads=options.threads,
-        scheduler=options.scheduler,
-    )
-    if options.scheduler is not None:
-        message(f"connecting to {options.scheduler}")
     with bar(source.name) as progress:
-        return work.run(progress)
+        return evaluate(
+            motion,
+            quantities,
+            sys.stdin.buffer if str(source) == "-" else source,
+            sys.stdout.buffer if str(options.out) == "-" else options.out,
+            columns=options.columns,
+            given=_known(motion, quantities) | dict(options.given),
+            keep=options.keep or (),
+            missing=options.missing,
+            degrees=options.degrees,
+            threads=options.threads,
+            progress=progress,
+        )
 
 
 def _known(motion: Motion, quantities: Sequence[str]) -> dict[str, float]:

@@ -16,11 +16,9 @@ from numpy.typing import ArrayLike
 
 from rigidsym.commands.command import EXISTING_FILE, command as make, option, with_options
 from rigidsym.system.processes import bar
-from rigidsym.tools.identify.identification import identify_file, identify_source
+from rigidsym.tools.identify.identification import Identification, identify_file, identify_source
 from rigidsym.tools.identify.readings import ANGLE_NAMES
-from rigidsym.tools.identify.report import Identification
-from rigidsym.tools.identify.samples import OptionError, SampleError
-from rigidsym.tools.identify.sources import from_arrays, parts_missing
+from rigidsym.tools.identify.samples import OptionError, SampleError, from_arrays, parts_missing
 
 _COUNTS = {"angles": 3, "matrix": 9, "quaternion": 4, "rates": 3, "omega": 3}
 _BRACKETS = str.maketrans("[](){};", "      ,")
@@ -80,13 +78,13 @@ def command(context: click.Context, file: Path | None, options: IdentifyOptions)
     texts = {name: getattr(options, name) for name in _COUNTS}
     if (file is None) == (not any(texts.values())):
         raise OptionError(["expected a file, or --angles with --matrix or --quaternion"])
-    found = _from_texts(texts, options) if file is None else _from_file(file, options)
+    result = _from_texts(texts, options) if file is None else _from_file(file, options)
     if options.as_json:
-        click.echo(json.dumps(found.record(), indent=1, ensure_ascii=False))
+        click.echo(json.dumps(result.record(), indent=1, ensure_ascii=False))
     else:
-        head, _, rest = found.text(everything=options.everything).partition("\n")
+        head, _, rest = result.text(everything=options.everything).partition("\n")
         click.echo(f"{click.style(head, bold=True)}\n{rest}")
-    if not found.fits:
+    if not result.fits:
         context.exit(1)
 
 

@@ -8,10 +8,8 @@ from pathlib import Path
 
 import click
 
-from rigidsym.commands.command import EXISTING_FILE, NAMES, POSITIVE, command as make, message
-from rigidsym.data.mass.mesh import ENDINGS, mesh_inertia, read_mesh_file
-from rigidsym.data.mass.point_masses import inertia_of
-from rigidsym.data.mass.properties import MassProperties
+from rigidsym.commands.command import EXISTING_FILE, NAMES, POSITIVE, command as make
+from rigidsym.data.mass import ENDINGS, inertia_of, mesh_inertia, read_mesh_file
 from rigidsym.system.processes import bar
 
 
@@ -28,7 +26,6 @@ from rigidsym.system.processes import bar
 @click.option(
     "--scale", type=POSITIVE, metavar="M", help="Length unit of a mesh in metres.  [default: 1]"
 )
-@click.option("--scheduler", metavar="ADDRESS", help="Use a Dask cluster that can read FILE.")
 @click.option("--allow", is_flag=True, help="Accept negative masses and open meshes.")
 @click.option("--json", "as_json", is_flag=True, help="Print the results as JSON.")
 def command(
@@ -37,7 +34,6 @@ def command(
     mass: float | None,
     density: float | None,
     scale: float | None,
-    scheduler: str | None,
     allow: bool,
     as_json: bool,
 ) -> None:
@@ -48,33 +44,22 @@ def command(
     once.
     """
     of_mesh = {"--mass": mass, "--density": density, "--scale": scale}
-    of_particles = {"--columns": columns, "--scheduler": scheduler}
     if file.suffix.lower() in ENDINGS:
         noun = "face"
-        _refuse(of_particles, f"{file} is a mesh", "particles")
+        _refuse({"--columns": columns}, f"{file} is a mesh", "particles")
         if mass is None and density is None:
             raise click.UsageError(f"{file} is a mesh: expected --mass or --density")
         mesh = read_mesh_file(file, scale=1.0 if scale is None else scale)
-        found = mesh_inertia(mesh, mass=mass, density=density, allow=allow)
+        body = mesh_inertia(mesh, mass=mass, density=density, allow=allow)
     else:
         noun = "particle"
         _refuse(of_mesh, f"{file} is a file of particles", "meshes")
-        found = _of_particles(file, columns, scheduler, allow=allow)
-    click.echo(json.dumps(found.record(), indent=1) if as_json else found.text(noun))
+        with bar(file.name) as progress:
+            body = inertia_of(file, columns=columns, allow=allow, progress=progress)
+    click.echo(json.dumps(body.record(), indent=1) if as_json else body.text(noun))
 
 
-def _of_particles(
-    file: Path, columns: list[str] | None, scheduler: str | None, *, allow: bool
-) -> MassProperties:
-    if scheduler is not None:
-        message(f"connecting to {scheduler}")
-    with bar(file.name) as progress:
-        return inertia_of(
-            file, columns=columns, allow=allow, scheduler=scheduler, progress=progress
-        )
-
-
-def _refuse(options: Mapping[str, object], found: str, expected: str) -> None:
+def _refuse(options: Mapping[str, object], fact: str, expected: str) -> None:
     for option, value in options.items():
         if value is not None:
-            raise click.UsageError(f"{found}; {option} is for {expected}")
+            raise click.UsageError(f"{fact}; {option} is for {expected}")

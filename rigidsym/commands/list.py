@@ -16,11 +16,10 @@ from rigidsym.mechanics.quantities.dynamics import (
     FLOW_QUANTITIES,
 )
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
-from rigidsym.mechanics.quantities.kinematics import quantities
+from rigidsym.mechanics.quantities.kinematics import KINEMATICS
 from rigidsym.mechanics.quantities.mass import BODY_ALONE, INERTIA_QUANTITIES
-from rigidsym.models.euler_angles import EULER_SEQUENCES, EulerAngles
-from rigidsym.models.library import PARAMETRISATIONS, PRESETS
-from rigidsym.models.rotation_text import ALIASES, rotation_from
+from rigidsym.models.library import ALIASES, PARAMETRISATIONS, PRESETS, rotation_from
+from rigidsym.models.parametrisations import EULER_SEQUENCES, EulerAngles
 from rigidsym.models.solids import SHAPES
 from rigidsym.system.resources import names, text
 
@@ -79,7 +78,7 @@ def _solids() -> list[str]:
 
 def _quantities() -> list[str]:
     known = {
-        **quantities(passive=False),
+        **KINEMATICS,
         **INERTIA_QUANTITIES,
         **ENERGY_QUANTITIES,
         **DYNAMICS_QUANTITIES,

@@ -17,7 +17,7 @@ from rigidsym.kernels.lowering.derivatives import read_requests
 from rigidsym.kernels.targets import check_target
 from rigidsym.motion import QUANTITIES, offered
 from rigidsym.spec.derivation_spec import DerivationSpec
-from rigidsym.system.resources import languages, overridden_by
+from rigidsym.system.resources import overridden_by
 
 MOST_LINES = 150  # that a terminal shows by default
 _LEAN: dict[str, str | bool] = {"precision": "double", "arrays": False, "libm": True}
@@ -102,16 +102,10 @@ class NotationOptions(SpecOptions):
     angular_velocity: str | None = _notation(
         "angular_velocity", "Print the angular velocity as Ω or ω."
     )
-    frames: list[str] | None = option(
-        "--frames",
-        metavar="SPACE,BODY",
-        help="Names of the two frames, such as inertial,spacecraft.",
-    )
 
     def chosen(self, spec: DerivationSpec) -> dict[str, Any]:
         found = super().chosen(spec)
         notation = {name: getattr(self, name) for name in CHOICES if getattr(self, name)}
-        notation |= {"frames": tuple(self.frames)} if self.frames else {}
         if notation:
             found["notation"] = replace(spec.notation or DEFAULT, **notation)
         return found
@@ -148,19 +142,13 @@ class KernelOptions(SelectionOptions):
     derivative: tuple[list[str], ...] = option(
         "--derivative",
         metavar="QUANTITY:VECTOR,...",
-        help="Add the Jacobian of a quantity with respect to q, q_dot, ...; QUANTITY:VECTOR:jvp "
-        "and :vjp add products with a vector. May be repeated.",
-    )
-
-    degrees: bool = option(
-        "--degrees", help="Print functions that take and return degrees, in files NAME_deg."
+        help="Add the Jacobian of a quantity with respect to q, q_dot, ... May be repeated.",
     )
 
     def chosen(self, spec: DerivationSpec) -> dict[str, Any]:
         return {
             **super().chosen(spec),
             "derivatives": self._derivatives(spec),
-            "degrees": spec.degrees or self.degrees,
         }
 
     def _derivatives(self, spec: DerivationSpec) -> tuple[str, ...]:
@@ -180,21 +168,7 @@ class KernelOptions(SelectionOptions):
 
 
 @dataclass(frozen=True, kw_only=True)
-class LanguageOptions(SpecOptions):
-    """The language of what people read."""
-
-    language: str | None = option(
-        "--language",
-        type=click.Choice(languages()),
-        help="Language of the note.  [default: en]",
-    )
-
-    def chosen(self, spec: DerivationSpec) -> dict[str, Any]:
-        return {**super().chosen(spec), "language": self.language or spec.language}
-
-
-@dataclass(frozen=True, kw_only=True)
-class OutputOptions(LanguageOptions):
+class OutputOptions(SpecOptions):
     """What is printed, and what the terminal shows."""
 
     target: tuple[list[str], ...] = option(
@@ -208,18 +182,15 @@ class OutputOptions(LanguageOptions):
     )
     style: str | None = option(
         "--style",
-        type=click.Choice(("lecture", "paper", "audit")),
-        help="Style of the note: lecture explains, paper is terse, audit shows every identity and "
-        "function.  [default: lecture]",
+        metavar="NAME",
+        help="Style of the note: lecture explains, audit shows every identity and function, and "
+        "NAME is a template of yours, en/NAME.md.jinja.  [default: lecture]",
     )
     pdf: bool = option("--pdf", help="Also typeset the note; needs TeX.")
-    fragment: bool = option(
-        "--fragment", help="Also write the note without a preamble, for \\input."
-    )
     certificates: bool = option(
         "--certificates",
-        help="Also write certificates that other programs can check: NAME.cert.json, NAME.v "
-        "(Coq) and NAME.lean.",
+        help="Also write certificates that other programs can check: NAME.cert.json and "
+        "NAME.v (Coq).",
     )
     as_json: bool = option("--json", help="Print the results as JSON.")
     full: bool = option("--full", help=f"Show all lines instead of the first {MOST_LINES}.")
@@ -234,7 +205,7 @@ class PrintingOptions(FolderOptions, NotationOptions, OutputOptions, KernelOptio
         for target in targets:
             check_target(target)
         lean = {"c": _LEAN} if self.lean else {}
-        asked = ("pdf",) * self.pdf + ("fragment.tex",) * self.fragment
+        asked = ("pdf",) * self.pdf
         return {
             **super().chosen(spec),
             "note": tuple(dict.fromkeys((*spec.note, *asked))),

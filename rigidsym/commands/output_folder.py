@@ -10,7 +10,6 @@ from typing import Any
 
 from rigidsym.commands.command import message
 from rigidsym.errors import EditedFiles, SpecError
-from rigidsym.kernels.lowering.degrees import SUFFIX
 from rigidsym.kernels.targets import TARGETS
 from rigidsym.pipeline import (
     PAGE,
@@ -23,10 +22,10 @@ from rigidsym.pipeline import (
     read_record,
 )
 from rigidsym.spec.derivation_spec import DerivationSpec
-from rigidsym.system.files import locked, write_text
+from rigidsym.system.files import locked, read_bytes, write_text
 
 CERTIFICATE = "cert.json"
-CERTIFICATES = (CERTIFICATE, "v", "lean")  # NAME.v is for Coq
+CERTIFICATES = (CERTIFICATE, "v")  # NAME.v is for Coq
 
 
 def printed(spec: DerivationSpec) -> Output:
@@ -36,9 +35,11 @@ def printed(spec: DerivationSpec) -> Output:
         return output
     from rigidsym.tools.certificate import certificate, formal  # few derivations ask for one
 
-    found = certificate.certificate_of(json.loads(output.record_text))
-    texts = zip(CERTIFICATES, (found.json, formal.coq(found), formal.lean(found)), strict=True)
-    return output.joined_by({f"{output.name}.{ending}": text for ending, text in texts})
+    record = json.loads(output.record_text)
+    proved = certificate.certificate_of(record)
+    texts = zip(CERTIFICATES, (proved.json, formal.coq(record, proved.claims)), strict=True)
+    files = {f"{output.name}.{ending}": text for ending, text in texts}
+    return output.joined_by({**files, formal.DEFINITIONS: formal.definitions()})
 
 
 def with_existing_files(spec: DerivationSpec, out: Path) -> DerivationSpec:
@@ -51,7 +52,7 @@ def with_existing_files(spec: DerivationSpec, out: Path) -> DerivationSpec:
     before = _spec_there(folder)
     if before is None or not _is_same(before, spec):
         return spec
-    kept = set(_kept(_outputs(before), before, spec, folder))
+    kept = set(_kept(_outputs(before), spec, folder))
     return replace(
         spec,
         kernels=(*spec.kernels, *(name for name in before.kernels if name in kept)),
@@ -98,7 +99,7 @@ def _report_other_files(output: Output, folder: Path) -> None:
         return
     if before.models != now.models:
         message(f"overwriting {folder}, which held a different rotation (use --out to keep both)")
-    left = list(_kept(_outputs(before), before, now, folder))
+    left = list(_kept(_outputs(before), now, folder))
     if CERTIFICATE in left:
         left.remove(CERTIFICATE)
         message(
@@ -107,8 +108,8 @@ def _report_other_files(output: Output, folder: Path) -> None:
         )
     if left:
         message(
-            f"{folder} keeps files made with other options, "
-            f"which `check` no longer compares: {', '.join(left)}"
+            f"{folder} still contains {', '.join(left)} from an earlier run, which `check` will "
+            "ignore"
         )
 
 
@@ -130,19 +131,17 @@ def _spec_there(folder: Path) -> DerivationSpec | None:
 def content_of(record: Path) -> dict[str, Any]:
     """The object in a JSON file; empty without one that can be read."""
     try:
-        content = json.loads(record.read_text(encoding="utf-8"))
+        content = json.loads(read_bytes(record).decode("utf-8"))
     except (OSError, ValueError, RecursionError):
         return {}
     return content if isinstance(content, dict) else {}
 
 
-def _kept(
-    outputs: Iterable[str], before: DerivationSpec, now: DerivationSpec, folder: Path
-) -> Iterator[str]:
-    """Outputs of `before` that are there and not asked for; a PDF is never compared."""
-    written = {_file(output, now, folder) for output in _outputs(now)}
+def _kept(outputs: Iterable[str], now: DerivationSpec, folder: Path) -> Iterator[str]:
+    """Outputs that are there and not asked for; a PDF is never compared."""
+    written = {_file(output, folder) for output in _outputs(now)}
     for output in outputs:
-        file = _file(output, before, folder)
+        file = _file(output, folder)
         if output != PDF and file not in written and file.is_file():
             yield output
 
@@ -151,12 +150,12 @@ def _outputs(spec: DerivationSpec) -> tuple[str, ...]:
     return (*spec.kernels, *spec.note, *(CERTIFICATE,) * spec.certificates)
 
 
-def _file(output: str, spec: DerivationSpec, folder: Path) -> Path:
+def _file(output: str, folder: Path) -> Path:
     """The main file of a target, a format or the certificates."""
     name = folder.name
     if output == CERTIFICATE:
         return folder / f"{name}.{CERTIFICATE}"
     if output in TARGETS:
-        return folder / f"{name}{SUFFIX * spec.degrees}{TARGETS[output].ending}"
+        return folder / f"{name}{TARGETS[output].ending}"
     assert output in note_formats()
     return folder / (page_name(name) if output == PAGE else f"{name}.{output}")

@@ -9,7 +9,6 @@ import click
 from rigidsym.commands.command import command as make, with_options
 from rigidsym.commands.options import (
     FolderOptions,
-    LanguageOptions,
     NotationOptions,
     RotationOptions,
     SelectionOptions,
@@ -19,13 +18,11 @@ from rigidsym.pipeline import PAGE, integrated, page_name, read
 
 
 @dataclass(frozen=True, kw_only=True)
-class PageOptions(
-    FolderOptions, NotationOptions, LanguageOptions, SelectionOptions, RotationOptions
-):
+class PageOptions(FolderOptions, NotationOptions, SelectionOptions, RotationOptions):
     """All options of `page`."""
 
 
-@make("rigidsym page ZXZ --frames inertial,spacecraft")
+@make("rigidsym page ZXZ")
 @click.argument("source", metavar="ROTATION|FILE")
 @with_options(PageOptions)
 def command(source: str, options: PageOptions) -> None:

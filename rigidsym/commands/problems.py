@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import click
 
 from rigidsym.commands.command import command as make
-from rigidsym.notes.document.own_text import OwnText
 from rigidsym.notes.formats import FORMATS
 from rigidsym.notes.formats.pdf import typeset
 from rigidsym.notes.problems.exercise import sheet_of
 from rigidsym.notes.problems.subjects import SUBJECTS
-from rigidsym.system import resources
 from rigidsym.system.files import write_bytes, write_text
 
 _ENDINGS = ("tex", "html")
@@ -36,13 +35,6 @@ _ENDINGS = ("tex", "html")
 )
 @click.option("--author", default="", help="Author, printed below the title.")
 @click.option("--course", default="", help="Course, printed below the title.")
-@click.option(
-    "--language",
-    type=click.Choice(resources.languages()),
-    default="en",
-    show_default=True,
-    help="Language of the sheet.",
-)
 @click.option("--pdf", is_flag=True, help="Also typeset the sheet and solutions; needs TeX.")
 @click.option("--moodle", is_flag=True, help="Also write a question bank in Moodle XML.")
 @click.option("--quiet", is_flag=True, help="Print only the names of the files written.")
@@ -59,7 +51,6 @@ def command(
     variant: int,
     author: str,
     course: str,
-    language: str,
     pdf: bool,
     moodle: bool,
     quiet: bool,
@@ -70,9 +61,12 @@ def command(
     The subject is euler (Euler angles), bodies (moments of inertia) or all. Every answer is
     derived. The files are LaTeX and HTML.
     """
-    sheet = sheet_of(subject, SUBJECTS, count=number, variant=variant, language=language)
-    own = OwnText(author=author, course=course)
-    documents = [own.applied(sheet.document(solved=solved)) for solved in (False, True)]
+    sheet = sheet_of(subject, SUBJECTS, count=number, variant=variant)
+    byline = tuple(filter(None, (author, course)))
+    documents = [
+        replace(sheet.document(solved=solved), author=author, byline=byline)
+        for solved in (False, True)
+    ]
     for place, section in enumerate(() if quiet else documents[0].sections, start=1):
         click.echo(f"{place}  {section.title}")
     for document in documents:

@@ -13,14 +13,14 @@ import click
 import numpy as np
 
 from rigidsym.commands.command import command as make, option, with_options
-from rigidsym.data.writers import check_ending, table_writer
+from rigidsym.data.tables import check_ending, write_table
 from rigidsym.errors import DerivationError
-from rigidsym.models.example import OMEGA, OMEGA_COMPONENTS, Example, initial_values
+from rigidsym.models.forces import Example
 from rigidsym.motion import Motion
 from rigidsym.pipeline import motion_of, read
-from rigidsym.simulation.animation import WRITERS
-from rigidsym.simulation.plot import PICTURES, check_picture
-from rigidsym.simulation.solver import METHODS, needed
+from rigidsym.simulation.problem import NEEDED
+from rigidsym.simulation.solver import METHODS
+from rigidsym.simulation.trajectory import ANIMATIONS, PICTURES, check_picture
 from rigidsym.system.files import whole_file
 from rigidsym.system.processes import bar
 
@@ -72,7 +72,7 @@ class SimulationOptions:
         "--method",
         type=click.Choice(METHODS),
         default=METHODS[0],
-        help="Integrator; lie takes steps in the rotation group, exact is for free bodies.",
+        help="Integrator; exact is for free bodies.",
     )
     samples: int | None = option(
         "--samples",
@@ -96,13 +96,10 @@ class SimulationOptions:
         help="Simulate COUNT values of an initial value or parameter; if repeated, every "
         "combination.",
     )
-    scheduler: str | None = option(
-        "--scheduler", metavar="ADDRESS", help="Compute the ensemble on a Dask cluster."
-    )
     out: Path | None = option("--out", help="Write the motion: .csv, .npy, .npz or .parquet.")
     plot: Path | None = option("--plot", help="Draw the motion: .png, .svg or .pdf.")
     animate: Path | None = option(
-        "--animate", help="Animate the motion: .gif, .mp4 (needs ffmpeg), or .html for a live page."
+        "--animate", help="Animate the motion: .gif, or .html for a live page."
     )
 
 
@@ -121,22 +118,19 @@ def command(source: str, options: SimulationOptions) -> None:
     """
     if options.out is not None:
         check_ending(options.out, _ARCHIVE)
-    for path, endings in ((options.plot, PICTURES), (options.animate, (*WRITERS, ".html"))):
+    for path, endings in ((options.plot, PICTURES), (options.animate, (*ANIMATIONS, ".html"))):
         if path is not None:
             check_picture(path, endings)
     motion = _motion(source, options)
     if options.ensemble is not None or options.grid:
         _ensemble(motion, options)
         return
-    for name in ("spread", "scheduler"):
-        if getattr(options, name):
-            raise click.UsageError(
-                f"--{name} is for ensembles; expected --ensemble or --grid as well"
-            )
+    if options.spread:
+        raise click.UsageError("--spread is for ensembles; expected --ensemble or --grid as well")
     initial, constants, t_end = _given(motion, options)
     with bar(motion.name) as progress:
         found = motion.simulate(
-            _start(motion, initial),
+            initial,
             constants,
             t_end,
             samples=options.samples or 1001,
@@ -156,7 +150,7 @@ def _motion(source: str, options: SimulationOptions) -> Motion:
     spec = read(source)
     is_page = options.animate is not None and options.animate.suffix == ".html"
     if spec.dynamics is not None and len(spec.models) == 1 and not is_page:
-        spec = replace(spec, quantities=needed(*spec.models))
+        spec = replace(spec, quantities=NEEDED)
     return motion_of(spec)
 
 
@@ -165,8 +159,7 @@ def _animated(
 ) -> Path:
     """The file of the animation."""
     if path.suffix != ".html":
-        with bar(str(path)) as progress:
-            return found.animate(path, progress)
+        return found.animate(path)
     start = dict(constants)
     for k, name in enumerate(found.coordinates):
         start |= {name: found.q[0, k], f"{name}_dot": found.q_dot[0, k]}
@@ -205,16 +198,14 @@ def _ensemble(motion: Motion, options: SimulationOptions) -> None:
                 f"--spread {name}={deviation:g}: expected a standard deviation, 0 or more"
             )
         known[name] = generator.normal(known[name], deviation, count)
-    start = _start(motion, initial)
-    first = next(iter(start))
-    start[first] = np.broadcast_to(start[first], count)
+    first = motion.argument("q").names[0]
+    initial[first] = np.broadcast_to(initial.get(first, 0.0), count)
     with bar(motion.name) as progress:
         found = motion.simulate_many(
-            start,
+            initial,
             constants,
             t_end,
             samples=options.samples or 101,
-            scheduler=options.scheduler,
             progress=progress,
         )
     _reported(found, options.out)
@@ -239,16 +230,8 @@ def _reported(found: Trajectory | Ensemble, out: Path | None) -> None:
             np.savez(file, **columns | whole)
     else:
         rows = np.column_stack([*columns.values()])
-        with table_writer(out, tuple(columns), rows.dtype) as writer:
-            writer.append(rows)
+        write_table(out, tuple(columns), rows.dtype, [(rows, ())])
     click.echo(out)
-
-
-def _start(motion: Motion, given: Mapping[str, Any]) -> dict[str, Any]:
-    """The initial values, with 0 and no rotation for what is not given."""
-    start = initial_values(motion.model, given)
-    turning = [start.pop(name) for name in OMEGA_COMPONENTS if name in start]
-    return start | ({OMEGA: np.stack(np.broadcast_arrays(*turning), axis=-1)} if turning else {})
 
 
 def _given(

@@ -24,8 +24,8 @@ def plain(name: str) -> str:
 
 def unit_in(name: str) -> str:
     """The unit in the brackets of a name, as written: deg of `Roll [deg]`; empty without one."""
-    found = _BRACKETS.search(_INDEX.sub(r"\1", name))
-    return found[1] if found else ""
+    unit = _BRACKETS.search(_INDEX.sub(r"\1", name))
+    return unit[1] if unit else ""
 
 
 def counted(count: int, noun: str) -> str:
@@ -58,12 +58,12 @@ class ColumnNames:
         keys = [plain(spelling) for spelling in spellings]
         for key in keys:
             exact = [k for k, name in enumerate(self.plain) if name == key]
-            found = exact or [k for k, others in enumerate(self._others) if key in others]
-            if len(found) > 1:
-                same = ", ".join(self.names[k] for k in found)
+            columns = exact or [k for k, others in enumerate(self._others) if key in others]
+            if len(columns) > 1:
+                same = ", ".join(self.names[k] for k in columns)
                 raise DataError(f"two columns are named {key}: {same}; --columns renames them")
-            if found:
-                return found[0]
+            if columns:
+                return columns[0]
         return None
 
     def has(self, name: str) -> bool:
@@ -98,7 +98,8 @@ def names_for(
     """Names that a user gives for all columns, in their order; without them those of the file.
 
     A unit that the `former` name of a column states, in the file, holds unless the new name
-    states one. Raises DataError for too few names or too many.
+    states one. Raises DataError for too few names or too many, and for a name that the file gives
+    to another column: the columns of a header are found by their names, in any order.
     """
     if names is None:
         return None if former is None else tuple(former)
@@ -107,6 +108,13 @@ def names_for(
     if former is None:
         return tuple(names)
     before, after = ColumnNames(former), ColumnNames(names)
+    for k, name in enumerate(names):
+        place = before.find([name]) if before.has(name) else None
+        if place not in (None, k):
+            raise DataError(
+                f"column {k + 1} would be {name}, but the file names it {before.names[k]}, and "
+                f"column {place + 1} {before.names[place]}; leave out the names if these are right"
+            )
     return tuple(
         f"{name} [{before.unit(k)}]" if before.unit(k) and not after.unit(k) else name
         for k, name in enumerate(names)

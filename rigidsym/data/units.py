@@ -71,11 +71,11 @@ def unit_of(text: str) -> Unit:
     sign = -1 if plain.startswith("1/") else 1
     rest = plain.removeprefix("1/").strip()
     while rest:
-        found = _FACTOR.match(rest)
-        if not found or found[1] not in _KNOWN:
+        factor = _FACTOR.match(rest)
+        if not factor or factor[1] not in _KNOWN:
             raise DataError(f"unknown unit {text!r}")
-        units.append((_KNOWN[found[1]], sign * int(found[2] or 1)))
-        rest = rest[found.end() :].strip()
+        units.append((_KNOWN[factor[1]], sign * int(factor[2] or 1)))
+        rest = rest[factor.end() :].strip()
         sign = {"/": -1, "*": 1}.get(rest[:1], sign)  # a blank keeps it: rad/s s is rad/s²
         rest = rest.lstrip("*/() ")
     return _product(*units)
@@ -86,10 +86,10 @@ def conversion(text: str, expected: str) -> float:
 
     Raises DataError for an unknown unit, and for one of another quantity.
     """
-    given, wanted = unit_of(text), unit_of(expected)
-    if given.powers != wanted.powers:
+    unit, wanted = unit_of(text), unit_of(expected)
+    if unit.powers != wanted.powers:
         raise DataError(f"expected a unit such as {expected or '1'}, got {text}")
-    return given.factor / wanted.factor
+    return unit.factor / wanted.factor
 
 
 def is_angular(text: str) -> bool:

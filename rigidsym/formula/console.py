@@ -81,11 +81,10 @@ class _Console:
 
     def words(self, spans: Spans) -> str:
         """A sentence on one line; its formulas have blanks at which no line may end."""
-        named = self.letters.notation.words
         return "".join(
             self.text(span).replace(" ", _NO_BREAK)
             if isinstance(span, Formula)
-            else named(span if isinstance(span, str) else span.text)
+            else (span if isinstance(span, str) else span.text)
             for span in spans
         )
 

@@ -5,10 +5,9 @@ Formulas are composed in one notation: a dot for a rate, bold vectors, a prime f
 
 from __future__ import annotations
 
-import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
-from functools import lru_cache, partial
+from functools import lru_cache
 from typing import Any, Protocol
 
 from rigidsym.errors import ModelError
@@ -21,32 +20,6 @@ CHOICES: Mapping[str, tuple[str, ...]] = {
     "angular_velocity": ("Omega", "omega"),
 }
 
-FRAMES = ("space", "body")
-
-_A_FRAME_NAME = re.compile(r"\w(?:[\w .-]{0,28}\w)?")
-# the body's own, and not its frame's
-_NOT_A_FRAME = "".join(
-    f"(?<!{noun} )"
-    for noun in (
-        "momentum",
-        "energy",
-        "tensor",
-        "principal axes",
-        "point",
-        "constant",
-        "else",
-        "mass",
-    )
-)
-# the name before what it qualifies, or after a preposition, where it becomes "the ... frame"
-_FRAME_WORDS = (
-    re.compile(
-        r"\b(?:(?P<before>of|in|from) space(?! components)|space(?P<after> components| to\b))"
-    ),
-    re.compile(
-        _NOT_A_FRAME + r"\b(?:(?P<before>of|in|from) the body|body(?P<after> components| to\b))"
-    ),
-)
 _VECTORS = frozenset("uvwxyrpmngscdLeabkΩω")  # bold matrices and columns of coordinates stay so
 
 
@@ -59,34 +32,19 @@ class HasNames(Protocol):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Notation:
-    """One choice each, the first of `CHOICES` by default; and the names of the frames in words."""
+    """One choice each, the first of `CHOICES` by default."""
 
     rates: str = "dot"
     vectors: str = "bold"
     body: str = "prime"
     angular_velocity: str = "Omega"
-    frames: tuple[str, str] = FRAMES
     vector: str = "v"  # the letter of the vector that the coordinates are components of
-    decimal: str = "."  # or a comma, beside which semicolons separate the items of a list
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "frames", _checked(self.frames))
         for name, known in CHOICES.items():
             chosen = getattr(self, name)
             if chosen not in known:
                 raise ModelError(f"notation, {name}: expected {' or '.join(known)}, got {chosen!r}")
-
-    def words(self, text: str) -> str:
-        """A sentence in which the frames have the user's names; twice is the same as once."""
-        if self.frames == FRAMES:
-            return text
-        for pattern, own in zip(_FRAME_WORDS, self.frames, strict=True):
-            text = pattern.sub(partial(_named, own), text)
-        return text
-
-    def named(self, span: Any) -> Any:
-        """The same for the words among the spans of a text."""
-        return self.words(span) if isinstance(span, str) else span
 
     def applied(self, formula: tree.Formula) -> tree.Formula:
         """The formula in this notation; twice is the same as once."""
@@ -98,7 +56,7 @@ class Notation:
         if self is DEFAULT:
             return True
         chosen = all(getattr(self, name) == known[0] for name, known in CHOICES.items())
-        return chosen and self.vector == "v" and self.decimal == "."
+        return chosen and self.vector == "v"
 
     def check(self, model: HasNames) -> None:
         """Raises ModelError for a name in a model that looks like the angular velocity."""
@@ -117,11 +75,6 @@ def _applied(node: tree.Formula, notation: Notation) -> tree.Formula:
     match node:
         case tree.Symbol():
             return _symbol(node, notation)
-        case tree.Numeral(digits):
-            return tree.Numeral(digits.replace(".", notation.decimal))
-        case tree.Row(parts) if notation.decimal == "," and _is_list_of_decimals(parts):
-            apart = (tree.Sign(";") if part == tree.COMMA else part for part in parts)
-            return tree.Row(tuple(_applied(part, notation) for part in apart))
         case tree.Power(tree.Symbol(prime="′"), exponent) if notation.body == "superscript":
             return tree.Power(tree.Bracket(_applied(node.base, notation)), exponent)
         case tree.Power(tree.Symbol(dots=dots), exponent) if dots and notation.rates == "fraction":
@@ -131,19 +84,6 @@ def _applied(node: tree.Formula, notation: Notation) -> tree.Formula:
             return tree.Fraction(_applied(above, notation), below)
     changed = {field.name: _within(getattr(node, field.name), notation) for field in fields(node)}
     return replace(node, **changed)
-
-
-def _is_list_of_decimals(parts: tuple[tree.Formula, ...]) -> bool:
-    return tree.COMMA in parts and _has_point(parts)
-
-
-def _has_point(value: Any) -> bool:
-    """Whether a node, or one of a tuple of them, holds a number with a decimal point."""
-    if isinstance(value, tree.Numeral):
-        return "." in value.digits
-    if isinstance(value, tree.Formula):
-        value = tuple(getattr(value, field.name) for field in fields(value))
-    return isinstance(value, tuple) and any(map(_has_point, value))
 
 
 def _within(value: Any, notation: Notation) -> Any:
@@ -180,26 +120,6 @@ def _on_a_line(below: tree.Formula) -> tree.Formula:
             (tree.Differential(), below.of, tree.Sign("/"), tree.Differential(), tree.Symbol("t"))
         )
     )
-
-
-def _checked(frames: Sequence[str]) -> tuple[str, str]:
-    """Two different names of letters, digits, blanks, points and hyphens."""
-    names = [frames] if isinstance(frames, str) else list(frames)
-    if len(names) != 2 or names[0] == names[1]:
-        raise ModelError(f"frames: expected two different names, got {', '.join(names)}")
-    for name in names:
-        if not _A_FRAME_NAME.fullmatch(name):
-            raise ModelError(
-                f"{name!r} cannot name a frame: expected at most 30 letters, digits, "
-                "blanks, points and hyphens"
-            )
-    return names[0], names[1]
-
-
-def _named(own: str, found: re.Match[str]) -> str:
-    if found["before"]:
-        return f"{found['before']} the {own} frame"
-    return own + found["after"]
 
 
 DEFAULT = Notation()  # in which formulas are composed

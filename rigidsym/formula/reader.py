@@ -32,7 +32,7 @@ FUNCTIONS = ("sin", "cos", "tan", "cot", "det", "exp", "arctan")
 _TOKEN = re.compile(
     r"\\text\{(?P<text>[^{}]*)\}|\\mathit\{(?P<word>[^{}]*)\}|\\operatorname\{(?P<name>\w+)\}"
     r"|\\begin\{(?P<begin>\w+)\}|\\end\{(?P<end>\w+)\}"
-    r"|#\d|\\\\(?:\[\w+\])?|\\[A-Za-z]+|\\.|\d+|\s+|."
+    r"|#\d+|\\\\(?:\[\w+\])?|\\[A-Za-z]+|\\.|\d+|\s+|."
 )
 SIGNS = {r"\times": "×", r"\cdot": "·", r"\pm": "±", r"\le": "≤", r"\in": "∈"}
 SIGNS |= {r"\Leftrightarrow": "⇔"}

@@ -15,9 +15,10 @@ from math import isnan, prod
 from typing import NamedTuple
 
 from rigidsym.errors import KernelError
+from rigidsym.mechanics.conversions.function import Continuity
 
 # What every target must be able to call; and c0, c1, c2, ..., the functions c_k of n² that
-# `algebra.series` derives.
+# `algebra.stable_forms` derives.
 # `eps` is the spacing of floats at one, in the type of its argument; `atan2` takes two arguments.
 FUNCTIONS = ("sin", "cos", "sqrt", "abs", "atan2", "eps")
 
@@ -172,8 +173,6 @@ class KernelArgument(NamedTuple):
     units: tuple[str, ...]
     about: str
     matrix: tuple[int, ...] = ()  # its shape, if it is one; else a vector
-    may_be_flat: bool = False  # whether its rows may also come one after the other
-    is_optional: bool = False  # zero if left out
     is_scalar: bool = False  # a number, such as the time
 
     @property
@@ -340,18 +339,6 @@ def _factors_in(expression: Expression) -> Iterator[str]:
         yield expression.text
 
 
-class Unwrapping(NamedTuple):
-    """How coordinates are made continuous along a trajectory."""
-
-    kind: str  # "turns", "quaternion", "axis_angle", "rotation_vector" or "modified_rodrigues"
-    arguments: tuple[KernelArgument, ...]
-    remarks: tuple[str, ...]
-    # Of turns: their angles from the coordinates, and the coordinates from the angles. Three
-    # turns are followed by what the two sets of angles of one rotation are to each other.
-    turns: Kernel | None = None
-    coordinates: Kernel | None = None
-
-
 class Program(NamedTuple):
     """The kernels of one derivation, and what a reader of the generated file must know."""
 
@@ -362,5 +349,4 @@ class Program(NamedTuple):
     arguments: tuple[KernelArgument, ...]  # all that occur, in the order of a signature
     kernels: tuple[Kernel, ...]
     remarks: tuple[str, ...] = ()  # paragraphs for the head of the module
-    unwrapping: Unwrapping | None = None
-    units: str = "radians"  # of angles
+    continuity: Continuity | None = None  # of the coordinates along a trajectory

@@ -71,7 +71,6 @@ def generate(
     *,
     conversions: bool = False,
     derivatives: Asked = (),
-    degrees: bool = False,
     **options: str | bool,
 ) -> KernelModule:
     """The kernels of all quantities of a derivation, for one target.
@@ -83,25 +82,21 @@ def generate(
     5. The files, printed.
 
     `conversions` adds those between the coordinates, the unit quaternion and the matrix,
-    `derivatives` those that are asked for: ["angular_velocity_body by q"]. With `degrees`, angles
-    are in degrees, as arguments and as results, and the name of the module ends in _deg.
-    `options` are those of the target. Raises KernelError for an unknown target, option or
-    derivative, for an expression that kernels cannot hold, and if no derived quantity depends on
-    any input.
+    `derivatives` those that are asked for: ["angular_velocity_body by q"]. `options` are those of
+    the target. Raises KernelError for an unknown target, option or derivative, for an expression
+    that kernels cannot hold, and if no derived quantity depends on any input.
     """
     check_options(target, options)
-    if type(degrees) is not bool:
-        raise KernelError(f"degrees: expected True or False, got {degrees!r}")
     language = printer(target)
     asked: tuple[Derivative, ...] = ()
     if derivatives != ():
         asked = derivatives_of(derivation, read_requests(derivatives))
     added = NO_CONVERSIONS
     if conversions:
-        from rigidsym.mechanics.conversions.conversion_functions import converted
+        from rigidsym.mechanics.conversions.conversions import converted
 
         added = converted(derivation)
-    program = lower(derivation, language.RESERVED, asked, added, degrees=degrees)
+    program = lower(derivation, language.RESERVED, asked, added)
     if not program.kernels:
         raise _nothing_to_write(derivation)
     files = language.render(program, **options)

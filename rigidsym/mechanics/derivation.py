@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cache, cached_property
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Protocol, Self
 
 import sympy as sp
@@ -21,18 +22,22 @@ if TYPE_CHECKING:
     from rigidsym.models.forces import Forces
 
 Status = Literal["exact", "unproved"]
+OF_RATES = "rates"  # the section of the quantities that the singularities are about
 
-OF_CENTRE = frozenset(  # they have no place where a body turns about a fixed point
-    {
-        *("translational_energy", "kinetic_energy", "angular_momentum_centre", "angular_momentum"),
-        *("inertia_tensor_point", "moment_of_inertia", "radii_of_gyration"),
-    }
-)
-OF_RATES = frozenset(  # the quantities that the singularities are about
-    f"{quantity}_{frame}"
-    for quantity in ("rate_matrix", "inverse_rate_matrix", "rates_from_angular_velocity")
-    for frame in ("space", "body")
-)
+
+@cache
+def _reasons() -> Mapping[str, str]:
+    # both are imported by whatever prints a note, but not by a derivation that nobody prints
+    import tomllib
+
+    from rigidsym.system.resources import text
+
+    return tomllib.loads(text("templates/notes", "en/reasons.toml"))
+
+
+def sentence_of(reason: str) -> str:
+    """The sentence of a reason by its key; nothing for no reason."""
+    return _reasons()[reason] if reason else ""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -55,17 +60,93 @@ class Proof:
 Shape = Literal["scalar", "vector", "matrix"]  # (), (n,) and (m, n) in kernels and JSON
 
 
+class Frame(NamedTuple):
+    """The axes that components are along, with the letters of the angular velocity in them."""
+
+    name: str  # "space" or "body"
+    omega: Formula
+    matrix: Formula  # W, with Ω = W q̇
+    inverse: Formula
+    right_inverse: Formula  # if there are more coordinates than dimensions
+
+
+class Law(NamedTuple):
+    """A claim about a quantity, and what vanishes if it holds.
+
+    The residual for a value x is worked out in a workspace k: a `RingMatrix`, also with a divisor;
+    a SymPy matrix is a rational function of the constants of a body. None is claimed if it is None.
+    """
+
+    claim: Formula  # R Rᵀ = 1
+    residual: Callable[[Any, Any], Any]
+    is_of_inverse: bool = False  # which holds for every matrix W that has one
+
+
 class Quantity(NamedTuple):
-    """A quantity that a step defines."""
+    """A quantity: its one entry among the `quantities`, and how a step presents it.
+
+    The value and the residuals of the laws are functions of a workspace k. `variants` say what
+    differs for models with certain traits: "passive", "chain", ... (`Values.traits`).
+    """
 
     name: str  # in Python, in kernels, in JSON
     symbol: Formula
     about: str  # words: "angular velocity, space components"
     unit: str = ""  # SI, "" for a pure number
+    unit_of: str = ""  # the argument that it is a value of, whose unit it has
     inputs: tuple[str, ...] = ()  # the arguments it depends on, by name: "q", "q_dot", ...
     shape: Shape = "matrix"  # the expression of a vector is n x 1, that of a scalar 1 x 1
+    frame: Frame | None = None  # of its components
     definition: Formula = NOTHING  # how it follows: C⁻¹(dR/dt Rᵀ)
     source: Citation | None = None
+    within: Callable[[Any], Any] | None = None  # the workspace of its own, if it has one
+    # a matrix, over a ring or as it is printed, or (matrix, divisor); None if a model has none
+    value: Callable[[Any], Any] | None = None
+    rests_on: Callable[[Any], Sequence[Proof]] | None = None  # proofs of what it is worked out from
+    laws: tuple[Law, ...] = ()
+    also: tuple[str, ...] = ()  # quantities that the value is written with; their laws count, too
+    reason: str = ""  # how it follows, a key of templates/notes/en/reasons.toml
+    words: Callable[[Any], str] | None = None  # a sentence made of several reasons
+    without: str = ""  # why a model may not have it
+    vectors: Literal["", "matrix", "vector", "rates"] = ""  # its form by the vector of coordinates
+    recursion: str = ""  # over the turns of a chain, in TeX; LAST is the number of turns
+    section: str = ""  # of the note
+    group: str = ""  # of the summary: a title for several results
+    is_result: bool = False  # whether it is framed in the note
+    of_centre: bool = False  # whether it has no meaning for a body with a fixed point
+    variants: tuple[tuple[frozenset[str], Mapping[str, Any]], ...] = ()
+
+    def presented(self, traits: Set[str]) -> Quantity:
+        """The quantity as it is for a model with these traits; later variants take precedence."""
+        changes: dict[str, Any] = {}
+        for needed, change in self.variants:
+            if needed <= traits:
+                changes |= change
+        return self._replace(**changes) if changes else self
+
+    def measured(self, arguments: Mapping[str, Argument]) -> Quantity:
+        """With the unit of the argument that it is a value of; none if its components differ."""
+        if not self.unit_of:
+            return self
+        units = {*arguments[self.unit_of].units}
+        return self._replace(unit=units.pop() if len(units) == 1 else "")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Without its functions, which another process has no use for."""
+        plain = self._replace(within=None, value=None, rests_on=None, words=None)
+        return Quantity, tuple(plain._replace(laws=(), also=(), variants=()))
+
+
+def when(*traits: str, **changes: Any) -> tuple[frozenset[str], Mapping[str, Any]]:
+    """A variant of a quantity."""
+    return frozenset(traits), changes
+
+
+def by_name(entries: Mapping[str, Any]) -> Mapping[str, Quantity]:
+    """The quantities among the names of a module, in their order: that of the derivation."""
+    found = {name: entry for name, entry in entries.items() if isinstance(entry, Quantity)}
+    assert all(name == quantity.name for name, quantity in found.items())
+    return MappingProxyType(found)
 
 
 class Argument(NamedTuple):
@@ -126,28 +207,17 @@ class StepPrinter(Protocol):
     def text(self, step: Step) -> str: ...
 
 
-class Found(NamedTuple):
-    """The result of deriving one quantity, before it is a numbered step."""
-
-    expression: sp.ImmutableMatrix
-    because: str
-    proofs: tuple[Proof, ...] = ()
-    vector_form: VectorForm | None = None
-    definition: Formula | None = None  # if the step says better what it follows from
-    recursion: Formula | None = None  # over the turns, if the entries are names of its parts
-
-
 @dataclass(frozen=True, slots=True)
 class OfBody:
     """What a body and the forces on it add to the derivation of a rotation."""
 
     arguments: Mapping[str, Argument]  # all of them, by name
-    steps: Mapping[str, Found] = field(default_factory=dict)
+    steps: Sequence[Step] = ()
     body: RigidBody | None = None
+    forces: Forces | None = None  # in the symbols of the body
     functions: Mapping[str, Callable[[], Step]] = field(default_factory=dict)  # of the state
     first_integrals: tuple[FirstIntegral, ...] = ()
     consequences: tuple[Consequence, ...] = ()
-    table: Mapping[str, Quantity] = field(default_factory=dict)  # of the quantities of motion
 
 
 class Definition(NamedTuple):
@@ -161,19 +231,24 @@ class Definition(NamedTuple):
 class Step:
     """One quantity, derived: its textbook form, how it follows, and what was proved of it."""
 
-    number: int  # of its equation, in the note and in the docstrings of kernels; 0 for none
     quantity: Quantity
     expression: sp.ImmutableMatrix
-    because: str  # a sentence: how it follows from the steps before
-    proofs: tuple[Proof, ...]
+    proofs: tuple[Proof, ...] = ()
+    number: int = 0  # of its equation, in the note and in the docstrings of kernels; 0 for none
     vector_form: VectorForm | None = None  # where the coordinates form a vector
     recursion: Formula | None = None  # shown for the entries, if these are names of its parts
+    words: str = ""  # a sentence in place of that of the quantity's reason
     printer: StepPrinter | None = field(default=None, repr=False, compare=False)  # set by Motion
 
     def __repr__(self) -> str:
         """One line, for a prompt; `text` shows the equation."""
         proved = all(proof.is_exact for proof in self.proofs)
         return f"<Step {self.quantity.name}, {'proved' if proved else 'not proved'}>"
+
+    @property
+    def because(self) -> str:
+        """A sentence: how the quantity follows from the steps before."""
+        return self.words or sentence_of(self.quantity.reason)
 
     def latex(self) -> str:
         """The equation in LaTeX, without its number."""
@@ -214,6 +289,7 @@ class Statement(NamedTuple):
     claims: tuple[tuple[str, Formula], ...]  # what is to be proved, by name
     source: Citation
     proofs: tuple[Proof, ...] = ()
+    is_result: bool = False  # whether it is framed in the note
     shows_summands: bool = False  # whether the matrix of the generic particle belongs to it
     summands: sp.ImmutableMatrix | None = None  # that matrix; its sum is the last side
 
@@ -306,10 +382,12 @@ class Derivation:
 
         Singularities belong to the rates. Raises QuantityError for a name that is not here.
         """
-        chosen = {self.step(name).quantity.name for name in names}
+        quantities = [self.step(name).quantity for name in names]
+        chosen = {quantity.name for quantity in quantities}
         kept = [step for step in self.steps if step.quantity.name in chosen]
         numbered = tuple(replace(step, number=place) for place, step in enumerate(kept, start=1))
-        kept_singularities = None if chosen.isdisjoint(OF_RATES) else self.singularities
+        has_rates = any(quantity.section == OF_RATES for quantity in quantities)
+        kept_singularities = self.singularities if has_rates else None
         return replace(self, steps=numbered, singularities=kept_singularities)
 
     def spelled(self, matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
@@ -329,13 +407,12 @@ class Derivation:
     @property
     def about_fixed_point(self) -> bool:
         """Whether the inertia tensor is about a fixed point instead of the centre of mass."""
-        names = {step.quantity.name for step in self.steps}
         return (
             self.forces is not None
             and self.forces.fix_a_point
             and self.body is not None
             and self.body.distribution is None
-            and names.isdisjoint(OF_CENTRE)
+            and not any(step.quantity.of_centre for step in self.steps)
         )
 
     def argument(self, name: str) -> Argument:

@@ -1,13 +1,12 @@
 """The door of the room: a rotation, and perhaps a body that turns so, become a Derivation.
 
-1. A body that is only described is integrated (`mass.bodies`).
-2. The kinematics of the rotation follow from R(q) (`kinematics.derive`), or for a long product
-   of turns turn by turn (`kinematics.turn_by_turn`).
-3. The inertia of the body, its energy and its momentum follow (`mass.derive`, `energy.derive`).
-4. The steps are numbered, and described by the tables of `quantities`.
-5. With forces, the equations of motion follow (`dynamics.derive`).
-6. The singular orientations follow (`singularities.derive`).
-7. The equations of the lecture may go before all of it (`lecture.derive`).
+1. The kinematics of the rotation follow from R(q), entry by entry of `quantities.kinematics`, in
+   the ring of the model (`kinematics.workspace`), or in names for a chain (`kinematics.chain`).
+2. The inertia of the body, its energy and its momentum follow; with forces, the equations of motion
+   (`body`, `dynamics.derive`).
+3. The steps are numbered.
+4. The singular orientations follow (`singularities.derive`).
+5. The equations of the lecture may go before all of it (`lecture`).
 """
 
 from __future__ import annotations
@@ -24,14 +23,11 @@ from rigidsym.mechanics.derivation import (
     OF_RATES,
     Definition,
     Derivation,
-    Found,
     OfBody,
-    Quantity,
     Singularities,
     Step,
 )
-from rigidsym.mechanics.kinematics.derive import Expanded, is_shorter
-from rigidsym.mechanics.kinematics.turn_by_turn import TurnByTurn
+from rigidsym.mechanics.kinematics.chain import Chain, is_shorter
 from rigidsym.mechanics.kinematics.workspace import Values
 from rigidsym.mechanics.quantities.dynamics import (
     DYNAMICS_QUANTITIES,
@@ -39,12 +35,10 @@ from rigidsym.mechanics.quantities.dynamics import (
     FLOW_QUANTITIES,
 )
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
-from rigidsym.mechanics.quantities.kinematics import QUANTITY_NAMES, quantities
+from rigidsym.mechanics.quantities.kinematics import KINEMATICS
 from rigidsym.mechanics.quantities.mass import BODY_ALONE, INERTIA_QUANTITIES, OF_BODY_ALONE
-from rigidsym.mechanics.singularities.chains import planes_of_axes
-from rigidsym.mechanics.singularities.derive import singularities_of
-from rigidsym.models.body import BodyDescription, RigidBody
-from rigidsym.models.distribution import Distribution
+from rigidsym.mechanics.singularities import margin_of, planes_of_axes, singularities_of
+from rigidsym.models.body import BodyDescription, Distribution, RigidBody
 from rigidsym.models.forces import Forces
 from rigidsym.models.rotation import RotationModel, depends_on_time
 
@@ -72,35 +66,34 @@ def derive(
     things, and QuantityError for quantities that are unknown or that the model or body lacks.
     """
     if theory:
-        from rigidsym.mechanics.lecture.derive import NEEDED, with_theory
+        from rigidsym.mechanics.lecture import NEEDED, with_theory
 
         wanted = only and {*only, *NEEDED}
         return with_theory(derive(model, wanted, body=body, forces=forces))
     _check_names(only, has_body=body is not None, has_forces=forces is not None)
     if BODY_ALONE in only:
         only = {*only, *OF_BODY_ALONE}
-    turns = TurnByTurn(model) if is_shorter(model) else None
-    values = Values(model)
-    turning = [name for name in only if name in QUANTITY_NAMES]
-    found = dict((turns or Expanded(values)).steps(turning or only))
-    absent = ", ".join(name for name in turning if name not in found)
+    chain, values = Chain(model) if is_shorter(model) else None, Values(model)
+    turning = [name for name in only if name in KINEMATICS]
+    steps = _kinematics(chain or values, turning or only)
+    absent = set(turning) - {step.quantity.name for step in steps}
     if absent:
         raise QuantityError(
-            f"{model.name} has no quantity {absent}: its rate matrix has no inverse, since its "
-            "rates do not give every angular velocity"
+            f"{model.name} has no quantity {', '.join(n for n in turning if n in absent)}: its "
+            "rate matrix has no inverse, since its rates do not give every angular velocity"
         )
     of_body = OfBody(values.arguments)
     if body is not None:
-        from rigidsym.mechanics.body_steps import steps_of_body
+        from rigidsym.mechanics.body import steps_of_body
 
-        of_body = steps_of_body(model, body, forces, only, turns)
-        found |= of_body.steps
+        of_body = steps_of_body(model, body, forces, only, chain)
+        steps += of_body.steps
     arguments = of_body.arguments
-    has_rates = not only or not OF_RATES.isdisjoint(only)
-    singularities = _singularities(values, turns) if has_rates else None
-    named = [*(step.expression for step in found.values())]
+    has_rates = not only or any(KINEMATICS[name].section == OF_RATES for name in turning)
+    singularities = _singularities(values, chain) if has_rates else None
+    named = [step.expression for step in steps]
     named += singularities.minors if singularities else ()
-    definitions = turns.definitions(named) if turns else ()
+    definitions = chain.definitions_of(named) if chain else ()
     constants = set(arguments["parameters"].symbols) if "parameters" in arguments else set()
     constants |= _resting_on(constants, definitions)
     inputs = _Inputs(constants, is_driven=forces is not None and forces.depend_on_time)
@@ -109,28 +102,44 @@ def derive(
         title=model.title,
         model=model,
         arguments=tuple(arguments.values()),
-        steps=tuple(map(inputs.of, _numbered(found, {**_table(values), **of_body.table}))),
+        steps=tuple(
+            inputs.of(replace(step, number=number)) for number, step in enumerate(steps, start=1)
+        ),
         functions=_LazySteps(
             {name: partial(inputs.of_made, make) for name, make in of_body.functions.items()}
         ),
         singularities=singularities,
         body=of_body.body,
-        forces=forces,
+        forces=of_body.forces,
         definitions=definitions,
         first_integrals=of_body.first_integrals,
         consequences=of_body.consequences,
     )
 
 
-def _singularities(values: Values, turns: TurnByTurn | None) -> Singularities:
+def _kinematics(work: Values | Chain, only: Collection[str]) -> list[Step]:
+    """The steps of the quantities that are wanted and that the model has.
+
+    The matrix is proved to be a rotation in any case: all else rests on it. Raises NotARotation if
+    R Rᵀ ≠ 1 or det R ≠ 1, showing what is left over.
+    """
+    rotation, *others = KINEMATICS.values()
+    first = work.step(rotation)
+    assert first is not None
+    if not work.model.passive:  # where R is found: equation 17 of the lecture is that of ZXZ
+        first = replace(first, quantity=first.quantity._replace(source=work.model.source))
+    steps = [work.step(entry) for entry in others if not only or entry.name in only]
+    wanted = [first] if not only or rotation.name in only else []
+    return [*wanted, *(step for step in steps if step is not None)]
+
+
+def _singularities(values: Values, chain: Chain | None) -> Singularities:
     """Where the rates fail; of many turns as far as that is easily told."""
-    if turns is None:
+    if chain is None:
         return singularities_of(values)
-    margin = turns.singularities()
-    found = planes_of_axes(values.model, margin.minors) if margin.rank == 3 else None
-    is_easy = len(values.model.turns) <= _STUDIED and not any(
-        turn.components for turn in values.model.turns
-    )
+    margin = margin_of(chain)
+    found = planes_of_axes(chain, margin.minors) if margin.rank == 3 else None
+    is_easy = chain.count <= _STUDIED and not any(turn.components for turn in values.model.turns)
     return found or (singularities_of(values) if is_easy else margin)
 
 
@@ -148,43 +157,12 @@ def _resting_on(
 def _check_names(only: Collection[str], *, has_body: bool, has_forces: bool) -> None:
     of_body = (BODY_ALONE, *INERTIA_QUANTITIES, *ENERGY_QUANTITIES)
     of_motion = (*DYNAMICS_QUANTITIES, *EULER_QUANTITIES, *FLOW_QUANTITIES)
-    known = (*QUANTITY_NAMES, *(of_body if has_body else ()), *(of_motion if has_forces else ()))
+    known = (*KINEMATICS, *(of_body if has_body else ()), *(of_motion if has_forces else ()))
     for name in only:
         if name not in known:
             lacking = "a body" if name in of_body else "a body and forces or a potential"
             why = f"it needs {lacking}" if name in (*of_body, *of_motion) else offer(name, known)
             raise QuantityError(f"no quantity {name}; {why}")
-
-
-def _table(values: Values) -> dict[str, Quantity]:
-    """Every quantity by name, as it is called for this model."""
-    units = set(values.arguments["q_dot"].units)
-    of_rotation = quantities(
-        passive=values.model.passive,
-        coordinates=len(values.model.coordinates),
-        rate_unit=units.pop() if len(units) == 1 else "",
-    )
-    matrix = of_rotation["rotation_matrix"]
-    if not values.model.passive:  # where R is found: equation 17 of the lecture is that of ZXZ
-        matrix = matrix._replace(source=values.model.source)
-    of_rotation = {**of_rotation, "rotation_matrix": matrix}
-    return {**of_rotation, **INERTIA_QUANTITIES, **ENERGY_QUANTITIES}
-
-
-def _numbered(found: Mapping[str, Found], table: Mapping[str, Quantity]) -> Iterator[Step]:
-    for number, (name, step) in enumerate(found.items(), start=1):
-        quantity = table[name]
-        if step.definition is not None:
-            quantity = quantity._replace(definition=step.definition)
-        yield Step(
-            number=number,
-            quantity=quantity,
-            expression=step.expression,
-            because=step.because,
-            proofs=step.proofs,
-            vector_form=step.vector_form,
-            recursion=step.recursion,
-        )
 
 
 class _LazySteps(Mapping[str, Step]):

@@ -14,11 +14,11 @@ import sympy as sp
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import Codec, codec_for
+from rigidsym.algebra.evaluate import Bounds, sign_within
 from rigidsym.algebra.generators import in_names
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.present import Rationals
 from rigidsym.algebra.ring import Quotient
-from rigidsym.algebra.signs import Bounds, sign_within
 from rigidsym.algebra.witness import Example, Rows, witness_for
 from rigidsym.errors import Defect, DerivationError, NotARotation, RigidsymError
 from rigidsym.formula.tree import Formula
@@ -37,12 +37,20 @@ class Conditions(NamedTuple):
 
 
 def identity(
-    left: sp.MatrixBase, claim: Formula, name: str, conditions: Sequence[sp.Expr] = ()
+    left: sp.MatrixBase,
+    claim: Formula,
+    name: str,
+    conditions: Sequence[sp.Expr] = (),
+    example: Example = (),
 ) -> Proof:
-    """The proof that a matrix of rational functions of a body's constants is zero."""
+    """The proof that a matrix of rational functions of a body's constants is zero.
+
+    `example` gives exact values of the symbols in the conditions that satisfy them.
+    """
     field = Rationals(left, conditions)
     quotients = [field.read(entry) for entry in left]
-    return Prover(Conditions(name, tuple(conditions)), field.codec).cancel(quotients, claim)
+    subject = Conditions(name, tuple(conditions), example=example)
+    return Prover(subject, field.codec).cancel(quotients, claim)
 
 
 def consequence(proofs: Sequence[Proof], claim: Formula) -> Proof:

@@ -1,10 +1,16 @@
-"""What acts on a body that turns about a fixed point, and what moves with it."""
+"""What acts on a body that turns about a fixed point, what moves with it, and motions with numbers.
+
+A note draws the examples, and `simulate` begins with the first.
+"""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
+from math import isfinite
+from numbers import Real
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -12,15 +18,89 @@ import sympy as sp
 
 from rigidsym.errors import ModelError, offer
 from rigidsym.models.body import Parameter, RigidBody
-from rigidsym.models.example import Example, examples_of
+from rigidsym.models.library import rotation_from
 from rigidsym.models.rotation import TIME, RotationModel, as_typed, depends_on_time, symbolic
-from rigidsym.models.rotation_text import rotation_from
 from rigidsym.text.expression import names_in, parse_expression
 from rigidsym.text.names import check_name
+
+OMEGA = "angular_velocity_body"
+OMEGA_COMPONENTS = (f"{OMEGA}_1", f"{OMEGA}_2", f"{OMEGA}_3")
+_KEYS = ("parameters", "initial", "time")
+
+
+class Example(NamedTuple):
+    """One motion; SI units, angles in radians."""
+
+    parameters: Mapping[str, float]
+    initial: Mapping[str, float]  # coordinates, and rates or components of Ω′, by name
+    time: float  # s
+
+
+def examples_of(model: RotationModel, given: Sequence[Mapping[str, Any]]) -> Iterator[Example]:
+    """The examples in the order given; each takes from the first what it does not name.
+
+    Raises ModelError for a key or an initial value that does not exist, and for no time.
+    """
+    names = [q.func.__name__ for q in model.coordinates]
+    known = (*names, *(f"{name}_dot" for name in names), *OMEGA_COMPONENTS)
+    first = Example({}, {}, 0.0)
+    for k, example in enumerate(given):
+        for key in set(example) - set(_KEYS):
+            raise ModelError(f"an example: unknown key {key}; expected {', '.join(_KEYS)}")
+        if not all(isinstance(example.get(key, {}), Mapping) for key in _KEYS[:2]):
+            raise ModelError("an example: expected parameters and initial values by name")
+        motion = Example(
+            {**first.parameters, **example.get("parameters", {})},
+            {**first.initial, **example.get("initial", {})},
+            example.get("time", first.time),
+        )
+        for name in motion.initial:
+            if name not in known:
+                raise ModelError(f"an example: unknown initial value {name}; {offer(name, known)}")
+        numbers: tuple[Any, ...] = (
+            *motion.parameters.values(),
+            *motion.initial.values(),
+            motion.time,
+        )
+        are_finite = all(isinstance(value, Real) and isfinite(value) for value in numbers)
+        if not are_finite or motion.time <= 0:
+            raise ModelError("an example needs finite numbers, and a time > 0 in seconds")
+        first = first if k else motion
+        yield motion
+
+
+def initial_values(model: RotationModel, given: Mapping[str, Any]) -> dict[str, Any]:
+    """All coordinates, and all rates or components of Ω′: no rotation, at rest, if not given."""
+    names = [q.func.__name__ for q in model.coordinates]
+    start: dict[str, Any] = dict.fromkeys(names, 0.0)
+    if start.keys().isdisjoint(given):
+        start = no_rotation(model)
+    turning = [f"{name}_dot" for name in names]
+    if not set(OMEGA_COMPONENTS).isdisjoint(given):
+        turning = list(OMEGA_COMPONENTS)
+    return {**start, **dict.fromkeys(turning, 0.0), **given}
+
+
+def no_rotation(model: RotationModel) -> dict[str, float]:
+    """Coordinates of R = 1: all 0, or one of them 1."""
+    q = model.coordinates
+    for place in range(-1, len(q)):
+        values = {x: sp.S.One if k == place else sp.S.Zero for k, x in enumerate(q)}
+        if model.matrix.xreplace(values) == sp.eye(3):
+            return {x.func.__name__: float(value) for x, value in values.items()}
+    return dict.fromkeys((x.func.__name__ for x in q), 0.0)
+
 
 METHODS = ("lagrange", "euler")
 OMEGA_BODY = sp.symbols("Omega_body_1:4")
 _LONG, _ALIKE = 4, 0.8  # letters of a name, and the share that two names have in common
+_OF_MOTION = re.compile(  # names of quantities, which are no constants
+    r"(?:angular_(?:velocity|acceleration|momentum)|omega|alpha)_(?:space|body)"
+    r"(?:_?[123])?|angular_(?:velocity|acceleration|momentum)(?:_?[123])?"
+    r"|(?:kinetic|potential|rotational|translational)_energy|rotation_matrix(?:_?[123]{2})?"
+    r"|generalised_momenta|lagrangian|hamiltonian|(?:quaternion|torque_body)(?:_?[0123])?",
+    re.IGNORECASE,
+)
 _NONE: Mapping[Any, sp.Expr] = MappingProxyType({})
 
 
@@ -67,7 +147,31 @@ class Forces:
     @property
     def depend_on_time(self) -> bool:
         """Whether the time occurs by itself in what acts, or in a claimed first integral."""
-        return any(map(depends_on_time, self._given()))
+        return any(map(depends_on_time, self.expressions))
+
+    def in_symbols_of(self, body: RigidBody) -> Forces:
+        """With the symbols of the body where names are the same: m for a positive m."""
+        own = {symbol.name: symbol for symbol in body.inertia.free_symbols | body.mass.free_symbols}
+        used = set().union(*(expression.free_symbols for expression in self.expressions))
+        same = {s: own[s.name] for s in used if s.name in own and s != own[s.name]}
+        if not same:
+            return self
+
+        def named(values: Sequence[sp.Expr]) -> tuple[sp.Expr, ...]:
+            return tuple(value.xreplace(same) for value in values)
+
+        return replace(
+            self,
+            potential=self.potential.xreplace(same),
+            generalised={q: force.xreplace(same) for q, force in self.generalised.items()},
+            torque=named(self.torque),
+            first_integrals={n: e.xreplace(same) for n, e in self.first_integrals.items()},
+            frame_rate=named(self.frame_rate),
+            parts=tuple(
+                part._replace(velocity=named(part.velocity), inertia=named(part.inertia))
+                for part in self.parts
+            ),
+        )
 
     def with_parameters(self, body: RigidBody, model: RotationModel) -> RigidBody:
         """The body with the constants of the forces among its parameters.
@@ -75,7 +179,7 @@ class Forces:
         Raises ModelError for a potential that depends on the rates or on no coordinate, for parts
         and a frame that depend on the time, and for an example with a value of another constant.
         """
-        if self.potential.has(sp.Derivative):
+        if self.potential.has(sp.Derivative, *OMEGA_BODY):
             shown = as_typed(self.potential)
             raise ModelError(f"the potential {shown} depends on rates; expected V(q, t)")
         if self.potential.free_symbols and not self.potential.has(*model.coordinates):
@@ -88,13 +192,14 @@ class Forces:
             )
         moving = (e for part in self.parts for e in (*part.velocity, *part.inertia))
         for expression in (*self.frame_rate, *moving):
-            if depends_on_time(expression):
+            what = "t" if depends_on_time(expression) else "Ω′"
+            if what == "t" or expression.has(*OMEGA_BODY):
                 raise ModelError(
-                    f"{as_typed(expression)} depends on t; expected a part, or a rate of the "
+                    f"{as_typed(expression)} depends on {what}; expected a part, or a rate of the "
                     "frame, that does not"
                 )
         known = {p.symbol for p in body.parameters} | {*model.constants, *OMEGA_BODY, TIME}
-        symbols = set().union(*(expression.free_symbols for expression in self._given())) - known
+        symbols = set().union(*(expression.free_symbols for expression in self.expressions)) - known
         constants = {str(symbol) for symbol in (known | symbols) - {*OMEGA_BODY, TIME}}
         given = {name for example in self.examples for name in example.parameters}
         for name in sorted(given - constants):
@@ -114,9 +219,16 @@ class Forces:
         more = map(described, sp.ordered(symbols))
         return replace(body, parameters=(*body.parameters, *more))
 
-    def _given(self) -> Iterator[sp.Expr]:
+    @property
+    def acting(self) -> Iterator[sp.Expr]:
+        """All that acts, and all that is claimed to be constant."""
         yield from (self.potential, *self.generalised.values(), *self.torque, *self.frame_rate)
         yield from self.first_integrals.values()
+
+    @property
+    def expressions(self) -> Iterator[sp.Expr]:
+        """All that acts, all that is claimed to be constant, and the parts."""
+        yield from self.acting
         yield from (e for part in self.parts for e in (*part.velocity, *part.inertia))
 
 
@@ -134,13 +246,16 @@ def forces_on(
 ) -> Forces:
     """What acts on a body, by the keys of [dynamics]; texts are read as in a file.
 
-    In a text `theta_dot` is the rate of theta, `omega_body_1` a component of Ω′ and `t` the time;
-    other names are constants. Raises ModelError for a force on what is no coordinate and for parts
-    and examples that are none, ExpressionError for a text that cannot be read.
+    In a text `theta_dot` is the rate of theta, `omega_body_1` or `angular_velocity_body_1` a
+    component of Ω′ and `t` the time; other names are constants. Raises ModelError for a force on
+    what is no coordinate, for a constant with the name of a quantity or nearly that of a rate, and
+    for parts and examples that are none; ExpressionError for a text that cannot be read.
     """
     known = {q.func.__name__: q for q in model.coordinates}
     names = known | {f"{name}_dot": sp.diff(q, TIME) for name, q in known.items()}
-    names |= {f"omega_body_{k}": OMEGA_BODY[k - 1] for k in (1, 2, 3)} | {"t": TIME}
+    for k, component in enumerate(OMEGA_BODY, start=1):
+        names |= {f"omega_body_{k}": component, f"angular_velocity_body_{k}": component}
+    names["t"] = TIME
     for name in forces:
         if name not in known:
             raise ModelError(
@@ -193,17 +308,32 @@ def _part(given: Mapping[str, Any], names: Mapping[str, sp.Expr]) -> MovingPart:
 
 def _read(given: sp.Expr | str | int, names: Mapping[str, sp.Expr]) -> sp.Expr:
     if not isinstance(given, str):
-        return symbolic(given, "a potential or a force")
+        return _with_roots(symbolic(given, "a potential or a force"))
     for name in set(names_in(given)) - set(names):
         _check_spelling(name, names)
     used = {name: names.get(name) or sp.Symbol(check_name(name)) for name in names_in(given)}
-    return parse_expression(given, used)
+    return _with_roots(parse_expression(given, used))
+
+
+def _with_roots(value: sp.Expr) -> sp.Expr:
+    """√x² for |x|, which exact algebra holds: its square is x², its rate x ẋ/√x²."""
+    return value.replace(sp.Abs, lambda x: sp.sqrt(x**2))
 
 
 def _check_spelling(name: str, names: Mapping[str, sp.Expr]) -> None:
-    """Raises ModelError for a constant whose name is all but that of a coordinate or rate."""
-    near = [known for known in names if known.replace("_", "") == name.replace("_", "")]
+    """Raises ModelError for a constant whose name is that of a quantity, or all but a known one."""
+    plain = name.replace("_", "").lower()
+    near = [known for known in names if known.replace("_", "").lower() == plain != known]
+    near = [known for known in near if len(plain) > 1]  # T may be a constant beside the time t
     if not near and len(name) >= _LONG and not any(letter.isdigit() for letter in name):
         near = get_close_matches(name, names, n=1, cutoff=_ALIKE)
+    if not near and _OF_MOTION.fullmatch(name):
+        if "velocity" in name.lower() or "omega" in name.lower():
+            near = [f"omega_body_{name[-1] if name[-1].isdigit() else 1}"]
+        if not near:
+            raise ModelError(
+                f"{name} is a quantity, not a constant; expected coordinates, rates (theta_dot), "
+                "components of Ω′ (omega_body_1) and constants"
+            )
     if near:
         raise ModelError(f"unknown name {name}; did you mean {near[0]}?")

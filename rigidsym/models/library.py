@@ -1,12 +1,43 @@
-"""The rotations by name: other parametrisations, and the Euler angles of well-known texts."""
+"""The rotations by name, and from the text in a file or a command to a rotation model."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import NamedTuple
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from difflib import get_close_matches
+from functools import partial
+from types import MappingProxyType
+from typing import Any, NamedTuple
 
+import sympy as sp
+from sympy.core.function import AppliedUndef
+
+from rigidsym.errors import BodyError, ExpressionError, ModelError
 from rigidsym.models import parametrisations
-from rigidsym.models.rotation import SOURCES, Citation, RotationModel, lecture
+from rigidsym.models.parametrisations import (
+    DEFAULT_ANGLES,
+    DIGITS,
+    EULER_SEQUENCES,
+    EulerAngles,
+    axis_turn,
+    chain,
+    direction,
+    euler_sequence,
+    given,
+)
+from rigidsym.models.rotation import (
+    AXES,
+    SOURCES,
+    Citation,
+    RotationModel,
+    Turn,
+    lecture,
+    product_of,
+    time_function,
+)
+from rigidsym.text.expression import names_in, parse_expression, parse_turns
+from rigidsym.text.names import check_name
 
 
 class Entry(NamedTuple):
@@ -107,3 +138,243 @@ PRESETS: Mapping[str, Preset] = {
         passive=True,
     ),
 }
+
+
+# From text to a model, or to a rotation at rest
+
+
+LONGEST = 900  # characters of a sequence or of turns
+_AT_REST = re.compile(r".*\D0")  # a name that ends in 0: alpha0, b_0; not a_10
+_SHOWN = 40  # characters of a wrong text that a message repeats
+ALIASES = {"mrp": "modified_rodrigues", "quat": "quaternion", "rotvec": "rotation_vector"}
+_A_ROTATION = 'a sequence such as "ZXZ", turns such as "z(phi) x(theta)", or a name'
+
+
+def rotation_from(
+    text: str,
+    *,
+    names: Sequence[str] | None = None,
+    constants: Sequence[str] = (),
+    scalar_last: bool = False,
+    passive: bool = False,
+) -> RotationModel:
+    """The rotation that a text describes: an Euler sequence, turns, a parametrisation, a preset.
+
+    `names` are names of the coordinates; turns contain their names. In turns, a name is a
+    coordinate, unless it is among `constants` or ends in 0 (`alpha0`, but not `a_10`), and
+    the components of an axis are constants. Raises ModelError or ExpressionError, which say what
+    was expected.
+    """
+    if not isinstance(text, str):
+        raise ModelError(f"expected {_A_ROTATION}, got {text!r}")
+    if len(text) > LONGEST:
+        raise ModelError(f"expected {_A_ROTATION}, got {len(text)} characters")
+    asked: dict[str, Any] = {"sequence": text, "angles": names and list(names)}
+    asked |= {"constants": list(constants), "scalar_last": scalar_last, "passive": passive}
+    if constants and "(" not in text:
+        raise ModelError(f"{text} has no constants; they go with turns such as z(phi) x(incline)")
+    name = text.strip().lower().replace("-", "_").replace(" ", "_")
+    if name in ALIASES:
+        name = asked["sequence"] = ALIASES[name]
+    if "(" in text:
+        model = _turned(text, names, constants, passive)
+    elif name in PARAMETRISATIONS:
+        model = _parametrised(name, names, scalar_last, passive)
+    elif name in PRESETS:
+        model = _preset(name, names, passive)
+    else:
+        model = EulerAngles(
+            _sequence(text), DEFAULT_ANGLES if names is None else names, passive=passive
+        )
+    if scalar_last and not (name in PARAMETRISATIONS and PARAMETRISATIONS[name].has_scalar):
+        raise ModelError(f"scalar-last applies only to quaternions; {text} is not one")
+    if model.request and name not in PRESETS:
+        return model  # Euler angles know what asks for them
+    kept = {key: value for key, value in asked.items() if value or key == "sequence"}
+    return replace(model, request=kept)
+
+
+def rotation_given(
+    rows: Sequence[Sequence[str]],
+    *,
+    name: str,
+    coordinates: Sequence[str],
+    constraints: Sequence[str] = (),
+    passive: bool = False,
+    example: Mapping[str, str] = MappingProxyType({}),
+) -> RotationModel:
+    """Your own R(q): nine expressions by rows, in the coordinates; other names are constants.
+
+    `constraints` are expressions that vanish for all time, `example` values by name for which
+    they do. Raises ModelError or ExpressionError.
+    """
+    if len(rows) != 3 or any(len(row) != 3 for row in rows):
+        raise ModelError("a rotation matrix has three rows of three expressions")
+    functions = {check_name(q): time_function(check_name(q)) for q in coordinates}
+    if len(functions) != len(coordinates):
+        raise ModelError(f"a coordinate is named twice: {', '.join(coordinates)}")
+    texts = [*(entry for row in rows for entry in row), *constraints]
+    used = {n: functions.get(n) or sp.Symbol(check_name(n)) for t in texts for n in names_in(t)}
+    entries = [parse_expression(text, used) for text in texts]
+    model = given(
+        sp.Matrix(3, 3, entries[:9]),
+        name=name,
+        coordinates=tuple(functions.values()),
+        constraints=tuple(entries[9:]),
+        passive=passive,
+        example={check_name(key): parse_expression(text, {}) for key, text in example.items()},
+    )
+    asked = {"matrix": [list(row) for row in rows], "coordinates": list(functions)}
+    asked |= {"constraints": list(constraints), "passive": passive, "example": dict(example)}
+    return replace(model, request={key: value for key, value in asked.items() if value})
+
+
+def faults_in(
+    rows: Sequence[Sequence[str]], coordinates: Sequence[str], constraints: Sequence[str] = ()
+) -> dict[tuple[str | int, ...], str]:
+    """{place: fault} of the texts that `rotation_given` cannot read."""
+    texts: dict[tuple[str | int, ...], str] = {
+        ("matrix", i, j): text for i, row in enumerate(rows) for j, text in enumerate(row)
+    }
+    texts |= {("constraints", k): text for k, text in enumerate(constraints)}
+    moving = {q: time_function(q) for q in coordinates}
+    faults: dict[tuple[str | int, ...], str] = {}
+    for place, text in texts.items():
+        try:
+            names = {n: moving.get(n) or sp.Symbol(check_name(n)) for n in names_in(text)}
+            parse_expression(text, names)
+        except ExpressionError as error:
+            faults[place] = f"column {error.column}: {error.message}"
+    return faults
+
+
+def turned_by(
+    text: str, values: Sequence[sp.Expr] | None = None
+) -> tuple[sp.ImmutableMatrix, tuple[sp.Expr, ...]]:
+    """The matrix R (3, 3) of a rotation that stays as it is, and what its symbols are bound by.
+
+    The text is one of turns, "z(pi/4) x(alpha)", or names any rotation, whose coordinates take the
+    `values`, or are constants of their names. Raises ModelError or ExpressionError for a text that
+    names no rotation, BodyError where the number of values is wrong or they break a condition.
+    """
+    if values is None and "(" in text:
+        turns = tuple(_turn(axis, angle, _constant) for axis, angle in parse_turns(text))
+        if any(part.free_symbols for turn in turns for part in turn.components):
+            raise ExpressionError(f"{text}: expected an axis with numbers as components")
+        return product_of(turns), ()
+    model = rotation_from(text)
+    if values is None:
+        values = [sp.Symbol(q.func.__name__) for q in model.coordinates]
+    if len(values) != len(model.coordinates):
+        raise BodyError(
+            f"{text} has {len(model.coordinates)} coordinates, got {len(values)} values"
+        )
+    fixed = dict(zip(model.coordinates, values, strict=True))
+    bound = [sp.expand(condition.xreplace(fixed)) for condition in model.constraints]
+    for condition in bound:
+        if condition.is_number and condition != 0:
+            raise BodyError(f"{text}: the values break its condition by {condition}")
+    return sp.ImmutableMatrix(model.matrix.xreplace(fixed)), tuple(b for b in bound if b != 0)
+
+
+def request_of(model: RotationModel) -> Mapping[str, Any]:
+    """What asks for the model again; raises ModelError for one that no text asks for."""
+    if model.request:
+        return model.request
+    raise ModelError(f"{model.name} was made in Python; no derivation file can ask for it")
+
+
+def _sequence(text: str) -> str:
+    """The Euler sequence in a text; for any other text, what it may have meant."""
+    letters = text.translate(DIGITS)
+    if len(letters) == 3 and set(letters.lower()) <= {"x", "y", "z"}:
+        return euler_sequence(text)
+    shown = text if len(text) <= _SHOWN else text[:_SHOWN] + "…"
+    raise ModelError(f"{shown!r} is not a rotation\n{_meant(text)}")
+
+
+def _meant(text: str) -> str:
+    turns = re.findall(r"([xyz]) +(\w+)", text)
+    if turns and " ".join(f"{axis} {angle}" for axis, angle in turns) == " ".join(text.split()):
+        return f"did you mean {' '.join(f'{axis}({angle})' for axis, angle in turns)}?"
+    if set(text.lower()) <= {"x", "y", "z"}:
+        turned = " ".join(f"{a}({b})" for a, b in zip(text.lower(), "abcdefgh", strict=False))
+        return f"an Euler sequence has three axes; for another number write turns: {turned}"
+    near = get_close_matches(text.lower(), [*PARAMETRISATIONS, *PRESETS], n=1)
+    if near:
+        return f"did you mean {near[0]}?"
+    return f"expected {_A_ROTATION} (`rigidsym list`)"
+
+
+def _parametrised(
+    name: str, names: Sequence[str] | None, scalar_last: bool, passive: bool
+) -> RotationModel:
+    entry = PARAMETRISATIONS[name]
+    options: dict[str, Any] = {"passive": passive}
+    if names is not None:
+        options["names"] = tuple(names)
+    if scalar_last and entry.has_scalar:
+        options["scalar_last"] = True
+    return entry.build(**options)
+
+
+def _preset(name: str, names: Sequence[str] | None, passive: bool) -> RotationModel:
+    """The rotation of a text under its own name; `passive` turns its presentation over."""
+    preset = PRESETS[name]
+    model = rotation_from(
+        preset.rotation, names=names or preset.names or None, passive=preset.passive != passive
+    )
+    return replace(
+        model,
+        name=name + ("_transposed" if passive else ""),
+        title=preset.about[0].upper() + preset.about[1:] + (", transposed" if passive else ""),
+        source=preset.source,
+        z_down=preset.z_down,
+    )
+
+
+def _turned(
+    text: str, names: Sequence[str] | None, constants: Sequence[str], passive: bool
+) -> RotationModel:
+    if names is not None:
+        raise ModelError(f"{text} names its angles itself; leave the other names out")
+    try:
+        symbol = partial(_symbol, constants=constants)
+        turns = [_turn(axis, angle, symbol) for axis, angle in parse_turns(text)]
+    except ExpressionError as error:
+        raise ExpressionError(f"column {error.column}: {error.message}") from None
+    return _euler(turns, passive) or chain(turns, passive=passive)
+
+
+def _euler(turns: Sequence[Turn], passive: bool) -> RotationModel | None:
+    """The Euler angles that three turns about coordinate axes are, if they are."""
+    letters = "".join(turn.axis for turn in turns).upper()
+    angles = [turn.angle for turn in turns]
+    if letters not in EULER_SEQUENCES or len(set(angles)) != len(angles):
+        return None
+    if not all(isinstance(angle, AppliedUndef) for angle in angles):
+        return None
+    return EulerAngles(letters, [angle.func.__name__ for angle in angles], passive=passive)
+
+
+def _turn(axis: str, angle: str, symbol: Callable[[str], sp.Expr]) -> Turn:
+    """One turn, with the symbols of the names in its angle; those in an axis are constants."""
+    value = parse_expression(angle, {name: symbol(name) for name in names_in(angle)})
+    if axis in AXES:
+        return Turn(axis=axis, angle=value)
+    parts = axis[1:-1].split(",")
+    if len(parts) != 3:
+        raise ExpressionError(f"the axis {axis} has {len(parts)} components; expected three")
+    exact = [parse_expression(p, {name: _constant(name) for name in names_in(p)}) for p in parts]
+    turn = axis_turn(direction(exact), value)
+    return replace(turn, axis=f"[{','.join(part.strip() for part in parts)}]")
+
+
+def _constant(name: str) -> sp.Symbol:
+    return sp.Symbol(check_name(name))
+
+
+def _symbol(name: str, constants: Sequence[str]) -> sp.Expr:
+    plain = check_name(name)
+    is_fixed = plain in constants or _AT_REST.fullmatch(plain)
+    return sp.Symbol(plain) if is_fixed else time_function(plain)

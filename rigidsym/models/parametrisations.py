@@ -1,4 +1,4 @@
-"""Rotations by quaternions, by axis and angle, by vectors along the axis, and by nine cosines.
+"""Rotations as models: Euler angles, products of turns, the parametrisations, and your own matrix.
 
 With n the angle of a turn about the unit axis e, a quaternion w + v with v = (x, y, z) is
 cos(n/2) + sin(n/2) e, scalar first unless `scalar_last` is set. Three parameters are the
@@ -8,23 +8,253 @@ Rodrigues parameters).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 from typing import Any
 
 import sympy as sp
+from sympy.core.function import AppliedUndef
 
+from rigidsym.algebra.generators import is_identically_zero
+from rigidsym.errors import ModelError, offer
 from rigidsym.models.rotation import (
+    AXES,
     SOURCES,
+    TIME,
     Citation,
     Pullback,
     RotationModel,
+    Turn,
     hat,
+    product_of,
     rodrigues,
     rotation_of,
+    symbolic,
     time_functions,
+    unit_example,
 )
 from rigidsym.text.names import lettered
+
+# Euler angles in all 24 conventions
+
+
+AXIS_SEQUENCES = tuple(
+    first + second + third
+    for first in AXES
+    for second in AXES
+    for third in AXES
+    if first != second != third
+)
+EULER_SEQUENCES = tuple(s.upper() for s in AXIS_SEQUENCES) + AXIS_SEQUENCES
+DEFAULT_ANGLES = ("phi", "theta", "psi")
+
+DIGITS = str.maketrans("123", "XYZ")  # of a sequence, which are letters in upper case
+
+
+def EulerAngles(
+    sequence: str, angles: Sequence[str] = DEFAULT_ANGLES, *, passive: bool = False
+) -> RotationModel:
+    """Three turns about coordinate axes, in radians.
+
+    `sequence` is intrinsic in upper case or digits (`ZXZ`, `313`: about the turning axes, with
+    R = R_z(q1) R_x(q2) R_z(q3)) and extrinsic in lower case (`zxz`: about the
+    fixed axes, with R = R_z(q3) R_x(q2) R_z(q1)). `angles` are taken in the order of the turns.
+
+    Raises ModelError for a sequence that is not one of the 24, and for angles that are not three
+    different names.
+    """
+    letters = euler_sequence(sequence)
+    coordinates = time_functions(angles, 3, "Euler angles need three different names")
+    in_order = [
+        Turn(axis=axis, angle=angle)
+        for axis, angle in zip(letters.lower(), coordinates, strict=True)
+    ]
+    manner = "intrinsic" if letters.isupper() else "extrinsic"
+    turns = tuple(in_order if manner == "intrinsic" else reversed(in_order))
+    return RotationModel(
+        name=f"euler_{letters.lower()}_{manner}" + ("_passive" if passive else ""),
+        title=f"Euler angles {letters}, {manner}" + (", passive" if passive else ""),
+        convention=(_order_in_words(manner, in_order),),
+        coordinates=coordinates,
+        matrix=product_of(turns),
+        turns=turns,
+        source=SOURCES["Landau 35" if letters == "ZXZ" else "Diebel 5"],
+        passive=passive,
+        request={
+            "sequence": letters,
+            "angles": [coordinate.func.__name__ for coordinate in coordinates],
+            "passive": passive,
+        },
+    )
+
+
+def euler_sequence(text: str) -> str:
+    """The sequence in letters: `313` becomes `ZXZ`. Raises ModelError for any other text."""
+    if not isinstance(text, str):
+        raise ModelError(f"expected a sequence such as 'ZXZ', got {text!r}")
+    letters = text.translate(DIGITS)
+    if letters not in EULER_SEQUENCES:
+        raise ModelError(f"{text!r} is not an Euler sequence: {_what_is_wrong(text)}")
+    return letters
+
+
+def _what_is_wrong(text: str) -> str:
+    letters = text.translate(DIGITS)
+    if letters not in (letters.upper(), letters.lower()):
+        return "upper case is intrinsic and lower case extrinsic; do not mix them"
+    if len(letters) != 3 or not set(letters.lower()) <= set(AXES):
+        return "expected three axes such as ZXZ (intrinsic), zxz (extrinsic) or 313 (intrinsic)"
+    place = 1 if letters[0] == letters[1] else 2
+    return f"consecutive axes must differ: {text[place]} follows {text[place - 1]}"
+
+
+def _order_in_words(manner: str, turns: Sequence[Turn]) -> str:
+    """The rotations in the order in which the body makes them."""
+    if manner == "intrinsic":
+        return f"Intrinsic rotations: {_one_by_one(turns, 'new')}."
+    equivalent = f"Equivalently, intrinsic rotations: {_one_by_one(turns[::-1], 'new')}."
+    return f"Extrinsic rotations: {_one_by_one(turns, 'fixed')}. {equivalent}"
+
+
+def _one_by_one(turns: Sequence[Turn], which: str) -> str:
+    """First by φ about the z-axis, then by θ about the new x-axis, ..."""
+    angles = [lettered(turn.angle.func.__name__) for turn in turns]
+    axes = [f"the {which} {turn.axis}-axis" for turn in turns]
+    axes[0] = axes[0].replace("new ", "")
+    first, second, third = (f"by {a} about {axis}" for a, axis in zip(angles, axes, strict=True))
+    return f"first {first}, then {second}, then {third}"
+
+
+# Products of turns of any length, about any constant axes
+
+
+_NUMBERS = ("Two", "Three", "Four", "Five", "Six", "Seven", "Eight", "Nine", "Ten")
+_SOURCE = SOURCES["Goldstein 4.4"]
+
+
+def chain(
+    turns: Sequence[Turn] | str,
+    *,
+    name: str = "",
+    title: str = "",
+    source: Citation = _SOURCE,
+    passive: bool = False,
+    example: Mapping[sp.Expr, sp.Expr] = MappingProxyType({}),
+) -> RotationModel:
+    """R as a product of turns, left to right as given: R = R_1 R_2 ... R_n.
+
+    The coordinates are the functions of time in the angles, in order of appearance; an angle may be
+    a constant, or any combination of coordinates and constants. If components of an axis are
+    symbols, the axis is a unit vector by an added condition. `example` gives exact values of such
+    symbols that satisfy the conditions, where they are not found here.
+
+    Raises ModelError if there is no turn, or none with a coordinate.
+    """
+    if isinstance(turns, str):
+        raise ModelError(f"expected a list of rs.Turn; for a text use rs.rotation_from({turns!r})")
+    if turns is None:
+        raise ModelError("expected a list of rs.Turn, got None")
+    for turn in turns:
+        if not isinstance(turn, Turn):
+            raise ModelError(f"expected a list of rs.Turn, got {turn!r} in it")
+    if not turns:
+        raise ModelError("a chain needs at least one turn, such as z(phi)")
+    moving = (sp.ordered(turn.angle.atoms(AppliedUndef)) for turn in turns)
+    coordinates = tuple(dict.fromkeys(atom for atoms in moving for atom in atoms))
+    if not coordinates:
+        raise ModelError(
+            f"{' '.join(map(str, turns))} does not move: expected an angle that is a function "
+            "of time"
+        )
+    units = (sum(part**2 for part in turn.direction) - 1 for turn in turns)
+    constraints = tuple(dict.fromkeys(c for c in units if not is_identically_zero(c)))
+    letters = "".join(turn.axis if turn.axis in AXES else "u" for turn in turns)
+    product = " ".join(map(str, turns))
+    return RotationModel(
+        name=name or f"chain_{letters}" + ("_passive" if passive else ""),
+        title=title or f"{_counted(turns)} {product}" + (", passive" if passive else ""),
+        convention=(_in_words(turns),),
+        coordinates=coordinates,
+        matrix=product_of(tuple(turns)),
+        turns=tuple(turns),
+        constraints=constraints,
+        example=axes_example(constraints, example),
+        source=source,
+        passive=passive,
+    )
+
+
+def axes_example(
+    conditions: Sequence[sp.Expr], given: Mapping[sp.Expr, sp.Expr] = MappingProxyType({})
+) -> tuple[tuple[sp.Expr, sp.Expr], ...]:
+    """Exact values of the symbols in the axes, which make them unit vectors one after the other."""
+    values = {sp.sympify(name): sp.sympify(value) for name, value in given.items()}
+    fewest = sorted(conditions, key=lambda condition: len(condition.free_symbols))
+    for variant, condition in enumerate(fewest):  # n₁ s₁² + n₂ s₂² + ... − rest = 0
+        squares = condition.xreplace(values)
+        symbols = sorted(squares.free_symbols, key=str)
+        numbers = [squares.coeff(symbol, 2) for symbol in symbols]
+        rest = -squares.as_coeff_Add()[0]
+        own = zip(numbers, symbols, strict=True)
+        if not symbols or sp.expand(squares + rest - sum(n * s**2 for n, s in own)):
+            continue
+        for number, (symbol, part) in zip(numbers, unit_example(symbols, variant), strict=True):
+            values[symbol] = sp.sqrt(rest / number) * part
+    return tuple(values.items())
+
+
+def _in_words(turns: Sequence[Turn]) -> str:
+    steps = [f"{turn.angle_text} about {turn.axis}" for turn in turns]
+    if len(steps) == 1:
+        return f"One turn: {steps[0]}."
+    return (
+        f"{_counted(turns)}, each about an axis that the turns before it have moved: first "
+        + ", then ".join(steps)
+        + "."
+    )
+
+
+def _counted(turns: Sequence[Turn]) -> str:
+    """One turn, Two turns, ..., 11 turns."""
+    if len(turns) == 1:
+        return "One turn"
+    numbers = dict(enumerate(_NUMBERS, start=2))
+    return f"{numbers.get(len(turns), len(turns))} turns"
+
+
+def axis_turn(axis: Sequence[sp.Expr], angle: sp.Expr) -> Turn:
+    """The turn about a constant axis that is given by its components along x, y and z.
+
+    Raises ModelError for a zero axis and for numbers that are not a unit vector.
+    """
+    parts = tuple(sp.sympify(part, strict=True) for part in axis)
+    square = sum(part**2 for part in parts)
+    if all(part.is_number for part in parts) and not is_identically_zero(square - 1):
+        raise ModelError(
+            f"the axis ({', '.join(map(str, parts))}) has the length {sp.sqrt(square)}; expected a "
+            "unit vector"
+        )
+    label = f"[{', '.join(map(str, parts))}]"
+    return Turn(axis=label, angle=angle, components=parts)
+
+
+def direction(parts: Sequence[sp.Expr]) -> tuple[sp.Expr, ...]:
+    """The unit vector along a direction, as crystallographers write them: [1, 1, 0].
+
+    Symbols are left as they are, for the unit condition to bind. Raises ModelError for [0, 0, 0].
+    """
+    exact = tuple(sp.sympify(part, strict=True) for part in parts)
+    if not all(part.is_number for part in exact):
+        return exact
+    length = sp.sqrt(sum(part**2 for part in exact))
+    if length == 0:
+        raise ModelError("the axis must not be the zero vector")
+    return tuple(part / length for part in exact)
+
+
+# Quaternions, axis and angle, vectors along the axis, and nine cosines
+
 
 SHUSTER = Citation(
     text="M. Shuster, A Survey of Attitude Representations, Journal of the Astronautical "
@@ -65,6 +295,7 @@ def Quaternion(
         matrix=model.matrix / (condition + 1),
         definition=model.definition.removeprefix("unit_"),
         constraints=(),
+        example=(),
     )
 
 
@@ -79,7 +310,7 @@ def UnitQuaternion(
     `names` are (w, x, y, z) in this order; `scalar_last` makes the coordinates (x, y, z, w).
     Raises ModelError for bad names.
     """
-    w, *vector = _coordinates(names, 4)
+    w, *vector = coordinates = _coordinates(names, 4)
     return _model(
         "unit_quaternion" + ("_xyzw" if scalar_last else ""),
         f"Unit quaternion, {_SCALAR[scalar_last]}",
@@ -90,6 +321,7 @@ def UnitQuaternion(
         SHUSTER,
         passive=passive,
         constraints=(w**2 + _square(vector) - 1,),
+        example=unit_example(coordinates),
         definition="unit_quaternion({3}, {0}, {1}, {2})" if scalar_last else _QUATERNION,
         vector=tuple(vector),
     )
@@ -116,6 +348,7 @@ def CayleyKlein(
         _GOLDSTEIN,
         passive=passive,
         constraints=(_square((a, b, c, d)) - 1,),
+        example=unit_example(coordinates),
         definition="unit_quaternion({0}, {3}, {2}, {1})",
         vector=(d, c, b),
     )
@@ -138,6 +371,7 @@ def AxisAngle(
         SHUSTER,
         passive=passive,
         constraints=(_square(axis) - 1,),
+        example=unit_example(axis),
         definition="axis_angle({0}, {1}, {2}, {3})",
         units=("", "", "", "rad"),
         vector=tuple(axis),
@@ -276,3 +510,71 @@ def _model(
         passive=passive,
         **options,
     )
+
+
+# Your own rotation, given entry by entry
+
+
+GIVEN = "given by the user"  # the source of a rotation without another
+
+
+def given(
+    matrix: sp.MatrixBase,
+    *,
+    name: str,
+    title: str = "",
+    coordinates: Sequence[sp.Expr] = (),
+    constraints: Sequence[sp.Expr] = (),
+    source: str = GIVEN,
+    passive: bool = False,
+    example: Mapping[sp.Expr | str, Any] = MappingProxyType({}),
+) -> RotationModel:
+    """Your own R(q), 3x3, in functions of time; it is proved to be a rotation when derived.
+
+    By default, `coordinates` are the functions of time in the matrix, in alphabetical order.
+    With constraints, `example` gives exact values of the coordinates and constants in them, by
+    name, that satisfy them: {"c": sp.Rational(3, 5), "s": sp.Rational(4, 5)} for c² + s² = 1.
+    Raises ModelError for a matrix that is not 3x3 or has no coordinate, and for an invalid example.
+    """
+    try:
+        entries = [symbolic(entry, f"{name}: an entry") for entry in sp.flatten(matrix)]
+        matrix = sp.Matrix(*(matrix.shape if hasattr(matrix, "shape") else (3, 3)), entries)
+    except (TypeError, ValueError):
+        raise ModelError(f"{name}: expected a 3x3 matrix, got {matrix!r}") from None
+    found = tuple(sp.ordered(sp.Matrix(matrix).atoms(AppliedUndef)))
+    used = tuple(coordinates) or found
+    whole = sp.Matrix([*matrix, *constraints])
+    symbols = sp.ordered((whole.free_symbols | whole.atoms(AppliedUndef)) - {TIME})
+    return RotationModel(
+        name=name,
+        title=title or name,
+        convention=("The rotation is given entry by entry.",),
+        coordinates=used,
+        matrix=sp.ImmutableMatrix(matrix),
+        constraints=tuple(constraints),
+        units=("",) * len(used),
+        source=Citation(text=source),
+        passive=passive,
+        example=_named_example(name, example, (*used, *symbols)),
+    )
+
+
+def _named_example(
+    model: str, given: Mapping[sp.Expr | str, Any], known: Iterable[sp.Expr]
+) -> tuple[tuple[sp.Expr, sp.Expr], ...]:
+    """(symbol, value) pairs from values by name; raises ModelError for what is neither."""
+    named = {
+        str(symbol.func if isinstance(symbol, AppliedUndef) else symbol): symbol for symbol in known
+    }
+    found = []
+    for key, value in given.items():
+        name = str(key.func if isinstance(key, AppliedUndef) else key)
+        exact = symbolic(value, f"{model}: the example of {name}")
+        if name not in named:
+            raise ModelError(f"{model}: the example: unknown name {name}; {offer(name, named)}")
+        if not exact.is_number or exact.has(sp.Float) or exact.is_real is False:
+            raise ModelError(
+                f"{model}: the example of {name}: expected an exact number, got {exact}"
+            )
+        found.append((named[name], exact))
+    return tuple(found)

@@ -323,6 +323,17 @@ def time_functions(names: Sequence[str], count: int, expected: str) -> tuple[sp.
     return tuple(map(time_function, plain))
 
 
+def unit_example(parts: Sequence[sp.Expr], variant: int = 0) -> tuple[tuple[sp.Expr, sp.Expr], ...]:
+    """Rational values for the parts of a unit vector, none of them special; another each variant.
+
+    They are the stereographic image of a point whose coordinates are one over a prime.
+    """
+    flat = [sp.Rational(1, sp.prime(k + variant)) for k in range(1, len(parts))]
+    square = sp.Add(*(number**2 for number in flat))
+    values = [*(2 * number / (1 + square) for number in flat), (1 - square) / (1 + square)]
+    return tuple(zip(parts, values, strict=True))
+
+
 def depends_on_time(value: sp.Basic) -> bool:
     """Whether t occurs in it by itself, not only as the argument of a coordinate."""
     moving = value.atoms(sp.Derivative, AppliedUndef)

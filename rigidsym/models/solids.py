@@ -12,7 +12,7 @@ from typing import NamedTuple
 import sympy as sp
 
 from rigidsym.errors import BodyError, offer
-from rigidsym.models.distribution import Solid
+from rigidsym.models.body import Solid
 from rigidsym.models.rotation import symbolic
 from rigidsym.text.expression import parse_expression
 

@@ -1,6 +1,6 @@
 """The note of a derivation, its styles, and the formats it is printed in.
 
-A lecture explains, a paper is terse, and an audit shows every identity.
+A lecture explains, and an audit shows every identity.
 """
 
 from __future__ import annotations
@@ -12,24 +12,18 @@ from typing import TYPE_CHECKING, NamedTuple
 from rigidsym.errors import ModelError
 from rigidsym.formula.display import PAGE, display
 from rigidsym.formula.letters import Letters
-from rigidsym.formula.notation import DEFAULT, FRAMES, Notation
+from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.mechanics.derivation import Derivation
-from rigidsym.notes.document.catalogue import language_of
 from rigidsym.notes.document.document import (
     Document,
     Equation,
     NoteBlock,
-    NoteTable,
-    Paragraph,
     Section,
 )
-from rigidsym.notes.document.own_text import OwnText
 from rigidsym.notes.formats import FORMATS
-from rigidsym.notes.prose.words import EXACT_MEANS, HOW_VERIFIED
-from rigidsym.notes.sections.compose import FUNCTIONS, IDENTITIES, SYMBOLS, Composer
-from rigidsym.notes.sections.end_tables import EXACT
+from rigidsym.notes.sections.compose import Composer, template_of
 from rigidsym.notes.sections.fitting import by_the_chain_rule
-from rigidsym.notes.sections.summary import TITLE as SUMMARY
+from rigidsym.system import resources
 
 if TYPE_CHECKING:
     from rigidsym.mechanics.conversions.conversions import Conversions
@@ -64,10 +58,6 @@ class Note(NamedTuple):
         """Markdown with mathematics between dollar signs, as GitHub and Jupyter read it."""
         return self.render("md")
 
-    def notebook(self) -> str:
-        """A Jupyter notebook (.ipynb); raises MissingExtra without nbformat."""
-        return self.render("ipynb")
-
 
 def note(
     derivation: Derivation,
@@ -77,19 +67,13 @@ def note(
     notation: Notation = DEFAULT,
     conversions: Conversions | None = None,
     style: str = "audit",
-    text: OwnText | None = None,
-    language: str = "en",
 ) -> Note:
     """The note of a derivation, and of the conversions if they are given, in a style.
 
     `module` is the file name of its kernel module, if there is one; `functions` are the quantities
     that module evaluates, all of them by default. Each equation of an audit names its function.
-    `text` is what its user adds or leaves out. Raises ModelError for a name that the note has not,
-    for a `language` without a catalogue, and for names of frames in another language than English.
+    Raises ModelError for a style without a template.
     """
-    into = language_of(language)
-    if notation.frames != FRAMES and language != "en":
-        raise ModelError(f"only English notes take names for the frames; language is {language!r}")
     computed = [step.quantity.name for step in derivation.steps if step.quantity.inputs]
     names = computed if functions is None else functions
     composer = _composer_of(derivation)(
@@ -100,13 +84,8 @@ def note(
         conversions=conversions,
         is_audit=style == "audit",
     )
-    document = composer.document(_left_out_of(style, is_short=composer.is_short))
-    if notation.frames != FRAMES:
-        document = document.changed(lambda text: tuple(map(notation.named, text)))
-    if style != "audit":
-        document = without_identities(document)
-    document = document.translated(into)
-    return Note(text.applied(document) if text else document)
+    document = composer.document(template_of(check_style(style)))
+    return Note(document if style == "audit" else plain(document))
 
 
 def _composer_of(derivation: Derivation) -> type[Composer]:
@@ -122,57 +101,37 @@ def _composer_of(derivation: Derivation) -> type[Composer]:
     return Composer
 
 
-STYLES = ("lecture", "paper", "audit")  # the default first
-APPENDIX = "Appendix: identities verified"
-
-_LEFT_OUT = {
-    "lecture": (FUNCTIONS, SYMBOLS, SUMMARY),
-    "paper": (FUNCTIONS, SYMBOLS, SUMMARY, IDENTITIES),
-}
-_VERIFIED = (
-    "Each numbered equation has been verified exactly, unless it is a definition or is given."
-)
+STYLES = ("lecture", "audit")  # that are shipped, the default first
 
 
-def _left_out_of(style: str, *, is_short: bool = False) -> tuple[str, ...]:
-    """The titles of the sections that a style does without.
+def check_style(style: str) -> str:
+    """The style itself. Raises ModelError for one that has no template, shipped or the user's."""
+    name = f"{template_of(style)}.md.jinja"
+    try:
+        resources.template(name)
+    except (FileNotFoundError, ValueError):
+        known = ", ".join(STYLES)
+        raise ModelError(
+            f"no style {style!r}: expected {known}, or your own template {name} (--templates DIR)"
+        ) from None
+    return style
 
-    A short note has no tables at its end, unless it is an audit. Raises ModelError for a name
-    that is not one of STYLES.
-    """
-    if style not in STYLES:
-        raise ModelError(f"style is {', '.join(STYLES[:-1])} or {STYLES[-1]}, and not {style!r}")
-    return () if style == "audit" else _LEFT_OUT["paper" if is_short else style]
 
-
-def without_identities(document: Document) -> Document:
-    """The document with its identities in an appendix, if anywhere; unproved claims stay."""
+def plain(document: Document) -> Document:
+    """The document without identities and functions beside its equations; unproved claims stay."""
     letters = document.letters
-    kept = [
-        section._replace(blocks=tuple(_by_the_chain_rule(b, letters) for b in section.blocks))
-        for section in document.sections
-    ]
-    identities = [s._replace(title=APPENDIX) for s in kept if s.title == IDENTITIES]
-    others = [section for section in kept if section.title != IDENTITIES]
-    if not identities and all(not equation.unproved for equation in document.equations):
-        first, *rest = others
-        others = [first._replace(blocks=(*first.blocks, Paragraph((_VERIFIED,)))), *rest]
-    return replace(document, sections=tuple(map(_plain, (*others, *identities))))
+    return replace(document, sections=tuple(_plain(s, letters) for s in document.sections))
 
 
-def _plain(section: Section) -> Section:
-    return section._replace(blocks=tuple(map(_without_proofs, section.blocks)))
+def _plain(section: Section, letters: Letters) -> Section:
+    blocks = (_without_proofs(_by_the_chain_rule(b, letters)) for b in section.blocks)
+    return section._replace(blocks=tuple(blocks))
 
 
 def _without_proofs(block: NoteBlock) -> NoteBlock:
-    """Without the identities that were verified, the functions, and a column of nothing new."""
+    """Without the identities that were verified, and the functions."""
     if isinstance(block, Equation):
         return replace(block, proved=(), function="")
-    if block == Paragraph((HOW_VERIFIED, EXACT_MEANS)):
-        return Paragraph((HOW_VERIFIED,))
-    if isinstance(block, NoteTable) and block.rows and all(r[-1] == EXACT for r in block.rows):
-        rows = tuple(row[:-1] for row in block.rows)
-        return block._replace(head=block.head[:-1], rows=rows)
     return block
 
 

@@ -14,12 +14,18 @@ from rigidsym.formula.letters import Letters
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Argument, Derivation
 from rigidsym.models.body import RigidBody
+from rigidsym.models.forces import OMEGA_COMPONENTS
 from rigidsym.models.rotation import RotationModel
 from rigidsym.notes.figure.body_mesh import lengths_of
 from rigidsym.notes.prose.words import unit_in_words
 
 _DEGREE = pi / 180
-_SECTIONS = {"q": "Coordinates", "q_dot": "Rates", "parameters": "Constants"}
+_SECTIONS = {
+    "q": "Coordinates",
+    "q_dot": "Rates",
+    "omega_body": "Angular velocity in the body",
+    "parameters": "Constants",
+}
 _VECTOR = (0.4, 0.8, 0.8)  # along the axis in the figure of the note
 _SCALAR = 1.68  # beside a vector: the quaternion of about 65°, once it is a unit
 _MATRIX = (0.5, -0.7, 0.5, 0.8, 0.6, 0.1, -0.4, 0.3, 0.8)  # by rows, not far from a rotation
@@ -54,7 +60,10 @@ class Control:
 
     def started(self, values: Mapping[str, float]) -> Control:
         """At the value of its name, in SI units, if there is one; an angle within one period."""
-        value = values.get(self.name.replace(" ", "_"))
+        name = self.name.replace(" ", "_")
+        if self.kind == "omega_body":
+            name = OMEGA_COMPONENTS[self.place]
+        value = values.get(name)
         if value is None or self.kind == "parameters":
             return self
         start = value / self.factor
@@ -80,23 +89,25 @@ def groups_of(
     shown: dict[sp.Expr, float],
     starts: Mapping[sp.Symbol, float],
     *,
+    second: str = "q_dot",
     flows: bool = False,
 ) -> tuple[Group, ...]:
     """The groups of sliders; `shown` are angles in radians that make a clear figure.
 
     `starts` are the initial values of the constants of a body; a motion that `flows` by its
-    equations starts with a fast spin.
+    equations starts with a fast spin. `second` is what is beside the coordinates in the state.
     """
     model = derivation.model
-    made = {argument.name: argument for argument in derivation.arguments}
+    arguments = {argument.name: argument for argument in derivation.arguments}
     periods = [period_of(q, model) for q in model.coordinates]
-    found = {
-        "q": _coordinates(made["q"], model, shown),
-        "q_dot": _rates(made["q_dot"], periods, flows=flows),
-        "parameters": _constants(made.get("parameters"), model, starts),
+    sliders = {
+        "q": _coordinates(arguments["q"], model, shown),
+        second: _rates(arguments[second], periods, flows=flows),
+        "parameters": _constants(arguments.get("parameters"), model, starts),
     }
     groups = {
-        kind: tuple(_named(each, made[kind], letters) for each in found[kind]) for kind in found
+        kind: tuple(_named(each, arguments[kind], letters) for each in sliders[kind])
+        for kind in sliders
     }
     return tuple(
         Group(title=_SECTIONS[kind], controls=controls)
@@ -133,6 +144,8 @@ def _reach(unit: str, model: RotationModel) -> float:
 
 def _rates(argument: Argument, periods: Sequence[float], *, flows: bool) -> Iterator[Control]:
     of_angles = _FLOW_RATES if flows else _ANGLE_RATES
+    if argument.name == "omega_body":
+        periods = [0.0] * len(argument.units)
     for place, (unit, period) in enumerate(zip(argument.units, periods, strict=True)):
         if period:
             start = of_angles[place % len(of_angles)]

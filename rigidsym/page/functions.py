@@ -1,10 +1,9 @@
-"""The functions of a live page: R, Ω, Ω′, the margin, the turns, and the constraints."""
+"""The functions of a live page: R, Ω, Ω′, the margin, the turns, the constraints and the motion."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Any
 
 import sympy as sp
 
@@ -13,13 +12,11 @@ from rigidsym.kernels.lowering.lower import lower
 from rigidsym.kernels.targets.javascript import printer as javascript
 from rigidsym.mechanics.derivation import Derivation, FirstIntegral, Step
 from rigidsym.mechanics.derive import derive as derivation_of
+from rigidsym.models.body import RigidBody
 from rigidsym.models.rotation import RotationModel
-from rigidsym.page.growing_body import SHARE, places_of
-from rigidsym.page.other_conventions import others
-from rigidsym.page.stage import has_turns, quantity_of, step_of, turns_step
+from rigidsym.page.stage import has_turns, step_of, turns_step
 
 SHOWN = ("rotation_matrix", "angular_velocity_space", "angular_velocity_body")
-OF_BODY = ("mass", "inertia_tensor")  # of one that grows with its parameters
 FLOW = ("state_derivative", "first_integrals")
 CONDITIONS = ("conditions", "condition_slopes")
 
@@ -32,20 +29,31 @@ class Functions:
 
     derivation: Derivation  # of the quantities shown
     kernels: tuple[Kernel, ...]
-    others: tuple[dict[str, Any], ...] = ()  # the conventions to compare with
     integrals: tuple[FirstIntegral, ...] = ()  # of the equations of motion
 
     @property
     def steps(self) -> tuple[Step, ...]:
         """The steps of the quantities shown."""
-        shown = (*SHOWN, *OF_BODY) if SHARE in self.derivation.arguments else SHOWN
-        return tuple(step for step in self.derivation.steps if step.quantity.name in shown)
+        return tuple(step for step in self.derivation.steps if step.quantity.name in SHOWN)
+
+    @property
+    def second(self) -> str:
+        """What is beside q in the state y: the rates, or Ω′ of a motion in Euler's form."""
+        arguments = {a.name: a for a in self.derivation.arguments}
+        if "y" not in arguments or arguments["y"].names[-3:] != arguments["omega_body"].names:
+            return "q_dot"
+        return "omega_body" if self.is_motion else "q_dot"
+
+    @property
+    def is_motion(self) -> bool:
+        """Whether the equations of motion are integrated; else the rates are constant."""
+        return any(kernel.name == FLOW[0] for kernel in self.kernels)
 
     @property
     def constants(self) -> tuple[sp.Symbol, ...]:
         """The constants in the order of the functions."""
-        found = [a.symbols for a in self.derivation.arguments if a.name == "parameters"]
-        return tuple(found[0]) if found else ()
+        constants = [a.symbols for a in self.derivation.arguments if a.name == "parameters"]
+        return tuple(constants[0]) if constants else ()
 
     @property
     def symbols(self) -> set[sp.Basic]:
@@ -71,42 +79,31 @@ def functions_of(derivation: Derivation) -> Functions:
     else:
         shown = derivation_of(derivation.model, names)
     whole = {argument.name: argument for argument in (*shown.arguments, *derivation.arguments)}
-    flow = _flow(derivation)
-    places = places_of(derivation.body)
-    whole |= {SHARE.name: SHARE} if places else {}
-    more = (*_more(shown), *flow, *_of_body(derivation, places))
-    steps = tuple(replace(step, number=0) for step in (*shown.steps, *more))
+    flow = tuple(derivation.step(name) for name in FLOW if name in derivation.functions)
+    flow += tuple(_moments(derivation)) if flow else ()
+    steps = tuple(replace(s, number=0) for s in (*shown.steps, *_more(shown), *flow))
     shown = replace(shown, arguments=tuple(whole.values()), steps=steps, functions={})
     program = lower(shown, javascript.RESERVED)
-    compared = list(others(derivation.model))
     return Functions(
         derivation=shown,
-        kernels=(
-            *(k for k in program.kernels if k.name != _WITH_A_MARGIN),
-            *(kernel for _, kernels in compared for kernel in kernels),
-        ),
-        others=tuple(data for data, _ in compared),
+        kernels=tuple(k for k in program.kernels if k.name != _WITH_A_MARGIN),
         integrals=derivation.first_integrals if flow else (),
     )
 
 
-def _flow(derivation: Derivation) -> tuple[Step, ...]:
-    """The equations of motion and what they conserve, where the state is coordinates and rates."""
-    if not derivation.functions:
+def moments_of(body: RigidBody | None) -> tuple[sp.Expr, ...]:
+    """The principal moments, if the axes of the body are principal axes."""
+    if body is None or not body.inertia.is_diagonal():
         return ()
-    q, q_dot, y = (derivation.argument(name).symbols for name in ("q", "q_dot", "y"))
-    is_plain = y == (*q, *q_dot)
-    return tuple(f for n, f in derivation.functions.items() if is_plain and n in FLOW)
+    return tuple(body.inertia.diagonal())
 
 
-def _of_body(derivation: Derivation, places: Mapping[str, sp.ImmutableMatrix]) -> Iterator[Step]:
-    """The mass, the centre and the moments of a body that grows, and where its points are."""
-    if not places:
-        return
-    yield from (s for s in derivation.steps if s.quantity.name in (*OF_BODY, "centre_of_mass"))
-    for name, place in places.items():
-        quantity = quantity_of(name, "a point of the body", (SHARE.name, "parameters"))
-        yield Step(number=0, quantity=quantity, expression=place, because="", proofs=())
+def _moments(derivation: Derivation) -> Iterator[Step]:
+    """The principal moments, if they depend on constants."""
+    moments = sp.Matrix(moments_of(derivation.body))
+    if moments.free_symbols:
+        step = step_of("moments", moments, "principal moments", (), derivation.model)
+        yield replace(step, quantity=step.quantity._replace(inputs=("parameters",)))
 
 
 def _more(derivation: Derivation) -> Iterator[Step]:

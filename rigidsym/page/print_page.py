@@ -9,36 +9,41 @@ import base64
 import hashlib
 import json
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from functools import cache
 from types import MappingProxyType
 from typing import Any
 
+import sympy as sp
+
+from rigidsym.errors import ModelError
+from rigidsym.formula.display import display
 from rigidsym.formula.reader import sentence
 from rigidsym.formula.tree import NOTHING, Numeral, Symbol
 from rigidsym.kernels.lowering.lower import MARGIN
 from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.quantities.kinematics import SPACE
-from rigidsym.models.example import OMEGA_COMPONENTS, initial_values
+from rigidsym.models.forces import OMEGA_COMPONENTS, initial_values
 from rigidsym.models.rotation import RotationModel
 from rigidsym.notes.document.document import Document, Equation, Paragraph, Text
-from rigidsym.notes.figure.body_mesh import own_shape
+from rigidsym.notes.facts.rotation import sum_of_turns
+from rigidsym.notes.facts.singular import PointFacts
+from rigidsym.notes.figure.body_mesh import Shape, own_shape
 from rigidsym.notes.figure.scene import scene_of
 from rigidsym.notes.formats.html import HtmlPrinter, escape, rendered
-from rigidsym.notes.prose.rotation_words import sum_of_turns
-from rigidsym.notes.prose.singular_words import singular
 from rigidsym.notes.prose.words import unit_in_words
+from rigidsym.notes.template import texts_of
 from rigidsym.page.controls import Control, groups_of, starts_of
-from rigidsym.page.copies import LANGUAGES, copies_of
-from rigidsym.page.functions import Functions, functions_of
-from rigidsym.page.growing_body import growing
+from rigidsym.page.functions import Functions, functions_of, moments_of
 from rigidsym.page.shapes import SHAPES, as_data, on_its_tip
 from rigidsym.page.stage import has_turns, label, shown_angles, stage_of
+from rigidsym.simulation.problem import Problem, with_motion
 from rigidsym.system import resources
 
 TEMPLATE = "page/page.html.jinja"
 # in the order of their imports
-MODULES = ("vectors", "scene", "body", "drawing", "state", "flow", "main", "sharing")
+MODULES = ("vectors", "scene", "body", "drawing", "state", "flow", "main")
 MOST_BYTES = 400_000
 
 _FIGURE = "The axes of space and of the body, in the orientation given by the sliders"
@@ -50,21 +55,20 @@ _SHOWN = {  # what the figure can show, and whether it does at first
     "frames": ("Intermediate frames", False),
     "trace": ("Trace of the axis", True),
 }
-_NAMES = {"own": "This body"}
+_NAMES = {"own": "This body", "cuboid": "Cuboid with these moments"}
+_SHORTEST, _LONGEST = 30.0, 120.0  # seconds of a motion
+_PAPER = 30.0  # ems of a display on paper
 _OF_TURNS = ("sum", "rings", "frames")
 _IMPORT = re.compile(r"^import [^;]*;\n", re.MULTILINE)
-_SAID = re.compile(r'\bsaid\("([^"]+)"\)')  # in a module, words that the page shows
 _EXPORT = re.compile(r"^export (?=\w)", re.MULTILINE)
 
 
-def _first_example(derivation: Derivation) -> Mapping[str, float]:
-    """Its values by name; only the constants if the example gives Ω′ in place of rates."""
+def _first_example(derivation: Derivation) -> tuple[Mapping[str, float], float]:
+    """Its values by name, and its time in seconds."""
     if derivation.forces is None or not derivation.forces.examples:
-        return {}
+        return {}, 0.0
     example = derivation.forces.examples[0]
-    values = initial_values(derivation.model, example.initial)
-    has_rates = set(OMEGA_COMPONENTS).isdisjoint(values)
-    return {**example.parameters, **(values if has_rates else {})}
+    return {**example.parameters, **example.initial}, example.time
 
 
 def print_page(
@@ -72,53 +76,50 @@ def print_page(
 ) -> str:
     """The page of a derivation and its note; the same input gives the same bytes.
 
-    `start` holds initial values by name, of coordinates, rates and constants, in SI units; without
-    them the page begins with the first example of the derivation.
+    `start` holds initial values by name, of coordinates, rates or components of Ω′, and constants,
+    in SI units; without them the page begins with the first example of the derivation.
+
+    Raises ModelError for a motion that the figure cannot show.
     """
-    start = start or _first_example(derivation)
+    _check_shown(derivation)
+    example, seconds = _first_example(derivation)
+    start = start or example
     functions = functions_of(derivation)
     starts = starts_of(derivation.body)
     starts |= {symbol: start[symbol.name] for symbol in starts if symbol.name in start}
-    copies = copies_of(derivation, document)
-    printer = PagePrinter(document, copied=copies)
+    printer = PagePrinter(document)
     groups = groups_of(
         functions.derivation,
         document.letters,
         shown_angles(derivation.model, document.letters),
         {symbol: start for symbol, start in starts.items() if symbol in functions.symbols},
-        flows=bool(functions.integrals),
+        second=functions.second,
+        flows=functions.is_motion,
     )
-    groups = tuple(group.started(start) for group in groups)
+    moving = _moving(derivation, functions, start, starts)
+    groups = tuple(group.started({**start, **moving}) for group in groups)
     controls = [control for group in groups for control in group.controls]
     stage = stage_of(derivation.model, document.letters)
     in_degrees = any(control.unit == "°" for control in controls)
-    shapes = {name: shape() for name, shape in SHAPES.items()}
-    if derivation.forces is not None and derivation.forces.potential != 0:
-        shapes["top"] = on_its_tip(shapes["top"])
-    own = own_shape(derivation.body)
-    shapes |= {"own": own} if own else {}
-    body = "own" if own else _body(derivation.model)
-    choices = _choices(derivation.model, printer, flows=bool(functions.integrals))
-    others = [other | {"title": printer.said(other["title"])} for other in functions.others]
+    shapes, body = _bodies(derivation, functions)
+    choices = _choices(derivation.model, printer, flows=functions.is_motion)
     data = {
         "name": derivation.name,
-        "words": {words: printer.said(words) for words in _words()},
         "scene": stage,
-        "bodies": {name: as_data(shape) for name, shape in shapes.items()},
+        "bodies": {name: as_data(shape) for name, shape in shapes.items() if shape},
         "body": body,
-        "growing": growing(derivation.body),
-        "others": others,
+        "moments": [float(m) for m in moments_of(derivation.body) if m.is_number],
+        "last": min(max(_SHORTEST, seconds), _LONGEST),
         "shown": [name for name, _, is_shown in choices if is_shown],
         "controls": [_data(control) for control in controls],
         "parameters": [starts.get(symbol, 0.0) for symbol in functions.constants],
         "inputs": functions.arguments,
+        "second": functions.second,
         "in_degrees": in_degrees,
         "passive": derivation.model.passive,
-        "spoken": printer.named("angular velocity, body components"),
+        "spoken": "angular velocity, body components",
         "turn_words": _turn_words(derivation.model, document, printer),
-        "languages": LANGUAGES,
-        "decimal": document.language.decimal,
-        "copies": copies,
+        "copies": dict(_latex(document)),
         "poles": list(_poles(derivation, printer)),
     }
     script = _script(functions, data)
@@ -128,51 +129,114 @@ def print_page(
         printer,
         policy=f"'sha256-{digest}'",
         script=script,
-        decimal=document.language.decimal,
+        last=f"{data['last']:g}",
         groups=[
             {
-                "title": escape(printer.said(group.title)),
+                "title": escape(group.title),
                 "controls": [_shown(control, printer) for control in group.controls],
             }
             for group in groups
         ],
         values=[_value(step, printer, in_degrees=in_degrees) for step in functions.steps],
-        others=[(other["key"], escape(other["title"])) for other in others],
-        integrals=[printer.span(integral.symbol) for integral in functions.integrals],
+        integrals=[
+            (printer.span(integral.symbol), escape(_unit_of(integral.name)))
+            for integral in functions.integrals
+        ],
         pole=_pole(functions),
         stage=stage,
         bodies=[
-            (name, escape(printer.said(_NAMES.get(name, name.capitalize()))), name == body)
-            for name in shapes
+            (name, escape(_NAMES.get(name, name.capitalize())), name == body) for name in shapes
         ],
         choices=choices,
         has_turns=has_turns(derivation.model),
         count=len(stage["turns"]),
-        title_of_figure=escape(printer.named(_FIGURE)),
+        title_of_figure=_FIGURE,
     )
+
+
+def _moving(
+    derivation: Derivation,
+    functions: Functions,
+    start: Mapping[str, float],
+    constants: Mapping[sp.Symbol, float],
+) -> Mapping[str, float]:
+    """The initial state by name, with the rates or Ω′ that the page integrates, if it is given."""
+    q, rates = (derivation.argument(name).names for name in ("q", "q_dot"))
+    names = {*q, *rates, *OMEGA_COMPONENTS}
+    state = {name: value for name, value in start.items() if name in names}
+    if not state:
+        return {}
+    values = initial_values(derivation.model, state)
+    wanted = OMEGA_COMPONENTS if functions.second == "omega_body" else rates
+    if not functions.is_motion or values.keys() >= {*wanted}:
+        return values
+    known = {argument.name: argument.names for argument in derivation.arguments}
+    parameters = {s.name: x for s, x in constants.items() if s.name in known.get("parameters", ())}
+    begun = Problem(with_motion(derivation), state, parameters).start
+    return dict(zip((*q, *wanted), begun.tolist(), strict=True))
+
+
+def _check_shown(derivation: Derivation) -> None:
+    """Raises ModelError for a motion that the figure, one body about a fixed point, cannot show."""
+    forces, why = derivation.forces, ""
+    if forces is not None and forces.parts:
+        why = "its figure is one body about a fixed point, and other parts move with this body"
+    elif forces is not None and forces.frame_rate:
+        why = "its figure is at rest, and the frame of reference of this motion turns"
+    if why:
+        raise ModelError(
+            f"{derivation.name}: there is no live page of this motion, since {why}; expected a "
+            "note (`rigidsym run`) or a picture of the motion (`rigidsym simulate --plot`)"
+        )
+
+
+def _bodies(derivation: Derivation, functions: Functions) -> tuple[dict[str, Shape], str]:
+    """The shapes to choose from, and the first to be shown; of a motion, its own body only.
+
+    A body with given moments is drawn as a cuboid with these moments, which the script makes. The
+    top on its tip has its weight on an axis of symmetry, and ψ, the angle about it, is cyclic.
+    """
+    own = own_shape(derivation.body)
+    if own:
+        return {"own": own}, "own"
+    if not functions.is_motion:
+        return {name: shape() for name, shape in SHAPES.items()}, _body(derivation.model)
+    moments, forces = moments_of(derivation.body), derivation.forces
+    conserved = {integral.name for integral in derivation.first_integrals}
+    last = derivation.model.coordinates[-1].func.__name__
+    has_weight = forces is not None and forces.potential != 0
+    is_top = has_weight and f"momentum_{last}" in conserved and moments[:1] == moments[1:2]
+    if is_top and _body(derivation.model) == "top":
+        return {"top": on_its_tip(SHAPES["top"]())}, "top"
+    return ({"cuboid": ()}, "cuboid") if moments else ({}, "none")
+
+
+def _unit_of(integral: str) -> str:
+    """The unit of a first integral; none of a claimed one."""
+    if integral == "energy":
+        return "J"
+    if integral == "angular_momentum_squared":
+        return unit_in_words("kg^2 m^4/s^2")
+    return unit_in_words("kg m^2/s") if "momentum_" in integral else ""
+
+
+def _latex(document: Document) -> Iterator[tuple[str, str]]:
+    """The numbered equations as LaTeX, by label."""
+    for equation in document.equations:
+        plain = replace(equation, is_result=False)  # who copies it has boxes of their own
+        yield equation.label, f"\\[\n{display(plain, document.letters, _PAPER).text}\n\\]\n"
 
 
 class PagePrinter(HtmlPrinter):
     """The note of a page, whose equations can be copied."""
 
-    def __init__(self, document: Document, *, copied: Collection[str]) -> None:
-        super().__init__(document)
-        self.copied = copied
-
     def tools(self, equation: Equation) -> str:
-        """Where the script puts a button for each language, if the equation can be copied."""
-        if equation.label not in self.copied:
-            return ""
+        """Where the script puts the button that copies the equation as LaTeX."""
         return f'<p class="copy" data-of="{escape(equation.label)}">{equation.number}</p>'
 
     def sentence(self, text: Text) -> str:
-        """A sentence, in the notation and the language of the document."""
-        named = tuple(map(self.notation.named, text))
-        return self.block(Paragraph(self.language.text(named)))
-
-    def named(self, english: str) -> str:
-        """Words, with the names of the frames, in the language of the document."""
-        return self.said(self.notation.words(english))
+        """A sentence, in the notation of the document."""
+        return self.block(Paragraph(text))
 
 
 def _script(functions: Functions, data: object) -> str:
@@ -192,12 +256,6 @@ def _modules() -> str:
     """The modules as one script, in which nothing is imported."""
     texts = (resources.text("templates", f"page/{name}.mjs") for name in MODULES)
     return "\n".join(_EXPORT.sub("", _IMPORT.sub("", text)) for text in texts)
-
-
-@cache
-def _words() -> list[str]:
-    """What the script shows or says."""
-    return _SAID.findall(_modules())
 
 
 def _json(data: object) -> str:
@@ -220,7 +278,7 @@ def _choices(
     return [
         (
             name,
-            escape(printer.said(text.format(omega))),
+            escape(text.format(omega)),
             is_shown and not (flows and name != "trace"),
         )
         for name, (text, is_shown) in _SHOWN.items()
@@ -256,7 +314,7 @@ def _value(step: Step, printer: PagePrinter, *, in_degrees: bool) -> dict[str, A
     return {
         "id": f"{quantity.name}-value",
         "symbol": printer.span(quantity.symbol),
-        "about": escape(printer.named(quantity.about)),
+        "about": escape(quantity.about),
         "unit": escape(unit) if quantity.unit else "",
         "rows": range(rows),
         "columns": range(columns),
@@ -265,9 +323,9 @@ def _value(step: Step, printer: PagePrinter, *, in_degrees: bool) -> dict[str, A
 
 def _poles(derivation: Derivation, printer: PagePrinter) -> Iterator[dict[str, Any]]:
     """The singular orientations, in radians, and the sentence about each."""
-    found = derivation.singularities
+    singularities = derivation.singularities
     coordinates = derivation.model.coordinates
-    points = found.points if found else ()
+    points = singularities.points if singularities else ()
     for point in points:
         is_shown = all(p.coordinate in coordinates and p.value.is_number for p in point.places)
         if len(points) > 1 and not (point.places and is_shown):
@@ -281,7 +339,9 @@ def _poles(derivation: Derivation, printer: PagePrinter) -> Iterator[dict[str, A
             for place in point.places
             if is_shown
         ]
-        yield {"places": places, "words": printer.sentence(singular(point, derivation))}
+        facts = PointFacts(point, coordinates)
+        (words,) = texts_of("en/singular_point", printer.document.letters, point=facts)
+        yield {"places": places, "words": printer.sentence(words)}
 
 
 def _pole(functions: Functions) -> str:
@@ -293,12 +353,11 @@ def _pole(functions: Functions) -> str:
 def _shown(control: Control, printer: PagePrinter) -> dict[str, str]:
     """A slider as the template places it."""
     unit = control.unit.replace("°/s", "degrees per second").replace("°", "degrees")
-    stem, dot, _ = control.name.partition(" dot")
-    name = f"{stem} {printer.said('dot')}" if dot else stem
+    name = control.name
     return {
         "key": control.key,
         "symbol": printer.span(control.symbol),
-        "name": escape(f"{name}, {printer.said(f'in {unit}')}" if unit else name),
+        "name": escape(f"{name}, in {unit}" if unit else name),
         "unit": escape(control.unit),
         "low": f"{control.low:g}",
         "high": f"{control.high:g}",

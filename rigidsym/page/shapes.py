@@ -11,7 +11,7 @@ from itertools import pairwise
 from math import cos, pi, sin
 from typing import Any
 
-from rigidsym.notes.figure.body_mesh import BLUE, BRONZE, GOLD, GREY, RED, Color, Face, Shape
+from rigidsym.notes.figure.body_mesh import BLUE, GREY, RED, Color, Face, Shape
 from rigidsym.notes.figure.camera import Vector
 
 WHITE, PAGES, NAVY = (246, 244, 238), (236, 228, 206), (36, 70, 130)
@@ -19,7 +19,7 @@ WHITE, PAGES, NAVY = (246, 244, 238), (236, 228, 206), (36, 70, 130)
 
 @cache
 def book() -> Shape:
-    """A cuboid with three different moments of inertia: cover up, spine to the left."""
+    """A book: cover up, spine to the left."""
     x, y, z = 0.62, 0.86, 0.13
     block = _prism([(-x, -y), (x, -y), (x, y), (-x, y)], -z, z, PAGES)
     _, back, near, right, far, spine = block
@@ -33,18 +33,6 @@ def book() -> Shape:
         for y0, y1 in pairwise(rows)
     )
     return (Face(back.corners, NAVY), near, right, far, Face(spine.corners, BLUE), *cover)
-
-
-@cache
-def coin() -> Shape:
-    """A thin disc with a mark on its head, about z′."""
-
-    def color(row: int, sector: int) -> Color:
-        is_mark = row == 4 and sector in (0, 1, 34, 35)
-        return NAVY if is_mark else GOLD if row > 2 else BRONZE
-
-    profile = [(0.0, -0.05), (0.7, -0.05), (0.7, 0.05), (0.55, 0.05), (0.25, 0.05), (0.0, 0.05)]
-    return _revolved(profile, 36, color)
 
 
 @cache
@@ -86,7 +74,6 @@ def aircraft() -> Shape:
 
 SHAPES: Mapping[str, Callable[[], Shape]] = {
     "book": book,
-    "coin": coin,
     "top": top,
     "aircraft": aircraft,
 }

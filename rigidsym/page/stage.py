@@ -112,9 +112,7 @@ def step_of(
 ) -> Step:
     """A function that is evaluated like the quantities but is in no note."""
     quantity = quantity_of(name, about, (*inputs, "parameters") if model.constants else inputs)
-    return Step(
-        number=0, quantity=quantity, expression=matrix.as_immutable(), because="", proofs=()
-    )
+    return Step(quantity=quantity, expression=matrix.as_immutable())
 
 
 def quantity_of(name: str, about: str, inputs: tuple[str, ...]) -> Quantity:

@@ -1,8 +1,16 @@
-"""What is integrated: the state of one derivation, its parameters and its kernels."""
+"""What is integrated: the state of one derivation, its parameters and its kernels.
+
+The state y is (q, q̇) in Lagrange's form and (q, Ω′) in Euler's. Near a pole of the coordinates the
+unit quaternion takes their place: the state is then (quaternion, Ω′), the torque N′ is evaluated at
+the coordinates of the quaternion, and
+
+    d/dt quaternion = ½ quaternion ⊗ Ω′,  dΩ′/dt = I′⁻¹ (N′ − Ω′ × I′ Ω′).
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
 from types import ModuleType
@@ -11,16 +19,37 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from rigidsym.errors import BodyError, ModelError, offer
+from rigidsym.errors import BodyError, ModelError, QuantityError, offer
 from rigidsym.kernels.module import generate
-from rigidsym.mechanics.derivation import Derivation
-from rigidsym.models.example import OMEGA as OMEGA
-from rigidsym.models.rotation import TIME, as_typed
-from rigidsym.simulation.sampled_motion import Array
-from rigidsym.simulation.trajectory import Trajectory
+from rigidsym.mechanics.derivation import Derivation, Step
+from rigidsym.mechanics.derive import derive
+from rigidsym.mechanics.dynamics.derive import LagrangeEquations, equations_of_motion
+from rigidsym.mechanics.dynamics.euler import EulerEquations
+from rigidsym.mechanics.dynamics.lagrange import is_bound
+from rigidsym.mechanics.quantities.dynamics import EULER_QUANTITIES, FLOW_QUANTITIES
+from rigidsym.models.forces import OMEGA, OMEGA_COMPONENTS, Forces, initial_values
+from rigidsym.models.rotation import TIME, RotationModel, as_typed
+from rigidsym.simulation.trajectory import Array, Trajectory
 
-POLE = 1e-3  # of the singularity margin: nearer to a pole, coordinates lose digits
+EQUATIONS = "equations_of_motion"  # (M, Q − h), for elimination in numbers
+# from which a motion is computed
+NEEDED = ("rotation_matrix", "angular_velocity_body", "state_derivative", "first_integrals")
 _UNIT = 1e-9  # by which the entries of R Rᵀ − 1 may be off at the start
+
+
+def with_motion(derivation: Derivation) -> Derivation:
+    """The derivation with equations of motion; a body on which nothing acts is free."""
+    body = derivation.body
+    if body is None:
+        raise ModelError(
+            f"{derivation.name} has no equations of motion; expected a body and a potential, "
+            "as in rs.derive(..., body=..., potential=...)"
+        )
+    names = {step.quantity.name for step in derivation.steps} | {*derivation.functions}
+    names |= {"first_integrals"} if not derivation.first_integrals else set()
+    if derivation.forces is None or not names.issuperset(NEEDED):
+        return derive(derivation.model, NEEDED, body=body, forces=derivation.forces or Forces())
+    return derivation
 
 
 class Problem:
@@ -36,33 +65,81 @@ class Problem:
     ) -> None:
         """Raises ModelError for names that are missing or unknown, and for an impossible body."""
         self.derivation, self.called = derivation, called
+        self.model, self.forces = derivation.model, derivation.forces or Forces()
         self.names = {a.name: a.names for a in derivation.arguments}
         self.coordinates = self.names["q"]
         self.count = len(self.coordinates)
         self.is_euler = self.names["y"][self.count :] == self.names["omega_body"]
+        # so that a quaternion can take the place of the coordinates
+        self.is_alone = not (self.forces.parts or self.forces.frame_rate)
+        # three coordinates of a vector have a pole wherever they are, and long equations of motion
+        self.is_quaternion = bool(self.model.vector) and self.is_alone and not is_bound(self.model)
         self.parameters = self._parameters(parameters)
-        acting = derivation.forces
-        alone = acting is None or not (acting.parts or acting.frame_rate)
-        self.is_alone = alone  # so that a quaternion can take the place of the coordinates
-        self.kernels: ModuleType = generate(derivation, "numpy", conversions=alone).load()
-        self.constants = self.given("state_derivative")
+        self.kernels: ModuleType = generate(
+            self._functions, "numpy", conversions=self.is_alone
+        ).load()
         self.start = self.state_of(initial)
         self.check_rotations(self.start[None])
         changes = map(abs, self._changes(self.start))
         if max(changes, default=0) > _UNIT * np.abs(self.start).max():
-            bounds = " and ".join(f"{as_typed(c)} = 0" for c in derivation.model.constraints)
+            bounds = " and ".join(f"{as_typed(c)} = 0" for c in self.model.constraints)
             raise ModelError(
                 f"{derivation.name}: the rates violate {bounds}; expected rates that keep "
-                f"these conditions, or "
-                f"{OMEGA}"
+                f"these conditions, or {OMEGA}"
             )
+
+    @cached_property
+    def _functions(self) -> Derivation:
+        """The derivation with the functions that are evaluated."""
+        names = ["rotation_matrix", "angular_velocity_body"]
+        whole, rates = self.derivation, "rates_from_angular_velocity_body"
+        if rates not in {step.quantity.name for step in whole.steps}:
+            # few coordinates, or too many, have no such rates
+            with suppress(QuantityError):
+                kinematics = derive(self.model, (rates,))
+                whole = replace(
+                    whole,
+                    steps=(*whole.steps, *kinematics.steps),
+                    singularities=kinematics.singularities,  # the margin that finds the poles
+                )
+        names += [s.quantity.name for s in whole.steps if s.quantity.name == rates]
+        functions = {}
+        if not self.is_quaternion:
+            functions[self.slopes_step.quantity.name] = self.slopes_step
+        if self.derivation.first_integrals:
+            functions["first_integrals"] = self.derivation.step("first_integrals")
+        return replace(whole.select(names), functions=functions)
+
+    @cached_property
+    def slopes_step(self) -> Step:
+        """The derivative of the state; of parts that move, M and Q − h.
+
+        The inverse of a mass matrix of several bodies has thousands of terms, and so have its
+        products: elimination in numbers takes some microseconds.
+        """
+        forces = self.derivation.forces
+        is_long = bool(forces and forces.parts) or self.count > 3
+        if is_long and not self.is_euler and not is_bound(self.model):
+            assert self.derivation.body is not None
+            flow = equations_of_motion(self.model, self.derivation.body, self.forces)
+            assert isinstance(flow, LagrangeEquations)
+            return self._step(EQUATIONS, flow.mass_and_forces, ("t", "y"), shape="matrix")
+        return self.derivation.step("state_derivative")
+
+    def _step(
+        self, name: str, value: sp.MatrixBase, inputs: tuple[str, ...], **changes: Any
+    ) -> Step:
+        """A function that no note shows."""
+        inputs = (*inputs, "parameters") if "parameters" in self.names else inputs
+        quantity = FLOW_QUANTITIES["state_derivative"]._replace(name=name, inputs=inputs, **changes)
+        return Step(quantity=quantity, expression=value)
 
     def check_rotations(self, states: Array) -> None:
         """Raises ModelError for the first of the states, (m, k), whose R is no rotation."""
         rotation = self.rotation(states)
-        left = np.abs(rotation @ np.swapaxes(rotation, 1, 2) - np.eye(3)).max(axis=(1, 2))
-        left = np.maximum(left, self._off(states[:, : self.count]))
-        for k in np.flatnonzero(left > _UNIT)[:1]:
+        error = np.abs(rotation @ np.swapaxes(rotation, 1, 2) - np.eye(3)).max(axis=(1, 2))
+        error = np.maximum(error, self._off(states[:, : self.count]))
+        for k in np.flatnonzero(error > _UNIT)[:1]:
             which = f"motion {k + 1} of {len(states)}: " if len(states) > 1 else ""
             q = zip(self.coordinates, states[k].tolist(), strict=False)
             values = ", ".join(f"{name} = {value:.15g}" for name, value in q)
@@ -72,135 +149,173 @@ class Problem:
 
     def _off(self, q: Array) -> Array:
         """How far the conditions on the coordinates are from 0 at most, (m,)."""
-        model = self.derivation.model
-        found = np.zeros(len(q))
-        for condition in model.constraints:
-            fixed = condition.xreplace(self._constants)
-            if fixed.is_polynomial(*model.coordinates):
-                terms = sp.Poly(fixed, *model.coordinates).terms()
+        largest = np.zeros(len(q))
+        for condition in self.model.constraints:
+            fixed = condition.xreplace(self._values)
+            if fixed.is_polynomial(*self.model.coordinates):
+                terms = sp.Poly(fixed, *self.model.coordinates).terms()
                 off = sum(float(factor) * np.prod(q**powers, axis=1) for powers, factor in terms)
             else:
-                rows = (dict(zip(model.coordinates, row, strict=True)) for row in q.tolist())
+                rows = (dict(zip(self.model.coordinates, row, strict=True)) for row in q.tolist())
                 off = np.array([float(fixed.xreplace(row)) for row in rows])
-            found = np.maximum(found, np.abs(off))
-        return found
+            largest = np.maximum(largest, np.abs(off))
+        return largest
 
     def _changes(self, y: Array) -> list[float]:
         """The rates of the conditions on the coordinates."""
         if self.is_euler:
             return []
-        model = self.derivation.model
-        state = [*model.coordinates, *(sp.diff(q, TIME) for q in model.coordinates)]
-        values = dict(zip(state, y.tolist(), strict=False)) | self._constants
-        return [float(sp.diff(c, TIME).xreplace(values)) for c in model.constraints]
+        q = self.model.coordinates
+        state = [*q, *(sp.diff(x, TIME) for x in q)]
+        values = dict(zip(state, y.tolist(), strict=False)) | self._values
+        return [float(sp.diff(c, TIME).xreplace(values)) for c in self.model.constraints]
 
     @property
-    def _constants(self) -> dict[sp.Basic, float]:
+    def _values(self) -> dict[sp.Basic, float]:
         names = map(sp.Symbol, self.names.get("parameters", ()))
         return dict(zip(names, self.parameters, strict=True))
 
-    def _parameters(self, given: Mapping[str, float]) -> list[float]:
+    def _parameters(self, parameters: Mapping[str, float]) -> list[float]:
         constants = self.names.get("parameters", ())
-        needed = [name for name in constants if sp.Symbol(name) in self._symbols]
-        check_names("parameters", given, needed, constants)
-        _check_finite("parameters", given)
-        values = [float(given.get(name, 1.0)) for name in constants]
-        body = self.derivation.body
-        if body is not None:  # made with values for its parameters, it checks its moments
-            by_name = dict(zip(constants, values, strict=True))
-            replace(
-                body,
-                parameters=tuple(replace(p, value=by_name[p.symbol.name]) for p in body.parameters),
-            )
-        return values
-
-    def parameters_of(self, members: int, given: Mapping[str, Any]) -> Array:
-        """The parameters of many motions, (members, p), from numbers and arrays by name."""
-        values = (given.get(name, 1.0) for name in self.names["parameters"])
-        return _stacked([np.broadcast_to(value, members) for value in values])
-
-    def check_bodies(self, members: int, given: Mapping[str, Any]) -> None:
-        """Raises BodyError for the first of many bodies, given by arrays, that cannot be."""
         body = self.derivation.body
         assert body is not None
-        varied = [p for p in body.parameters if np.ndim(given.get(p.symbol.name, 1.0))]
+        # the mass of a body about a fixed point may not matter, nor some moments of parts
+        used = body.inertia.free_symbols.union(
+            self.model.constants, *(e.free_symbols for e in self.forces.acting)
+        )
+        if self.forces.parts:
+            used |= self.slopes_step.expression.free_symbols
+        names = {str(symbol) for symbol in used}
+        missing = [name for name in constants if name in names and name not in parameters]
+        if missing:
+            raise ModelError(f"missing parameters: {', '.join(missing)}")
+        for name in parameters:
+            if name not in constants:
+                raise ModelError(f"unknown parameters: {name}; {offer(name, constants)}")
+        _check_finite("parameters", parameters)
+        values = [float(parameters.get(name, 1.0)) for name in constants]
+        by_name = dict(zip(constants, values, strict=True))
+        replace(  # with values for its parameters, a body checks its moments
+            body,
+            parameters=tuple(replace(p, value=by_name[p.symbol.name]) for p in body.parameters),
+        )
+        return values
+
+    def parameters_of(self, members: int, parameters: Mapping[str, Any]) -> Array:
+        """The parameters of many motions, (members, p), from numbers and arrays by name."""
+        values = (parameters.get(name, 1.0) for name in self.names["parameters"])
+        return _stacked([np.broadcast_to(value, members) for value in values])
+
+    def check_bodies(self, members: int, parameters: Mapping[str, Any]) -> None:
+        """Raises BodyError for the first of many bodies, of arrays, that cannot be."""
+        body = self.derivation.body
+        assert body is not None
+        varied = [p for p in body.parameters if np.ndim(parameters.get(p.symbol.name, 1.0))]
         if not varied:
             return
         doubtful = np.zeros(members, bool)
-        for parameter in varied:
-            value = np.broadcast_to(given[parameter.symbol.name], members)
-            doubtful |= ~(value > 0) if parameter.positive else False
-        if self.given("inertia_tensor"):
-            tensors = self.kernels.inertia_tensor(self.parameters_of(members, given))
+        for name in (p.symbol.name for p in varied if p.positive):
+            doubtful |= ~(np.broadcast_to(parameters[name], members) > 0)
+        if body.inertia.free_symbols:
+            step = self._step("inertia", body.inertia, (), shape="matrix")
+            functions = replace(self.derivation.select(()), functions={"inertia": step})
+            tensors = generate(functions).load().inertia(self.parameters_of(members, parameters))
             a, b, c = np.linalg.eigvalsh(tensors).T
             doubtful |= ~((a >= 0) & (c <= a + b))
         for k in np.flatnonzero(doubtful):  # the limits of rounding are those of one body
             try:
-                self._parameters({name: v[k] if np.ndim(v) else v for name, v in given.items()})
+                self._parameters({n: v[k] if np.ndim(v) else v for n, v in parameters.items()})
             except BodyError as error:
                 raise BodyError(f"motion {k + 1} of {members}: {error}") from None
-
-    @property
-    def _symbols(self) -> set[sp.Basic]:
-        """What the motion depends on; the mass of a body about a fixed point may not be in it."""
-        body = self.derivation.body
-        held = [self.derivation.step(name).expression for name in ("state_derivative", "energy")]
-        held += [body.inertia] if body else []
-        return set().union(*(expression.free_symbols for expression in held))
 
     def state_of(self, initial: Mapping[str, Any]) -> Array:
         """The state at t = 0, (..., k), from coordinates and rates by name or the angular velocity.
 
-        Values that are arrays broadcast.
+        Values that are arrays broadcast; those that are omitted are 0, and without any coordinate
+        R = 1.
         """
-        rates = (OMEGA,) if OMEGA in initial else self.names["q_dot"]
-        wanted = (*self.coordinates, *rates)
-        known = (*self.coordinates, *self.names["q_dot"], OMEGA)
-        check_names("initial values", initial, wanted, wanted if OMEGA in initial else known)
+        rates = self.names["q_dot"]
+        known = (*self.coordinates, *rates, OMEGA, *OMEGA_COMPONENTS)
+        for name in initial:
+            if name not in known:
+                raise ModelError(f"unknown initial values: {name}; {offer(name, known)}")
         _check_finite("initial values", initial)
-        q = _stacked([initial[name] for name in self.coordinates])
-        if OMEGA in initial:
-            given = np.asarray(initial[OMEGA], float)
+        turning = {OMEGA, *OMEGA_COMPONENTS}.intersection(initial)
+        if turning and not initial.keys().isdisjoint(rates):
+            raise ModelError(f"initial values: expected rates or {OMEGA}, not both")
+        values = initial_values(self.model, {n: v for n, v in initial.items() if n != OMEGA})
+        q = _stacked([values[name] for name in self.coordinates])
+        if not turning:
+            velocity = _stacked([values[name] for name in rates])
+            if self.is_euler:
+                velocity = self.kernels.angular_velocity_body(q, velocity, *self.angles)
         else:
-            given = _stacked([initial[name] for name in rates])
-        if OMEGA in initial and given.shape[-1:] != (3,):
-            raise ModelError(f"{OMEGA}: expected three components, got {initial[OMEGA]}")
-        if OMEGA in initial and not self.is_euler:
-            given = self.kernels.rates_from_angular_velocity_body(q, given, *self.angles)
-            lost = np.flatnonzero(~np.isfinite(given).all(axis=-1))
-            if len(lost):
-                which = f"motion {lost[0] + 1} of {len(given)}" if given.ndim > 1 else self.called
-                raise ModelError(
-                    f"{self.derivation.name}: {which} starts at a pole of the coordinates, "
-                    f"where the rates do not follow from {OMEGA}; expected rates, or a rotation "
-                    "without this pole, such as unit_quaternion"
-                )
-        elif OMEGA not in initial and self.is_euler:
-            given = self.kernels.angular_velocity_body(q, given, *self.angles)
-        many = np.broadcast_shapes(q.shape[:-1], given.shape[:-1])
-        parts = [np.broadcast_to(part, (*many, part.shape[-1])) for part in (q, given)]
+            velocity = np.asarray(initial.get(OMEGA, [0.0] * 3), float)
+            if velocity.shape[-1:] != (3,):
+                raise ModelError(f"{OMEGA}: expected three components, got {initial[OMEGA]}")
+            if OMEGA not in initial:
+                velocity = _stacked([values[name] for name in OMEGA_COMPONENTS])
+            if not self.is_euler:
+                velocity = self._rates_at_start(q, velocity)
+        many = np.broadcast_shapes(q.shape[:-1], velocity.shape[:-1])
+        parts = [np.broadcast_to(part, (*many, part.shape[-1])) for part in (q, velocity)]
         return np.concatenate(parts, axis=-1)
 
-    def given(self, function: str) -> list[float]:
-        """The parameters, if a function takes them."""
-        step = self.derivation.step(function)
-        return self.parameters if "parameters" in step.quantity.inputs else []
+    def _rates_at_start(self, q: Array, omega: Array) -> Array:
+        solved = getattr(self.kernels, "rates_from_angular_velocity_body", None)
+        if solved is None:
+            raise ModelError(
+                f"{self.derivation.name}: the rates do not follow from {OMEGA}; expected rates"
+            )
+        rates = np.asarray(solved(q, omega, *self.angles))
+        lost = np.flatnonzero(~np.isfinite(rates).all(axis=-1))
+        if len(lost):
+            which = f"motion {lost[0] + 1} of {len(rates)}" if rates.ndim > 1 else self.called
+            raise ModelError(
+                f"{self.derivation.name}: {which} starts at a pole of the coordinates, "
+                f"where the rates do not follow from {OMEGA}; expected rates, or a rotation "
+                "without this pole, such as unit_quaternion"
+            )
+        return rates
 
     @property
     def angles(self) -> list[list[float]]:
         """The parameters as the functions of a rotation with constants take them."""
-        return [self.parameters] if self.derivation.model.constants else []
+        return [self.parameters] if self.model.constants else []
+
+    # --- the motion in coordinates
 
     def slopes(self, t: float, y: Array) -> Array:
         """The derivative of one state."""
-        return np.array(self.kernels.state_derivative_scalar(t, *y.tolist(), *self.constants))
+        inputs = (t, *y.tolist(), *(self.parameters if self._takes_parameters else ()))
+        if self.slopes_step.quantity.name == EQUATIONS:
+            rows = np.array(self.kernels.equations_of_motion_scalar(*inputs))
+            return np.concatenate([y[self.count :], eliminated(rows)])
+        return np.array(self.kernels.state_derivative_scalar(*inputs))
 
-    def margin(self, y: Array) -> float:
-        """The distance from a pole of the coordinates; 1 if there is none."""
-        found = getattr(self.kernels, "singularity_margin_scalar", None)
-        if found is None or not self.is_alone:
-            return 1.0
-        return float(found(*y[: self.count].tolist(), *self.angles[:1]))
+    @cached_property
+    def _slopes_of_many(self) -> ModuleType:
+        if not self.is_quaternion:
+            return self.kernels
+        functions = {self.slopes_step.quantity.name: self.slopes_step}
+        return generate(replace(self.derivation.select(()), functions=functions)).load()
+
+    def slopes_of_many(self, t: float, y: Array, constants: Array) -> Array:
+        """The derivative of states (m, k), with parameters of all (p,) or of each (m, p)."""
+        inputs = (t, y, constants) if self._takes_parameters else (t, y)
+        if self.slopes_step.quantity.name == EQUATIONS:
+            rows = self._slopes_of_many.equations_of_motion(*inputs)
+            return np.concatenate([y[:, self.count :], eliminated(rows)], axis=1)
+        return np.asarray(self._slopes_of_many.state_derivative(*inputs))
+
+    @property
+    def _takes_parameters(self) -> bool:
+        return "parameters" in self.slopes_step.quantity.inputs
+
+    def is_near_pole(self, y: Array, limit: float) -> bool:
+        """Whether the singularity margin of the coordinates, if there is one, is small."""
+        margin = getattr(self.kernels, "singularity_margin_scalar", None)
+        return margin is not None and not margin(*y[: self.count].tolist(), *self.angles) > limit
 
     def rotation(self, y: Array) -> Array:
         return np.asarray(self.kernels.rotation_matrix(y[..., : self.count], *self.angles))
@@ -214,17 +329,88 @@ class Problem:
 
     def rates(self, q: Array, omega: Array) -> Array:
         """q̇ from Ω′, (n, k); at a pole the smallest rates with this Ω′, NaN if there are none."""
-        found = np.array(self.kernels.rates_from_angular_velocity_body(q, omega, *self.angles))
-        lost = np.isnan(found).any(axis=1) & np.isfinite(q).all(axis=1)
+        rates = np.array(self.kernels.rates_from_angular_velocity_body(q, omega, *self.angles))
+        lost = np.isnan(rates).any(axis=1) & np.isfinite(q).all(axis=1)
         if lost.any():
             each = np.eye(self.count)  # Ω′ for each rate by itself is a column of W′
             rows = self.kernels.angular_velocity_body(q[lost][:, None], each, *self.angles)
-            wanted = omega[lost]
-            least = np.einsum("nj,njk->nk", wanted, np.linalg.pinv(rows))
-            left = np.linalg.norm(np.einsum("nk,nkj->nj", least, rows) - wanted, axis=1)
-            far = left > _UNIT * np.linalg.norm(wanted, axis=1)
-            found[lost] = np.where(far[:, None], np.nan, least)
-        return found
+            least = np.einsum("nj,njk->nk", omega[lost], np.linalg.pinv(rows))
+            error = np.linalg.norm(np.einsum("nk,nkj->nj", least, rows) - omega[lost], axis=1)
+            far = error > _UNIT * np.linalg.norm(omega[lost], axis=1)
+            rates[lost] = np.where(far[:, None], np.nan, least)
+        return rates
+
+    # --- the motion as a quaternion
+
+    @cached_property
+    def _euler(self) -> EulerEquations:
+        assert self.derivation.body is not None
+        forces = replace(self.forces, method="euler", first_integrals={})
+        return EulerEquations(self.model, self.derivation.body, forces)
+
+    @cached_property
+    def torque(self) -> sp.ImmutableMatrix:
+        """N′ in q, Ω′ and t, every common factor cancelled."""
+        return self._euler.present.matrix(*self._euler.torque)
+
+    @cached_property
+    def no_quaternion(self) -> str:
+        """Why a quaternion cannot take the place of the coordinates; empty if it can."""
+        if not self.is_alone:
+            return "several bodies, or a body in a turning frame, move in these coordinates only"
+        if not hasattr(self.kernels, "from_quaternion"):
+            return "the coordinates do not follow from the rotation"
+        if not _has_limits(self.torque, self._euler.divisor, self.model):
+            names = ", ".join(as_typed(q) for q in self.forces.generalised)
+            acting = f"forces on {names}" if names else "potential"
+            return f"the torque of the {acting} has no limit there"
+        return ""
+
+    @cached_property
+    def _torque(self) -> Callable[..., Sequence[float]] | None:
+        """N′ as a function of the time, the coordinates, Ω′ and the parameters."""
+        if self.torque.is_zero_matrix:
+            return None
+        step = self._step(
+            "torque_body", self.torque, ("t", *EULER_QUANTITIES["torque_body"].inputs)
+        )
+        functions = replace(self.derivation.select(()), functions={"torque_body": step})
+        scalar: Callable[..., Sequence[float]] = generate(functions).load().torque_body_scalar
+        return scalar
+
+    def quaternion(self, y: Array) -> Array:
+        """(quaternion, Ω′) of a state."""
+        q = self.kernels.quaternion(y[: self.count], *self.angles)
+        return np.concatenate([q, self.omega(y)])
+
+    def quaternion_slopes(self, t: float, state: Array) -> Array:
+        w, x, y, z, a, b, c = state.tolist()
+        turning = (
+            -x * a - y * b - z * c,
+            w * a + y * c - z * b,
+            w * b + z * a - x * c,
+            w * c + x * b - y * a,
+        )
+        p, q, r = (self.inertia @ state[4:]).tolist()
+        torque = np.array([q * c - r * b, r * a - p * c, p * b - q * a])  # L′ × Ω′
+        if self._torque is not None:
+            unit = state[:4] / np.linalg.norm(state[:4])
+            coordinates = self.kernels.from_quaternion_scalar(*unit.tolist())
+            torque += self._torque(t, *coordinates, a, b, c, *self.parameters)
+        return np.array([*(rate / 2 for rate in turning), *(self._inverse_inertia @ torque)])
+
+    @cached_property
+    def _inverse_inertia(self) -> Array:
+        return np.asarray(np.linalg.inv(self.inertia), float)
+
+    def states(self, before: Array, quaternions: Array) -> Array:
+        """States, continuous after those `before`, from (quaternion, Ω′)."""
+        unit = quaternions[:, :4] / np.linalg.norm(quaternions[:, :4], axis=1)[:, None]
+        q = self.kernels.from_quaternion(unit)
+        if hasattr(self.kernels, "unwrap"):
+            q = self.kernels.unwrap(np.concatenate([before[:, : self.count], q]))[len(before) :]
+        velocity = quaternions[:, 4:] if self.is_euler else self.rates(q, quaternions[:, 4:])
+        return np.concatenate([q, velocity], axis=1)
 
     @cached_property
     def inertia(self) -> Array:
@@ -235,25 +421,24 @@ class Problem:
         known = {symbol: values[str(symbol)] for symbol in body.inertia.free_symbols}
         return np.array(body.inertia.xreplace(known).tolist(), float)
 
+    # --- results
+
     def trajectory(
         self, t: Array, states: Array, ended: str = "", remarks: Sequence[str] = ()
     ) -> Trajectory:
         q, omega = states[:, : self.count], self.omega(states)
-        rates, forces = states[:, self.count :], self.derivation.forces
-        if self.is_euler:
-            rates = self.rates(q, omega)
         return Trajectory(
             name=self.derivation.name,
             coordinates=self.coordinates,
             t=t,
             q=q,
-            q_dot=rates,
+            q_dot=self.rates(q, omega) if self.is_euler else states[:, self.count :],
             angular_velocity_body=omega,
             rotation_matrix=self.rotation(states),
             first_integrals=self.integrals(t, states, self.parameters),
             inertia=self.inertia,
-            is_in_angles=set(self.derivation.model.coordinate_units) == {"rad"},
-            is_free=forces is None or forces.leave_free(self.derivation.model),
+            is_in_angles={*self.model.coordinate_units} == {"rad"},
+            is_free=self.forces.leave_free(self.model),
             ended=ended,
             remarks=tuple(remarks),
         )
@@ -269,28 +454,57 @@ class Problem:
         return {name: values[..., k] for k, name in enumerate(names)}
 
 
+def eliminated(rows: Array) -> Array:
+    """M⁻¹ (Q − h) from (M, Q − h), (..., n, n + 1); NaN where M has no inverse."""
+    mass = rows[..., :-1]
+    singular = np.linalg.det(mass) == 0
+    if np.any(singular):
+        mass = np.where(singular[..., None, None], np.nan, mass)
+    return np.asarray(np.linalg.solve(mass, rows[..., -1:])[..., 0])
+
+
+def _has_limits(torque: sp.ImmutableMatrix, divisor: sp.Expr, model: RotationModel) -> bool:
+    """Whether the torque divides by nothing that vanishes where the divisor of W′⁻¹ does.
+
+    Common factors are cancelled already: the torque of m g l cos θ in ZXZ divides by nothing. A
+    force −k φ̇ leaves 1/sin² θ, since φ̇ has no limit at θ = 0.
+    """
+    below = {d for entry in torque for d in _divisors(entry) if d.has(*model.coordinates)}
+    if not below:
+        return True
+    if model.vector or not model.turns:
+        # the pole of a vector is at infinity or at a whole turn, and a unit quaternion gives
+        # coordinates far from a whole turn
+        return True
+    waves = divisor.atoms(sp.sin, sp.cos)
+    if len(waves) != 1:  # where it vanishes is not that easily told
+        return not divisor.has(*model.coordinates)
+    (angle,) = waves.pop().args
+    zeros = [k * sp.pi / 2 for k in range(4)]
+    poles = [at for at in zeros if divisor.subs(angle, at) == 0]
+    return not any(d.subs(angle, at) == 0 for d in below for at in poles)
+
+
+def _divisors(value: sp.Expr) -> Iterator[sp.Expr]:
+    for node in sp.preorder_traversal(value):
+        if isinstance(node, sp.Pow) and node.exp.could_extract_minus_sign():
+            yield node.base
+        elif isinstance(node, sp.tan | sp.sec):
+            yield sp.cos(node.args[0])
+        elif isinstance(node, sp.cot | sp.csc):
+            yield sp.sin(node.args[0])
+
+
 def _stacked(values: Sequence[Any]) -> Array:
     """Numbers or arrays as the components of one array."""
     return np.stack(np.broadcast_arrays(*values), axis=-1).astype(float)
 
 
-def _check_finite(what: str, given: Mapping[str, Any]) -> None:
-    for name, value in given.items():
+def _check_finite(what: str, values: Mapping[str, Any]) -> None:
+    for name, value in values.items():
         try:
             numbers = np.asarray(value, float)
         except (TypeError, ValueError):
             numbers = np.array(np.nan)
         if not np.isfinite(numbers).all():
             raise ModelError(f"{what}: {name} is {value}; expected a finite number")
-
-
-def check_names(
-    what: str, given: Mapping[str, Any], wanted: Sequence[str], known: Sequence[str]
-) -> None:
-    """All that is missing at once, and the first that is unknown."""
-    missing = [name for name in wanted if name not in given]
-    if missing:
-        raise ModelError(f"missing {what}: {', '.join(missing)}")
-    for name in given:
-        if name not in known:
-            raise ModelError(f"unknown {what}: {name}; {offer(name, known)}")

@@ -3,24 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any
+from contextlib import nullcontext
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from rigidsym.errors import DerivationError, MissingExtra, ModelError, offer
 from rigidsym.mechanics.derivation import Derivation
-from rigidsym.mechanics.derive import derive
-from rigidsym.models.forces import Forces
-from rigidsym.models.rotation import RotationModel
-from rigidsym.simulation.attitude import Attitude, quaternions_of
 from rigidsym.simulation.free_body import free_motion
-from rigidsym.simulation.problem import OMEGA as OMEGA, POLE, Problem
-from rigidsym.simulation.sampled_motion import Array
-from rigidsym.simulation.trajectory import Trajectory
+from rigidsym.simulation.problem import Problem, with_motion
+from rigidsym.simulation.trajectory import Array, Trajectory
+from rigidsym.system.processes import time_limit
 
-METHODS = ("DOP853", "RK45", "Radau", "LSODA", "lie", "exact")
-_NEEDED = ("rotation_matrix", "angular_velocity_body", "energy", "inertia_tensor")
-_PREFERRED = ("rates_from_angular_velocity_body", "torque_body")
+METHODS = ("DOP853", "RK45", "Radau", "LSODA", "exact")
+_POLE = 1e-3  # of the singularity margin: nearer to a pole, coordinates lose digits
+# A motion comes to an end where the steps become a millionth of the longest one and stay so: at a
+# regular motion the error control never shortens them by more than some thousand times.
+_SHORT, _MANY = 1e-6, 300
 
 Progress = Callable[[float], None]
 
@@ -35,18 +34,20 @@ def simulate(
     method: str = "DOP853",
     rtol: float = 1e-11,
     atol: float = 1e-12,
+    timeout: float | None = None,
     progress: Progress | None = None,
 ) -> Trajectory:
     """The motion from t = 0 to `t_end`, in seconds; without forces, that of the free body.
 
-    `initial` contains the coordinates by name (theta), with their rates (theta_dot) or the body
-    components of the angular velocity (angular_velocity_body), and `parameters` the constants.
-    `method` is an integrator of SciPy, "lie" for steps in the rotation group, which conserve the
-    angular momentum of a free body up to rounding, or "exact" for a free body in elliptic
-    functions. Near a pole of the coordinates the integration continues with a quaternion, and the
-    report says so.
+    `initial` contains coordinates by name (theta), and their rates (theta_dot) or the body
+    components of the angular velocity (angular_velocity_body, or angular_velocity_body_1, _2, _3);
+    what it omits is 0. `parameters` contains the constants. `method` is an integrator of SciPy, or
+    "exact" for a free body in elliptic functions. Near a pole of the coordinates the integration
+    continues with a unit quaternion and Ω′, and the report says so. `timeout` limits the time that
+    the computation takes, in seconds.
+
     Raises ModelError for names that are missing or unknown, and if the derivation has no
-    equations of motion; MissingExtra without SciPy.
+    equations of motion; MissingExtra without SciPy; LimitReached when the time is up.
     """
     if method not in METHODS:
         raise ModelError(f"no method {method!r}; {offer(method, METHODS)}")
@@ -56,121 +57,108 @@ def simulate(
         import scipy.integrate  # noqa: F401
     except ModuleNotFoundError as error:
         raise MissingExtra("a simulation", "simulate") from error
-    problem = Problem(with_motion(derivation), initial, parameters)
-    times = np.linspace(0.0, t_end, samples)
-    if method == "exact":
-        return _exact(problem, times)
-    if method == "lie":
-        attitude = Attitude(problem)
-        states = attitude.states(problem.start[None], attitude.in_group(times, progress))
-        times = times[: len(states)]
-        is_whole = len(states) == samples
-        why = f"the integration stopped at t = {times[-1]:.6g} s: the body turns too fast"
-        return problem.trajectory(times, states, "" if is_whole else why)
-    return _integrated(problem, times, progress, {"method": method, "rtol": rtol, "atol": atol})
-
-
-def with_motion(derivation: Derivation) -> Derivation:
-    """The quantities that a simulation needs; a body on which nothing acts is free."""
-    body = derivation.body
-    if body is None:
-        raise ModelError(
-            f"{derivation.name} has no equations of motion; expected a body and a potential, "
-            "as in rs.derive(..., body=..., potential=...)"
-        )
-    names = {step.quantity.name for step in derivation.steps} | {*derivation.functions}
-    if derivation.forces is None or not names.issuperset((*_NEEDED, "state_derivative")):
-        forces = derivation.forces or Forces()
-        return derive(derivation.model, needed(derivation.model), body=body, forces=forces)
-    return derivation.select([n for n in (*_NEEDED, *_PREFERRED) if n in names])
-
-
-def needed(model: RotationModel) -> tuple[str, ...]:
-    """The quantities from which a motion is computed."""
-    has_rates = len(model.coordinates) >= 3  # else they do not follow from Ω′
-    rates = ("rates_from_angular_velocity_body",) if has_rates else ()
-    return (*_NEEDED, "state_derivative", "first_integrals", "torque_body", *rates)
+    with nullcontext() if timeout is None else time_limit(timeout):
+        problem = Problem(with_motion(derivation), initial, parameters)
+        times = np.linspace(0.0, t_end, samples)
+        if method == "exact":
+            return _exact(problem, times)
+        return _integrated(problem, times, progress, {"method": method, "rtol": rtol, "atol": atol})
 
 
 def _integrated(
     problem: Problem, times: Array, progress: Progress | None, options: Mapping[str, Any]
 ) -> Trajectory:
-    """By one of SciPy's integrators, as a quaternion from where a pole comes near."""
-    found: list[Array] = []
-    remarks: list[str] = []
-    at, state, ended = 0.0, problem.start, ""
-    if problem.margin(state) > POLE:
-        solved = _solve(problem.slopes, state, times, progress, options, problem.margin)
-        found.append(solved.y.T)
-        if solved.status == 1:
-            at, state = float(solved.t_events[0][0]), solved.y_events[0][0]
-        else:
-            at, ended = times[-1], _ending(solved)
-    rest = times[len(found[0]) if found else 0 :]
-    if not ended and len(rest):
-        attitude = Attitude(problem)
-        remarks.append(
-            f"near a pole of the coordinates at t = {at:.6g} s; continued as a quaternion"
-        )
-        start = attitude.start(state)
-        solved = _solve(attitude.slopes, start, rest, progress, options, None, at)
-        before = np.concatenate([*found, state[None]])
-        found.append(attitude.states(before, solved.y.T))
-        if at == 0:
-            found[-1][0] = problem.start  # its rates are known, even at the pole
-        ended = _ending(solved)
-    states = np.concatenate(found)
-    return problem.trajectory(times[: len(states)], states, ended, remarks)
+    """In coordinates, and from a pole on as a quaternion, if nothing forbids it."""
+
+    def is_pole(y: Array) -> bool:
+        """Nearer only if no quaternion can take over, as another motion may pass the pole."""
+        if not problem.is_near_pole(y, _POLE):
+            return False
+        return not problem.no_quaternion or problem.is_near_pole(y, _POLE / 10)
+
+    states, at, state, ended = problem.start[None], 0.0, problem.start, ""
+    starts_as_quaternion = is_pole(state) and not problem.no_quaternion
+    if not (problem.is_quaternion or starts_as_quaternion):
+        course = _solved(problem.slopes, state, times, at, is_pole, progress, options)
+        states, at, state, ended = course
+        if is_pole(state) and problem.no_quaternion and len(states) < len(times):
+            where = "the integration stopped at a pole of the coordinates"
+            ended = f"{where}, at t = {at:.6g} s: {problem.no_quaternion}"
+    rest = times[len(states) :]
+    if ended or not len(rest):
+        return problem.trajectory(times[: len(states)], states, ended)
+    remark = f"near a pole of the coordinates at t = {at:.6g} s; continued as a quaternion"
+    if problem.is_quaternion:
+        remark = "integrated as a unit quaternion"
+    start = problem.quaternion(state)
+    course = _solved(problem.quaternion_slopes, start, rest, at, None, progress, options)
+    before = np.concatenate([states, state[None]])
+    states = np.concatenate([states, problem.states(before, course.states)])
+    return problem.trajectory(times[: len(states)], states, course.ended, [remark])
 
 
-def _solve(
+class _Course(NamedTuple):
+    states: Array  # at the times that were reached
+    t: float  # where the integration ended
+    y: Array
+    ended: str  # why, if that was not planned
+
+
+def _solved(
     slopes: Callable[[float, Array], Array],
     start: Array,
     times: Array,
+    at: float,
+    is_end: Callable[[Array], bool] | None,
     progress: Progress | None,
     options: Mapping[str, Any],
-    margin: Callable[[Array], float] | None,
-    at: float = 0.0,
-) -> Any:
-    from scipy.integrate import solve_ivp
+) -> _Course:
+    """States at the times, by one of SciPy's integrators, step by step until `is_end`."""
+    from scipy import integrate
 
-    def reported(t: float, y: Array) -> Array:
-        if progress is not None:
-            progress(t / times[-1])
-        return slopes(t, y)
-
-    def pole(_: float, y: Array) -> float:
-        return margin(y) - POLE if margin else 1.0
-
-    with np.errstate(over="ignore"):
-        squares = np.square([*start, *slopes(at, start)])
-    if not np.isfinite(squares).all():  # SciPy would look for a first step for ever
-        raise DerivationError(
-            f"the equations of motion give no finite rates at t = {at:.6g} s; expected a state "
-            "away from poles of the coordinates, and rates whose squares do not overflow"
-        )
-    pole.terminal = True  # type: ignore[attr-defined]  # how SciPy is told to stop there
-    solved = solve_ivp(reported, (at, times[-1]), start, t_eval=times, events=pole, **options)
-    if solved.status < 0 and not len(solved.t):
-        raise DerivationError(f"no step could be taken: {solved.message}")
-    return solved
-
-
-def _ending(solved: Any) -> str:
-    """Why a motion ends before its time."""
-    if solved.status >= 0:
-        return ""
-    return f"the integration stopped at t = {solved.t[-1]:.6g} s: {solved.message}"
+    with np.errstate(over="ignore", invalid="ignore"):
+        if not np.isfinite(np.square([*start, *slopes(at, start)])).all():
+            raise DerivationError(  # SciPy would look for a first step for ever
+                f"the equations of motion give no finite rates at t = {at:.6g} s; expected a state "
+                "away from poles of the coordinates, and rates whose squares do not overflow"
+            )
+        kind = getattr(integrate, options["method"])
+        solver = kind(slopes, at, start, times[-1], rtol=options["rtol"], atol=options["atol"])
+        count = int(np.searchsorted(times, at, side="right"))  # times reached so far
+        states = [np.repeat(start[None], count, axis=0)]
+        longest, short, ended = 0.0, 0, ""
+        while solver.status == "running" and not ended:
+            message = solver.step()
+            if solver.status == "failed" or not np.isfinite(solver.y).all():
+                ended = message or "the rates overflow"
+                break
+            longest = max(longest, solver.step_size)
+            short = short + 1 if solver.step_size < _SHORT * longest else 0
+            if short >= _MANY:
+                ended = "the accelerations change faster than steps can follow"
+            reached = int(np.searchsorted(times, solver.t, side="right"))
+            if reached > count:
+                states.append(solver.dense_output()(times[count:reached]).T)
+                count = reached
+            if progress is not None:
+                progress(solver.t / times[-1])
+            if is_end is not None and is_end(solver.y):
+                break
+    if ended:
+        ended = f"the integration stopped at t = {solver.t:.6g} s: {ended}"
+    return _Course(np.concatenate(states), float(solver.t), solver.y, ended)
 
 
 def _exact(problem: Problem, times: Array) -> Trajectory:
     """The free body in elliptic functions."""
-    attitude = Attitude(problem)
-    if not attitude.is_free:
+    if not problem.is_alone or not problem.torque.is_zero_matrix:
         raise ModelError(f"{problem.derivation.name}: expected a free body for the exact solution")
+    from scipy.spatial.transform import Rotation
+
     start = problem.start
     omega, rotation = free_motion(
         problem.inertia, problem.omega(start), problem.rotation(start), times
     )
-    found = np.concatenate([quaternions_of(rotation), omega], axis=1)
-    return problem.trajectory(times, attitude.states(start[None], found))
+    quaternions = Rotation.from_matrix(rotation).as_quat()[:, [3, 0, 1, 2]]
+    states = problem.states(start[None], np.concatenate([quaternions, omega], axis=1))
+    return problem.trajectory(times, states)

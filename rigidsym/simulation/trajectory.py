@@ -1,25 +1,281 @@
-"""A simulated motion with its pictures."""
+"""A simulated motion: arrays over time, the drift of its first integrals, and its pictures."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
-from rigidsym.simulation.animation import save_animation
-from rigidsym.simulation.plot import save_plot
-from rigidsym.simulation.sampled_motion import Samples
+import numpy as np
+from numpy.typing import NDArray
+
+from rigidsym.errors import MissingExtra, ModelError
+
+Array = NDArray[np.float64]
+
+PICTURES = (".png", ".svg", ".pdf")
+ANIMATIONS = (".gif",)
+_SPHERE = np.ones(3)  # its semi-axes
+_ONE_TURN = 360
+_VIEW = (25, -60)  # elevation and azimuth of the eye, degrees
+_GREEK = ["alpha", "beta", "gamma", "delta", "theta", "phi", "psi", "sigma", "chi", "omega"]
+_SMALLEST = 1e-17  # of a relative change in the picture of the drift
+_FRAMES_PER_SECOND = 15
+_LENGTHS = (4.0, 12.0)  # seconds, of the shortest and the longest animation
+_THINNEST = 0.1  # of the longest edge: a plate is drawn with some thickness
+_FACES = ((0, 1, 3, 2), (4, 5, 7, 6), (0, 1, 5, 4), (2, 3, 7, 6), (0, 2, 6, 4), (1, 3, 7, 5))
+_COLOURS = ("C1", "C1", "C2", "C2", "C0", "C0")  # of opposite faces, so that spins are seen
 
 
-class Trajectory(Samples):
+@dataclass(frozen=True, kw_only=True, slots=True, repr=False)
+class Trajectory:
     """A motion at n times, of k coordinates; SI units, angles in radians."""
+
+    name: str  # of the derivation
+    coordinates: tuple[str, ...]
+    t: Array  # (n,), s
+    q: Array  # (n, k)
+    q_dot: Array  # (n, k)
+    angular_velocity_body: Array  # (n, 3), rad/s
+    rotation_matrix: Array  # (n, 3, 3), body to space components
+    first_integrals: Mapping[str, Array]  # (n,) each
+    inertia: Array  # (3, 3), kg m², about the fixed point in the axes of the body
+    is_free: bool = False  # nothing acts on the body
+    ended: str = ""  # why the motion ends before its time, if it does
+    is_in_angles: bool = True  # the coordinates, in radians
+    remarks: tuple[str, ...] = ()  # such as a pole that was passed
+
+    @property
+    def changes(self) -> Mapping[str, Array]:
+        """The relative change of each first integral, (n,); NaN at a pole, where rates are."""
+        momentum = self.inertia @ self.angular_velocity_body[0]
+        return relative_changes(self.first_integrals, np.array(np.linalg.norm(momentum)))
+
+    @property
+    def drift(self) -> Mapping[str, float]:
+        """The largest of `changes` for each first integral, a measure of the error."""
+        return {name: float(np.nanmax(values)) for name, values in self.changes.items()}
+
+    def columns(self) -> dict[str, Array]:
+        """All of it as named columns: t, the coordinates, their rates, Ω′ and the integrals."""
+        columns: dict[str, Array] = {"t": self.t}
+        for k, name in enumerate(self.coordinates):
+            columns |= {name: self.q[:, k], f"{name}_dot": self.q_dot[:, k]}
+        for k in range(3):
+            columns[f"angular_velocity_body_{k + 1}"] = self.angular_velocity_body[:, k]
+        return columns | dict(self.first_integrals)
+
+    def report(self) -> str:
+        """How long it is, and the drift of each first integral."""
+        lines = [f"{self.name}: {len(self.t)} times from 0 to {self.t[-1]:g} s"]
+        lines += [text for text in (*self.remarks, self.ended) if text]
+        width = max(map(len, self.first_integrals), default=0)
+        lines += [f"  {name:{width}}  drift {value:.1e}" for name, value in self.drift.items()]
+        return "\n".join(lines)
+
+    def __repr__(self) -> str:
+        return self.report()
 
     def plot(self, path: str | Path) -> Path:
         """Draw the motion into a PNG, SVG or PDF file. Needs Matplotlib."""
         return save_plot(Path(path), self)
 
-    def animate(self, path: str | Path, progress: Callable[[float], None] | None = None) -> Path:
-        """Animate the motion as GIF, which needs Matplotlib, or MP4, which also needs ffmpeg."""
-        return save_animation(Path(path), self, progress)
+    def animate(self, path: str | Path) -> Path:
+        """Animate the motion as a GIF. Needs Matplotlib."""
+        return save_animation(Path(path), self)
 
-    def __repr__(self) -> str:
-        return self.report()
+
+def relative_changes(integrals: Mapping[str, Array], momentum: Array) -> dict[str, Array]:
+    """Of values over time, (n, ...), by name; `momentum` is |L| at the beginning, (...).
+
+    A momentum may begin at 0, so its size is taken to be at least |L|.
+    """
+    changes = {}
+    for name, values in integrals.items():
+        size = np.abs(values[0])
+        if "momentum_" in name and "squared" not in name:
+            size = np.maximum(size, momentum)
+        changes[name] = np.abs(values - values[0]) / np.where(size == 0, 1.0, size)
+    return changes
+
+
+# --- pictures
+
+
+def save_plot(path: Path, motion: Trajectory) -> Path:
+    """One sheet of pictures, PNG, SVG or PDF by the ending; raises MissingExtra.
+
+    Of a free body it shows the polhode on the ellipsoid of energy, and the herpolhode in the
+    invariable plane.
+    """
+    check_picture(path, PICTURES)
+    rows = [["q", "axis", "drift"] if motion.first_integrals else ["q", "axis"]]
+    if motion.is_free:
+        rows = [["q", "q", "axis"], ["polhode", "herpolhode", "drift"]]
+    size = (4 * len(rows[0]), 4 * len(rows))
+    figure = _figure_class()(figsize=size, layout="constrained")
+    panels = figure.subplot_mosaic(
+        rows, per_subplot_kw={("axis", "polhode")[: len(rows)]: {"projection": "3d"}}
+    )
+    angles = {name: motion.q[:, k] for k, name in enumerate(motion.coordinates)}
+    _draw_coordinates(panels["q"], motion.t, angles, in_degrees=motion.is_in_angles)
+    _draw_trace(panels["axis"], motion.rotation_matrix[:, :, 2], _SPHERE)
+    panels["axis"].set_title("Trace of the third body axis")
+    if motion.is_free:
+        _draw_poinsot(panels["polhode"], panels["herpolhode"], motion)
+    if motion.first_integrals:
+        _draw_drift(panels["drift"], motion.t, motion.changes)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(path, dpi=150)
+    return path
+
+
+def save_animation(path: Path, motion: Trajectory) -> Path:
+    """A GIF of a cuboid with the moments of the body, and the trace of the third body axis.
+
+    In real time if it takes 4 to 12 seconds. Raises ModelError for another ending, and
+    MissingExtra without Matplotlib.
+    """
+    check_picture(path, ANIMATIONS)
+    figure = _figure_class()(figsize=(5, 5), layout="constrained")
+    from matplotlib.animation import FuncAnimation
+    from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import-untyped]
+
+    seconds = float(np.clip(motion.t[-1], *_LENGTHS))
+    places = np.linspace(0, len(motion.t) - 1, round(seconds * _FRAMES_PER_SECOND))
+    frames = np.unique(places.round().astype(int))
+    axes = figure.add_subplot(projection="3d")
+    _draw_trace(axes, motion.rotation_matrix[:1, :, 2], _SPHERE)
+    (trace,) = axes.plot([], [], [], color="C3", linewidth=1.2)
+    corners = _cuboid(motion.inertia)
+    faces = Poly3DCollection(np.zeros((6, 4, 3)), facecolors=_COLOURS, edgecolors="k", alpha=0.9)
+    axes.add_collection3d(faces)
+
+    def frame(k: int) -> list[Any]:
+        rotation = motion.rotation_matrix[k]
+        faces.set_verts([corners[list(face)] @ rotation.T for face in _FACES])
+        trace.set_data_3d(*motion.rotation_matrix[: k + 1, :, 2].T)
+        axes.set_title(f"t = {motion.t[k]:.2f} s")
+        return [faces, trace]
+
+    path.parent.mkdir(parents=True, exist_ok=True)
+    fps: Any = len(frames) / seconds  # Matplotlib takes fractions, its types say whole numbers
+    FuncAnimation(figure, frame, frames=frames.tolist()).save(
+        path, writer="pillow", fps=fps, dpi=90
+    )
+    return path
+
+
+def _cuboid(inertia: Array) -> Array:
+    """The corners of the cuboid with these principal moments, (8, 3), in a sphere of radius 0.8."""
+    moments, axes = np.linalg.eigh(inertia)
+    half = np.sqrt(np.maximum(moments.sum() / 2 - moments, 0))  # in proportion to the edges
+    half = np.maximum(half, _THINNEST * half.max())
+    signs = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+    return np.asarray(0.8 * signs * half / np.linalg.norm(half) @ axes.T)
+
+
+def check_picture(path: Path, endings: Collection[str]) -> None:
+    """Raises ModelError for a file with another ending."""
+    if path.suffix not in endings:
+        raise ModelError(f"{path}: expected a file that ends in {', '.join(endings)}")
+
+
+def _figure_class() -> Any:
+    """Matplotlib's Figure; raises MissingExtra."""
+    try:
+        from matplotlib.figure import Figure
+    except ModuleNotFoundError as error:
+        raise MissingExtra("a picture", "plot") from error
+    return Figure
+
+
+def _draw_poinsot(solid: Any, plane: Any, motion: Trajectory) -> None:
+    """Ω′ along the principal axes on the ellipsoid of energy, and Ω seen along L."""
+    moments, axes = np.linalg.eigh(motion.inertia)
+    polhode = motion.angular_velocity_body @ axes
+    _draw_trace(solid, polhode, np.sqrt(np.sum(moments * polhode[0] ** 2) / moments), "123")
+    solid.set_title("Polhode on the energy ellipsoid,\naxes in the order of the moments")
+    rotation, omega = motion.rotation_matrix, motion.angular_velocity_body
+    momentum = rotation[0] @ motion.inertia @ omega[0]
+    across = np.linalg.svd(momentum[None])[2][1:]  # two unit vectors normal to L
+    herpolhode = np.einsum("nij,nj->ni", rotation, omega) @ across.T
+    plane.plot(*herpolhode.T, linewidth=0.8)
+    plane.plot(*herpolhode[0], "o", color="C3", markersize=4)
+    plane.plot(0, 0, "+", color="0.4")
+    plane.set(aspect="equal", xlabel="rad/s", title="Herpolhode in the invariable plane")
+
+
+def _draw_coordinates(
+    axes: Any, t: Array, coordinates: Mapping[str, Array], *, in_degrees: bool
+) -> None:
+    """All of them; of angles, those that wind on are left out, since they would dwarf others."""
+    shown = {n: np.degrees(v) if in_degrees else v for n, v in coordinates.items()}
+    swinging = {n: v for n, v in shown.items() if np.ptp(v) < _ONE_TURN} or shown
+    for name, values in swinging.items():
+        axes.plot(t, values, label=_symbol(name))
+    winding = ", ".join(_symbol(name) for name in shown if name not in swinging)
+    title = f"Coordinates\n({winding}: more than a turn, not shown)" if winding else "Coordinates"
+    axes.set(xlabel="t in s", ylabel="degrees" if in_degrees else "", title=title)
+    axes.legend(fontsize="small")
+
+
+def _symbol(name: str) -> str:
+    """Greek letters by their names, as Matplotlib writes them."""
+    return f"$\\{name}$" if name in _GREEK else name
+
+
+def _draw_trace(axes: Any, points: Array, size: Array, names: str = "xyz") -> None:
+    """A curve on an ellipsoid of circles; what is behind it is pale."""
+    angle = np.linspace(0, 2 * np.pi, 181)
+    flat = np.cos(angle), np.sin(angle)
+    circles = [
+        (flat[0] * np.sqrt(1 - h * h), flat[1] * np.sqrt(1 - h * h), angle * 0 + h)
+        for h in np.linspace(-0.8, 0.8, 5)
+    ]
+    circles += [
+        (flat[0] * np.cos(turn), flat[0] * np.sin(turn), flat[1])
+        for turn in np.linspace(0, np.pi, 7)[:-1]
+    ]
+    elevation, azimuth = np.radians(_VIEW)
+    eye = np.array(
+        [
+            np.cos(elevation) * np.cos(azimuth),
+            np.cos(elevation) * np.sin(azimuth),
+            np.sin(elevation),
+        ]
+    )
+    for circle in circles:
+        _draw_curve(axes, np.array(circle).T * size, eye, size, "0.75", 0.6)
+    _draw_curve(axes, points, eye, size, "C0", 1.4)
+    axes.scatter(*points[:1].T, color="C3", s=18)
+    for k, name in enumerate(names):
+        end = size[k] * np.eye(3)[k]
+        pale = 0.4 if end @ eye < 0 else 1.0
+        axes.plot(*np.array([end, 1.15 * end]).T, color="0.4", linewidth=1, alpha=pale)
+        axes.text(*(1.28 * end), name, color="0.4", ha="center", va="center", alpha=pale)
+    axes.view_init(*_VIEW)
+    axes.set_box_aspect(size / size.max(), zoom=1.1)
+    axes.set(xlim=(-size[0], size[0]), ylim=(-size[1], size[1]), zlim=(-size[2], size[2]))
+    axes.set_axis_off()
+
+
+def _draw_curve(
+    axes: Any, points: Array, eye: Array, size: Array, color: str, width: float
+) -> None:
+    """In front of the ellipsoid opaque, behind it pale."""
+    is_front = (points / size**2) @ eye >= 0
+    for shown, alpha in ((is_front, 1.0), (~is_front, 0.25)):
+        part = np.where(shown[:, None], points, np.nan)
+        axes.plot(*part.T, color=color, linewidth=width, alpha=alpha)
+
+
+def _draw_drift(axes: Any, t: Array, changes: Mapping[str, Array]) -> None:
+    """The largest change so far."""
+    for name, values in changes.items():
+        largest = np.maximum.accumulate(np.nan_to_num(values))
+        shown = name.replace("_", " ")
+        axes.semilogy(t, np.maximum(largest, _SMALLEST), label=shown)
+    axes.set(xlabel="t in s", ylabel="largest relative change", title="Drift of first integrals")
+    axes.legend(loc="lower right", fontsize="x-small")

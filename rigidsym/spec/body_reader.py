@@ -18,8 +18,7 @@ import sympy as sp
 
 from rigidsym.errors import BodyError, ExpressionError
 from rigidsym.models.body import Parameter
-from rigidsym.spec.tables import Table
-from rigidsym.spec.toml_lines import Path as Place
+from rigidsym.spec.tables import Path as Place, Table
 from rigidsym.text.expression import names_in, parse_expression
 from rigidsym.text.names import check_name
 

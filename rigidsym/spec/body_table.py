@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import sympy as sp
 
 from rigidsym.errors import BodyError, MissingExtra, RigidsymError
-from rigidsym.models import distribution
+from rigidsym.models import body as distribution
 from rigidsym.models.body import (
     BodyDescription,
     RigidBody,
@@ -20,14 +20,15 @@ from rigidsym.models.body import (
     given_inertia,
     principal_moments,
 )
-from rigidsym.models.rotation_text import turned_by
+from rigidsym.models.library import turned_by
+from rigidsym.models.parametrisations import axes_example
 from rigidsym.models.solids import SHAPES, Length, check_lengths, shape_of, shaped
 from rigidsym.spec.body_reader import BodyReader, Declared
 from rigidsym.spec.derivation_spec import Body
 from rigidsym.spec.tables import Table
 
 if TYPE_CHECKING:
-    from rigidsym.data.mass.properties import MassProperties
+    from rigidsym.data.mass import MassProperties
 
     Measured = tuple[MassProperties, Mapping[str, object]]  # with the outline of the body
 
@@ -231,7 +232,9 @@ def _read_parts(reader: BodyReader) -> distribution.Distribution:
         for place, table in enumerate(tables, start=1)
     ]
     found = tuple(part for part in parts if part is not None)
-    return distribution.Composite(parts=found, conditions=tuple(conditions))
+    return distribution.Composite(
+        parts=found, conditions=tuple(conditions), example=axes_example(conditions)
+    )
 
 
 def _read_part(reader: BodyReader, conditions: list[sp.Expr]) -> distribution.Part | None:
@@ -300,21 +303,16 @@ def _read_known(reader: BodyReader) -> distribution.Known:
     )
 
 
-def _readers() -> tuple[Any, Any]:
-    """The readers of particles and of meshes, which need NumPy; a rotation alone does not."""
-    from rigidsym.data.mass import mesh, point_masses
-
-    return point_masses, mesh
-
-
 def _read_cloud(reader: BodyReader) -> distribution.Known:
     """particles = "cloud.npy": particles in NPY, CSV or Parquet."""
     columns = [*reader.table.texts("columns", "names of the columns").values()] or None
     allow = bool(reader.table.flag("allow"))
-    particles, _ = _readers()
+    from rigidsym.data.mass import inertia_of  # needs NumPy, which rotations do not
 
-    options = {"columns": columns, "allow": allow}
-    return _in_file(reader, "particles", lambda path: (particles.inertia_of(path, **options), {}))
+    def measured(path: Path) -> tuple[MassProperties, Mapping[str, object]]:
+        return inertia_of(path, columns=columns, allow=allow), {}
+
+    return _in_file(reader, "particles", measured)
 
 
 def _read_mesh(reader: BodyReader) -> distribution.Known:
@@ -322,12 +320,12 @@ def _read_mesh(reader: BodyReader) -> distribution.Known:
     table = reader.table
     mass, density, scale = (table.number(key) for key in ("mass", "density", "scale"))
     allow = bool(table.flag("allow"))
-    _, meshes = _readers()
+    from rigidsym.data.mass import mesh_inertia, outline_of, read_mesh_file
 
     def measured(path: Path) -> tuple[MassProperties, Mapping[str, object]]:
-        mesh = meshes.read_mesh_file(path, scale=1.0 if scale is None else scale)
-        found = meshes.mesh_inertia(mesh, mass=mass, density=density, allow=allow)
-        return found, meshes.outline_of(mesh)
+        mesh = read_mesh_file(path, scale=1.0 if scale is None else scale)
+        found = mesh_inertia(mesh, mass=mass, density=density, allow=allow)
+        return found, outline_of(mesh)
 
     return _in_file(reader, "mesh", measured)
 

@@ -9,18 +9,18 @@ from pathlib import Path
 from typing import Any
 
 from rigidsym.errors import Fault, SpecError, offer
-from rigidsym.models.euler_angles import EulerAngles
 from rigidsym.models.forces import forces_on
+from rigidsym.models.parametrisations import EulerAngles
 from rigidsym.models.rotation import RotationModel
 from rigidsym.spec.body_table import read_body
 from rigidsym.spec.derivation_spec import DerivationSpec, fault_of_name, fault_of_title
 from rigidsym.spec.rotation_table import KEYS, read_rotation
-from rigidsym.spec.tables import MOST_CHARACTERS, Faults, Source, Table, read_toml, shortened
-from rigidsym.spec.vocabulary import NotationChoice, TextChoice, Vocabulary
+from rigidsym.spec.tables import MOST_CHARACTERS, Faults, Table, read_toml, shortened
+from rigidsym.spec.vocabulary import NotationChoice, Vocabulary
 from rigidsym.system import resources
+from rigidsym.system.files import read_bytes
 
-A_PAIR_OF_FRAMES = 'two names such as ["inertial", "spacecraft"]'
-_OF_BOTH = ("title", "theory", "parameters", "body", "dynamics", "notation", "text")
+_OF_BOTH = ("title", "theory", "parameters", "body", "dynamics", "notation")
 _FILE = (*_OF_BOTH, "rotation", "output")
 _RECORD = (*_OF_BOTH, "name", "rotations")
 _DYNAMICS = (
@@ -28,11 +28,14 @@ _DYNAMICS = (
     "examples",
 )
 _FORMER = ("measured",)  # in old records: errors that were printed with the kernels
-_LINES = ("author", "course", "date")
-_SENTENCES = ("before", "after", "sources")
+_REMOVED = {
+    "language": "another language is a folder of templates of notes, chosen by style",
+    "frames": "the frames are called space and body",
+    "text": "your own sentences belong in a template of notes; see `rigidsym templates --help`",
+}
 _OUTPUT = (
-    *("quantities", "kernels", "note", "style", "language"),
-    *("conversions", "derivatives", "degrees", "certificates"),
+    *("quantities", "kernels", "note", "style"),
+    *("conversions", "derivatives", "certificates"),
 )
 
 
@@ -55,7 +58,7 @@ def read_file(file: str, words: Vocabulary) -> DerivationSpec:
         raise SpecError(file, [Fault(message=missing)]) from None
     except UnicodeDecodeError as error:
         line = error.object.count(b"\n", 0, error.start) + 1
-        raise SpecError(file, [Fault(message="not UTF-8 text", line=line)]) from None
+        raise SpecError(file, [Fault(message=f"not UTF-8 text, at line {line}")]) from None
     except OSError as error:
         raise SpecError(file, [Fault(message=f"cannot be read: {error.strerror}")]) from None
     return read_spec(text, words, source=file, name=path.stem, folder=path.parent)
@@ -89,7 +92,8 @@ def from_data(data: object, words: Vocabulary, *, source: str = "request") -> De
     """The specification that `DerivationSpec.to_data` wrote. Raises SpecError with all faults."""
     if not isinstance(data, Mapping):
         raise SpecError(source, [Fault(message="expected an object")])
-    faults = Faults(Source(source))
+    faults = Faults(source)
+    faults.refuse_control_characters(data)
     table = Table(data, (), faults)
     reader = _Reader(words)
     table.refuse_others((*_RECORD, *_OUTPUT, *words.target_options, *_FORMER))
@@ -110,11 +114,13 @@ class _Reader:
     @property
     def hints(self) -> dict[str, str]:
         return {
-            **dict.fromkeys((*self.words.choices, "frames"), "it belongs in [notation]"),
+            **_REMOVED,
+            **dict.fromkeys(self.words.choices, "it belongs in [notation]"),
             **dict.fromkeys(_DYNAMICS, "it belongs in [dynamics]"),
             **dict.fromkeys(_FILE, "it belongs at the top of the file, outside the tables"),
             **dict.fromkeys(KEYS, "it belongs in [rotation]"),
             **dict.fromkeys(_OUTPUT, "it belongs in [output]"),
+            "degrees": "kernels take radians; convert angles with np.radians and np.degrees",
         }
 
     def spec(
@@ -141,7 +147,6 @@ class _Reader:
             "body": body and read_body(body, parameters, name, folder),
             **_read_dynamics(table, models),
             "notation": self.notation(table),
-            "text": self.text(table),
             **(self.output(output) if output else {}),
         }
         faults.raise_if_any()
@@ -163,7 +168,7 @@ class _Reader:
         notation, words = table.table("notation"), self.words
         if notation is None:
             return None
-        notation.refuse_others((*words.choices, "frames"))
+        notation.refuse_others(tuple(words.choices), _REMOVED)
         chosen: dict[str, Any] = {}
         for key, known in words.choices.items():
             choice = notation.text(key)
@@ -171,26 +176,7 @@ class _Reader:
                 chosen[key] = choice
             elif choice is not None:
                 notation.fault(f"unknown choice {shortened(choice)}; {offer(choice, known)}", key)
-        if frames := notation.texts("frames", A_PAIR_OF_FRAMES):
-            chosen["frames"] = tuple(frames.values())
-        with notation.noting("frames"):
-            return words.notation(**chosen)
-        return None
-
-    def text(self, table: Table) -> TextChoice | None:
-        """What [text] adds to the note and leaves out."""
-        text = table.table("text")
-        if text is None:
-            return None
-        text.refuse_others((*_LINES, "omit", *_SENTENCES))
-        chosen: dict[str, Any] = {key: text.text(key) or "" for key in _LINES}
-        chosen["omit"] = tuple(text.texts("omit", 'a list such as ["Symbols"]').values())
-        for key in _SENTENCES:
-            if inner := text.table(key):
-                chosen[key] = {name: inner.text(name) or "" for name in inner.data}
-        with table.noting("text"):
-            return self.words.text(**chosen)
-        return None
+        return words.notation(**chosen)
 
     def output(self, table: Table) -> dict[str, Any]:
         words = self.words
@@ -198,15 +184,20 @@ class _Reader:
             "quantities": table.choices("quantities", words.quantities),
             "kernels": table.choices("kernels", words.kernels, may_be_empty=True),
             "note": table.choices("note", words.note, may_be_empty=True),
-            "style": table.choice("style", words.styles),
-            "language": table.choice("language", words.languages),
+            "style": self.style(table),
             "conversions": table.flag("conversions"),
-            "degrees": table.flag("degrees"),
             "certificates": table.flag("certificates"),
         }
         chosen["target_options"] = self.target_options(table) or None
         chosen["derivatives"] = self.derivatives(table, chosen["quantities"] or words.quantities)
         return {key: choice for key, choice in chosen.items() if choice is not None}
+
+    def style(self, table: Table) -> str | None:
+        """The style of the note, shipped or the user's own."""
+        style = table.text("style")
+        with table.noting("style"):
+            return style and self.words.check_style(style)
+        return None
 
     def target_options(self, table: Table) -> dict[str, dict[str, str | bool]]:
         """What is chosen of the options of targets."""
@@ -303,8 +294,7 @@ def _expressions(table: Table, key: str) -> list[str]:
 def _read_bytes(path: Path) -> bytes:
     """The content of a file; OSError if it is too large for a derivation file."""
     most = 4 * MOST_CHARACTERS  # bytes: no character takes more than four
-    with path.open("rb") as stream:
-        content = stream.read(most + 1)
+    content = read_bytes(path, most + 1)
     if len(content) > most:
         raise OSError(errno.EFBIG, f"it has more than {most} bytes")
     return content

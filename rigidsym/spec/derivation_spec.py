@@ -11,10 +11,10 @@ from typing import Any
 
 from rigidsym.errors import ModelError
 from rigidsym.models.body import BodyDescription, RigidBody
+from rigidsym.models.library import request_of, rotation_from
 from rigidsym.models.rotation import RotationModel
-from rigidsym.models.rotation_text import request_of, rotation_from
-from rigidsym.spec.tables import Faults, Source, shortened
-from rigidsym.spec.vocabulary import NotationChoice, TextChoice
+from rigidsym.spec.tables import Faults, shortened
+from rigidsym.spec.vocabulary import NotationChoice
 
 _NAME = re.compile(r"[a-z][a-z0-9_]*")
 _DEVICES = re.compile(r"con|prn|aux|nul|com[1-9]|lpt[1-9]")  # not allowed as file names on Windows
@@ -44,17 +44,14 @@ class DerivationSpec:
     target_options: Mapping[str, Mapping[str, str | bool]] = field(default_factory=dict)
     note: tuple[str, ...] = ("tex", "html")
     style: str = "lecture"  # of the note
-    language: str = "en"  # of the note
     conversions: bool = False  # to and from quaternion and matrix
     derivatives: tuple[str, ...] = ()  # "angular_velocity_body by q"
-    degrees: bool = False  # angles in kernels
-    certificates: bool = False  # cofactors, and theorems for Coq and Lean
+    certificates: bool = False  # cofactors, and theorems for Coq
     notation: NotationChoice | None = None  # of notes and terminal; None: the default
-    text: TextChoice | None = None  # the user's own, in the note
-    source: Source | None = field(default=None, compare=False, repr=False)  # where it was read
+    source: str = field(default="", compare=False, repr=False)  # the file, in messages
 
     def __post_init__(self) -> None:
-        faults = Faults(self.source or Source(self.name))
+        faults = Faults(self.source or self.name)
         if not self.models:
             faults.add(("models",), "expected at least one rotation")
         for place, message in repeated(self.models).items():
@@ -85,13 +82,10 @@ class DerivationSpec:
             "theory": self.theory,
             "dynamics": dict(self.dynamics or {}),
             "style": self.style if self.style != "lecture" else "",
-            "language": self.language if self.language != "en" else "",
             "conversions": self.conversions,
             "derivatives": list(self.derivatives),
-            "degrees": self.degrees,
             "certificates": self.certificates,
             "notation": self._notation_data(),
-            "text": {k: v for k, v in asdict(self.text).items() if v} if self.text else {},
         }
         return {
             "name": self.name,
@@ -109,8 +103,7 @@ class DerivationSpec:
         if self.notation is None or self.notation == type(self.notation)():
             return {}
         chosen = asdict(self.notation)
-        of_others = ("vector", "decimal")  # of the model and of the language
-        return {name: chosen[name] for name in chosen if name not in of_others}
+        return {name: chosen[name] for name in chosen if name != "vector"}  # which is the model's
 
 
 def spec_for(

@@ -5,12 +5,11 @@ from __future__ import annotations
 from math import isfinite
 from typing import Any
 
-from rigidsym.models.euler_angles import DEFAULT_ANGLES, DIGITS, EULER_SEQUENCES
+from rigidsym.models.library import faults_in, rotation_from, rotation_given
+from rigidsym.models.parametrisations import DEFAULT_ANGLES, DIGITS, EULER_SEQUENCES
 from rigidsym.models.rotation import RotationModel
-from rigidsym.models.rotation_text import faults_in, rotation_from, rotation_given
 from rigidsym.spec.derivation_spec import repeated
-from rigidsym.spec.tables import Table
-from rigidsym.spec.toml_lines import Path as Place
+from rigidsym.spec.tables import Path as Place, Table
 from rigidsym.text.expression import parse_expression
 from rigidsym.text.names import check_name
 

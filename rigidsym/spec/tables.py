@@ -1,6 +1,6 @@
 """Tables of a derivation file, read key by key; faults are noted, and reading continues.
 
-Each fault has its line and its path in the keys of the file. At the end all are raised together.
+Each fault has its path in the keys of the file. At the end all are raised together.
 """
 
 from __future__ import annotations
@@ -9,38 +9,24 @@ import json
 import re
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import NamedTuple, TypeVar
+from unicodedata import category
 
 from rigidsym.errors import ExpressionError, Fault, MissingExtra, RigidsymError, SpecError, offer
-from rigidsym.spec.toml_lines import Path, locate
+
+Path = tuple[str | int, ...]  # ("rotation", "angles", 1)
 
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
+_ONE_LINE = (("about",), ("unit",), ("label",))  # keys whose texts become part of a line
 _SHOWN = 40  # characters of a wrong text that a message repeats
 _LONG_NUMBER = 1e12  # larger numbers are not repeated in a message
-
-
-@dataclass(frozen=True, slots=True)
-class Source:
-    """The file that a specification was read from, and the line of each of its keys."""
-
-    name: str
-    lines: Mapping[Path, int] = field(default_factory=dict)
-
-    def fault(self, path: Path, message: str) -> Fault:
-        """A fault at a key, with its line or that of the table that lacks it; 0 without either."""
-        known = path
-        while known and known not in self.lines:
-            known = known[:-1]
-        one_line = message.replace("\n", "; ")
-        return Fault(line=self.lines.get(known, 0), path=dotted(path), message=one_line)
 
 
 class Faults:
     """The faults of one file, in the order in which they were found."""
 
-    def __init__(self, source: Source) -> None:
-        self.source = source
+    def __init__(self, source: str) -> None:
+        self.source = source  # the file, in messages
         self._found: list[Fault] = []
 
     def __len__(self) -> int:
@@ -48,13 +34,38 @@ class Faults:
 
     def add(self, path: Path, message: str) -> None:
         """Note a fault, once."""
-        fault = self.source.fault(path, message)
+        fault = fault_at(path, message)
         self._found += [] if fault in self._found else [fault]
 
     def raise_if_any(self) -> None:
         """Raise SpecError with all faults, if there are any."""
         if self._found:
-            raise SpecError(self.source.name, self._found)
+            raise SpecError(self.source, self._found)
+
+    def refuse_control_characters(self, data: object) -> None:
+        """Note every text that would end a comment or a line of what is printed from it.
+
+        Sentences and expressions may take several lines.
+        """
+        stack: list[tuple[Path, object]] = [((), data)]
+        while stack:
+            path, value = stack.pop()
+            if isinstance(value, Mapping):
+                stack += [((*path, str(key)), entry) for key, entry in value.items()]
+            elif isinstance(value, list):
+                stack += [((*path, place), entry) for place, entry in enumerate(value)]
+            elif isinstance(value, str):
+                allowed = "" if path[-1:] in _ONE_LINE else "\n\t"
+                for character in value:
+                    if category(character) in ("Cc", "Cs") and character not in allowed:
+                        code = f"U+{ord(character):04X}"
+                        self.add(path, f"the text contains the control character {code}")
+                        break
+
+
+def fault_at(path: Path, message: str) -> Fault:
+    """A fault at a key, in one line."""
+    return Fault(path=dotted(path), message=message.replace("\n", "; "))
 
 
 def dotted(path: Path) -> str:
@@ -91,7 +102,6 @@ def shortened(text: str) -> str:
 T = TypeVar("T")
 MOST_CHARACTERS = 50_000
 _LONGEST_LINE = 1000  # tomllib's time grows with the square of the dots in a key
-_PLACE = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
 
 
 class Table:
@@ -228,12 +238,13 @@ def read_toml(text: str, source: str) -> tuple[Table, Faults]:
         raise SpecError(source, faults)
     try:
         data = tomllib.loads(text)
-        noted = Faults(Source(source, locate(text)))
     except tomllib.TOMLDecodeError as error:
-        raise SpecError(source, [_syntax_fault(text, error)]) from None
+        raise SpecError(source, [Fault(message=f"not TOML: {error}")]) from None
     except RecursionError:
         message = "lists or tables nested too deeply to be read"
         raise SpecError(source, [Fault(message=message)]) from None
+    noted = Faults(source)
+    noted.refuse_control_characters(data)
     return Table(data, (), noted), noted
 
 
@@ -243,16 +254,4 @@ def _too_long(text: str) -> Iterator[Fault]:
         return
     for line, length in enumerate(map(len, text.split("\n")), start=1):
         if length > _LONGEST_LINE:
-            message = f"a line of {length} characters; expected at most {_LONGEST_LINE}"
-            yield Fault(line=line, message=message)
-
-
-def _syntax_fault(text: str, error: tomllib.TOMLDecodeError) -> Fault:
-    """What tomllib says, with the line as a number; it stops at the first fault."""
-    message = str(error)
-    place = _PLACE.search(message)
-    if place is None:
-        return Fault(message=f"not TOML: {message}")
-    line = int(place[1] or text.rstrip().count("\n") + 1)
-    where = f"column {place[2]}" if place[2] else "the end of the file"
-    return Fault(line=line, message=f"not TOML: {message[: place.start()]}, at {where}")
+            yield Fault(f"line {line} has {length} characters; expected at most {_LONGEST_LINE}")

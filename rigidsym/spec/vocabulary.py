@@ -18,12 +18,6 @@ class NotationChoice(Protocol):
         """Raise ModelError for a model whose names could be confused with this notation."""
 
 
-class TextChoice(Protocol):
-    """What a user adds to a note and leaves out, a dataclass with one field a key of [text]."""
-
-    __dataclass_fields__: ClassVar[dict[str, Any]]
-
-
 class RequestedDerivative(Protocol):
     """A derivative of a quantity; its text is "QUANTITY by VECTOR"."""
 
@@ -39,9 +33,7 @@ class Vocabulary:
     kernels: tuple[str, ...]
     target_options: Mapping[str, Mapping[str, tuple[str | bool, ...]]]  # of [output.TARGET]
     note: tuple[str, ...]
-    styles: tuple[str, ...]  # of a note, the default first
-    languages: tuple[str, ...]  # of a note, the default first
-    notation: Callable[..., NotationChoice]  # raises ModelError for names of frames
+    check_style: Callable[[str], str]  # raises ModelError for a style without a template
+    notation: Callable[..., NotationChoice]
     choices: Mapping[str, tuple[str, ...]]  # of [notation], the default first
-    text: Callable[..., TextChoice]  # raises ModelError for a sentence that cannot be read
     derivative: Callable[[str], RequestedDerivative]  # raises KernelError

@@ -2,12 +2,24 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO
+
+
+def read_bytes(path: Path, most: int = -1) -> bytes:
+    """The content of a regular file, or its first `most` bytes.
+
+    Raises OSError; a FIFO or a device is refused, since reading from it could wait for ever.
+    """
+    if not path.is_file() and path.exists() and not path.is_dir():
+        raise OSError(errno.EINVAL, "not a regular file", str(path))
+    with path.open("rb") as file:
+        return file.read(most)
 
 
 def write_text(path: Path, text: str) -> Path:

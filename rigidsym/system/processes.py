@@ -5,29 +5,24 @@
 
 from __future__ import annotations
 
-import gc
 import os
 import signal
 import sys
 import threading
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from contextvars import ContextVar
+from functools import partial
 from math import isfinite
-from pathlib import Path
 from time import monotonic
 from types import FrameType
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
-from rigidsym.errors import LimitReached, RequestError, RigidsymError, printable
-
-if TYPE_CHECKING:
-    from multiprocessing.connection import Connection
+from rigidsym.errors import LimitReached, RequestError, printable
 
 T = TypeVar("T")
 R = TypeVar("R")
-_WAITING = 1 << 20  # bytes of results
-_PATIENCE = 2.0  # seconds for a copy to end what it started
+_PATIENCE = 5.0  # seconds for a copy to end what it started
 
 
 def cores() -> int:
@@ -36,76 +31,59 @@ def cores() -> int:
 
 
 def in_processes(work: Callable[[T], R], items: Sequence[T]) -> Iterator[R]:
-    """The result of each item, in order. The work writes nothing, and its results can be pickled.
+    """The result of each item, in order; work, items, results and errors can be pickled.
 
     The first item is done before this process is copied, so that the copies have all that it
-    imported and kept for the next. A copy ends at its first error; its items are then done here,
-    so that errors are raised as by `map`, in order.
+    imported and kept for the next.
     """
     yield from map(work, items[:1])
-    rest = items[1:]
     # the threads of JAX are not copied, and a copy would wait for them
-    count = 1 if "jax" in sys.modules else max(min(cores(), len(rest)), 1)
-    copy_of = [place % count for place in range(len(rest))]  # 0: it is done here
-    if count > 1 and not copy_of[-1]:
-        copy_of[-1] = 1  # this process also handles all results
-    shares = [[rest[p] for p, k in enumerate(copy_of) if k == copy] for copy in range(1, count)]
-    with _copies(work, shares) as copies:
-        for item, copy in zip(rest, copy_of, strict=True):
-            try:
-                yield copies[copy - 1].recv() if copy else work(item)
-            except EOFError:
-                yield work(item)
-
-
-@contextmanager
-def _copies(
-    work: Callable[[T], R], shares: Sequence[Sequence[T]]
-) -> Iterator[list[Connection[R, R]]]:
-    """Where the results of each share come in; the copies end with the block."""
-    if not shares:
-        yield []
+    count = 1 if "jax" in sys.modules else min(cores(), len(items) - 1)
+    if count < 2:
+        yield from map(work, items[1:])
         return
-    from fcntl import F_SETPIPE_SZ, fcntl  # of Linux, and few commands have several items
-    from multiprocessing import get_context
+    from concurrent.futures.process import BrokenProcessPool, ProcessPoolExecutor
+    from multiprocessing import active_children, get_context
 
-    context = get_context("fork")
-    running, ends = [], []
-    gc.freeze()  # no search for cycles touches, and so copies, the memory that all share
+    done = 1
+    with ProcessPoolExecutor(count, get_context("fork"), _obey_this_process) as pool:
+        try:
+            for result in pool.map(partial(_done, work), items[1:]):
+                yield result
+                done += 1
+        except BrokenProcessPool:  # the system ended a copy, for want of memory for instance
+            yield from map(work, items[done:])
+        except BaseException:  # an interrupt does not wait for results
+            copies = active_children()
+            for copy in copies:
+                copy.terminate()
+            for copy in copies:
+                copy.join(_PATIENCE)
+                copy.kill()
+            raise
+
+
+def _done(work: Callable[[T], R], item: T) -> R:
     try:
-        for share in shares:
-            here, there = context.Pipe(duplex=False)
-            with suppress(OSError):  # a copy goes on while its results wait, if the system has room
-                fcntl(there.fileno(), F_SETPIPE_SZ, _WAITING)
-            copy = context.Process(target=_done, args=(work, share, here, there), daemon=True)
-            before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-            copy.start()  # Ctrl-C does not reach it: this process ends it
-            signal.pthread_sigmask(signal.SIG_SETMASK, before)
-            there.close()
-            running.append(copy)
-            ends.append(here)
-        yield ends
-    finally:
-        gc.unfreeze()
-        for copy in running:
-            copy.terminate()
-            copy.join(_PATIENCE)
-            copy.kill()
-            copy.join()
+        return work(item)
+    except SystemExit:  # the executor would go on with the next item
+        os._exit(1)
 
 
-def _done(
-    work: Callable[[T], R], items: Sequence[T], here: Connection[R, R], there: Connection[R, R]
-) -> None:
-    """The part of a copy: the results of its items, up to the first error.
+def _obey_this_process() -> None:
+    """Ctrl-C reaches only the first process, which ends its copies and what they started.
 
-    If it is ended before, it ends the programs that it started, too.
+    Errors are pickled; all that multiprocessing would print is that it was interrupted.
     """
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
-    here.close()
-    with suppress(RigidsymError, MemoryError, BrokenPipeError):
-        for item in items:
-            there.send(work(item))
+    sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, _end_once)
+
+
+def _end_once(_signal: int, _frame: FrameType | None) -> None:
+    # the executor ends the copies a second time, which must not stop their cleaning up
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    sys.exit(1)
 
 
 Progress = Callable[[float], None]  # receives the share done, from 0 to 1
@@ -156,7 +134,6 @@ def _drawn(*columns: Any) -> Iterator[Any]:
 
 
 _TICK = 1.0  # seconds between two looks at the clock
-_MEBIBYTE = 1 << 20
 
 
 class _TimeIsUp(BaseException):
@@ -215,39 +192,22 @@ def time_limit(seconds: float, *, label: str = "") -> Iterator[None]:
 
 @contextmanager
 def memory_limit(gigabytes: float) -> Iterator[None]:
-    """Stop what runs inside when it needs this much more memory than is in use now.
+    """Stop what runs inside when this process needs more memory, if the system can limit it.
 
-    Raises LimitReached, and RequestError for no positive number. Without support by the system
-    there is no limit.
+    Raises LimitReached.
     """
-    if not (isinstance(gigabytes, int | float) and gigabytes > 0):
-        raise RequestError(f"memory: expected a positive number of GB, got {gigabytes!r}")
-    used = _memory_in_use()
-    if used is None or not isfinite(gigabytes):
+    if sys.platform == "win32" or not isfinite(gigabytes):
         yield
         return
     import resource
 
-    before = resource.getrlimit(resource.RLIMIT_DATA)
-    most = used + int(gigabytes * 1024 * _MEBIBYTE)
-    if before[1] != resource.RLIM_INFINITY:
-        most = min(most, before[1])
-    resource.setrlimit(resource.RLIMIT_DATA, (most, before[1]))
+    soft, hard = resource.getrlimit(resource.RLIMIT_DATA)
+    most = int(gigabytes * (1 << 30))
+    resource.setrlimit(resource.RLIMIT_DATA, (most if hard < 0 else min(most, hard), hard))
     try:
         yield
     except MemoryError:
-        raise LimitReached(
-            f"stopped at {gigabytes:g} GB of memory; raise the memory limit if it needs more"
-        ) from None
+        message = f"stopped at {gigabytes:g} GB of memory; raise the memory limit if it needs more"
+        raise LimitReached(message) from None
     finally:
-        resource.setrlimit(resource.RLIMIT_DATA, before)
-
-
-def _memory_in_use() -> int | None:
-    """Bytes of data of this process; None if the system does not say."""
-    try:
-        status = Path("/proc/self/status").read_text(encoding="ascii", errors="replace")
-    except OSError:
-        return None
-    lines = (line.split() for line in status.splitlines() if line.startswith("VmData:"))
-    return next((int(line[1]) * 1024 for line in lines), None)
+        resource.setrlimit(resource.RLIMIT_DATA, (soft, hard))

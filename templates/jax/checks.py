@@ -9,7 +9,7 @@ def _components(**arguments):
 
 def _checked(name, value):
     """The argument as an array of floats, or an error that names it."""
-    names, array = _COMPONENTS[name], _plain(name, value)
+    names, array = _COMPONENTS[name], _plain(name, _in_order(name, value, jnp))
     if not jnp.issubdtype(array.dtype, jnp.floating):
         if not jnp.issubdtype(array.dtype, jnp.integer):
             raise TypeError(f"{name}: got dtype {array.dtype}; expected floats")

@@ -1,9 +1,7 @@
-def _entries(name, value, shape, or_flat=False):
+def _entries(name, value, shape):
     """The entries of matrices on one axis, row by row, or an error."""
-    array, whole = _plain(name, value), len(_COMPONENTS[name])
+    array = _plain(name, value)
     if array.shape[-2:] == shape:
-        return array.reshape(*array.shape[:-2], whole)
-    if or_flat and array.shape[-1:] == (whole,):
-        return array
+        return array.reshape(*array.shape[:-2], len(_COMPONENTS[name]))
     expected = ", ".join(map(str, shape))
     raise ValueError(f"{name}: got shape {array.shape}; expected (..., {expected})")

@@ -16,6 +16,8 @@ def _plain(name, value, shape=None):
         raise TypeError(
             f"{name}: got masked entries; fill them, or leave their rows out"
         )
+    if shape is None and (type(value) is not _ARRAY or value.dtype.names):
+        value = _in_order(name, value, np)
     try:
         return np.asarray(value)
     except ValueError as error:

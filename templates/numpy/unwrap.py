@@ -13,19 +13,19 @@ def _unwrapped_quaternion(q):
     return _with_gaps(samples * _signs(samples)[..., np.newaxis], lost)
 
 
-def _unwrapped_axis_angle(q, turn=2.0 * np.pi):
+def _unwrapped_axis_angle(q):
     """Axis and angle, the axis without a turn of more than a quarter from sample to sample."""
     samples, lost = _samples(q)
     axis, angle = samples[..., :3], samples[..., 3]
     axis = _filled(axis, (angle == 0.0)[..., np.newaxis])
     signs = _signs(axis)
     angle = signs * angle
-    angle = angle + _whole_turns(angle, turn)
+    angle = angle + _whole_turns(angle)
     parts = (axis * signs[..., np.newaxis], angle[..., np.newaxis])
     return _with_gaps(np.concatenate(parts, axis=-1), lost)
 
 
-def _unwrapped_rotation_vector(q, turn=2.0 * np.pi):
+def _unwrapped_rotation_vector(q):
     """Rotation vectors, whose length goes on beyond half a turn."""
     samples, lost = _samples(q)
     length = np.sqrt((samples * samples).sum(axis=-1))
@@ -33,7 +33,7 @@ def _unwrapped_rotation_vector(q, turn=2.0 * np.pi):
     axis = samples / np.where(none, 1.0, length)[..., np.newaxis]
     axis = _filled(axis, none[..., np.newaxis])
     signs = _signs(axis)
-    turns = _whole_turns(signs * length, turn)
+    turns = _whole_turns(signs * length)
     return _with_gaps(samples + axis * (signs * turns)[..., np.newaxis], lost)
 
 
@@ -47,60 +47,37 @@ def _unwrapped_modified_rodrigues(q):
     return _with_gaps(np.where(is_shadow, -samples / divisor, samples), lost)
 
 
-def _unwrapped_turns(turns_of, coordinates_of, count, q, *constants):
-    """Coordinates of turns: their angles are followed, of three turns in the nearer set.
+def _unwrapped_euler(q, quarters):
+    """Euler angles in the nearer of the two sets of each rotation.
 
-    `turns_of` gives `count` angles, and for three turns what relates both sets of a rotation.
+    The middle angle is 0 or half a turn at the poles if the outer axes are the same
+    (`quarters` = 0), and a quarter turn, up or down, if they differ (±1). At the pole that is
+    `quarters` quarter turns, the rotation determines only the sum of the outer angles, and at
+    the other one only their difference.
     """
     samples, lost = _samples(q)
-    given = [np.moveaxis(samples, -1, 0)]
-    given += [np.moveaxis(np.atleast_2d(array), -1, 0) for array in constants]
-    found = [np.asarray(value, samples.dtype) for value in turns_of(*given)]
-    angles = [np.broadcast_to(angle, lost.shape) for angle in found[:3]]
-    if len(found) > 3:
-        base, apart, together, *halves = found[3:]
-        angles = _without_poles(angles, base, apart, together)
-        angles = _nearer_set(angles, base, *halves)
-    followed = [angle + _whole_turns(angle) for angle in angles[:count]]
-    values = [
-        np.broadcast_to(value, lost.shape) for value in coordinates_of(*given, followed)
-    ]
-    return _with_gaps(np.stack(values, axis=-1).astype(samples.dtype), lost)
-
-
-def _without_poles(angles, base, apart, together):
-    """At a pole, the sum or the difference that is not determined is as it was before."""
-    first, middle, third = angles
-    limit = 16.0 * np.finfo(middle.dtype).eps
-    bent = 0.5 * (middle - base)
-    is_low = (np.abs(np.sin(bent)) < limit) & (np.abs(apart) < limit)
-    is_high = (np.abs(np.cos(bent)) < limit) & (np.abs(together - np.pi) < limit)
-    total, difference = _filled(first + third, is_high), _filled(first - third, is_low)
+    first, middle, third = np.moveaxis(samples, -1, 0)
+    pole = 0.5 * np.pi * quarters
+    limit = 16.0 * np.finfo(samples.dtype).eps
+    bent = 0.5 * (middle - pole)
+    is_low, is_high = np.abs(np.sin(bent)) < limit, np.abs(np.cos(bent)) < limit
     is_pole = is_low | is_high
+    total, difference = _filled(first + third, is_high), _filled(first - third, is_low)
     first = np.where(is_pole, 0.5 * (total + difference), first)
     third = np.where(is_pole, 0.5 * (total - difference), third)
-    return [first, middle, third]
-
-
-def _nearer_set(angles, base, near_cosine, near_sine, far_cosine, far_sine):
-    """Of the two sets of angles of each rotation the one nearer to the sample before.
-
-    The cosines and sines are those of half the difference and half the sum of the sides.
-    """
-    first, middle, third = angles
-    bent = middle - base
-    cosine, sine = np.cos(0.5 * bent), np.sin(0.5 * bent)
-    total = 2.0 * np.arctan2(far_cosine * sine, near_cosine * cosine)
-    difference = -2.0 * np.arctan2(far_sine * sine, near_sine * cosine)
-    other = [first + total + difference, base - bent, third + total - difference]
-    is_other = _is_other(angles, other)
-    return [np.where(is_other, b, a) for a, b in zip(angles, other, strict=True)]
+    angles = np.stack((first, middle, third))
+    # Away from poles these are all sets but for whole turns; at a pole they are the same up to
+    # half a turn of both outer angles, which half the sum or the difference leaves undecided.
+    other = np.stack((first - np.pi, 2.0 * pole - middle, third - np.pi))
+    angles = np.where(_is_other(angles, other), other, angles)
+    angles = np.stack([angle + _whole_turns(angle) for angle in angles], axis=-1)
+    return _with_gaps(angles.astype(samples.dtype), lost)
 
 
 def _is_other(given, other):
     """Where the shorter way leads to the other set, from sample to sample."""
-    count = np.arange(len(given[0])).reshape(-1, *[1] * (given[0].ndim - 1))
-    none = np.zeros(given[0].shape, bool)
+    count = np.arange(given.shape[1]).reshape(-1, *[1] * (given.ndim - 2))
+    none = np.zeros(given.shape[1:], bool)
     there = _after(none, _way(given, other) < _way(given, given))
     back = _after(none, _way(other, given) < _way(other, other))
     # If only one of the two changes the set, a step ends in one set wherever it began.
@@ -112,11 +89,8 @@ def _is_other(given, other):
 
 def _way(start, end):
     """The square of the way to the next sample, each angle the shorter way round."""
-    steps = [b[1:] - a[:-1] for a, b in zip(start, end, strict=True)]
-    turns = [np.round(step / (2.0 * np.pi)) for step in steps]
-    return sum(
-        (step - 2.0 * np.pi * n) ** 2 for step, n in zip(steps, turns, strict=True)
-    )
+    steps = end[:, 1:] - start[:, :-1]
+    return ((steps - 2.0 * np.pi * np.round(steps / (2.0 * np.pi))) ** 2).sum(axis=0)
 
 
 def _samples(q):
@@ -144,10 +118,10 @@ def _after(first, others):
     return np.concatenate((first[:1], others), axis=0)
 
 
-def _whole_turns(angle, turn=2.0 * np.pi):
+def _whole_turns(angle):
     """What makes steps of an angle along the first axis half a turn at most."""
-    turns = np.round(np.diff(angle, axis=0) / turn)
-    return -turn * _after(np.zeros_like(angle), np.cumsum(turns, axis=0))
+    turns = np.round(np.diff(angle, axis=0) / (2.0 * np.pi))
+    return -2.0 * np.pi * _after(np.zeros_like(angle), np.cumsum(turns, axis=0))
 
 
 def _signs(vectors):

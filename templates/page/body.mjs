@@ -5,6 +5,10 @@ import { cross, dot, length, minus, plus, scaled, within } from "./vectors.mjs";
 const FLAT = 1e-4; // lengths off a plane that do not count
 const LIGHT = [-0.36, 0.48, 0.8]; // right, up and toward the viewer
 const trees = new WeakMap(); // a body -> its tree
+const THINNEST = 0.1; // of the longest edge: a plate is drawn with some thickness
+const SIDES = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]];
+const COLORS = [[201, 88, 68], [69, 114, 167], [224, 176, 64]]; // of opposite sides
+const cuboids = new Map(); // principal moments -> a body
 
 function facesOf({ points, colors, faces }) {
   return faces.map(([color, ...corners]) => {
@@ -54,6 +58,21 @@ function* fromTheBack(tree, toward) {
   yield* fromTheBack(isFacing ? tree.back : tree.front, toward);
   yield* tree.here;
   yield* fromTheBack(isFacing ? tree.front : tree.back, toward);
+}
+
+/** The homogeneous cuboid with these principal moments, which are Σ m (y² + z²) and so on. */
+export function cuboidOf(moments) {
+  const key = String(moments);
+  if (!cuboids.has(key)) {
+    const half = moments.reduce((sum, moment) => sum + moment, 0) / 2;
+    const edges = moments.map((moment) => Math.sqrt(Math.max(half - moment, 0)));
+    const seen = edges.map((edge) => Math.max(edge, THINNEST * Math.max(...edges)));
+    const [x, y, z] = scaled(0.95 / length(seen), seen);
+    const points = [-x, x].flatMap((a) => [-y, y].flatMap((b) => [-z, z].map((c) => [a, b, c])));
+    cuboids.clear();
+    cuboids.set(key, { points, colors: COLORS, faces: SIDES.map((side, k) => [k >> 1, ...side]) });
+  }
+  return cuboids.get(key);
 }
 
 /** The faces that are seen, the farthest first, projected and shaded. */

@@ -1,14 +1,15 @@
 // The page: sliders, numbers, the figure, and the address that holds their state.
 
 import { kernels, page } from "./generated.mjs";
-import { STANDARD, dot, length, minus, plus, scaled, within } from "./vectors.mjs";
+import { STANDARD, length, minus, scaled, within } from "./vectors.mjs";
 import { posed, wholeTurn } from "./scene.mjs";
+import { cuboidOf } from "./body.mjs";
 import { cameraAt, draw } from "./drawing.mjs";
-import { bind, evaluated, said, settle, state } from "./state.mjs";
+import { bind, evaluated, settle, state } from "./state.mjs";
 import { LAST, begin, goTo } from "./flow.mjs";
 
 const { controls, scene } = page;
-export const at = (id) => document.getElementById(id);
+const at = (id) => document.getElementById(id);
 const group = at("figure").querySelector("g");
 const count = scene.turns.length;
 const DEGREE = Math.PI / 180;
@@ -20,7 +21,7 @@ let warned = ""; // what the warning says
 // --- numbers
 
 const fixed = (value, digits) => {
-  const text = Number.isFinite(value) ? value.toFixed(digits).replace("-", "−").replace(".", page.decimal) : "–";
+  const text = Number.isFinite(value) ? value.toFixed(digits).replace("-", "−") : "–";
   return /[1-9]/.test(text) ? text : text.replace("−", "");
 };
 const rounded = (value, step) =>
@@ -81,47 +82,7 @@ function turnsOf(rows, stage, q, body) {
   return whole ? [{ ...whole, rate: 0 }] : [];
 }
 
-const otherGroup = at("figure-other").querySelector("g");
-
-/** The same orientation in another convention, beside the figure. */
-function compare(body, camera, options) {
-  const other = page.others.find(({ key }) => key === at("other").value);
-  at("board").classList.toggle("compared", Boolean(other));
-  if (!other) return;
-  const { key, title, names, unit, factor } = other;
-  const q = kernels[`from_${key}`]([0, 1, 2].map((row) => body.map((axis) => axis[row])));
-  const rows = kernels[`turns_${key}`]?.(q, q.map(() => 0));
-  const turns = turnsOf(rows, other.scene, q, body);
-  draw(otherGroup, posed(other.scene, turns, turns.length), camera, {
-    ...options, omega: null, trace: [], done: turns.length, letters: other.scene.letters, isLocked: false,
-  });
-  const digits = unit ? 1 : 4;
-  at("other-words").textContent = `${title}: ` +
-    names.map((name, k) => `${name} = ${fixed(q[k] / factor, digits)}${unit}`).join(", ");
-}
-
-let own = { of: null, body: page.bodies.own };
-
-/** The file's own body for its parameters as they are, about its centre of mass, to fit. */
-function grown() {
-  if (!page.growing || !kernels.inertia_tensor) return page.bodies.own;
-  const of = String(state.parameters);
-  if (own.of !== of) {
-    const { corners, colors, faces } = page.growing;
-    const centre = kernels.centre_of_mass ? evaluated("centre_of_mass") : [0, 0, 0];
-    const placed = corners.map(([part, ...share]) =>
-      minus(kernels[`place_${part}`]([...share, 0, 0].slice(0, 3), state.parameters), centre));
-    const reach = Math.max(...placed.map(length));
-    const points = placed.map((point, k) => {
-      const offset = corners[k].slice(4); // of the corners of lines and particles
-      return plus(scaled(0.95 / reach, point), offset.length ? offset : [0, 0, 0]);
-    });
-    own = { of, body: { points, colors, faces } };
-  }
-  return own.body;
-}
-
-function follow(pose, turns) {
+function leaveTrace(pose, turns) {
   const axis = kernels.turns && turns.length ? turns.at(-1).axis : STANDARD[2];
   const tip = within(axis, pose.frames.at(-1));
   const last = view.trace.at(-1);
@@ -132,7 +93,7 @@ function follow(pose, turns) {
   if (view.trace.length > MOST_TRACE) view.trace.shift();
 }
 
-export function show() {
+function show() {
   const matrix = evaluated("rotation_matrix");
   const omega = evaluated("angular_velocity_space");
   const factor = page.in_degrees ? DEGREE : 1;
@@ -140,9 +101,6 @@ export function show() {
   showNumbers("rotation_matrix", matrix);
   showNumbers("angular_velocity_space", omega, factor);
   showNumbers("angular_velocity_body", evaluated("angular_velocity_body"), factor);
-  for (const name of ["mass", "inertia_tensor"].filter((known) => kernels[known])) {
-    showNumbers(name, [evaluated(name)].flat());
-  }
   if (kernels.first_integrals) showNumbers("first_integrals", evaluated("first_integrals").map((value) => [value]));
   const isLocked = showMargin();
   const columns = [0, 1, 2].map((k) => matrix.map((row) => row[k]));
@@ -151,11 +109,11 @@ export function show() {
   const turns = turnsOf(kernels.turns && evaluated("turns"), scene, state.q, body);
   const pose = posed(scene, turns, view.done);
   const isWhole = view.done >= count;
-  if (view.shown.has("trace") && isWhole) follow(pose, turns);
+  if (view.shown.has("trace") && isWhole) leaveTrace(pose, turns);
   const camera = cameraAt(at("azimuth").valueAsNumber, at("elevation").valueAsNumber);
   const options = {
     shown: view.shown,
-    body: at("body").value === "own" ? grown() : page.bodies[at("body").value],
+    body: at("body").value === "cuboid" ? cuboidOf(kernels.moments ? evaluated("moments").flat() : page.moments) : page.bodies[at("body").value],
     omega: isWhole ? omega : null,
     omegaName: scene.omega,
     trace: view.shown.has("trace") ? view.trace : [],
@@ -164,17 +122,16 @@ export function show() {
     isLocked,
   };
   draw(group, pose, camera, options);
-  compare(body, camera, options);
 }
 
 /** Read the numbers aloud once they have come to rest, and keep them in the address. */
 let resting = 0;
-export function rest() {
+function rest() {
   clearTimeout(resting);
   resting = setTimeout(() => {
     const factor = page.in_degrees ? DEGREE : 1;
     const omega = evaluated("angular_velocity_body").map((part) => fixed(part / factor, 2));
-    at("said").textContent = `${page.spoken}: ${omega.join(", ")} ${page.in_degrees ? said("degrees per second") : "rad/s"}`;
+    at("said").textContent = `${page.spoken}: ${omega.join(", ")} ${page.in_degrees ? "degrees per second" : "rad/s"}`;
     remember();
   }, 700);
 }
@@ -191,7 +148,6 @@ function remember() {
   }
   words.set("view", [at("azimuth").value, at("elevation").value].join(" "));
   words.set("body", at("body").value);
-  if (at("other").value) words.set("compare", at("other").value);
   words.set("show", [...view.shown].join(" "));
   if (view.done < count) words.set("turns", String(view.done));
   history.replaceState(null, "", `#${words}`);
@@ -210,8 +166,7 @@ function recall() {
   const [azimuth, elevation] = numbers("view");
   if (Number.isFinite(azimuth)) at("azimuth").value = azimuth;
   if (Number.isFinite(elevation)) at("elevation").value = elevation;
-  if (page.bodies[words.get("body")] || words.get("body") === "none") at("body").value = words.get("body");
-  at("other").value = page.others.some(({ key }) => key === words.get("compare")) ? words.get("compare") : "";
+  if ([...at("body").options].some(({ value }) => value === words.get("body"))) at("body").value = words.get("body");
   if (words.has("show")) setShown(words.get("show").split(" "));
   const [done] = numbers("turns");
   setDone(Number.isFinite(done) ? done : count);
@@ -282,7 +237,7 @@ function change(act) {
 for (const box of boxes) {
   box.addEventListener("change", change(() => setShown(boxes.filter((b) => b.checked).map((b) => b.dataset.show))));
 }
-for (const id of ["azimuth", "elevation", "body", "other"]) at(id).addEventListener("input", change(() => {}));
+for (const id of ["azimuth", "elevation", "body"]) at(id).addEventListener("input", change(() => {}));
 at("turns")?.addEventListener("input", change(() => {
   stepping = null;
   setDone(at("turns").valueAsNumber);
@@ -311,6 +266,7 @@ let stepping = null; // how many turns are shown, while they are made one by one
 function reach(time) {
   view.time = Math.max(0, Math.min(LAST, time));
   const goes = goTo(view.time);
+  at("stopped").textContent = goes ? "" : "The motion cannot be computed further: the coordinates are at a pole.";
   const ends = inputsOf("q");
   state.q = state.q.map((value, k) => {
     const { period, factor } = ends[k];
@@ -344,13 +300,13 @@ function frame(time) {
 function pause() {
   last = null;
   stepping = null;
-  at("play").textContent = calm.matches ? said("Step") : said("Play");
+  at("play").textContent = calm.matches ? "Step" : "Play";
   rest();
 }
 
 function start() {
   last = performance.now();
-  at("play").textContent = said("Pause");
+  at("play").textContent = "Pause";
   requestAnimationFrame(frame);
 }
 
@@ -387,7 +343,6 @@ at("reset").addEventListener("click", () => {
   at("azimuth").value = scene.azimuth;
   at("elevation").value = scene.elevation;
   at("body").value = page.body;
-  at("other").value = "";
   at("speed").value = "1";
   setShown(page.shown);
   setDone(count);
@@ -395,6 +350,41 @@ at("reset").addEventListener("click", () => {
   restart();
   show();
 });
+
+// --- copying equations
+
+async function copy(text) {
+  try {
+    await navigator.clipboard.writeText(text);
+    return true;
+  } catch {
+    const field = document.createElement("textarea"); // without access to the clipboard
+    field.value = text;
+    document.body.append(field);
+    field.select();
+    const done = document.execCommand("copy");
+    field.remove();
+    return done;
+  }
+}
+
+/** Copy an equation, and say so: on its button and aloud. */
+async function copyFrom(button, text) {
+  const done = await copy(text);
+  at("said").textContent = done ? "Copied: LaTeX" : "It could not be copied.";
+  button.classList.toggle("done", done);
+  setTimeout(() => button.classList.remove("done"), 1500);
+  button.focus();
+}
+
+for (const place of document.querySelectorAll(".copy")) {
+  const button = document.createElement("button");
+  button.type = "button";
+  button.textContent = "Copy LaTeX";
+  button.setAttribute("aria-label", `Copy equation (${place.textContent}) as LaTeX`);
+  button.addEventListener("click", () => copyFrom(button, page.copies[place.dataset.of]));
+  place.replaceChildren(button);
+}
 
 setShown(page.shown);
 recall();

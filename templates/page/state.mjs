@@ -2,14 +2,17 @@
 
 import { kernels, page } from "./generated.mjs";
 
-export const state = { q: [], q_dot: [], parameters: [...page.parameters], t: 0 };
+export const state = { q: [], q_dot: [], omega_body: [], parameters: [...page.parameters], t: 0 };
 for (const { kind, place, start, factor } of page.controls) state[kind][place] = start * factor;
 
-/** The vectors that functions take: those of the state, and y, which holds coordinates and rates. */
-const given = (input) => (input === "y" ? [...state.q, ...state.q_dot] : state[input]);
-/** Words of the page in its language. */
-export const said = (english) => page.words[english] ?? english;
+/** The vectors that functions take: those of the state, and y, which is q and the rates or Ω′. */
+const given = (input) => (input === "y" ? [...state.q, ...state[page.second]] : state[input]);
 export const evaluated = (name) => kernels[name](...page.inputs[name].map(given));
+
+/** In Euler's form the rates follow from Ω′. */
+export function follow() {
+  if (page.second === "omega_body") state.q_dot = evaluated("state_derivative").slice(0, state.q.length);
+}
 
 /** x with A x = b, by elimination with pivots; A is small and regular. */
 function solved(a, b) {
@@ -43,7 +46,11 @@ function correction(slopes, excess, ease) {
 
 /** Project coordinates, constants and rates onto their constraints; `held` is changed last. */
 export function bind(held) {
-  if (!kernels.conditions) return;
+  if (kernels.conditions) project(held);
+  follow();
+}
+
+function project(held) {
   const keys = ["q", "parameters"].flatMap((kind) => state[kind].map((_, k) => `${kind}-${k}`));
   const count = state.q.length;
   for (let round = 0; round < 60; round += 1) {
@@ -54,6 +61,7 @@ export function bind(held) {
     state.q = state.q.map((value, k) => value + change[k]);
     state.parameters = state.parameters.map((value, k) => value + change[count + k]);
   }
+  if (page.second === "omega_body") return;
   const slopes = evaluated("condition_slopes").map((row) => row.slice(0, count));
   const bound = slopes.filter((row) => row.some((slope) => slope !== 0));
   if (!bound.length) return;
@@ -70,5 +78,5 @@ export function settle() {
   const speed = Math.hypot(...state.q_dot);
   bind("");
   const now = Math.hypot(...state.q_dot);
-  if (kernels.conditions && now > 0) state.q_dot = state.q_dot.map((rate) => (rate * speed) / now);
+  if (kernels.conditions && page.second === "q_dot" && now > 0) state.q_dot = state.q_dot.map((rate) => (rate * speed) / now);
 }

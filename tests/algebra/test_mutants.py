@@ -1,7 +1,6 @@
 """Every change of one sign, operator or constant in the arithmetic of the ring is seen.
 
-`benchmarks/mutation.py` makes the changes; it also tries those of the other files of the ring and
-of the prover, which takes minutes.
+`tests/campaigns/mutants.py` changes all other modules.
 """
 
 from __future__ import annotations
@@ -12,7 +11,7 @@ import pytest
 import sympy as sp
 from sympy.polys.rings import PolyElement
 
-from benchmarks.mutation import Mutant, mutants
+from helpers.function_mutants import Mutant, mutants
 from rigidsym.algebra import codec as codec_module, matrix, ring
 from rigidsym.algebra.codec import codec_for
 from rigidsym.algebra.matrix import RingMatrix, cross, hat, unhat

@@ -12,10 +12,18 @@ import sympy as sp
 from helpers.samples import ROTATIONS
 from helpers.witness import mp
 from rigidsym.algebra.codec import codec_for
-from rigidsym.algebra.series import FIRST_SERIES, closed_form, series_of, taylor
-from rigidsym.algebra.stable_forms import Stumpff, at_zero, halved, rewriter_of
+from rigidsym.algebra.stable_forms import (
+    FIRST_SERIES,
+    Stumpff,
+    at_zero,
+    closed_form,
+    halved,
+    rewriter_of,
+    series_of,
+    taylor,
+)
+from rigidsym.models.library import rotation_from
 from rigidsym.models.rotation import time_function
-from rigidsym.models.rotation_text import rotation_from
 from rigidsym.motion import derive
 
 ORDERS = range(FIRST_SERIES, 8)

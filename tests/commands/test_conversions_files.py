@@ -10,15 +10,14 @@ import sys
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from scipy.spatial.transform import Rotation
 
 import rigidsym as rs
 from rigidsym.commands.cli import commands
 from rigidsym.errors import SpecError
 from rigidsym.kernels.targets import TARGETS
-from rigidsym.models.library import PARAMETRISATIONS
-from rigidsym.models.rotation_text import rotation_from
+from rigidsym.models.library import PARAMETRISATIONS, rotation_from
 from rigidsym.notes.document.document import Paragraph
-from rigidsym.notes.note import APPENDIX
 from rigidsym.pipeline import motion_of, output_of, read_record, read_spec
 
 FILE = """
@@ -74,16 +73,17 @@ def test_parameters_of_a_body_stand_beside_those_of_the_rotation(target):
     text = BODY + FILE.format("z(phi) x(alpha0) z(psi)", "conversions = true")
     motion = motion_of(read_spec(text, source="a.toml", name="a"))
     functions = motion.kernels(target, conversions=True).load()
-    parameters, q = [0.4, 1.0, 2.0, 3.0], [[0.3, -1.2]]
-    matrix = functions.rotation_matrix(q, parameters)
-    np.testing.assert_allclose(functions.from_rotation_matrix(matrix, parameters), q, atol=1e-14)
+    parameters, q = [0.4, 1.0, 2.0, 3.0], [0.3, -1.2]
+    turns = functions.quaternion(q, parameters)
+    expected = Rotation.from_matrix(functions.rotation_matrix(q, parameters))
+    np.testing.assert_allclose(turns, expected.as_quat(scalar_first=True), atol=1e-14)
 
 
 def test_what_is_not_offered_stands_in_the_record():
     text = FILE.format("z(phi) x(phi)", "conversions = true")
     found = json.loads(output_of(read_spec(text, source="a.toml", name="a")).record_text)
     assert found["conversions"]["coordinates"] is None
-    assert "do not determine it one by one" in found["conversions"]["without"]
+    assert "scipy.optimize" in found["conversions"]["without"]
 
 
 def test_a_wrong_value_and_a_wrong_place_are_told():
@@ -106,6 +106,7 @@ def written(tmp_path_factory):
     return folder
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("command", [("format", "--check"), ("check",)])
 def test_ruff_would_leave_every_module_as_it_is(written, command):
     done = subprocess.run(
@@ -134,7 +135,7 @@ def test_a_note_shows_them_before_the_proofs(text):
     motion = rs.derive(rotation_from(text))
     document = motion.note(conversions=True).document
     titles = [section.title for section in document.sections]
-    assert titles.index("Conversions") + 1 == titles.index(APPENDIX)
+    assert titles.index("Conversions") + 1 == titles.index("Appendix: identities verified")
     number = document.number("quaternion")
     assert number == len(motion.steps) + 1
     module = motion.kernels(conversions=True).source
@@ -150,8 +151,7 @@ def test_a_note_shows_them_before_the_proofs(text):
 @pytest.mark.parametrize(
     "text",
     [
-        *("ZXZ", *PARAMETRISATIONS, "davenport", "z(phi)", "z(phi) x(theta)"),
-        *("z(phi) x(theta) z(psi) y(delta)", "z(phi) [1,1,1](theta) z(-phi)"),
+        *("ZXZ", *PARAMETRISATIONS, "davenport"),
     ],
 )
 def test_formulas_in_its_sentences_are_formulas(text):

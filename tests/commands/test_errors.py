@@ -6,7 +6,6 @@ import inspect
 import sys
 from pathlib import Path
 from time import sleep
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -18,10 +17,9 @@ from rigidsym import errors
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.commands.cli import commands
 from rigidsym.kernels.targets.c import compiling
+from rigidsym.mechanics.body import BodyValues
 from rigidsym.mechanics.derive import derive as derivation_of
-from rigidsym.mechanics.mass import derive as mass
 from rigidsym.notes.formats.pdf import typeset
-from rigidsym.system import cluster
 from rigidsym.system.processes import time_limit
 from rigidsym.system.resources import folder
 
@@ -51,8 +49,8 @@ def not_in_the_ring(_: pytest.MonkeyPatch) -> None:
 
 
 def false_claim(patch: pytest.MonkeyPatch) -> None:
-    right = mass._moved
-    patch.setattr(mass, "_moved", lambda m, by: 2 * right(m, by))
+    right = BodyValues.shifted_inertia
+    patch.setattr(BodyValues, "shifted_inertia", lambda values: 2 * right(values))
     rs.derive("ZXZ", ["inertia_tensor_point"], body=rs.solid("cone"))
 
 
@@ -78,13 +76,6 @@ def no_extra(patch: pytest.MonkeyPatch) -> None:
     patch.setitem(sys.modules, "trimesh", None)
     Path("a.stl").write_text("solid")
     said("inertia", "a.stl", "--density", "1")
-
-
-def no_cluster(patch: pytest.MonkeyPatch) -> None:
-    patch.setattr(cluster, "PATIENCE", 0.2)
-    Path("a.csv").write_text("phi,theta,psi\n1,2,3\n")
-    words = ("--only", "rotation_matrix", "--scheduler", "localhost:1", "--out", "r.csv")
-    said("eval", "ZXZ", "a.csv", *words)
 
 
 def broken_template(_: pytest.MonkeyPatch) -> None:
@@ -155,7 +146,6 @@ PROVOKED = {
     errors.SpecError: bad_file,
     errors.MissingTool: no_tex,
     errors.MissingExtra: no_extra,
-    errors.ClusterError: no_cluster,
     errors.TemplateFault: broken_template,
     errors.ToolFailed: failing_tex,
     errors.DataError: bad_data,
@@ -186,13 +176,7 @@ def turning() -> rs.Motion:
 
 
 PACKAGES = {  # a package that is missing: the extra that brings it, and what needs it
-    "pyarrow": ("parquet", lambda: rs.inertia_of("a.parquet")),
-    "pyarrow.parquet": (
-        "parquet",
-        lambda: said("eval", "ZXZ", "a.csv", "--only", "rotation_matrix", "--out", "r.parquet"),
-    ),
-    "dask": ("dask", lambda: rs.inertia_of(SimpleNamespace(dask=None))),
-    "distributed": ("dask", lambda: rs.inertia_of("a.npy", scheduler="localhost:1")),
+    "polars": ("data", lambda: rs.inertia_of("a.parquet")),
     "matplotlib.figure": (
         "plot",
         lambda: turning().simulate({"phi": 0, "phi_dot": 1}, {}, 1.0, samples=3).plot("a.svg"),

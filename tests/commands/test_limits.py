@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import pty
-import resource
 import signal
 import subprocess
 import sys
@@ -21,16 +20,21 @@ from helpers.command import RIGIDSYM, ROOT, call
 from rigidsym.commands.cli import commands
 from rigidsym.errors import LimitReached, RequestError, RigidsymError
 from rigidsym.notes.formats.record import SCHEMA, SCHEMA_VERSION
-from rigidsym.system.processes import memory_limit, time_limit
+from rigidsym.system.processes import time_limit
 
-ENDLESS = """\
-[rotation]
-matrix = [["1", "0", "0"], ["0", "1", "0"], ["0", "0", "1"]]
-coordinates = ["a", "b", "c", "d", "e"]
-constraints = [
-    "a + b + c + d + e", "a*b + b*c + c*d + d*e + e*a", "a*b*c + b*c*d + c*d*e + d*e*a + e*a*b",
-    "a*b*c*d + b*c*d*e + c*d*e*a + d*e*a*b + e*a*b*c", "a*b*c*d*e - 1",
+NINE = [[f"r{i}{j}" for j in "123"] for i in "123"]
+UNIT = [
+    " + ".join(f"{row[i]}*{row[j]}" for row in NINE) + " - 1" * (i == j)
+    for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 ]
+IDENTITY = "\n".join(f"r{i}{j} = {int(i == j)}" for i in "123" for j in "123")
+ENDLESS = f"""\
+[rotation]
+matrix = {json.dumps(NINE)}
+coordinates = {json.dumps([*NINE[0], *NINE[1], *NINE[2]])}
+constraints = {json.dumps(UNIT)}
+[rotation.example]
+{IDENTITY}
 """
 
 
@@ -92,17 +96,10 @@ def test_a_time_limit_needs_the_main_thread():
     assert caught
 
 
-NINE = [[f"r{i}{j}" for j in "123"] for i in "123"]
-UNIT = [
-    " + ".join(f"{row[i]}*{row[j]}" for row in NINE) + " - 1" * (i == j)
-    for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
-]
 LONG = " + ".join(f"a*b**{k}" for k in range(60))
 UNBOUNDED = {
     "roots of roots": '[rotation]\nsequence = "z(sqrt(sqrt(a+b)+c)) x(sqrt(sqrt(d)+1))"',
-    "nine entries that are bound": f"[rotation]\nmatrix = {json.dumps(NINE)}\n"
-    f"coordinates = {json.dumps([*NINE[0], *NINE[1], *NINE[2]])}\nconstraints = {json.dumps(UNIT)}",
-    "roots of primes": '[rotation]\nsequence = "z(a*sqrt(2)+a*sqrt(3)+a*sqrt(5)+a*sqrt(7)) x(b)"',
+    "nine entries that are bound": ENDLESS,
     "forty turns": f'[rotation]\nsequence = "{" ".join(f"z(a{k})" for k in range(1, 41))}"',
     "derivatives": '[rotation]\nsequence = "z(u) x(v) y(w) x(s)"\n[body]\nshape = "cone"\n'
     '[output]\nderivatives = ["kinetic_energy by q"]',
@@ -135,8 +132,8 @@ def test_chains_are_derived_in_time(turns):
 
 @pytest.mark.parametrize(
     "rotations",
-    [[{"sequence": "z(a) x(b) z(c) x(d) z(e1) x(f) z(g) x(h)"}], [{"sequence": "ZXZ"}] * 20_000],
-    ids=["of eight turns", "of many rotations"],
+    [[{"sequence": "z(sqrt(sqrt(a+b)+c)) x(sqrt(sqrt(d)+1))"}], [{"sequence": "ZXZ"}] * 20_000],
+    ids=["of roots of roots", "of many rotations"],
 )
 def test_a_check_is_stopped_too(tmp_path, rotations):
     request = {"name": "top", "rotations": rotations, "kernels": [], "note": ["tex"]}
@@ -144,25 +141,6 @@ def test_a_check_is_stopped_too(tmp_path, rotations):
     (tmp_path / "top.json").write_text(json.dumps(record))
     done = CliRunner().invoke(commands, ["check", str(tmp_path), "--timeout", "0.2"])
     assert isinstance(done.exception, LimitReached), done.output
-
-
-def test_a_system_without_timers_or_accounts_has_no_limits(monkeypatch, tmp_path):
-    monkeypatch.delattr(signal, "setitimer")
-    monkeypatch.setattr("rigidsym.system.processes.Path", lambda _: tmp_path / "none")
-    with time_limit(0.01), memory_limit(1e-9):
-        done = len("x" * 100_000)
-    monkeypatch.undo()
-    with memory_limit(float("inf")):
-        assert done == 100_000
-
-
-def test_the_limit_of_the_system_holds_too(monkeypatch):
-    limits = []
-    monkeypatch.setattr(resource, "getrlimit", lambda _: (-1, 1 << 20))
-    monkeypatch.setattr(resource, "setrlimit", lambda _, pair: limits.append(pair))
-    with memory_limit(64):
-        assert limits == [(1 << 20, 1 << 20)]
-    assert limits[1:] == [(-1, 1 << 20)]
 
 
 def test_other_errors_of_finalizers_are_told_as_ever(monkeypatch):
@@ -180,14 +158,12 @@ def test_other_errors_of_finalizers_are_told_as_ever(monkeypatch):
 def test_memory_is_bounded():
     program = (
         "from rigidsym.system.processes import memory_limit\n"
-        "with memory_limit(0.1):\n    b'x' * (1 << 30)"
+        "with memory_limit(0.5):\n    b'x' * (1 << 30)"
     )
     done = subprocess.run(
         [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False
     )
-    assert "LimitReached: stopped at 0.1 GB of memory" in done.stderr
-    with memory_limit(0.5):
-        assert len(b"x" * (1 << 20)) == 1 << 20
+    assert "LimitReached: stopped at 0.5 GB of memory" in done.stderr
 
 
 def test_an_interrupt_ends_a_derivation_within_a_second(tmp_path):

@@ -12,7 +12,7 @@ from click.testing import CliRunner
 
 from helpers.command import RIGIDSYM
 from rigidsym.commands.cli import commands
-from rigidsym.errors import RequestError
+from rigidsym.errors import Fault, SpecError
 from rigidsym.system import processes
 from rigidsym.system.processes import in_processes
 
@@ -36,38 +36,40 @@ def test_two_processes_write_what_one_writes(tmp_path: Path, monkeypatch):
     assert one == two
 
 
+def inverse(number: int) -> int:
+    if number == 5:
+        raise SpecError("five", [Fault(message="five has none")])
+    return -number
+
+
 @pytest.mark.parametrize("cores", [1, 2, 3, 9])
 def test_results_come_in_order_and_errors_where_they_arise(cores: int, monkeypatch):
     monkeypatch.setattr(processes, "cores", lambda: cores)
 
-    def inverse(number: int) -> int:
-        if number == 5:
-            raise RequestError("five has none")
-        return -number
-
     found = in_processes(inverse, range(8))
     assert [next(found) for _ in range(5)] == [0, -1, -2, -3, -4]
-    with pytest.raises(RequestError, match="five has none"):
+    with pytest.raises(SpecError, match="five has none") as caught:
         next(found)
+    assert caught.value.faults == (Fault(message="five has none"),)
     assert list(in_processes(inverse, range(5))) == [0, -1, -2, -3, -4]
     assert list(in_processes(inverse, [])) == []
 
 
 ENDED = """
-import os, sys
 from pathlib import Path
 from time import sleep
 from rigidsym.system import processes
 
 processes.cores = lambda: 2
-here, started, ended = os.getpid(), Path("started"), Path("ended")
+started, ended = Path("started"), Path("ended")
 
 def work(item):
-    if os.getpid() != here:
+    if item == "c":
         try:
             started.touch()
             sleep(60)
         finally:
+            sleep(0.5)  # while it cleans up, the executor asks it to end once more
             ended.touch()
     return item
 
@@ -96,16 +98,18 @@ def test_a_run_that_stops_says_how_much_is_kept(tmp_path: Path, monkeypatch):
     assert "2 of 4 derivations are finished and kept in out" in done.output
 
 
+HERE = os.getpid()
+
+
+def upper(item: str) -> str:
+    if item == "c" and os.getpid() != HERE:
+        os._exit(1)
+    return item.upper()
+
+
 def test_the_work_of_a_process_that_was_killed_is_done_again(monkeypatch):
     monkeypatch.setattr(processes, "cores", lambda: 2)
-    here = os.getpid()
-
-    def work(item: str) -> str:
-        if item == "c" and os.getpid() != here:
-            os._exit(1)
-        return item.upper()
-
-    assert "".join(in_processes(work, "abcdef")) == "ABCDEF"
+    assert "".join(in_processes(upper, "abcdef")) == "ABCDEF"
 
 
 def test_files_do_not_depend_on_the_encoding_of_the_terminal(tmp_path: Path):

@@ -11,7 +11,7 @@ import pytest
 import trimesh
 
 from helpers.mutations import mutated
-from rigidsym.data.mass.mesh import ENDINGS, mesh_inertia, read_mesh_file
+from rigidsym.data.mass import ENDINGS, mesh_inertia, read_mesh_file
 from rigidsym.errors import BodyError, MissingExtra
 
 MUTATIONS = 80  # of each format
@@ -68,7 +68,7 @@ def test_a_file_that_is_no_mesh_is_described_and_not_quoted(tmp_path):
 
 
 def test_lengths_beyond_double_precision_are_a_message():
-    from rigidsym.data.mass.mesh import Mesh
+    from rigidsym.data.mass import Mesh
 
     box = trimesh.creation.box()
     for size in (1e200, 1e-200):

@@ -5,13 +5,14 @@ from __future__ import annotations
 import io
 
 import numpy as np
+import polars as pl
 import pytest
 from scipy.spatial.transform import Rotation
 
 import rigidsym as rs
 from helpers.mutations import mutated
 from rigidsym.errors import RigidsymError
-from rigidsym.tools.evaluate.evaluation import evaluation
+from rigidsym.tools.evaluate import evaluate
 from rigidsym.tools.identify.identification import identify_file
 
 MUTATIONS = 60  # of each kind of file
@@ -34,12 +35,9 @@ def npy(array: np.ndarray) -> bytes:
 
 
 def parquet_file() -> bytes:
-    pyarrow = pytest.importorskip("pyarrow")
-    from pyarrow import parquet
-
     file = io.BytesIO()
     columns = {name: TABLE[:, k] for k, name in enumerate(NAMES)}
-    parquet.write_table(pyarrow.table(columns), file)
+    pl.DataFrame(columns).write_parquet(file)
     return file.getvalue()
 
 
@@ -66,7 +64,7 @@ def test_a_broken_table_is_a_result_or_a_message(tmp_path, name):
     for _ in range(MUTATIONS):
         path.write_bytes(mutated(content, rng))
         for work in (
-            lambda: evaluation(motion, ("rotation_matrix",), path, tmp_path / "r.csv").run(),
+            lambda: evaluate(motion, ("rotation_matrix",), path, tmp_path / "r.csv"),
             lambda: identify_file(path),
             lambda: rs.inertia_of(path),
         ):

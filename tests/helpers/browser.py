@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 import json
-import os
 import re
-import shutil
 import subprocess
 from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec
 from itertools import groupby
 from pathlib import Path
-
-import pytest
 
 CHROMIUM = (
     "chromium",
@@ -83,13 +79,6 @@ class Seen:
     formulas: int
     wide: tuple[str, ...]  # what has to be scrolled inside its box
     faults: tuple[str, ...]  # what axe found
-
-
-def require_chromium() -> None:
-    """Skip the test without Chromium, or fail where it is required."""
-    if shutil.which("chromium") is None:
-        required = os.environ.get("RIGIDSYM_REQUIRE_CHROMIUM") == "1"
-        (pytest.fail if required else pytest.skip)("chromium is not installed")
 
 
 def look_at(

@@ -7,16 +7,7 @@ from types import ModuleType
 
 import rigidsym as rs
 from helpers.motions import derived
-from rigidsym.models.rotation_text import rotation_from
-
-CHAINS = (  # three turns about axes of any kind, the second across the others
-    "[1,1,0](a) [1,-1,1](b) [1,1,0](c)",
-    "z(phi) x(b) [0,3,4](c)",
-    "z(phi) x(b) [0,-3,4](c)",
-    "z(phi) x(b) [0,3,-4](c)",
-    "z(phi) x(b) [0,0,-1](c)",
-    "z(phi) x(b) [0,-1,0](c)",
-)
+from rigidsym.models.library import rotation_from
 
 
 @cache

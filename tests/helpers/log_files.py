@@ -6,10 +6,11 @@ import subprocess
 from pathlib import Path
 
 import numpy as np
+import polars as pl
 
 from helpers import command as command_line
 from helpers.command import RIGIDSYM
-from rigidsym.data.readers import reader_of
+from rigidsym.data.tables import open_table
 
 COUNT = 1000
 VELOCITY = ("angular_velocity_body",)
@@ -41,19 +42,16 @@ def _as_text(path: Path, table: np.ndarray) -> None:
 
 
 def _as_parquet(path: Path, table: np.ndarray) -> None:
-    import pyarrow
-    from pyarrow import parquet
-
     columns = dict(zip(NAMES, table.T, strict=True))
-    parquet.write_table(pyarrow.table(columns), path, row_group_size=300)
+    pl.DataFrame(columns).write_parquet(path, row_group_size=300)
 
 
 WRITERS = {".npy": _as_npy, ".csv": _as_text, ".parquet": _as_parquet}
 
 
 def read(path: Path) -> np.ndarray:
-    reader = reader_of(path)
-    return np.concatenate([chunk.table for chunk in reader.chunks(range(reader.width))])
+    reader = open_table(path)
+    return np.concatenate([chunk.table for chunk in reader.batches(range(reader.width))])
 
 
 def velocities(kernel, table: np.ndarray, rows: int) -> np.ndarray:

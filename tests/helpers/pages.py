@@ -69,8 +69,3 @@ def main_of(html: str) -> str:
     """The note in a file."""
     (main,) = re.findall(r'<main id="content">.*</main>', html, re.DOTALL)
     return main
-
-
-def copied(page: str, language: str) -> dict[str, str]:
-    """label: text copied by a button."""
-    return {name: texts[language] for name, texts in carried(page)["copies"].items()}

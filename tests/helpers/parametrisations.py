@@ -10,9 +10,8 @@ from typing import Any
 import sympy as sp
 
 from helpers.witness import derivative, evaluate, hat, mp, number, paths, rotation, unhat
-from rigidsym.models.euler_angles import EULER_SEQUENCES
-from rigidsym.models.library import PARAMETRISATIONS, PRESETS
-from rigidsym.models.rotation_text import rotation_from
+from rigidsym.models.library import PARAMETRISATIONS, PRESETS, rotation_from
+from rigidsym.models.parametrisations import EULER_SEQUENCES
 from rigidsym.motion import Motion, derive
 
 CLOSE = mp.mpf(10) ** -30
@@ -154,10 +153,9 @@ class Moving:
 
     text: str
     passive: bool
-    point: int
 
     def __repr__(self) -> str:
-        return f"{self.text}{'-passive' * self.passive}{f'-{self.point}' if self.point else ''}"
+        return f"{self.text}{'-passive' * self.passive}"
 
     @cached_property
     def motion(self) -> Motion:
@@ -167,7 +165,7 @@ class Moving:
     def _way(self) -> tuple[Curve, Build]:
         size = len(self.motion.model.coordinates)
         if self.text in EULER_SEQUENCES:
-            curve = paths(2, size=size)[self.point].at
+            curve = paths(1, size=size)[0].at
             return curve, lambda q: rotation(self.text, q)
         return WITNESSES.get(self.text) or (nearly_straight(size), chain_witness(self.motion))
 
@@ -238,10 +236,9 @@ def values_on(motion: Motion, curve: Curve) -> dict[sp.Expr, Any]:
     return values
 
 
-# Every rotation that can be asked for by name, the 24 conventions at two points, and some chains.
+# Every rotation that can be asked for by name, and some chains.
 MOVING = tuple(
-    Moving(text, passive, point)
+    Moving(text, passive)
     for text in (*EULER_SEQUENCES, *PARAMETRISATIONS, *PRESETS, *CHAINS)
     for passive in (False, True)
-    for point in range(2 if text in EULER_SEQUENCES else 1)
 )

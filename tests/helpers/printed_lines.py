@@ -16,21 +16,19 @@ from typing import Any
 import sympy as sp
 
 import rigidsym as rs
-from helpers.swept_kernels import of_series, staged, swept
+from helpers.swept_kernels import of_series, swept
 from rigidsym import __version__
 from rigidsym.kernels.targets import TARGETS, printer
-from rigidsym.models.rotation_text import rotation_from
+from rigidsym.models.library import rotation_from
 from rigidsym.system import resources
 
 A, C = sp.symbols("A C", positive=True)
 TOP = {"body": rs.principal_moments(A, A, C), "potential": "m*g*l*cos(theta)"}
 BOTH = "rotation_matrix", "angular_velocity_body"
 RATES = "rotation_matrix", "rates_from_angular_velocity_body"
-PRODUCTS = (
+JACOBIANS = (
     "rotation_matrix by q",
-    "rotation_matrix by q jvp",
-    "angular_velocity_body by q vjp",
-    "angular_velocity_body by q_dot jvp",
+    "angular_velocity_body by q_dot",
 )
 ROTATIONS: dict[str, tuple[str, tuple[str, ...], dict[str, Any]]] = {  # what acts on them
     "turn": ("z(a)", BOTH, {}),
@@ -46,12 +44,12 @@ ROTATIONS: dict[str, tuple[str, tuple[str, ...], dict[str, Any]]] = {  # what ac
 }
 PRINTED: dict[str, list[dict[str, Any]]] = {
     **{name: [{}] for name in ROTATIONS},
-    "turn": [{}, {"conversions": True, "degrees": True}],
-    "turns": [{"derivatives": PRODUCTS}, {"conversions": True}],
+    "turn": [{}, {"conversions": True}],
+    "turns": [{"derivatives": JACOBIANS}, {"conversions": True}],
     "quaternion": [{}, {"conversions": True}],
-    "axis": [{"conversions": True, "degrees": True}],
+    "axis": [{"conversions": True}],
     "constants": [{"conversions": True}],
-    "series": [{}, {"conversions": True, "derivatives": ("rotation_matrix by q vjp",)}],
+    "series": [{}, {"conversions": True, "derivatives": ("rotation_matrix by q",)}],
 }
 _PROSE = re.compile(r'""".*?"""|/\*.*?\*/', re.DOTALL)
 LEAN = {"precision": "double", "arrays": False, "libm": True}
@@ -99,7 +97,7 @@ def of_widths(target: str) -> Iterator[str]:
     """The same of kernels made by hand, whose lines have every width."""
     programs = [(program, {}) for program in (swept(), *map(of_series, range(4)))]
     if target == "c":
-        programs += [(program, LEAN) for program in (swept(), of_series(0), staged())]
+        programs += [(program, LEAN) for program in (swept(), of_series(0))]
     for program, way in programs:
         for file, text in printer(target).render(program, **way).items():
             yield described(file, text)

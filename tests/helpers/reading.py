@@ -6,11 +6,9 @@ person does, and compute with what they find.
 
 from __future__ import annotations
 
-import ast
 import re
 import unicodedata
 from collections.abc import Callable, Iterator
-from math import factorial
 from typing import Any
 from xml.etree import ElementTree
 
@@ -314,114 +312,3 @@ def _letter(character: str) -> str:
     if "SANS-SERIF" in style:
         return rf"\mathsf {found}"
     return _SIGNS.get(character, found)
-
-
-# functions in Python, C and JavaScript
-
-_CALLED: dict[str, Callable[..., Any]] = {
-    **{name: getattr(mp, name) for name in ("sin", "cos", "sqrt", "atan2")},
-    **dict.fromkeys(("abs", "fabs"), abs),
-    **dict.fromkeys(("or_nan", "_or_nan", "_or_nan_scalar"), lambda value, *_: value),
-    **dict.fromkeys(("sharp", "_sharp"), lambda cosine, _: cosine),
-    "_cos": mp.cos,
-    "_sin": mp.sin,
-    "_sin_cos": lambda *angles: [*map(mp.sin, angles), *map(mp.cos, angles)],
-    **dict.fromkeys(
-        ("_entire", "_entire_scalar"), lambda x, *orders: [entire(k, x) for k in orders]
-    ),
-}
-
-
-def entire(order: int, square: Value) -> Value:
-    """c_k of n²: c0 = cos n, c1 = sin n/n, c_(k+2) = (1/k! - c_k)/n²."""
-    n = mp.sqrt(square)
-    found = [mp.cos(n), mp.sin(n) / n]
-    for k in range(order - 1):
-        found.append((1 / mp.mpf(factorial(k)) - found[k]) / square)
-    return found[order]
-
-
-def computed(node: ast.expr, known: Values) -> Value:
-    """An expression of Python; those of C and JavaScript are no different here."""
-    match node:
-        case ast.Constant(value=int(value) | float(value)):
-            return mp.mpf(value)
-        case ast.Constant(value=None) | ast.Name(id="null" | "NULL"):
-            return None
-        case ast.Name(id=name):
-            return known[name]
-        case ast.UnaryOp(op=ast.USub(), operand=operand):
-            return -computed(operand, known)
-        case ast.UnaryOp(op=ast.UAdd(), operand=operand):
-            return computed(operand, known)
-        case ast.BinOp(left=left, op=op, right=right):
-            one, two = computed(left, known), computed(right, known)
-            acts: dict[type, Callable[[Value, Value], Value]] = {
-                ast.Add: lambda a, b: a + b,
-                ast.Sub: lambda a, b: a - b,
-                ast.Mult: lambda a, b: a * b,
-                ast.Div: lambda a, b: a / b,
-            }
-            return acts[type(op)](one, two)
-        case ast.Call(func=ast.Name(id=name) | ast.Attribute(attr=name), args=arguments):
-            whole = (
-                a.value if isinstance(a, ast.Constant) else computed(a, known) for a in arguments
-            )
-            return _CALLED[name](*whole)
-        case ast.Tuple(elts=parts):
-            return [computed(part, known) for part in parts]
-        case ast.Subscript(value=ast.Name(id=name), slice=ast.Constant(value=int(place))):
-            return known[name][place]
-    raise UnreadError(ast.unparse(node))
-
-
-def python_function(source: str, name: str, known: Values) -> list[Value]:
-    """What a function of a NumPy module returns, entry by entry: rows are joined."""
-    function = next(f for f in ast.parse(source).body if getattr(f, "name", "") == name)
-    body = function.body[-1].body if isinstance(function.body[-1], ast.Try) else function.body
-    known = dict(known)
-    for statement in body:
-        if isinstance(statement, ast.Assign):
-            value, target = computed(statement.value, known), statement.targets[0]
-            names = [part.id for part in getattr(target, "elts", [target])]
-            known |= zip(names, value if isinstance(target, ast.Tuple) else [value], strict=True)
-        elif isinstance(statement, ast.Return):
-            found = computed(statement.value, known)
-            found = found if isinstance(found, list) else [found]
-            return [x for row in found for x in (row if isinstance(row, list) else [row])]
-    raise UnreadError(f"{name} returns nothing")
-
-
-_C_WORD = re.compile(r"\b(?:FN|LIT)\(([\w.+-]+)\)")
-_C_CALL = re.compile(r"SIN_COS\((.+), (\w+), (\w+)\)|beyond \|= entire\(far, (.+), (\w+)\)")
-_STORED = re.compile(r"(?:(\w+)\[([\w +*]*)\]|const \[(.*)\]|(?:const )?(?:double )?(\w+)) = (.+)")
-
-
-def braced_function(source: str, head: str, known: Values) -> list[Value]:
-    """What a function of C or JavaScript stores in `out`; `known` holds its inputs by name."""
-    inside = source.partition(head)[2].partition("{")[2].partition("\n}")[0]
-    inside = _C_WORD.sub(r"\1", inside).replace("REAL ", "double ")
-    known, out = {**known, "EPS": mp.mpf(0), "LEAST": mp.mpf(0)}, {}
-    for statement in (" ".join(part.split()) for part in inside.split(";")):
-        called, stored = _C_CALL.fullmatch(statement), _STORED.fullmatch(statement)
-        if called:
-            value = computed(ast.parse(called[1] or called[4], mode="eval").body, known)
-            if called[4]:
-                known[called[5]] = value
-            else:
-                known[called[2]], known[called[3]] = mp.sin(value), mp.cos(value)
-        elif stored and not re.match(r"in\[|\w+\[\w*_at", stored[5]) and "double " not in stored[5]:
-            array, index, several, name, text = stored.groups()
-            element = re.fullmatch(r"(_entire_\w+)\[(\d+)\]", text)
-            if element:
-                known[name] = entire(int(element[2]), known[element[1]])
-                continue
-            value = computed(ast.parse(text, mode="eval").body, known)
-            if array == "out":
-                number = re.search(r"\d+", index)  # "2", "2 * apart", "at + 2"
-                out[int(number[0]) if number else int(index == "apart")] = value
-            elif several:
-                known |= zip(several.split(", "), value, strict=True)
-            else:
-                known[name] = value
-    return [out[place] for place in sorted(out)]

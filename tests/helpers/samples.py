@@ -16,8 +16,15 @@ w, x, y, z = map(time_function, ("w", "x", "y", "z"))
 m, length, alpha = sp.symbols("m l alpha")
 
 
-def model(matrix, *coordinates, constraints=()) -> RotationModel:
-    """A model with a given matrix in given coordinates."""
+def values(**numbers: int | str) -> dict[sp.Expr, sp.Rational]:
+    """Rational values of symbols by name."""
+    by_name = {str(getattr(s, "func", s)): s for s in (phi, theta, w, x, y, z)} | {"m": m}
+    return {by_name[name]: Rational(number) for name, number in numbers.items()}
+
+
+def model(matrix, *coordinates, constraints=(), example=None) -> RotationModel:
+    """A model with a given matrix in given coordinates; by default, a unit quaternion's example."""
+    point = dict(zip((w, x, y, z), (Rational(k, 11) for k in (1, 2, 4, 10)), strict=True))
     return RotationModel(
         name="sample",
         title="Sample",
@@ -26,6 +33,7 @@ def model(matrix, *coordinates, constraints=()) -> RotationModel:
         matrix=sp.ImmutableMatrix(matrix),
         source=Citation(text="this test"),
         constraints=constraints,
+        example=tuple((point if example is None else example).items()) if constraints else (),
     )
 
 
@@ -60,16 +68,27 @@ ROTATIONS = {
     "unit quaternion": model(QUATERNION, w, x, y, z, constraints=(w**2 + SQUARE - 1,)),
     "quaternion of any norm": model(QUATERNION / (w**2 + SQUARE), w, x, y, z),
     "quaternion of a constant norm": model(
-        QUATERNION / m, w, x, y, z, constraints=(w**2 + SQUARE - m,)
+        QUATERNION / m,
+        *(w, x, y, z),
+        constraints=(w**2 + SQUARE - m,),
+        example=values(m=15, w=1, x=1, y=2, z=3),
     ),
     "ellipsoid of quaternions": model(
-        QUATERNION.subs(w, 2 * w), w, x, y, z, constraints=(4 * w**2 + SQUARE - 1,)
+        QUATERNION.subs(w, 2 * w),
+        *(w, x, y, z),
+        constraints=(4 * w**2 + SQUARE - 1,),
+        example=values(w="1/22", x="2/11", y="4/11", z="10/11"),
     ),
     "Gibbs vector": model(ONE + 2 / (1 + SQUARE) * (SKEW + SKEW * SKEW), x, y, z),
     "modified Rodrigues parameters": model(
         ONE + (8 * SKEW * SKEW + 4 * (1 - SQUARE) * SKEW) / (1 + SQUARE) ** 2, x, y, z
     ),
-    "axis and angle": model(rodrigues(VECTOR, phi), x, y, z, phi, constraints=(SQUARE - 1,)),
+    "axis and angle": model(
+        rodrigues(VECTOR, phi),
+        *(x, y, z, phi),
+        constraints=(SQUARE - 1,),
+        example=values(x="2/7", y="3/7", z="6/7"),
+    ),
     "fixed axis": model(rodrigues(THIRDS, phi), phi),
     "five turns": model(
         chain(*zip("zxyzx", (phi, theta, psi, u, w), strict=True)), phi, theta, psi, u, w
@@ -114,7 +133,10 @@ ROTATIONS = {
         about_z(1 / cosh(u), sinh(u) / cosh(u)), u, constraints=(HYPERBOLA,)
     ),
     "coupled coordinates": model(
-        chain(("z", phi), ("x", theta), ("z", psi)), phi, theta, psi, constraints=(phi - theta,)
+        chain(("z", phi), ("x", theta), ("z", psi)),
+        *(phi, theta, psi),
+        constraints=(phi - theta,),
+        example=values(phi="1/3", theta="1/3"),
     ),
 }
 TINY = Rational(1, 10**30)
@@ -155,7 +177,15 @@ WRONG = {
         "w",
     ),
     "quaternion of another norm": (
-        model(QUATERNION, w, x, y, z, constraints=(w**2 + SQUARE - 2,)),
+        model(
+            QUATERNION,
+            w,
+            x,
+            y,
+            z,
+            constraints=(w**2 + SQUARE - 2,),
+            example=values(w=1, x="6/7", y="3/7", z="2/7"),
+        ),
         "R Rᵀ = 1",
         "3",
     ),

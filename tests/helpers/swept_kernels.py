@@ -19,8 +19,8 @@ from rigidsym.kernels.ir import (
     Product,
     Program,
     Sum,
-    Unwrapping,
 )
+from rigidsym.mechanics.conversions.function import Continuity
 
 WIDEST = 44
 
@@ -32,10 +32,9 @@ def swept() -> Program:
     """Kernels for each length of names."""
     kernels = [kernel for length in range(1, WIDEST) for kernel in _of_length(length)]
     kernels += [_long(length, 97) for length in LONG]
-    constants = _vector("parameters", ["p"])
     remarks = "word " * 99, "long" * 30 + "-" + "words" * 9
-    unwrapping = Unwrapping("quaternion", (_vector("q", ["w"]), constants), remarks)
-    return _program("swept", [*kernels, _long(1, 96)])._replace(unwrapping=unwrapping)
+    continuity = Continuity("quaternion", remarks)
+    return _program("swept", [*kernels, _long(1, 96)])._replace(continuity=continuity)
 
 
 def of_series(order: int) -> Program:
@@ -60,12 +59,6 @@ def _program(name: str, kernels: list[Kernel]) -> Program:
         arguments=(*arguments.values(),),
         kernels=(*kernels,),
     )
-
-
-def staged() -> Program:
-    """Long kernels with few and with many results, which lean C computes in stages."""
-    sizes = (40, 2), (58, 5), (97, 1), (97, 5), (97, 60), (240, 1), (320, 2)
-    return _program("staged", [_long(3, count, every) for count, every in sizes])
 
 
 def _long(length: int, count: int, every: int = 8) -> Kernel:
@@ -119,7 +112,7 @@ def _of_length(length: int) -> Iterator[Kernel]:
         name=f"row_{length}",
         arguments=(
             _vector(f"q{length}", names),
-            _vector("v", ["d" * length])._replace(is_optional=True),
+            _vector("v", ["d" * length]),
         ),
         assignments=(
             Assignment("size", Call("abs", a)),

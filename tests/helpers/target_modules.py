@@ -1,7 +1,8 @@
-"""Modules of every target, what to feed them, and their errors at 50 digits."""
+"""Generated modules of every target, what to feed them, and their errors at 50 digits."""
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Callable
 from functools import cache
@@ -10,78 +11,28 @@ from typing import Any
 
 import numpy as np
 import pytest
+import sympy as sp
 
 import rigidsym as rs
+from helpers.motions import derived
 from helpers.witness import evaluate, mp
 from rigidsym.kernels.targets import TARGETS
+from rigidsym.models.rotation import RotationModel, elementary, lecture, time_function
+from rigidsym.motion import derive
 
+FEW = (  # with and without a divisor
+    "rotation_matrix",
+    "angular_velocity_space",
+    "angular_velocity_body",
+    "rates_from_angular_velocity_body",
+)
 ROTATIONS = {  # and some quantities of each
-    "ZXZ": (  # angles, and divisors that vanish
-        "rotation_matrix",
-        "angular_velocity_space",
-        "angular_velocity_body",
-        "inverse_rate_matrix_space",
-        "rates_from_angular_velocity_body",
-    ),
+    "ZXZ": (),  # all
     "rotation_vector": ("rotation_matrix", "angular_acceleration_body", "inverse_rate_matrix_body"),
     "quaternion": ("angular_velocity_space", "rates_from_angular_velocity_body"),
     "z(phi) [1,2,2](theta) x(psi0)": ("rotation_matrix", "angular_velocity_body"),
 }
-
 EPS = {np.float64: 2.0**-52, np.float32: 2.0**-23}
-
-KINEMATICS = ("rotation_matrix", "angular_velocity_space", "angular_velocity_body")
-
-FOUR = 4  # eps of the largest entry, for those
-
-
-@cache
-def motion(rotation: str) -> rs.Motion:
-    return rs.derive(rotation, only=ROTATIONS[rotation])
-
-
-@cache
-def module(rotation: str, target: str) -> ModuleType:
-    return motion(rotation).kernels(target).load()
-
-
-def names(rotation: str) -> list[str]:
-    return [step.quantity.name for step in motion(rotation).steps]
-
-
-def given(rotation: str, name: str, leading, dtype=np.float64, seed: int = 1, size: float = 3.0):
-    random = np.random.default_rng(seed)
-    step = motion(rotation).step(name)
-    return [
-        random.uniform(-size, size, (*leading, len(motion(rotation).argument(n).names))).astype(
-            dtype
-        )
-        for n in step.quantity.inputs
-    ]
-
-
-def exact(rotation: str, name: str, point) -> np.ndarray:
-    """The expression at 50 digits of one orientation, as mpmath's numbers."""
-    step = motion(rotation).step(name)
-    symbols = [s for n in step.quantity.inputs for s in motion(rotation).argument(n).symbols]
-    flat = [mp.mpf(float(x)) for vector in point for x in vector]
-    spelled = motion(rotation).spelled(step.expression)
-    values = evaluate(spelled, dict(zip(symbols, flat, strict=True)))
-    return np.array(list(values), dtype=object)
-
-
-def error(rotation: str, target: str, name: str, arrays) -> float:
-    """The largest error of a batch, in eps of the largest entry of each orientation."""
-    found = getattr(module(rotation, target), name)(*arrays)
-    worst = 0.0
-    for k, row in enumerate(found.reshape(len(found), -1)):
-        truth = exact(rotation, name, [array[k] for array in arrays])
-        size = max(map(abs, truth))
-        off = max(abs(mp.mpf(float(a)) - b) for a, b in zip(row, truth, strict=True))
-        worst = max(worst, float(off / size) if size else float(off))
-    return worst / EPS[found.dtype.type]
-
-
 EVERY = [
     pytest.param(
         name,
@@ -89,15 +40,63 @@ EVERY = [
     )
     for name in TARGETS
 ]
-
-
-def plain(text: str) -> str:
-    """Without line ends and the stars of comments."""
-    return re.sub(r"\s+(\* )?", " ", text)
-
-
+SPECIAL = np.array([*itertools.product(np.pi / 4 * np.arange(-4, 5), repeat=3)])
 STRICT = ("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wshadow", "-Wconversion")
 STRICT += ("-Wdouble-promotion",)
+_COMPILED = {"c", "numba", "jax"}  # in a second or so for each function
+
+
+@cache
+def motion(rotation: str) -> rs.Motion:
+    if rotation == "ZXZ":
+        return derived("ZXZ")
+    return rs.derive(rotation, only=ROTATIONS.get(rotation, FEW[:1]))
+
+
+@cache
+def module(rotation: str = "ZXZ", target: str = "numpy") -> ModuleType:
+    return motion(rotation).kernels(target).load()
+
+
+def names(rotation: str, target: str = "numpy") -> list[str]:
+    every = [step.quantity.name for step in motion(rotation).steps]
+    return [name for name in every if target not in _COMPILED or name in FEW or rotation != "ZXZ"]
+
+
+def inputs(rotation: str, name: str, leading=(7,), dtype=np.float64, seed: int = 1):
+    random = np.random.default_rng(seed)
+    sizes = [len(motion(rotation).argument(n).names) for n in _inputs(rotation, name)]
+    return [random.uniform(-3, 3, (*leading, size)).astype(dtype) for size in sizes]
+
+
+def _inputs(rotation: str, name: str) -> tuple[str, ...]:
+    return ("q",) if name == "singularity_margin" else motion(rotation).step(name).quantity.inputs
+
+
+def exact(rotation: str, name: str, arrays) -> list[list[Any]]:
+    """The expression at 50 digits, entry by entry, orientation by orientation."""
+    step = motion(rotation).step(name)
+    symbols = [s for n in step.quantity.inputs for s in motion(rotation).argument(n).symbols]
+    spelled = motion(rotation).spelled(step.expression)
+    points = zip(*(array.tolist() for array in arrays), strict=True)
+    values = (map(mp.mpf, itertools.chain(*point)) for point in points)
+    return [list(evaluate(spelled, dict(zip(symbols, v, strict=True)))) for v in values]
+
+
+def worst_error(found: np.ndarray, truth: list[Any], scales: np.ndarray | None = None) -> float:
+    """The largest error in eps of the largest entry of its orientation, or of a given scale."""
+    worst = 0.0
+    for k, (row, values) in enumerate(
+        zip(found.reshape(len(truth), -1).tolist(), truth, strict=True)
+    ):
+        size = max(map(abs, values)) if scales is None else mp.mpf(float(scales[k]))
+        off = max(abs(mp.mpf(a) - b) for a, b in zip(row, values, strict=True))
+        worst = max(worst, float(off / size) if size else float(off))
+    return worst / EPS[found.dtype.type]
+
+
+def rows_of(rotation: str, target: str, name: str, arrays) -> np.ndarray:
+    return row_by_row(target, getattr(module(rotation, target), name))(*arrays)
 
 
 def row_by_row(target: str, function: Callable[..., Any]) -> Callable[..., np.ndarray]:
@@ -125,3 +124,34 @@ def _jitted(function: Callable[..., Any]) -> Callable[..., Any]:
             jax.config.update("jax_enable_x64", before)
 
     return call
+
+
+def one_by_one(name: str, arrays: list[np.ndarray]) -> np.ndarray:
+    """The function of ZXZ by its scalar twin, after NumPy's own broadcasting."""
+    scalar = getattr(module(), f"{name}_scalar")
+    shape = np.broadcast_shapes(*(a.shape for a in arrays))
+    wide = [np.broadcast_to(a, shape).reshape(-1, 3).tolist() for a in arrays]
+    values = [scalar(*itertools.chain(*point)) for point in zip(*wide, strict=True)]
+    return np.array(values, float).reshape(*shape[:-1], *motion("ZXZ").step(name).shape)
+
+
+def turned_by(name: str, *angles: str, axes: str = "zxz") -> rs.Motion:
+    """Three turns by angles of any names."""
+    first, second, third = map(time_function, angles)
+    a, b, c = axes
+    matrix = elementary(a, first) * elementary(b, second) * elementary(c, third)
+    return derive(
+        RotationModel(
+            name=name,
+            title='Turns "by" any \\name """',
+            convention=(),
+            coordinates=(first, second, third),
+            matrix=sp.ImmutableMatrix(matrix),
+            source=lecture("17"),
+        )
+    )
+
+
+def plain(text: str) -> str:
+    """Without line ends and the stars of comments."""
+    return re.sub(r"\s+(\* )?", " ", text)

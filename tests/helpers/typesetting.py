@@ -56,7 +56,6 @@ def sheet_of(document: Document) -> str:
     """The summary of a note, with the numbers of equations but not the equations."""
     whole = print_latex(document)
     before, rest = whole.split(r"\begin{document}")
-    start, end = rest.index(r"\ifcsname"), rest.index("\n\\fi\n") + len("\n\\fi\n")
     sheet, _ = rest[rest.rindex("\\newpage\n\\section") :].split(r"{\def\refname")
-    body = re.sub(r".eqref{[^}]*}", "(99)", rest[start:end] + sheet)
+    body = re.sub(r".eqref{[^}]*}", "(99)", sheet)
     return f"{before}\\begin{{document}}{body}\\end{{document}}"

@@ -8,22 +8,16 @@ files beside them take the part of rooms.
 from __future__ import annotations
 
 import ast
-import inspect
-import subprocess
-import sys
-from collections import Counter
-from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cached_property
 from graphlib import CycleError, TopologicalSorter
+from io import StringIO
 from pathlib import Path
-from tempfile import TemporaryDirectory
-from types import FrameType
+from tokenize import COMMENT, DEDENT, ENDMARKER, INDENT, NEWLINE, NL, generate_tokens
 
 Arrows = set[tuple[str, str]]
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT))
 
 # A room imports only from the rooms above it.
 ORDER = (
@@ -46,8 +40,6 @@ ORDER = (
     "tools",
     "commands",
 )
-# Neighbours do the same thing for different kinds, and so may have the same name.
-PARALLEL = {"__init__.py", "derive.py", "printer.py", "conversions.py", "function.py"}
 
 
 @dataclass(frozen=True)
@@ -133,174 +125,36 @@ def circle(arrows: Arrows) -> tuple[str, ...]:
     return ()
 
 
-def floors(arrows: Arrows) -> int:
-    """The number of rooms on the longest way down."""
-
-    @cache
-    def height(room: str) -> int:
-        return 1 + max((height(other) for one, other in arrows if one == room), default=0)
-
-    return max(height(room) for room, _ in arrows)
-
-
-def lazy_imports(house: House) -> list[str]:
-    """`module:line` for each import of an own module inside a function."""
-    return [
-        f"{module}:{node.lineno}"
-        for module, tree in house.trees.items()
-        for function in functions(tree)
-        for node in own_statements(function)
-        if isinstance(node, ast.Import | ast.ImportFrom) and house.imported_by(node)
-    ]
-
-
-def functions(tree: ast.AST) -> list[ast.FunctionDef | ast.AsyncFunctionDef]:
-    kinds = ast.FunctionDef | ast.AsyncFunctionDef
-    return [node for node in ast.walk(tree) if isinstance(node, kinds)]
-
-
-def own_statements(function: ast.AST) -> Iterable[ast.AST]:
-    """The nodes of a function that are not of a function inside it."""
-    for node in ast.iter_child_nodes(function):
-        if not isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
-            yield node
-            yield from own_statements(node)
-
-
-def classes_twice(house: House) -> list[str]:
-    names = [
-        node.name
-        for tree in house.trees.values()
-        for node in tree.body
-        if isinstance(node, ast.ClassDef)
-    ]
-    return repeated(names)
-
-
-def files_twice(house: House) -> list[str]:
-    return repeated(path.name for path in house.sources.values() if path.name not in PARALLEL)
-
-
-def repeated(names: Iterable[str]) -> list[str]:
-    return sorted(name for name, count in Counter(names).items() if count > 1)
-
-
-def lines(house: House) -> dict[str, int]:
-    return {module: text.count("\n") for module, text in house.texts.items()}
-
-
-def longest_functions(house: House) -> dict[str, int]:
-    """`module.function`: lines from `def` on."""
-    return {
-        f"{module}.{node.name}": (node.end_lineno or 0) - node.lineno + 1
-        for module, tree in house.trees.items()
-        for node in functions(tree)
-    }
-
-
-def files_beside_folders(house: House) -> list[str]:
-    return sorted(path.name for path in house.package.glob("*.py"))
-
-
-INSIDE = {"kernels": 25, "notes": 35, "mechanics": 40}  # arrows, at most
-
-
-@dataclass(frozen=True)
-class Walk:
-    """What the interpreter passes through on the way of one command."""
-
-    files: int  # entered by a function call
-    changes: int  # of room, from one call to the next
-
-
-def walk(*command: str) -> Walk:
-    """The walk of a command, in a process of its own so that no import is behind it yet."""
-    program = [sys.executable, __file__, "--walk", *command]
-    done = subprocess.run(program, capture_output=True, text=True, check=True)
-    return Walk(*map(int, done.stderr.split()[-2:]))
-
-
-def _walked(command: list[str]) -> Walk:
-    import rigidsym
-    from rigidsym.commands.cli import main
-
-    package = str(Path(rigidsym.__file__).parent) + "/"
-    files: set[str] = set()
-    rooms = [""]
-
-    def enter(frame: FrameType, event: str, _: object) -> None:
-        code = frame.f_code
-        is_function = code.co_flags & inspect.CO_OPTIMIZED  # the body of a module or class is none
-        if event == "call" and is_function and code.co_filename.startswith(package):
-            files.add(code.co_filename)
-            room = code.co_filename.removeprefix(package).split("/")[0]
-            if room != rooms[-1]:
-                rooms.append(room)
-
-    sys.argv = ["rigidsym", *command]
-    sys.setprofile(enter)
-    try:
-        main()
-    except SystemExit as end:
-        if end.code:
-            raise
-    finally:
-        sys.setprofile(None)
-    return Walk(len(files), len(rooms) - 1)
-
-
-def report(house: House) -> list[tuple[str, object, str]]:
-    """(what, figure, goal) in the order of the plan."""
-    arrows, sizes = house.arrows(), lines(house)
-    return [
-        ("files beside the folders", len(files_beside_folders(house)), "at most 7"),
-        ("rooms", len(house.rooms()), "at most 20"),
-        ("floors", "a circle" if circle(arrows) else floors(arrows), "at most 10"),
-        ("arrows between rooms", len(arrows), "at most 80"),
-        ("arrows that run upwards", _listed(upward(arrows)), "0"),
-        *((f"arrows inside {r}/", len(house.arrows(r)), f"at most {n}") for r, n in INSIDE.items()),
-        ("circles of rooms and subfolders", _listed(circles(house)), "0"),
-        ("lines", sum(sizes.values()), "at most 29000"),
-        ("imports inside functions", len(lazy_imports(house)), "at most 25"),
-        ("class names defined twice", _listed(classes_twice(house)), "0"),
-        ("file names used twice", _listed(files_twice(house)), "0, besides parallel files"),
-        ("longest file", _largest(sizes), "at most 400"),
-        ("longest function", _largest(longest_functions(house)), ""),
-    ]
-
-
 def circles(house: House) -> list[str]:
     """A circle each of the rooms, and of the parts of each room, if there is one."""
     found = {room: circle(house.arrows(room)) for room in ("", *sorted(house.rooms()))}
     return [f"{room or 'rooms'}: {' -> '.join(way)}" for room, way in found.items() if way]
 
 
-def _largest(sizes: dict[str, int]) -> str:
-    name = max(sizes, key=lambda key: sizes[key])
-    return f"{sizes[name]} ({name})"
-
-
-def _listed(found: Iterable[object]) -> str:
-    names = sorted(" -> ".join(x) if isinstance(x, tuple) else str(x) for x in found)
-    return f"{len(names)}{': ' + ', '.join(names) if names else ''}"
+def lines_of_code(text: str) -> int:
+    """Lines that are neither blank nor a comment nor part of a docstring."""
+    layout = {COMMENT, NL, NEWLINE, INDENT, DEDENT, ENDMARKER}
+    lines: set[int] = set()
+    for token in generate_tokens(StringIO(text).readline):
+        if token.type not in layout:
+            lines.update(range(token.start[0], token.end[0] + 1))
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef) and ast.get_docstring(
+            node
+        ):
+            lines.difference_update(range(node.body[0].lineno, (node.body[0].end_lineno or 0) + 1))
+    return len(lines)
 
 
 def main() -> None:
     house = House(ROOT / "rigidsym")
-    with TemporaryDirectory() as folder:
-        way = walk("derive", "ZXZ", "--out", folder)
-    rows = [
-        *report(house),
-        ("files entered by derive ZXZ", way.files, "at most 80"),
-        ("changes of room on the way", way.changes, "at most 300"),
-    ]
-    for what, figure, goal in rows:
-        print(f"{what:<34}{figure}{f'   [{goal}]' if goal else ''}")
+    arrows = house.arrows()
+    print("rooms               ", len(house.rooms()))
+    print("arrows between rooms", len(arrows), *sorted(upward(arrows)))
+    print("circles             ", len(circles(house)), *circles(house))
+    print("files               ", len(house.sources))
+    print("lines of code       ", sum(map(lines_of_code, house.texts.values())))
 
 
 if __name__ == "__main__":
-    if sys.argv[1:2] == ["--walk"]:
-        found = _walked(sys.argv[2:])
-        print(found.files, found.changes, file=sys.stderr)
-    else:
-        main()
+    main()

@@ -9,27 +9,20 @@ import pytest
 
 from benchmarks import (
     accuracy,
-    bodies,
     cold_start,
     derivation,
     form,
-    identify,
-    kernel_parts,
     kernels,
-    peers,
-    precision,
     rosetta,
     run,
-    sizes,
     sympy_forms,
 )
-from benchmarks.measure import Spread, interleaved, peak_memory, ratios, run_process
+from benchmarks.measure import Settings, Spread, interleaved, peak_memory, ratios, run_process
 from benchmarks.report import Column, Figure, Report, Table, summary
 
+pytestmark = pytest.mark.campaign
+
 AS_IT_COMES = {"as it comes": sympy_forms.SIMPLIFIED["as it comes"]}
-
-
-RATIOS = "Ratios, turn by turn"
 
 
 # measure
@@ -70,10 +63,12 @@ def test_numbers_stand_right_and_words_left():
     ]
 
 
-@pytest.mark.parametrize("sides", [(sizes.PEER, "c"), (sizes.PEER, sizes.HEYOKA, "c", "numba")])
+@pytest.mark.parametrize(
+    "sides", [(kernels.PEER, "c"), (kernels.PEER, kernels.HEYOKA, "c", "numba")]
+)
 def test_the_documented_sizes_have_a_column_for_every_side(sides):
     turns = {side: [8.41625e-3, 9e-3, 0.5] for side in sides}
-    table = sizes.documented("R", {10: turns, 10_000: turns})
+    table = kernels.documented("R", {10: turns, 10_000: turns})
     head, _, row = table.markdown().splitlines()
     assert head.count("|") == row.count("|") == len(sides) + 2
     assert row == "| 10,000 |" + " 8,420 |" * len(sides)
@@ -162,52 +157,32 @@ def test_cold_start_compares_with_the_import_of_sympy():
 # kernels
 
 
-@pytest.fixture(autouse=True)
+@pytest.fixture
 def two_targets(monkeypatch):
     """The others are compiled elsewhere often enough."""
-    monkeypatch.setattr(kernels, "ARRAYS", ("numpy", "c"))
+    monkeypatch.setattr(kernels, "OURS", ("numpy", "c"))
+    kernels.modules.cache_clear()
+    yield
+    kernels.modules.cache_clear()
 
 
+@pytest.mark.usefixtures("two_targets")
 def test_kernels_are_compared_on_equal_values():
-    sides, moved = kernels.sides("rotation_matrix", 50)
-    assert {"numpy", kernels.LAMBDIFY, "SciPy from_euler", kernels.COPY} <= set(sides)
-    assert ("javascript" in sides) == (not kernels.TARGETS["javascript"].missing)
-    assert moved == 50 * 12 * 8
-    outcome = kernels.measure("rotation_matrix", 50, 2)
-    report = kernels.report([outcome, kernels.measure("angular_velocity_body", 40, 2)])
-    assert [table.title for table in report.tables][:2] == ["Medians, one core", RATIOS]
-    names = [figure.name for figure in report.figures]
-    assert f"R at 5e1: numpy against {kernels.LAMBDIFY}" in names
-    assert f"Ω′ at 4e1: c against {kernels.HEYOKA}" in names
-    assert all(figure.found for figure in report.figures)
+    settings = Settings(repeats=2, size=400)
+    report = kernels.run(settings)
+    assert [table.title for table in report.tables] == ["Medians, one core", "Ratios, turn by turn"]
+    assert f"R at 4e2: numpy against {kernels.PEER}" in [figure.name for figure in report.figures]
+    several = kernels.sizes(Settings(repeats=1, size=3))
+    assert len(several.tables) == 3 * len(kernels.QUANTITIES)
+    assert several.documented.rows
+    assert all(list(table.lines()) for table in several.tables)
 
 
+@pytest.mark.usefixtures("two_targets")
 def test_a_side_that_differs_is_refused(monkeypatch):
-    wrong = peers.Side(lambda: None, lambda: np.zeros((20, 9)))
-    monkeypatch.setitem(peers.PEERS, "wrong", peers.Peer("numpy", lambda _: wrong))
-    with pytest.raises(ArithmeticError, match="rotation_matrix: wrong differs from ours"):
-        kernels.measure("rotation_matrix", 20, 1)
-
-
-def test_parts_of_kernels_find_what_they_look_for():
-    loaded = {"numpy": kernels.motion().kernels("numpy").load()}
-    for part in (
-        kernel_parts.calls(kernels.motion(), loaded, 1),
-        kernel_parts.threads(loaded, 100, 1),
-        kernel_parts.memory(loaded, 20_000),
-        kernel_parts.generation(kernels.motion(), ["numpy"], 1),
-        kernel_parts.errors(["numpy"], 1),
-    ):
-        (table,), figures = part
-        assert table.rows
-        assert figures
-        assert list(table.lines())
-    assert [figure.met for figure in kernel_parts.errors(["numpy"], 2)[1]] == [True]
-
-
-def test_every_target_has_files_and_templates():
-    (table,), _ = kernel_parts.sizes_of_targets()
-    assert all(min(row[1:]) > 0 for row in table.rows)
+    monkeypatch.setattr(kernels.modules()["numpy"], "rotation_matrix", lambda *_, **__: np.eye(3))
+    with pytest.raises((ArithmeticError, ValueError), match=r"rotation_matrix|reshape"):
+        kernels.sides("rotation_matrix", 20, "rows", is_filled=True)
 
 
 def test_a_table_goes_between_its_marks(tmp_path):
@@ -239,59 +214,6 @@ def test_errors_are_a_few_eps(sequence):
     found = accuracy.errors(sequence, 3)
     assert {way for way, _, _ in found} == {way.name for way in accuracy.WAYS}
     assert 0 <= max(found.values()) < 20
-
-
-# precision
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        "ZXZ",
-        "zyx",
-        "rotation_vector",
-        "axis_angle",
-        "davenport",
-        "z(phi) x(theta/2) z(psi)",
-        "z(phi) x(theta) z(psi) y(delta)",
-    ],
-)
-def test_near_poles_and_beside_switches_the_errors_are_those_stated(text):
-    found = precision.errors(text, 1)
-    kinds = {"anywhere", "near poles"} | ({"at switches"} if text == "rotation_vector" else set())
-    assert {(where, dtype) for where, dtype, _ in found} == {
-        (where, dtype) for where in kinds for dtype in ("float64", "float32")
-    }
-    for where in kinds:
-        assert {name for place, _, name in found if place == where} == set(form.SYMBOLS)
-    assert 0 < max(found.values()) <= 6
-
-
-def test_the_precise_witness_knows_a_turn_about_a_slanted_axis():
-    truth = precision.Subject("[1,1,0](beta)")
-    state = [[np.pi], [2.0], [0.0]]
-    found = precision.Truth(truth.text, truth.turns, state, passive=False)
-    swapped = [[0, 1, 0], [1, 0, 0], [0, 0, -1]]
-    assert np.allclose(np.array(found.R.tolist(), float), swapped)
-    assert np.allclose(np.array(found.omega.tolist(), float).ravel(), [2**0.5, 2**0.5, 0])
-
-
-@pytest.mark.parametrize("name", sorted(precision.PARAMETRISATIONS))
-def test_kernels_of_every_parametrisation_are_precise_anywhere(name):
-    found = precision.errors_of(precision.Subject(name), np.float64, samples=1, poles=False)
-    assert 0 < max(found.values()) <= 6
-
-
-# identify
-
-
-def test_the_files_of_samples_are_identified_in_their_convention(tmp_path):
-    files = identify.measured(tmp_path, 100)
-    assert set(files) == {".npy", ".csv"}
-    seconds = {name: [0.1, 0.2] for name in identify.commands()}
-    report = identify.report(seconds, files, 100)
-    assert [figure.met for figure in report.figures] == [True, True]
-    assert "100 samples" in report.text()
 
 
 # run
@@ -348,22 +270,3 @@ def test_a_passive_matrix_is_the_transpose_of_ours():
 def test_a_package_that_is_missing_leaves_its_row_empty():
     missing = rosetta.Call("no-such-package", "import no_such_package", "f(a)")
     assert rosetta.row(missing) == ("no-such-package", "`f(a)`", "", "", "", "")
-
-
-# bodies
-
-
-def test_the_benchmark_of_bodies_measures_in_processes_of_their_own(tmp_path, monkeypatch):
-    monkeypatch.setattr(bodies, "FORMULAS", {"NumPy, matrix products": bodies.products})
-    bodies._write(tmp_path / "few.npy", 20_000)
-    found = bodies._measured(tmp_path / "few.npy", 1)
-    rows, least, memory = bodies._particles(found)
-    assert [row[0] for row in rows] == [bodies.OURS, *bodies.FORMULAS]
-    assert least > 0
-    assert memory < bodies.MOST_MEGABYTES
-
-
-def test_formulas_of_the_benchmark_agree_on_an_easy_cloud():
-    table = np.random.default_rng(1).uniform(1, 2, (50, 4))
-    found = [way(table) for way in bodies.FORMULAS.values()]
-    assert np.allclose(found, bodies.inertia_of(table).inertia)

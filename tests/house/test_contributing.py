@@ -1,4 +1,4 @@
-"""The recipes of CONTRIBUTING.md, followed word for word in a copy of the package."""
+"""The recipe of CONTRIBUTING.md for a quantity, followed word for word in a copy of the package."""
 
 from __future__ import annotations
 
@@ -11,37 +11,51 @@ import sys
 from helpers.command import ROOT
 
 PAGE = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+PROGRAM = """
+import sys
+from rigidsym.commands.cli import main
+import rigidsym as rs
+
+chain = rs.derive("z(a) y(b) z(c) x(d) z(e)", ["angular_velocity_squared"])
+assert chain.is_proved and chain.definitions
+main()
+"""
 
 
-def test_the_page_for_contributors_stays_short():
-    assert PAGE.count("\n") <= 120
-
-
-def test_the_recipe_for_a_quantity_gives_a_proved_quantity(tmp_path):
-    for folder in ("templates", "derivations"):
-        (tmp_path / folder).symlink_to(ROOT / folder)
+def test_one_entry_is_derived_proved_and_printed_everywhere(tmp_path):
+    shutil.copytree(ROOT / "templates", tmp_path / "templates")
+    (tmp_path / "derivations").symlink_to(ROOT / "derivations")
     package = tmp_path / "rigidsym"
     shutil.copytree(ROOT / "rigidsym", package, ignore=shutil.ignore_patterns("__pycache__"))
     recipe = PAGE[PAGE.index("**A quantity.**") : PAGE.index("**A target.**")]
-    (line,) = re.findall(r"```text\n(.*?)```", recipe, re.DOTALL)
-    (method,) = re.findall(r"```python\n(.*?)```", recipe, re.DOTALL)
-    (entry,) = re.findall(r'`("\w+": .*)`', recipe)
-    (claim,) = re.findall(r"`(SAME_LENGTH = [^`]*)`", recipe)
-    table = package / "mechanics" / "quantities" / "energy.py"
-    head, rows, formulas = table.read_text("utf-8").partition("    angular_momentum   ")
-    formulas = formulas.replace("    {\n", f"    {{\n{entry},\n", 1)
-    indented = "".join(f"    {each}\n" for each in line.splitlines())
-    table.write_text(f"{head}{indented.lstrip()}{rows}{formulas}\n{claim}\n", "utf-8")
-    derive = package / "mechanics" / "energy" / "derive.py"
-    start, first, rest = derive.read_text("utf-8").partition("    def translational_energy(")
-    body = "".join(f"    {each}\n" for each in method.splitlines())
-    derive.write_text(f"{start}{body}\n{first}{rest}", "utf-8")
-    program = "from rigidsym.commands.cli import main; main()"
-    words = ["run", "solid_cone", "--only", "angular_momentum_squared"]
-    command = [sys.executable, "-c", program, *words]
-    run = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    (entry,) = re.findall(r"```python\n(.*?)```", recipe, re.DOTALL)
+    (sentence,) = re.findall(r"```toml\n(.*?)```", recipe, re.DOTALL)
+    table = package / "mechanics" / "quantities" / "kinematics.py"
+    head, name, rest = table.read_text("utf-8").partition("\nrate_matrix_space = ")
+    table.write_text(f"{head}\n{entry}\n{name}{rest}", "utf-8")
+    reasons = tmp_path / "templates" / "notes" / "en" / "reasons.toml"
+    reasons.write_text(reasons.read_text("utf-8") + sentence, "utf-8")
+    words = ["derive", "ZXZ", "--only", "angular_velocity_squared", "--target", "numpy,c"]
+    run = subprocess.run(
+        [sys.executable, "-c", PROGRAM, *words],
+        cwd=tmp_path,
+        env={"PYTHONPATH": str(tmp_path), "PATH": ""},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert run.returncode == 0, run.stderr
-    record = json.loads((tmp_path / "out/solid_cone/solid_cone.json").read_text("utf-8"))
+    files = {
+        path.name.removeprefix("euler_zxz_intrinsic"): path.read_text("utf-8")
+        for path in (tmp_path / "out/euler_zxz_intrinsic").iterdir()
+    }
+    record = json.loads(files[".json"])
     (quantity,) = record["quantities"]
-    assert quantity["symbol"]["text"] == "|L_R|²"
+    assert quantity["symbol"]["text"] == "|Ω|²"
+    assert quantity["because"] == "The squares of the components are added."
     assert [proof["status"] for proof in quantity["proofs"]] == ["exact"]
+    assert "def angular_velocity_squared(" in files[".py"]
+    assert "angular_velocity_squared" in files[".h"]
+    note = files[".tex"]
+    assert "The squares of the components are added." in note
+    assert note.index(r"\section{The angular velocity}") < note.index("squares of the components")

@@ -26,8 +26,8 @@ from click.testing import CliRunner
 
 from helpers.command import ROOT
 from rigidsym.commands.cli import commands
-from rigidsym.models.euler_angles import EULER_SEQUENCES
 from rigidsym.models.library import PARAMETRISATIONS, PRESETS
+from rigidsym.models.parametrisations import EULER_SEQUENCES
 from rigidsym.models.solids import SHAPES
 from rigidsym.pipeline import vocabulary
 from rigidsym.spec import body_table, derivation_file, rotation_table
@@ -112,6 +112,7 @@ def fits(shown: str, line: str) -> bool:
     return shown.startswith(line[:-3].rstrip()) if line.endswith("...") else shown == line
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
 def test_what_a_page_shows_is_what_happens(page, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
@@ -120,6 +121,7 @@ def test_what_a_page_shows_is_what_happens(page, tmp_path, monkeypatch):
     reader = Reader(tmp_path)
     for language, caption, text in blocks(page):
         if caption:
+            (tmp_path / caption).parent.mkdir(parents=True, exist_ok=True)
             (tmp_path / caption).write_text(text, encoding="utf-8")
         else:
             getattr(reader, language)(text)
@@ -184,7 +186,7 @@ def test_the_schema_takes_what_the_reader_takes(name, schema):
         (("rotation",), rotation_table.KEYS),
         (("output",), (*derivation_file._OUTPUT, *vocabulary().target_options)),
         (("output", "c"), vocabulary().target_options["c"]),
-        (("notation",), (*vocabulary().choices, "frames")),
+        (("notation",), tuple(vocabulary().choices)),
     ],
     ids=lambda value: "-".join(value) or "top",
 )
@@ -221,6 +223,7 @@ def gallery(tmp_path, monkeypatch):
     return module
 
 
+@pytest.mark.campaign
 def test_the_gallery_writes_the_files_of_an_item(gallery, tmp_path):
     item = gallery.Item("ZXZ")
     derived = item.entry()
@@ -250,6 +253,7 @@ def test_the_gallery_has_every_rotation_solid_and_shipped_file(gallery):
     assert found >= shipped - {"euler_all", "euler_zxz"}  # those are conventions
 
 
+@pytest.mark.campaign
 def test_every_solid_has_a_drawing(gallery):
     for shape in SHAPES:
         if shape != "tetrahedron":

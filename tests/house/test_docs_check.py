@@ -7,8 +7,9 @@ import shutil
 
 import pytest
 
-from helpers.browser import require_chromium
 from helpers.command import ROOT
+
+pytestmark = pytest.mark.campaign
 
 
 @pytest.fixture
@@ -42,8 +43,8 @@ def test_a_large_page_is_found(check, tmp_path):
     assert fault.startswith("a.html: 300")
 
 
+@pytest.mark.usefixtures("chromium")
 def test_axe_finds_a_picture_without_text(check, tmp_path):
-    require_chromium()
     made = site(tmp_path, a="<main><h1>A</h1><img src=a.png></main>")
     faults = list(check.inaccessible(made, check.pages(made)))
     assert [fault for fault in faults if "image-alt" in fault]

@@ -10,6 +10,8 @@ import pytest
 from helpers.command import ROOT
 from rigidsym.errors import ExpressionError
 
+pytestmark = pytest.mark.campaign
+
 
 @pytest.fixture(scope="module")
 def literature():

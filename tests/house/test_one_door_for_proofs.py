@@ -11,11 +11,11 @@ import sympy as sp
 import rigidsym as rs
 from rigidsym.algebra.integrate import Integrator
 from rigidsym.errors import BodyError, DerivationError
+from rigidsym.mechanics.body import BodyValues
 from rigidsym.mechanics.derivation import VectorTerm
 from rigidsym.mechanics.kinematics.vector_forms import Vectors
-from rigidsym.mechanics.mass import derive as mass
 from rigidsym.mechanics.mass.moments import moments_of
-from rigidsym.models.distribution import Solid
+from rigidsym.models.body import Solid
 
 PACKAGE = Path(rs.__file__).parent
 DOOR = PACKAGE / "mechanics" / "prove.py"
@@ -73,8 +73,8 @@ def test_a_wrong_coefficient_of_a_vector_form_is_refused(monkeypatch, quantity):
 
 
 def test_a_wrong_shift_of_an_inertia_tensor_is_refused(monkeypatch):
-    right = mass._moved
-    monkeypatch.setattr(mass, "_moved", lambda m, by: 2 * right(m, by))
+    right = BodyValues.shifted_inertia
+    monkeypatch.setattr(BodyValues, "shifted_inertia", lambda values: 2 * right(values))
     with pytest.raises(DerivationError, match="is false"):
         rs.derive("ZXZ", ["inertia_tensor_point"], body=rs.solid("cone"))
 

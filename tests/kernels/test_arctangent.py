@@ -48,6 +48,7 @@ def error(found: np.ndarray, y: np.ndarray, x: np.ndarray) -> float:
     return float(max(misses) / mp.mpf(float(np.finfo(found.dtype).eps)))
 
 
+@pytest.mark.campaign
 @pytest.mark.skipif(not shutil.which("gcc"), reason="no gcc")
 @pytest.mark.parametrize("optimised", ["-O0", "-O3"])
 @pytest.mark.parametrize("name", ["double", "float"])

@@ -13,43 +13,18 @@ from typing import ClassVar
 
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
-from hypothesis.extra.numpy import mutually_broadcastable_shapes
 from numpy.testing import assert_allclose, assert_array_equal
 
 import rigidsym as rs
-from helpers.kernel_modules import QUANTITIES, inputs, module, one_by_one
+from helpers.target_modules import FEW, inputs as inputs_of, module, motion, one_by_one
 
 
-@pytest.mark.parametrize("name", QUANTITIES)
-def test_the_twin_agrees_with_the_array(sequence, name):
-    arrays = inputs(name)
-    found = getattr(module(sequence), name)(*arrays)
-    assert found.shape == (7, *QUANTITIES[name][1])
-    assert found.flags.c_contiguous
-    assert_allclose(found, one_by_one(name, arrays, sequence), rtol=1e-13, atol=1e-13)
-    single = getattr(module(sequence), name)(*(a[0] for a in arrays))
-    assert single.shape == QUANTITIES[name][1]
-    assert_allclose(single, found[0], rtol=1e-13, atol=1e-13)
+def inputs(name: str, leading: tuple[int, ...] = (7,)) -> list[np.ndarray]:
+    return inputs_of("ZXZ", name, leading)
 
 
-@st.composite
-def arrays_in_any_manner(draw) -> list[np.ndarray]:
-    """Arrays of q and q_dot with broadcastable leading axes, any strides, types, byte orders."""
-    shapes = draw(
-        mutually_broadcastable_shapes(num_shapes=2, max_dims=3, min_side=0, max_side=4)
-    ).input_shapes
-    seed = draw(st.integers(0, 1000))
-    rng = np.random.default_rng(seed)
-    arrays = [rng.uniform(-3, 3, (*shape, 3)) for shape in shapes]
-    return [draw(st.sampled_from(MANNERS))(array) for array in arrays]
-
-
-def strided(array: np.ndarray) -> np.ndarray:
-    wide = np.full(tuple(2 * n + 1 for n in array.shape), np.nan)
-    view = wide[tuple(slice(1, 2 * n + 1, 2) for n in array.shape)]
-    view[...] = array
-    return view
+def shape_of(name: str) -> tuple[int, ...]:
+    return motion("ZXZ").step(name).shape
 
 
 def read_only(array: np.ndarray) -> np.ndarray:
@@ -57,61 +32,16 @@ def read_only(array: np.ndarray) -> np.ndarray:
     return array
 
 
-MANNERS = [
-    np.asarray,
-    strided,
-    read_only,
-    np.asfortranarray,
-    lambda a: a[..., ::-1].copy()[..., ::-1],
-    lambda a: a.astype(">f8"),
-    lambda a: a.astype(np.float32),
-    lambda a: a.astype(">f4"),
-    lambda a: a.round().astype(np.int64),
-    lambda a: a.round().astype(np.int8),
-    lambda a: a.tolist() if a.size else a,
-    np.ma.masked_invalid,
-    lambda a: np.moveaxis(np.moveaxis(a, -1, 0).copy(), 0, -1),
-]
-
-
-@given(arrays_in_any_manner())
-@settings(max_examples=200, deadline=None)
-def test_shapes_strides_and_types_are_numpys(arrays):
-    plain = [np.asarray(a, dtype=float) for a in arrays]
-    before = [np.array(a, copy=True) for a in arrays]
-    found = module().angular_velocity_body(*arrays)
-    singles = all(np.asarray(a).dtype.char == "f" for a in arrays)
-    assert type(found) is np.ndarray
-    assert found.dtype == (np.float32 if singles else np.float64)
-    expected = one_by_one("angular_velocity_body", plain)
-    assert found.shape == expected.shape
-    assert_allclose(found, expected, atol=1e-5 if singles else 1e-13)
-    for array, copy in zip(arrays, before, strict=True):
-        assert_array_equal(array, copy)
-
-
-@pytest.mark.parametrize("count", [0, 1, 2, 4095, 8191, 8192, 8193, 20_001])
-@pytest.mark.parametrize("name", ["angular_velocity_body", "rotation_matrix"])
-def test_any_number_of_orientations(name, count):
-    arrays = inputs(name, (count,))
-    found = getattr(module(), name)(*arrays)
-    assert found.shape == (count, *QUANTITIES[name][1])
-    places = [k for k in (0, 1, 4095, 8191, 8192, count - 1) if 0 <= k < count]
-    expected = one_by_one(name, [a[places] for a in arrays])
-    assert_allclose(found[places], expected, atol=1e-13)
-
-
-@pytest.mark.parametrize("sequence", ["ZXZ", "ZYX"])
 @pytest.mark.parametrize("count", [6, 7, 79, 80, 119, 120, 239, 240, 4095, 4096])
 @pytest.mark.parametrize("arrange", [np.ascontiguousarray, np.asfortranarray])
-def test_every_way_to_compute_gives_the_same_within_rounding(sequence, count, arrange):
+def test_every_way_to_compute_gives_the_same_within_rounding(count, arrange):
     """One by one, by sines or by tangents, of each angle or of all at once."""
     rows = [0, count // 2, count - 1]
-    for name in QUANTITIES:
+    for name in FEW:
         arrays = [arrange(array) for array in inputs(name, (count,))]
-        function = getattr(module(sequence), name)
-        expected = one_by_one(name, [a[rows] for a in arrays], sequence)
-        found, out = function(*arrays), np.empty((count, *QUANTITIES[name][1]))
+        function = getattr(module(), name)
+        expected = one_by_one(name, [a[rows] for a in arrays])
+        found, out = function(*arrays), np.empty((count, *shape_of(name)))
         assert function(*arrays, out=out) is out
         assert_array_equal(out, found)
         assert_allclose(found[rows], expected, rtol=1e-13, atol=1e-13)
@@ -132,39 +62,6 @@ def test_axes_broadcast_against_each_other_over_many_blocks():
     assert found.shape == (200, 200, 3)
     expected = module().angular_velocity_space(np.repeat(q, 200, axis=0), np.tile(q_dot, (200, 1)))
     assert_array_equal(found, expected.reshape(200, 200, 3))
-
-
-@pytest.mark.parametrize("name", QUANTITIES)
-@pytest.mark.parametrize("arrange", [np.asarray, strided, np.asfortranarray])
-def test_out_is_filled_and_returned(name, arrange):
-    arrays = inputs(name, (9, 2))
-    expected = getattr(module(), name)(*arrays)
-    out = arrange(np.full(expected.shape, np.nan))
-    assert getattr(module(), name)(*arrays, out=out) is out
-    assert_array_equal(out, expected)
-
-
-def test_out_of_one_orientation():
-    arrays = inputs("rotation_rate", ())
-    out = np.empty((3, 3))
-    assert module().rotation_rate(*arrays, out=out) is out
-    assert_array_equal(out, module().rotation_rate(*arrays))
-
-
-@pytest.mark.parametrize("count", [1, 5, 30_000])
-@pytest.mark.parametrize("shift", [0, 1, 3, 4])
-def test_out_may_overlap_the_arguments(count, shift):
-    memory = np.random.default_rng(7).uniform(-3, 3, 3 * count + 4)
-    q, out = memory[: 3 * count].reshape(-1, 3), memory[shift : shift + 3 * count].reshape(-1, 3)
-    q_dot = inputs("angular_velocity_body", (count,))[1]
-    expected = module().angular_velocity_body(q.copy(), q_dot)
-    assert_array_equal(module().angular_velocity_body(q, q_dot, out=out), expected)
-
-
-def test_out_may_be_the_reversed_argument():
-    q = inputs("rotation_matrix", (30_000,))[0]
-    expected = module().angular_velocity_space(q, q.copy())
-    assert_array_equal(module().angular_velocity_space(q, q, out=q[::-1]), expected)
 
 
 def test_columns_of_one_table_are_not_copied():
@@ -244,34 +141,6 @@ def test_outs_that_are_refused(out, kind, message):
     assert str(caught.value) == message
 
 
-@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
-@pytest.mark.parametrize("leading", [(), (3,)])
-@pytest.mark.parametrize("dtype", [np.float64, np.float32])
-def test_what_is_not_finite_goes_where_it_belongs(bad, leading, dtype):
-    q, q_dot = (a.astype(dtype) for a in inputs("angular_velocity_body", leading))
-    clean = module().angular_velocity_body(q, q_dot)
-    q[..., 2] = bad  # psi stands in the first two components of Ω′ alone
-    found = module().angular_velocity_body(q, q_dot)
-    assert np.isnan(found[..., :2]).all()
-    assert_array_equal(found[..., 2], clean[..., 2])
-    twin = np.array(one_by_one("angular_velocity_body", [q, q_dot]))
-    assert_array_equal(np.isnan(twin), np.isnan(found))
-    q[..., 2] = 0
-    q_dot[..., 0] = bad  # in all three components
-    assert not np.isfinite(module().angular_velocity_body(q, q_dot)).any()
-
-
-@pytest.mark.parametrize("name", [n for n in QUANTITIES if "inverse" in n or "rates_from" in n])
-@pytest.mark.parametrize("leading", [(), (2,), (150,)])
-def test_a_pole_gives_no_finite_number_and_no_warning(name, leading):
-    arrays = inputs(name, leading)
-    arrays[0][..., 1] = 0.0
-    found = getattr(module(), name)(*arrays)
-    assert not np.isfinite(found).all()
-    twin = one_by_one(name, arrays)
-    assert_array_equal(np.isfinite(twin), np.isfinite(found))
-
-
 def test_single_precision_overflows_without_a_warning():
     big = np.full(3, 3e38, np.float32)
     with np.errstate(all="raise"):
@@ -301,27 +170,12 @@ def peak(call) -> int:
         tracemalloc.stop()
 
 
-@pytest.mark.parametrize("name", QUANTITIES)
+@pytest.mark.parametrize("name", FEW)
 @pytest.mark.parametrize("dtype", [np.float64, np.int64])
 def test_memory_is_the_outputs_and_two_megabytes(name, dtype):
     arrays = [a.astype(dtype) for a in inputs(name, (200_000,))]
     size = getattr(module(), name)(*arrays).nbytes
     assert peak(lambda: getattr(module(), name)(*arrays)) <= size + 2e6
-
-
-def test_a_million_orientations_need_no_more():
-    q, q_dot = (np.zeros((1_000_000, 3)) for _ in range(2))
-    assert peak(lambda: module().rotation_rate(q, q_dot)) <= 72e6 + 2e6
-
-
-@pytest.mark.parametrize("name", ["angular_velocity_body", "rotation_matrix"])
-@pytest.mark.parametrize("threads", [2, 3, 100])
-def test_threads_give_the_same_numbers(name, threads):
-    arrays = inputs(name, (3, 10_001))
-    function = getattr(module(), name)
-    assert_array_equal(function(*arrays, threads=threads), function(*arrays))
-    assert function(*(a[0, 0] for a in arrays), threads=threads).shape == QUANTITIES[name][1]
-    assert function(*(a[:0] for a in arrays), threads=threads).shape[:2] == (0, 10_001)
 
 
 @pytest.mark.parametrize("threads", [0, -1, 1.5, None, "2"])
@@ -410,25 +264,9 @@ def test_a_forked_process_has_threads_of_its_own(tmp_path):
     subprocess.run([sys.executable, "-c", code], cwd=tmp_path, check=True, timeout=60)
 
 
-def test_threads_may_fill_an_out_that_overlaps():
-    q, q_dot = inputs("angular_velocity_body", (50_000,))
-    expected = module().angular_velocity_body(q, q_dot)
-    assert_array_equal(module().angular_velocity_body(q, q_dot, out=q[::-1], threads=2), expected)
-
-
-@pytest.mark.parametrize("shape", [(2, 3, 9000), (9000, 3), (20_000, 1, 2), (1, 1, 20_001)])
-def test_axes_of_any_lengths_over_many_blocks(shape):
-    q = inputs("rotation_matrix", shape)[0]
-    found = module().rotation_matrix(np.asfortranarray(q))
-    assert_array_equal(found, module().rotation_matrix(q.reshape(-1, 3)).reshape(*shape, 3, 3))
-
-
 def test_threads_need_little_more():
     q, q_dot = (np.zeros((500_000, 3)) for _ in range(2))
     assert peak(lambda: module().rotation_rate(q, q_dot, threads=2)) <= 36e6 + 2 * 12e6
-
-
-FEW_ROWS = ("rotation_matrix", "angular_velocity_body", "rates_from_angular_velocity_body")
 
 
 # What a call of few rows costs is calls, of Python and of NumPy, since each takes as long as the
@@ -436,7 +274,7 @@ FEW_ROWS = ("rotation_matrix", "angular_velocity_body", "rates_from_angular_velo
 @pytest.mark.parametrize(
     ("leading", "most"), [((), 28), ((1,), 26), ((6,), 72), ((7,), 20), ((10,), 20), ((100,), 21)]
 )
-@pytest.mark.parametrize("name", FEW_ROWS)
+@pytest.mark.parametrize("name", FEW)
 def test_few_rows_take_few_calls(name, leading, most):
     function, arrays = getattr(module(), name), inputs(name, leading)
     for options in ({}, {"out": function(*arrays)}):
@@ -461,7 +299,7 @@ class Counted(np.ndarray):
         return np.asarray(getattr(ufunc, method)(*plain, **into, **options)).view(Counted)
 
 
-@pytest.mark.parametrize("name", FEW_ROWS[:2])
+@pytest.mark.parametrize("name", FEW[:2])
 def test_each_operation_of_a_kernel_is_one_of_numpy(name):
     """The docstring states their number; no array is copied or computed twice."""
     Counted.ufuncs.clear()
@@ -469,3 +307,44 @@ def test_each_operation_of_a_kernel_is_one_of_numpy(name):
     stated = re.search(r"(\d+)\s+operations", getattr(module(), name).__doc__)
     copies = Counted.ufuncs.count("positive")  # of components that are entries of the result
     assert len(Counted.ufuncs) - copies == int(stated[1])
+
+
+@pytest.fixture(scope="module")
+def twenty_turns():
+    return rs.derive(" ".join(f"{'zxy'[k % 3]}({'abcdefghijklmnopqrst'[k]}1)" for k in range(20)))
+
+
+@pytest.fixture(scope="module")
+def long_chain(twenty_turns):
+    """The module of twenty turns, whose twins share functions of arrays, and its text."""
+    kernels = twenty_turns.kernels()
+    return kernels.load(), kernels.source
+
+
+def test_long_twins_share_the_functions_of_arrays(long_chain):
+    functions, text = long_chain
+    q, q_dot = np.random.default_rng(5).uniform(-3, 3, (2, 3, 20))
+    found, shared = functions.rotation_rate(q, q_dot), functions.rotation_rate_scalar
+    twins = [shared(*map(float, [*a, *b])) for a, b in zip(q, q_dot, strict=True)]
+    assert_allclose(twins, found, rtol=1e-13, atol=1e-13)
+    assert isinstance(twins[0][2][2], float)
+    assert shared(*[1] * 40) == shared(*[1.0] * 40)
+    assert "return _of_floats(_rotation_rate, (3, 3)" in " ".join(text.split()).replace("( ", "(")
+
+
+@pytest.mark.filterwarnings("error")
+def test_long_twins_give_nan_where_arrays_do(long_chain):
+    functions, _ = long_chain
+    straight = [0.0, *[0.5 * np.pi, 0.0, 0.0] * 6, 0.0]
+    for q in ([np.inf] * 20, straight, [np.nan, *[1.0] * 19]):
+        vectors = np.array(q), np.array([1.0, 2.0, 3.0])
+        rates = functions.rates_from_angular_velocity_body(*vectors)
+        twin = functions.rates_from_angular_velocity_body_scalar(*map(float, [*q, 1.0, 2.0, 3.0]))
+        assert_array_equal(np.isnan(twin), np.isnan(rates))
+    margin = functions.singularity_margin(np.ones((300, 20)))
+    assert_allclose(margin, functions.singularity_margin_scalar(*[1.0] * 20), rtol=1e-13)
+
+
+@pytest.mark.parametrize("target", ["numpy", "c", "numba"])
+def test_the_text_of_a_long_chain_takes_less_than_ten_kilobytes_a_turn(twenty_turns, target):
+    assert len(twenty_turns.kernels(target).source.encode()) < 20 * 10_000

@@ -81,6 +81,7 @@ WORDS = [
 ]
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("target", EVERY)
 @pytest.mark.parametrize("names", WORDS, ids=" ".join)
 def test_words_of_languages_are_renamed_so_that_every_module_loads(names, target):

@@ -7,10 +7,9 @@ import pytest
 import rigidsym as rs
 from helpers.motions import derived
 from rigidsym.kernels import ir
-from rigidsym.kernels.lowering.derivatives import derivatives_of, read_requests
 from rigidsym.kernels.lowering.lower import MARGIN, lower
 from rigidsym.kernels.targets.text.infix import infix
-from rigidsym.models.rotation_text import rotation_from
+from rigidsym.models.library import rotation_from
 from rigidsym.motion import derive
 
 SKEW = "z(phi) x(theta) [1,1,0](psi)"
@@ -31,7 +30,7 @@ def units(program: ir.Program) -> dict[str, str]:
 
 def test_quantities_come_in_the_order_of_their_equations_and_the_margin_last():
     program = lower(derived("ZXZ"))
-    assert (program.name, program.units) == ("euler_zxz_intrinsic", "radians")
+    assert program.name == "euler_zxz_intrinsic"
     assert [k.equation for k in program.kernels] == [*range(1, 14), None]
     assert [k.name for k in program.kernels][-1] == MARGIN
     matrix = kernel(program, "rotation_matrix")
@@ -44,20 +43,6 @@ def test_arguments_that_no_kernel_takes_are_not_in_the_program():
     chosen = lower(derive(FREE, only=["rotation_matrix"]))
     assert [a.name for a in chosen.arguments] == ["q", "parameters"]
     assert not any(a.is_scalar for a in chosen.arguments)
-
-
-def test_in_degrees_only_angles_have_other_names_and_units():
-    program = lower(derived("ZXZ"), degrees=True)
-    assert (program.name, program.units) == ("euler_zxz_intrinsic_deg", "degrees")
-    assert program.convention[0].startswith("Angles are in degrees")
-    found = units(program)
-    assert (found["phi_deg"], found["phi_dot_deg"]) == ("deg", "deg/s")
-    assert found["phi_ddot_deg"] == "deg/s^2"
-    assert kernel(program, "angular_velocity_body").unit == "deg/s"
-    assert not any(name.endswith("_deg") for name in units(lower(derived("ZXZ"))))
-    about_an_axis = derive(rotation_from("axis_angle"), only=["rotation_matrix"])
-    found = units(lower(about_an_axis, degrees=True))
-    assert sorted(unit for unit in found.values() if unit) == ["deg"]
 
 
 @pytest.mark.parametrize(
@@ -108,23 +93,3 @@ def test_the_words_of_a_target_are_no_names():
     motion = derive(rs.EulerAngles("ZXZ", ("a", "b", "c")), only=["rotation_matrix"])
     (names,) = lower(motion, reserved=["b"]).arguments
     assert names.components == ("a", "b_", "c")
-
-
-@pytest.mark.parametrize("degrees", [False, True])
-def test_weights_of_a_matrix_are_a_matrix_and_what_multiplies_is_not_scaled(degrees):
-    motion = derive("ZXZ", only=["rotation_matrix", "angular_velocity_body"])
-    asked = [
-        "rotation_matrix by q vjp",
-        "rotation_matrix by q jvp",
-        "angular_velocity_body by q_dot vjp",
-    ]
-    derivatives = derivatives_of(motion, read_requests(asked))
-    arguments = lower(motion, derivatives=derivatives, degrees=degrees).arguments
-    assert {a.name: a.matrix for a in arguments if a.may_be_flat} == {
-        "rotation_matrix_weights": (3, 3)
-    }
-    assert {a.name for a in arguments if not a.matrix} == {
-        *("q", "q_dot", "q_tangent", "angular_velocity_body_weights")
-    }
-    (tangent,) = (a for a in arguments if a.name == "q_tangent")
-    assert tangent.components == ("phi_tangent", "theta_tangent", "psi_tangent")

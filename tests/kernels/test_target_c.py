@@ -90,6 +90,7 @@ def run(*command: str, cwd) -> str:
     return done.stdout
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("compiler", COMPILERS)
 def test_compilers_have_nothing_to_say(sources, tmp_path, compiler):
     # gcc warns of more while it optimises, clang of all while it reads
@@ -123,6 +124,7 @@ def test_it_needs_nothing_and_keeps_nothing(sources):
     assert f"keeps {tile} orientations" in header
 
 
+@pytest.mark.campaign
 @pytest.mark.skipif(not shutil.which("gcc"), reason="no gcc")
 @pytest.mark.parametrize("contract", ["off", "fast"])
 def test_sine_and_cosine_keep_two_eps_of_their_size_at_any_angle(sources, contract):
@@ -152,12 +154,20 @@ def test_sine_and_cosine_keep_two_eps_of_their_size_at_any_angle(sources, contra
                     assert abs(found - truth) <= limit, angle
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("compiler", COMPILERS)
 def test_sanitizers_find_nothing_at_any_size(tmp_path, compiler):
     rs.derive("ZXZ").kernels("c", conversions=True).write(tmp_path)
     (tmp_path / "main.c").write_text(MAIN, encoding="utf-8")
-    flags = ("-std=c99", "-g", "-O1", "-fsanitize=address,undefined,float-cast-overflow", *STREAMS)
+    sanitizers = "-fsanitize=address,undefined,float-cast-overflow"
+    flags = ("-std=c99", "-g", "-O1", sanitizers, *STREAMS)
     made = f"main_{compiler}"
+    (tmp_path / "empty.c").write_text("int main(void) { return 0; }\n", encoding="utf-8")
+    linked = subprocess.run(
+        [compiler, sanitizers, "empty.c", "-o", "empty"], cwd=tmp_path, capture_output=True
+    )
+    if linked.returncode and not REQUIRED:
+        pytest.skip(f"{compiler} has no sanitizers; Debian has clang's in libclang-rt-dev")
     run(
         *(compiler, *flags, "-fno-sanitize-recover=all", f"{NAME}.c", "main.c"),
         *("-o", made, "-lm"),
@@ -172,6 +182,7 @@ def test_sanitizers_find_nothing_at_any_size(tmp_path, compiler):
         assert abs(values[2] - mp.cos(mp.mpf(angles[2]))) < 3e-7
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("compiler", COMPILERS)
 @pytest.mark.parametrize("way", ["shuffled", "plain", *(["streamed"] if STREAMS else [])])
 def test_rows_stand_where_they_belong(sources, compiler, way):
@@ -213,6 +224,7 @@ def test_rows_stand_where_they_belong(sources, compiler, way):
                     assert (columns[9] == 7).all()
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("flag", ["-msse2", *(["-mavx2"] if "avx2" in CPU else [])])
 @pytest.mark.parametrize("compiler", COMPILERS)
 def test_a_tile_of_any_width_is_taken_and_given_back(sources, compiler, flag):
@@ -244,6 +256,7 @@ def test_a_tile_of_any_width_is_taken_and_given_back(sources, compiler, flag):
             assert np.array_equal(back, rows)
 
 
+@pytest.mark.campaign
 @pytest.mark.skipif(not shutil.which("gcc"), reason="no gcc")
 @pytest.mark.skipif("avx" not in CPU, reason="a processor without AVX")
 @pytest.mark.parametrize("compiler", COMPILERS)
@@ -260,6 +273,7 @@ def test_no_loop_leaves_wide_registers_in_use(tmp_path, monkeypatch, compiler):
         assert "vzeroupper" in loop
 
 
+@pytest.mark.campaign
 @pytest.mark.skipif(platform.machine() != "x86_64", reason="other vectors")
 @pytest.mark.parametrize("compiler", COMPILERS)
 def test_a_portable_module_uses_wide_vectors_in_its_clones_only(tmp_path, monkeypatch, compiler):
@@ -395,67 +409,10 @@ def test_modes_that_change_values_are_refused_or_have_no_effect(tmp_path, compil
         assert float(run("./modes", cwd=tmp_path)) < 4e-16, flags
 
 
-def every_second(array):
-    wide = np.full((2 * len(array), *array.shape[1:]), np.nan)
-    wide[::2] = array
-    return wide[::2]
-
-
-LAYOUTS = {
-    "rows": np.asarray,
-    "columns": np.asfortranarray,
-    "every second row": every_second,
-    "backwards": lambda a: a[::-1].copy()[::-1],
-    "components backwards": lambda a: a[:, ::-1].copy()[:, ::-1],
-    "one row": lambda a: a[:1],
-    "one": lambda a: a[0],
-    "none": lambda a: a[:0],
-    "single precision": lambda a: a.astype(np.float32),
-    "other byte order": lambda a: a.astype(">f8"),
-    "integers": lambda a: a.astype(np.int64),
-    "list": lambda a: a.tolist(),
-    "three axes": lambda a: a.reshape(len(a), 1, -1),
-    "unaligned": lambda a: np.frombuffer(b"x" + a.tobytes(), "u1")[1:].view(float).reshape(a.shape),
-}
-
-
 @pytest.fixture(scope="module")
 def both():
     motion = rs.derive("ZXZ", only=["angular_velocity_body", "rotation_matrix"])
     return motion.kernels("c").load(), motion.kernels().load()
-
-
-@pytest.mark.parametrize("second", LAYOUTS)
-@pytest.mark.parametrize("first", LAYOUTS)
-def test_any_layout_gives_what_numpy_gives(both, first, second):
-    q, q_dot = np.random.default_rng(2).uniform(-3, 3, (2, 7, 3))
-    q, q_dot = LAYOUTS[first](q), LAYOUTS[second](q_dot)
-    compiled, plain = both
-    try:
-        expected = plain.angular_velocity_body(q, q_dot)
-    except ValueError as error:
-        with pytest.raises(ValueError, match=re.escape(str(error))):
-            compiled.angular_velocity_body(q, q_dot)
-        return
-    found = compiled.angular_velocity_body(q, q_dot)
-    assert (found.shape, found.dtype) == (expected.shape, expected.dtype)
-    assert found.flags.c_contiguous
-    atol = 1e-6 if found.dtype == np.float32 else 1e-14
-    np.testing.assert_allclose(found, expected, atol=atol)
-    out = np.full((*expected.shape, 2), np.nan, expected.dtype)[..., 0]
-    assert compiled.angular_velocity_body(q, q_dot, out=out) is out
-    np.testing.assert_array_equal(out, found)
-
-
-@pytest.mark.parametrize("shift", [0, 1, 3, 10])
-def test_a_call_at_once_sees_that_out_overlaps(both, shift):
-    compiled, _ = both
-    memory = np.random.default_rng(3).uniform(-3, 3, 3 * 40 + 10)
-    q, out = memory[:120].reshape(-1, 3), memory[shift : shift + 120].reshape(-1, 3)
-    q_dot = np.ones((40, 3))
-    expected = compiled.angular_velocity_body(q.copy(), q_dot)
-    assert compiled.angular_velocity_body(q, q_dot, out=out) is out
-    np.testing.assert_array_equal(out, expected)
 
 
 @pytest.mark.parametrize(
@@ -485,9 +442,9 @@ def test_the_memory_of_a_large_result_is_used_again_when_nobody_refers_to_it(bot
     del first
     third = compiled.rotation_matrix(q[::-1])
     assert not np.shares_memory(some, third)
-    np.testing.assert_allclose(some, plain.rotation_matrix(q[1000:1005]), atol=1e-15)
-    np.testing.assert_allclose(second[-3:], plain.rotation_matrix(-q[-3:]), atol=1e-15)
-    np.testing.assert_allclose(third[:3], plain.rotation_matrix(q[:-4:-1]), atol=1e-15)
+    np.testing.assert_allclose(some, plain.rotation_matrix(q[1000:1005]), atol=1e-14)
+    np.testing.assert_allclose(second[-3:], plain.rotation_matrix(-q[-3:]), atol=1e-14)
+    np.testing.assert_allclose(third[:3], plain.rotation_matrix(q[:-4:-1]), atol=1e-14)
     del some
     for threads in (1, 2):
         again = compiled.rotation_matrix(q, threads=threads)
@@ -516,16 +473,6 @@ def test_threads_share_only_what_takes_longer_than_handing_it_over(
     assert bool(shared) is is_shared
     with pytest.raises(ValueError, match="threads"):
         compiled.rotation_matrix(q, threads=0)
-
-
-def test_outs_are_refused_as_in_numpy(both):
-    compiled, plain = both
-    q = np.zeros((5, 3))
-    for out in (np.empty((3, 5)), np.empty((5, 3), np.float32), [0.0], np.empty((5, 3), ">f8")):
-        with pytest.raises((TypeError, ValueError)) as expected:
-            plain.angular_velocity_body(q, q, out=out)
-        with pytest.raises(expected.type, match=re.escape(str(expected.value))):
-            compiled.angular_velocity_body(q, q, out=out)
 
 
 def test_a_source_is_compiled_once_and_kept_in_the_cache(tmp_path, monkeypatch):

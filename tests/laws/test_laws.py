@@ -15,7 +15,7 @@ import pytest
 
 from helpers.parametrisations import MOVING, Moving, motion_of, nearly_straight, values_on
 from helpers.witness import agree, evaluate, hat, mp
-from rigidsym.models.euler_angles import EULER_SEQUENCES
+from rigidsym.models.parametrisations import EULER_SEQUENCES
 
 ONE = mp.eye(3)
 every_rotation = pytest.mark.parametrize("m", MOVING, ids=repr)
@@ -167,8 +167,8 @@ def test_rotations_compose(first: str, second: str):
 @pytest.mark.parametrize("sequence", EULER_SEQUENCES)
 def test_turns_about_fixed_axes_are_turns_about_moving_axes_in_the_opposite_order(sequence: str):
     """xyz(α, β, γ) = ZYX(γ, β, α)"""
-    fixed = Moving(sequence, passive=False, point=0)
-    moving = Moving(sequence[::-1].swapcase(), passive=False, point=0)
+    fixed = Moving(sequence, passive=False)
+    moving = Moving(sequence[::-1].swapcase(), passive=False)
     angles = fixed.argument("q")
     opposite = [angles[2], angles[1], angles[0]]
     assert agree(fixed.rotation_matrix, moving.at("rotation_matrix", q=opposite))
@@ -177,8 +177,8 @@ def test_turns_about_fixed_axes_are_turns_about_moving_axes_in_the_opposite_orde
 @pytest.mark.parametrize("sequence", EULER_SEQUENCES)
 def test_opposite_angles_in_the_opposite_order_undo_the_rotation(sequence: str):
     """R_z(φ) R_x(θ) R_z(ψ) R_z(−ψ) R_x(−θ) R_z(−φ) = 1"""
-    forth = Moving(sequence, passive=False, point=0)
-    back = Moving(sequence[::-1], passive=False, point=0)
+    forth = Moving(sequence, passive=False)
+    back = Moving(sequence[::-1], passive=False)
     angles = forth.argument("q")
     undoing = [-angles[2], -angles[1], -angles[0]]
     assert agree(forth.rotation_matrix * back.at("rotation_matrix", q=undoing), ONE)

@@ -12,8 +12,8 @@ from sympy.physics.vector import dynamicsymbols
 
 from helpers.witness import agree, evaluate, paths, values_along
 from rigidsym.mechanics.derive import derive
-from rigidsym.models.euler_angles import EulerAngles
 from rigidsym.models.library import PRESETS
+from rigidsym.models.parametrisations import EulerAngles
 from rigidsym.models.rotation import SOURCES, elementary, hat, lecture
 
 phi, theta, psi = dynamicsymbols("phi theta psi")

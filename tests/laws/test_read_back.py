@@ -1,7 +1,6 @@
-"""What is printed is what was proved: formulas and functions, read back at 50 digits.
+"""What is printed is what was proved: formulas, read back at 50 digits.
 
-Small readers that share no code with the package read the LaTeX and the MathML of the notes, and
-the functions in Python, C and JavaScript.
+Small readers that share no code with the package read the LaTeX and the MathML of the notes.
 """
 
 from __future__ import annotations
@@ -17,14 +16,12 @@ import sympy as sp
 import rigidsym as rs
 from helpers.reading import (
     Values,
-    braced_function,
     define,
     equations,
     latex_of,
-    python_function,
 )
 from helpers.witness import TOLERANCE, evaluate, mp
-from rigidsym.models.rotation_text import rotation_from
+from rigidsym.models.library import rotation_from
 
 VECTORS = {  # as the notes call it, its components, and those whose length is n
     "quaternion": ("v", "q_1 q_2 q_3", "q_0 q_1 q_2 q_3"),
@@ -47,7 +44,6 @@ SYMBOLS = {  # of results, as the reader names them
     "rate_matrix_body": "bold W'",
     "angular_acceleration_space": "dOmega/dt",
 }
-NEAR = mp.mpf(10) ** -14  # where the square root of two is printed as a double
 
 
 class Printed:
@@ -158,15 +154,6 @@ def _name(symbol: sp.Expr) -> str:
     return dots + PRINTED.get(base, base) + ("'" if body else "") + (f"_{index}" if index else "")
 
 
-def _components(group: str, motion: rs.Motion) -> list[str]:
-    """How the modules call the components of an argument."""
-    if group.startswith("omega"):
-        return [f"{group}_{k}" for k in (1, 2, 3)]
-    if group == "parameters":
-        return [str(symbol) for symbol in motion.model.constants]
-    return [str(q).replace("(t)", group[1:]) for q in motion.model.coordinates]
-
-
 def _distance(one: Any, two: Any) -> Any:
     return mp.norm(mp.matrix([one - two]) if not isinstance(one, mp.matrix) else one - two, 1)
 
@@ -217,23 +204,3 @@ def test_displays_of_the_note(text, form):
                 same_kind = isinstance(head, mp.matrix) == isinstance(last, mp.matrix)
                 if head is not None and last is not None and same_kind:
                     assert _distance(head, last) < TOLERANCE, display
-
-
-@pytest.mark.parametrize("text", ROTATIONS)
-def test_functions_in_three_languages(text):
-    one = printed(text)
-    inputs = {}
-    for group in one.motion.arguments:
-        inputs[group.name] = [one.point[symbol] for symbol in group.symbols]
-        inputs |= zip(_components(group.name, one.motion), inputs[group.name], strict=True)
-    sources = {target: one.motion.kernels(target).source for target in ("numpy", "c", "javascript")}
-    for name, expected in one.expected.items():
-        read = [
-            python_function(sources["numpy"], f"_{name}", inputs),
-            python_function(sources["numpy"], f"{name}_scalar", inputs),
-            braced_function(sources["c"], f"EVALUATE({name})", inputs),
-            braced_function(sources["javascript"], f"function _{name}(", inputs),
-        ]
-        limit = NEAR if "sqrt" in str(one.motion.step(name).expression) else TOLERANCE
-        for found in read:
-            assert _distance(mp.matrix(found), mp.matrix(list(expected))) < limit

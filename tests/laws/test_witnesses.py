@@ -19,7 +19,6 @@ from helpers.witness import (
     agree,
     derivative,
     evaluate,
-    mp,
     paths,
     rotation,
     unhat,
@@ -27,7 +26,7 @@ from helpers.witness import (
 )
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.derive import derive
-from rigidsym.models.euler_angles import EulerAngles
+from rigidsym.models.parametrisations import EulerAngles
 
 ANGLES = dynamicsymbols("phi theta psi")
 PATHS = paths(2, seed=2)
@@ -54,48 +53,6 @@ def velocity(convention: str, path: Path):
     """Ω in space components, from the numerical derivative of R."""
     function = turning(convention, path)
     return unhat(derivative(function) * function(0).T)
-
-
-def acceleration(convention: str, path: Path):
-    """dΩ/dt in space components, from the numerical derivatives of R."""
-    function = turning(convention, path)
-    first, second = derivative(function), derivative(function, 2)
-    return unhat(second * function(0).T + first * first.T)
-
-
-@every_convention
-@pytest.mark.parametrize("path", PATHS, ids=["first", "second"])
-class TestFiftyDigits:
-    def test_rotation_and_its_rate(self, convention, path):
-        function = turning(convention, path)
-        assert agree(printed(convention, "rotation_matrix", path), function(0))
-        assert agree(printed(convention, "rotation_rate", path), derivative(function))
-
-    def test_spin(self, convention, path):
-        function = turning(convention, path)
-        spin = derivative(function) * function(0).T
-        assert agree(printed(convention, "spin_matrix", path), spin)
-
-    def test_angular_velocity(self, convention, path):
-        omega = velocity(convention, path)
-        body = rotation(convention, path.q).T * omega
-        assert agree(printed(convention, "angular_velocity_space", path), omega)
-        assert agree(printed(convention, "angular_velocity_body", path), body)
-
-    def test_rate_matrices_column_by_column(self, convention, path):
-        """A column is the velocity when one rate alone is 1."""
-        for k in range(3):
-            rate = tuple(mp.mpf(int(k == j)) for j in range(3))
-            column = velocity(convention, Path(path.q, rate, (mp.mpf(0),) * 3))
-            body = rotation(convention, path.q).T * column
-            assert agree(printed(convention, "rate_matrix_space", path)[:, k], column)
-            assert agree(printed(convention, "rate_matrix_body", path)[:, k], body)
-
-    def test_angular_acceleration(self, convention, path):
-        alpha = acceleration(convention, path)
-        body = rotation(convention, path.q).T * alpha
-        assert agree(printed(convention, "angular_acceleration_space", path), alpha)
-        assert agree(printed(convention, "angular_acceleration_body", path), body)
 
 
 @every_convention

@@ -12,24 +12,24 @@ from sympy import Abs, Rational, acos, asin, atan, cos, cosh, exp, log, pi, sin,
 
 import rigidsym as rs
 from rigidsym.algebra.codec import codec_for
-from rigidsym.algebra.configuration import configurations
 from rigidsym.algebra.generators import combination
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.ring import Ring
-from rigidsym.algebra.witness import Witness
+from rigidsym.algebra.witness import Witness, configurations
 from rigidsym.errors import AlgebraError, Defect, ModelError, NotARotation
 from rigidsym.formula.reader import formula
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.derive import derive
 from rigidsym.mechanics.prove import Conditions, Prover
-from rigidsym.models.chain import chain
+from rigidsym.models.library import rotation_from
+from rigidsym.models.parametrisations import chain
 from rigidsym.models.rotation import RotationModel, Turn, elementary, time_function
 
 a, b, x, y, z = map(time_function, "abxyz")
 phi, psi, chi, theta = map(time_function, ("phi", "psi", "chi", "theta"))
 k, m, u, w = sp.symbols("k m u w")
 ABOUT_Z = elementary("z", phi)
-NOWHERE = "no real values|not proved to exist|no value is known"
+NOWHERE = "no real value|does not satisfy|needs an `example`"
 CLAIM = formula("0 = 0")
 
 ZEROS = {  # numbers that are zero and do not look so
@@ -42,8 +42,8 @@ ZEROS = {  # numbers that are zero and do not look so
 }
 
 
-def own(matrix: sp.Matrix, *constraints: sp.Expr) -> RotationModel:
-    return rs.given(matrix, name="sample", constraints=constraints)
+def own(matrix: sp.Matrix, *constraints: sp.Expr, example=()) -> RotationModel:
+    return rs.given(matrix, name="sample", constraints=constraints, example=dict(example))
 
 
 def turns(*pairs: tuple[str, sp.Expr]) -> RotationModel:
@@ -90,66 +90,82 @@ def has_inverse(derivation: Derivation) -> bool:
     ids=str,
 )
 def test_conditions_that_no_real_values_satisfy_are_refused(constraints):
-    with pytest.raises(ModelError, match=NOWHERE):
-        derive(own(ABOUT_Z * (1 + constraints[0]), *constraints))
-    with pytest.raises(ModelError, match=NOWHERE):
-        derive(own(elementary("z", phi), *constraints))
+    """Without an example, and with one: exact, nearly right, and of numbers that are not real."""
+    for matrix in (ABOUT_Z * (1 + constraints[0]), ABOUT_Z):
+        with pytest.raises(ModelError, match="needs an `example`: give exact values of"):
+            derive(own(matrix, *constraints))
+        atoms = set().union(*(c.free_symbols | c.atoms(sp.Function) for c in constraints))
+        names = [e for e in atoms if e in (a, b, x, y, m)]
+        for value in (0, 1, 3, -1, pi / 2, sp.Rational(1, 3)):
+            with pytest.raises(ModelError, match=NOWHERE):
+                derive(own(matrix, *constraints, example=dict.fromkeys(names, value)))
 
 
 @pytest.mark.parametrize(
-    "constraints",
+    ("constraints", "example"),
     [
-        [x**2 + y**2 - 1],
-        [sin(x) - 1],
-        [(x - 1) ** 2],
-        [x**2 + y**2],
-        [exp(x) - 2],
-        [x**3 - 2],
-        [x**2 + y**2 - 1, 2 * x**2 + 2 * y**2 - 2],
-        [cosh(x) ** 2 - sp.sinh(x) ** 2 - 1],
-        [sin(x) - cos(y)],
-        [x**2 - 10**6],
-        [sqrt(x) - 30],
-        [acos(x) - 1],
-        [x * y * z - 1, x + y + z],
+        ([log(x) ** 2 + pi**2], {x: -1}),  # holds in complex numbers
+        ([sqrt(x) * sqrt(y) + 1], {x: -1, y: -1}),
+        ([x**2 - 2], {x: Rational(14142135623730950488016887242096980785696718753769, 10**49)}),
+        ([x**2 + y**2 - 1], {x: Rational(3, 5)}),
+        ([acos(x) - y], {x: Rational(1, 3), y: Rational(1230959417340774682, 10**18)}),
     ],
     ids=str,
 )
-def test_conditions_that_real_values_satisfy_pass(constraints):
-    assert derive(own(ABOUT_Z, *constraints), ["rotation_matrix"]).is_proved
+def test_an_example_is_checked_exactly_and_in_real_numbers(constraints, example):
+    with pytest.raises(ModelError, match=NOWHERE):
+        derive(own(ABOUT_Z, *constraints, example=example))
 
 
-@pytest.mark.parametrize("constraint", [x**2 + y**2 - 1, x**3 - 2, exp(x) - 2, (x - 3) ** 2])
-def test_a_configuration_satisfies_its_constraints_with_its_rates(constraint):
-    (found,) = configurations("sample", (constraint,), ())
+@pytest.mark.parametrize(
+    ("constraints", "example"),
+    [
+        ([x**2 + y**2 - 1], {x: Rational(3, 5), y: Rational(4, 5)}),
+        ([sin(x) - 1], {x: pi / 2}),
+        ([(x - 1) ** 2], {x: 1}),
+        ([x**2 + y**2], {x: 0, y: 0}),
+        ([exp(x) - 2], {x: log(2)}),
+        ([x**3 - 2], {x: sp.cbrt(2)}),
+        ([x**2 + y**2 - 1, 2 * x**2 + 2 * y**2 - 2], {x: sqrt(2) / 2, y: -sqrt(2) / 2}),
+        ([cosh(x) ** 2 - sp.sinh(x) ** 2 - 1], {}),
+        ([sin(x) - cos(y)], {x: pi / 3, y: pi / 6}),
+        ([x**2 - 10**6], {x: -1000}),
+        ([sqrt(x) - 30], {x: 900}),
+        ([acos(x) - 1], {x: cos(1)}),
+        ([x * y * z - 1, x + y + z], {x: -1, y: (1 + sqrt(5)) / 2, z: (1 - sqrt(5)) / 2}),
+        ([x**2 - sqrt(5 + 2 * sqrt(6))], {x: sqrt(sqrt(2) + sqrt(3))}),
+    ],
+    ids=str,
+)
+def test_conditions_that_an_example_satisfies_pass(constraints, example):
+    assert derive(own(ABOUT_Z, *constraints, example=example), ["rotation_matrix"]).is_proved
+
+
+@pytest.mark.parametrize(
+    ("constraint", "example"),
+    [
+        (x**2 + y**2 - 1, {x: Rational(3, 5), y: Rational(4, 5)}),
+        (x**3 - 2, {x: sp.cbrt(2)}),
+        (exp(x) - 2, {x: log(2)}),
+        ((x - 3) ** 2, {x: sp.Integer(3)}),
+    ],
+)
+def test_a_configuration_satisfies_its_constraints_with_its_rates(constraint, example):
+    (found,) = configurations("sample", (constraint,), (), tuple(example.items()))
     t = sp.Symbol("t")
     for order in range(3):
         derivative = sp.diff(constraint, t, order)
         assert abs(found.numbers([derivative])(derivative)) < 1e-40
         assert 0 in found.intervals([derivative])(derivative)
-
-
-def test_an_example_of_the_user_is_where_the_search_starts():
-    narrow = (x - 40) ** 2 + (y + 7) ** 2 - Rational(1, 10**8)
-    model = sp.Matrix(ABOUT_Z)
-    given = rs.given(model, name="sample", constraints=(narrow,))
-    example = ((x, 40 + Rational(1, 10**4)), (y, sp.Integer(-7)))
-    (found,) = configurations(given.name, given.constraints, (), example)
-    assert abs(found.numbers([x])(x) - 40) < 1e-3
+    if constraint.has(y):
+        assert found.values[x.diff(t)] != 0
 
 
 PINCHED = x**4 - 2 * x**2 * y + y**2 + (x - 3) ** 2  # zero only for x = 3, y = 9
 
 
-def test_a_point_that_no_search_finds_is_given_by_the_user():
-    with pytest.raises(ModelError, match="no real values were found"):
-        rs.derive(
-            rs.given(sp.Matrix(ABOUT_Z), name="sample", constraints=(PINCHED,)),
-            only="rotation_matrix",
-        )
-    known = rs.given(
-        sp.Matrix(ABOUT_Z), name="sample", constraints=(PINCHED,), example={"x": 3, y: 9}
-    )
+def test_an_example_is_kept():
+    known = own(ABOUT_Z, PINCHED, example={"x": 3, y: 9})
     assert rs.derive(known, only="rotation_matrix").is_proved
     assert dict(known.example) == {x: 3, y: 9}
 
@@ -158,6 +174,16 @@ def test_a_point_that_no_search_finds_is_given_by_the_user():
 def test_an_example_is_of_exact_real_numbers(example):
     with pytest.raises(ModelError):
         rs.given(sp.Matrix(ABOUT_Z), name="sample", constraints=(PINCHED,), example=example)
+
+
+@pytest.mark.parametrize(
+    "axes", ["[a,b,c]", "[a,b,c](p) [c,3/5,0]", "[a,1/2,0]", "[a,a,b]", "[0,b,0]"]
+)
+def test_symbols_in_axes_have_an_example(axes):
+    model = rotation_from(f"{axes}(phi) x(theta)")
+    assert derive(model, ["rotation_matrix"]).is_proved
+    for condition in model.constraints:
+        assert sp.expand(condition.xreplace(dict(model.example))) == 0
 
 
 # Matrices that are real nowhere, or at a point only.
@@ -191,17 +217,18 @@ def test_angles_that_are_not_real_are_refused(angle):
 
 
 @pytest.mark.parametrize(
-    ("cosine", "sine"),
+    ("cosine", "sine", "example"),
     [
-        (sqrt(1 - x**2), x),
-        (sqrt(101 - x), sqrt(x - 100)),
-        (x / sqrt(x**2 + y**2), y / sqrt(x**2 + y**2)),
-        (sqrt(x) / sqrt(x + 1), 1 / sqrt(x + 1)),
+        (sqrt(1 - x**2), x, {}),
+        (sqrt(101 - x), sqrt(x - 100), {x: 100 + Rational(1, 3)}),
+        (x / sqrt(x**2 + y**2), y / sqrt(x**2 + y**2), {}),
+        (sqrt(x) / sqrt(x + 1), 1 / sqrt(x + 1), {}),
     ],
     ids=str,
 )
-def test_matrices_that_are_real_somewhere_pass(cosine, sine):
-    assert derive(own(about_z(cosine, sine)), ["rotation_matrix"]).is_proved
+def test_matrices_that_are_real_somewhere_pass(cosine, sine, example):
+    model = own(about_z(cosine, sine), example=example)
+    assert derive(model, ["rotation_matrix"]).is_proved
 
 
 # Zeros in disguise.
@@ -285,12 +312,16 @@ def test_angles_that_do_not_cancel_stay_as_they_are_written(angle):
 
 
 @pytest.mark.parametrize("axes", ["xyzx", "zxzx", "zyxy", "xyxz"])
-@pytest.mark.parametrize("constraint", [sin(x), cos(x), sin(x) - Rational(1, 2)], ids=str)
-def test_singular_points_satisfy_the_conditions(axes, constraint):
+@pytest.mark.parametrize(
+    ("constraint", "value"),
+    [(sin(x), pi), (cos(x), pi / 2), (sin(x) - Rational(1, 2), pi / 6)],
+    ids=str,
+)
+def test_singular_points_satisfy_the_conditions(axes, constraint, value):
     matrix = sp.eye(3)
     for axis, angle in zip(axes, (x, y, z, a), strict=True):
         matrix = matrix * elementary(axis, angle)
-    found = derive(own(matrix, constraint), ["rate_matrix_space"])
+    found = derive(own(matrix, constraint, example={x: value}), ["rate_matrix_space"])
     for point in found.singularities.points:
         values = {place.coordinate: place.value for place in point.places}
         assert constraint.xreplace(values).has(x) or constraint.xreplace(values) == 0
@@ -340,7 +371,7 @@ def test_every_claim_of_a_derivation_is_evaluated(monkeypatch, rotation):
 
 def test_what_is_false_on_the_conditions_is_refuted_by_a_value():
     with pytest.raises(NotARotation, match="left over"):
-        derive(own(ABOUT_Z * (x**2 + y**2), x**2 + y**2 - 4))
+        derive(own(ABOUT_Z * (x**2 + y**2), x**2 + y**2 - 4, example={x: 0, y: 2}))
 
 
 def test_a_tangent_is_real_and_a_division():

@@ -13,8 +13,7 @@ from rigidsym.errors import BodyError, QuantityError
 from rigidsym.mechanics.mass.bodies import body_of
 from rigidsym.mechanics.mass.principal import principal_of
 from rigidsym.mechanics.quantities.mass import INERTIA_QUANTITIES
-from rigidsym.models.body import given_inertia
-from rigidsym.models.distribution import Composite, Part, Particle, Particles, Solid
+from rigidsym.models.body import Composite, Part, Particle, Particles, Solid, given_inertia
 from rigidsym.models.rotation import elementary
 from rigidsym.models.solids import SHAPES, shaped
 

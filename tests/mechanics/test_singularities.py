@@ -17,8 +17,8 @@ from scipy.spatial.transform import Rotation
 
 from helpers.parametrisations import CHAINS, CONSTANTS, IN_A_PLANE, WITNESSES, motion_of
 from helpers.witness import evaluate, mp, number
-from rigidsym.models.library import PARAMETRISATIONS, PRESETS
-from rigidsym.models.rotation_text import rotation_from
+from rigidsym.models.library import PARAMETRISATIONS, PRESETS, rotation_from
+from rigidsym.models.parametrisations import EULER_SEQUENCES
 from rigidsym.motion import derive
 from rigidsym.notes.formats.record import record
 from rigidsym.notes.formats.terminal import show
@@ -33,7 +33,7 @@ MORE_CHAINS = (
     "x(a) z(b + pi/4) x(c) y(d)",
     "z(a) z(b)",
 )
-TURNS = (*PRESETS, *CHAINS, *MORE_CHAINS)
+TURNS = (*EULER_SEQUENCES, *PRESETS, *CHAINS, *MORE_CHAINS)
 EVERY = (*PARAMETRISATIONS, *TURNS)
 UNDECIDED = "z(phi) [a,b,c](beta) [1,2,2](psi)"  # a cosine and a sine by any constants
 

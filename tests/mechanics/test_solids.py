@@ -16,8 +16,7 @@ from rigidsym.algebra.integrate import Integrator, integration_codec
 from rigidsym.errors import AlgebraError, BodyError
 from rigidsym.mechanics.mass.bodies import body_of, solid
 from rigidsym.mechanics.mass.moments import moments_of
-from rigidsym.models.body import RigidBody
-from rigidsym.models.distribution import Composite, Part, Particle, Particles, Solid
+from rigidsym.models.body import Composite, Part, Particle, Particles, RigidBody, Solid
 from rigidsym.models.solids import SHAPES, shaped
 
 M, a, b, c, h, rho = sp.symbols("M a b c h rho")

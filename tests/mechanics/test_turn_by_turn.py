@@ -11,11 +11,11 @@ import rigidsym as rs
 from helpers.witness import mp
 from rigidsym.algebra.codec import codec_for
 from rigidsym.mechanics.derive import derive
-from rigidsym.mechanics.kinematics.derive import is_shorter
-from rigidsym.mechanics.kinematics.recursion_proofs import residuals
-from rigidsym.mechanics.kinematics.turn_by_turn import TurnByTurn
+from rigidsym.mechanics.kinematics import chain as chain_of_turns
+from rigidsym.mechanics.kinematics.chain import Chain, is_shorter
 from rigidsym.mechanics.kinematics.workspace import Values
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
+from rigidsym.mechanics.quantities.kinematics import KINEMATICS
 
 LETTERS = "zxzyxyzxyzxyzxzyxyzx"
 TOLERANCE = mp.mpf(10) ** -40
@@ -31,9 +31,9 @@ def chain(count: int, *, oblique: int = 0) -> rs.RotationModel:
     return rs.rotation_from(" ".join(f"{axis}(q{k})" for k, axis in enumerate(axes, 1)))
 
 
-def spelled(work: TurnByTurn, matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
+def spelled(work: Chain, matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
     values: dict[sp.Symbol, sp.Expr] = {}
-    for definition in work.definitions([matrix]):
+    for definition in work.definitions_of([matrix]):
         values[definition.symbol] = definition.expression.xreplace(values)
     return matrix.xreplace(values)
 
@@ -43,18 +43,18 @@ def spelled(work: TurnByTurn, matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
 )
 def test_the_recursion_is_the_expanded_form_in_the_ring(count, oblique):
     model = chain(count, oblique=oblique)
-    work, values = TurnByTurn(model), Values(model)
-    found = dict(work.steps())
+    work, values = Chain(model), Values(model)
     for name, expanded in (
-        ("rotation_matrix", values.turning.R),
-        ("angular_velocity_space", values.turning.omega_space),
-        ("angular_velocity_body", values.turning.omega_body),
-        ("rate_matrix_space", values.rate_matrices["space"]),
-        ("rate_matrix_body", values.rate_matrices["body"]),
-        ("angular_acceleration_space", values.turning.omega_space.dt()),
-        ("angular_acceleration_body", values.turning.omega_body.dt()),
+        ("rotation_matrix", values.rotation),
+        ("angular_velocity_space", values.omega_space),
+        ("angular_velocity_body", values.omega_body),
+        ("rate_matrix_space", values.rate_matrix("space")),
+        ("rate_matrix_body", values.rate_matrix("body")),
+        ("angular_acceleration_space", values.omega_space.dt()),
+        ("angular_acceleration_body", values.omega_body.dt()),
     ):
-        entries = map(values.codec.encode, spelled(work, found[name].expression))
+        step = work.step(KINEMATICS[name])
+        entries = map(values.codec.encode, spelled(work, step.expression))
         assert not any(e - x for e, x in zip(entries, expanded.entries, strict=True)), name
 
 
@@ -74,6 +74,7 @@ def axis_turn(direction, angle):
     return mp.eye(3) + mp.sin(angle) * skew + (1 - mp.cos(angle)) * skew * skew
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize(("count", "oblique"), [(5, 0), (6, 3), (9, 4), (20, 0), (20, 5)])
 def test_all_quantities_are_true_at_fifty_digits(count, oblique):
     model = chain(count, oblique=oblique)
@@ -143,13 +144,28 @@ def value_of(expression, known):
 
 def test_a_wrong_definition_is_not_proved():
     model = chain(5)
-    work = TurnByTurn(model)
-    broken = work.recursion.partial[3]
+    work = Chain(model)
+    broken = work.partial[3]
     (symbol,) = [s for s in broken.free_symbols if s.name == "P3_11"]
-    work.recursion._groups["P3"][symbol] += symbol
-    assert any(not r.is_zero() for _, r in residuals(work.recursion, "product"))
+    work._groups["P3"][symbol] += symbol
     with pytest.raises(rs.RigidsymError, match="is false"):
-        work.find(["rotation_matrix"])
+        work.step(KINEMATICS["rotation_matrix"])
+
+
+@pytest.mark.parametrize(
+    ("law", "quantity"),
+    [
+        ("velocity", "angular_velocity_space"),
+        ("velocity", "angular_velocity_body"),
+        ("acceleration", "angular_acceleration_space"),
+        ("acceleration", "angular_acceleration_body"),
+    ],
+)
+def test_a_wrong_law_of_composition_is_refuted(monkeypatch, law, quantity):
+    monkeypatch.setattr(chain_of_turns, law, lambda R, own, *others: own - R @ others[-1])
+    monkeypatch.setattr(chain_of_turns, "_composition", chain_of_turns._composition.__wrapped__)
+    with pytest.raises(rs.RigidsymError, match="is false"):
+        Chain(chain(5)).step(KINEMATICS[quantity])
 
 
 def test_operations_and_definitions_grow_linearly():
@@ -176,10 +192,9 @@ def test_the_attributes_of_a_motion_are_in_the_coordinates_only():
 
 
 def test_turns_whose_axes_stay_in_a_plane_have_no_right_inverse():
-    flat = TurnByTurn(rs.rotation_from("z(a) z(b) z(c) x(d)"))
-    assert "inverse_rate_matrix_space" not in dict(flat.steps())
-    full = TurnByTurn(rs.rotation_from("z(a) z(b) z(c) x(d) z(e)"))
-    assert "inverse_rate_matrix_space" in dict(full.steps())
+    inverse = KINEMATICS["inverse_rate_matrix_space"]
+    assert Chain(rs.rotation_from("z(a) z(b) z(c) x(d)")).step(inverse) is None
+    assert Chain(rs.rotation_from("z(a) z(b) z(c) x(d) z(e)")).step(inverse).proofs
 
 
 def test_a_long_chain_is_shown_in_vector_form():
@@ -197,12 +212,12 @@ def test_a_body_on_a_long_chain_has_the_energy_and_momentum_of_the_expanded_rota
     assert all(step.proofs for step in motion.steps if step.quantity.name in ENERGY_QUANTITIES)
     assert motion.is_proved
     values = Values(model, motion.body)
-    omega, inertia = values.turning.omega_body, values.codec.matrix(motion.body.inertia)
+    omega, inertia = values.omega_body, values.codec.matrix(motion.body.inertia)
     encode = values.codec.encode
     assert encode(2 * motion.rotational_energy) == (omega.T @ inertia @ omega)[0, 0]
-    momentum = (values.turning.R @ (inertia @ omega)).entries
+    momentum = (values.rotation @ (inertia @ omega)).entries
     assert tuple(map(encode, motion.angular_momentum_rotation)) == momentum
-    turned = values.turning.R @ inertia @ values.turning.R.T
+    turned = values.rotation @ inertia @ values.rotation.T
     assert tuple(map(encode, motion.inertia_tensor_space)) == turned.entries
 
 
@@ -253,3 +268,19 @@ def test_a_chain_whose_neighbours_may_share_an_axis_says_that_its_singularities_
     found = rs.derive(model, ["rate_matrix_space"]).singularities
     assert not found.is_solved
     assert found.points == ()
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        " ".join(f"z(a{k})" for k in range(1, 21)),
+        f"z({' + '.join(f'sqrt({p})*a' for p in (2, 3, 5, 7, 11, 13, 17, 19, 23, 29))}) x(b)",
+        "[a,b,c](x) [d,e,f](y) [g,h,i](z)",
+    ],
+    ids=["twenty turns about one axis", "ten roots in an angle", "three symbolic axes"],
+)
+def test_what_grows_exponentially_if_it_is_multiplied_out_is_not(text):
+    motion = rs.derive(rs.rotation_from(text))
+    assert motion.is_proved
+    source = motion.kernels().source
+    assert len(source) < 200_000

@@ -10,10 +10,9 @@ import sympy as sp
 from sympy.physics.vector import dynamicsymbols
 
 import rigidsym as rs
-from rigidsym.models.body import Parameter, RigidBody
-from rigidsym.models.distribution import Polyhedron
-from rigidsym.models.example import no_rotation
-from rigidsym.models.rotation_text import rotation_given, turned_by
+from rigidsym.models.body import Parameter, Polyhedron, RigidBody
+from rigidsym.models.forces import no_rotation
+from rigidsym.models.library import rotation_given, turned_by
 from rigidsym.notes.formats import register
 from rigidsym.notes.problems.exercise import sheet_of
 
@@ -80,7 +79,6 @@ def dynamics(rotation: str = "z(theta)", **acting: object) -> rs.Motion:
         (lambda: rs.Particle(mass=1, position=[1, 2]), "three components, got 2"),
         (lambda: rs.derive("ZXZ", only="weight"), "no quantity 'weight'"),
         (lambda: rs.derive("ZXZ", only="mass"), "no quantity mass; it needs a body"),
-        (lambda: rs.derive("z(a)").note(language="xx"), "language is en or de, and not 'xx'"),
         (lambda: sheet_of("tops", {}, count=1, variant=1), "no problems on 'tops'"),
         (lambda: register(Path("/none/format.txt")), "/none/format.txt cannot be imported"),
         (lambda: rs.chain([]), "a chain needs at least one turn, such as z(phi)"),
@@ -175,10 +173,10 @@ def test_numbers_describe_a_solid():
 
 
 @pytest.mark.parametrize("shown", [rs.rotation_from("z(a)"), rs.EulerAngles("ZXZ", passive=True)])
-def test_a_rotation_shows_itself_in_jupyter(shown):
+def test_a_rotation_shows_itself_in_jupyter(shown, golden):
     bundle = shown._repr_mimebundle_()
     assert bundle["text/latex"].startswith(r"$$\mathbf{A}" if shown.passive else r"$$\mathbf{R}")
-    assert shown.presentation in bundle["text/plain"]
+    golden(f"terminal/model_{shown.name}.txt", bundle["text/plain"] + "\n")
     assert repr(shown) == f"<RotationModel {shown}: {shown.title}>"
 
 

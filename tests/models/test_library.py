@@ -21,8 +21,7 @@ from helpers.parametrisations import (
 from helpers.witness import derivative, evaluate, hat, mp, number, paths, unhat
 from rigidsym.errors import ExpressionError, ModelError, QuantityError
 from rigidsym.mechanics.derive import derive as derivation_of
-from rigidsym.models.library import PARAMETRISATIONS, PRESETS
-from rigidsym.models.rotation_text import rotation_from
+from rigidsym.models.library import PARAMETRISATIONS, PRESETS, rotation_from
 from rigidsym.motion import derive
 from rigidsym.notes.formats.terminal import show
 from rigidsym.pipeline import read_record

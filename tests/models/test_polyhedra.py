@@ -7,7 +7,7 @@ import sympy as sp
 
 from rigidsym.errors import BodyError
 from rigidsym.mechanics.mass.bodies import body_of, solid
-from rigidsym.models.distribution import Known, Outline, Polyhedron
+from rigidsym.models.body import Known, Outline, Polyhedron
 
 M, a, b, c = sp.symbols("M a b c")
 CUBE = ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))

@@ -39,8 +39,7 @@ from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.errors import AlgebraError, DerivationError, ModelError, NotARotation
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.derive import derive
-from rigidsym.models.euler_angles import EulerAngles
-from rigidsym.models.parametrisations import CayleyKlein, Quaternion, UnitQuaternion
+from rigidsym.models.parametrisations import CayleyKlein, EulerAngles, Quaternion, UnitQuaternion
 from rigidsym.models.rotation import elementary, time_function
 
 DERIVED: dict[str, Derivation] = {}
@@ -154,13 +153,16 @@ def test_dependent_roots_do_not_refute_a_rotation():
     """√(4v²) = 2√(v²), which the ring does not know: nothing is decided, and nothing refused."""
     one = sqrt(4 * x**2 + 4 * y**2 + 4 * z**2) / (2 * NORM)
     for constraints in ((), (w - phi,)):
-        motion = derive(model(one * elementary("z", phi), phi, x, y, z, w, constraints=constraints))
+        example = {w: sp.S.One, phi: sp.S.One}
+        matrix = one * elementary("z", phi)
+        motion = derive(model(matrix, *(phi, x, y, z, w), constraints=constraints, example=example))
         assert not motion.is_proved
 
 
 def test_a_double_constraint_does_not_refute_a_rotation():
     """(u − 1)² = 0 says u = 1, which is not in the ideal that it spans."""
-    motion = derive(model(u * elementary("z", phi), phi, u, constraints=((u - 1) ** 2,)))
+    bound = {"constraints": ((u - 1) ** 2,), "example": {u: sp.S.One}}
+    motion = derive(model(u * elementary("z", phi), phi, u, **bound))
     assert not motion.is_proved
 
 
@@ -259,7 +261,9 @@ def test_a_convention_is_said_in_greek_letters_whatever_the_terminal_shows():
     try:
         model = EulerAngles("ZXZ", ("phi_1", "theta", "psi"))
         assert model.product == "Rz(φ₁) Rx(θ) Rz(ψ)"
-        assert "first φ₁ about z, then θ about the turned x" in " ".join(model.convention)
+        assert "first by φ₁ about the z-axis, then by θ about the new x-axis" in " ".join(
+            model.convention
+        )
         assert not pretty_use_unicode(False)  # which stays as it was
     finally:
         pretty_use_unicode(before)

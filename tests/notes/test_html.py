@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import os
 import re
-import shutil
 import subprocess
 import sys
 from dataclasses import replace
@@ -13,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import rigidsym as rs
-from helpers.browser import look_at, open_page, require_chromium
+from helpers.browser import look_at, open_page
 from helpers.elements import ODD, Elements, odd_model
 from helpers.motions import derived
 from rigidsym.formula.mathml_pen import MathmlPen, inline_parts
@@ -22,7 +20,7 @@ from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Symbol
 from rigidsym.formula.unicode_pen import UnicodePen
 from rigidsym.mechanics.derive import derive
-from rigidsym.models.euler_angles import EULER_SEQUENCES, EulerAngles
+from rigidsym.models.parametrisations import EULER_SEQUENCES, EulerAngles
 from rigidsym.notes.formats.escape import cleaned
 from rigidsym.notes.formats.html import escape
 from rigidsym.notes.note import note
@@ -152,10 +150,8 @@ def test_an_unproved_claim_stands_out():
 # --- a real validator ---
 
 
+@pytest.mark.usefixtures("java")
 def test_every_page_is_valid(tmp_path: Path):
-    if shutil.which("java") is None:
-        required = os.environ.get("RIGIDSYM_REQUIRE_JAVA") == "1"
-        (pytest.fail if required else pytest.skip)("java is not installed")
     for sequence in EULER_SEQUENCES[::3]:  # their markup is the same
         (tmp_path / f"{sequence}_.html").write_text(html(derived(sequence)), encoding="utf-8")
     (tmp_path / "odd.html").write_text(odd_note(), encoding="utf-8")
@@ -175,11 +171,6 @@ def test_every_page_is_valid(tmp_path: Path):
 
 
 # --- a real browser ---
-
-
-@pytest.fixture
-def chromium() -> None:
-    require_chromium()
 
 
 @pytest.mark.usefixtures("chromium")

@@ -13,7 +13,6 @@ import pytest
 import rigidsym as rs
 from helpers.typesetting import bound_together, pages_of, sheet_of
 from rigidsym.notes.document.document import Document, EquationReference, EquationRow, NoteTable
-from rigidsym.notes.sections.boxed import RESULTS
 from rigidsym.pipeline import output_of, read_file
 
 OTHERS = ("unit_quaternion", "rotation_vector", "z(a) x(b) z(c) y(d)")
@@ -70,7 +69,7 @@ def test_the_sheet_holds_the_boxed_results_of_the_theory():
     assert sheet.on_own_page
     shown = [e.sides for b in sheet.blocks if isinstance(b, EquationRow) for e in b.equations]
     motion = output_of(read_file("lecture")).motion
-    results = [s.sides for s in motion.theory if s.name in RESULTS]
+    results = [s.sides for s in motion.theory if s.is_result]
     assert results
     assert all(sides in shown for sides in results)
 
@@ -79,8 +78,3 @@ def test_the_sheet_holds_the_boxed_results_of_the_theory():
 def test_the_sheet_is_one_page():
     sheets = [sheet_of(document) for document in documents()]
     assert pages_of(bound_together(sheets)) == len(sheets)
-
-
-def test_the_mass_is_of_the_body_whatever_its_frame_is_called():
-    motion = rs.derive("ZXZ", theory=True).with_notation(frames=("inertial", "spacecraft"))
-    assert "mass of the body" in motion.note(style="audit").markdown()

@@ -12,9 +12,8 @@ from rigidsym.formula.abbreviations import Namer
 from rigidsym.formula.display import PAGE, display
 from rigidsym.formula.scalars import factored, listed_entries
 from rigidsym.mechanics.kinematics.vector_forms import LENGTH
-from rigidsym.models.library import PARAMETRISATIONS, PRESETS
+from rigidsym.models.library import PARAMETRISATIONS, PRESETS, rotation_from
 from rigidsym.models.rotation import hat
-from rigidsym.models.rotation_text import rotation_from
 from rigidsym.notes.document.document import (
     Document,
     Equation,
@@ -66,6 +65,7 @@ def test_every_summary_fits_on_one_sheet(documents):
     assert pages_of(bound_together(sheets)) == len(sheets)
 
 
+@pytest.mark.campaign
 def test_no_display_is_wider_than_a_page(documents):
     for document in documents:
         for section in document.sections:
@@ -103,6 +103,7 @@ def test_names_come_before_breaking_and_shorthand(rotation, label, done, names):
     assert len(given.entries if given else ()) == names
 
 
+@pytest.mark.campaign
 def test_what_has_a_name_keeps_it_and_is_explained_once(documents):
     for document in documents:
         explained = [
@@ -115,6 +116,7 @@ def test_what_has_a_name_keeps_it_and_is_explained_once(documents):
         assert len(explained) == len(set(explained)), document.title
 
 
+@pytest.mark.campaign
 def test_an_energy_that_no_line_can_break_gets_names_first(documents):
     document = documents[-2]
     energy, given = _given(document, "rotational_energy")

@@ -35,7 +35,7 @@ from rigidsym.formula.tree import (
 )
 from rigidsym.formula.unicode_pen import UnicodePen
 from rigidsym.mechanics.quantities.table import arguments_of
-from rigidsym.models.euler_angles import EulerAngles
+from rigidsym.models.parametrisations import EulerAngles
 from rigidsym.notes.formula.derivation_letters import letters_of
 
 ANGLES = dynamicsymbols("phi theta psi")
@@ -88,6 +88,31 @@ def random_scalar(rng: Random, depth: int) -> sp.Expr:
 
 
 SCALARS = [random_scalar(Random(f"scalar:{k}"), 1 + k % 4) for k in range(240)]
+
+
+phi, theta, psi = ANGLES
+phi_dot, theta_dot, psi_dot, phi_ddot, theta_ddot, _ = RATES
+omega, omega_body = OMEGA[:3], OMEGA[3:]
+A, m, moment = sp.symbols("A m_1 moment")
+sin, cos, tan, cot = FUNCTIONS
+READABLE = (  # what depends on the order of factors and terms, on signs and on brackets
+    *(sp.Integer(0), -sp.Rational(1, 2), sp.pi / 2, -3 * sp.pi / 4, m, 2 * moment),
+    *(sin(psi) * phi_dot * sin(theta), cos(theta) * sin(theta), phi_dot * theta_dot * A * 2),
+    *(theta_dot**2 * phi_ddot, sin(phi) * omega[1], sin(psi) * (phi_dot + psi_dot)),
+    *(phi_dot * sp.exp(theta), psi_dot - phi_dot * sin(theta), phi_dot * cos(theta) + psi_dot),
+    *(-phi_dot - psi_dot, theta_dot * psi_dot + phi_ddot, 1 - cos(theta)),
+    cot(theta) * (omega[1] * cos(phi) - omega[0] * sin(phi)) + omega[2],
+    sin(psi) * (phi_ddot * sin(theta) + theta_dot * (phi_dot * cos(theta) - psi_dot)),
+    *(A * sin(theta) ** 2, phi_dot**2 / 2, omega_body[0] ** 2, (A + m) ** 2, m * A, sp.sqrt(A)),
+    *(1 / sp.sqrt(A + m), A ** sp.Rational(3, 2), 1 / sin(theta), -cos(phi) / sin(theta)),
+    *(phi_dot / (2 * sin(theta)), sin(phi) ** 2 / (1 + cos(psi))),
+    (omega[0] * sin(phi) - omega[1] * cos(phi)) / sin(theta),
+    *(phi_dot * (A + 1 / sin(theta)), sin(2 * theta), cos(theta / 2), sin(phi + psi) ** 2),
+    *(cos(sp.exp(theta)) * theta_dot, tan(A * theta), sin(moment)),
+    *(m * phi_dot**2 + A * phi_dot, m * (phi_dot + psi_dot) ** 2 + A * (phi_dot + psi_dot)),
+    *(m * sp.sqrt(phi_dot + psi_dot) + A * (1 + theta), (-A - m) * (-theta_dot - phi_dot)),
+    *((-A - m) * (-theta_dot - phi_dot) * (-1 - theta), tan(psi) - sin(phi) * cos(theta) ** 2 * A),
+)
 
 
 def read(text: str) -> object:
@@ -148,6 +173,11 @@ def forms() -> Iterator[tuple[str, Formula]]:
         ("double dots", row(Symbol("M", dots=2), Symbol("x", dots=2), Symbol("Ω", "bold", 2, "′"))),
     )
     yield from ((str(scalar), formula_of(scalar, LETTERS)) for scalar in SCALARS[:40])
+    yield from ((str(scalar), formula_of(scalar, LETTERS)) for scalar in READABLE)
+    names = letters_of(arguments_of(EulerAngles("ZYX", ("heading", "phi_1", "q2"))))
+    heading, indexed, q = dynamicsymbols("heading phi_1 q2", 1)
+    for rate in (indexed, q, heading, heading.diff(), heading**2 * CONSTANTS[0] / 2, heading / 2):
+        yield f"{rate} of angles with names", formula_of(rate, names)
     yield "a sine of the time", formula_of(sp.sin(sp.Symbol("t")) ** 2, LETTERS)
     by_fraction = Notation(rates="fraction", vectors="arrow", body="superscript")
     letters = letters_of(arguments_of(EulerAngles("ZXZ")), by_fraction)

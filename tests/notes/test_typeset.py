@@ -16,14 +16,20 @@ from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.scalars import matrix_of
 from rigidsym.formula.tree import Matrix
 from rigidsym.mechanics.derive import derive
-from rigidsym.models.chain import axis_turn, chain as chain_of
-from rigidsym.models.euler_angles import EULER_SEQUENCES, EulerAngles
+from rigidsym.models.library import rotation_from
+from rigidsym.models.parametrisations import (
+    EULER_SEQUENCES,
+    EulerAngles,
+    axis_turn,
+    chain as chain_of,
+)
 from rigidsym.models.rotation import Citation, RotationModel, Turn, elementary, time_function
-from rigidsym.models.rotation_text import rotation_from
 from rigidsym.notes.formats import pdf as typesetting
 from rigidsym.notes.formats.pdf import typeset
 from rigidsym.notes.formula.derivation_letters import letters_of
 from rigidsym.notes.note import note
+
+pytestmark = pytest.mark.campaign
 
 GREEK = ("phi", "theta", "psi")
 OTHER_GREEK = ("alpha", "beta", "gamma")

@@ -16,10 +16,9 @@ from scipy.spatial.transform import Rotation
 
 import rigidsym as rs
 from rigidsym.mechanics.mass.bodies import rigid_body
-from rigidsym.models.distribution import Composite, Part, Particle, Particles
+from rigidsym.models.body import Composite, Part, Particle, Particles
 from rigidsym.models.solids import SHAPES as SOLIDS, shaped
 from rigidsym.notes.figure.body_mesh import HOLE, Shape, lengths_of, meshed, own_shape
-from rigidsym.page.growing_body import SHARE, growing, places_of
 from rigidsym.page.shapes import SHAPES, as_data
 from rigidsym.system import resources
 
@@ -182,25 +181,24 @@ def test_particles_are_drawn_apart_however_small_the_body_is():
     assert max(sizes) < min(np.linalg.norm(a - b) for a, b in combinations(centres, 2)) / 2
 
 
-def test_a_rod_and_particles_follow_their_lengths():
-    a, m = sp.symbols("a m", positive=True)
-    pair = [Particle(mass=m, position=sp.ImmutableMatrix([k * a, 0, 0])) for k in (0, 1)]
-    turned = Part(what=shaped("rod", (a,), mass=m), turned=sp.ImmutableMatrix(TURNED))
-    for what in (
-        Particles(particles=tuple(pair)),
-        shaped("rod", (a,), mass=m),
-        Composite(parts=(turned,)),
-    ):
-        body = rigid_body(what)
-        found, places = growing(body), places_of(body)
-        assert found is not None
-        ends = []
-        for part, *shares in found["corners"]:
-            values = dict(zip(SHARE.symbols, (*shares, 0, 0), strict=False)) | {a: 2}
-            ends.append([float(x) for x in places[f"place_{part}"].xreplace(values)])
-        assert np.linalg.norm(np.ptp(ends, axis=0)) == pytest.approx(2)
-        offsets = np.array([shares[3:] for _, *shares in found["corners"]])
-        along = np.ptp(ends, axis=0)
-        if what.__class__ is not Particles:
-            assert np.abs(offsets @ along).max() < 1e-9  # a tube about the line
-        assert np.linalg.norm(offsets, axis=1).min() > 0.01
+def test_the_cuboid_of_a_motion_has_the_moments_of_the_body():
+    """I₁ = m (b² + c²)/12 and so on, up to the size"""
+    moments = [1.0, 1.4, 2.0]
+    node = shutil.which("node")
+    if node is None:
+        pytest.skip("node is not installed")
+    module = (resources.folder("templates") / "page" / "body.mjs").as_uri()
+    script = (
+        f'import {{ cuboidOf }} from "{module}"; console.log(JSON.stringify(cuboidOf({moments})))'
+    )
+    done = subprocess.run(
+        [node, "--input-type=module", "-e", script], capture_output=True, text=True, check=True
+    )
+    body = json.loads(done.stdout)
+    x, y, z = np.ptp(body["points"], axis=0)
+    found = np.array([y * y + z * z, z * z + x * x, x * x + y * y])
+    np.testing.assert_allclose(found / found[0], np.array(moments) / moments[0], rtol=1e-12)
+    faces = [[body["points"][corner] for corner in face[1:]] for face in body["faces"]]
+    for corners in map(np.array, faces):
+        normal = np.cross(corners[1] - corners[0], corners[2] - corners[1])
+        assert normal @ corners.mean(axis=0) > 0  # it looks outward

@@ -10,7 +10,7 @@ from textwrap import dedent
 import pytest
 
 from rigidsym.errors import ModelError, RigidsymError, SpecError
-from rigidsym.models.euler_angles import EULER_SEQUENCES, EulerAngles
+from rigidsym.models.parametrisations import EULER_SEQUENCES, EulerAngles
 from rigidsym.pipeline import read_file, read_record, read_spec
 from rigidsym.spec.derivation_spec import DerivationSpec, spec_for
 from rigidsym.system import resources
@@ -108,7 +108,7 @@ def test_a_file_comes_before_a_shipped_one_of_its_name(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("content", "fault"),
     [
-        (b"\n\xff", "line 2: not UTF-8 text"),
+        (b"\n\xff", "not UTF-8 text, at line 2"),
         (b"#" * 200_001, "cannot be read: it has more than 200000 bytes"),
     ],
 )

@@ -416,3 +416,63 @@ def test_a_p_before_an_index_is_no_rate():
     assert {name.name for name in names.values()} >= {"mrp_1", "mrp_1_dot"}
     found = rs.compare(formula.xreplace(names), "modified_rodrigues", "angular_velocity_body")
     assert found.is_equal
+
+
+Z = "[cos(psi), -{0}, 0; {0}, {1}, 0; 0, 0, 1]"
+
+
+@pytest.mark.parametrize(
+    ("sine", "cosine"),
+    [
+        ("sqrt(1 - cos(psi)^2)", "cos(psi)"),
+        ("sin(abs(psi))", "cos(psi)"),
+        ("sin(psi)", "sqrt(cos(psi)^2)"),
+        ("sin(psi)", "abs(cos(psi))"),
+        ("sin(asin(sin(psi)))", "sqrt(1 - sin(psi)^2)"),
+    ],
+)
+def test_a_formula_that_is_right_for_some_angles_only_is_wrong_with_a_counterexample(sine, cosine):
+    for asked in ((), ("z(psi)", "rotation_matrix")):
+        found = rs.compare(Z.format(sine, cosine), *asked)
+        assert not found.is_equal
+        assert "for all angles: wrong at psi = " in found.text()
+
+
+def test_functions_are_tried_in_all_quadrants():
+    def taylor(q):
+        s, c = q[0] - q[0] ** 3 / 6 + q[0] ** 5 / 120, np.cos(q[0])
+        return [[c, -s, 0], [s, c, 0], [0, 0, 1]]
+
+    def folded(q):
+        s, c = np.sin(q[0] % 1.4), np.cos(q[0] % 1.4)
+        return [[c, -s, 0], [s, c, 0], [0, 0, 1]]
+
+    def right(q):
+        s, c = np.sin(q[0]), np.cos(q[0])
+        return [[c, -s, 0], [s, c, 0], [0, 0, 1]]
+
+    for wrong in (taylor, folded):
+        assert not rs.compare(wrong, "z(psi)", "rotation_matrix").is_equal
+    assert "agrees with rotation_matrix of z(psi) (to nine digits at 20 points, not proved)" in (
+        rs.compare(right, "z(psi)", "rotation_matrix").text()
+    )
+
+
+def test_a_reflection_is_no_rotation_with_wrong_signs():
+    mirror = "[[cos(a), sin(a), 0], [sin(a), -cos(a), 0], [0, 0, 1]]"
+    for asked in ((), ("z(a)", "rotation_matrix")):
+        found = rs.compare(mirror, *asked)
+        assert (found.is_equal, found.repairs, found.is_reflection) == (False, (), True)
+        assert "a reflection, since det = −1" in found.text()
+
+
+@pytest.mark.parametrize("font", ["mathrm", "text", "operatorname", "mathsf"])
+def test_functions_in_upright_letters_are_functions_in_latex(font):
+    rows = r"\begin{pmatrix}C\psi&-S\psi&0\\ S\psi&C\psi&0\\0&0&1\end{pmatrix}"
+    text = rows.replace("C", rf"\{font}{{cos}}").replace("S", rf"\{font}{{sin}}")
+    assert rs.compare(text, "z(psi)", "rotation_matrix").is_proved
+    unknown = text.replace(rf"\{font}{{cos}}\psi", rf"\{font}{{foo}}(\psi)")
+    with pytest.raises(ExpressionError, match="foo is not a function that is known"):
+        rs.compare(unknown)
+    named = rows.replace("C", r"\cos ").replace("S", r"\sin ").replace(r"\psi", r"\text{yaw}")
+    assert rs.compare(named, "z(yaw)", "rotation_matrix").is_proved

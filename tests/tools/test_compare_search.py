@@ -19,7 +19,7 @@ from helpers.command import ROOT, call
 from rigidsym.commands.cli import commands
 from rigidsym.errors import ExpressionError
 from rigidsym.tools.compare.language import read_formula
-from rigidsym.tools.compare.plain import plain
+from rigidsym.tools.compare.program import formula_words
 from rigidsym.tools.compare.search import formulas, search, source_files
 
 W_BODY = "[[1, 0, -sin(b)], [0, cos(a), sin(a)*cos(b)], [0, -sin(a), cos(a)*cos(b)]]"
@@ -32,7 +32,8 @@ W_BODY = "[[1, 0, -sin(b)], [0, cos(a), sin(a)*cos(b)], [0, -sin(a), cos(a)*cos(
         ("[1 -s; 0 q(2)^2]", "[[1,-s],[0,q_2**2]]"),
         ("[1 - s, 0\n 2 c*s]", "[[1-s,0],[2,c*s]]"),
         ("[a; b]'", "[[a],[b]].T"),
-        ("np.array([self.phi, x[3]*2.0f], dtype=float)", "array([phi,x_3%2.0])"),
+        ("np.array([self.phi, x[3]*2.0], dtype=float)", "[phi, x_3*2.0]"),
+        ("x[3]*2.0f + 1.f", "x_3*2.0 + 1.0"),
         ("pow(q.w(), 2) + state->roll", "pow(q_w,2)+roll"),
         (r"\dot\phi \sin^2\theta + \tfrac12 x_1", "phi_dot*sin(theta)**(2)+((1)/(2))*x_1"),
         (r"\sqrt{x^2}\,(a + b)", "sqrt(x**(2))*(a+b)"),
@@ -40,7 +41,8 @@ W_BODY = "[[1, 0, -sin(b)], [0, cos(a), sin(a)*cos(b)], [0, -sin(a), cos(a)*cos(
     ],
 )
 def test_notations_are_read_as_one_language(text, read):
-    assert plain(text) == (read or "[[a, b], [w*x, sin(2*theta)]]")
+    expected = read_formula(read or "[[a, b], [w*x, sin(2*theta)]]")
+    assert read_formula(formula_words(text)) == expected
 
 
 @pytest.mark.parametrize("name", ["ZXZ", "xyz", "unit_quaternion"])
@@ -116,18 +118,22 @@ def test_products_and_transposes_of_matrices_are_read_in_latex(text, read):
     ],
 )
 def test_what_stands_beside_a_matrix_in_latex_is_left_out(text):
-    assert read_formula(plain(text.replace("#", ABOUT_Z))) == read_formula(plain(ABOUT_Z))
+    assert read_formula(formula_words(text.replace("#", ABOUT_Z))) == read_formula(
+        formula_words(ABOUT_Z)
+    )
 
 
 def test_arrays_with_columns_and_styled_indices_are_read_in_latex():
     array = ABOUT_Z.replace("{bmatrix}", "{array}").replace(
         r"\begin{array}", r"\begin{array}{c c|c}"
     )
-    assert read_formula(plain(array)) == read_formula(plain(ABOUT_Z))
+    assert read_formula(formula_words(array)) == read_formula(formula_words(ABOUT_Z))
     index = ABOUT_X.replace(r"\phi", r"\phi_\mathrm{rel}")
-    assert {symbol.name for symbol in read_formula(plain(index)).free_symbols} == {"phi_rel"}
+    assert {symbol.name for symbol in read_formula(formula_words(index)).free_symbols} == {
+        "phi_rel"
+    }
     with pytest.raises(ExpressionError, match="unexpected"):
-        plain("\\cos\ue000")
+        formula_words("\\cos\ue000")
 
 
 def test_a_letter_without_a_meaning_is_refused_in_latex():
@@ -152,7 +158,7 @@ def run(*arguments):
 def found_in(tmp_path, name, text):
     file = tmp_path / name
     file.write_text(text, encoding="utf-8")
-    return list(search(file))
+    return [each for each in search(file) if each.comparison]
 
 
 def test_abbreviations_entries_and_products_are_followed_in_python(tmp_path):
@@ -197,7 +203,7 @@ def test_a_declaration_in_c_may_hold_several_names(tmp_path):
         "    R[6] = -sp; R[7] = sr*cp; R[8] = cr*cp;\n}\n",
         encoding="utf-8",
     )
-    (found,) = search(source)
+    (found,) = (each for each in search(source) if each.comparison)
     assert "rotation_matrix of ZYX" in str(found)
     assert "entry (2, 2)" in str(found)
     assert "(a sign)" in str(found)
@@ -219,7 +225,8 @@ def test_a_declaration_in_c_may_hold_several_names(tmp_path):
     ],
 )
 def test_streams_components_and_entries_are_followed(text, expected):
-    assert [(line, name) for line, name, _ in formulas(text, ".cpp")] == expected
+    body = f"void f() {{ {text} }}"
+    assert [(each.line, each.name) for each in formulas(body, ".cpp") if each.matrix] == expected
 
 
 def test_a_folder_with_too_many_files_is_refused(tmp_path, monkeypatch):
@@ -256,14 +263,15 @@ PUBLIC = {  # formula: (rotation, quantity, kind and entry of the error)
     "-Stheta;M(2,1)=0;M(2,2)=Cphi;M(2,3)=Ctheta*Sphi;M(3,1)=0;M(3,2)=-Sphi;M(3,3)=Ctheta*Cphi;":
     ("xyz", "rate_matrix_body", None),
     # ugurcanozalp/heli-gym, heligym/envs/dynamics/kinematic.py, line 25
-    "mat = [1, sin[0]*sin[1]/cos[1], cos[0]*sin[1]/cos[1]; 0, cos[0], -sin[0]; "
-    "0, sin[0]/cos[1], cos[0]/cos[1]];": ("xyz", "inverse_rate_matrix_body", None),
+    "def f():\n  mat = np.array([[1, sin[0]*sin[1]/cos[1], cos[0]*sin[1]/cos[1]], "
+    "[0, cos[0], -sin[0]], [0, sin[0]/cos[1], cos[0]/cos[1]]])":
+    ("xyz", "inverse_rate_matrix_body", None),
 }  # fmt: skip
 
 
 @pytest.mark.parametrize(("text", "expected"), PUBLIC.items(), ids=range(len(PUBLIC)))
 def test_formulas_of_public_code_are_named(tmp_path, text, expected):
-    (found,) = found_in(tmp_path, "a.m", text)
+    (found,) = found_in(tmp_path, "a.py" if "np." in text else "a.m", text)
     rotation, quantity, error = expected
     comparison = found.comparison
     assert (comparison.found.rotation, comparison.found.quantity) == (rotation, quantity)
@@ -311,10 +319,11 @@ HOSTILE = (
 )
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("text", HOSTILE, ids=range(len(HOSTILE)))
 def test_hostile_files_are_passed_over(text):
     for suffix in (".py", ".cpp", ".m"):
-        assert list(formulas(text, suffix)) == []
+        assert [each for each in formulas(text, suffix) if each.matrix] == []
 
 
 def test_the_wrong_sign_in_the_inverse_right_jacobian_of_a_paper_is_found():
@@ -410,7 +419,9 @@ def test_a_folder_without_formulas_is_told_from_a_right_one(tmp_path):
     empty = call("compare", str(tmp_path), cwd=tmp_path, status=2)
     assert "no source files; looked for .py, .c, .h, " in empty.stderr
     (tmp_path / "a.py").write_text("x = 1\n")
-    assert "no known formula in 1 file" in call("compare", ".", cwd=tmp_path, status=1).stderr
+    assert "no known formula in 1 file" in call("compare", ".", cwd=tmp_path).stderr
+    required = call("compare", ".", "--require", "1", cwd=tmp_path, status=1)
+    assert "expected at least 1 (--require)" in required.stderr
 
 
 @pytest.mark.parametrize(
@@ -424,6 +435,126 @@ def test_a_folder_without_formulas_is_told_from_a_right_one(tmp_path):
 def test_half_of_what_is_compared_with_is_refused(given, message, tmp_path):
     wrong = call("compare", "--formula", "[a, b, c]", *given, cwd=tmp_path, status=2)
     assert message in wrong.stderr
+
+
+TURN = "np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])"
+SINES = "c, s = np.cos(phi), np.sin(phi)"
+CHANGED = {  # statements of a function of phi and psi: what its matrix is
+    f"phi = -phi; {SINES}; return {TURN}": "transposed",
+    f"phi *= -1; {SINES}; return {TURN}": "transposed",
+    f"phi = -phi; phi = -phi; {SINES}; return {TURN}": "equal to",
+    f"phi = np.pi/2 - phi; {SINES}; return {TURN}": "",
+    f"phi = 2*phi; {SINES}; return {TURN}": "",
+    f"phi, psi = psi, phi; {SINES}; return {TURN}": "in (psi)",
+    f"{SINES}; M = {TURN}; M[0, 1] = s; return M": "entry (1, 2): sin(phi) should be -sin(phi)",
+    f"{SINES}; M = {TURN}; change(M); return M": "",
+    f"{SINES}; M = {TURN}; N = M; N[0, 1] = s; return M": "entry (1, 2)",
+    f"{SINES}\n    if flip: s = -s\n    return {TURN}": "",
+    f"{SINES}\n    if flip: return None\n    return {TURN}": "equal to",
+    f"{SINES}\n    if 0: s = -s\n    return {TURN}": "equal to",
+    f"{SINES}\n    for k in range(n): s = -s\n    return {TURN}": "",
+    f"{SINES}\n    s += 0.1\n    return {TURN}": "(a term too many)",
+    f"(phi := -phi); {SINES}; return {TURN}": "",
+    f"{SINES}; M = {TURN}; M *= -1; M[0] = [0, 0, 1]; return M": "",
+    f"def g():\n        nonlocal phi\n        phi = -phi\n    g(); {SINES}; return {TURN}": "",
+    f"self.phi = -phi; {SINES}; return {TURN}": "equal to",
+    f"turn = lambda phi: {TURN.replace('c', 'np.cos(phi)').replace('s,', 'np.sin(phi),')}; "
+    f"{SINES}; return {TURN}": "equal to",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "said"), CHANGED.items(), ids=range(len(CHANGED)))
+def test_all_that_happens_to_a_name_before_its_use_is_followed(tmp_path, text, said):
+    file = tmp_path / "a.py"
+    file.write_text(f"import numpy as np\ndef f(phi, psi, flip, n, self):\n    {text}\n")
+    said_of_all = [str(each) for each in search(file) if each.line > 2 and each.comparison]
+    whole = [each for each in said_of_all if "of z(" in each]
+    assert bool(whole) == bool(said), whole
+    assert all(said in each for each in whole)
+
+
+def test_a_quaternion_with_the_other_sign_of_its_vector_is_transposed(tmp_path):
+    rows = (
+        "[[1-2*(y*y+z*z), 2*(x*y-w*z), 2*(x*z+w*y)], [2*(x*y+w*z), 1-2*(x*x+z*z), 2*(y*z-w*x)], "
+        "[2*(x*z-w*y), 2*(y*z+w*x), 1-2*(x*x+y*y)]]"
+    )
+    text = f"def f(w, x, y, z):\n    x, y, z = -x, -y, -z\n    return {rows}\n"
+    (found,) = found_in(tmp_path, "a.py", text)
+    assert "transposed" in str(found)
+
+
+LANGUAGES = {
+    "a.js": "export function f(a) { const c = Math.cos(a), s = Math.sin(a);"
+    " return [[c, -s, 0], [s, c, 0], [0, 0, 1]]; }",
+    "a.ts": "function f(a: number): number[][] { const c = Math.cos(a), s = Math.sin(a);"
+    " return [[c, -s, 0], [s, c, 0], [0, 0, 1]]; }",
+    "a.rs": "fn f(a: f64) -> Matrix3<f64> { let (s, c) = (a.sin(), a.cos());"
+    " Matrix3::new(c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0) }",
+    "a.cs": "class A { double[,] F(double a) { double s = Math.Sin(a), c = Math.Cos(a);"
+    " double[,] R = {{c, -s, 0}, {s, c, 0}, {0, 0, 1}}; return R; } }",
+    "a.java": "class A { double[][] f(double a) { double s = Math.sin(a), c = Math.cos(a);"
+    " return new double[][] {{c, -s, 0}, {s, c, 0}, {0, 0, 1}}; } }",
+    "a.cpp": "void f(float a, Matrix3f &m) { float c = cosf(a), s = sinf(a); m.a.x = c; m.a.y = -s;"
+    " m.a.z = 0; m.b.x = s; m.b.y = c; m.b.z = 0; m.c.x = 0; m.c.y = 0; m.c.z = 1; }",
+    "b.cpp": "M f(float a) { const float c = std::cos(a), s = std::sin(a);"
+    " return Eigen::Matrix3f{{c, -s, 0}, {s, c, 0}, {0, 0, 1}}; }",
+    "a.c": "void f(double a, double m[3][3]) { double c = cos(a), s = sin(a); double r[3][3] ="
+    " {{c, -s, 0}, {s, c, 0}, {0, 0, 1}}; }",
+    "a.m": "function R = f(a)\nc = cos(a); s = sin(a);\nR = [c s 0; -s c 0; 0 0 1]';\nend\n",
+    "a.py": "def Rz(a):\n    return rows(cos(a), sin(a))\ndef rows(c, s):\n"
+    "    return np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])\n",
+}
+
+
+@pytest.mark.parametrize("name", LANGUAGES)
+def test_a_rotation_about_z_is_read_in_every_language(tmp_path, name):
+    said = {str(each).partition(": ")[2] for each in found_in(tmp_path, name, LANGUAGES[name])}
+    assert any("equal to rotation_matrix of z(angle) in (a) (proved)" in each for each in said)
+
+
+def test_a_quaternion_is_divided_by_the_square_of_its_length_in_names_for_long_sums(tmp_path):
+    text = """
+def matrix(q):
+    w, x, y, z = q
+    n = w*w + x*x + y*y + z*z
+    if n < 1e-15:
+        return np.eye(3)
+    s = 2.0/n
+    X = x*s; Y = y*s; Z = z*s
+    wX = w*X; wY = w*Y; wZ = w*Z; xX = x*X; xY = x*Y; xZ = x*Z; yY = y*Y; yZ = y*Z; zZ = z*Z
+    return np.array([[1 - (yY + zZ), xY - wZ, xZ + wY],
+                     [xY + wZ, 1 - (xX + zZ), yZ - wX],
+                     [xZ - wY, yZ + wX, 1 - (xX + yY)]])
+"""
+    (found,) = found_in(tmp_path, "a.py", text)
+    assert found.comparison.text() == "equal to rotation_matrix of quaternion (proved)"
+
+
+def test_another_convention_than_the_expected_one_is_a_fault(tmp_path):
+    rows = "[[cos(a), sin(a), 0], [-sin(a), cos(a), 0], [0, 0, 1]]"
+    chain = "Rz(y) @ Ry(p) @ Rx(r)"
+    turns = {
+        "x": "[[1, 0, 0], [0, cos(a), -sin(a)], [0, sin(a), cos(a)]]",
+        "y": "[[cos(a), 0, sin(a)], [0, 1, 0], [-sin(a), 0, cos(a)]]",
+        "z": "[[cos(a), -sin(a), 0], [sin(a), cos(a), 0], [0, 0, 1]]",
+    }
+    text = "".join(f"def R{axis}(a):\n    return np.array({m})\n" for axis, m in turns.items())
+    (tmp_path / "a.py").write_text(f"{text}def f(r, p, y):\n    return {chain}\n")
+    (tmp_path / "b.py").write_text(f"def f(a):\n    return np.array({rows})\n")
+    a, b = str(tmp_path / "a.py"), str(tmp_path / "b.py")
+    assert run(a, b).exit_code == 0
+    assert run(a, "--expect", "z(yaw) y(pitch) x(roll)", "--expect-active").exit_code == 0
+    other = run(a, "--expect", "ZXZ")
+    assert other.exit_code == 1
+    assert "expected the axes z x z in the product of rotations, not z y x" in other.stdout
+    assert run(b, "--expect-active").exit_code == 1
+
+
+def test_what_cannot_be_read_is_listed_with_its_reason(tmp_path):
+    file = tmp_path / "a.py"
+    file.write_text("def f(a, flip):\n    s = sin(a)\n    if flip: s = -s\n    return [[s, 1]]\n")
+    done = run(str(file), "--why")
+    assert "a.py:4: returned: not read, since s depends on the condition in line 3" in done.stderr
 
 
 def test_names_that_unpack_a_vector_are_names(tmp_path):

@@ -7,7 +7,7 @@ their sign. Common parts of several products or sums become nodes, the most freq
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Hashable, Iterable, Mapping
+from collections.abc import Hashable, Iterable, Mapping
 from fractions import Fraction
 from functools import lru_cache
 from itertools import combinations
@@ -19,7 +19,6 @@ import sympy as sp
 
 from rigidsym.algebra.stable_forms import Stumpff
 from rigidsym.errors import KernelError
-from rigidsym.kernels.lowering.degrees import DEGREE, FACTORS
 from rigidsym.mechanics.conversions.function import Epsilon, Where
 
 HELD, CHOICE = "held", "choice"  # functions: a value as it is; one of two by a condition
@@ -234,14 +233,13 @@ _QUOTIENTS: Mapping[type, tuple[str, str]] = {  # numerator and denominator; "" 
 
 
 class Reader:
-    """From SymPy to one graph; inputs are its atoms, by their names, some of them in degrees."""
+    """From SymPy to one graph; inputs are its atoms, by their names."""
 
     def __init__(
         self,
         kernel: str,
         inputs: Mapping[sp.Expr, str],
         definitions: Mapping[sp.Expr, sp.Expr] = MappingProxyType({}),
-        in_degrees: Collection[str] = (),
     ) -> None:
         self.graph = Graph()
         self._kernel = kernel
@@ -250,11 +248,6 @@ class Reader:
         self._known: dict[sp.Expr, Monomial] = {
             symbol: (Fraction(1), (self.graph.input(name),)) for symbol, name in inputs.items()
         }
-        for factor, value in FACTORS.items() if in_degrees else ():
-            self._known[factor] = Fraction(1), (self.graph.irrational(value),)
-        for symbol, name in inputs.items():
-            if name in in_degrees:
-                self._known[symbol] = self._times(map(self._known.__getitem__, (DEGREE, symbol)))
 
     def weighted(self, expression: sp.Expr) -> Weighted:
         """The expression as one node of the graph with a number before it."""

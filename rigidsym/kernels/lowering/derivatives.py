@@ -7,9 +7,8 @@ the value first, then the derivative, from one pass of common subexpressions.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from functools import cache
 from itertools import product
 from typing import NamedTuple
 
@@ -19,20 +18,12 @@ from rigidsym.errors import KernelError
 from rigidsym.mechanics.derivation import Argument, Derivation, Step
 from rigidsym.models.rotation import RotationModel
 
-KINDS = {
-    "jacobian": "its Jacobian by {vector}, row by row",
-    "jvp": "its Jacobian by {vector} times {given}",
-    "vjp": "{given} times its Jacobian by {vector}",
-}
 _FREE = (
     "; bound components count as free, so that this is the derivative of the expression as "
     "written, not projected onto what binds them"
 )
-_TEXT = re.compile(r"(\w+)(?: by |:)(\w+)(?:[ :](\w+))?")
-_EXPECTED = (
-    "expected a quantity and a vector, such as angular_velocity_body:q, or a product with a "
-    "vector, such as angular_velocity_body:q:jvp or angular_velocity_body:q:vjp"
-)
+_TEXT = re.compile(r"(\w+)(?: by |:)(\w+)")
+_PRODUCT = re.compile(r".*[ :](jvp|vjp)")
 
 Asked = str | Iterable[str] | Mapping[str, str | Iterable[str]]
 
@@ -42,31 +33,32 @@ class DerivativeRequest(NamedTuple):
 
     quantity: str
     vector: str
-    kind: str = "jacobian"
 
     @property
     def name(self) -> str:
         """Of the function: angular_velocity_body_jacobian_q."""
-        return f"{self.quantity}_{self.kind}_{self.vector}"
+        return f"{self.quantity}_jacobian_{self.vector}"
 
     def __str__(self) -> str:
-        kind = "" if self.kind == "jacobian" else f" {self.kind}"
-        return f"{self.quantity} by {self.vector}{kind}"
+        return f"{self.quantity} by {self.vector}"
 
 
 def read_request(text: str) -> DerivativeRequest:
-    """The request in "QUANTITY by VECTOR [jvp|vjp]", or with colons between its words.
+    """The request in "QUANTITY by VECTOR", or with a colon between the two.
 
     Raises KernelError for any other text.
     """
-    found = _TEXT.fullmatch(text.strip())
-    if not found or (found[3] or "jacobian") not in KINDS:
-        raise KernelError(f"no derivative {text!r}; {_EXPECTED}")
-    return DerivativeRequest(quantity=found[1], vector=found[2], kind=found[3] or "jacobian")
+    words = _TEXT.fullmatch(text.strip())
+    if words is None:
+        wanted = "expected a quantity and a vector, such as angular_velocity_body:q"
+        if _PRODUCT.fullmatch(text.strip()):
+            wanted = "multiply the Jacobian J by your vector instead: J @ v, or w @ J"
+        raise KernelError(f"no derivative {text!r}; {wanted}")
+    return DerivativeRequest(quantity=words[1], vector=words[2])
 
 
 def read_requests(asked: Asked) -> tuple[DerivativeRequest, ...]:
-    """The requests, each once, in their order; {"angular_velocity_body": ("q", "q_dot jvp")} too.
+    """The requests, each once, in their order; {"angular_velocity_body": ("q", "q_dot")} too.
 
     Raises KernelError for a text that is none.
     """
@@ -83,24 +75,20 @@ class Derivative(NamedTuple):
 
     request: DerivativeRequest
     step: Step
-    vectors: tuple[Argument, ...]  # the inputs of the quantity, then the vector of the product
+    vectors: tuple[Argument, ...]  # the inputs of the quantity
     by: Argument  # what the derivative is taken by
-    given: Argument | None  # the vector of the product
-    is_bound: bool = False  # a constraint binds the components of the vector of the request
+    is_bound: bool = False  # a constraint binds the components of the vector
 
     @property
     def parts(self) -> tuple[tuple[int, ...], ...]:
         """The shapes of the value and of the derivative."""
-        shape, count = self.step.shape, len(self.by.symbols)
-        of_kind = {"jacobian": (*shape, count), "jvp": shape, "vjp": (count,)}
-        return shape, of_kind[self.request.kind]
+        return self.step.shape, (*self.step.shape, len(self.by.symbols))
 
     @property
     def about(self) -> str:
         """The value and the derivative in words."""
-        given = self.given.name if self.given else ""
-        what = KINDS[self.request.kind].format(vector=self.request.vector, given=given)
-        return f"{self.step.quantity.about}; then {what}{_FREE if self.is_bound else ''}"
+        jacobian = f"its Jacobian by {self.request.vector}, row by row"
+        return f"{self.step.quantity.about}; then {jacobian}{_FREE if self.is_bound else ''}"
 
     def jacobian(self) -> list[sp.Expr]:
         """Row by row: one row an entry of the quantity, one column a component of the vector.
@@ -114,15 +102,6 @@ class Derivative(NamedTuple):
         entries = [entry.xreplace(plain) for entry in self.step.expression]
         by = [plain[symbol] for symbol in self.by.symbols]
         return [sp.diff(entry, one).xreplace(back) for entry, one in product(entries, by)]
-
-    def results(self, jacobian: Sequence[sp.Expr]) -> list[sp.Expr]:
-        """What is returned beside the value, from the entries of the Jacobian in any form."""
-        if self.given is None:
-            return list(jacobian)
-        count = len(self.by.symbols)
-        rows = [jacobian[k : k + count] for k in range(0, len(jacobian), count)]
-        lines = rows if self.request.kind == "jvp" else list(zip(*rows, strict=True))
-        return [sp.Add(*map(sp.Mul, line, self.given.symbols)) for line in lines]
 
 
 def derivatives_of(
@@ -143,14 +122,11 @@ def _derivative(derivation: Derivation, request: DerivativeRequest) -> Derivativ
     if request.vector not in inputs:
         raise KernelError(f"{request}: {request.quantity} depends only on {' and '.join(inputs)}")
     by = derivation.argument(request.vector)
-    given = {"jvp": _tangent(by), "vjp": _cotangent(step)}.get(request.kind)
-    vectors = map(derivation.argument, inputs)
     return Derivative(
         request=request,
         step=step,
-        vectors=(*vectors, given) if given else tuple(vectors),
+        vectors=tuple(map(derivation.argument, inputs)),
         by=by,
-        given=given,
         is_bound=_is_bound(derivation.model, by),
     )
 
@@ -161,28 +137,3 @@ def _is_bound(model: RotationModel, by: Argument) -> bool:
     if model.pullback is not None and symbols.intersection(model.coordinates):
         return True
     return any(symbols.intersection(sp.preorder_traversal(c)) for c in model.constraints)
-
-
-@cache
-def _symbol(name: str) -> sp.Dummy:
-    """A component of the vector of a product: the same for all products."""
-    return sp.Dummy(name)
-
-
-def _tangent(by: Argument) -> Argument:
-    names = tuple(f"{name}_tangent" for name in by.names)
-    about = f"a direction in the space of {by.name}"
-    name = f"{by.name}_tangent"
-    return by._replace(name=name, symbols=tuple(map(_symbol, names)), names=names, about=about)
-
-
-def _cotangent(step: Step) -> Argument:
-    names = tuple(f"weight_{k + 1}" for k in range(len(step.expression)))
-    return Argument(
-        name=f"{step.quantity.name}_weights",
-        symbols=tuple(map(_symbol, names)),
-        names=names,
-        notation=(),  # it is in no note
-        units=("",) * len(names),
-        about=f"a weight for each entry of {step.quantity.name}",
-    )

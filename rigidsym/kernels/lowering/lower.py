@@ -18,19 +18,11 @@ import sympy as sp
 from rigidsym.algebra.stable_forms import Stumpff, at_zero, stable_forms
 from rigidsym.kernels import ir
 from rigidsym.kernels.lowering.cse import Graph, Reader, Weighted
-from rigidsym.kernels.lowering.degrees import (
-    ABOUT,
-    SUFFIX,
-    in_degrees,
-    is_angle,
-    powers_in,
-    powers_of,
-)
 from rigidsym.kernels.lowering.derivatives import Derivative
 from rigidsym.kernels.lowering.naming import Names
 from rigidsym.kernels.lowering.rounding import guarded
 from rigidsym.kernels.lowering.schedule import write
-from rigidsym.mechanics.conversions.function import Continuity, ConversionFunction, Converted
+from rigidsym.mechanics.conversions.function import ConversionFunction, Converted
 from rigidsym.mechanics.derivation import (
     Argument as Vector,
     Derivation,
@@ -54,16 +46,14 @@ def lower(
     reserved: Iterable[str] = (),
     derivatives: Iterable[Derivative] = (),
     added: Converted = NO_CONVERSIONS,
-    *,
-    degrees: bool = False,
 ) -> ir.Program:
     """The kernels of a derivation: its quantities in the order of equations, derivatives,
     then what conversions have `added`.
 
-    `reserved` are the words of the target that no name may be. With `degrees`, angles are in
-    degrees: see `degrees.py`. Raises KernelError for an expression that kernels cannot hold.
+    `reserved` are the words of the target that no name may be. Raises KernelError for an
+    expression that kernels cannot hold.
     """
-    kernels = _Lowering(derivation, Names(reserved), degrees=degrees)
+    kernels = _Lowering(derivation, Names(reserved))
     # a tensor given in numbers takes no arguments, and is no function
     steps = (*derivation.steps, *derivation.functions.values())
     found = kernels.of_steps([step for step in steps if step.quantity.inputs])
@@ -74,11 +64,9 @@ def lower(
     used = {argument.name for kernel in found for argument in kernel.arguments}
     model, body = derivation.model, derivation.body
     return ir.Program(
-        name=derivation.name + SUFFIX * degrees,
-        units="degrees" if degrees else "radians",
+        name=derivation.name,
         title=derivation.title,
         convention=(
-            *([ABOUT] if degrees else []),
             *_convention(model),
             *(body.sentences(about_fixed_point=derivation.about_fixed_point) if body else ()),
         ),
@@ -86,7 +74,7 @@ def lower(
         arguments=tuple(a for name, a in kernels.arguments.items() if name in used),
         kernels=found,
         remarks=added.remarks,
-        unwrapping=kernels.unwrapping(added.continuity) if added.continuity else None,
+        continuity=added.continuity,
     )
 
 
@@ -115,11 +103,9 @@ def _roots(derivation: Derivation) -> list[sp.Expr]:
 class _Lowering:
     """The kernels of one derivation, over the same names."""
 
-    def __init__(self, derivation: Derivation, names: Names, *, degrees: bool) -> None:
+    def __init__(self, derivation: Derivation, names: Names) -> None:
         self.derivation = derivation
         self._names = names
-        self._has_degrees = degrees
-        self._in_degrees: set[str] = set()  # the names of components in degrees
         self._known: dict[sp.Expr, str] = {}  # the names of components
         self.arguments: dict[str, ir.KernelArgument] = {}
         self._vectors = {vector.name: vector for vector in derivation.arguments}
@@ -127,33 +113,21 @@ class _Lowering:
             self._argument(vector)
         self._definitions = {d.symbol: d.expression for d in derivation.definitions}
 
-    def _argument(
-        self, vector: Vector, *, is_scaled: bool = True, **kinds: Any
-    ) -> ir.KernelArgument:
-        """The argument; components of another keep their names.
-
-        What multiplies a derivative is not scaled, since the derivative is.
-        """
-        is_scaled = is_scaled and self._has_degrees
+    def _argument(self, vector: Vector, **kinds: Any) -> ir.KernelArgument:
+        """The argument; components of another keep their names."""
         if vector.name not in self.arguments:
-            for symbol, name, unit in zip(vector.symbols, vector.names, vector.units, strict=True):
-                if symbol not in self._known and is_scaled and is_angle(unit):
-                    self._known[symbol] = self._names.fresh(f"{name}{SUFFIX}")
-                    self._in_degrees.add(self._known[symbol])
-                elif symbol not in self._known:
+            for symbol, name in zip(vector.symbols, vector.names, strict=True):
+                if symbol not in self._known:
                     self._known[symbol] = self._names.fresh(name)
             self.arguments[vector.name] = ir.KernelArgument(
                 name=vector.name,
                 components=tuple(self._known[symbol] for symbol in vector.symbols),
-                units=tuple(map(self._unit, vector.units)),
+                units=vector.units,
                 about=vector.about,
                 is_scalar=vector.is_scalar,
                 **kinds,
             )
         return self.arguments[vector.name]
-
-    def _unit(self, unit: str) -> str:
-        return unit.replace("rad", "deg") if self._has_degrees else unit
 
     def of_steps(self, steps: Sequence[Step]) -> tuple[ir.Kernel, ...]:
         """The kernels of quantities."""
@@ -167,8 +141,6 @@ class _Lowering:
             steps, shapes, forms, texts, strict=True
         ):
             quantity = step.quantity
-            if self._has_degrees:
-                entries = in_degrees(entries, powers_of(step, self._vectors))
             found.append(
                 self._kernel(
                     quantity.name,
@@ -179,22 +151,15 @@ class _Lowering:
                     symbol=symbol,
                     definition=definition,
                     about=quantity.about,
-                    unit=self._unit(quantity.unit),
+                    unit=quantity.unit,
                 )
             )
         return tuple(found)
 
     def of_derivative(self, derivative: Derivative) -> ir.Kernel:
         """The kernel of a value and its derivative, one after the other."""
-        step, count = derivative.step, len(derivative.step.expression)
+        step = derivative.step
         (entries,) = self._stable([[*step.expression, *derivative.jacobian()]])
-        if self._has_degrees:
-            entries = in_degrees(entries, self._powers(derivative))
-        entries = [*entries[:count], *derivative.results(entries[count:])]
-        if derivative.given:
-            is_matrix = derivative.request.kind == "vjp" and len(step.shape) == 2
-            kinds = {"matrix": step.shape, "may_be_flat": True} if is_matrix else {}
-            self._argument(derivative.given, is_scaled=False, **kinds)
         return self._kernel(
             derivative.request.name,
             derivative.vectors,
@@ -202,15 +167,9 @@ class _Lowering:
             shape=(len(entries),),
             symbol=f"{step.quantity.symbol.text} by {derivative.by.name}",
             about=derivative.about,
-            unit=self._unit(step.quantity.unit),
+            unit=step.quantity.unit,
             parts=derivative.parts,
         )
-
-    def _powers(self, derivative: Derivative) -> list[int]:
-        """Of the angle in the units of the value's entries, and of those of its Jacobian."""
-        rows = powers_of(derivative.step, self._vectors)
-        columns = [int(is_angle(unit)) for unit in derivative.by.units]
-        return [*rows, *(row - column for row in rows for column in columns)]
 
     def of_function(self, function: ConversionFunction) -> ir.Kernel:
         """The kernel of a conversion: its values one by one, as they are written."""
@@ -218,7 +177,6 @@ class _Lowering:
             self._argument(
                 given.argument,
                 matrix=(3, 3) if given.is_matrix else (),
-                is_optional=given.is_optional,
             )
             for given in function.inputs
         )
@@ -226,10 +184,7 @@ class _Lowering:
         reader.graph.share([reader.define(symbol, value) for symbol, value in function.shared])
         for symbol, value in function.values:
             reader.hold(symbol, value)
-        entries = list(function.outputs)
-        if self._has_degrees:
-            entries = in_degrees(entries, powers_in(function.unit, len(entries)))
-        weighted = list(map(reader.weighted, entries))
+        weighted = list(map(reader.weighted, function.outputs))
         assignments, outputs = write(reader.graph, weighted, self._names.copy())
         return ir.Kernel(
             name=function.name,
@@ -240,21 +195,12 @@ class _Lowering:
             symbol=function.symbol,
             about=function.about,
             remarks=function.remarks,
-            unit=self._unit(function.unit),
+            unit=function.unit,
         )
 
     def _reader(self, name: str, vectors: Iterable[Vector]) -> Reader:
         inputs = {symbol: self._known[symbol] for vector in vectors for symbol in vector.symbols}
-        return Reader(name, inputs, self._definitions, self._in_degrees)
-
-    def unwrapping(self, found: Continuity) -> ir.Unwrapping:
-        return ir.Unwrapping(
-            kind=found.kind,
-            arguments=tuple(self.arguments[name] for name in found.inputs),
-            remarks=found.remarks,
-            turns=self.of_function(found.turns) if found.turns else None,
-            coordinates=self.of_function(found.coordinates) if found.coordinates else None,
-        )
+        return Reader(name, inputs, self._definitions)
 
     def margin(self) -> Iterator[ir.Kernel]:
         """How far the coordinates are from a singular orientation, where rates are asked for."""
@@ -327,7 +273,6 @@ class _Lowering:
             definitions,
             tuple(entries),
             self._names.taken,
-            frozenset(self._in_degrees),
             **words,
         )
 
@@ -340,11 +285,10 @@ def _kernel(
     definitions: tuple[tuple[sp.Expr, sp.Expr], ...],
     entries: tuple[sp.Expr, ...],
     taken: frozenset[str],
-    in_degrees: frozenset[str],
     **words: Any,
 ) -> ir.Kernel:
     """A kernel whose common subexpressions are shared, with its divisors guarded."""
-    graph, weighted = _shared(name, inputs, definitions, entries, in_degrees)
+    graph, weighted = _shared(name, inputs, definitions, entries)
     names = Names(taken)
     assignments, outputs = write(graph, weighted, names)
     kernel = ir.Kernel(
@@ -359,10 +303,9 @@ def _shared(
     inputs: tuple[tuple[sp.Expr, str], ...],
     definitions: tuple[tuple[sp.Expr, sp.Expr], ...],
     entries: tuple[sp.Expr, ...],
-    in_degrees: frozenset[str],
 ) -> tuple[Graph, list[Weighted]]:
     """The entries as nodes of a graph, in which what they have in common is one node."""
-    reader = Reader(name, dict(inputs), dict(definitions), in_degrees)
+    reader = Reader(name, dict(inputs), dict(definitions))
     weighted = [reader.weighted(entry) for entry in entries]
     reader.graph.share(node for _, node in weighted)
     return reader.graph, weighted

@@ -25,7 +25,7 @@ from functools import lru_cache, reduce
 from math import ceil, factorial, frexp
 from typing import NamedTuple
 
-from rigidsym.algebra.series import FIRST_SERIES, series_of
+from rigidsym.algebra.stable_forms import FIRST_SERIES, series_of
 from rigidsym.kernels.ir import (
     Assignment,
     Call,
@@ -87,9 +87,7 @@ class Rounding(NamedTuple):
 
 @lru_cache(maxsize=256)  # each language tells the bound, and the module that there is one
 def rounding(kernel: Kernel) -> Rounding | None:
-    """The bound of a kernel; None for one that divides, takes roots, or is given degrees."""
-    if any(unit.startswith("deg") for a in kernel.arguments for unit in a.units):
-        return None
+    """The bound of a kernel; None for one that divides or takes roots."""
     plain, exact = numbers_and_angles(kernel)
     try:
         error = largest_error(kernel, dict.fromkeys(plain, Bounded(1.0, 0.0)), exact)

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from rigidsym.kernels.ir import Program
 
 _DEFAULT = "numpy"
+_REMOVED = {"degrees": "angles are in radians; convert them with np.radians and np.degrees"}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -103,8 +104,8 @@ def check_options(target: str, options: Mapping[str, str | bool]) -> None:
     known = TARGETS[target].options
     for name, value in options.items():
         if name not in known:
-            every = ("conversions", "derivatives", "degrees", *known)
-            raise KernelError(f"{target} has no option {name}; {offer(name, every)}")
+            substitute = _REMOVED.get(name) or offer(name, ("conversions", "derivatives", *known))
+            raise KernelError(f"{target} has no option {name}; {substitute}")
         if not any(type(value) is type(each) and value == each for each in known[name]):
             choices = ", ".join(map(repr, known[name]))
             raise KernelError(f"{target}, {name}: expected one of {choices}, got {value!r}")

@@ -1,25 +1,25 @@
 """A conversion as a function: its arguments, and its values in order, each in those before it.
 
 Where a formula has cases, such as the poles of Euler angles, a value is a `Where`. The order of
-the operations is part of a conversion, since its digits depend on it.
+the operations is part of a conversion, since its digits depend on it. Quaternions are
+p = (w, x, y, z), scalar first.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import sympy as sp
+from sympy.polys.rings import PolyElement
 
 from rigidsym.formula.tree import Symbol
 from rigidsym.mechanics.derivation import Argument, Step
+from rigidsym.models.rotation import Citation
 
 Vector = tuple[sp.Expr, ...]
 Line = tuple[sp.Symbol, sp.Expr]
-
-_DIGITS = 30
-_ZERO = sp.Float("1e-25")  # a number known to 30 digits is larger or zero
 
 
 class ConversionInput(NamedTuple):
@@ -27,7 +27,6 @@ class ConversionInput(NamedTuple):
 
     argument: Argument
     is_matrix: bool = False  # (3, 3), its components row by row
-    is_optional: bool = False  # zero if left out
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -46,14 +45,11 @@ class ConversionFunction:
 
 
 class Continuity(NamedTuple):
-    """How coordinates are made continuous; only turns need functions."""
+    """How coordinates are made continuous."""
 
-    kind: str
-    inputs: tuple[str, ...]  # names of arguments
+    kind: str  # "euler", "quaternion", "axis_angle", "rotation_vector" or "modified_rodrigues"
     remarks: tuple[str, ...]
-    # From the coordinates to the angles and what relates two sets of them, and back.
-    turns: ConversionFunction | None = None
-    coordinates: ConversionFunction | None = None
+    quarters: int = 0  # of Euler angles: the quarter turns from the middle angle 0 to a pole
 
 
 class Converted(NamedTuple):
@@ -133,11 +129,6 @@ class NamedValues:
         """Four times the distance from one to the next float."""
         return 4 * self._eps
 
-    @property
-    def reach(self) -> sp.Expr:
-        """The square root of that distance, in radians."""
-        return self.let("reach", sp.sqrt(self._eps))
-
     def let(self, name: str, value: sp.Expr) -> sp.Expr:
         """A name for a value that is neither a number nor a symbol."""
         if value.is_number or value.is_Symbol or (-value).is_Symbol:
@@ -152,11 +143,6 @@ class NamedValues:
 
     def length(self, name: str, vector: Sequence[sp.Expr]) -> sp.Expr:
         return self.let(name, sp.sqrt(square(vector)))
-
-    def positive(self, name: str, value: sp.Expr) -> sp.Expr:
-        """The value, or zero if it is negative."""
-        value = self.let(name, value)
-        return self.let(name, Where(value < 0, sp.S.Zero, value))
 
     def wrapped(self, name: str, value: sp.Expr) -> sp.Expr:
         """An angle between −2π and 2π, taken into (−π, π]."""
@@ -179,25 +165,80 @@ def square(vector: Sequence[sp.Expr]) -> sp.Expr:
     return dot(vector, vector)
 
 
-def number(exact: sp.Expr) -> float:
-    """The nearest float; zero is zero in whatever radicals it is written."""
-    value = sp.N(exact, _DIGITS)
-    return 0.0 if abs(value) < _ZERO else float(value)
+# Quaternions: their products, and their matrices, and back
 
 
-def nearest(exact: sp.Expr) -> sp.Expr:
-    """The same as a SymPy number."""
-    found = number(exact)
-    return sp.Float(found) if found else sp.S.Zero
+Part = TypeVar("Part", sp.Expr, PolyElement)
+
+PARTS = ("w", "x", "y", "z")
+SHEPPERD = Citation(
+    text="S. Shepperd, Quaternion from Rotation Matrix, Journal of Guidance and Control 1 (1978)"
+)
 
 
-def rounded(expression: sp.Expr) -> sp.Expr:
-    """A sum of products in which every irrational number is rounded once."""
-    terms = sp.Add.make_args(sp.expand(expression))
-    return sp.Add(*(_rounded_term(sp.Mul.make_args(term)) for term in terms))
+def product(first: Sequence[Part], second: Sequence[Part]) -> tuple[Part, ...]:
+    """The product of two quaternions, as it comes."""
+    (w, x, y, z), (a, b, c, d) = first, second
+    return (
+        w * a - x * b - y * c - z * d,
+        w * b + x * a + y * d - z * c,
+        w * c - x * d + y * a + z * b,
+        w * d + x * c - y * b + z * a,
+    )
 
 
-def _rounded_term(factors: Sequence[sp.Expr]) -> sp.Expr:
-    size = sp.Mul(*(factor for factor in factors if factor.is_number))
-    size = size if size.is_Rational else nearest(size)
-    return sp.Mul(size, *(factor for factor in factors if not factor.is_number))
+def half_turn(direction: Sequence[sp.Expr], angle: sp.Expr) -> Vector:
+    """cos(β/2) + sin(β/2) e, the unit quaternion of the turn by β about the unit axis e."""
+    return (sp.cos(angle / 2), *(sp.sin(angle / 2) * part for part in direction))
+
+
+def outer_product(matrix: sp.MatrixBase) -> sp.Matrix:
+    """K(R) = 4 p pᵀ, (4, 4), of a rotation matrix (Shepperd, 1978)."""
+    r, trace = sp.Matrix(matrix), matrix.trace()
+    vector = [r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]]
+    block = r + r.T + (1 - trace) * sp.eye(3)
+    return sp.Matrix([[1 + trace, *vector], *([v, *block[k, :]] for k, v in enumerate(vector))])
+
+
+def shepperd(values: NamedValues, matrix: sp.Matrix) -> Vector:
+    """The column of 4 p pᵀ with the largest diagonal entry, so that nothing cancels.
+
+    Its scalar is not negative where the first column is taken.
+    """
+    outer = outer_product(matrix)
+    names = [[f"k{a}{b}" for b in PARTS] for a in PARTS]
+    w, x, y, z = (
+        values.each(names[k], [outer[min(j, k), max(j, k)] for j in range(4)]) for k in range(4)
+    )
+    by_x, by_z = x[1] > w[0], z[3] > y[2]
+    upper = values.let("upper", Where(by_x, x[1], w[0]))
+    lower = values.let("lower", Where(by_z, z[3], y[2]))
+    return values.each(
+        PARTS,
+        [Where(lower > upper, Where(by_z, z[k], y[k]), Where(by_x, x[k], w[k])) for k in range(4)],
+    )
+
+
+def scalar_last(quaternion: Vector) -> Vector:
+    """(x, y, z, w) from (w, x, y, z)."""
+    return (*quaternion[1:], quaternion[0])
+
+
+def scaled(values: NamedValues, quaternion: Sequence[sp.Expr]) -> Vector:
+    """The quaternion over the sum of its parts' sizes: any length will do, and zero gives NaN."""
+    quarters = [values.let("quarter", sp.Abs(part) / 4) for part in quaternion]  # no overflow
+    size = values.let("size", sp.Add(*quarters))
+    return values.each(PARTS, [part / size for part in quaternion])
+
+
+def unit(values: NamedValues, quaternion: Vector) -> Vector:
+    """The quaternion over its length."""
+    length = values.length("length", quaternion)
+    return tuple(part / length for part in quaternion)
+
+
+def short_way(values: NamedValues, quaternion: Sequence[sp.Expr]) -> Vector:
+    """The same rotation by the quaternion whose scalar is not negative."""
+    w, *vector = quaternion
+    flipped = [Where(w < 0, -part, part) for part in vector]
+    return values.each(PARTS, [sp.Abs(w), *flipped])

@@ -5,11 +5,12 @@ If f is a cubic polynomial, u is Jacobi's sn; if two of its roots meet, a hyperb
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import cached_property
 
 import sympy as sp
 
+from rigidsym.algebra.witness import Example
 from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Consequence, Proof
@@ -80,8 +81,15 @@ class Cosine:
             / (self.motion.mass)
         )
 
-    def _identity(self, residual: sp.Expr, claim: Formula, *conditions: sp.Expr) -> Proof:
-        return identity(sp.ImmutableMatrix([[residual]]), claim, self.motion.name, conditions)
+    def _identity(
+        self,
+        residual: sp.Expr,
+        claim: Formula,
+        conditions: Sequence[sp.Expr] = (),
+        example: Example = (),
+    ) -> Proof:
+        matrix = sp.ImmutableMatrix([[residual]])
+        return identity(matrix, claim, self.motion.name, conditions, example)
 
     def _polynomial(self) -> Consequence:
         angle, value = self.motion.coordinate, self.right_side
@@ -103,10 +111,10 @@ class Cosine:
         """V_eff with equal momenta, if these alone make it regular at θ = 0."""
         equal = dict.fromkeys(self.motion.symbols, self.p)
         assert self.potential is not None
-        found = sp.cancel(self.potential.xreplace(equal))
-        below = (sp.denom(sp.together(value)) for value in (self.potential, found))
+        regular = sp.cancel(self.potential.xreplace(equal))
+        below = (sp.denom(sp.together(value)) for value in (self.potential, regular))
         poles = [divisor.xreplace({self.u: sp.S.One}) == 0 for divisor in below]
-        return found if len(equal) == 2 and poles == [True, False] else None
+        return regular if len(equal) == 2 and poles == [True, False] else None
 
     def _sleeping(self) -> Iterator[Consequence]:
         """V_eff near θ = 0."""
@@ -143,9 +151,9 @@ class Cosine:
         residual = slope_squared * rate_squared - a * (u - one) * (u - two) * (u - three)
         return Consequence(
             title="Nutation in elliptic functions",
-            text="Let {} be the roots of $f$. The motion goes to and fro between the first two. "
-            "Let the time begin at {}. Substitution shows that",
-            spans=(formula(r"u_1 \le u_2 \le u_3"), one),
+            text="Let {} be the roots of $f$. {} oscillates between the first two. Let the time "
+            "begin at {}. Substitution shows that",
+            spans=(formula(r"u_1 \le u_2 \le u_3"), self.name, one),
             left=self._cosine,
             value=u.xreplace({sn: sp.Function("sn")(_LAMBDA * TIME, _MODULUS)}),
             proofs=(self._identity(residual, self.of_cosine),),
@@ -178,7 +186,7 @@ class Cosine:
         residual -= lead * (1 - rising) ** 2 * (rising - _FIRST)
         yield Consequence(
             title="",
-            text="If it is less than 1, the axis rises from there and comes to the vertical in "
+            text="If it is less than 1, the axis rises from there and approaches the vertical in "
             "infinite time. With {} = {}, substitution shows that",
             spans=(_LAMBDA**2, rate_squared),
             left=self._cosine,
@@ -209,11 +217,14 @@ class Cosine:
         residual = sp.diff(rising, s) ** 2 * gamma**2 * s**2 * (1 - s**2)
         residual -= self.right_side.xreplace(values).xreplace({self.u: rising})
         condition = sp.numer(sp.together(gamma**2 - lead / 2))
+        constants = sorted(lead.free_symbols, key=str)
+        example = dict(zip(constants, map(sp.Integer, range(2, 2 + len(constants))), strict=True))
+        example[gamma] = sp.sqrt(lead.xreplace(example) / 2)
         names = [claims.name_of(q, order=1) for q in motion.ignorable]
         listed = " and ".join(["{} = {}"] * len(rates))
         yield Consequence(
             title="",
-            text=f"So moves a top that begins at {{}} with {{}}, {listed}, where {{}} = {{}}. "
+            text=f"An example is a top that starts at {{}} with {{}}, {listed}, where {{}} = {{}}. "
             "Substitution into $f$ with its energy and momenta shows that",
             spans=(
                 formula(r"#1 = \frac{\pi}{3}", claims.name_of(motion.coordinate)),
@@ -223,7 +234,9 @@ class Cosine:
             ),
             left=1 / sp.cos(motion.coordinate),
             value=1 + 1 / sp.cosh(gamma * TIME),
-            proofs=(self._identity(residual, self.of_cosine, condition),),
+            proofs=(
+                self._identity(residual, self.of_cosine, (condition,), tuple(example.items())),
+            ),
         )
 
     @property

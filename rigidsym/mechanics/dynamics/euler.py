@@ -12,17 +12,17 @@ from collections.abc import Iterator
 from functools import cached_property
 
 import sympy as sp
+from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import codec_for
 from rigidsym.algebra.matrix import RingMatrix
-from rigidsym.algebra.squares import half_form
+from rigidsym.algebra.present import half_form
 from rigidsym.errors import ModelError
 from rigidsym.formula.reader import formula
-from rigidsym.mechanics.derivation import FirstIntegral, Found
+from rigidsym.mechanics.derivation import FirstIntegral
 from rigidsym.mechanics.dynamics.flow import Flow, StateBlock, slopes_of, solved_euler
 from rigidsym.mechanics.kinematics.workspace import Values
 from rigidsym.mechanics.quantities import dynamics as claims
-from rigidsym.mechanics.quantities.energy import ROTATIONAL
 from rigidsym.models.body import RigidBody
 from rigidsym.models.forces import OMEGA_BODY, Forces
 from rigidsym.models.rotation import TIME, RotationModel, hat
@@ -50,15 +50,15 @@ class EulerEquations(Flow):
             )
         inverse, divisor = solved
         self._inverse = rotation.codec.decoded(inverse)
-        self._divisor = rotation.codec.decode(divisor)
+        self.divisor = rotation.codec.decode(divisor)
         self._matrix = rotation.model.matrix
         q = model.coordinates
-        turning = self._inverse * sp.Matrix(OMEGA_BODY) / self._divisor
+        turning = self._inverse * sp.Matrix(OMEGA_BODY) / self.divisor
         rates = {sp.diff(x, TIME): rate for x, rate in zip(q, turning, strict=True)}
         self._gradient = [sp.diff(forces.potential, x) for x in q]
         self._forces = [forces.generalised.get(x, sp.S.Zero).xreplace(rates) for x in q]
         self._torque = [n.xreplace(rates) for n in forces.torque or (sp.S.Zero,) * 3]
-        held = [*self._inverse, self._divisor, *self._matrix, *body.inertia, sp.Rational(1, 2)]
+        held = [*self._inverse, self.divisor, *self._matrix, *body.inertia, sp.Rational(1, 2)]
         held += [forces.potential, *self._gradient, *self._forces, *self._torque]
         held += [*OMEGA_BODY, *forces.first_integrals.values()]
         codec = codec_for([e for e in held if e != 0], constraints=model.constraints, order=1)
@@ -79,7 +79,7 @@ class EulerEquations(Flow):
         acting = [q - v for q, v in zip(self._forces, self._gradient, strict=True)]
         if not any(acting):
             return given, self.codec.ring.one
-        below = self.codec.encode(self._divisor)
+        below = self.codec.encode(self.divisor)
         turning = self.codec.matrix(self._inverse).T @ self.codec.column(acting)
         return given.scale(below) + turning, below
 
@@ -88,46 +88,39 @@ class EulerEquations(Flow):
         rates = self.codec.matrix(self._inverse) @ self.omega
         slopes, below = solved_euler(self.inertia, self.omega, *self.torque)
         return (
-            StateBlock(self.model.coordinates, rates, self.codec.encode(self._divisor)),
+            StateBlock(self.model.coordinates, rates, self.codec.encode(self.divisor)),
             StateBlock(OMEGA_BODY, slopes, below),
         )
 
     @cached_property
-    def _energy(self) -> sp.Expr:
+    def whole(self) -> sp.Expr:
         return half_form(self.present, self.inertia, self.omega) + self.forces.potential
 
-    def torque_body(self) -> Found:
-        return Found(
-            self.present.matrix(*self.torque),
-            "The torque of the potential follows from its power."
-            if any(self._gradient)
-            else "The torque about the fixed point is",
+    @cached_property
+    def traits(self) -> frozenset[str]:
+        return frozenset(
+            ("euler", *self._shared_traits, *(() if any(self._gradient) else ("no_gradient",)))
         )
 
-    def energy(self) -> Found:
-        """With its rate, the power of what the potential does not account for."""
-        rate, divisor = self.rate(self._energy)
-        below = self.codec.encode(self._divisor)
+    def energy_rate(self, value: sp.Expr) -> tuple[RingMatrix, PolyElement]:
+        """dE/dt less ∂V/∂t and the power of what the potential does not account for."""
+        rate, divisor = self.rate(value)
+        below = self.codec.encode(self.divisor)
         forced = self.codec.matrix(self._inverse).T @ self.codec.column(self._forces)
         power = self.omega.T @ (self.codec.column(self._torque).scale(below) + forced)
-        residual = (rate - self.driving.scale(divisor)).scale(below) - power.scale(divisor)
-        return Found(
-            sp.ImmutableMatrix([[self._energy]]),
-            "The energy changes at the power of the other torques.",
-            (self.prove.vanishes(residual, self.energy_claim, divided_by=divisor),),
-            definition=None if self.forces.potential else ROTATIONAL,
-        )
+        left = (rate - self.driving.scale(divisor)).scale(below) - power.scale(divisor)
+        return left, divisor
 
     @property
-    def _error_state_jacobian(self) -> sp.ImmutableMatrix:
+    def error_state_jacobian(self) -> sp.ImmutableMatrix:
         """dδθ/dt = δΩ′ − Ω′ × δθ, and of dΩ′/dt the slopes by q, with δq = W′⁻¹ δθ, and by Ω′."""
         q, y = self.model.coordinates, self.arguments["y"].symbols
-        slopes = self._state_derivative[len(q) :]
+        slopes = self.state_derivative[len(q) :]
         by_q, by_omega = (
             sp.ImmutableMatrix([slopes_of(slope, part, y) for slope in slopes])
             for part in (q, OMEGA_BODY)
         )
-        turned = by_q * self._inverse / self._divisor
+        turned = by_q * self._inverse / self.divisor
         upper = sp.Matrix.hstack(-hat(sp.ImmutableMatrix(OMEGA_BODY)), sp.eye(3))
         return sp.ImmutableMatrix(upper.col_join(sp.Matrix.hstack(turned, by_omega)))
 
@@ -139,7 +132,7 @@ class EulerEquations(Flow):
         matrix = self.codec.matrix(self._matrix)
         in_space = self.present.matrix(matrix @ momentum)
         in_body = self.present.matrix(momentum)
-        candidates = {"energy": (claims.ENERGY, self._energy)}
+        candidates = {"energy": (claims.ENERGY, self.whole)}
         candidates["angular_momentum_squared"] = (
             claims.MOMENTUM_SQUARED,
             sp.Add(*(entry**2 for entry in in_body)),

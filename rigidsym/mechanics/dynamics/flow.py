@@ -16,18 +16,17 @@ from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import Codec, codec_for
 from rigidsym.algebra.matrix import RingMatrix
-from rigidsym.algebra.present import presenter_for
 from rigidsym.errors import ModelError
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import (
+    Argument,
     Consequence,
     FirstIntegral,
-    Found,
     Quantity,
     Step,
 )
 from rigidsym.mechanics.dynamics.free import of_free_body
-from rigidsym.mechanics.prove import Prover
+from rigidsym.mechanics.kinematics.workspace import Workspace
 from rigidsym.mechanics.quantities import dynamics as claims
 from rigidsym.mechanics.quantities.table import (
     arguments_of,
@@ -47,30 +46,36 @@ class StateBlock(NamedTuple):
     divisor: PolyElement
 
 
-class Flow:
+class Flow(Workspace):
     """The equations of motion of one rotation, one body and the forces on it.
 
-    A form of the equations gives its `blocks`, the first integrals that it has, and steps by the
-    names of the quantities in `table`.
+    A form of the equations gives its `blocks`, the first integrals that it has, and the table of
+    its quantities.
     """
 
     table: Mapping[str, Quantity]
     second: str  # the argument beside q in the state
 
     def __init__(self, model: RotationModel, body: RigidBody, forces: Forces, codec: Codec) -> None:
-        self.model, self.body, self.forces, self.codec = model, body, forces, codec
-        self.present = presenter_for(codec)
-        self.prove = Prover(model, codec)
+        self.model, self.forces, self.codec = model, forces, codec
+        self.body: RigidBody = body
         self.arguments = {a.name: a for a in arguments_of(model)}
         self.added = arguments_of_motion(model)  # by the equations of motion
         self.added += arguments_of_flow([self.arguments["q"], self.arguments[self.second]])
         self.arguments |= {a.name: a for a in self.added}
 
-    def steps(self, only: Sequence[str]) -> Iterator[tuple[str, Found]]:
-        """(name, what was found) of the quantities of motion that are wanted."""
-        for name in self.table:
-            if not only or name in only:
-                yield name, getattr(self, name)()
+    def steps(self, only: Sequence[str]) -> Iterator[Step]:
+        """The quantities of motion that are wanted and that the system has."""
+        steps = (self.step(entry) for n, entry in self.table.items() if not only or n in only)
+        return filter(None, steps)
+
+    @property
+    def _shared_traits(self) -> Iterator[str]:
+        """That both forms of the equations have."""
+        if not self.forces.potential:
+            yield "no_potential"
+        if not self.driving.is_zero():
+            yield "driven"
 
     @property
     def blocks(self) -> tuple[StateBlock, StateBlock]:
@@ -87,12 +92,6 @@ class Flow:
         divisor = prod((block.divisor for block in self.blocks), start=ring.one)
         return parts[0] + parts[1] + self.explicit_rate(value).scale(divisor), ring.reduce(divisor)
 
-    def potential_energy(self) -> Found:
-        potential = self.forces.potential
-        has_one = "The body has the potential energy:"
-        because = has_one if potential else "No potential acts on the body:"
-        return Found(sp.ImmutableMatrix([[potential]]), because)
-
     def explicit_rate(self, value: sp.Expr) -> RingMatrix:
         """∂F/∂t, the state being held."""
         return self.codec.column(slopes_of(value, [TIME], [TIME, *self.arguments["y"].symbols]))
@@ -101,10 +100,6 @@ class Flow:
     def driving(self) -> RingMatrix:
         """∂V/∂t, at which a potential that depends on the time changes the energy."""
         return self.explicit_rate(self.forces.potential)
-
-    @property
-    def energy_claim(self) -> Formula:
-        return claims.energy_rate(self.second, is_driven=not self.driving.is_zero())
 
     @cached_property
     def first_integrals(self) -> tuple[FirstIntegral, ...]:
@@ -126,13 +121,15 @@ class Flow:
                 title="The energy",
                 text="The potential depends on the time, so that the energy is not constant: {} "
                 "with",
-                spans=(self.energy_claim,),
+                spans=(claims.energy.presented(self.traits).laws[0].claim,),
                 left=claims.DRIVING,
                 value=self.present.matrix(self.driving)[0],
             )
         if self.forces.leave_free(self.model):
             still = dict.fromkeys(self.arguments["torque"].symbols, sp.S.Zero)
-            slopes = self.angular_acceleration_from_torque().expression.xreplace(still)
+            turning = self.step(claims.angular_acceleration_from_torque)
+            assert turning is not None
+            slopes = turning.expression.xreplace(still)
             yield from of_free_body(self.body.inertia, list(slopes), self.model.name)
 
     def in_state(self, value: sp.Expr) -> sp.Expr:
@@ -148,53 +145,47 @@ class Flow:
 
     def functions(self) -> Mapping[str, Callable[[], Step]]:
         """The derivative of the state, its Jacobians and the first integrals, each when needed."""
-        return {
-            name: partial(self._function, name)
-            for name in claims.FLOW_QUANTITIES
-            if hasattr(type(self), f"_{name}")
-            and (name != "first_integrals" or self.first_integrals)
-        }
+        lacking = set() if "euler" in self.traits else {"error_state_jacobian"}
+        lacking |= set() if self.first_integrals else {"first_integrals"}
+        entries = claims.FLOW_QUANTITIES.items()
+        return {n: partial(self._function, entry) for n, entry in entries if n not in lacking}
 
-    def _function(self, name: str) -> Step:
-        return Step(
-            number=0,
-            quantity=claims.FLOW_QUANTITIES[name],
-            expression=getattr(self, f"_{name}"),
-            because="",
-            proofs=(),
-        )
+    def _function(self, entry: Quantity) -> Step:
+        step = self.step(entry)
+        assert step is not None
+        return step
 
     @cached_property
-    def _state_derivative(self) -> sp.ImmutableMatrix:
+    def state_derivative(self) -> sp.ImmutableMatrix:
         return sp.ImmutableMatrix(
             [e for b in self.blocks for e in self.present.matrix(b.numerators, b.divisor)]
         )
 
     @property
-    def _state_jacobian(self) -> sp.ImmutableMatrix:
+    def state_jacobian(self) -> sp.ImmutableMatrix:
         symbols = self.arguments["y"].symbols
-        return sp.ImmutableMatrix([slopes_of(s, symbols, symbols) for s in self._state_derivative])
+        return sp.ImmutableMatrix([slopes_of(s, symbols, symbols) for s in self.state_derivative])
 
-    @property
-    def _first_integrals(self) -> sp.ImmutableMatrix:
-        return sp.ImmutableMatrix([i.expression for i in self.first_integrals])
+    @cached_property
+    def free_turning(self) -> FreeTurning:
+        return FreeTurning(self.model, self.body, self.arguments)
 
-    def angular_acceleration_from_torque(self) -> Found:
-        """I′⁻¹ (N′ − Ω′ × I′ Ω′) for free Ω′ and N′, in a ring of their own."""
-        omega, torque = self.arguments["omega_body"].symbols, self.arguments["torque"].symbols
-        inertia = self.body.inertia
-        codec = codec_for([e for e in (*inertia, *omega, *torque) if e != 0], order=0)
-        w, n, tensor = codec.column(omega), codec.column(torque), codec.matrix(inertia)
-        above, below = solved_euler(tensor, w, n, codec.ring.one)
-        left = n - turned(tensor, w)
-        residual = tensor @ above - left.scale(below)
-        proof = Prover(self.model, codec).vanishes(residual, claims.EULER, divided_by=below)
-        return Found(
-            presenter_for(codec).matrix(above, below),
-            "Euler's equations: the torque changes the angular momentum, which is written along "
-            "the axes of the body.",
-            (proof,),
-        )
+
+class FreeTurning(Workspace):
+    """Euler's equations for free Ω′ and N′, in a ring of their own."""
+
+    def __init__(
+        self, model: RotationModel, body: RigidBody, arguments: dict[str, Argument]
+    ) -> None:
+        self.model, self.body, self.arguments = model, body, arguments
+        self.traits = frozenset()
+        omega, torque = arguments["omega_body"].symbols, arguments["torque"].symbols
+        held = [e for e in (*body.inertia, *omega, *torque) if e != 0]
+        self.codec = codec_for(held, order=0)
+        w, n = map(self.codec.column, (omega, torque))
+        self.inertia = self.codec.matrix(body.inertia)
+        self.left = n - turned(self.inertia, w)  # N′ − Ω′ × I′ Ω′
+        self.solved = solved_euler(self.inertia, w, n, self.codec.ring.one)
 
 
 def turned(tensor: RingMatrix, omega: RingMatrix) -> RingMatrix:

@@ -177,7 +177,8 @@ def _elliptic(inertia: sp.ImmutableMatrix, name: str) -> Consequence:
     return Consequence(
         title="The asymmetric body in elliptic functions",
         text="Let {} < {} < {} and {} < {}, and let the time begin where {} is 0. Substitution "
-        "shows that Euler's equations have the solution",
+        "shows that Euler's equations have the solution, where $a$, $b$ and $c$ are positive, or "
+        "two of them are negative,",
         spans=(*(A, B, C, 2 * energy * B, _LENGTH**2), formula(r"\Omega'_2")),
         left=BODY.omega,
         value=claims.IN_ELLIPTIC_FUNCTIONS,

@@ -55,9 +55,10 @@ class Lagrange:
         main = self.moving[0]
         omega = main.jacobian * sp.Matrix(self.rates) + main.shift
         torque = sp.Matrix(forces.torque or [0, 0, 0])
-        acting = main.jacobian.T * torque.xreplace(dict(zip(OMEGA_BODY, omega, strict=True)))
+        in_rates = dict(zip(OMEGA_BODY, omega, strict=True))
+        acting = main.jacobian.T * torque.xreplace(in_rates)
         self.forces = [
-            forces.generalised.get(q, sp.S.Zero) + part
+            forces.generalised.get(q, sp.S.Zero).xreplace(in_rates) + part
             for q, part in zip(model.coordinates, acting, strict=True)
         ]
         self.gradient = [sp.diff(self.potential, q) for q in model.coordinates]
@@ -79,14 +80,14 @@ class Lagrange:
         """
         values = Values(model)
         is_free = model.pullback is None and not forces.parts
-        found = values.inverse("body") if is_free else None
-        if found is None:
+        inverse = values.inverse("body") if is_free else None
+        if inverse is None:
             raise ModelError(
                 f"{model.name}: Lagrange's equations need independent coordinates, such as Euler "
                 "angles, or one body whose angular velocity determines the rates; expected such a "
                 'rotation, or method = "euler"'
             )
-        above, below = found
+        above, below = inverse
         short = values.present.matrix(above, below)
         if all(sp.denom(entry).is_number for entry in short):
             return short, sp.S.One
@@ -104,7 +105,7 @@ class Lagrange:
     def _turning(self, model: RotationModel, inertia: sp.ImmutableMatrix) -> Moving:
         """A body that turns so; its rate matrix has a column for each coordinate of all."""
         values = Values(model)
-        entries = values.codec.decoded(values.rate_matrices["body"])
+        entries = values.codec.decoded(values.rate_matrix("body"))
         columns = [
             entries.col(model.coordinates.index(q)) if q in model.coordinates else sp.zeros(3, 1)
             for q in self.model.coordinates

@@ -79,10 +79,12 @@ class Reduced:
         claim = formula(r"E = \tfrac{1}{2}m\dot{q}^2 + V_{\mathrm{eff}}")
         return Consequence(
             title="The effective potential",
-            text="The constant momenta put into the energy leave the motion of {} in one "
-            "dimension, in the effective potential {}. It turns back where the potential has the "
-            "height {}.",
-            spans=(self.coordinate, claims.EFFECTIVE, claims.ENERGY),
+            text="Inserting the conserved momenta into the energy leaves a one-dimensional problem "
+            "in {}, with the effective potential {}. {} turns back where {}.",
+            spans=(
+                *(self.coordinate, claims.EFFECTIVE, self.coordinate),
+                formula("#1 = #2", claims.EFFECTIVE, claims.ENERGY),
+            ),
             left=claims.ENERGY,
             value=value,
             proofs=(self.proved(self.letters.E - value, claim),),
@@ -137,7 +139,7 @@ class Reduced:
             residual = of_spin - sp.cancel(of_spin / value) * value
             yield Consequence(
                 title="Steady motion",
-                text="With {} at rest, its acceleration vanishes if",
+                text="{} stays constant if",
                 spans=(self.coordinate,),
                 left=formula("0"),
                 value=sp.collect(value, turning),
@@ -154,12 +156,12 @@ class Reduced:
         below = sp.factor(b**2 - 4 * a * c)
         root = sp.sqrt(below)
         texts = (
-            "This quadratic equation has two roots if {} is positive, and none if it is negative: "
-            "no steady motion then has this inclination. If {} is positive and large, the slow "
-            "rate is nearly {}:",
+            "If {} is not 0, this quadratic equation has two roots if {} is positive, and none if "
+            "it is negative: steady precession at this inclination is then impossible. If {} is "
+            "positive and large, the slow rate is nearly {}:",
             "The fast rate is then nearly {}:",
         )
-        spans = ((below, spin, sp.cancel(-c / b)), (sp.cancel(-b / a),))
+        spans = ((a, below, spin, sp.cancel(-c / b)), (sp.cancel(-b / a),))
         for text, held, sign in zip(texts, spans, (-1, 1), strict=True):
             yield Consequence(
                 title="",
@@ -168,6 +170,17 @@ class Reduced:
                 left=turning,
                 value=(-b + sign * root) / (2 * a),
                 proofs=(_root_proof(a, b, c, sign, self.name),),
+            )
+        if a.has(self.coordinate):
+            single = sp.cancel(-c / b)
+            residual = sp.ImmutableMatrix([[b * single + c]])
+            yield Consequence(
+                title="",
+                text="If {} is 0, there is one rate only:",
+                spans=(a,),
+                left=turning,
+                value=single,
+                proofs=(identity(residual, formula("b x + c = 0"), self.name),),
             )
 
 
@@ -179,12 +192,12 @@ def _shorter(value: sp.Expr) -> sp.Expr:
 def _factor(value: sp.Expr, turning: sp.Symbol) -> sp.Poly | None:
     """The factor of the numerator that holds a rate, as a polynomial in it."""
     _, factors = sp.factor_list(sp.numer(sp.cancel(sp.together(value))))
-    held = [base for base, _ in factors if base.has(turning)]
-    if len(held) != 1:
+    factors_with_rate = [base for base, _ in factors if base.has(turning)]
+    if len(factors_with_rate) != 1:
         return None
-    found = sp.Poly(held[0], turning)
-    lead = found.LC()
-    return found if not lead.could_extract_minus_sign() else -found
+    condition = sp.Poly(factors_with_rate[0], turning)
+    lead = condition.LC()
+    return condition if not lead.could_extract_minus_sign() else -condition
 
 
 def _root_proof(a: sp.Expr, b: sp.Expr, c: sp.Expr, sign: int, name: str) -> Proof:

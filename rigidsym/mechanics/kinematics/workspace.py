@@ -1,37 +1,140 @@
-"""The matrices and vectors of one model over its ring."""
+"""The rotation and the angular velocity of one model, over its ring: what entries are derived in.
+
+R → dR/dt → dR/dt Rᵀ = C(Ω) → Ω′ = Rᵀ Ω (lecture, eq. 15 and 16), then W = ∂Ω/∂q̇ and its inverse.
+Each is worked out when an entry asks for it.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from functools import cache, cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
+from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import Codec, codec_for
-from rigidsym.algebra.configuration import configurations
 from rigidsym.algebra.matrix import Inverse, RingMatrix, hat, unhat
 from rigidsym.algebra.present import Presenter, presenter_for
-from rigidsym.mechanics.prove import Prover
+from rigidsym.algebra.witness import Example, configurations
+from rigidsym.errors import DerivationError, NotARotation
+from rigidsym.mechanics.derivation import Argument, Proof, Quantity, Step, VectorForm
+from rigidsym.mechanics.kinematics.vector_forms import matrix_form, vector_form
+from rigidsym.mechanics.prove import Prover, identity
 from rigidsym.mechanics.quantities.table import arguments_of
-from rigidsym.models.parametrisations import DirectionCosines
 from rigidsym.models.rotation import RotationModel
 
 if TYPE_CHECKING:
     from rigidsym.models.body import RigidBody
 
 
-class Turning(NamedTuple):
-    """R and the angular velocity, over a ring."""
+def traits_of(model: RotationModel) -> frozenset[str]:
+    """What variants of the entries ask of a model."""
+    q, angles = model.coordinates, [turn.angle for turn in model.turns]
+    binds = any(condition.has(*q) for condition in model.constraints)
+    traits = {
+        "passive": model.passive,
+        "given": not angles,  # as a matrix, not by turns
+        "one_turn": len(angles) == 1,
+        "one_coordinate": len(q) == 1,
+        "by_turns": len(angles) == len(q) and {*angles} == {*q},  # each by one coordinate
+        "in_order": tuple(angles) == q,
+        "wide": len(q) != 3,  # W has no inverse, but perhaps a right inverse
+        "vector": bool(model.vector),
+        "bound": binds,
+    }
+    return frozenset(trait for trait, holds in traits.items() if holds)
 
-    R: RingMatrix
-    R_dot: RingMatrix
-    spin: RingMatrix  # dR/dt Rᵀ
-    omega_space: RingMatrix
-    omega_body: RingMatrix
+
+class Workspace:
+    """What entries are derived in: a ring, its prover, and a printer of its elements."""
+
+    model: RotationModel
+    body: RigidBody | None
+    arguments: dict[str, Argument]
+
+    @cached_property
+    def traits(self) -> frozenset[str]:
+        """What variants of the entries ask of it."""
+        raise NotImplementedError
+
+    @cached_property
+    def codec(self) -> Codec:
+        raise NotImplementedError
+
+    @cached_property
+    def prove(self) -> Prover:
+        return Prover(self.model, self.codec)
+
+    @cached_property
+    def present(self) -> Presenter:
+        return presenter_for(self.codec)
+
+    def scalar(self, element: PolyElement) -> RingMatrix:
+        return RingMatrix.column(self.codec.ring, [element])
+
+    @property
+    def conditions(self) -> tuple[tuple[sp.Expr, ...], Example]:
+        """On the constants of the body, with an example that satisfies them."""
+        return (), ()
+
+    def step(self, entry: Quantity) -> Step | None:
+        """The value of an entry, with the proofs of its laws; None if the model has no such value.
+
+        Raises NotARotation if the laws of the rotation matrix are false, showing what is left over.
+        """
+        if entry.within:
+            found: Step | None = entry.within(self).step(entry._replace(within=None))
+            return found
+        quantity = entry.presented(self.traits)
+        assert quantity.value is not None
+        value = quantity.value(self)
+        if value is None:
+            return None
+        proofs = self.proofs(quantity, value)
+        form = self.vector_form(quantity, value)
+        return Step(
+            quantity=quantity.measured(self.arguments),
+            expression=self._printed(value),
+            proofs=(*proofs, form.proof) if form else proofs,
+            vector_form=form,
+            words=quantity.words(self) if quantity.words else "",
+        )
+
+    def vector_form(self, _quantity: Quantity, _value: Any, /) -> VectorForm | None:
+        """The quantity as a function of the vector of the coordinates, if it is one."""
+        return None
+
+    def _printed(self, value: Any) -> sp.ImmutableMatrix:
+        """A value as it is shown: read from the ring, over its divisor, or as it is."""
+        match value:
+            case (matrix, below):
+                return self.present.matrix(matrix, below)
+            case RingMatrix():
+                return self.present.matrix(value)
+            case sp.MatrixBase():
+                return sp.ImmutableMatrix(value)
+        return sp.ImmutableMatrix([[value]])
+
+    def proofs(self, quantity: Quantity, value: Any) -> tuple[Proof, ...]:
+        """What a quantity rests on, and the proofs of its laws."""
+        proofs = list(quantity.rests_on(self)) if quantity.rests_on else []
+        error = NotARotation if quantity.name == "rotation_matrix" else DerivationError
+        for law in quantity.laws:
+            residual = law.residual(self, value)
+            divisor = value[1] if isinstance(value, tuple) else None
+            if isinstance(residual, tuple):
+                residual, divisor = residual
+            if isinstance(residual, sp.MatrixBase):  # in the constants of the body
+                assert self.body is not None
+                proofs.append(identity(residual, law.claim, self.body.name, *self.conditions))
+            elif residual is not None:
+                divisors = () if divisor is None else (divisor,)
+                proofs += self.prove.vanish([(residual, law.claim, divisors)], error=error)
+        return tuple(proofs)
 
 
-class Values:
+class Values(Workspace):
     """R, dR/dt, Ω, Ω′, W, W′ and the inverses of one model, worked out when asked for."""
 
     def __init__(
@@ -45,7 +148,13 @@ class Values:
         self.body = body
         self.arguments = {argument.name: argument for argument in arguments_of(model, body)}
         self._also = tuple(also)
+        self._rate_matrices: dict[str, RingMatrix] = {}
         self._inverses: dict[str, Inverse | None] = {}
+        self._rates: dict[str, Inverse] = {}
+
+    @cached_property
+    def traits(self) -> frozenset[str]:
+        return traits_of(self.model)
 
     @cached_property
     def codec(self) -> Codec:
@@ -65,51 +174,107 @@ class Values:
         return codec_for(inputs, constraints=model.constraints, order=order)
 
     @cached_property
-    def prove(self) -> Prover:
-        return Prover(self.model, self.codec)
+    def one(self) -> RingMatrix:
+        return RingMatrix.identity(self.codec.ring, 3)
+
+    def argument(self, name: str) -> RingMatrix:
+        """The components of an argument as a column."""
+        return self.codec.column(self.arguments[name].symbols)
+
+    # The rotation that turns
 
     @cached_property
-    def present(self) -> Presenter:
-        return presenter_for(self.codec)
+    def rotation(self) -> RingMatrix:
+        return self.codec.matrix(self.model.matrix)
 
     @cached_property
-    def turning(self) -> Turning:
-        """R → dR/dt → Ω → Ω′ (lecture, eq. 15 and 16)."""
-        rotation = self.codec.matrix(self.model.matrix)
-        rate, back = rotation.dt(), rotation.T
-        spin = rate @ back
-        space = unhat(spin)
+    def rotation_rate(self) -> RingMatrix:
+        return self.rotation.dt()
+
+    @cached_property
+    def spin(self) -> RingMatrix:
+        """dR/dt Rᵀ."""
+        return self.rotation_rate @ self.rotation.T
+
+    @cached_property
+    def spin_rate(self) -> RingMatrix:
+        return self.spin.dt()
+
+    @cached_property
+    def omega_space(self) -> RingMatrix:
+        return unhat(self.spin)
+
+    @cached_property
+    def omega_body(self) -> RingMatrix:
+        if self.model.pullback is None:
+            return self.rotation.T @ self.omega_space
         # for the ring of a pullback, RᵀΩ would not become shorter
-        body = back @ space if self.model.pullback is None else unhat(back @ rate)
-        return Turning(rotation, rate, spin, space, body)
+        return unhat(self.rotation.T @ self.rotation_rate)
 
     @cached_property
-    def rate_matrices(self) -> dict[str, RingMatrix]:
-        """W = ∂Ω/∂q̇ and W′ by frame: "space" and "body".
+    def alpha_space(self) -> RingMatrix:
+        return self.omega_space.dt()
+
+    @cached_property
+    def alpha_body(self) -> RingMatrix:
+        return self.omega_body.dt()
+
+    # The matrix that is shown: R, or A = Rᵀ
+
+    @property
+    def shown(self) -> RingMatrix:
+        return self.rotation.T if "passive" in self.traits else self.rotation
+
+    @property
+    def shown_rate(self) -> RingMatrix:
+        return self.rotation_rate.T if "passive" in self.traits else self.rotation_rate
+
+    @cached_property
+    def shown_spin(self) -> RingMatrix:
+        """dR/dt Rᵀ, or dA/dt Aᵀ."""
+        return self.rotation_rate.T @ self.rotation if "passive" in self.traits else self.spin
+
+    # The rates of the coordinates
+
+    def rate_matrix(self, frame: str) -> RingMatrix:
+        """W = ∂Ω/∂q̇ or W′.
 
         By the generators of the rates themselves, since a constraint may relate them.
         """
-        index, turning = self.codec.ring.index, self.turning
-        places = [index[q] for q in self.arguments["q_dot"].symbols]
-        in_space, in_body = (
-            turning.omega_space.jacobian(places),
-            turning.omega_body.jacobian(places),
-        )
-        return {"space": in_space, "body": in_body}
+        if frame not in self._rate_matrices:
+            index = self.codec.ring.index
+            places = [index[q] for q in self.arguments["q_dot"].symbols]
+            omega = self.omega_space if frame == "space" else self.omega_body
+            self._rate_matrices[frame] = omega.jacobian(places)
+        return self._rate_matrices[frame]
 
     def inverse(self, frame: str) -> Inverse | None:
         """The right inverse of the rate matrix of a frame; None if it has none."""
         if frame not in self._inverses:
-            found = self._entry_rates(frame)
-            self._inverses[frame] = found or self.rate_matrices[frame].right_inverse(self.bound)
+            entries = self._entry_rates(frame)
+            self._inverses[frame] = entries or self.rate_matrix(frame).right_inverse(self.bound)
         return self._inverses[frame]
+
+    def rates(self, frame: str) -> Inverse | None:
+        """The inverse times the angular velocity as an argument, q̇ = W⁻¹ Ω."""
+        inverse = self.inverse(frame)
+        if inverse is not None and frame not in self._rates:
+            matrix, below = inverse
+            self._rates[frame] = matrix @ self.argument(f"omega_{frame}"), below
+        return self._rates.get(frame)
+
+    def excess(
+        self, frame: str, above: RingMatrix, below: PolyElement, goal: RingMatrix
+    ) -> RingMatrix:
+        """W (above/below) − goal, times the divisor."""
+        return self.rate_matrix(frame) @ above - goal.scale(below)
 
     def _entry_rates(self, frame: str) -> Inverse | None:
         """The columns dR/dt of unit angular velocities, where the coordinates are R's entries."""
         if tuple(self.model.matrix) != self.model.coordinates:
             return None
-        ring, rotation = self.codec.ring, self.turning.R
-        operators = [hat(RingMatrix.column(ring, e)) for e in RingMatrix.identity(ring, 3).rows]
+        ring, rotation = self.codec.ring, self.rotation
+        operators = [hat(RingMatrix.column(ring, e)) for e in self.one.rows]
         rates = [skew @ rotation if frame == "space" else rotation @ skew for skew in operators]
         return RingMatrix(ring, tuple(rate.entries for rate in rates)).T, ring.one
 
@@ -121,40 +286,18 @@ class Values:
         rows = [[sp.diff(c, q) for q in coordinates] for c in binding]
         return self.codec.matrix(sp.Matrix(rows)) if rows else None
 
-    def argument(self, name: str) -> RingMatrix:
-        """The components of an argument as a column."""
-        return self.codec.column(self.arguments[name].symbols)
-
-
-class NamedRotation(Values):
-    """R, dR/dt, Ω and Ω′ of a body whose rotation is known by names for R and Ω′.
-
-    Of these only R Rᵀ = 1, det R = 1, Ω = R Ω′ and dR/dt = R C(Ω′) are used, which the derivation
-    of a long product of turns proves.
-    """
-
-    velocity = sp.symbols("omega_body_1:4")
-
-    @staticmethod
-    @cache
-    def names() -> RotationModel:
-        """The nine entries of R by name."""
-        return DirectionCosines([f"R_{row}{column}" for row in (1, 2, 3) for column in (1, 2, 3)])
-
-    @cached_property
-    def codec(self) -> Codec:
-        assert self.body is not None
-        moving = [*self.arguments["centre"].symbols, *self.arguments["centre_dot"].symbols]
-        inputs = [*self.names().matrix, *self.velocity, *moving, self.body.mass, *self.body.inertia]
-        return codec_for([*inputs, sp.Rational(1, 2), *self._also], order=1)
-
-    @cached_property
-    def prove(self) -> Prover:
-        return Prover(self.names(), self.codec)
-
-    @cached_property
-    def turning(self) -> Turning:
-        rotation = self.codec.matrix(self.names().matrix)
-        body = self.codec.column(self.velocity)
-        space = rotation @ body
-        return Turning(rotation, rotation @ hat(body), hat(space), space, body)
+    def vector_form(self, quantity: Quantity, value: Any, /) -> VectorForm | None:
+        if not self.model.vector or not quantity.vectors:
+            return None
+        matrix, below = value if isinstance(value, tuple) else (value, self.codec.ring.one)
+        prove, vector, symbol = self.prove, self.model.vector, quantity.symbol
+        if quantity.vectors == "vector":
+            return vector_form(prove, vector, matrix, symbol)
+        if quantity.vectors == "matrix":
+            return matrix_form(prove, vector, matrix, below, symbol)
+        frame = quantity.frame
+        assert frame is not None
+        inverse = self.inverse(frame.name)
+        assert inverse is not None
+        omega = frame.omega, self.argument(f"omega_{frame.name}")
+        return matrix_form(prove, vector, *inverse, symbol, to=omega)

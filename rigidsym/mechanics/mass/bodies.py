@@ -12,8 +12,15 @@ from rigidsym.algebra.ring import Quotient
 from rigidsym.errors import BodyError
 from rigidsym.mechanics.mass.moments import Moments, moments_of
 from rigidsym.mechanics.mass.numbers import in_parameters, is_measured
-from rigidsym.models.body import BodyDescription, Parameter, RigidBody, described
-from rigidsym.models.distribution import KEYS, Distribution, Solid
+from rigidsym.models.body import (
+    KEYS,
+    BodyDescription,
+    Distribution,
+    Parameter,
+    RigidBody,
+    Solid,
+    described,
+)
 from rigidsym.models.rotation import symbolic
 from rigidsym.models.solids import shape_of, shaped
 

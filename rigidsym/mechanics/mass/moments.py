@@ -23,7 +23,7 @@ from rigidsym.errors import BodyError
 from rigidsym.formula.reader import formula
 from rigidsym.mechanics.derivation import Proof
 from rigidsym.mechanics.prove import Conditions, Prover
-from rigidsym.models.distribution import (
+from rigidsym.models.body import (
     Composite,
     Distribution,
     Known,

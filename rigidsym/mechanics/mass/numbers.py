@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING
 import sympy as sp
 
 from rigidsym.mechanics.mass.moments import about_centre
-from rigidsym.models.body import Parameter, RigidBody, given_inertia
-from rigidsym.models.distribution import Composite
+from rigidsym.models.body import Composite, Parameter, RigidBody, given_inertia
 
 if TYPE_CHECKING:
-    from rigidsym.data.mass.properties import MassProperties
+    from rigidsym.data.mass import MassProperties
 
 _DIGITS = 30  # with which exact sums are evaluated
 _ROUNDING = 1e-14  # of the largest moment: smaller numbers are what rounding leaves
@@ -24,7 +23,7 @@ def in_numbers(body: RigidBody) -> MassProperties | None:
     """Mass, centre, inertia tensor, principal moments and axes; None if a symbol is left."""
     import numpy as np  # which no derivation needs
 
-    from rigidsym.data.mass.properties import MassProperties
+    from rigidsym.data.mass import MassProperties
 
     mass, centre, inertia = map(body.in_numbers, (body.mass, body.centre, body.inertia))
     if not all(entry.is_number for entry in (mass, *centre, *inertia)):

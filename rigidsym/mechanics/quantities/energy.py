@@ -1,90 +1,199 @@
-"""The quantities of energy and momentum: a new one is an entry here and in `energy.derive`."""
+r"""The quantities of energy and momentum, one entry each (lecture, eq. 2 and 8 to 14).
+
+A workspace k (`mechanics.body`) has the mass, the centre and the inertia tensor of the body, and
+sums over its particles, r = r_C + x with x = R x′ for a place x′ at rest in the body. The sums
+follow from the mass and the inertia tensor (`mechanics.particles`).
+"""
 
 from __future__ import annotations
 
-import re
-from itertools import filterfalse
-
 from rigidsym.formula.reader import formula
-from rigidsym.formula.tree import transpose_of
-from rigidsym.mechanics.quantities.kinematics import BODY, ROTATION, SPACE
-from rigidsym.mechanics.quantities.mass import INERTIA, INERTIA_SPACE, MASS
-from rigidsym.mechanics.quantities.table import read_table
+from rigidsym.mechanics.derivation import Law, Quantity, by_name, when
+from rigidsym.models.rotation import SOURCES
 
 CENTRE = formula(r"\mathbf{r}_C")
-CENTRE_VELOCITY = formula(r"\dot{\mathbf{r}}_C")
-KINETIC = formula("E_K")
-TRANSLATIONAL = formula("E_C")
 ROTATIONAL = formula("E_R")
-MOMENTUM = formula(r"\mathbf{L}")
-MOMENTUM_CENTRE = formula(r"\mathbf{L}_C")
 MOMENTUM_ROTATION = formula(r"\mathbf{L}_R")
 MOMENTUM_BODY = formula(r"\mathbf{L}'_R")
-
-
-_HALF_PRODUCT = r"\tfrac{1}{2}\,#1\,#2\,#3"  # ½ Ωᵀ I Ω
-_OF_BODY = formula(_HALF_PRODUCT, transpose_of(BODY.omega), INERTIA, BODY.omega)
-_HALF_SQUARE = formula(r"\tfrac{1}{2} #1\,|#2|^2", MASS, CENTRE_VELOCITY)
-_ARM = formula(r"#1\times(#2\,#3)", CENTRE, MASS, CENTRE_VELOCITY)
-
-ENERGY_QUANTITIES = read_table(
-    """
-    translational_energy            scalar  J         centre_dot                    Landau 32
-        kinetic energy of the motion of the centre of mass
-    rotational_energy               scalar  J         q q_dot                       Landau 32
-        kinetic energy of the rotation about the centre of mass
-    kinetic_energy                  scalar  J         q q_dot centre_dot            Landau 32
-        kinetic energy
-    angular_momentum_centre         vector  kg m^2/s  centre centre_dot             Goldstein 1.2
-        angular momentum of the motion of the centre of mass, space components
-    angular_momentum_rotation_body  vector  kg m^2/s  q q_dot                       Landau 33
-        angular momentum of the rotation, body components
-    angular_momentum_rotation       vector  kg m^2/s  q q_dot                       Landau 33
-        angular momentum of the rotation, space components
-    angular_momentum                vector  kg m^2/s  q q_dot centre centre_dot     Goldstein 1.2
-        angular momentum about the origin, space components
-    """,
-    {
-        "translational_energy": (TRANSLATIONAL, _HALF_SQUARE),
-        "rotational_energy": (ROTATIONAL, _OF_BODY),
-        "kinetic_energy": (KINETIC, formula("#1 + #2", TRANSLATIONAL, ROTATIONAL)),
-        "angular_momentum_centre": (MOMENTUM_CENTRE, _ARM),
-        "angular_momentum_rotation_body": (MOMENTUM_BODY, formula("#1#2", INERTIA, BODY.omega)),
-        "angular_momentum_rotation": (
-            MOMENTUM_ROTATION,
-            formula("#1#2", INERTIA_SPACE, SPACE.omega),
-        ),
-        "angular_momentum": (MOMENTUM, formula("#1 + #2", MOMENTUM_CENTRE, MOMENTUM_ROTATION)),
-    },
-)
-MOMENTA = tuple(filter(re.compile("angular_momentum").match, ENERGY_QUANTITIES))
-ENERGIES = tuple(filterfalse(MOMENTA.__contains__, ENERGY_QUANTITIES))
-
-
-# Claims.
-
-_PARTICLE = formula(r"\mathbf{x}_i")
-_PARTICLE_VELOCITY = formula(r"\dot{\mathbf{x}}_i")
-_POSITION = formula(r"\mathbf{r}_i")
-_VELOCITY = formula(r"\dot{\mathbf{r}}_i")
+ENERGY, MOMENTUM = "energy", "momentum"  # sections
 _SUM = formula(r"{\textstyle\sum_i} m_i")
+_IN_SUMMARY = {ENERGY: "The kinetic energy", MOMENTUM: "The angular momentum"}
 
+translational_energy = Quantity(
+    name="translational_energy",
+    symbol=formula("E_C"),
+    about="kinetic energy of the motion of the centre of mass",
+    unit="J",
+    inputs=("centre_dot",),
+    shape="scalar",
+    definition=formula(r"\tfrac{1}{2} M\,|\dot{\mathbf{r}}_C|^2"),
+    source=SOURCES["Landau 32"],
+    value=lambda k: k.half_of_squares(k.velocity),
+    laws=(
+        Law(
+            formula(r"\tfrac{1}{2} #1\,|\dot{\mathbf{r}}_C|^2 = E_C", _SUM),
+            lambda k, x: k.sum(k.square(k.velocity)) - k.read(2 * x),
+        ),
+    ),
+    reason="energy_of_centre",
+    section=ENERGY,
+    group=_IN_SUMMARY[ENERGY],
+    of_centre=True,
+)
 
-_ROTATED = formula(r"(#1\,#2\,#3)", ROTATION, INERTIA, transpose_of(ROTATION))
-_HALF_SUM, _ARMS = r"\tfrac{1}{2} #1\,|#2|^2", r"#1\,#2\times#3"  # ½ Σ mᵢ |v|², Σ mᵢ x × v
-TRANSLATION_OF_PARTICLES = formula(f"{_HALF_SUM} = #3", _SUM, CENTRE_VELOCITY, TRANSLATIONAL)
-BOTH_FORMS = formula(
-    f"{_HALF_PRODUCT} = #4", transpose_of(SPACE.omega), _ROTATED, SPACE.omega, ROTATIONAL
+rotational_energy = Quantity(
+    name="rotational_energy",
+    symbol=ROTATIONAL,
+    about="kinetic energy of the rotation about the centre of mass",
+    unit="J",
+    inputs=("q", "q_dot"),
+    shape="scalar",
+    definition=formula(
+        r"\tfrac{1}{2}\,\boldsymbol{\Omega}'^{\mathsf T}\,\mathbf{I}'\,\boldsymbol{\Omega}'"
+    ),
+    source=SOURCES["Landau 32"],
+    value=lambda k: k.half_form(k.omega_body),
+    laws=(
+        Law(
+            formula(
+                r"\tfrac{1}{2}\,\boldsymbol{\Omega}^{\mathsf T}\,"
+                r"#1\,\boldsymbol{\Omega} = E_R",
+                formula(r"(\mathbf{R}\,\mathbf{I}'\,\mathbf{R}^{\mathsf T})"),
+            ),
+            lambda k, x: k.back.T @ k.inertia @ k.back - k.read(2 * x),
+        ),
+        Law(
+            formula(r"\tfrac{1}{2} #1\,|\dot{\mathbf{x}}_i|^2 = E_R", _SUM),
+            lambda k, x: k.sum(k.square(k.x_dot)) - k.read(2 * x),
+        ),
+    ),
+    reason="quadratic_form",
+    section=ENERGY,
+    group=_IN_SUMMARY[ENERGY],
+    is_result=True,
+    variants=(when("fixed_point", about="kinetic energy of the rotation about the fixed point"),),
 )
-ROTATION_OF_PARTICLES = formula(f"{_HALF_SUM} = #3", _SUM, _PARTICLE_VELOCITY, ROTATIONAL)
-ENERGY_SPLITS = formula(f"{_HALF_SUM} = #3 + #4", _SUM, _VELOCITY, TRANSLATIONAL, ROTATIONAL)
-MOMENTUM_OF_CENTRE = formula(f"{_ARMS} = #4", _SUM, CENTRE, CENTRE_VELOCITY, MOMENTUM_CENTRE)
-TWICE_ENERGY_BODY = formula(r"#1\cdot#2 = 2 #3", MOMENTUM_BODY, BODY.omega, ROTATIONAL)
-TWICE_ENERGY = formula(r"#1\cdot#2 = 2 #3", MOMENTUM_ROTATION, SPACE.omega, ROTATIONAL)
-MOMENTUM_TURNS = formula(r"#1\,#2 = #3\,#4", INERTIA_SPACE, SPACE.omega, ROTATION, MOMENTUM_BODY)
-MOMENTUM_OF_PARTICLES = formula(
-    f"{_ARMS} = #4", _SUM, _PARTICLE, _PARTICLE_VELOCITY, MOMENTUM_ROTATION
+
+kinetic_energy = Quantity(
+    name="kinetic_energy",
+    symbol=formula("E_K"),
+    about="kinetic energy",
+    unit="J",
+    inputs=("q", "q_dot", "centre_dot"),
+    shape="scalar",
+    definition=formula("E_C + E_R"),
+    source=SOURCES["Landau 32"],
+    value=lambda k: k.half_of_squares(k.velocity) + k.half_form(k.omega_body),
+    laws=(
+        Law(
+            formula(r"\tfrac{1}{2} #1\,|\dot{\mathbf{r}}_i|^2 = E_C + E_R", _SUM),
+            lambda k, x: k.sum(k.square(k.velocity + k.x_dot)) - k.read(2 * x),
+        ),
+    ),
+    reason="energy_splits",
+    section=ENERGY,
+    group=_IN_SUMMARY[ENERGY],
+    is_result=True,
+    of_centre=True,
 )
-MOMENTUM_SPLITS = formula(
-    f"{_ARMS} = #4 + #5", _SUM, _POSITION, _VELOCITY, MOMENTUM_CENTRE, MOMENTUM_ROTATION
+
+angular_momentum_centre = Quantity(
+    name="angular_momentum_centre",
+    symbol=formula(r"\mathbf{L}_C"),
+    about="angular momentum of the motion of the centre of mass, space components",
+    unit="kg m^2/s",
+    inputs=("centre", "centre_dot"),
+    shape="vector",
+    definition=formula(r"\mathbf{r}_C\times(M\,\dot{\mathbf{r}}_C)"),
+    source=SOURCES["Goldstein 1.2"],
+    value=lambda k: k.momentum_of_centre,
+    laws=(
+        Law(
+            formula(r"#1\,\mathbf{r}_C\times\dot{\mathbf{r}}_C = \mathbf{L}_C", _SUM),
+            lambda k, x: k.sum(k.centre.cross(k.velocity)) - x,
+        ),
+    ),
+    reason="momentum_of_centre",
+    section=MOMENTUM,
+    group=_IN_SUMMARY[MOMENTUM],
+    of_centre=True,
 )
+
+angular_momentum_rotation_body = Quantity(
+    name="angular_momentum_rotation_body",
+    symbol=MOMENTUM_BODY,
+    about="angular momentum of the rotation, body components",
+    unit="kg m^2/s",
+    inputs=("q", "q_dot"),
+    shape="vector",
+    definition=formula(r"\mathbf{I}'\boldsymbol{\Omega}'"),
+    source=SOURCES["Landau 33"],
+    value=lambda k: k.momentum_form_body,
+    laws=(
+        Law(
+            formula(r"\mathbf{L}'_R\cdot\boldsymbol{\Omega}' = 2 E_R"),
+            lambda k, x: k.read(x).T @ k.omega_body - k.twice_rotational,
+        ),
+    ),
+    reason="tensor_times_velocity",
+    section=MOMENTUM,
+    group=_IN_SUMMARY[MOMENTUM],
+    is_result=True,
+)
+
+angular_momentum_rotation = Quantity(
+    name="angular_momentum_rotation",
+    symbol=MOMENTUM_ROTATION,
+    about="angular momentum of the rotation, space components",
+    unit="kg m^2/s",
+    inputs=("q", "q_dot"),
+    shape="vector",
+    definition=formula(r"\mathbf{I}\boldsymbol{\Omega}"),
+    source=SOURCES["Landau 33"],
+    value=lambda k: k.momentum_form,
+    laws=(
+        Law(
+            formula(r"\mathbf{I}\,\boldsymbol{\Omega} = \mathbf{R}\,\mathbf{L}'_R"),
+            lambda k, x: k.rotation @ (k.inertia @ k.back) - k.read(x),
+        ),
+        Law(
+            formula(r"\mathbf{L}_R\cdot\boldsymbol{\Omega} = 2 E_R"),
+            lambda k, x: k.read(x).T @ k.omega_space - k.twice_rotational,
+        ),
+        Law(
+            formula(r"#1\,\mathbf{x}_i\times\dot{\mathbf{x}}_i = \mathbf{L}_R", _SUM),
+            lambda k, x: k.sum(k.x.cross(k.x_dot)) - k.read(x),
+        ),
+    ),
+    reason="momentum_rotated",
+    section=MOMENTUM,
+    group=_IN_SUMMARY[MOMENTUM],
+    is_result=True,
+)
+
+angular_momentum = Quantity(
+    name="angular_momentum",
+    symbol=formula(r"\mathbf{L}"),
+    about="angular momentum about the origin, space components",
+    unit="kg m^2/s",
+    inputs=("q", "q_dot", "centre", "centre_dot"),
+    shape="vector",
+    definition=formula(r"\mathbf{L}_C + \mathbf{L}_R"),
+    source=SOURCES["Goldstein 1.2"],
+    value=lambda k: k.present.matrix(k.momentum_of_centre) + k.momentum_form,
+    laws=(
+        Law(
+            formula(
+                r"#1\,\mathbf{r}_i\times\dot{\mathbf{r}}_i = \mathbf{L}_C + \mathbf{L}_R", _SUM
+            ),
+            lambda k, x: k.sum((k.centre + k.x).cross(k.velocity + k.x_dot)) - k.read(x),
+        ),
+    ),
+    reason="momentum_splits",
+    section=MOMENTUM,
+    group=_IN_SUMMARY[MOMENTUM],
+    is_result=True,
+    of_centre=True,
+)
+
+ENERGY_QUANTITIES = by_name(globals())

@@ -1,69 +1,21 @@
-"""The quantities of a rotation's kinematics: a new one is an entry here and in `kinematics.derive`.
+r"""The quantities of a rotation's kinematics, one entry each.
 
-The table is for the active presentation (R takes body to space components). Entries that differ
-follow for the passive one (A = Rᵀ, the direction cosine matrix).
+A law is a claim, and what vanishes if it holds for the value x. A workspace k works out a rotation
+with its angular velocity: over the ring of a model (`kinematics.workspace`), for a turn before or
+behind any rotation, or in the names of a chain of turns (`kinematics.chain`). Entries are the same
+for all of them.
+
+R takes components in the body to components in space. The passive presentation shows A = Rᵀ, the
+direction cosine matrix, in its place.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from functools import cache
-from types import MappingProxyType
-from typing import NamedTuple
-
+from rigidsym.algebra.matrix import hat
 from rigidsym.formula.reader import formula
-from rigidsym.formula.tree import Bracket, Formula, Rate, equal, row, transpose_of
-from rigidsym.mechanics.derivation import Quantity
-from rigidsym.mechanics.quantities.table import read_table
-
-Law = tuple[str, Formula]  # what is to be proved, by name, and how it is written
-
-ROTATION = formula(r"\mathbf{R}")
-COSINES = formula(r"\mathbf{A}")
-RATES = formula(r"\dot{\mathbf{q}}")
-ALPHA = formula(r"\dot{\boldsymbol{\Omega}}")
-ALPHA_BODY = formula(r"\dot{\boldsymbol{\Omega}}'")
-
-
-class Presentation(NamedTuple):
-    """The matrix that is shown, R or A = Rᵀ, and what is proved of it and its derivative."""
-
-    matrix: Formula
-    spin: Formula  # the derivative times the transpose
-    orthogonal: Formula
-    proper: Formula
-    stays_orthogonal: Formula  # the derivative of the statement that it is orthogonal
-    skew: Formula
-
-
-def _presented(matrix: Formula) -> Presentation:
-    other = transpose_of(matrix)
-    spin = row(Rate(matrix), other)
-    return Presentation(
-        matrix=matrix,
-        spin=spin,
-        orthogonal=formula(r"#1#2 = \mathbf{1}", matrix, other),
-        proper=formula(r"\det #1 = 1", matrix),
-        stays_orthogonal=formula(
-            r"#1#2 + #3#4 = \mathbf{0}", *(Rate(matrix), other, matrix, Rate(other))
-        ),
-        skew=formula(r"#1 + \left(#1\right)^{\mathsf T} = \mathbf{0}", spin),
-    )
-
-
-_ACTIVE, _PASSIVE = _presented(ROTATION), _presented(COSINES)
-PRESENTED = {False: _ACTIVE, True: _PASSIVE}  # by `passive`
-
-
-class Frame(NamedTuple):
-    """The symbols of the angular velocity and its rate matrix in one frame."""
-
-    name: str
-    omega: Formula
-    matrix: Formula
-    inverse: Formula
-    right_inverse: Formula  # if there are more coordinates than dimensions
-
+from rigidsym.formula.tree import Bracket, Rate
+from rigidsym.mechanics.derivation import OF_RATES, Frame, Law, Quantity, by_name, when
+from rigidsym.models.rotation import SOURCES
 
 SPACE = Frame(
     name="space",
@@ -79,149 +31,530 @@ BODY = Frame(
     inverse=formula(r"\mathbf{W}'^{-1}"),
     right_inverse=formula(r"\mathbf{W}'^{+}"),
 )
+ROTATION = formula(r"\mathbf{R}")
+COSINES = formula(r"\mathbf{A}")
+SPIN = formula(r"\frac{d\mathbf{R}}{dt}\mathbf{R}^{\mathsf T}")
+SPIN_OF_COSINES = formula(r"\frac{d\mathbf{A}}{dt}\mathbf{A}^{\mathsf T}")
+RATES = formula(r"\dot{\mathbf{q}}")
+ALPHA = formula(r"\dot{\boldsymbol{\Omega}}")
+ALPHA_BODY = formula(r"\dot{\boldsymbol{\Omega}}'")
+# sections of the note
+TURNED, ANGULAR_VELOCITY, ACCELERATION = "rotation", "angular_velocity", "angular_acceleration"
+PASSIVE, CHAIN, WIDE = "passive", "chain", "wide"  # traits: see `Values.traits`
 
-_SLOPES = r"\frac{\partial #1}{\partial #2}"
-_OF_ROTATION = read_table(
-    """
-    rotation_matrix                    matrix  -        q                -
-        rotation matrix, body to space components
-    rotation_rate                      matrix  1/s      q q_dot          -
-        time derivative of the rotation matrix
-    spin_matrix                        matrix  rad/s    q q_dot          Murray 2.4
-        spin matrix, the operator Ω × in space components
-    angular_velocity_space             vector  rad/s    q q_dot          Murray 2.4
-        angular velocity, space components
-    angular_velocity_body              vector  rad/s    q q_dot          Murray 2.4
-        angular velocity, body components
-    rate_matrix_space                  matrix  -        q                Diebel 5
-        rate matrix to space components of the angular velocity
-    inverse_rate_matrix_space          matrix  -        q                Diebel 5
-        inverse rate matrix from space components
-    rates_from_angular_velocity_space  vector  rad/s    q omega_space    Diebel 5
-        rates of the coordinates from space components of the angular velocity
-    rate_matrix_body                   matrix  -        q                Diebel 5
-        rate matrix to body components of the angular velocity
-    inverse_rate_matrix_body           matrix  -        q                Diebel 5
-        inverse rate matrix from body components
-    rates_from_angular_velocity_body   vector  rad/s    q omega_body     Diebel 5
-        rates of the coordinates from body components of the angular velocity
-    angular_acceleration_space         vector  rad/s^2  q q_dot q_ddot   Diebel 5
-        angular acceleration, space components
-    angular_acceleration_body          vector  rad/s^2  q q_dot q_ddot   Diebel 5
-        angular acceleration, body components
-    """,
-    {
-        "rotation_matrix": (ROTATION,),
-        "rotation_rate": (Rate(ROTATION),),
-        "spin_matrix": (_ACTIVE.spin, formula(r"\mathbf{C}(#1)", SPACE.omega)),
-        "angular_velocity_space": (SPACE.omega, formula(r"\mathbf{C}^{-1}(#1)", _ACTIVE.spin)),
-        "angular_velocity_body": (BODY.omega, formula("#1#2", transpose_of(ROTATION), SPACE.omega)),
-        "rate_matrix_space": (SPACE.matrix, formula(_SLOPES, SPACE.omega, RATES)),
-        "inverse_rate_matrix_space": (SPACE.inverse,),
-        "rates_from_angular_velocity_space": (RATES, formula("#1#2", SPACE.inverse, SPACE.omega)),
-        "rate_matrix_body": (BODY.matrix, formula(_SLOPES, BODY.omega, RATES)),
-        "inverse_rate_matrix_body": (BODY.inverse,),
-        "rates_from_angular_velocity_body": (RATES, formula("#1#2", BODY.inverse, BODY.omega)),
-        "angular_acceleration_space": (ALPHA, Rate(SPACE.omega)),
-        "angular_acceleration_body": (
-            ALPHA_BODY,
-            formula("#1#2", transpose_of(ROTATION), Rate(SPACE.omega)),
-        ),
-    },
-)
-_OF_COSINES = read_table(
-    """
-    rotation_matrix         matrix  -      q        -
-        direction cosine matrix, space to body components
-    rotation_rate           matrix  1/s    q q_dot  -
-        time derivative of the direction cosine matrix
-    spin_matrix             matrix  rad/s  q q_dot  Murray 2.4
-        spin matrix of the direction cosines, the operator −Ω′ × in body components
-    angular_velocity_space  vector  rad/s  q q_dot  Murray 2.4
-        angular velocity, space components
-    angular_velocity_body   vector  rad/s  q q_dot  Murray 2.4
-        angular velocity, body components
-    """,
-    {
-        "rotation_matrix": (COSINES, transpose_of(ROTATION)),
-        "rotation_rate": (Rate(COSINES),),
-        "spin_matrix": (_PASSIVE.spin, formula(r"-\mathbf{C}(#1)", BODY.omega)),
-        "angular_velocity_space": (
-            SPACE.omega,
-            formula(r"\mathbf{C}^{-1}(#1\,#2)", Rate(transpose_of(COSINES)), COSINES),
-        ),
-        "angular_velocity_body": (
-            BODY.omega,
-            formula(r"#1\,#2", COSINES, SPACE.omega),
-        ),
-    },
-)
-QUANTITY_NAMES = tuple(_OF_ROTATION)
+IS_SKEW = formula(r"#1 + \left(#1\right)^{\mathsf T} = \mathbf{0}", SPIN)
+COSINES_ARE_SKEW = formula(r"#1 + \left(#1\right)^{\mathsf T} = \mathbf{0}", SPIN_OF_COSINES)
+ORTHOGONAL = formula(r"\mathbf{R}\mathbf{R}^{\mathsf T} = \mathbf{1}")
+COSINES_ARE_ORTHOGONAL = formula(r"\mathbf{A}\mathbf{A}^{\mathsf T} = \mathbf{1}")
 
 
-@cache
-def quantities(
-    *, passive: bool = False, coordinates: int = 3, rate_unit: str = "rad/s"
-) -> Mapping[str, Quantity]:
-    """All quantities by name, in the order of the derivation, for a number of coordinates.
-
-    `rate_unit` is the unit that all rates share; empty if they do not.
-    """
-    table = {**_OF_ROTATION, **(_OF_COSINES if passive else {})}
-    for frame in (SPACE, BODY):
-        inverse, rates = (
-            f"{name}_{frame.name}"
-            for name in ("inverse_rate_matrix", "rates_from_angular_velocity")
-        )
-        table[rates] = table[rates]._replace(unit=rate_unit)
-        if coordinates != 3:
-            table[inverse] = table[inverse]._replace(
-                symbol=frame.right_inverse,
-                about=f"right inverse of the rate matrix from {frame.name} components",
-            )
-            definition = formula("#1#2", frame.right_inverse, frame.omega)
-            table[rates] = table[rates]._replace(definition=definition)
-    return MappingProxyType(table)
-
-
-# Claims.
-
-IS_OPERATOR = (
-    "angular_velocity_space",
-    formula(r"#2 = \mathbf{C}(#1)", SPACE.omega, _ACTIVE.spin),
-)
-
-
-@cache
-def laws(passive: bool, is_square: bool) -> Mapping[str, Sequence[Law]]:
-    """What is to be proved of each quantity; W has an inverse if it is square."""
-    shown = PRESENTED[passive]
-    found: dict[str, Sequence[Law]] = {
-        "rotation_matrix": [("orthogonal", shown.orthogonal), ("proper", shown.proper)],
-        "rotation_rate": [("skew", shown.stays_orthogonal)],
-        "spin_matrix": [("skew", shown.skew)],
-        "angular_velocity_space": [IS_OPERATOR],
-    }
-    if passive:
-        claim = formula(r"#2 = -\mathbf{C}(#1)", BODY.omega, shown.spin)
-        found["spin_matrix"] = [("skew", shown.skew), ("passive_operator", claim)]
-    whole_rate = Rate(Bracket(_ACTIVE.spin))
-    claims = {
-        "angular_velocity_body": formula(r"#3 = #1\,#2", ROTATION, BODY.omega, SPACE.omega),
-        "angular_acceleration_space": formula(r"#2 = \mathbf{C}(#1)", ALPHA, whole_rate),
-        "angular_acceleration_body": formula(r"#3 = #1\,#2", ROTATION, ALPHA_BODY, ALPHA),
-    }
-    for frame in (SPACE, BODY):
-        inverse = frame.inverse if is_square else frame.right_inverse
-        claims |= {
-            f"rate_matrix_{frame.name}": equal(row(frame.matrix, RATES), frame.omega),
-            f"inverse_rate_matrix_{frame.name}": formula(
-                r"#1#2 = \mathbf{1}", frame.matrix, inverse
+rotation_matrix = Quantity(
+    name="rotation_matrix",
+    symbol=ROTATION,
+    about="rotation matrix, body to space components",
+    inputs=("q",),
+    value=lambda k: k.shown,
+    laws=(
+        Law(ORTHOGONAL, lambda k, x: x.gram() - k.one),
+        Law(formula(r"\det \mathbf{R} = 1"), lambda k, x: k.scalar(x.det() - 1)),
+    ),
+    vectors="matrix",
+    reason="product_of_turns",
+    section=TURNED,
+    group="The rotation",
+    is_result=True,
+    variants=(
+        when("one_turn", reason="single_turn"),
+        when("given", reason="given_matrix"),
+        when(
+            PASSIVE,
+            symbol=COSINES,
+            definition=formula(r"\mathbf{R}^{\mathsf T}"),
+            about="direction cosine matrix, space to body components",
+            laws=(
+                Law(COSINES_ARE_ORTHOGONAL, lambda k, x: x.gram() - k.one),
+                Law(formula(r"\det \mathbf{A} = 1"), lambda k, x: k.scalar(x.det() - 1)),
             ),
-            f"rates_from_angular_velocity_{frame.name}": formula(
-                r"#1\,(#2#3) = #3", *(frame.matrix, inverse, frame.omega)
+            reason="transposed_product",
+        ),
+        when(PASSIVE, "given", reason="transposed_matrix"),
+        when(
+            CHAIN,
+            reason="turn_by_turn",
+            recursion=r"\mathbf{P}_{LAST}, \quad \mathbf{P}_k = \mathbf{P}_{k-1}\,\mathbf{T}_k",
+        ),
+        when(
+            CHAIN,
+            PASSIVE,
+            reason="turn_by_turn_transposed",
+            recursion=r"\mathbf{P}_{LAST}^{\mathsf T}, \quad "
+            r"\mathbf{P}_k = \mathbf{P}_{k-1}\,\mathbf{T}_k",
+        ),
+    ),
+)
+
+rotation_rate = Quantity(
+    name="rotation_rate",
+    symbol=formula(r"\frac{d\mathbf{R}}{dt}"),
+    about="time derivative of the rotation matrix",
+    unit="1/s",
+    inputs=("q", "q_dot"),
+    value=lambda k: k.shown_rate,
+    laws=(
+        Law(
+            formula(
+                r"\frac{d\mathbf{R}}{dt}\mathbf{R}^{\mathsf T} "
+                r"+ \mathbf{R}\frac{d\mathbf{R}^{\mathsf T}}{dt} = \mathbf{0}"
             ),
-        }
-    for name, claim in claims.items():
-        found[name] = [(name, claim)]
-    return found
+            lambda k, _: k.shown_spin + k.shown_spin.T,
+        ),
+    ),
+    reason="chain_rule",
+    section=ANGULAR_VELOCITY,
+    variants=(
+        when(
+            PASSIVE,
+            symbol=formula(r"\frac{d\mathbf{A}}{dt}"),
+            about="time derivative of the direction cosine matrix",
+            laws=(
+                Law(
+                    formula(
+                        r"\frac{d\mathbf{A}}{dt}\mathbf{A}^{\mathsf T} "
+                        r"+ \mathbf{A}\frac{d\mathbf{A}^{\mathsf T}}{dt} = \mathbf{0}"
+                    ),
+                    lambda k, _: k.shown_spin + k.shown_spin.T,
+                ),
+            ),
+        ),
+        when(
+            CHAIN,
+            also=("angular_velocity_space",),
+            reason="rate_from_angular_velocity",
+            recursion=r"\mathbf{C}(\boldsymbol{\Omega})\,\mathbf{R}",
+        ),
+        when(
+            CHAIN,
+            PASSIVE,
+            recursion=r"\left(\mathbf{C}(\boldsymbol{\Omega})\,\mathbf{R}\right)^{\mathsf T}",
+        ),
+    ),
+)
+
+spin_matrix = Quantity(
+    name="spin_matrix",
+    symbol=SPIN,
+    about="spin matrix, the operator Ω × in space components",
+    unit="rad/s",
+    inputs=("q", "q_dot"),
+    definition=formula(r"\mathbf{C}(\boldsymbol{\Omega})"),
+    source=SOURCES["Murray 2.4"],
+    value=lambda k: k.shown_spin,
+    laws=(Law(IS_SKEW, lambda _, x: x + x.T),),
+    reason="skew_matrix",
+    section=ANGULAR_VELOCITY,
+    variants=(
+        when(
+            PASSIVE,
+            symbol=SPIN_OF_COSINES,
+            about="spin matrix of the direction cosines, the operator −Ω′ × in body components",
+            definition=formula(r"-\mathbf{C}(\boldsymbol{\Omega}')"),
+            laws=(
+                Law(COSINES_ARE_SKEW, lambda _, x: x + x.T),
+                Law(
+                    formula(r"#1 = -\mathbf{C}(\boldsymbol{\Omega}')", SPIN_OF_COSINES),
+                    lambda k, x: x + hat(k.omega_body),
+                ),
+            ),
+            reason="skew_matrix_of_cosines",
+        ),
+        when(
+            CHAIN,
+            also=("angular_velocity_space",),
+            reason="operator",
+            recursion=r"\mathbf{C}(\boldsymbol{\Omega})",
+        ),
+        when(
+            CHAIN,
+            PASSIVE,
+            also=(),
+            reason="operator_of_cosines",
+            recursion=r"-\mathbf{C}(\boldsymbol{\Omega}')",
+        ),
+    ),
+)
+
+angular_velocity_space = Quantity(
+    name="angular_velocity_space",
+    frame=SPACE,
+    symbol=SPACE.omega,
+    about="angular velocity, space components",
+    unit="rad/s",
+    inputs=("q", "q_dot"),
+    shape="vector",
+    definition=formula(r"\mathbf{C}^{-1}(#1)", SPIN),
+    source=SOURCES["Murray 2.4"],
+    value=lambda k: k.omega_space,
+    laws=(
+        Law(formula(r"#1 = \mathbf{C}(\boldsymbol{\Omega})", SPIN), lambda k, x: k.spin - hat(x)),
+    ),
+    vectors="vector",
+    reason="entries_of_spin",
+    section=ANGULAR_VELOCITY,
+    group="The angular velocity",
+    is_result=True,
+    variants=(
+        when(
+            PASSIVE,
+            definition=formula(r"\mathbf{C}^{-1}(\frac{d\mathbf{A}^{\mathsf T}}{dt}\,\mathbf{A})"),
+            reason="entries_of_spin_of_cosines",
+        ),
+        when(
+            CHAIN,
+            reason="later_turns",
+            recursion=r"\mathbf{u}_1, \quad "
+            r"\mathbf{u}_k = \dot{\theta}_k\,\mathbf{n}_k + \mathbf{T}_k\,\mathbf{u}_{k+1}",
+        ),
+    ),
+)
+
+angular_velocity_body = Quantity(
+    name="angular_velocity_body",
+    frame=BODY,
+    symbol=BODY.omega,
+    about="angular velocity, body components",
+    unit="rad/s",
+    inputs=("q", "q_dot"),
+    shape="vector",
+    definition=formula(r"\mathbf{R}^{\mathsf T}\boldsymbol{\Omega}"),
+    source=SOURCES["Murray 2.4"],
+    value=lambda k: k.omega_body,
+    laws=(
+        Law(
+            formula(r"\boldsymbol{\Omega} = \mathbf{R}\,\boldsymbol{\Omega}'"),
+            lambda k, x: k.rotation @ x - k.omega_space,
+        ),
+    ),
+    vectors="vector",
+    reason="into_the_body",
+    section=ANGULAR_VELOCITY,
+    group="The angular velocity",
+    is_result=True,
+    variants=(
+        when(
+            PASSIVE,
+            definition=formula(r"\mathbf{A}\,\boldsymbol{\Omega}"),
+            reason="into_the_body_by_cosines",
+        ),
+        when(
+            CHAIN,
+            reason="earlier_turns",
+            recursion=r"\mathbf{w}_{LAST}, \quad \mathbf{w}_k = \dot{\theta}_k\,\mathbf{n}_k + "
+            r"\mathbf{T}_k^{\mathsf T}\,\mathbf{w}_{k-1}",
+        ),
+    ),
+)
+
+rate_matrix_space = Quantity(
+    name="rate_matrix_space",
+    frame=SPACE,
+    symbol=SPACE.matrix,
+    about="rate matrix to space components of the angular velocity",
+    inputs=("q",),
+    definition=formula(r"\frac{\partial \boldsymbol{\Omega}}{\partial \dot{\mathbf{q}}}"),
+    source=SOURCES["Diebel 5"],
+    value=lambda k: k.rate_matrix("space"),
+    laws=(
+        Law(
+            formula(r"\mathbf{W}\dot{\mathbf{q}} = \boldsymbol{\Omega}"),
+            lambda k, x: x @ k.argument("q_dot") - k.omega_space,
+        ),
+    ),
+    vectors="matrix",
+    reason="coefficients",
+    section=OF_RATES,
+    group="The rate matrices",
+    variants=(
+        when("by_turns", reason="axes_of_turns"),
+        when("one_coordinate", reason="axis_of_turn"),
+        when(CHAIN, reason="columns_are_axes"),
+        when(
+            CHAIN,
+            "in_order",
+            recursion=r"\begin{pmatrix} \mathbf{n}_1 & \mathbf{P}_1\,\mathbf{n}_2 & \ldots & "
+            r"\mathbf{P}_{BEFORE}\,\mathbf{n}_{LAST} \end{pmatrix}",
+        ),
+    ),
+)
+
+inverse_rate_matrix_space = Quantity(
+    name="inverse_rate_matrix_space",
+    frame=SPACE,
+    symbol=SPACE.inverse,
+    about="inverse rate matrix from space components",
+    inputs=("q",),
+    source=SOURCES["Diebel 5"],
+    value=lambda k: k.inverse("space"),
+    laws=(
+        Law(
+            formula(r"\mathbf{W}\mathbf{W}^{-1} = \mathbf{1}"),
+            lambda k, x: k.excess("space", *x, k.one),
+            is_of_inverse=True,
+        ),
+    ),
+    vectors="matrix",
+    reason="inverse",
+    section=OF_RATES,
+    group="Their inverses",
+    variants=(
+        when(
+            WIDE,
+            symbol=SPACE.right_inverse,
+            about="right inverse of the rate matrix from space components",
+            laws=(
+                Law(
+                    formula(r"\mathbf{W}\mathbf{W}^{+} = \mathbf{1}"),
+                    lambda k, x: k.excess("space", *x, k.one),
+                    is_of_inverse=True,
+                ),
+            ),
+            reason="least_rates",
+        ),
+        when(WIDE, "vector", reason="constant_length"),
+        when(WIDE, "bound", reason="rates_within_conditions"),
+        when(
+            CHAIN,
+            reason="least_norm",
+            recursion=r"\mathbf{W}^{\mathsf T}"
+            r"\left(\mathbf{W}\,\mathbf{W}^{\mathsf T}\right)^{-1}",
+        ),
+    ),
+)
+
+rates_from_angular_velocity_space = Quantity(
+    name="rates_from_angular_velocity_space",
+    frame=SPACE,
+    symbol=RATES,
+    about="rates of the coordinates from space components of the angular velocity",
+    unit="rad/s",
+    unit_of="q_dot",
+    inputs=("q", "omega_space"),
+    shape="vector",
+    definition=formula(r"\mathbf{W}^{-1}\boldsymbol{\Omega}"),
+    source=SOURCES["Diebel 5"],
+    value=lambda k: k.rates("space"),
+    laws=(
+        Law(
+            formula(r"\mathbf{W}\,(\mathbf{W}^{-1}\boldsymbol{\Omega}) = \boldsymbol{\Omega}"),
+            lambda k, x: k.excess("space", *x, k.argument("omega_space")),
+            is_of_inverse=True,
+        ),
+    ),
+    vectors="rates",
+    reason="rates_from_space",
+    section=OF_RATES,
+    group="The rates of the coordinates",
+    is_result=True,
+    variants=(
+        when(
+            WIDE,
+            definition=formula(r"\mathbf{W}^{+}\boldsymbol{\Omega}"),
+            laws=(
+                Law(
+                    formula(
+                        r"\mathbf{W}\,(\mathbf{W}^{+}\boldsymbol{\Omega}) = \boldsymbol{\Omega}"
+                    ),
+                    lambda k, x: k.excess("space", *x, k.argument("omega_space")),
+                    is_of_inverse=True,
+                ),
+            ),
+        ),
+        when(CHAIN, recursion=r"\mathbf{W}^{-1}\,\boldsymbol{\Omega}"),
+        when(CHAIN, WIDE, recursion=r"\mathbf{W}^{+}\,\boldsymbol{\Omega}"),
+    ),
+)
+
+rate_matrix_body = Quantity(
+    name="rate_matrix_body",
+    frame=BODY,
+    symbol=BODY.matrix,
+    about="rate matrix to body components of the angular velocity",
+    inputs=("q",),
+    definition=formula(r"\frac{\partial \boldsymbol{\Omega}'}{\partial \dot{\mathbf{q}}}"),
+    source=SOURCES["Diebel 5"],
+    value=lambda k: k.rate_matrix("body"),
+    laws=(
+        Law(
+            formula(r"\mathbf{W}'\dot{\mathbf{q}} = \boldsymbol{\Omega}'"),
+            lambda k, x: x @ k.argument("q_dot") - k.omega_body,
+        ),
+    ),
+    vectors="matrix",
+    reason="coefficients_body",
+    section=OF_RATES,
+    group="The rate matrices",
+    variants=(
+        when("by_turns", reason="axes_of_turns_body"),
+        when("one_coordinate", reason="axis_of_turn_body"),
+        when(CHAIN, reason="axes_of_turns_body"),
+        when(
+            CHAIN,
+            "in_order",
+            recursion=r"\begin{pmatrix} \mathbf{B}_2^{\mathsf T}\,\mathbf{n}_1 & \ldots & "
+            r"\mathbf{B}_{LAST}^{\mathsf T}\,\mathbf{n}_{BEFORE} & \mathbf{n}_{LAST} "
+            r"\end{pmatrix}, \quad \mathbf{B}_k = \mathbf{T}_k\,\mathbf{B}_{k+1}",
+        ),
+    ),
+)
+
+inverse_rate_matrix_body = Quantity(
+    name="inverse_rate_matrix_body",
+    frame=BODY,
+    symbol=BODY.inverse,
+    about="inverse rate matrix from body components",
+    inputs=("q",),
+    source=SOURCES["Diebel 5"],
+    value=lambda k: k.inverse("body"),
+    laws=(
+        Law(
+            formula(r"\mathbf{W}'\mathbf{W}'^{-1} = \mathbf{1}"),
+            lambda k, x: k.excess("body", *x, k.one),
+            is_of_inverse=True,
+        ),
+    ),
+    vectors="matrix",
+    reason="inverse_body",
+    section=OF_RATES,
+    group="Their inverses",
+    variants=(
+        when(
+            WIDE,
+            symbol=BODY.right_inverse,
+            about="right inverse of the rate matrix from body components",
+            laws=(
+                Law(
+                    formula(r"\mathbf{W}'\mathbf{W}'^{+} = \mathbf{1}"),
+                    lambda k, x: k.excess("body", *x, k.one),
+                    is_of_inverse=True,
+                ),
+            ),
+            reason="right_inverse_body",
+        ),
+        when(
+            CHAIN,
+            reason="right_inverse_body",
+            recursion=r"\mathbf{W}'^{\mathsf T}"
+            r"\left(\mathbf{W}'\,\mathbf{W}'^{\mathsf T}\right)^{-1}",
+        ),
+    ),
+)
+
+rates_from_angular_velocity_body = Quantity(
+    name="rates_from_angular_velocity_body",
+    frame=BODY,
+    symbol=RATES,
+    about="rates of the coordinates from body components of the angular velocity",
+    unit="rad/s",
+    unit_of="q_dot",
+    inputs=("q", "omega_body"),
+    shape="vector",
+    definition=formula(r"\mathbf{W}'^{-1}\boldsymbol{\Omega}'"),
+    source=SOURCES["Diebel 5"],
+    value=lambda k: k.rates("body"),
+    laws=(
+        Law(
+            formula(r"\mathbf{W}'\,(\mathbf{W}'^{-1}\boldsymbol{\Omega}') = \boldsymbol{\Omega}'"),
+            lambda k, x: k.excess("body", *x, k.argument("omega_body")),
+            is_of_inverse=True,
+        ),
+    ),
+    vectors="rates",
+    reason="rates_from_body",
+    section=OF_RATES,
+    group="The rates of the coordinates",
+    is_result=True,
+    variants=(
+        when(
+            WIDE,
+            definition=formula(r"\mathbf{W}'^{+}\boldsymbol{\Omega}'"),
+            laws=(
+                Law(
+                    formula(
+                        r"\mathbf{W}'\,(\mathbf{W}'^{+}\boldsymbol{\Omega}') = "
+                        r"\boldsymbol{\Omega}'"
+                    ),
+                    lambda k, x: k.excess("body", *x, k.argument("omega_body")),
+                    is_of_inverse=True,
+                ),
+            ),
+        ),
+        when(CHAIN, recursion=r"\mathbf{W}'^{-1}\,\boldsymbol{\Omega}'"),
+        when(CHAIN, WIDE, recursion=r"\mathbf{W}'^{+}\,\boldsymbol{\Omega}'"),
+    ),
+)
+
+angular_acceleration_space = Quantity(
+    name="angular_acceleration_space",
+    frame=SPACE,
+    symbol=ALPHA,
+    about="angular acceleration, space components",
+    unit="rad/s^2",
+    inputs=("q", "q_dot", "q_ddot"),
+    shape="vector",
+    definition=formula(r"\frac{d\boldsymbol{\Omega}}{dt}"),
+    source=SOURCES["Diebel 5"],
+    value=lambda k: k.alpha_space,
+    laws=(
+        Law(
+            formula(r"#1 = \mathbf{C}(\dot{\boldsymbol{\Omega}})", Rate(Bracket(SPIN))),
+            lambda k, x: k.spin_rate - hat(x),
+        ),
+    ),
+    reason="derivative_of_velocity",
+    section=ACCELERATION,
+    group="The angular acceleration",
+    is_result=True,
+    variants=(
+        when(
+            CHAIN,
+            also=("angular_velocity_space",),
+            reason="derivative_of_recursion",
+            recursion=r"\dot{\mathbf{u}}_1, \quad \dot{\mathbf{u}}_k = "
+            r"\ddot{\theta}_k\,\mathbf{n}_k + \dot{\theta}_k\,\mathbf{n}_k\times\mathbf{u}_k + "
+            r"\mathbf{T}_k\,\dot{\mathbf{u}}_{k+1}",
+        ),
+    ),
+)
+
+angular_acceleration_body = Quantity(
+    name="angular_acceleration_body",
+    frame=BODY,
+    symbol=ALPHA_BODY,
+    about="angular acceleration, body components",
+    unit="rad/s^2",
+    inputs=("q", "q_dot", "q_ddot"),
+    shape="vector",
+    definition=formula(r"\mathbf{R}^{\mathsf T}\frac{d\boldsymbol{\Omega}}{dt}"),
+    source=SOURCES["Diebel 5"],
+    value=lambda k: k.alpha_body,
+    laws=(
+        Law(
+            formula(r"\dot{\boldsymbol{\Omega}} = \mathbf{R}\,\dot{\boldsymbol{\Omega}}'"),
+            lambda k, x: k.rotation @ x - k.alpha_space,
+        ),
+    ),
+    reason="derivative_in_body",
+    section=ACCELERATION,
+    group="The angular acceleration",
+    is_result=True,
+    variants=(
+        when(
+            CHAIN,
+            reason="derivative_of_recursion_body",
+            recursion=r"\dot{\mathbf{w}}_{LAST}, \quad \dot{\mathbf{w}}_k = "
+            r"\ddot{\theta}_k\,\mathbf{n}_k - \dot{\theta}_k\,\mathbf{n}_k\times\mathbf{w}_k + "
+            r"\mathbf{T}_k^{\mathsf T}\,\dot{\mathbf{w}}_{k-1}",
+        ),
+    ),
+)
+
+KINEMATICS = by_name(globals())

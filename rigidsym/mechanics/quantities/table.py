@@ -1,34 +1,30 @@
-"""How the tables of quantities are read, and the arguments that their column of inputs names.
+"""The arguments that quantities are functions of.
 
-A quantity is two lines of text and its formulas. The arguments are coordinates, rates,
-accelerations, a given angular velocity, and what a body and its motion add.
+They are coordinates, rates, accelerations, a given angular velocity, and what a body and its motion
+add.
 """
 
 from __future__ import annotations
 
-import re
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from functools import cache, lru_cache
 from itertools import repeat
-from types import MappingProxyType
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 import sympy as sp
 
 from rigidsym.algebra.generators import rate_of
 from rigidsym.errors import ModelError
 from rigidsym.formula.reader import formula, named
-from rigidsym.formula.tree import NOTHING, Formula
-from rigidsym.mechanics.derivation import Argument, Quantity, Shape
+from rigidsym.formula.tree import Formula
+from rigidsym.mechanics.derivation import Argument
 from rigidsym.models.forces import OMEGA_BODY
-from rigidsym.models.rotation import SOURCES, TIME, RotationModel, time_function
+from rigidsym.models.rotation import TIME, RotationModel, time_function
 
 if TYPE_CHECKING:
     from rigidsym.models.body import RigidBody
 
-Formulas = Mapping[str, tuple[Formula, ...]]  # name: symbol and, if there is one, definition
-_COLUMNS = re.compile(r" {2,}")
 
 POINT = sp.symbols("p_x:z")
 DIRECTION = sp.symbols("n_x:z")
@@ -41,31 +37,6 @@ _OF_CENTRE = (
     "space components of the position of the centre of mass",
     "space components of the velocity of the centre of mass",
 )
-
-
-def read_table(text: str, formulas: Formulas) -> Mapping[str, Quantity]:
-    """The quantities of a table, by name, in its order.
-
-    Two or more spaces separate the columns: name, shape, SI unit, inputs, source; a dash leaves
-    one empty. The words of the quantity fill the next line. A source is a place in a book:
-    "Landau 32 (32.12)".
-    """
-    lines = [line.strip() for line in text.strip().splitlines()]
-    found: dict[str, Quantity] = {}
-    for head, about in zip(lines[::2], lines[1::2], strict=True):
-        name, shape, unit, inputs, source = _COLUMNS.split(head)
-        symbol, *definition = formulas[name]
-        found[name] = Quantity(
-            name=name,
-            symbol=symbol,
-            about=about,
-            unit=unit.strip("-"),
-            inputs=tuple(inputs.strip("-").split()),
-            shape=cast(Shape, shape),
-            definition=definition[0] if definition else NOTHING,
-            source=None if source == "-" else SOURCES[source],
-        )
-    return MappingProxyType(found)
 
 
 def arguments_of(model: RotationModel, body: RigidBody | None = None) -> tuple[Argument, ...]:

@@ -6,22 +6,18 @@ hold SymPy matrices, so that each printer can break and abbreviate them for its 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from functools import cached_property
-from itertools import chain, groupby, zip_longest
+from itertools import chain, zip_longest
 from typing import NamedTuple, TypeVar
 
-import sympy as sp
-
+from rigidsym.errors import ModelError
 from rigidsym.formula.display import Equation as Equation
 from rigidsym.formula.letters import Letters
-from rigidsym.formula.notation import DEFAULT, Notation
-from rigidsym.formula.reader import sentence, text_of
-from rigidsym.formula.scalars import formula_of
-from rigidsym.formula.tree import Formula, Row, Words
+from rigidsym.formula.reader import sentence
+from rigidsym.formula.tree import Formula
 from rigidsym.models.rotation import Citation
-from rigidsym.notes.document.catalogue import ENGLISH, Catalogue
 from rigidsym.notes.figure.drawing import Drawing
 
 
@@ -75,19 +71,7 @@ class Cited(NamedTuple):
 
 Span = str | Formula | Code | Strong | EquationReference | FigureReference | Cited
 Text = tuple[Span, ...]
-Draft = tuple[Span | sp.Basic, ...]
 _Part = TypeVar("_Part")
-
-
-def written(drafts: Iterable[Draft], letters: Letters) -> list[Text]:
-    """The texts with a formula in place of each expression or equation of SymPy."""
-    drafts = list(drafts)
-    held = {span for draft in drafts for span in draft if isinstance(span, sp.Basic)}
-    formulas = {expression: formula_of(expression, letters) for expression in held}
-    return [
-        tuple(formulas[span] if isinstance(span, sp.Basic) else span for span in draft)
-        for draft in drafts
-    ]
 
 
 def listed(items: Sequence[tuple[_Part, ...]], last: str = " and ") -> tuple[_Part | str, ...]:
@@ -151,9 +135,7 @@ class Document:
     sections: tuple[Section, ...]
     author: str = ""
     byline: tuple[str, ...] = ()  # below the title: author, course, date
-    program: str = ""  # lines of Python that derive it again, for a notebook
-    more_sources: tuple[str, ...] = ()  # listed whether they are cited or not
-    language: Catalogue = ENGLISH
+    language: str = "en"
 
     @cached_property
     def equations(self) -> tuple[Equation, ...]:
@@ -176,21 +158,21 @@ class Document:
 
     @cached_property
     def sources(self) -> tuple[str, ...]:
-        """The sources that the text cites, each once, in order of appearance; then more."""
+        """The sources that the text cites, each once, in order of appearance."""
         spans = (span for text in self._texts() for span in text)
         cited = (span.citation.text for span in spans if isinstance(span, Cited))
-        return tuple(dict.fromkeys((*cited, *self.more_sources)))
+        return tuple(dict.fromkeys(cited))
 
     def source_number(self, cited: Cited) -> int:
         """The number of the source that is cited."""
         return self.sources.index(cited.citation.text) + 1
 
     def number(self, label: str) -> int:
-        """The number of an equation, by its label; raises LookupError if the note lacks it."""
+        """The number of an equation, by its label; raises ModelError if the note lacks it."""
         for equation in self.equations:
             if equation.label == label and equation.number:
                 return equation.number
-        raise LookupError(f"no section of the note shows {label}: notes/sections/compose.py")
+        raise ModelError(f"the note refers to the equation of {label}, but its template has none")
 
     @cached_property
     def formulas(self) -> tuple[Formula, ...]:
@@ -203,75 +185,6 @@ class Document:
         blocks = (block for section in self.sections for block in section.blocks)
         return chain.from_iterable(map(texts_of, blocks))
 
-    def changed(self, change: Callable[[Text], Text]) -> Document:
-        """The document with each of its texts changed."""
-        sections = (
-            section._replace(blocks=tuple(_changed(block, change) for block in section.blocks))
-            for section in self.sections
-        )
-        return replace(self, sections=tuple(sections))
-
-    def translated(self, language: Catalogue) -> Document:
-        """The document in a language, into which an English one is translated."""
-        if language is ENGLISH:
-            return self
-        changed = self.changed(lambda text: _translated(text, language))
-        sections = (_with_claims(section, language) for section in changed.sections)
-        return replace(
-            changed,
-            title=language.words(self.title),
-            subtitle=language.words(self.subtitle),
-            sections=tuple(s._replace(title=language.words(s.title)) for s in sections),
-            letters=replace(self.letters, notation=_written_in(language, self.letters.notation)),
-            language=language,
-        )
-
-
-def _written_in(language: Catalogue, notation: Notation = DEFAULT) -> Notation:
-    """The notation with the numbers of a language."""
-    return replace(notation, decimal=language.decimal)
-
-
-def _translated(text: Text, language: Catalogue) -> Text:
-    """Strong words are sentences of their own."""
-    found: list[Span] = []
-    for is_strong, spans in groupby(text, lambda span: isinstance(span, Strong)):
-        if is_strong:
-            found += [Strong(language.words(s.text)) for s in spans if isinstance(s, Strong)]
-        else:
-            spelt = (_spelt(s, language) if isinstance(s, Formula) else s for s in spans)
-            found += language.text(tuple(spelt))
-    return tuple(found)
-
-
-def _with_claims(section: Section, language: Catalogue) -> Section:
-    """The section with the words in what was proved of its equations, and those in its figures."""
-
-    def translated(block: NoteBlock) -> NoteBlock:
-        if isinstance(block, Figure):
-            shown = block.drawing
-            labels = tuple(x._replace(symbol=_spelt(x.symbol, language)) for x in shown.labels)
-            return block._replace(drawing=shown._replace(labels=labels))
-        if not isinstance(block, Equation):
-            return block
-        proved, unproved = (
-            tuple(_spelt(claim, language) for claim in claims)
-            for claims in (block.proved, block.unproved)
-        )
-        return replace(block, proved=proved, unproved=unproved)
-
-    return section._replace(blocks=tuple(map(translated, section.blocks)))
-
-
-def _spelt(formula: Formula, language: Catalogue) -> Formula:
-    """The formula with the words in its row, such as: f for every integral."""
-    if isinstance(formula, Words):
-        return Words(language.words(formula.words))
-    formula = _written_in(language).applied(formula)
-    if isinstance(formula, Row):
-        return Row(tuple(_spelt(part, language) for part in formula.parts))
-    return formula
-
 
 def texts_of(block: NoteBlock) -> Iterator[Text]:
     """The texts of a block, in order."""
@@ -282,17 +195,3 @@ def texts_of(block: NoteBlock) -> Iterator[Text]:
             yield from (block.caption, block.description)
         case NoteTable():
             yield from chain(block.head, *block.rows)
-
-
-def _changed(block: NoteBlock, change: Callable[[Text], Text]) -> NoteBlock:
-    match block:
-        case Paragraph(text):
-            return Paragraph(change(text))
-        case Figure():
-            caption, description = change(block.caption), change(block.description)
-            return block._replace(caption=caption, description=description)
-        case NoteTable():
-            rows = tuple(tuple(map(change, row)) for row in block.rows)
-            head, called = tuple(map(change, block.head)), text_of(change((block.caption,)))
-            return block._replace(caption=called, head=head, rows=rows)
-    return block

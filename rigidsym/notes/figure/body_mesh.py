@@ -6,7 +6,6 @@ those that shrink to lines and those that meet, as at the angles 0 and 2π.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice, pairwise, permutations, product
@@ -15,14 +14,15 @@ from typing import Any
 
 import sympy as sp
 
-from rigidsym.models.body import RigidBody
-from rigidsym.models.distribution import (
+from rigidsym.algebra.evaluate import function_of
+from rigidsym.models.body import (
     Composite,
     Distribution,
     Known,
     Part,
     Particles,
     Polyhedron,
+    RigidBody,
     Solid,
 )
 from rigidsym.notes.figure.camera import Vector, combined, cross, dot, scaled, unit
@@ -43,7 +43,6 @@ class Face:
 Shape = tuple[Face, ...]
 Numbers = Mapping[sp.Symbol, sp.Float]
 Map = Callable[..., Vector]
-Evaluator = Callable[[Sequence[float]], float]
 
 PALETTE = (BLUE, GOLD, GREY, RED, BRONZE)
 _SIZE = 0.95  # of the body drawn, from its centre of mass
@@ -51,7 +50,6 @@ _LENGTHS = (1.0, 0.22, 0.3, 1.4, 0.6, 0.15, 0.8)  # of parameters without a valu
 _FEW_LENGTHS = {2: (0.6, 1.0), 3: (1.0, 0.55, 0.8)}
 _MOST_TRIES = 500
 # the functions that Python's math has not, or names otherwise
-_FUNCTIONS = {"Abs": math.fabs, "cot": lambda angle: 1 / math.tan(angle)}
 _ROUND, _CURVED = 24, 8  # divisions of a full circle, and of any other coordinate that bends
 SWELL = "1.01"  # of a hole, so that its rim is seen on the surface
 _THICK = 0.03  # half the width of a line
@@ -157,9 +155,9 @@ def _solids(what: Distribution) -> Iterator[Solid]:
 def _map(solid: Solid, scale: Scale) -> Map:
     """The point of a solid for coordinates that run from 0 to 1."""
     numbers = scale.numbers
-    places = [evaluator(part.xreplace(numbers), solid.coordinates) for part in solid.place]
+    places = [function_of(part.xreplace(numbers), solid.coordinates) for part in solid.place]
     bounds = [
-        [evaluator(sp.S(bound).xreplace(numbers), solid.coordinates) for bound in pair]
+        [function_of(sp.S(bound).xreplace(numbers), solid.coordinates) for bound in pair]
         for pair in solid.bounds
     ]
 
@@ -172,33 +170,6 @@ def _map(solid: Solid, scale: Scale) -> Map:
         return (x, y, z)
 
     return point
-
-
-_OF_TWO: Mapping[type, Callable[[Evaluator, Evaluator], Evaluator]] = {  # nothing is collected
-    sp.Add: lambda one, two: lambda values: one(values) + two(values),
-    sp.Mul: lambda one, two: lambda values: one(values) * two(values),
-    sp.Pow: lambda one, two: lambda values: one(values) ** two(values),
-}
-
-
-def evaluator(expression: sp.Expr, symbols: Sequence[sp.Symbol]) -> Evaluator:
-    """The value of an expression in floats, for values of the symbols in their order."""
-    if expression.is_number:
-        number = float(expression)
-        return lambda _: number
-    if expression.is_Symbol:
-        place = symbols.index(expression)
-        return lambda values: values[place]
-    parts = [evaluator(part, symbols) for part in expression.args]
-    if len(parts) == 2 and expression.func in _OF_TWO:
-        return _OF_TWO[expression.func](*parts)
-    if expression.is_Add:
-        return lambda values: sum(part(values) for part in parts)
-    if expression.is_Mul:
-        return lambda values: math.prod(part(values) for part in parts)
-    name = expression.func.__name__
-    function = _FUNCTIONS.get(name) or getattr(math, name)
-    return lambda values: function(*(part(values) for part in parts))
 
 
 def _is_proper(solid: Solid, numbers: Numbers) -> bool:

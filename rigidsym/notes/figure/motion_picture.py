@@ -12,15 +12,14 @@ from typing import NamedTuple
 
 import sympy as sp
 
+from rigidsym.algebra.evaluate import function_of
 from rigidsym.errors import ModelError
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import formula
 from rigidsym.formula.scalars import formula_of
 from rigidsym.mechanics.derivation import Derivation
-from rigidsym.models.example import OMEGA_COMPONENTS, Example, initial_values
-from rigidsym.models.forces import OMEGA_BODY, Forces
+from rigidsym.models.forces import OMEGA_BODY, OMEGA_COMPONENTS, Example, Forces, initial_values
 from rigidsym.models.rotation import TIME
-from rigidsym.notes.figure.body_mesh import evaluator
 from rigidsym.notes.figure.camera import STANDARD, Point, Vector, unit
 from rigidsym.notes.figure.chart import Range, chart, circle, in_a_row, on_ellipsoid
 from rigidsym.notes.figure.drawing import Drawing
@@ -146,8 +145,8 @@ class ExampleMotion:
         arguments = [TIME, *self.known.values(), *spare, *constants]
         shared, results = sp.cse(plain, sp.numbered_symbols(cls=sp.Dummy))
         arguments += [symbol for symbol, _ in shared]
-        parts = [evaluator(value, arguments) for _, value in shared]
-        ends = [evaluator(value, arguments) for value in results]
+        parts = [function_of(value, arguments) for _, value in shared]
+        ends = [function_of(value, arguments) for value in results]
         given = [float(numbers[symbol.name]) for symbol in constants]
 
         def evaluated(t: float, state: Numbers) -> Numbers:

@@ -12,12 +12,12 @@ from typing import NamedTuple
 
 import sympy as sp
 
+from rigidsym.algebra.evaluate import function_of
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.models.rotation import TIME
-from rigidsym.notes.figure.body_mesh import evaluator
 from rigidsym.notes.figure.camera import Point
 from rigidsym.notes.figure.chart import mark
 from rigidsym.notes.figure.drawing import Drawing, Label, Stroke
@@ -85,7 +85,7 @@ def _numbers(expression: sp.Expr, coordinate: sp.Expr) -> Callable[[float], floa
     angle = sp.Symbol("angle")
     held = expression.xreplace({coordinate: angle})
     held = held.xreplace(dict.fromkeys(held.free_symbols - {angle}, sp.S.One))
-    evaluated = evaluator(held, [angle])
+    evaluated = function_of(held, [angle])
     return lambda value: evaluated([value])
 
 

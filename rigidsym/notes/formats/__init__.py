@@ -20,10 +20,8 @@ if TYPE_CHECKING:
 
 _SHIPPED = {
     "tex": "latex",
-    "fragment.tex": "fragment",
     "html": "html",
     "md": "markdown",
-    "ipynb": "notebook",
 }
 
 

@@ -118,15 +118,6 @@ _SCALE = 18.0 / TYPE_SIZE  # pixels: an em of a label
 _PAD = 6.0  # pixels around all
 _AS_IN_FORMULAS = str.maketrans("φε", "ϕϵ")  # the forms of the letters that LaTeX has
 _ARROW = 9.0  # pixels, the length of a head
-_COLOURS = """
-svg { color: #1c1d21; background: #fff; }
-polyline { fill: none; stroke: currentColor; stroke-width: 1.8; stroke-linejoin: round; }
-.thin { stroke-width: 1; } .hidden { stroke-dasharray: 4 4; opacity: .6; }
-.area { fill: currentColor; opacity: .12; } .head, text { fill: currentColor; }
-text { font: italic 18px Georgia, serif; text-anchor: middle; }
-.body { color: #1d4fb4; } .node, .vector { color: #b3261e; } .turn { color: #0b7268; }
-polyline.node { stroke-dasharray: 9 3 2 3; } .guide { color: #5a5d66; }
-"""
 
 
 def svg(drawing: Drawing, *, title: str, description: str, name: str) -> str:
@@ -145,12 +136,6 @@ def svg(drawing: Drawing, *, title: str, description: str, name: str) -> str:
             "</svg>",
         ]
     )
-
-
-def alone(element: str) -> str:
-    """The element as a picture of its own, with the colours of a light page."""
-    namespace = '<svg xmlns="http://www.w3.org/2000/svg" '
-    return element.replace("<svg ", namespace, 1).replace("\n", f"\n<style>{_COLOURS}</style>\n", 1)
 
 
 def _elements(drawing: Drawing) -> Iterator[str]:

@@ -53,7 +53,7 @@ def rendered(template: str, printer: HtmlPrinter, **more: object) -> str:
         {"title": escape(section.title), "key": f"section-{place}", "body": printer.body(section)}
         for place, section in enumerate(document.sections, start=1)
     ]
-    parts = {"language": document.language.code, "sections": sections, **printer.placed(), **more}
+    parts = {"language": document.language, "sections": sections, **printer.placed(), **more}
     return resources.environment().get_template(template).render(parts)
 
 
@@ -97,7 +97,7 @@ class HtmlPrinter(NotePrinter):
         if not equation.number:
             return f'<div class="equation">{shown}</div>'
         label, number = escape(equation.label), equation.number
-        named = escape(self.said(f"Equation {number}"))
+        named = f"Equation {number}"
         said = " ".join(f"{claim}." for claim in self.claims(equation))
         function = f" {self.code(equation.function)}" if equation.function else ""
         lines = (
@@ -127,7 +127,7 @@ class HtmlPrinter(NotePrinter):
             sides = display(without, letters, _PAGE, self.pen)
             if sides.lines > 1 or sides.width > _IN_WORDS * _PAGE:
                 formula = math(sides.text, spoken(without, letters), is_display=True)
-                return f"{self._fitted(formula, sides)}<p>{self.said('Its entries are')}</p>"
+                return f"{self._fitted(formula, sides)}<p>Its entries are</p>"
         announced = self.announced(equation, shown.done)
         return f"<p>{announced}</p>" if announced else ""
 
@@ -139,7 +139,7 @@ class HtmlPrinter(NotePrinter):
             size = f"min(1em, calc((100vw - 2rem) / {_SAFE * shown.width:.1f}))"
             return f'<div class="formula" style="font-size: {size}">{formula}</div>'
         # what has to be scrolled must be within reach of the keyboard
-        label = escape(self.said("wide formula"))
+        label = "wide formula"
         return (
             f'<div class="formula" tabindex="0" role="group" aria-label="{label}">{formula}</div>'
         )
@@ -161,7 +161,7 @@ class HtmlPrinter(NotePrinter):
         number = self.document.figures.index(figure) + 1
         drawing = svg(
             figure.drawing,
-            title=self.said(f"Figure {number}"),
+            title=f"Figure {number}",
             description=text_of((*figure.caption, " ", *figure.description)),
             name=f"figure-{number}",
         )

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterator
-
 from rigidsym.formula.display import PAGE, Rows, pack
 from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.sheet_pen import Inline
@@ -38,8 +35,6 @@ _DELIMITERS = {
     "comment_start_string": "((=",
     "comment_end_string": "=))",
 }
-_SHIPPED = "fragment.tex"
-_DEFINITION = re.compile(r"(?m)^\\newcommand(\{\\(\w+)\}.*\})$")
 _LINE = 41.5  # ems: 160 mm at 11 points
 _LINE_OF_A_SOURCE = 95  # letters
 _TALL = 30  # lines of text, of about fifty on a page: more than these may part
@@ -47,11 +42,6 @@ _TALL = 30  # lines of text, of about fifty on a page: more than these may part
 
 def render(document: Document) -> str:
     """The note as a LaTeX file; the same document gives the same bytes."""
-    return rendered(TEMPLATE, document)
-
-
-def rendered(template: str, document: Document) -> str:
-    """A template with the parts of the note in it."""
     printer = _LatexPrinter(document)
     sections = [
         {
@@ -63,16 +53,12 @@ def rendered(template: str, document: Document) -> str:
         for section in document.sections
     ]
     parts = {
-        "babel": document.language.babel,
         "sections": sections,
-        "last": (),  # own templates may still list sections after the sources
         "metadata": metadata(document),
         "source_lines": _lines_of_sources(document),
         **printer.placed(),
     }
-    text = resources.environment(**_DELIMITERS).get_template(template).render(parts)
-    first = str(sections[0]["body"]) if sections else ""
-    return text.replace(first, "".join((*_lacked(text), first)), 1)
+    return resources.environment(**_DELIMITERS).get_template(TEMPLATE).render(parts)
 
 
 def _lines_of_sources(document: Document) -> int:
@@ -83,15 +69,6 @@ def _lines_of_sources(document: Document) -> int:
 def _least_lines(section: Section) -> int:
     """Lines of a section that stay on one page: more if it begins with a table."""
     return 14 if any(isinstance(block, NoteTable) for block in section.blocks[:2]) else 6
-
-
-def _lacked(text: str) -> Iterator[str]:
-    """Commands that an own template, copied from an older version, uses but does not define."""
-    shipped = resources.text(resources.NOTES, f"{_SHIPPED}.jinja")
-    for found in _DEFINITION.finditer(shipped):
-        definition, command = found.groups()
-        if rf"\{command}{{" in text and rf"{{\{command}}}" not in text:
-            yield f"\n\\providecommand{definition}"
 
 
 def metadata(document: Document) -> str:
@@ -256,9 +233,7 @@ class _LatexPrinter(NotePrinter):
         return f"{drawing}\n\\inthefigure{{{self.figure_words(figure)}}}"
 
     def figure_title(self, number: int) -> str:
-        return (
-            rf"\figuretitle{{{escape(self.said('Figure'))}}}{{{self._label(f'figure-{number}')}}}"
-        )
+        return rf"\figuretitle{{Figure}}{{{self._label(f'figure-{number}')}}}"
 
     def figure_number(self, number: int) -> str:
         """As TeX counts them, which is the place of the figure in a larger document."""

@@ -44,7 +44,6 @@ class NotePrinter:
 
     def __init__(self, document: Document, pen: SheetPen) -> None:
         self.document = document
-        self.language = document.language
         self.pen = pen
         formulas, beside = document.formulas, self.beside_number or self.width
         self.shown = {
@@ -59,12 +58,11 @@ class NotePrinter:
         """What every template places beside the sections."""
         document = self.document
         return {
-            "words": lambda english: self.words(self.said(english)),
             "title": self.words(document.title),
             "subtitle": self.words(document.subtitle),
             "byline": self.words(" · ".join(document.byline)),
             "sources": [
-                {"key": self.key(place), "text": self.words(self.said(source))}
+                {"key": self.key(place), "text": self.words(source)}
                 for place, source in enumerate(document.sources, start=1)
             ],
         }
@@ -93,24 +91,19 @@ class NotePrinter:
             case FigureReference(number):
                 return self.figure_number(number)
             case Cited():
-                return self.citation(self.document.source_number(span), self.said(span.place))
+                return self.citation(self.document.source_number(span), span.place)
 
     def inline(self, formula: Formula) -> Inline:
         """A formula as it stands among words."""
         return self._inlines.get(formula) or self.pen.inline((formula,))[formula]
 
-    def said(self, english: str) -> str:
-        """Words of the page in the language of the document."""
-        return self.language.words(english)
-
     def announced(self, equation: Equation, done: Done) -> str:
         """What is said before an equation of the way it is set."""
-        return self.text(self.language.text(announcement(equation, done)))
+        return self.text(announcement(equation, done))
 
     def claims(self, equation: Equation) -> Iterator[str]:
         """What was proved of an equation, and what was not."""
-        proved, unproved = self.said("Proved"), self.strong(self.said("Unproved"))
-        kinds = ((proved, equation.proved), (unproved, equation.unproved))
+        kinds = (("Proved", equation.proved), (self.strong("Unproved"), equation.unproved))
         for kind, claims in kinds:
             if claims:
                 yield f"{kind}: {', '.join(map(self.claim, claims))}"
@@ -126,7 +119,7 @@ class NotePrinter:
 
     def figure_title(self, number: int) -> str:
         """What a caption begins with."""
-        return self.strong(self.said(f"Figure {number}."))
+        return self.strong(f"Figure {number}.")
 
     def figure_number(self, number: int) -> str:
         """A figure in the text."""

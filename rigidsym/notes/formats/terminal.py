@@ -15,23 +15,18 @@ from rigidsym.mechanics.derivation import Argument, Derivation, Proof, Step
 from rigidsym.mechanics.quantities.kinematics import BODY, ROTATION, SPACE
 from rigidsym.models.rotation import RotationModel
 from rigidsym.notes.document.document import Equation
+from rigidsym.notes.facts.convention import convention_facts
+from rigidsym.notes.facts.rotation import turn
+from rigidsym.notes.facts.singular import singular_facts
 from rigidsym.notes.formula.derivation_letters import RESIDUAL, letters_of
-from rigidsym.notes.prose.singular_words import (
-    failures,
-    meaning,
-    measured,
-    singular_title,
-)
 from rigidsym.notes.prose.vector_words import sum_of_vectors
 from rigidsym.notes.prose.words import (
-    convention,
     is_body_alone,
-    symbols_of,
-    turn,
     unit_in_words,
     with_symbols,
 )
 from rigidsym.notes.sections.compose import equation_of
+from rigidsym.notes.template import texts_of
 
 if TYPE_CHECKING:
     from rigidsym.mechanics.conversions.conversions import Conversions
@@ -135,8 +130,8 @@ class _Screen:
             yield ""
 
     def _convention(self) -> Iterator[Block]:
-        symbols = symbols_of(self.derivation)
-        yield from convention(self.derivation, symbols, self.letters.notation)
+        facts = convention_facts(self.derivation, self.letters)
+        yield from texts_of("en/convention", self.letters, **facts, angles=None)
         turns = self.derivation.model.turns
         if turns:
             factors = [turn(t, self.letters) for t in turns]
@@ -146,7 +141,7 @@ class _Screen:
         """The parameters of the body that have values, and its principal axes."""
         if self.derivation.body is None:
             return
-        from rigidsym.notes.sections.body_sections import lines_of_body
+        from rigidsym.notes.facts.mass import lines_of_body
 
         lines = list(lines_of_body(self.derivation, self.letters))
         yield from _under("In numbers") if lines else ()
@@ -159,15 +154,16 @@ class _Screen:
         yield from (Equation(sides=(i.symbol,), scalar=i.expression) for i in found)
 
     def _singularities(self) -> Iterator[Block]:
-        found = self.derivation.singularities
-        if found is None:
+        facts = singular_facts(self.derivation)
+        if facts is None:
             return
-        yield from _under(singular_title(self.derivation))
-        if found.measure == "minors":
-            yield meaning(found)  # else Σ₁ would have no meaning
-        if found.determinant is not None:
-            yield Equation(sides=measured(found), scalar=found.determinant)
-        yield from failures(self.derivation, found)
+        gimbal_lock = " (gimbal lock)" if facts.is_gimbal_lock else ""
+        yield from _under(f"Singular orientations{gimbal_lock}")
+        if facts.found.measure == "minors":  # else Σ₁ would have no meaning
+            yield from texts_of("en/singular_measure", self.letters, singular=facts)
+        if facts.has_determinant:
+            yield Equation(sides=facts.measured, scalar=facts.found.determinant)
+        yield from texts_of("en/singular", self.letters, singular=facts)
 
     def _conversions(self) -> Iterator[Block]:
         """To the unit quaternion and back, or why there is no way back."""

@@ -11,12 +11,11 @@ from rigidsym.formula.reader import formula
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import COMMA, Bracket, equal, joined
 from rigidsym.mechanics.mass.bodies import rigid_body
-from rigidsym.models.body import RigidBody
-from rigidsym.models.distribution import Composite, Part
+from rigidsym.models.body import Composite, Part, RigidBody
 from rigidsym.models.solids import shaped
-from rigidsym.notes.document.document import Equation, said
+from rigidsym.notes.document.document import Equation
 from rigidsym.notes.formula.derivation_letters import letters_of
-from rigidsym.notes.problems.exercise import Asked, Exercise, numeral
+from rigidsym.notes.problems.exercise import Asked, Exercise, exercise, numeral
 
 
 def drilled_block(rng: Random) -> Exercise:
@@ -30,38 +29,19 @@ def drilled_block(rng: Random) -> Exercise:
     parts = (Part(what=block), Part(what=hole, at=at, hole=True))
     whole = rigid_body(Composite(parts=parts))
     of_parts = [rigid_body(part.what) for part in parts]
-    return Exercise(
-        title="A block with a hole",
-        question=(
-            said(
-                f"A block with the edges {_lengths(a, b, c)} along $x$, $y$ and $z$ is made of a "
-                f"material of density {density} kg/m³. A hole of radius {_length(radius)} is "
-                "drilled through it parallel to $z$, its axis "
-                f"{_length(aside)} from the middle along $x$. Find the mass $M$ of the drilled "
-                "block, the coordinate $x_C$ of its centre of mass, measured from the middle of "
-                "the block, and its moments of inertia $I_1$, $I_2$ and $I_3$ about the axes "
-                "through the centre of mass parallel to $x$, $y$ and $z$."
-            ),
-        ),
-        solution=(
-            said(
-                "The hole is a cylinder of negative mass. The masses of block and cylinder, and "
-                "their moments about the axes through their own centres, are"
-            ),
-            *(_moments(k, body) for k, body in enumerate(of_parts, start=1)),
-            said(
-                "The block is centred at $x_1 = 0$, the cylinder at {} m. "
-                "By $M\\,x_C = m_1 x_1 - m_2 x_2$ the centre of mass moves away from the hole, and "
-                "by the parallel-axis theorem each part adds its mass times the square of the "
-                "distance of its centre from the axis.",
-                equal(formula("x_2"), numeral(float(aside))),
-            ),
-        ),
-        answers=(
+    return exercise(
+        "drilled_block",
+        [
             Asked(symbol=formula("M"), value=float(whole.mass), unit="kg"),
             Asked(symbol=formula("x_C"), value=float(whole.centre[0]), unit="m"),
             *_answers(whole),
-        ),
+        ],
+        edges=[_length(edge) for edge in (a, b, c)],
+        density=density,
+        radius=_length(radius),
+        aside=_length(aside),
+        parts=[_moments(k, body) for k, body in enumerate(of_parts, start=1)],
+        place=equal(formula("x_2"), numeral(float(aside))),
     )
 
 
@@ -75,29 +55,19 @@ def parallel_axis(rng: Random) -> Exercise:
     own = body.inertia[2, 2]
     names = sp.symbols("a h")[:count]
     general = rigid_body(shaped(name, names, mass=sp.Symbol("M")))
-    sizes = ["a radius $a$", "a height $h$"]
-    described = ", ".join(f"{s} of {_length(x)}" for s, x in zip(sizes, lengths, strict=False))
-    return Exercise(
-        title="The parallel-axis theorem",
-        question=(
-            said(
-                f"A {solid.title.lower()} has {described} and a mass $M$ of {mass} kg. Find its "
-                "moment of inertia $I_3$ about its axis of symmetry, and its moment $I$ about a "
-                f"parallel axis at the distance $d$ of {_length(distance)}."
-            ),
-        ),
-        solution=(
-            said("Integration gives the moment about the axis of symmetry,"),
-            Equation(sides=(formula("I_3"), formula_of(general.inertia[2, 2], letters_of(())))),
-            said(
-                "By the parallel-axis theorem the moment about the other axis is "
-                r"$I = I_3 + M\,d^2$."
-            ),
-        ),
-        answers=(
+    moment = formula_of(general.inertia[2, 2], letters_of(()))
+    return exercise(
+        "parallel_axis",
+        [
             Asked(symbol=formula("I_3"), value=float(own), unit="kg m²"),
             Asked(symbol=formula("I"), value=float(own + mass * distance**2), unit="kg m²"),
-        ),
+        ],
+        solid=solid.title.lower(),
+        radius=_length(lengths[0]),
+        height=_length(lengths[1]) if count > 1 else "",
+        mass=mass,
+        distance=_length(distance),
+        moment=Equation(sides=(formula("I_3"), moment)),
     )
 
 
@@ -109,36 +79,9 @@ def rotational_energy(rng: Random) -> Exercise:
     momentum = inertia * omega
     energy = omega.dot(momentum) / 2
     cosine = 2 * energy / sp.sqrt(omega.dot(omega) * momentum.dot(momentum))
-    return Exercise(
-        title="Energy and angular momentum",
-        question=(
-            said(
-                "A body has the principal moments $I_1$, $I_2$ and $I_3$ of {}, {} and {} kg m² "
-                r"and, along its principal axes, the angular velocity $\boldsymbol{\Omega}'$ = "
-                "({}, {}, {}) rad/s. Find the kinetic energy $E_R$ of its rotation, the size "
-                r"$|\mathbf{L}|$ of its angular momentum, and the angle $\alpha$ between angular "
-                "momentum and angular velocity.",
-                *map(numeral, map(float, (*moments, *omega))),
-            ),
-        ),
-        solution=(
-            said("In principal axes"),
-            Equation(
-                sides=(
-                    formula("E_R"),
-                    formula(
-                        r"\tfrac{1}{2}\left(I_1\,{\Omega'_1}^2 + I_2\,{\Omega'_2}^2"
-                        r" + I_3\,{\Omega'_3}^2\right)"
-                    ),
-                )
-            ),
-            said(
-                r"The angular momentum $\mathbf{L}'$ has the components $I_k\,\Omega'_k$. The "
-                r"angle follows from $|\mathbf{L}'|\,|\boldsymbol{\Omega}'|\,\cos\alpha = "
-                r"\mathbf{L}'\cdot\boldsymbol{\Omega}' = 2 E_R$."
-            ),
-        ),
-        answers=(
+    return exercise(
+        "rotational_energy",
+        [
             Asked(symbol=formula("E_R"), value=float(energy), unit="J"),
             Asked(
                 symbol=formula(r"|\mathbf{L}|"),
@@ -146,7 +89,9 @@ def rotational_energy(rng: Random) -> Exercise:
                 unit="kg m²/s",
             ),
             Asked(symbol=formula(r"\alpha"), value=float(sp.deg(sp.acos(cosine))), unit="°"),
-        ),
+        ],
+        moments=[numeral(float(moment)) for moment in moments],
+        omega=[numeral(float(part)) for part in omega],
     )
 
 
@@ -164,9 +109,4 @@ def _answers(whole: RigidBody) -> Iterator[Asked]:
 
 
 def _length(value: sp.Rational) -> str:
-    return f"{float(value):g} m"
-
-
-def _lengths(*values: sp.Rational) -> str:
-    *others, last = map(_length, values)
-    return f"{', '.join(others)} and {last}"
+    return f"{float(value):g}"

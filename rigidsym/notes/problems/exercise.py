@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import ROUND_HALF_UP, Context
 from html import escape
 from random import Random
+from typing import Any
 
 from rigidsym.errors import ModelError
 from rigidsym.formula.display import display
@@ -15,7 +16,6 @@ from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import decimal
 from rigidsym.formula.tree import Formula, equal
 from rigidsym.mechanics.derivation import Argument
-from rigidsym.notes.document.catalogue import language_of
 from rigidsym.notes.document.document import (
     Document,
     Equation,
@@ -27,6 +27,7 @@ from rigidsym.notes.document.document import (
     listed,
 )
 from rigidsym.notes.formula.derivation_letters import letters_of
+from rigidsym.notes.template import sections_of
 
 _WIDTH = 40.0  # ems of a display in a quiz
 _DRAWS = 8  # of one kind, before the next one is tried
@@ -82,6 +83,24 @@ class Exercise:
         return self.question == other.question or mine == theirs
 
 
+def exercise(
+    name: str,
+    answers: Iterable[Asked],
+    arguments: tuple[Argument, ...] = (),
+    **facts: Any,
+) -> Exercise:
+    """The problem that a template of templates/notes/en/problems says, and its solution."""
+    letters = letters_of(arguments)
+    _, question, solution = sections_of(f"en/problems/{name}", letters, **facts)
+    return Exercise(
+        title=question.title,
+        question=question.blocks,
+        solution=solution.blocks,
+        answers=tuple(answers),
+        arguments=arguments,
+    )
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Sheet:
     """The problems of one variant."""
@@ -90,7 +109,6 @@ class Sheet:
     title: str
     variant: int
     problems: tuple[Exercise, ...]
-    language: str = "en"
 
     @property
     def name(self) -> str:
@@ -107,7 +125,7 @@ class Sheet:
                 Section(p.title, (*p.question, *_solution(p)) if solved else p.question)
                 for p in self.problems
             ),
-        ).translated(language_of(self.language))
+        )
 
     @property
     def letters(self) -> Letters:
@@ -132,12 +150,11 @@ def sheet_of(
     *,
     count: int,
     variant: int,
-    language: str = "en",
 ) -> Sheet:
     """`count` problems of a subject, its kinds in turn; the same variant is the same sheet.
 
     No two are alike: a problem is drawn again, and where a kind has no more, of the next kind.
-    Raises ModelError for a subject that is not among the kinds, and an unknown language.
+    Raises ModelError for a subject that is not among the kinds.
     """
     if subject not in kinds:
         raise ModelError(f"no problems on {subject!r}; there are {', '.join(kinds)}")
@@ -151,7 +168,6 @@ def sheet_of(
         title=title,
         variant=variant,
         problems=tuple(problems),
-        language=language_of(language).code,
     )
 
 

@@ -14,27 +14,25 @@ from rigidsym.formula.reader import decimal, formula
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import COMMA, Bracket, Formula, equal, joined
 from rigidsym.mechanics.derivation import Derivation, Step
-from rigidsym.mechanics.quantities.mass import INERTIA_QUANTITIES
+from rigidsym.mechanics.quantities.mass import OF_BODY, OF_INERTIA
 from rigidsym.notes.document.document import (
     Equation,
     Figure,
     NoteBlock,
     Paragraph,
-    Text,
-    listed,
     said,
 )
+from rigidsym.notes.facts.mass import MassFacts
 from rigidsym.notes.figure.body_drawing import body_drawing
 from rigidsym.notes.figure.body_mesh import lengths_of
 from rigidsym.notes.prose.words import is_body_alone
-from rigidsym.notes.sections.body_sections import blocks_of_body
 from rigidsym.notes.sections.compose import Composer
 from rigidsym.notes.sections.fitting import definitions
 from rigidsym.notes.sections.named_body import OFFSET, OFFSET_IS, in_names, textbook_form
+from rigidsym.notes.template import blocks_of, texts_of
 
 _DIAGONAL = formula("(I'_{11}, I'_{22}, I'_{33})")
 _IN_A_ROW = ("radii_of_gyration", "inertia_ellipsoid")
-_FIRST = ("mass", "centre_of_mass", "inertia_tensor")
 
 
 class BodyComposer(Composer):
@@ -49,16 +47,14 @@ class BodyComposer(Composer):
     def subtitle(self) -> str:
         return "" if self.is_short else super().subtitle
 
-    def beginning(self) -> Iterator[tuple[str, Iterator[NoteBlock]]]:
-        if not self.is_short:
-            yield from super().beginning()
-
     def _body(self) -> Iterator[NoteBlock]:
         figure = figure_of_body(self.derivation, self.letters)
         if figure is not None:
             yield figure
-        yield from blocks_of_body(self.derivation, self.letters)
-        yield from self._steps(_FIRST)
+        if self.derivation.body is not None:
+            facts = MassFacts(self.derivation, self.derivation.body, self.letters)
+            yield from blocks_of("en/body", self.letters, mass=facts)
+        yield from self._steps(OF_BODY)
         if self.moments:
             blocks = list(self.fitter.whole(definitions(self.moments, self.letters)))
             if not isinstance(blocks[0], Paragraph):  # nor abbreviations first
@@ -66,7 +62,7 @@ class BodyComposer(Composer):
             yield from blocks
         if any(step.expression.has(*OFFSET) for step in self.derivation.steps):
             yield said("Let {} be the vector from the centre of mass to a point P.", OFFSET_IS)
-        yield from self._steps([name for name in INERTIA_QUANTITIES if name not in _FIRST])
+        yield from self._steps(OF_INERTIA)
 
     def _equation(self, step: Step) -> Equation:
         equation, name = super()._equation(step), step.quantity.name
@@ -98,26 +94,28 @@ def figure_of_body(derivation: Derivation, letters: Letters) -> Figure | None:
     found = body_drawing(derivation)
     if found is None:
         return None
-    drawing, is_principal = found
-    names = listed([(label.symbol,) for label in drawing.labels])
-    axes = "The axes {} of the body, through its centre of mass, are its principal axes."
-    others = "The principal axes through the centre of mass are named after their moments, {}."
-    before, after = (axes if is_principal else others).split("{}")
-    caption = (before, *names, after) if names else ("The body.",)
-    return Figure(drawing=drawing, caption=caption, description=_chosen(derivation, letters))
+    drawing, are_own = found
+    lengths = _chosen(derivation, letters)
+    caption, *description = texts_of(
+        "en/body_figure",
+        letters,
+        axes=[label.symbol for label in drawing.labels],
+        are_own=are_own,
+        lengths=lengths,
+        is_to_scale=lengths is not None,
+    )
+    return Figure(drawing, caption, description[0] if description else ())
 
 
-def _chosen(derivation: Derivation, letters: Letters) -> Text:
-    """The lengths that were chosen for the drawing."""
+def _chosen(derivation: Derivation, letters: Letters) -> list[Formula] | None:
+    """The lengths that were chosen for the drawing; None for a body without lengths."""
     body = derivation.body
     if body is None or body.distribution is None:
-        return ()
+        return None
     values = {p.symbol: p.value for p in body.parameters}
     numbers = lengths_of(body.distribution, values) or {}
-    chosen = [symbol for symbol in numbers if values.get(symbol) is None]
-    if not chosen:
-        return ("All lengths are to scale.",)
-    equations = [
-        (equal(formula_of(symbol, letters), decimal(float(numbers[symbol]))),) for symbol in chosen
+    return [
+        equal(formula_of(symbol, letters), decimal(float(numbers[symbol])))
+        for symbol in numbers
+        if values.get(symbol) is None
     ]
-    return ("It is drawn for ", *listed(equations), ".")

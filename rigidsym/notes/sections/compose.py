@@ -5,31 +5,35 @@ Equations carry the numbers of the steps; what is only recalled has none.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
-from itertools import chain
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-import sympy as sp
+from jinja2 import TemplateRuntimeError
 
+from rigidsym.errors import offer
 from rigidsym.formula.display import PAGE, Display, display
 from rigidsym.formula.notation import DEFAULT, Notation
-from rigidsym.formula.reader import formula, sentence
+from rigidsym.formula.reader import text_of
 from rigidsym.formula.scalars import formula_of
-from rigidsym.formula.tree import NOTHING, Formula, row
-from rigidsym.mechanics.derivation import Argument, Derivation, Proof, Step
-from rigidsym.mechanics.quantities.dynamics import DYNAMICS_QUANTITIES, EULER_QUANTITIES
-from rigidsym.mechanics.quantities.energy import ENERGIES, MOMENTA
-from rigidsym.mechanics.quantities.kinematics import BODY, RATES, ROTATION, SPACE
-from rigidsym.models.matrices import GIVEN
-from rigidsym.models.rotation import Citation, by_axis
+from rigidsym.formula.tree import NOTHING, Formula
+from rigidsym.mechanics.derivation import OF_RATES, Argument, Derivation, Proof, Step
+from rigidsym.mechanics.quantities.dynamics import MOTION
+from rigidsym.mechanics.quantities.energy import ENERGY, MOMENTUM
+from rigidsym.mechanics.quantities.kinematics import (
+    ACCELERATION,
+    ANGULAR_VELOCITY,
+    TURNED,
+)
+from rigidsym.models.parametrisations import GIVEN
+from rigidsym.models.rotation import Citation, lecture
 from rigidsym.notes.document.document import (
     Cited,
+    CodeBlock,
     Document,
     Equation,
-    EquationRow,
-    Figure,
+    EquationReference,
     FigureReference,
     NoteBlock,
     NoteTable,
@@ -37,62 +41,34 @@ from rigidsym.notes.document.document import (
     Section,
     Text,
 )
+from rigidsym.notes.facts.convention import convention_facts
+from rigidsym.notes.facts.motion import MotionFacts
+from rigidsym.notes.facts.rotation import RotationFacts, angle_facts
+from rigidsym.notes.facts.singular import singular_facts
 from rigidsym.notes.formula.derivation_letters import entries_of, letters_of
-from rigidsym.notes.prose.rotation_words import (
-    angles_in_words,
-    figure_of,
-    is_told,
-    rates_in_words,
-    rotation_in_words,
-    sum_in_words,
-)
-from rigidsym.notes.prose.singular_words import (
-    failures,
-    meaning,
-    measured,
-    singular_title,
-)
 from rigidsym.notes.prose.words import (
-    ACTIVE_MOTION,
-    PASSIVE_MOTION,
-    convention,
     symbols_of,
-    turn,
     with_source,
     with_symbols,
 )
-from rigidsym.notes.sections.boxed import RESULTS
-from rigidsym.notes.sections.end_tables import claims_in_a_table, functions, program, symbols
+from rigidsym.notes.sections.end_tables import Claim, ClaimFacts, example_of, symbols
 from rigidsym.notes.sections.fitting import Fitter, as_vectors
-from rigidsym.notes.sections.motion_section import what_follows, what_is_constant, what_moves
-from rigidsym.notes.sections.summary import TITLE as SUMMARY, summary
+from rigidsym.notes.sections.summary import summary
+from rigidsym.notes.template import blocks_of, sections_of
 
 if TYPE_CHECKING:
     from rigidsym.mechanics.conversions.conversions import Conversions
 
-IDENTITIES, SYMBOLS, FUNCTIONS = "Identities verified", "Symbols", "Functions"
-_TURN_ANGLES = ("beta", "chi", "delta", "epsilon")  # one that no coordinate is called by is taken
+PARTS = (  # of a note, which its template places
+    *("convention", "rotation", "rotation_of_the_lecture", "angular_velocity", "rates", "singular"),
+    *("angular_acceleration", "body", "energy", "momentum", "motion", "conversions"),
+    *("identities", "symbols", "functions", "summary"),
+)
 
-_RATE_MATRICES = Paragraph(
-    sentence(
-        "The rate matrices are defined by {} and {}, so that {}.",
-        formula("#1 = #2#3", SPACE.omega, SPACE.matrix, RATES),
-        formula("#1 = #2#3", BODY.omega, BODY.matrix, RATES),
-        formula("#1 = #2#3", SPACE.matrix, ROTATION, BODY.matrix),
-    )
-)
-_ANGULAR_VELOCITY = (
-    "rotation_rate",
-    "spin_matrix",
-    "angular_velocity_space",
-    "angular_velocity_body",
-)
-_RATES = tuple(
-    f"{name}_{frame}"
-    for frame in ("space", "body")
-    for name in ("rate_matrix", "inverse_rate_matrix", "rates_from_angular_velocity")
-)
-ACCELERATION = ("angular_acceleration_space", "angular_acceleration_body")
+
+def template_of(style: str) -> str:
+    """The name of the template of a style: lecture is en/lecture, and fr/lecture is itself."""
+    return style if "/" in style else f"en/{style}"
 
 
 class Composer:
@@ -103,7 +79,6 @@ class Composer:
     taken for one of the notation.
     """
 
-    of_the_body = ""  # ends titles that the theory has too
     is_short = False  # whether the note does without tables at its end
 
     def __init__(
@@ -124,74 +99,105 @@ class Composer:
         self.conversions = conversions
         self.letters = letters_of(derivation.arguments, notation, derivation.model)
         self.symbols = symbols_of(derivation)
+        self.is_audit = is_audit
         self.fitter = Fitter(derivation, self.letters, is_audit=is_audit)
         self.cited: set[Citation] = set()
+        self.printed: dict[str, Equation] = {}  # by label, as far as the template has come
 
     @property
     def subtitle(self) -> str:
         return self.derivation.subject
 
-    def document(self, left_out: Collection[str] = ()) -> Document:
-        """The note, without the sections of these titles."""
+    def document(self, name: str) -> Document:
+        """The note, as a template orders its sections."""
+        sections = list(sections_of(name, self.letters, **self.facts()))
+        byline = [block for section in sections if not section.title for block in section.blocks]
         return Document(
             name=self.derivation.name,
             title=self.derivation.title,
             subtitle=self.subtitle,
             letters=self.letters,
-            sections=tuple(self.sections(left_out)),
-            program=program(self.derivation),
+            sections=tuple(s for s in sections if s.title and s.blocks),
+            byline=tuple(text_of(block.text) for block in byline if isinstance(block, Paragraph)),
+            language=name.split("/")[0],
         )
 
-    def sections(self, left_out: Collection[str]) -> Iterator[Section]:
-        """The sections that have anything in them, and the summary."""
-        parts = chain(self.beginning(), self.end())
-        filled = ((title, tuple(blocks)) for title, blocks in parts if title not in left_out)
-        sections = [Section(title, blocks) for title, blocks in filled if blocks]
-        yield from sections
-        if not self.is_short and SUMMARY not in left_out:
-            yield self.summary(sections)
+    def facts(self) -> dict[str, Any]:
+        """What the template of a style may print, and the booleans that it asks."""
+        singular = singular_facts(self.derivation)
+        return {
+            "blocks": self.blocks,
+            "equation": self.equation,
+            "reference": EquationReference,
+            "cite": lambda source: Cited(Citation(text=source)),
+            "is_body_alone": self.is_short,
+            "is_gimbal_lock": singular is not None and singular.is_gimbal_lock,
+            "is_proved": self.derivation.is_proved,
+            "has_theory": bool(self.derivation.theory),
+            "theory": self.theory(),
+            "rotation_title": self.model.title,
+            "angles": angle_facts(self.model),
+            "source_of_theory": Cited(lecture()),
+        }
 
-    def beginning(self) -> Iterator[tuple[str, Iterator[NoteBlock]]]:
-        """Titles with their blocks, up to where the rates are taken."""
-        yield "Convention", self._convention()
-        yield "The rotation", self._rotation()
-        yield "The angular velocity", self._angular_velocity()
+    def blocks(self, part: str) -> list[NoteBlock]:
+        """The blocks of one of PARTS, which are printed in order: names explained once stay so.
 
-    def end(self) -> Iterator[tuple[str, Iterator[NoteBlock]]]:
-        """Titles with their blocks, from where the rates are taken."""
-        yield "The rates of the coordinates", self._rates()
-        yield singular_title(self.derivation), self._singularities()
-        yield "The angular acceleration", self._steps(ACCELERATION)
-        yield "The body", self._body()
-        yield f"The kinetic energy{self.of_the_body}", self._steps(ENERGIES)
-        yield f"The angular momentum{self.of_the_body}", self._steps(MOMENTA)
-        yield "The equations of motion", self._motion()
-        yield "Conversions", self._conversions()
-        yield IDENTITIES, self._proofs()
-        yield SYMBOLS, self.symbol_table()
-        yield FUNCTIONS, self._functions()
+        Raises TemplateRuntimeError, with the nearest name, for any other.
+        """
+        if part not in PARTS:
+            raise TemplateRuntimeError(f"no part {part!r} of a note; {offer(part, PARTS)}")
+        blocks = list(getattr(self, f"_{part}")())
+        self.printed |= {b.label: b for b in blocks if isinstance(b, Equation) and b.number}
+        return blocks
 
-    def summary(self, sections: Sequence[Section]) -> Section:
+    def equation(self, name: str) -> Equation:
+        """The numbered equation of a quantity, without the words that lead to it.
+
+        Raises TemplateRuntimeError, with the nearest name, if the derivation lacks it.
+        """
+        if name not in self._displayed:
+            known = offer(name, [*self._displayed])
+            raise TemplateRuntimeError(f"nothing is derived by the name {name!r}; {known}")
+        return self._displayed[name][0]
+
+    def theory(self) -> Sequence[Section]:
+        """The sections of the theory for every body and rotation; none here."""
+        return ()
+
+    def _summary(self) -> Iterator[NoteBlock]:
         """The results on one sheet."""
-        return summary(self.derivation, sections, self.letters)
+        yield from summary(self.derivation, self.printed, self.letters)
 
-    def symbol_table(self) -> Iterator[NoteTable]:
+    def _symbols(self) -> Iterator[NoteTable]:
         yield symbols(self.derivation, self.letters)
+
+    def _angular_acceleration(self) -> Iterator[NoteBlock]:
+        yield from self._steps(ACCELERATION)
+
+    def _energy(self) -> Iterator[NoteBlock]:
+        yield from self._steps(ENERGY)
+
+    def _momentum(self) -> Iterator[NoteBlock]:
+        yield from self._steps(MOMENTUM)
 
     def _conversions(self) -> Iterator[NoteBlock]:
         """The section on the unit quaternion and the matrix, with its equation."""
         if self.conversions is None:
             return
-        from rigidsym.notes.sections.conversion_section import blocks_of_conversions
+        from rigidsym.notes.sections.conversion_section import conversion_facts
 
+        facts = conversion_facts(self.conversions)
         step = self.conversions.quaternion
         if step is not None:
             numbered = replace(step, number=len(self.derivation.steps) + 1)
             call = _call(step) if self.module else ""
             equation = equation_of(numbered, self.derivation.arguments)
-            yield Paragraph(with_source(self.conversions.because, step.quantity.source))
-            yield replace(equation, function=call, is_result=True)
-        yield from blocks_of_conversions(self.conversions, has_functions=bool(self.module))
+            because = with_source(self.conversions.because, step.quantity.source)
+            quaternion = replace(equation, function=call, is_result=True)
+            facts |= {"because": because, "quaternion": quaternion}
+        has_functions = bool(self.module)
+        yield from blocks_of("en/conversions", self.letters, **facts, has_functions=has_functions)
 
     def _body(self) -> Iterator[NoteBlock]:
         """What is said of a body; nothing here."""
@@ -200,87 +206,44 @@ class Composer:
     def _motion(self) -> Iterator[NoteBlock]:
         """Lagrange's and Euler's equations, and what is constant along every motion."""
         if self.derivation.forces is not None:
-            yield from what_moves(self.derivation, self.letters)
-            yield from self._steps((*DYNAMICS_QUANTITIES, *EULER_QUANTITIES))
-            yield from what_is_constant(self.derivation, self.letters)
-            yield from what_follows(self.derivation, self.letters)
+            facts = MotionFacts(self.derivation, self.letters)
+            steps = list(self._steps(MOTION))
+            yield from blocks_of("en/motion", self.letters, motion=facts, steps=steps)
 
     def _convention(self) -> Iterator[NoteBlock]:
-        first, *others = convention(self.derivation, self.symbols, self.letters.notation)
-        texts = (first, *angles_in_words(self.model, self.letters), *others)
-        return map(Paragraph, texts)
+        facts = convention_facts(self.derivation, self.letters)
+        yield from blocks_of("en/convention", self.letters, **facts, angles=angle_facts(self.model))
 
     def _rotation(self) -> Iterator[NoteBlock]:
-        if self.model.turns:
-            yield from self._product_of_turns()
-        else:
-            yield from self._figure()
-            yield from rotation_in_words(self.model, self.letters)
-        yield from self._steps(("rotation_matrix",))
-
-    def _product_of_turns(self) -> Iterator[NoteBlock]:
-        turns, angle = [turn(t, self.letters) for t in self.model.turns], self._turn_angle()
-        product, any_angle = row(*turns), formula_of(angle, self.letters)
-        kind = "a product of turns" if len(turns) > 1 else "a single turn"
-        figure = list(self._figure())
-        see = (", shown in Figure\u00a0", FigureReference(1)) if figure else ()
-        yield Paragraph((f"The rotation is {kind}\u00a0", Cited(self.model.source), *see, ":"))
-        yield Equation(sides=(ROTATION, product))
-        yield from figure
-        if len(turns) > 1:
-            read = (
-                "Read from left to right, the factors are rotations about the current axes of the "
-                "body; read from right to left, about the axes fixed in space. Right-handed turns "
-                "by an angle "
-            )
-            yield Paragraph((read, any_angle, " are"))
-        else:
-            yield Paragraph(("The right-handed turn by an angle ", any_angle, " is"))
-        shown = [
-            (t, Equation(sides=(turn(t, self.letters),), matrix=matrix))
-            for t, matrix in by_axis(self.model.turns, angle)
-        ]
-        short = tuple(equation for t, equation in shown if not t.components)
-        if short:
-            yield EquationRow(short)
-        yield from (equation for t, equation in shown if t.components)
-
-    def _figure(self) -> Iterator[Figure]:
-        figure = figure_of(self.model, self.letters)
-        if figure is not None:
-            yield figure
-
-    def _turn_angle(self) -> sp.Symbol:
-        taken = {coordinate.func.__name__ for coordinate in self.model.coordinates}
-        return sp.Symbol(next(name for name in _TURN_ANGLES if name not in taken))
+        yield from self._of_the_rotation("rotation")
+        yield from self._steps(TURNED)
 
     def _angular_velocity(self) -> Iterator[NoteBlock]:
-        yield from sum_in_words(self.model, self.letters)
-        yield from rates_in_words(self.model, self.letters)
-        yield from PASSIVE_MOTION if self.model.passive else ACTIVE_MOTION
-        yield from self._steps(_ANGULAR_VELOCITY)
+        yield from self._of_the_rotation("angular_velocity")
+        yield from self._steps(ANGULAR_VELOCITY)
 
-    def _rates(self) -> Iterator[NoteBlock]:
-        steps = list(self._steps(_RATES))
+    def _of_the_rotation(self, name: str) -> Sequence[NoteBlock]:
+        facts = RotationFacts(self.model, self.letters)
+        first = FigureReference(1)
+        return blocks_of(f"en/{name}", self.letters, rotation=facts, first_figure=first)
+
+    def _rates(self) -> Sequence[NoteBlock]:
+        steps = list(self._steps(OF_RATES))
         found = self.derivation.singularities
         if not steps and found is None:
-            return
-        yield _RATE_MATRICES
-        yield from steps
-        if found is not None and found.rank < 3:
-            yield Paragraph(
-                ("The rate matrices have no inverse, so that the rates do not follow from Ω.",)
-            )
+            return ()
+        has_no_inverse = found is not None and found.rank < 3
+        return blocks_of("en/rates", self.letters, steps=steps, has_no_inverse=has_no_inverse)
 
-    def _singularities(self) -> Iterator[NoteBlock]:
-        found = self.derivation.singularities
-        if found is None:
+    def _singular(self) -> Iterator[NoteBlock]:
+        facts = singular_facts(self.derivation)
+        if facts is None:
             return
-        if found.determinant is not None:
-            yield Paragraph(meaning(found))
-            value = formula_of(found.determinant, self.letters)
-            yield Equation(sides=(*measured(found), value))
-        yield from map(Paragraph, failures(self.derivation, found))
+        if facts.has_determinant:
+            yield from blocks_of("en/singular_measure", self.letters, singular=facts)
+            value = formula_of(facts.found.determinant, self.letters)
+            yield Equation(sides=(*facts.measured, value))
+        yield from blocks_of("en/singular", self.letters, singular=facts)
 
     @cached_property
     def _displayed(self) -> Mapping[str, tuple[Equation, Display]]:
@@ -291,9 +254,9 @@ class Composer:
         }
         return {name: (e, display(e, self.letters, PAGE)) for name, e in found.items()}
 
-    def _steps(self, names: Sequence[str]) -> Iterator[NoteBlock]:
+    def _steps(self, section: str) -> Iterator[NoteBlock]:
         for step in self.derivation.steps:
-            if step.quantity.name in names:
+            if step.quantity.section == section:
                 first, *others = self.fitter.fitted(*self._displayed[step.quantity.name], step)
                 lead = self._lead(step)
                 if isinstance(first, Paragraph):  # on abbreviations
@@ -312,8 +275,10 @@ class Composer:
         elif source:
             self.cited.add(source)
         is_matrix = step.quantity.name == "rotation_matrix"
-        if is_matrix and is_told(self.model) and not self.model.passive:
-            return with_source(("The matrix of this turn is:",), source)
+        facts = RotationFacts(self.model, self.letters)
+        is_told = facts.is_quaternion or facts.is_vector
+        if is_matrix and is_told and not self.model.passive:
+            return with_source(("The matrix of this rotation is:",), source)
         return with_source(with_symbols(step.because, self.symbols), source)
 
     def _source(self, step: Step) -> Citation | None:
@@ -326,16 +291,30 @@ class Composer:
     def _equation(self, step: Step) -> Equation:
         function = _call(step) if step.quantity.name in self.functions else ""
         equation = equation_of(step, self.derivation.arguments)
-        is_result = step.quantity.name in RESULTS
-        return replace(equation, function=function, is_result=is_result)
+        return replace(equation, function=function, is_result=step.quantity.is_result)
 
-    def _proofs(self) -> Iterator[NoteBlock]:
+    def _identities(self) -> Iterator[NoteBlock]:
         steps = self.derivation.steps
-        yield from claims_in_a_table([(s.quantity.name, p) for s in steps for p in s.proofs])
+        yield from self._claims([(s.quantity.name, p) for s in steps for p in s.proofs])
+
+    def _claims(self, claims: Sequence[Claim]) -> Sequence[NoteBlock]:
+        """A table of claims, each with the label of its equation."""
+        facts = [ClaimFacts(label, proof) for label, proof in claims]
+        unproved = [fact for fact in facts if not fact.is_exact]
+        return blocks_of(
+            "en/identities",
+            self.letters,
+            claims=facts,
+            unproved=unproved,
+            has_status=self.is_audit or bool(unproved),
+            has_theory=bool(self.derivation.theory),
+        )
 
     def _functions(self) -> Iterator[NoteBlock]:
         if self.functions:
-            yield from functions(self.derivation, self.module, self.functions)
+            example = CodeBlock(example_of(self.derivation, self.module, self.functions))
+            module = {"module": self.module, "example": example}
+            yield from blocks_of("en/functions", self.letters, **module)
 
 
 def claims_of(proofs: Iterable[Proof]) -> tuple[tuple[Formula, ...], tuple[Formula, ...]]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
 from itertools import chain, repeat
+from typing import NamedTuple
 
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import formula
@@ -12,26 +13,19 @@ from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Argument, Derivation, Proof, Step
 from rigidsym.mechanics.quantities.kinematics import RATES
 from rigidsym.notes.document.document import (
-    Code,
-    CodeBlock,
     Equation,
     EquationReference,
-    NoteBlock,
     NoteTable,
-    Paragraph,
-    Strong,
     Text,
     listed,
-    said,
 )
+from rigidsym.notes.facts.rotation import OPERATOR
+from rigidsym.notes.facts.singular import WITH_CONDITIONS
 from rigidsym.notes.formula.derivation_letters import RESIDUAL, VECTOR
-from rigidsym.notes.prose.singular_words import WITH_CONDITIONS
 from rigidsym.notes.prose.words import (
     BODY_POSITION,
-    OPERATOR,
     POSITION,
     is_body_alone,
-    proofs_in_words,
     symbols_of,
     unit_in_words,
     vector,
@@ -42,7 +36,6 @@ _U, _CROSS = formula(r"\mathbf{u}"), formula(r"\mathbf{u}\times")
 _PLACES = ("centre", "point", "direction")
 _MOST_SYMBOLS = 6  # in one cell
 _SHOWN = "angular_velocity_body"
-_OPTIONS = {"angles": "names"}  # of rotation_from, where a request has other keys
 _CODE_WIDTH = 76  # columns of typewriter type on a page
 
 
@@ -156,40 +149,17 @@ def _points(derivation: Derivation) -> Iterator[Row]:
     yield (OPERATOR,), ("matrix of ", _CROSS, ", for a vector ", _U), ("unit of ", _U), ()
 
 
-def functions(derivation: Derivation, module: str, names: Sequence[str]) -> Iterator[NoteBlock]:
-    """The functions of a module, and a call of one of them that runs as it stands."""
-    yield said(
-        "The module {} evaluates the equations for arrays of any shape, components last, by "
-        "the functions named beside them. For example,",
-        Code(module),
-    )
-    yield CodeBlock(_example(derivation, module, names))
-
-
-def _example(derivation: Derivation, module: str, names: Sequence[str]) -> str:
+def example_of(derivation: Derivation, module: str, names: Sequence[str]) -> str:
     """A call of one function with made-up numbers; of the angular velocity, if it is there."""
     name = _SHOWN if _SHOWN in names else names[0]
-    start = f"import {module.removesuffix('.py')} as kinematics"
-    return "\n".join([start, "", *_call(derivation, name)])
-
-
-def _call(derivation: Derivation, name: str) -> Iterator[str]:
     inputs = derivation.step(name).quantity.inputs
-    yield from map(_given, list(map(derivation.argument, inputs)))
-    yield f"kinematics.{name}({', '.join(inputs)})"
-
-
-def program(derivation: Derivation) -> str:
-    """Lines of Python that derive it again and call a function of it; "" where no text can."""
-    request = dict(derivation.model.request)
-    if "sequence" not in request or all(step.quantity.name != _SHOWN for step in derivation.steps):
-        return ""
-    options = {_OPTIONS.get(key, key): value for key, value in request.items() if value}
-    rotation = f"rs.rotation_from({options.pop('sequence')!r}"
-    rotation += "".join(f", {key}={value!r}" for key, value in options.items()) + ")"
-    lines = ("import rigidsym as rs", "", f"rotation = {rotation}")
-    more = ("motion = rs.derive(rotation)", "kinematics = motion.kernels().load()", "")
-    return "\n".join([*lines, *more, *_call(derivation, _SHOWN)])
+    lines = (
+        f"import {module.removesuffix('.py')} as kinematics",
+        "",
+        *map(_given, list(map(derivation.argument, inputs))),
+        f"kinematics.{name}({', '.join(inputs)})",
+    )
+    return "\n".join(lines)
 
 
 def _given(argument: Argument) -> str:
@@ -204,31 +174,33 @@ def _reference(step: Step) -> Text:
     return (EquationReference(step.quantity.name),)
 
 
-EXACT: Text = ("exact",)
 Claim = tuple[str, Proof]  # the label of an equation, and what was claimed there
 
 
-def claims_in_a_table(claims: Sequence[Claim]) -> Iterator[NoteBlock]:
-    """Each claim with the label of its equation; below, what is left over of those unproved."""
-    unproved = [proof for _, proof in claims if proof.status != "exact"]
-    yield Paragraph(proofs_in_words(is_proved=not unproved))
-    yield NoteTable(
-        caption="Identities verified",
-        head=(("Eq.",), ("Identity",), ("Status",)),
-        rows=tuple(
-            ((EquationReference(label),), (proof.claim,), _status(proof)) for label, proof in claims
-        ),
-    )
-    for proof in unproved:
-        yield from _left_over(proof)
+class ClaimFacts(NamedTuple):
+    """A claim, and what became of it."""
 
+    label: str
+    proof: Proof
 
-def _status(proof: Proof) -> Text:
-    return EXACT if proof.status == "exact" else (Strong(proof.status),)
+    @property
+    def reference(self) -> EquationReference:
+        return EquationReference(self.label)
 
+    @property
+    def claim(self) -> Formula:
+        return self.proof.claim
 
-def _left_over(proof: Proof) -> Iterator[NoteBlock]:
-    """What remains of a claim that could not be decided."""
-    yield Paragraph((Strong("Unproved:"), " ", proof.claim, ". The difference of its two sides is"))
-    if proof.residual is not None:
-        yield Equation(sides=(RESIDUAL,), matrix=proof.residual)
+    @property
+    def is_exact(self) -> bool:
+        return self.proof.is_exact
+
+    @property
+    def status(self) -> str:
+        return self.proof.status
+
+    @property
+    def residual(self) -> Equation | None:
+        """What remains of a claim that could not be decided."""
+        residual = self.proof.residual
+        return None if residual is None else Equation(sides=(RESIDUAL,), matrix=residual)

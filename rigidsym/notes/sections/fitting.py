@@ -35,9 +35,9 @@ from rigidsym.formula.tree import (
     row,
     transpose_of,
 )
-from rigidsym.mechanics.derivation import Derivation, Step
+from rigidsym.mechanics.derivation import Derivation, Frame, Step
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES, MOMENTUM_BODY
-from rigidsym.mechanics.quantities.kinematics import BODY, RATES, ROTATION, SPACE, Frame
+from rigidsym.mechanics.quantities.kinematics import BODY, RATES, ROTATION, SPACE
 from rigidsym.mechanics.quantities.mass import INERTIA_QUANTITIES
 from rigidsym.models.rotation import RotationModel
 from rigidsym.notes.document.document import (
@@ -49,9 +49,9 @@ from rigidsym.notes.document.document import (
     listed,
     said,
 )
+from rigidsym.notes.facts.rotation import turn
 from rigidsym.notes.formula.vector_rates import rates_of_form
 from rigidsym.notes.prose.vector_words import in_notation, sum_of_vectors
-from rigidsym.notes.prose.words import turn
 
 _MOST_LINES = 24  # of one quantity, where there is a short way to say it
 _MOST_OF_ROTATION = 48  # a page of R itself, which the others are for

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from itertools import groupby
 
 from rigidsym.formula.letters import Letters
@@ -12,14 +12,13 @@ from rigidsym.notes.document.document import (
     Equation,
     EquationReference,
     EquationRow,
+    NoteBlock,
     NoteTable,
     Paragraph,
-    Section,
     Span,
     Text,
     listed,
 )
-from rigidsym.notes.sections.boxed import RESULTS
 from rigidsym.notes.sections.end_tables import symbols
 from rigidsym.notes.sections.summary import SHEET, row_height, summary
 
@@ -78,21 +77,19 @@ def _rows(table: str) -> Iterator[tuple[Text, ...]]:
 
 
 def summary_of_the_lecture(
-    derivation: Derivation, sections: Sequence[Section], letters: Letters
-) -> Section:
+    derivation: Derivation, equations: Mapping[str, Equation], letters: Letters
+) -> Iterator[NoteBlock]:
     """The results of the theory, and under them the summary of the rotation and its body."""
     groups = dict(_results(derivation))
-    room = SHEET - sum(_LEAD + row_height(equations, letters) for equations in groups.values())
-    rest = summary(derivation, sections, letters, room)
-    theory = (
-        block for lead, row in groups.items() for block in (Paragraph(lead), EquationRow(row))
-    )
-    return rest._replace(blocks=(*theory, *rest.blocks))
+    room = SHEET - sum(_LEAD + row_height(row, letters) for row in groups.values())
+    for lead, row in groups.items():
+        yield from (Paragraph(lead), EquationRow(row))
+    yield from summary(derivation, equations, letters, room)
 
 
 def _results(derivation: Derivation) -> Iterator[tuple[Text, tuple[Equation, ...]]]:
     """The words before the results of each section of the theory, and these."""
-    found = (s for s in derivation.theory if s.number and s.name in RESULTS)
+    found = (s for s in derivation.theory if s.number and s.is_result)
     for title, group in groupby(found, key=lambda s: s.section):
         statements = list(group)
         numbers = listed([(EquationReference(s.name),) for s in statements])

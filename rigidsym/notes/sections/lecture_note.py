@@ -6,29 +6,21 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import chain, groupby
 
-from rigidsym.formula.reader import formula
-from rigidsym.formula.scalars import formula_of
-from rigidsym.formula.tree import equal
 from rigidsym.mechanics.derivation import Statement, Step
-from rigidsym.mechanics.quantities.kinematics import ROTATION
-from rigidsym.models.rotation import lecture
+from rigidsym.mechanics.quantities.kinematics import ANGULAR_VELOCITY, ROTATION
 from rigidsym.notes.document.document import (
-    Cited,
     Equation,
     NoteBlock,
     NoteTable,
     Paragraph,
     Section,
     Text,
-    said,
 )
 from rigidsym.notes.formula.summands import sums
-from rigidsym.notes.prose.rotation_words import PROPER, names_of_angles
 from rigidsym.notes.prose.words import with_symbols
 from rigidsym.notes.sections.body_note import BodyComposer
-from rigidsym.notes.sections.boxed import RESULTS
 from rigidsym.notes.sections.compose import claims_of
-from rigidsym.notes.sections.end_tables import Claim, claims_in_a_table
+from rigidsym.notes.sections.end_tables import Claim
 from rigidsym.notes.sections.lecture_end import summary_of_the_lecture, symbols_of_the_lecture
 
 _WHERE_SHOWN = {  # what has no equation of its own, and the one that it belongs to
@@ -43,46 +35,24 @@ _WHERE_SHOWN = {  # what has no equation of its own, and the one that it belongs
     "entries_of_inertia": "inertia_of_particles",
     "moment_about_a_line": "inertia_of_particles",
 }
-_METHOD = (
-    "A statement about a sum over particles is proved for the generic summand. Factors common to "
-    r"all particles are taken out of the sum; only $\sum_i m_i = M$ and "
-    r"$\sum_i m_i\,\mathbf{x}_i = \mathbf{0}$ with its derivative are used, so that the statement "
-    "holds for a body of any number of particles.",
-    r"A general rotation $\mathbf{R}$ is represented by a unit quaternion, without loss of "
-    "generality.",
-)
-_CENTRE = (
-    "The equations (1) to (18) have the numbers of the lecture\u00a0{}. The position of the centre "
-    r"of mass is written $\mathbf{r}_C$, since $\mathbf{R}$ is the rotation."
-)
-_NOT_UNIQUE = (
-    "The angles of an orientation are not unique: at {} the first and the last turn are about the "
-    "same axis, and all {} and {} with the same sum give the same orientation."
-)
-_ARBITRARY = (
-    "There is a large degree of arbitrariness in the choice of angles: turns about other axes "
-    "would serve as well. These angles are convenient for the free rigid body and for the "
-    "symmetric top."
-)
 _NUMBER_OF_ROTATION = 17
 
 
 class LectureComposer(BodyComposer):
     """The sections of the theory, of the rotation, of the body."""
 
-    of_the_body = " of the body"
-
-    def beginning(self) -> Iterator[tuple[str, Iterator[NoteBlock]]]:
-        first = [said(_CENTRE, Cited(lecture()))]
+    def theory(self) -> Sequence[Section]:
+        sections = []
         for title, statements in groupby(self.derivation.theory, key=lambda s: s.section):
-            yield title, chain(first, chain.from_iterable(map(self._statement, statements)))
-            first = []
-        yield self.model.title, self._of_the_rotation()
+            blocks = [*chain.from_iterable(map(self._statement, statements))]
+            self.printed |= {b.label: b for b in blocks if isinstance(b, Equation) and b.number}
+            sections.append(Section(title, tuple(blocks)))
+        return sections
 
-    def summary(self, sections: Sequence[Section]) -> Section:
-        return summary_of_the_lecture(self.derivation, sections, self.letters)
+    def _summary(self) -> Iterator[NoteBlock]:
+        yield from summary_of_the_lecture(self.derivation, self.printed, self.letters)
 
-    def symbol_table(self) -> Iterator[NoteTable]:
+    def _symbols(self) -> Iterator[NoteTable]:
         yield symbols_of_the_lecture(self.derivation, self.letters, _WHERE_SHOWN)
 
     def _statement(self, statement: Statement) -> Iterator[NoteBlock]:
@@ -98,18 +68,13 @@ class LectureComposer(BodyComposer):
             label=statement.name if statement.number else "",
             proved=proved,
             unproved=unproved,
-            is_result=statement.name in RESULTS,
+            is_result=statement.is_result,
         )
 
-    def _of_the_rotation(self) -> Iterator[NoteBlock]:
+    def _rotation_of_the_lecture(self) -> Iterator[NoteBlock]:
         yield from self._convention()
         yield from self._rotation()
-        yield from self._steps(("rotation_rate", "spin_matrix", "angular_velocity_space"))
-        yield from self._steps(("angular_velocity_body",))
-        if names_of_angles(self.model) == PROPER:
-            angles = [formula_of(turn.angle, self.letters) for turn in self.model.turns]
-            yield said(_NOT_UNIQUE, equal(angles[1], formula("0")), angles[0], angles[2])
-            yield said(_ARBITRARY)
+        yield from self._steps(ANGULAR_VELOCITY)
 
     def _rotation(self) -> Iterator[NoteBlock]:
         """With the number of the lecture at the product of turns, and not at its entries."""
@@ -137,16 +102,15 @@ class LectureComposer(BodyComposer):
     def _label(self, step: Step) -> str:
         return _WHERE_SHOWN.get(step.quantity.name, step.quantity.name)
 
-    def _proofs(self) -> Iterator[NoteBlock]:
+    def _identities(self) -> Iterator[NoteBlock]:
         claims = [
             (_WHERE_SHOWN.get(s.name, s.name), p) for s in self.derivation.theory for p in s.proofs
         ]
         claims += [(self._label(step), p) for step in self.derivation.steps for p in step.proofs]
-        yield from (said(text) for text in _METHOD)
         once: dict[object, Claim] = {}
         for label, proof in sorted(claims, key=lambda claim: self._number(claim[0])):
             once.setdefault((label, proof.claim), (label, proof))
-        yield from claims_in_a_table([*once.values()])
+        yield from self._claims([*once.values()])
 
     def _number(self, label: str) -> int:
         """Of the equation with a label: claims stand in the order of the equations."""

@@ -8,62 +8,42 @@ from rigidsym.formula.display import PAGE, display, height
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.scalars import formula_of
 from rigidsym.mechanics.derivation import Derivation, Step
-from rigidsym.mechanics.quantities.energy import ENERGIES, MOMENTA
+from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
+from rigidsym.mechanics.quantities.kinematics import KINEMATICS
 from rigidsym.notes.document.document import (
     Equation,
     EquationReference,
     EquationRow,
     NoteBlock,
     Paragraph,
-    Section,
     Text,
     listed,
 )
-from rigidsym.notes.prose.singular_words import failures, meaning, measured
-from rigidsym.notes.prose.words import convention, symbols_of, vector_in_words
+from rigidsym.notes.facts.convention import LengthFacts, convention_facts
+from rigidsym.notes.facts.singular import singular_facts
+from rigidsym.notes.template import blocks_of
 
-TITLE = "Summary"
 _SENTENCES = 2  # what the coordinates are, and which way the rotation goes
 _SENTENCE = 1.5  # lines that one more takes
 SHEET = 40.0  # lines of a page that displays may take, beside their headings
 
-_GROUPS: Sequence[tuple[str, tuple[str, ...]]] = (
-    ("The rotation", ("rotation_matrix",)),
-    ("The angular velocity", ("angular_velocity_space", "angular_velocity_body")),
-    ("The rate matrices", ("rate_matrix_space", "rate_matrix_body")),
-    ("Their inverses", ("inverse_rate_matrix_space", "inverse_rate_matrix_body")),
-    (
-        "The rates of the coordinates",
-        ("rates_from_angular_velocity_space", "rates_from_angular_velocity_body"),
-    ),
-    ("The angular acceleration", ("angular_acceleration_space", "angular_acceleration_body")),
-    ("The kinetic energy", ENERGIES),
-    ("The angular momentum", MOMENTA),
+_GROUPS = tuple(  # titles in the order of the entries
+    dict.fromkeys(q.group for q in (*KINEMATICS.values(), *ENERGY_QUANTITIES.values()) if q.group)
 )
 
 
 def summary(
-    derivation: Derivation, sections: Sequence[Section], letters: Letters, room: float = SHEET
-) -> Section:
-    """A section that fits on one sheet: results that are short enough, others by their numbers."""
-    blocks = tuple(_blocks(derivation, _numbered(sections), letters, room))
-    return Section(TITLE, blocks, on_own_page=True)
-
-
-def _numbered(sections: Sequence[Section]) -> Mapping[str, Equation]:
-    blocks = (block for section in sections for block in section.blocks)
-    return {b.label: b for b in blocks if isinstance(b, Equation) and b.number}
-
-
-def _blocks(
-    derivation: Derivation, equations: Mapping[str, Equation], letters: Letters, room: float
+    derivation: Derivation, equations: Mapping[str, Equation], letters: Letters, room: float = SHEET
 ) -> Iterator[NoteBlock]:
-    said = convention(derivation, symbols_of(derivation), letters.notation)[:_SENTENCES]
-    on_vectors = tuple(vector_in_words(derivation, letters.notation))
-    yield from map(Paragraph, (*said, *on_vectors))
+    """Results that are short enough to fit on one sheet, others by the numbers of `equations`."""
+    facts = convention_facts(derivation, letters)
+    yield from blocks_of("en/convention", letters, **facts, angles=None)[:_SENTENCES]
+    on_vectors = blocks_of("en/vector", letters, length=LengthFacts(derivation, letters))
+    yield from on_vectors
     room -= _SENTENCE * len(on_vectors)
     steps = {step.quantity.name: step for step in derivation.steps}
-    for title, labels in _GROUPS:
+    for title in _GROUPS:
+        labels = [name for name, step in steps.items() if step.quantity.group == title]
         there = [equations[label] for label in labels if label in equations]
         if not there:
             continue
@@ -121,12 +101,13 @@ def _fitting(results: Mapping[Equation, Equation], letters: Letters) -> Mapping[
 
 def _where_it_fails(derivation: Derivation, letters: Letters) -> Iterator[NoteBlock]:
     """What vanishes there, and where it does; what is lost there stands in the note."""
-    found = derivation.singularities
-    if found is None:
+    facts = singular_facts(derivation)
+    if facts is None:
         return
-    if found.determinant is not None:
-        determinant = Equation(sides=(*measured(found), formula_of(found.determinant, letters)))
+    if facts.has_determinant:
+        value = formula_of(facts.found.determinant, letters)
+        determinant = Equation(sides=(*facts.measured, value))
         if display(determinant, letters, PAGE).lines == 1:
-            yield Paragraph(meaning(found))
+            yield from blocks_of("en/singular_measure", letters, singular=facts)
             yield determinant
-    yield Paragraph(failures(derivation, found)[0])
+    yield from blocks_of("en/singular", letters, singular=facts)[:1]

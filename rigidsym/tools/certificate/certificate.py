@@ -1,49 +1,34 @@
-"""A record to its certificate: cofactors for what each printed quantity says.
-
-`checker` reads the printed expressions and states the claims; here each is written as a sum of
-multiples of the relations, which `checker`, Coq and Lean can then verify without this package.
-"""
+"""A record to its certificate: the claims that `checker` proves, and the cofactors it needs."""
 
 from __future__ import annotations
 
 import json
-import math
-import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from rigidsym.errors import CheckError
-from rigidsym.tools.certificate.checker import BROKEN, Language, Poly, stated
+from rigidsym.tools.certificate import checker
+from rigidsym.tools.certificate.checker import BROKEN, Language, Laws, Names, Unreadable
 from rigidsym.tools.certificate.cofactors import Division, UnfinishedError
-from rigidsym.tools.certificate.point import point_of
 
-SCHEMA, SCHEMA_VERSION = "rigidsym.certificate", 2
-_STATED_TOGETHER = ("principal_moments", "principal_axes")
-Equation = tuple[Poly, Poly]
-Terms = Sequence[Sequence[str | int]]  # coefficients, each with the places of its names
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class ProvedEquation:
-    """left = right, since their difference is the sum of cofactors times relations."""
-
-    left: Poly
-    right: Poly
-    cofactors: Mapping[int, Terms]  # by the place of the relation
+SCHEMA, SCHEMA_VERSION = "rigidsym.certificate", 3
+# Rational points of spheres, for the example of coordinates with a norm
+_ON_A_SPHERE = {2: "3/5 4/5", 3: "2/7 3/7 6/7", 4: "2/9 4/9 5/9 2/3"}
+# R of the quaternion (2, 4, 5, 6)/9
+_ENTRIES = "-41/81 16/81 68/81 64/81 -23/81 44/81 28/81 76/81 -1/81"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Certificate:
-    """The claims of a record, each with its cofactors."""
+    """The claims of a record that are certified, and what the checker needs to prove them."""
 
     name: str
-    parts: Mapping[str, int]  # φ: n, where cosines and sines are those of φ/n
-    names: Sequence[str]
-    relations: Sequence[Terms]
-    point: Mapping[str, int]  # where all relations hold, modulo PRIME
-    claims: Mapping[str, Sequence[ProvedEquation]]
+    record: str  # its digest
+    claims: Sequence[str]
     uncovered: Sequence[str]  # quantities about which the checker states nothing
+    example: Mapping[str, str]  # real numbers that satisfy the conditions
+    cofactors: Mapping[str, Mapping[str, str]]  # by "NAME ENTRY" and the position of a condition
 
     @property
     def json(self) -> str:
@@ -51,82 +36,81 @@ class Certificate:
             "schema": SCHEMA,
             "schema_version": SCHEMA_VERSION,
             "name": self.name,
-            "parts": dict(self.parts),
-            "names": list(self.names),
-            "relations": self.relations,
-            "point": dict(self.point),
-            "claims": {
-                name: [entry.cofactors for entry in entries]
-                for name, entries in self.claims.items()
-            },
+            "record": self.record,
+            "claims": list(self.claims),
             "uncovered": list(self.uncovered),
+            "example": dict(self.example),
+            "cofactors": self.cofactors,
         }
-        return json.dumps(content, separators=(",", ":"), ensure_ascii=False) + "\n"
+        return json.dumps(content, indent=1, ensure_ascii=False) + "\n"
 
 
 def certificate_of(record: Mapping[str, Any]) -> Certificate:
-    """Raises CheckError for a claim without cofactors, and for a rotation that cannot be read."""
+    """Raises CheckError for a claim that the checker refuses, or a rotation it cannot read."""
     try:
-        known, found, uncovered = _claims(record)
-        relations = [relation for relation in known.relations.values() if relation.terms]
-        point = point_of(known)
+        return _certificate(record)
     except BROKEN as error:
         raise CheckError(f"{record['name']}: no certificate, since {error}") from error
-    residuals = {name: [one + two * -1 for one, two in entries] for name, entries in found.items()}
-    division = Division(relations, [poly for entries in residuals.values() for poly in entries])
 
-    def proved(name: str) -> Iterator[ProvedEquation]:
-        for (left, right), residual in zip(found[name], residuals[name], strict=True):
-            cofactors = division.cofactors(residual)
-            terms = {place: division.terms(cofactor) for place, cofactor in cofactors.items()}
-            yield ProvedEquation(left=left, right=right, cofactors=terms)
 
-    claims: dict[str, Sequence[ProvedEquation]] = {}
-    for name in found:
-        try:
-            claims[name] = list(proved(name))
-        except UnfinishedError:
-            uncovered.append(name)
-        except CheckError as error:
-            raise CheckError(f"{record['name']}: {name}: {error}") from error
-    return Certificate(
+def _certificate(record: Mapping[str, Any]) -> Certificate:
+    names, printed = Names(record), [*checker.printed_in(record)]
+    claims, cofactors = printed, dict[str, dict[str, str]]()
+
+    def divide(language: Language, laws: Laws) -> list[str]:
+        """Fill in the cofactors; returns claims that are not certified."""
+        residuals, dropped = checker.residuals(laws, []), list[str]()
+        for name in claims:
+            try:
+                residuals |= checker.residuals(laws, [name])
+            except Unreadable:
+                dropped.append(name)
+        conditions = checker.conditions_of(record, language)
+        division = Division(conditions, [poly for each in residuals.values() for poly in each])
+        for name, entries in residuals.items():
+            try:
+                for k, residual in enumerate(entries, start=1):
+                    if residual.terms:
+                        cofactors[f"{name} {k}"] = division.cofactors(residual)
+            except UnfinishedError:
+                dropped.append(name)
+            except CheckError as error:
+                raise CheckError(f"{record['name']}: {name}: {error}") from error
+        return dropped
+
+    while dropped := checker.exactly(record, names, divide, claims):
+        claims = [name for name in claims if name not in dropped]
+        cofactors.clear()
+    certificate = Certificate(
         name=record["name"],
-        parts=known.parts,
-        names=division.names,
-        relations=[division.terms(division.element(relation)) for relation in relations],
-        point=point,
+        record=checker.digest(record),
         claims=claims,
-        uncovered=uncovered,
+        uncovered=[name for name in printed if name not in claims],
+        example=_example(record, names),
+        cofactors=cofactors,
     )
+    checker.agree_in_numbers(record, names, json.loads(certificate.json))
+    return certificate
 
 
-def _claims(record: Mapping[str, Any]) -> tuple[Language, dict[str, list[Equation]], list[str]]:
-    """The claims, and the names of quantities that the checker does not know or cannot read."""
-    parts: dict[str, int] = {}
-    for name, denominator in re.findall(r"(\w+)/(\d+)", json.dumps(record["rotation"])):
-        parts[name] = math.lcm(parts.get(name, 1), int(denominator))
-    asked = printed_names(record)
-    names = [*asked]
-    while (missing := _missing(record, parts, names)) in names:
-        names.remove(missing)
-    if missing:
-        alone = [name for name in names if not _missing(record, parts, [name])]
-        both = [*alone, *(name for name in names if name in _STATED_TOGETHER)]
-        names = alone if _missing(record, parts, both) else both
-    known = Language(record, parts)
-    return known, stated(record, known, names), [name for name in asked if name not in names]
-
-
-def printed_names(record: Mapping[str, Any]) -> list[str]:
-    """The quantities of a record, and its first integrals as the checker names them."""
-    constants = [f"constant {integral['name']}" for integral in record["first_integrals"]]
-    return [quantity["name"] for quantity in record["quantities"]] + constants
-
-
-def _missing(record: Mapping[str, Any], parts: Mapping[str, int], names: Sequence[str]) -> str:
-    """Why the checker cannot state all claims: a name that it does not know, or a message."""
-    try:
-        stated(record, Language(record, parts), names)
-    except BROKEN as error:
-        return str(error.args[0] if error.args else error) or "unreadable"
-    return ""
+def _example(record: Mapping[str, Any], names: Names) -> dict[str, str]:
+    """Numbers that satisfy the conditions: those of the record, or rational points of spheres."""
+    rotation = record["rotation"]
+    if "example" in rotation or not rotation["conditions"]:
+        return dict(rotation.get("example", {}))
+    letters = [
+        name
+        for name in (*names.q, *names.constant)
+        if name in checker.names_of(rotation["conditions"], names)
+    ]
+    groups = [
+        [name for name in letters if name in checker.names_of([text], names)]
+        for text in rotation["conditions"]
+    ]
+    if len(letters) == 9:
+        return dict(zip(names.q, _ENTRIES.split(), strict=True))
+    return {
+        name: value
+        for group in groups
+        for name, value in zip(group, _ON_A_SPHERE[len(group)].split(), strict=True)
+    }

@@ -1,19 +1,18 @@
-"""The cofactors of a claim: how a polynomial that vanishes is a sum of multiples of relations."""
+"""Cofactors: how a polynomial that vanishes under conditions is a sum of multiples of them."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from itertools import combinations
 
 import sympy as sp
-from sympy.polys.orderings import ProductOrder, grevlex
+from sympy.polys.orderings import grevlex
 from sympy.polys.rings import PolyElement, PolyRing
 
 from rigidsym.errors import CheckError
 from rigidsym.tools.certificate.checker import Poly
 
-Cofactors = dict[int, PolyElement]  # by the place of the relation
-_KINDS = ("1/(", "sqrt(", "cos(", "sin(")  # the order of names; others come last
+Cofactors = dict[int, PolyElement]  # by the position of the condition
 _MOST_PAIRS = 40  # of a Gröbner basis
 
 
@@ -22,94 +21,71 @@ class UnfinishedError(CheckError):
 
 
 class Division:
-    """Division by the relations of one record, with its quotients.
+    """Division by the conditions of one record, with its quotients.
 
-    An inverse i of f is cleared first: P(i) = iᵏ N + C (i f − 1). Then N is divided by a Gröbner
-    basis of the other relations, whose elements remember how they follow from these.
+    Cosines and roots are names too; their squares join the conditions. The elements of the Gröbner
+    basis remember how they follow from these.
     """
 
-    def __init__(self, relations: Sequence[Poly], polynomials: Iterable[Poly]) -> None:
-        """`polynomials` are all that will be divided, for their names."""
-        found = set().union(*(poly.names for poly in (*relations, *polynomials)))
-        names = sorted(found, key=lambda name: (_kind(name), -len(name), name))
-        self._place = {name: place for place, name in enumerate(names)}
-        symbols = [f"x{place}" for place in range(len(names))]
-        self._inverses: list[tuple[int, int, Poly]] = []
-        roots = sum(_kind(name) < 2 for name in names)
-        blocks = (grevlex, lambda powers: powers[:roots]), (grevlex, lambda powers: powers[roots:])
-        order = ProductOrder(*blocks) if roots else grevlex
-        self.ring = PolyRing(symbols, sp.QQ, order)
-        self.names = names
-        basis: list[tuple[PolyElement, Cofactors]] = []
-        for place, relation in enumerate(relations):
-            inverse = next(
-                (n for n in relation.names if n == f"1/({relation.derivative(n)})"), None
-            )
-            if inverse is None:
-                basis.append((self.element(relation), {place: self.ring.one}))
-            else:
-                self._inverses.append((self._place[inverse], place, relation.derivative(inverse)))
-        self._inverses.sort(key=lambda found: found[0])
-        self._basis = basis
+    def __init__(self, conditions: Sequence[Poly], residuals: Sequence[Poly]) -> None:
+        self._squares = (*conditions, *residuals)[0].ring.squares
+        one = residuals[0].number(1)
+        relations = [
+            one.new(name) * one + square * one.number(-1) for name, square in self._squares.items()
+        ]
+        names = set().union(*(poly.names for poly in (*conditions, *residuals, *relations)))
+        self._names = sorted(names, key=lambda name: ("(" not in name, -len(name), name))
+        place = {name: k for k, name in enumerate(self._names)}
+        self._place = place
+        self._ring = PolyRing([f"x{k}" for k in range(len(place))], sp.QQ, grevlex)
+        self._count = len(conditions)
+        squares = [
+            self._ring.gens[place[name]] ** 2 - self._element(square)
+            for name, square in self._squares.items()
+        ]
+        elements = [*map(self._element, conditions), *squares]
+        self._basis = [
+            (element, {k: self._ring.one}) for k, element in enumerate(elements) if element
+        ]
         self._is_complete = False
 
-    def element(self, poly: Poly) -> PolyElement:
-        terms: dict[tuple[int, ...], sp.Rational] = {}
-        for names, coefficient in poly.terms.items():
-            powers = [0] * len(self.names)
-            for name in names:
-                powers[self._place[name]] += 1
-            terms[tuple(powers)] = sp.QQ(coefficient.numerator, coefficient.denominator)
-        return self.ring.from_dict(terms)
+    def cofactors(self, residual: Poly) -> dict[str, str]:
+        """Texts by the positions of conditions; their sum is *minus* the residual.
 
-    def cofactors(self, poly: Poly) -> Cofactors:
-        """Raises CheckError for a polynomial that is no sum of multiples of the relations."""
-        rest, found, factor = self.element(poly), dict[int, PolyElement](), self.ring.one
-        while rest:  # a root may hold an inverse, and bring it back
-            before = rest
-            for place, relation, divisor in self._inverses:
-                power, rest, cofactor = self._cleared(rest, place, self.element(divisor))
-                _add(found, factor, {relation: cofactor})
-                factor = factor * self.ring.gens[place] ** power
-            quotients, rest = self._divided(rest)
-            for quotient, (_, combination) in zip(quotients, self._basis, strict=True):
-                _add(found, factor * quotient, combination)
-            if rest == before:
-                if self._is_complete:
-                    raise CheckError(f"no cofactors were found; {len(rest)} terms are left")
-                self._basis, self._is_complete = _completed(self._basis), True
-        return {place: cofactor for place, cofactor in sorted(found.items()) if cofactor}
+        Raises CheckError for a residual that does not vanish under the conditions.
+        """
+        rest = self._element(residual)
+        quotients, remainder = self._divided(rest)
+        if remainder and not self._is_complete:
+            self._basis, self._is_complete = _completed(self._basis), True
+            quotients, remainder = self._divided(rest)
+        if remainder:
+            raise CheckError(f"no cofactors were found; {len(remainder)} terms are left")
+        sums: Cofactors = {}
+        for quotient, (_, combination) in zip(quotients, self._basis, strict=True):
+            _add(sums, -quotient, combination)
+        return {str(k): self._text(sums[k]) for k in sorted(sums) if k < self._count and sums[k]}
 
     def _divided(self, element: PolyElement) -> tuple[list[PolyElement], PolyElement]:
         divisors = [divisor for divisor, _ in self._basis]
         return element.div(divisors) if element else ([element] * len(divisors), element)
 
-    def _cleared(
-        self, element: PolyElement, place: int, divisor: PolyElement
-    ) -> tuple[int, PolyElement, PolyElement]:
-        """(k, N, C) with P = iᵏ N + C (i f − 1) and no i in N."""
-        parts: dict[int, PolyElement] = {}
-        for powers, coefficient in element.items():
-            rest = (*powers[:place], 0, *powers[place + 1 :])
-            parts.setdefault(powers[place], self.ring.zero)[rest] = coefficient
-        most, inverse = max(parts, default=0), self.ring.gens[place]
-        cleared, cofactor = self.ring.zero, self.ring.zero
-        for power, part in parts.items():
-            cleared += part * divisor ** (most - power)
-            for extra in range(most - power):
-                cofactor -= part * inverse ** (power + extra) * divisor**extra
-        return most, cleared, cofactor
+    def _element(self, poly: Poly) -> PolyElement:
+        terms: dict[tuple[int, ...], sp.Rational] = {}
+        for names, coefficient in poly.terms.items():
+            powers = [0] * len(self._names)
+            for name in names:
+                powers[self._place[name]] += 1
+            terms[tuple(powers)] = sp.QQ(coefficient.numerator, coefficient.denominator)
+        return self._ring.from_dict(terms)
 
-    def terms(self, element: PolyElement) -> list[list[str | int]]:
-        """Each term as its coefficient and the places of its names, as often as they occur."""
-        return [
-            [str(coefficient), *(place for place, n in enumerate(powers) for _ in range(n))]
-            for powers, coefficient in sorted(element.items(), reverse=True)
-        ]
-
-
-def _kind(name: str) -> int:
-    return next((k for k, start in enumerate(_KINDS) if name.startswith(start)), len(_KINDS))
+    def _text(self, element: PolyElement) -> str:
+        return " + ".join(
+            "*".join(
+                [f"({c})", *(f"{n}**{k}" for n, k in zip(self._names, powers, strict=True) if k)]
+            )
+            for powers, c in sorted(element.items(), reverse=True)
+        )
 
 
 def _completed(
@@ -133,13 +109,13 @@ def _completed(
         quotients, rest = (up * one + down * two).div([element for element, _ in basis])
         if not rest:
             continue
-        found: Cofactors = {}
-        _add(found, up, of_one)
-        _add(found, down, of_two)
-        for quotient, (_, combination) in zip(quotients, basis, strict=True):
-            _add(found, -quotient, combination)
+        combination: Cofactors = {}
+        _add(combination, up, of_one)
+        _add(combination, down, of_two)
+        for quotient, (_, of_divisor) in zip(quotients, basis, strict=True):
+            _add(combination, -quotient, of_divisor)
         pairs += [(place, len(basis)) for place in range(len(basis))]
-        basis.append((rest, found))
+        basis.append((rest, combination))
     return basis
 
 

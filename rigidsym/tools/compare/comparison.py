@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -16,12 +17,14 @@ from rigidsym.tools.compare.language import read_formula, spelled_out
 from rigidsym.tools.compare.matching import (
     Comparison,
     against,
+    for_some_angles,
     identified,
     in_text,
     in_words,
+    is_right_at_some,
     likely,
 )
-from rigidsym.tools.compare.plain import plain
+from rigidsym.tools.compare.program import formula_words
 from rigidsym.tools.compare.repair import Meaning
 from rigidsym.tools.compare.targets import SHAPES, KnownQuantity, target
 
@@ -46,7 +49,11 @@ def compare(
         return identified(_checked(matrix))
     goal = _goal(rotation, quantity)
     found = against(matrix, goal)
-    return found if found.found or not isinstance(formula, str) else in_text(found, plain(formula))
+    return (
+        found
+        if found.found or not isinstance(formula, str)
+        else in_text(found, formula_words(formula))
+    )
 
 
 def _checked(formula: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
@@ -66,7 +73,7 @@ def _checked(formula: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
 def as_matrix(formula: Any) -> sp.ImmutableMatrix:
     """The matrix that a formula stands for."""
     if isinstance(formula, str):
-        return read_formula(plain(formula))
+        return read_formula(formula_words(formula))
     if isinstance(formula, sp.MatrixBase):
         return _in_symbols(formula)
     rows = [row if isinstance(row, list | tuple) else [row] for row in formula]
@@ -129,6 +136,8 @@ def _by_numbers(
     values = {s: table[:, i, j] for i, row in enumerate(entries) for j, s in enumerate(row)}
     reading = Meaning(formula=formula, goal=goal, names={}, values=values)
     _, repairs = next(likely([reading], goal), (reading, None))
+    if repairs is None and is_right_at_some(reading):
+        return replace(for_some_angles(reading, goal), formula=formula)
     if repairs is None:
         return Comparison(formula=formula, asked=goal)
     found = repairs[0].goal if repairs else goal

@@ -13,7 +13,7 @@ from __future__ import annotations
 import ast
 import re
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from functools import reduce
 from typing import Any
 
@@ -98,7 +98,7 @@ def _unit(size: sp.Expr) -> sp.Matrix:
     return sp.eye(int(size))
 
 
-_OF_MATRICES: dict[str, Callable[..., Any]] = {
+OF_MATRICES: dict[str, Callable[..., Any]] = {
     "C": cross_matrix,
     "T": lambda matrix: matrix.T,
     "one": _unit,
@@ -111,6 +111,12 @@ _OF_MATRICES: dict[str, Callable[..., Any]] = {
     "trace": lambda matrix: matrix.trace(),
 }
 WRAPPERS = {"array", "asarray", "matrix", "Matrix", "ImmutableMatrix", "mat", "sym", "Array"}
+SPELLINGS = {f + end: f for f in FUNCTIONS for end in "fF"} | {  # of functions in programs
+    **{"power": "pow", "powf": "pow", "square": "sq", "SQ": "sq", "fabs": "abs"},
+    **{"arctan2": "atan2", "arcsin": "asin", "arccos": "acos", "arctan": "atan"},
+    **{"Sqrt": "sqrt", "Sin": "sin", "Cos": "cos", "Tan": "tan"},
+}
+FUNCTION_NAMES = {*FUNCTIONS, "pow", "sq", "pi", "M_PI", "one"}
 _SHORT = {"c": "cos", "s": "sin", "t": "tan", "C": "cos", "S": "sin", "T": "tan"}
 _CONSTANTS = {"pi": sp.pi, "M_PI": sp.pi}
 
@@ -124,7 +130,7 @@ class _FormulaWalk:
         self.names = names
         self.free = free
         self.functions = functions
-        self.known = _OF_MATRICES | dict(functions)
+        self.known = OF_MATRICES | dict(functions)
 
     def value(self, node: ast.expr) -> Any:
         match node:
@@ -217,19 +223,20 @@ def _number(number: float, column: int) -> Sized:
 
 
 _SHORTENED = re.compile(r"(sin|cos|tan|[sctv])_?([A-Za-z0-9]\w*|)")
-_ANGLE = re.compile(
+ANGLE = re.compile(
     r"(phi|theta|psi|alpha|beta|gamma|roll|pitch|yaw|th|ph|ps|[abg]|[xyz])_?\d?", re.IGNORECASE
 )
 _FULL = {"s": sp.sin, "c": sp.cos, "t": sp.tan, "v": lambda angle: 1 - sp.cos(angle)}
 
 
-def spelled_out(matrix: sp.MatrixBase) -> sp.ImmutableMatrix:
+def spelled_out(matrix: sp.MatrixBase, computed: Collection[sp.Symbol] = ()) -> sp.ImmutableMatrix:
     """The matrix with sines and cosines for names such as sphi, cos_roll, c1, ct and s, c.
 
     A name is short for a sine if its cosine is there too, or if it ends as angles are called.
+    Names of what a program has `computed` are no abbreviations.
     """
     found: dict[str, dict[str, sp.Symbol]] = {}
-    for symbol in sorted(matrix.free_symbols, key=str):
+    for symbol in sorted(matrix.free_symbols - set(computed), key=str):
         match = _SHORTENED.fullmatch(symbol.name)
         if match:
             found.setdefault(match[2], {})[match[1][0]] = symbol
@@ -237,7 +244,17 @@ def spelled_out(matrix: sp.MatrixBase) -> sp.ImmutableMatrix:
     for stem, letters in found.items():
         if not {"s", "c"} <= letters.keys():
             letters.pop("v", None)  # a versine has a sine and a cosine beside it
-        if {"s", "c"} <= letters.keys() or (len(stem) > 1 and _ANGLE.fullmatch(stem)):
+        if {"s", "c"} <= letters.keys() or (len(stem) > 1 and ANGLE.fullmatch(stem)):
             angle = sp.Symbol(stem if stem[:1].isalpha() else f"angle{stem}", real=True)
             values |= {symbol: _FULL[letter](angle) for letter, symbol in letters.items()}
     return sp.ImmutableMatrix(matrix.xreplace(values))
+
+
+def name_of(name: str) -> str:
+    """One name for what has dots and arrows: np.sin is sin, state.phi is phi, q.w() is q_w."""
+    parts = [part for part in re.split(r"::|->|\.|\(\)", name) if part]
+    parts = parts[parts[0] in ("self", "this") and len(parts) > 1 :]
+    last = SPELLINGS.get(parts[-1], parts[-1])
+    if last in FUNCTION_NAMES or last in WRAPPERS or len(parts) == 1:
+        return last
+    return f"{parts[-2]}_{last}" if len(last) == 1 else last

@@ -20,7 +20,16 @@ from rigidsym.tools.compare.repair import (
     twofold_repairs,
     whole_repairs,
 )
-from rigidsym.tools.compare.targets import KnownQuantity, Names, catalogue, readings
+from rigidsym.tools.compare.targets import (
+    NEAR_POINTS,
+    POINTS,
+    KnownQuantity,
+    Names,
+    agreeing_points,
+    catalogue,
+    is_reflection,
+    readings,
+)
 
 _MOST_REPAIRS = 2  # of a formula that nobody has named
 _NEAR = 0.6  # share of entries that must be right for a formula to be close to another
@@ -37,6 +46,8 @@ class Comparison:
     repairs: tuple[Repair, ...] = ()
     as_it_stands: KnownQuantity | None = None  # what it is before a repair of its entries
     is_proved: bool = False  # that the repaired formula is what was found
+    counterexample: str = ""  # where the formula is wrong, if it is right for some angles only
+    is_reflection: bool = False
 
     @property
     def arrangement(self) -> str:
@@ -46,7 +57,7 @@ class Comparison:
     @property
     def is_equal(self) -> bool:
         """Whether the formula is right as it stands."""
-        return self.found is not None and not self.repairs
+        return self.found is not None and not self.repairs and not self.counterexample
 
     def record(self) -> dict[str, Any]:
         """The comparison as plain data for JSON."""
@@ -54,6 +65,8 @@ class Comparison:
         return {
             "equal": self.is_equal,
             "proved": self.is_proved,
+            "counterexample": self.counterexample or None,
+            "reflection": self.is_reflection,
             "rotation": found.rotation if found else None,
             "quantity": found.quantity if found else None,
             "arrangement": self.arrangement,
@@ -73,15 +86,20 @@ class Comparison:
 
     def text(self) -> str:
         """The findings in sentences."""
-        proof = "proved" if self.is_proved else "equal to nine digits at random points"
+        proof = "proved" if self.is_proved else f"to nine digits at {POINTS} points, not proved"
+        if self.is_reflection:
+            head = f"not {self.asked}: " if self.asked else ""
+            return f"{head}a reflection, since det = −1; a rotation has det = 1"
         if self.found is None:
             head = f"not {self.asked}" if self.asked else "not a known quantity"
             return f"{head}, and no single change makes it one ({self._read()})"
         what = f"{self.found}{self._in_names()}"
         if self.arrangement:
             what += f", {self.arrangement}"
+        if self.counterexample:
+            return f"not {what} for all angles: wrong at {self.counterexample}"
         if not self.repairs:
-            return f"equal to {what} ({proof})"
+            return f"{'equal to' if self.is_proved else 'agrees with'} {what} ({proof})"
         changes = "; ".join(repair.words for repair in self.repairs)
         corrected = f"{proof} with {'this change' if len(self.repairs) == 1 else 'these changes'}"
         if self.asked is None:
@@ -125,7 +143,11 @@ def in_words(shape: tuple[int, int]) -> str:
 def against(formula: sp.ImmutableMatrix, goal: KnownQuantity) -> Comparison:
     """Compare with one quantity."""
     meant = [Meaning.of(formula, goal, names) for names in readings(formula, goal)]
+    if is_reflection(formula) and not any(reading.is_whole for reading in meant):
+        return Comparison(formula=formula, asked=goal, is_reflection=True)
     found = next(likely(meant, goal), None)
+    if not found and (reading := next(filter(is_right_at_some, meant), None)):
+        return for_some_angles(reading, goal)
     if found and not any(repair.place for repair in found[1]):
         return _made(*found, goal)
     other = identified(formula, only_equal=True)
@@ -145,6 +167,8 @@ def likely(
 ) -> Iterator[tuple[Meaning, tuple[Repair, ...]]]:
     """Readings with the repairs that make them right, the smallest first."""
     yield from ((m, ()) for m in meant if m.agrees(m.formula, goal))
+    if any(map(is_right_at_some, meant)):  # no change of a formula that is right for some angles
+        return
     yield from ((m, (r,)) for m in meant for r in whole_repairs(m))
     nearest = max(meant, key=_count_right, default=None)
     entries = entry_repairs(nearest) if nearest else ()
@@ -168,6 +192,7 @@ def identified(
     """
     near: list[tuple[float, Meaning]] = []
     whole: Meaning | None = None
+    some: Meaning | None = None
     known = (goal for goal in (*catalogue(formula), *also) if goal.matrix.shape == formula.shape)
     for goal in chain.from_iterable(goal.arrangements for goal in known):
         for names in readings(formula, goal):
@@ -175,10 +200,15 @@ def identified(
             right = reading.right
             if right.all():
                 return _made(reading, (), None)
+            some = some or (reading if is_right_at_some(reading) else None)
             whole = whole or (reading if reading.is_whole else None)
             near.append((float(right.mean()), reading))
     if only_equal:
         return Comparison(formula=formula, asked=None)
+    if not whole and is_reflection(formula):
+        return Comparison(formula=formula, asked=None, is_reflection=True)
+    if some:
+        return for_some_angles(some, None)
     if whole and not is_in_program:
         return _made(whole, tuple(islice(whole_repairs(whole), 1)), None)
     near.sort(key=lambda each: -each[0])
@@ -211,6 +241,31 @@ def in_text(unknown: Comparison, text: str) -> Comparison:
                 )
                 return replace(_made(reading, (change,), goal), formula=unknown.formula)
     return unknown
+
+
+def is_right_at_some(reading: Meaning) -> bool:
+    """Whether a formula agrees at all points of the first quadrant, but not at others."""
+    if reading.formula.shape != reading.goal.matrix.shape:
+        return False
+    agrees = agreeing_points(reading.numbers(reading.formula), reading.goal.values)
+    return bool(agrees[:NEAR_POINTS].all()) and not agrees.all()
+
+
+def for_some_angles(reading: Meaning, asked: KnownQuantity | None) -> Comparison:
+    agrees = agreeing_points(reading.numbers(reading.formula), reading.goal.values)
+    place = int(agrees.argmin())  # the first point where it is wrong
+    called = {meant: str(name) for name, meant in reading.names.items()}
+    point = ", ".join(
+        f"{called.get(symbol, name)} = {reading.goal.points[symbol][place]:.4g}"
+        for name, symbol in reading.goal.coordinates.items()
+    )
+    return Comparison(
+        formula=reading.formula,
+        asked=asked,
+        found=reading.goal,
+        names=reading.names,
+        counterexample=point,
+    )
 
 
 def _count_right(reading: Meaning) -> int:

@@ -21,9 +21,28 @@ Array = NDArray[np.float64]
 Values = dict[sp.Expr, Any]  # of expressions, at all points
 Names = Mapping[sp.Symbol, sp.Expr]  # what the names of a formula stand for
 
-_POINTS = 4
+NEAR_POINTS, POINTS = 4, 20  # with all angles in the first quadrant, and in all
 _TOLERANCE = 1e-9  # of numbers of order one, in double precision
-_TABLE = np.random.default_rng(1775).uniform(0.2, 1.3, (5, 64, _POINTS))  # argument, component
+
+
+def _points() -> Array:
+    """Values of each component of each argument: of both signs, small, and of several turns.
+
+    Points where a sine or a cosine is small are left out: rates grow there, and digits are lost.
+    The last argument holds constants such as masses, which are positive.
+    """
+    random = np.random.default_rng(1775)
+    near = random.uniform(0.2, 1.3, (5, 64, NEAR_POINTS))
+    size = (5, 64, 8 * (POINTS - NEAR_POINTS))
+    drawn = random.choice([0.5, np.pi, 20.0], size) * random.uniform(-1, 1, size)
+    is_far_from_poles = np.abs(np.sin(2 * drawn)) > 0.15
+    order = np.argsort(~is_far_from_poles, axis=-1, kind="stable")[..., : POINTS - NEAR_POINTS]
+    far = np.take_along_axis(drawn, order, axis=-1)
+    far[-1] = random.uniform(0.2, 1.3, far[-1].shape)
+    return np.concatenate([near, far], axis=-1)
+
+
+_TABLE = _points()
 _ROWS = {"q": 0, "q_dot": 1, "q_ddot": 2, "omega_space": 3, "omega_body": 3}
 _NUMPY: dict[Any, Any] = {
     **{sp.sin: np.sin, sp.cos: np.cos, sp.tan: np.tan, sp.cot: lambda x: 1 / np.tan(x)},
@@ -38,6 +57,7 @@ _ONE = tuple(f"{a}(angle)" for a in "xyz")
 _TWO = tuple(f"{a}(first) {b}(second)" for a, b in permutations("xyz", 2))
 _VECTORS = ("gibbs_vector", "modified_rodrigues")
 _QUATERNIONS = ("unit_quaternion",)
+_ANY_QUATERNIONS = ("quaternion", *_QUATERNIONS)  # also divided by the square of the length
 _SERIES = ("rotation_vector",)
 _AXIS_ANGLE = ("axis_angle",)
 _FRAMES = ("body", "space")
@@ -203,7 +223,7 @@ def _rotations(matrix: sp.MatrixBase, quantity: str) -> tuple[str, ...]:
         return _QUATERNIONS
     if quantity == "rotation_matrix":
         angles = {1: _ONE, 2: _TWO, 3: _THREE}.get(count, _AXIS_ANGLE)
-        parts = {3: _VECTORS, 4: (*_QUATERNIONS, *_VECTORS), 5: _QUATERNIONS}.get(count, ())
+        parts = {3: _VECTORS, 4: (*_ANY_QUATERNIONS, *_VECTORS), 5: _ANY_QUATERNIONS}.get(count, ())
     elif matrix.shape == (3, 3):
         angles, parts = _THREE, _VECTORS[: 2 * (count in (3, 4))]
     else:
@@ -215,8 +235,8 @@ def _rotations(matrix: sp.MatrixBase, quantity: str) -> tuple[str, ...]:
 def evaluated(matrix: sp.MatrixBase, values: Values) -> Array:
     """A matrix at all points, (points, rows, columns); `values` remembers all parts."""
     with np.errstate(all="ignore"):
-        entries = [np.broadcast_to(_value(entry, values), (_POINTS,)) for entry in matrix]
-    return np.stack(entries, axis=-1).reshape(_POINTS, *matrix.shape)
+        entries = [np.broadcast_to(_value(entry, values), (POINTS,)) for entry in matrix]
+    return np.stack(entries, axis=-1).reshape(POINTS, *matrix.shape)
 
 
 def _value(expression: sp.Expr, values: Values) -> Any:
@@ -242,9 +262,29 @@ def _computed(expression: sp.Expr, values: Values) -> Any:
 
 def agreement(one: Array, other: Array) -> NDArray[np.bool_]:
     """Which entries agree at every point; (rows, columns)."""
+    return np.asarray(_near(one, other).all(axis=0))
+
+
+def agreeing_points(one: Array, other: Array) -> NDArray[np.bool_]:
+    """The points at which all entries agree; (points,)."""
+    return np.asarray(_near(one, other).all(axis=(1, 2)))
+
+
+def _near(one: Array, other: Array) -> NDArray[np.bool_]:
     with np.errstate(all="ignore"):
-        near = np.abs(one - other) <= _TOLERANCE * np.maximum(1, np.abs(other))
-    return np.asarray(near.all(axis=0))
+        return np.asarray(np.abs(one - other) <= _TOLERANCE * np.maximum(1, np.abs(other)))
+
+
+def is_reflection(matrix: sp.MatrixBase) -> bool:
+    """Whether a 3x3 matrix is orthogonal with the determinant −1 at all points."""
+    if matrix.shape != (3, 3):
+        return False
+    symbols = sorted(matrix.free_symbols, key=str)
+    values = evaluated(matrix, dict(zip(symbols, _TABLE[0], strict=False)))
+    with np.errstate(all="ignore"):
+        products = values @ values.transpose(0, 2, 1)
+        is_orthogonal = bool((np.abs(products - np.eye(3)) <= _TOLERANCE).all())
+        return is_orthogonal and bool((np.linalg.det(values) < 0).all())
 
 
 # What the names in a formula stand for

@@ -1,4 +1,4 @@
-"""The exact calls of SciPy, SymPy and rigidsym that reproduce the data of a reading.
+"""The exact calls of SciPy and rigidsym that reproduce the data of a reading.
 
 Each is a text of Python statements that end in `matrix` or `quaternion` and, if the data have it
 and the library can, `omega`. They start from NumPy as np and from `angles` (and `rates`): the
@@ -9,24 +9,23 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-import numpy as np
-
-from rigidsym.tools.identify.frames import IDENTITY, PERMUTATIONS, Matrix
 from rigidsym.tools.identify.readings import (
     AS_THE_TURNS,
+    IDENTITY,
+    PERMUTATIONS,
     RATES_IN_DEGREES,
     RATES_IN_RADIANS,
+    Matrix,
     Reading,
     Velocity,
 )
-from rigidsym.tools.identify.turns import quaternion_of
 
 _CONVERSIONS = {RATES_IN_DEGREES: "np.pi / 180 * ", RATES_IN_RADIANS: "180 / np.pi * "}
 
 
 def calls(reading: Reading) -> dict[str, str]:
     """The statements by library."""
-    of_libraries = {"SciPy": _scipy, "SymPy": _sympy, "rigidsym": _rigidsym}
+    of_libraries = {"SciPy": _scipy, "rigidsym": _rigidsym}
     return {library: "\n".join(lines(reading)) for library, lines in of_libraries.items()}
 
 
@@ -71,52 +70,6 @@ def _scipy(reading: Reading) -> Iterator[str]:
         yield "# SciPy has no angular velocity from the rates of Euler angles."
 
 
-def _sympy(reading: Reading) -> Iterator[str]:
-    """With rates the angles are functions of time; their values are substituted last."""
-    velocity, is_matrix = reading.velocity, reading.scalar_last is None
-    if not is_matrix:
-        yield "from sympy import Quaternion"
-    if velocity:
-        yield "from sympy.physics.mechanics import ReferenceFrame, dynamicsymbols, msubs"
-    elif is_matrix:
-        yield "from sympy.physics.vector import ReferenceFrame"
-    yield from _turns(reading)
-    if velocity:
-        yield 'q = dynamicsymbols("q1:4")'
-        yield f"at = dict(zip(q, {_radians(reading)}))"
-        yield f"rates_at = dict(zip([x.diff() for x in q], {_rates(reading)}))"
-    if velocity or is_matrix:
-        manner = "Body" if reading.is_intrinsic else "Space"
-        turns = "q" if velocity else f"list({_radians(reading)})"
-        yield 'N = ReferenceFrame("N")'
-        yield f'A = N.orientnew("A", "{manner}", {turns}, "{reading.sequence.upper()}")'
-    if is_matrix:
-        matrix = "A.dcm(N)" if reading.passive else "N.dcm(A)"
-        yield f"matrix = {f'msubs({matrix}, at)' if velocity else matrix}"
-        yield from _framed_matrix(reading, "np.array(matrix, float)")
-    else:
-        yield from _sympy_quaternion(reading)
-    if velocity:
-        frame = "N" if velocity.frame == "space" else "A"
-        yield f"omega = msubs(A.ang_vel_in(N).to_matrix({frame}), rates_at, at)"
-        if side := _side_of(velocity, reading):
-            yield f"omega = np.array(omega, float).ravel() @ {side}"
-        yield from _scaled(velocity)
-
-
-def _sympy_quaternion(reading: Reading) -> Iterator[str]:
-    conjugate = ".conjugate()" if reading.passive else ""
-    order = "p.b, p.c, p.d, p.a" if reading.scalar_last else "p.a, p.b, p.c, p.d"
-    yield f'p = Quaternion.from_euler(list({_radians(reading)}), "{reading.sequence}"){conjugate}'
-    if reading.frames != AS_THE_TURNS:
-        for name, matrix in _sides(reading).items():
-            numbers = ", ".join(f"{x:.15g}" for x in quaternion_of(np.array(matrix)))
-            yield f"{name} = Quaternion({numbers})"
-        inverse = ".conjugate()" if reading.passive else ""
-        yield f"p = {_framed(reading, 'p', '{}', '*', inverse)}"
-    yield f"quaternion = [{order}]"
-
-
 def _rigidsym(reading: Reading) -> Iterator[str]:
     passive = ", passive=True" if reading.passive else ""
     yield "import rigidsym as rs"
@@ -153,11 +106,11 @@ def _frames(reading: Reading) -> Iterator[str]:
         yield f"{name} = np.array([{separator.join(rows)}])"
 
 
-def _framed(reading: Reading, name: str, form: str, operator: str, transposed: str = ".T") -> str:
+def _framed(reading: Reading, name: str, form: str, operator: str) -> str:
     """S R B, or its transpose if the reading is passive and `name` is Rᵀ already."""
     sides = _sides(reading)
     before, after = ("B", "S") if reading.passive else ("S", "B")
-    inverse = transposed if reading.passive else ""
+    inverse = ".T" if reading.passive else ""
     parts = [form.format(before + inverse)] if before in sides else []
     parts += [name, *([form.format(after + inverse)] if after in sides else [])]
     return f" {operator} ".join(parts)

@@ -6,19 +6,341 @@ from collections import deque
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
+from itertools import permutations
+from math import ceil, log10, pi, sqrt
 
 import numpy as np
 
-from rigidsym.data.text import MOST_SHOWN
+from rigidsym.data.tables import MOST_SHOWN
 from rigidsym.system.processes import Progress
-from rigidsym.tools.identify.align import aligned
 from rigidsym.tools.identify.calls import calls
-from rigidsym.tools.identify.readings import VELOCITIES, Reading, distinct
-from rigidsym.tools.identify.samples import SLACK, SampleBlock, SampleError, check
-from rigidsym.tools.identify.sources import SampleSource
-from rigidsym.tools.identify.tolerance import Tolerance, check_tolerance, tolerances
-from rigidsym.tools.identify.turns import Array, ReadingTable
-from rigidsym.tools.identify.velocity import angular_velocities, as_given
+from rigidsym.tools.identify.readings import (
+    PERMUTATIONS,
+    VELOCITIES,
+    Frames,
+    Matrix,
+    Reading,
+    distinct,
+    multiplied,
+    transposed,
+)
+from rigidsym.tools.identify.samples import SLACK, SampleBlock, SampleError, SampleSource, check
+from rigidsym.tools.identify.turns import (
+    Array,
+    ReadingTable,
+    angle_between,
+    angular_velocities,
+    as_given,
+    matrix_of,
+    quaternion_of,
+)
+
+FLOOR = 1e-6  # the least tolerance, since data may have been in single precision
+_EXACT = 1e-9  # a matrix this close to orthogonal was not rounded
+_MOST_FOR_ANGLES = 0.05  # radians; angles as coarse as that are taken to be exact
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Tolerance:
+    """Radians for orientations, by the unit of the angles; a share of the largest |Ω| for Ω."""
+
+    radians: float  # if a reading takes the angles to be radians
+    degrees: float  # if it takes them to be degrees; in radians too
+    velocity: float
+    because: str  # in words
+
+    @property
+    def orientation(self) -> float:
+        return max(self.radians, self.degrees)
+
+    def of(self, in_degrees: np.ndarray) -> Array:
+        return np.where(in_degrees, self.degrees, self.radians)
+
+
+def tolerances(
+    asked: float | None, block: SampleBlock, coarseness: float, scale: float
+) -> Iterator[Tolerance]:
+    """Tolerances to try, one after the other, until a reading fits.
+
+    If the user asks for none, first the angles are taken to be exact, then to be rounded as
+    they are printed. `scale` is the largest |Ω|.
+    """
+    if asked is not None:
+        yield Tolerance(radians=asked, degrees=asked, velocity=asked, because="as asked")
+        return
+    floor = max(FLOOR, coarseness)
+    attitude = max(floor, _attitude(block))
+    velocity = floor
+    if block.omega is not None and scale:
+        velocity = max(floor, sqrt(3) * _largest(rounding_of(block.omega)) / scale)
+    yield Tolerance(
+        radians=attitude,
+        degrees=attitude,
+        velocity=velocity,
+        because="from the digits of the data"
+        if max(attitude, velocity) > FLOOR
+        else "for exact data",
+    )
+    rounding = 3 * _largest(rounding_of(block.angles))
+    slow = 0.0 if block.rates is None else 3 * _largest(rounding_of(block.rates))
+    in_radians, in_degrees = (
+        attitude + extra if extra <= _MOST_FOR_ANGLES else attitude
+        for extra in (rounding, rounding * pi / 180)
+    )
+    if max(in_radians, in_degrees) > attitude:
+        more = max(in_radians, in_degrees) - attitude
+        yield Tolerance(
+            radians=in_radians,
+            degrees=in_degrees,
+            velocity=velocity + more + min(slow / scale if scale else 0.0, _MOST_FOR_ANGLES),
+            because="from the digits of the data and of the angles",
+        )
+
+
+def check_tolerance(asked: float | None) -> None:
+    """Raises SampleError for a tolerance that is not between 0 and π."""
+    if asked is not None and not 0 < asked < pi:
+        raise SampleError([f"the tolerance is an angle between 0 and π radians, got {asked:g}"])
+
+
+def _attitude(block: SampleBlock) -> float:
+    """The largest rotation by which rounding has moved one of the matrices or quaternions."""
+    defects = block.defects()
+    rounding = np.where(
+        defects <= _EXACT, 0.0, np.maximum(rounding_of(block.attitude), defects / 2)
+    )
+    return (3 if block.is_matrix else 4) * _largest(rounding)
+
+
+def _largest(rounding: Array) -> float:
+    return float(rounding.max(initial=0.0))
+
+
+def rounding_of(rows: Array) -> Array:
+    """Half a unit in the last place of the numbers of each row, as they print; 0 for integers."""
+    return np.array([_rounding(row) for row in rows.tolist()])
+
+
+def _rounding(row: list[float]) -> float:
+    """By the numbers of the largest size: with %.4g, small ones have more decimal places."""
+    least = max(map(abs, row)) / 10
+    places = max(_places(number) for number in row if abs(number) >= least)
+    if places <= 0:  # such as the ones of a turn about one axis
+        places = max(map(_places, row))
+    return 0.5 * 10.0**-places if places > 0 else 0.0
+
+
+def _places(number: float) -> int:
+    """Decimal places of a number as Python prints it: 1.25e-05 has 7, 3.0 has none."""
+    digits, _, exponent = repr(number).partition("e")
+    fraction = digits.partition(".")[2].rstrip("0")
+    return len(fraction) - int(exponent or 0) if fraction or exponent else 0
+
+
+_BY_CHANCE = 1e-3  # readings that may be expected to fit by chance
+_ANGLES = np.array([[0.3, 0.9, -1.4], [20.0, 35.0, 50.0], [-1.1, 0.6, 0.8]])  # in any unit
+_MOST_COUNTED = 4  # samples: data of one motion are not independent
+
+
+def aligned(table: ReadingTable, block: SampleBlock, tolerance: Tolerance) -> list[Reading]:
+    """The readings that fit the data of a block in other frames, each in its plainest words.
+
+    Frames whose axes are permuted and reversed go before misalignments, for which at least two
+    different samples are needed. None if the tolerance is so wide that some would fit by chance.
+    """
+    different = len(np.unique(block.angles, axis=0))
+    allowed = tolerance.of(np.array([reading.degrees for reading in table.readings]))
+    right, left = table.constants(block.angles, block.orientation())
+    readings: list[Reading] = []
+    if _by_chance(len(table) * len(PERMUTATIONS), tolerance, different) < _BY_CHANCE:
+        readings = list(_permuted(table, right, allowed))
+        readings = readings if block.omega is not None else _different(readings)
+    if readings or _by_chance(2 * len(table), tolerance, different - 1) >= _BY_CHANCE:
+        return readings
+    return [
+        *_misaligned(table, right, allowed, is_right=True),
+        *_misaligned(table, left, allowed, is_right=False),
+    ]
+
+
+def _by_chance(readings: int, tolerance: Tolerance, samples: int) -> float:
+    """How many readings a rotation at random would fit: ε³/6π of all rotations are within ε."""
+    share = tolerance.orientation**3 / (6 * pi)
+    return readings * share ** min(samples, _MOST_COUNTED) if samples > 0 else float(readings)
+
+
+def _permuted(table: ReadingTable, right: Array, allowed: Array) -> Iterator[Reading]:
+    """Data that are a reading times a permutation of axes, (4, n, readings)."""
+    frames = quaternion_of(np.array(PERMUTATIONS))
+    nearest = np.abs(frames @ right[:, 0]).argmax(axis=0)
+    off = angle_between(right, frames[nearest].T[:, None], axis=0)
+    for place in np.flatnonzero((off <= allowed).all(axis=0)).tolist():
+        yield plainest(table.readings[place], PERMUTATIONS[nearest[place]])
+
+
+def _different(readings: Sequence[Reading]) -> list[Reading]:
+    """The plainest of readings that are one function of the angles.
+
+    A quaternion with its scalar first in some frames is one with its scalar last in others.
+    """
+    ordered = sorted(readings, key=Reading.plainness)
+    if len(ordered) < 2:
+        return ordered
+    values = ReadingTable(ordered).as_given(_ANGLES)  # (n, readings, 4)
+    same = (np.abs(np.einsum("nri,nsi->nrs", values, values)) > 1 - 1e-9).all(axis=0)
+    return [reading for k, reading in enumerate(ordered) if not same[k, :k].any()]
+
+
+def plainest(reading: Reading, constant: Matrix) -> Reading:
+    """The words, of all that say the same, for the data of a reading times a permutation.
+
+    R Q = P (Pᵀ R P) (Pᵀ Q), where Pᵀ R P turns about permuted axes.
+    """
+    turns = reading.active()
+    return _plainest(
+        [
+            replace(
+                turns.about_other_axes(transposed(p)),
+                frames=Frames(space=p, body=multiplied(transposed(p), constant)),
+            )
+            for p in PERMUTATIONS
+        ]
+    )
+
+
+def _plainest(readings: Sequence[Reading]) -> Reading:
+    both = [each for one in readings for each in (one, one.in_other_direction())]
+    return min([*both, *(each.in_other_manner() for each in both)], key=Reading.plainness)
+
+
+def _misaligned(
+    table: ReadingTable, constants: Array, allowed: Array, *, is_right: bool
+) -> Iterator[Reading]:
+    """Data that are a reading times one rotation, the mean of those of the samples."""
+    first = constants[:, :1]
+    same = np.where(np.sum(constants * first, axis=0) < 0, -1.0, 1.0)
+    mean = (constants * same).sum(axis=1)
+    mean /= np.linalg.norm(mean, axis=0)
+    off = angle_between(constants, mean[:, None], axis=0)
+    for place in np.flatnonzero((off <= allowed).all(axis=0)).tolist():
+        matrix: Matrix = tuple(map(tuple, matrix_of(mean[:, place]).tolist()))
+        frames = Frames(body=matrix) if is_right else Frames(space=matrix)
+        yield _plainest([replace(table.readings[place].active(), frames=frames)])
+
+
+Triple = tuple[float, float, float]
+
+_DEGREES = (15, 20, 25, 35, 40, 50, 60, 65, 70, 80)
+_RADIANS = (0.2, 0.3, 0.4, 0.5, 0.7, 0.8, 1.0, 1.2, 1.3)
+_RATES = (1.0, 2.0, 3.0)
+_CLEAR = 3.0  # tolerances; two readings less than two apart might fit one sample
+_PAIRS = 8_000_000  # compared in the search at most
+_FEWEST = 6  # candidates, even if that means more pairs
+_MOST_SAMPLES = 5
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FurtherSample:
+    """Values for the angle columns and, if Ω is given, for their rates."""
+
+    angles: Triple
+    rates: Triple | None = None
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Separation:
+    """Samples at one of which any two of the readings differ clearly."""
+
+    samples: tuple[FurtherSample, ...]
+    difference: float  # radians; the least angle between two orientations
+    velocity_difference: float | None  # the least |difference of Ω|, over the largest |Ω|
+
+
+def separation(
+    readings: Sequence[Reading], tolerance: Tolerance, scale: float
+) -> Separation | None:
+    """The fewest further samples that tell these readings apart.
+
+    None if there is only one, and if the tolerance is too wide for any sample.
+    """
+    if len(readings) < 2:
+        return None
+    orientations = list(dict.fromkeys(reading.orientation for reading in readings))
+    angles, difference = _angles(orientations, _CLEAR * tolerance.orientation)
+    if difference <= _CLEAR * tolerance.orientation:
+        return None
+    rates, apart = _rates(readings, angles[0], scale)
+    if apart is not None and apart <= _CLEAR * tolerance.velocity:
+        return None
+    return Separation(
+        samples=tuple(FurtherSample(angles=triple, rates=rates) for triple in angles),
+        difference=difference,
+        velocity_difference=apart,
+    )
+
+
+def _angles(orientations: Sequence[Reading], clear: float) -> tuple[list[Triple], float]:
+    """Angles at which the closest two readings are far apart; several samples if needed.
+
+    They are round numbers between the special angles, in the unit of the readings, in an order
+    that is random but always the same, so that the first few are a fair choice.
+    """
+    in_radians = not any(reading.degrees for reading in orientations)
+    triples = np.array(list(permutations(_RADIANS if in_radians else _DEGREES, 3)), float)
+    count = len(orientations)
+    candidates = np.random.default_rng(17).permutation(triples)[: max(_FEWEST, _PAIRS // count**2)]
+    chosen: list[int] = []
+    difference = pi if count == 1 else 0.0
+    quaternions = ReadingTable(orientations).as_given(candidates)
+    closeness = 1 - np.eye(count)  # |cos| of half the angle between each two, over all samples
+
+    def joint(k: int) -> Array:
+        return np.minimum(closeness, np.abs(quaternions[k] @ quaternions[k].T))
+
+    while not chosen or (difference <= clear and len(chosen) < _MOST_SAMPLES):
+        chosen.append(min(range(len(candidates)), key=lambda k: float(joint(k).max())))
+        closeness = joint(chosen[-1])
+        if count > 1:
+            first, second = divmod(int(closeness.argmax()), count)
+            pairs = quaternions[chosen]
+            difference = float(angle_between(pairs[:, first], pairs[:, second]).max())
+    return [(a, b, c) for a, b, c in candidates[chosen].tolist()], difference
+
+
+def _rates(
+    readings: Sequence[Reading], angles: Triple, scale: float
+) -> tuple[Triple | None, float | None]:
+    """Rates at which the readings of Ω differ, about as fast as those in the data."""
+    if readings[0].velocity is None:
+        return None, None
+    size = 10.0 ** max(0, ceil(log10(scale)))  # differences are judged by the largest |Ω|
+    first, second, third = _RATES
+    rates = (first * size, second * size, third * size)
+    return rates, _apart(_velocities(readings, angles) * size, scale)
+
+
+def _velocities(readings: Sequence[Reading], angles: Triple) -> Array:
+    """Ω as each reading has it in the data, at _RATES; NaN for a reading that is excluded.
+
+    (readings of the orientation, readings of Ω, 3)
+    """
+    orientations = list(dict.fromkeys(reading.orientation for reading in readings))
+    velocities = list(dict.fromkeys(r.velocity for r in readings if r.velocity))
+    omega = angular_velocities(orientations, np.array([angles]), np.array([_RATES]))
+    given = as_given(omega[0], velocities)
+    fitting = set(readings)
+    fits = [[replace(o, velocity=v) in fitting for v in velocities] for o in orientations]
+    return np.where(np.array(fits)[..., None], given, np.nan)
+
+
+def _apart(given: Array, scale: float) -> float:
+    """The least |difference of Ω| of two readings of one orientation, over the largest |Ω|."""
+    differences = np.linalg.norm(given[:, :, None] - given[:, None], axis=-1)
+    largest = np.maximum(np.linalg.norm(given, axis=-1), scale)
+    shares = differences / largest[:, :, None]
+    first, second = np.nonzero(~np.eye(shares.shape[1], dtype=bool))
+    return float(np.nanmin(shares[:, first, second], initial=np.inf))
+
 
 _AT_ONCE = 1 << 17  # rows times readings
 
@@ -45,7 +367,7 @@ class Answer:
 
     @property
     def calls(self) -> dict[str, str]:
-        """Python statements by library (SciPy, SymPy, rigidsym) that reproduce the data."""
+        """Python statements by library (SciPy, rigidsym) that reproduce the data."""
         return calls(self.reading)
 
 
@@ -78,7 +400,8 @@ def _good(source: SampleSource, slack: float) -> Iterator[SampleBlock]:
     faults: list[str] = []
     count = 0
     for block in source.blocks():
-        good, wrong, more = check(block, source.place, slack)
+        place = source.place if len(faults) < MOST_SHOWN else str  # finding a line takes time
+        good, wrong, more = check(block, place, slack)
         count += more
         faults += wrong[: MOST_SHOWN - len(faults)]
         if not count:
@@ -131,28 +454,26 @@ def _narrowed(
     angles = table.residuals(block.angles, block.orientation())
     readings = np.array(table.readings)
     in_degrees = np.array([reading.degrees for reading in readings])
-    for tolerance in tolerances(asked, block, source.coarseness, scale):
+    trials = list(tolerances(asked, block, source.coarseness, scale))
+    for tolerance in trials:
         off = angles > tolerance.of(in_degrees)
-        left = readings[~off.any(axis=0)].tolist()
-        if left:
-            found = _with_velocities(left, block, scale, tolerance.velocity)
-            if found:
-                return tolerance, found
-    if not left:
-        for tolerance in tolerances(asked, block, source.coarseness, scale):
+        orientations = readings[~off.any(axis=0)].tolist()
+        if candidates := _with_velocities(orientations, block, scale, tolerance.velocity):
+            return tolerance, candidates
+    if not orientations:
+        for tolerance in trials:
             framed = aligned(table, block, tolerance)
-            found = _with_velocities(framed, block, scale, tolerance.velocity) if framed else []
-            if found:
-                return tolerance, found
-        left = [readings[np.lexsort((angles.max(axis=0), off.sum(axis=0)))[0]]]
-    return tolerance, _with_velocities(left[:1], block, scale, None)
+            if candidates := _with_velocities(framed, block, scale, tolerance.velocity):
+                return tolerance, candidates
+        orientations = [readings[np.lexsort((angles.max(axis=0), off.sum(axis=0)))[0]]]
+    return tolerance, _with_velocities(orientations[:1], block, scale, None)
 
 
 def _with_velocities(
     orientations: Sequence[Reading], block: SampleBlock, scale: float, tolerance: float | None
 ) -> list[Reading]:
     """Each reading of the orientation with every reading of Ω that fits, or with the nearest."""
-    if block.omega is None:
+    if block.omega is None or not orientations:
         return list(orientations)
     candidates = _Candidates([replace(r, velocity=v) for r in orientations for v in VELOCITIES])
     worst = candidates.residuals(block, scale)[1].max(axis=0)

@@ -1,13 +1,15 @@
-"""Turns in numbers: unit quaternions (w, x, y, z) on the last axis, and the angle between two."""
+"""Readings in numbers: unit quaternions (w, x, y, z) on the last axis, and angular velocities."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache
+from types import ModuleType
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidsym.tools.identify.readings import AS_THE_TURNS, RADIANS_PER_DEGREE, Reading
+from rigidsym.tools.identify.readings import AS_THE_TURNS, RADIANS_PER_DEGREE, Reading, Velocity
 
 Array = NDArray[np.float64]
 _AXES = "XYZ"
@@ -57,16 +59,16 @@ class ReadingTable:
 
     def as_given(self, angles: Array) -> Array:
         """The quaternions with their numbers in the order of the data: (n, readings, 4)."""
-        found = self._quaternions(angles)
-        found[..., self._scalar_last] = np.roll(found[..., self._scalar_last], -1, axis=0)
-        return np.moveaxis(found, 0, -1)
+        q = self._quaternions(angles)
+        q[..., self._scalar_last] = np.roll(q[..., self._scalar_last], -1, axis=0)
+        return np.moveaxis(q, 0, -1)
 
     def _quaternions(self, angles: Array) -> Array:
         """The quaternion of each reading for each row of angles (n, 3): (4, n, readings)."""
         # Sine and cosine are taken once for each column and unit, for all readings.
         half = angles[:, :, None] * (np.array([1.0, RADIANS_PER_DEGREE]) / 2)
         cosines, sines = np.cos(half), np.sin(half)
-        found = np.empty((4, len(angles), len(self)))
+        q = np.empty((4, len(angles), len(self)))
         for sequence, places in self._sequences.items():
             turn: Array = np.zeros((4, len(angles), len(places)))
             turn[0] = 1.0
@@ -75,11 +77,11 @@ class ReadingTable:
             ):
                 which = (slice(None), columns, self._units[places])
                 turn = _then_about(_AXES.index(axis), turn, cosines[which], sines[which] * signs)
-            found[..., places] = turn
+            q[..., places] = turn
         if self._frames:
             space, body = (side[:, None] for side in self._frames)
-            found = times(times(space, found), body)
-        return found
+            q = times(times(space, q), body)
+        return q
 
 
 def _then_about(axis: int, turn: Array, cosine: Array, sine: Array) -> Array:
@@ -159,3 +161,47 @@ def _horn(m: Array) -> Array:
     }.items():
         k[..., row, column] = k[..., column, row] = entry
     return k
+
+
+_FRAMES = ("space", "body")
+
+
+@cache
+def _kernels(sequence: str) -> ModuleType:
+    # Loaded here, so that identifying orientations does not need SymPy.
+    from rigidsym.motion import derive
+
+    wanted = [f"angular_velocity_{frame}" for frame in _FRAMES]
+    return derive(sequence).select(wanted).kernels().load()
+
+
+def angular_velocities(readings: Sequence[Reading], angles: Array, rates: Array) -> Array:
+    """Ω and Ω′ of the rotation R of each reading, in the unit of the rates.
+
+    `angles` and `rates` (n, 3) are columns of the data; the result is (n, readings, 2, 3), space
+    components first.
+    """
+    turns = [reading.intrinsic() for reading in readings]
+    columns = np.array([turn.columns for turn in turns])
+    signs = np.array([turn.signs for turn in turns])
+    factors = np.array([[turn.factor] for turn in turns])
+    sequences = np.array([turn.sequence for turn in turns])
+    q, q_dot = angles[:, columns] * (signs * factors), rates[:, columns] * signs
+    omega = np.empty((len(angles), len(turns), 2, 3))
+    for sequence in dict.fromkeys(sequences.tolist()):
+        here = sequences == sequence
+        for k, frame in enumerate(_FRAMES):
+            kernel = getattr(_kernels(sequence), f"angular_velocity_{frame}")
+            omega[:, here, k] = kernel(q[:, here], q_dot[:, here])
+    for k, turn in enumerate(turns):
+        if turn.frames != AS_THE_TURNS:  # Ω of S R B is S Ω, and its Ω′ is Bᵀ Ω′
+            omega[:, k, 0] = omega[:, k, 0] @ np.array(turn.frames.space).T
+            omega[:, k, 1] = omega[:, k, 1] @ np.array(turn.frames.body)
+    return omega
+
+
+def as_given(omega: Array, velocities: Sequence[Velocity]) -> Array:
+    """Ω as the data have it under each reading of Ω: (..., 2, 3) to (..., v, 3)."""
+    frames = [_FRAMES.index(velocity.frame) for velocity in velocities]
+    factors = np.array([[velocity.factor] for velocity in velocities])
+    return np.asarray(omega[..., frames, :] * factors)

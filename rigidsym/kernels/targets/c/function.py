@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from textwrap import wrap
@@ -10,7 +11,7 @@ from typing import Any
 from rigidsym.kernels.ir import Call, Compare, Expression, Guarded, Kernel, names_in
 from rigidsym.kernels.targets.text.infix import infix
 from rigidsym.kernels.targets.text.precision import Precision
-from rigidsym.kernels.targets.text.python import bracketed
+from rigidsym.kernels.targets.text.python import WIDTH
 
 _FORMS = {"choice": "{0} ? {1} : {2}"}
 _WIDTH = 92
@@ -42,7 +43,6 @@ class CStatement:
     lines: tuple[str, ...]
     defines: frozenset[str]
     uses: frozenset[str]
-    is_condition: bool = False  # else a number
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +94,7 @@ class Function:
     def signature(self) -> str:
         real, head = self.precision.real, f"void {self.precision.named(self.name)}("
         given = [f"const {real} {a.name}[{len(a.components)}]" for a in self.kernel.arguments]
-        return listed(0, head, [*given, f"{real} out[{len(self.kernel.outputs)}]"])
+        return _listed(head, [*given, f"{real} out[{len(self.kernel.outputs)}]"])
 
     @property
     def array_signature(self) -> str:
@@ -102,7 +102,7 @@ class Function:
         items = ["size_t count"]
         for kind, name in (*(("const ", a.name) for a in self.kernel.arguments), ("", "out")):
             items += [f"{kind}{real} *{name}", f"ptrdiff_t {name}_step", f"ptrdiff_t {name}_stride"]
-        return listed(0, f"void {self.precision.named(f'{self.name}_array')}(", items)
+        return _listed(f"void {self.precision.named(f'{self.name}_array')}(", items)
 
     def _body(self) -> str:
         kernel, real, word = self.kernel, self.precision.real, self.precision.word
@@ -114,7 +114,7 @@ class Function:
         unbroken = ", ".join(item.replace(" ", "\xa0") for item in read)
         lines = wrap(f"    const {real} {unbroken};", _WIDTH, subsequent_indent=" " * 8)
         declared = [line.replace("\xa0", " ") for line in lines if read]
-        statements = [f"    {line}" for step in self.steps() for line in step.lines]
+        statements = [f"    {line}" for step in self._steps() for line in step.lines]
         return "\n".join(
             [
                 f"EVALUATE({kernel.name})",
@@ -128,7 +128,39 @@ class Function:
             ]
         )
 
-    def steps(self) -> Iterator[CStatement]:
+    def plain(self) -> str:
+        """The function of one orientation; an entry of the result follows the values it needs.
+
+        So few values wait at a time, and the compiler needs little stack for them.
+        """
+        kernel, real = self.kernel, self.precision.real
+        steps = list(self._steps())
+        place = dict.fromkeys(kernel.components, 0)  # how many definitions a value needs
+        definitions = [step for step in steps if step.defines]
+        for count, step in enumerate(definitions, start=1):
+            place |= dict.fromkeys(step.defines, count)
+        results: defaultdict[int, list[CStatement]] = defaultdict(list)
+        for step in steps:
+            if not step.defines:
+                results[max((place[name] for name in step.uses), default=0)].append(step)
+        ordered = [*results[0]]
+        for count, step in enumerate(definitions, start=1):
+            ordered += [step, *results[count]]
+        used = {name for step in steps for name in step.uses}
+        unused = [a.name for a in kernel.arguments if kernel.used.isdisjoint(a.components)]
+        components = [(a, k, name) for a in kernel.arguments for k, name in enumerate(a.components)]
+        return "\n".join(
+            [
+                self.signature,
+                "{",
+                *(f"    (void){name};" for name in unused),
+                *(f"    const {real} {n} = {a.name}[{k}];" for a, k, n in components if n in used),
+                *(f"    {line}" for step in ordered for line in step.lines),
+                "}",
+            ]
+        )
+
+    def _steps(self) -> Iterator[CStatement]:
         """The statements in order, then the entries of the result."""
         for name, value in self.kernel.statements:
             values = list(value.values()) if isinstance(value, dict) else [value]
@@ -136,9 +168,7 @@ class Function:
                 values = []  # a number here: the type of its argument is known
             used = frozenset(n for each in values for n in names_in(each))
             known = frozenset(value) if isinstance(value, dict) else frozenset(self._named(name))
-            yield CStatement(
-                tuple(self._lines(name, value)), known, used, isinstance(value, Compare)
-            )
+            yield CStatement(tuple(self._lines(name, value)), known, used)
         for k, value in enumerate(self.kernel.outputs):
             place = _entry("out", k) if self.contents.arrays else f"out[{k}]"
             line = f"{place} = {self._text(value)};"
@@ -213,7 +243,12 @@ def _entry(array: str, k: int) -> str:
     return f"{array}[{f'{k} * ' if k > 1 else ''}{'apart' if k else 0}]"
 
 
-def listed(indent: int, head: str, items: Iterable[str]) -> str:
-    """Parameters or what is given for them; C takes no comma after the last."""
-    text = bracketed(indent, head, list(items), ")")
-    return text.replace(f",\n{' ' * indent})", ")")
+def _listed(head: str, parameters: Iterable[str]) -> str:
+    """A head with its parameters: in its line, or in the next, or in a line each."""
+    items = list(parameters)
+    joined = ", ".join(items)
+    if len(f"{head}{joined})") <= WIDTH:
+        return f"{head}{joined})"
+    if len(f"    {joined}") <= WIDTH:
+        return f"{head}\n    {joined}\n)"
+    return f"{head}\n    " + ",\n    ".join(items) + ")"

@@ -18,7 +18,6 @@ from rigidsym.kernels.lowering.trigonometry import two_over_pi
 from rigidsym.kernels.targets.c.expected_values import samples_of
 from rigidsym.kernels.targets.c.function import Contents, Function, show
 from rigidsym.kernels.targets.c.module_files import module_files
-from rigidsym.kernels.targets.c.parts import parts_of
 from rigidsym.kernels.targets.numpy import printer as numpy
 from rigidsym.kernels.targets.text import remarks
 from rigidsym.kernels.targets.text.precision import EITHER, PRECISIONS, Precision
@@ -28,7 +27,7 @@ _WORDS = (
     "out far beyond sin_cos sin_cosf or_nan or_nanf entire entiref sqrtf fabs fabsf NULL angle_of "
     "angle_off SIZE_MAX PTRDIFF_MAX size_t ptrdiff_t uint32_t uint64_t TILE MOST SHUFFLED SHUFFLE "
     "INLINED STREAMED STREAM STREAMf END_STREAM HELPER CLONES CLONE "
-    "CLONED PART shared expected apart REAL WORD FN LIT EPS LEAST EVALUATE SIN_COS TILED GIVEN "
+    "CLONED expected apart REAL WORD FN LIT EPS LEAST EVALUATE SIN_COS TILED GIVEN "
     "PARAMETERS ORDERS in given count"
 )
 RESERVED = numpy.RESERVED | {*_WORDS.split()}  # the Python module's, too
@@ -68,7 +67,7 @@ def _source(
     groups = (g for k in kernels for g in (k.outputs, *(a.components for a in k.arguments)))
     typed = EITHER if contents.arrays or len(precisions) > 1 else precisions[0]
     written = [
-        f.pieces() if contents.arrays else {"parts": list(parts_of(f))}
+        f.pieces() if contents.arrays else {"plain": f.plain()}
         for f in (replace(function, precision=typed) for function in functions)
     ]
     return _template("c/source.c.jinja").render(
@@ -86,7 +85,6 @@ def _source(
         typed=typed,
         precisions=[{**p.filled(last), "eps": p.of_eps(), "least": p.least} for p in precisions],
         functions=written,
-        has_parts=any(len(text.get("parts", ())) > 1 for text in written),
         two_over_pi=_words(),
         half_pi=repr(pi / 2),
         widths=sorted(set(map(len, groups))),
@@ -160,12 +158,11 @@ def _about(program: Program, contents: Contents) -> list[remarks.Paragraph]:
     return remarks.about_module(
         program,
         "functions in C99",
-        f"Arguments, in {program.units} and SI units:",
+        "Arguments, in radians and SI units:",
         [f"  {a.name}[{len(a.components)}]  {a.about}" for a in program.arguments],
         f"Matrices are filled row by row. {floats}{first}",
         *others,
         sines,
-        unwrap="Only the Python module has unwrap, since it needs memory for a trajectory.",
     )
 
 

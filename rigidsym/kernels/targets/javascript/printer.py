@@ -11,7 +11,7 @@ from functools import lru_cache
 from math import prod
 from types import ModuleType
 
-from rigidsym.algebra.series import FIRST_SERIES, series_of, taylor
+from rigidsym.algebra.stable_forms import FIRST_SERIES, series_of, taylor
 from rigidsym.kernels.ir import (
     FUNCTIONS,
     Call,
@@ -89,8 +89,7 @@ def _declared(kernel: Kernel) -> Iterator[str]:
     kinds = [
         "number" if a.is_scalar else "Matrix" if a.is_matrix else "Vector" for a in kernel.arguments
     ]
-    marks = ["?" if a.is_optional else "" for a in kernel.arguments]
-    names = [f"{a.name}{mark}" for a, mark in zip(kernel.arguments, marks, strict=True)]
+    names = [a.name for a in kernel.arguments]
     one = ", ".join(f"{name}: {kind}" for name, kind in zip(names, kinds, strict=True))
     many = ", ".join(f"{name}: Vector" for name in names)
     yield f"export function {kernel.name}({one}): {_kind(kernel)};"
@@ -129,9 +128,7 @@ def _function(kernel: Kernel) -> dict[str, object]:
     return {
         "name": kernel.name,
         "about": _comment(_about_kernel(kernel, vectors)),
-        "parameters": ", ".join(
-            f"{v} = new Array({size}).fill(0)" if a.is_optional else v for v, _, size, a, _ in each
-        ),
+        "parameters": ", ".join(vectors),
         "given": ", ".join(f"{vector}, {place}" for vector, place, *_ in each),
         "taken": ", ".join(f'_taken("{a.name}", {flat}, {n}), 0' for _, _, n, a, flat in each),
         "checked": ", ".join(f'["{a.name}", {vector}, {n}]' for vector, _, n, a, _ in each),
@@ -201,10 +198,10 @@ def _about(program: Program) -> list[remarks.Paragraph]:
     return remarks.about_module(
         program,
         "functions of plain arrays",
-        f"Arguments, arrays of numbers in {program.units} and SI units:",
+        "Arguments, arrays of numbers in radians and SI units:",
         remarks.table(rows),
         "Vectors are arrays, and matrices are arrays of rows.",
-        "Each function has a twin ..._batch for many orientations. Its arguments and its result "
+        "Each function has a version ..._batch for many orientations. Its arguments and its result "
         "are flat arrays, row after row, matrices row by row; an argument with a single row is "
         "used for all orientations. It fills and returns `out`, by default a new Float64Array; "
         "`out` must not share memory with an argument. There are no threads (use workers), and no "

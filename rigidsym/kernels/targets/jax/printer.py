@@ -112,7 +112,7 @@ def _about(program: Program) -> list[remarks.Paragraph]:
     return remarks.about_module(
         program,
         "functions for JAX",
-        python.ARGUMENTS.format(program.units),
+        python.ARGUMENTS,
         python.about_arguments(program),
         "Leading axes broadcast. The functions are pure, so jax.jit, vmap, grad, jvp and vjp "
         "apply. Types follow JAX: float32, or float64 if jax_enable_x64 is set and an argument is "

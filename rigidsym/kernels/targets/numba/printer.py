@@ -23,7 +23,7 @@ _BLOCK = numpy.BLOCK._replace(
 
 
 def render(program: Program) -> dict[str, str]:
-    """The module; `unwrap` stays with NumPy."""
+    """The module."""
     last, called = last_order(program.kernels), functions_of(program.kernels)
     values = [a.value for kernel in program.kernels for a in kernel.assignments]
     text = numpy.module_text(

@@ -37,7 +37,7 @@ RESERVED = python.RESERVED | {"np", "tan", "ValueError", "ZeroDivisionError", "e
 OPTIONS = ("out: Array | None = None", "threads: int = 1")  # of every function of arrays
 
 _BY_SIZE = (
-    "Small batches, of fewer than 240 rows at most, compute sines and cosines by another formula "
+    "Batches of fewer than 240 rows compute sines and cosines by another formula "
     "than large ones, so the last bits of a row may depend on the number of rows."
 )
 _NESTING = ("a float", "a tuple", "a tuple of rows", "a tuple of matrices")
@@ -89,8 +89,8 @@ def module_text(
     written.
     """
     kernels = list(map(_fitted, program.kernels))
-    unwrapping = program.unwrapping
-    unwrap = [unwrap_text(unwrapping, lambda k: _block(_fitted(k)))] if unwrapping else []
+    has_unwrap = bool(program.continuity) and template == TEMPLATE
+    unwrap = [unwrap_text(program)] if has_unwrap else []
     exports = [f"{kernel.name}{twin}" for kernel in kernels for twin in ("", "_scalar")]
     exports += ["unwrap"] if unwrap else []
     return (
@@ -164,11 +164,7 @@ def _function(kernel: Kernel, at_once: str, statements: python.Statements) -> di
     block, scalar = f"_{kernel.name}", f"{kernel.name}_scalar"
     results = kernel.parts or (kernel.shape,)
     shape = str(kernel.parts or kernel.shape)
-    floats = [
-        f"{name}: float{' = 0.0' if argument.is_optional else ''}"
-        for argument in kernel.arguments
-        for name in argument.components
-    ]
+    floats = [f"{name}: float" for argument in kernel.arguments for name in argument.components]
     numbers = f"_in_a_row({scalar})" if kernel.parts else scalar
     given = [block, numbers, str(kernel.shape), "out", "threads", *python.passed(kernel, "np")]
     margin = 4 if _is_shared(kernel) else 8
@@ -384,14 +380,16 @@ def _about(program: Program, *, is_plain: bool) -> list[remarks.Paragraph]:
     return remarks.about_module(
         program,
         "functions of NumPy arrays",
-        python.ARGUMENTS.format(program.units),
+        python.ARGUMENTS,
         python.about_arguments(program),
-        "Leading axes broadcast; inputs need not be contiguous. The result is float32 if every "
-        "argument is float32, else float64; integers are converted to float64. `out`, an array of "
+        "Leading axes broadcast; inputs need not be contiguous. If the columns of an argument have "
+        "names (data frames, structured arrays, mappings), these decide, not the order. The result "
+        "is float32 if every argument is float32, else float64; integers are converted to float64. "
+        "`out`, an array of "
         "the result's shape and dtype, is filled and returned; it may overlap the arguments. "
         "`threads` sets the number of worker threads (about 4 MB each). No warnings are issued. "
-        "Each function has a twin `..._scalar` for one orientation in plain floats, and an "
-        "attribute `signature`, its signature as a generalised ufunc.",
+        "Each function has a scalar version `..._scalar` for one orientation in plain floats, and "
+        "an attribute `signature`, its signature as a generalised ufunc.",
         *([_BY_SIZE] if has_sines else []),
-        unwrap="",
+        has_unwrap=is_plain,
     )

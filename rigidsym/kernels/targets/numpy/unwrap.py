@@ -3,43 +3,34 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator
 
-from rigidsym.kernels.ir import Kernel, Unwrapping
-from rigidsym.kernels.targets.text.python import bracketed, docstring
+from rigidsym.kernels.ir import Program
+from rigidsym.kernels.targets.text.python import docstring
 from rigidsym.system import resources
 
 _SOURCE = "numpy/unwrap.py"
 
 
-def unwrap_text(unwrapping: Unwrapping, block: Callable[[Kernel], str]) -> str:
-    """`unwrap`, and the functions that it needs; `block` is how kernels of arrays are written."""
-    taken = [argument.name for argument in unwrapping.arguments]
-    checked = [f'_checked("{name}", {name})' for name in taken]
-    kernels = [k for k in (unwrapping.turns, unwrapping.coordinates) if k is not None]
-    given = [f"_{kernel.name}" for kernel in kernels]
-    if unwrapping.coordinates is not None:
-        given.append(str(len(unwrapping.coordinates.arguments[-1].components)))
-    if any("deg" in unit for unit in unwrapping.arguments[0].units) and not kernels:
-        checked.append("360.0")
-    function = f"_unwrapped_{unwrapping.kind}"
-    head = bracketed(0, "def unwrap(", [f"{name}: ArrayLike" for name in taken], ") -> Array:")
-    body = bracketed(4, f"return {function}(", [*given, *checked], ")")
-    about = docstring(_about(unwrapping), indent=4)
-    unwrap = f'{head}\n    """{about}"""\n{body}'
-    return "\n\n\n".join([unwrap, *map(block, kernels), *_sources(function)]) + "\n"
-
-
-def _about(unwrapping: Unwrapping) -> list[str | Sequence[str]]:
-    rows = [("q", "(m, ..., n)  the samples on the first axis"), ("returns", "(m, ..., n)")]
-    rows[1:1] = [(argument.name, "(..., k)") for argument in unwrapping.arguments[1:]]
-    width = max(len(name) for name, _ in rows)
-    return [
+def unwrap_text(program: Program) -> str:
+    """`unwrap`, and the functions that it needs."""
+    continuity = program.continuity
+    assert continuity is not None
+    inputs = ['_checked("q", q)']
+    if continuity.kind == "euler":
+        inputs.append(str(continuity.quarters))
+    function = f"_unwrapped_{continuity.kind}"
+    about = [
         "The coordinates along a trajectory, continuous from sample to sample.",
-        [f"  {name:<{width}}  {text}" for name, text in rows],
-        *unwrapping.remarks,
+        ["  q        (m, ..., n)  the samples on the first axis", "  returns  (m, ..., n)"],
+        *continuity.remarks,
         "The first sample is not changed. Samples with NaN are skipped.",
     ]
+    unwrap = (
+        f'def unwrap(q: ArrayLike) -> Array:\n    """{docstring(about, indent=4)}"""\n'
+        f"    return {function}({', '.join(inputs)})"
+    )
+    return "\n\n\n".join([unwrap, *_sources(function)]) + "\n"
 
 
 def _sources(wanted: str) -> Iterator[str]:

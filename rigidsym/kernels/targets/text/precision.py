@@ -9,7 +9,7 @@ from fractions import Fraction
 from math import pi
 from typing import Any
 
-from rigidsym.algebra.series import FIRST_SERIES, series_of, taylor
+from rigidsym.algebra.stable_forms import FIRST_SERIES, series_of, taylor
 from rigidsym.kernels.lowering.trigonometry import arctangent, reduction
 
 

@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
-from rigidsym.algebra.series import FIRST_SERIES, series_of, taylor
+from rigidsym.algebra.stable_forms import FIRST_SERIES, series_of, taylor
 from rigidsym.kernels.ir import (
     FUNCTIONS,
     Call,
@@ -31,7 +31,7 @@ from rigidsym.system import resources
 MANY = 8  # components
 _UNWELCOME = ("l", "O", "I")  # linters refuse these names
 RESERVED = frozenset({*FUNCTIONS, *_UNWELCOME, "nan", "max", "min"})
-ARGUMENTS = "Arguments, with the components on the last axis, in {} and SI units:"
+ARGUMENTS = "Arguments, with the components on the last axis, in radians and SI units:"
 
 
 class Statements(NamedTuple):
@@ -119,9 +119,7 @@ def series_entries(kernels: Iterable[Kernel], *, more: int = 0) -> str:
 
 def parameters(kernel: Kernel, *options: str) -> list[str]:
     """Of a function of arrays, with their types."""
-    arrays = [
-        f"{a.name}: ArrayLike{' | None = None' if a.is_optional else ''}" for a in kernel.arguments
-    ]
+    arrays = [f"{a.name}: ArrayLike" for a in kernel.arguments]
     return [*arrays, *(["*", *options] if options else [])]
 
 
@@ -137,14 +135,10 @@ def passed(kernel: Kernel, library: str) -> list[str]:
         name = value = argument.name
         if argument.is_matrix:
             items = [f'"{name}"', name, str(argument.shape)]
-            items += ["or_flat=True"] if argument.may_be_flat else []
             text = bracketed(8, f"{name}=_entries(", items, "),")
             value = text[text.index("=") + 1 : -1]
         if argument.is_scalar:
             value = f"{library}.asarray({name})[..., None]"
-        if argument.is_optional:
-            zeros = f"{library}.zeros({len(argument.components)}, {library}.float32)"
-            value = f"{zeros} if {name} is None else {name}"
         values.append(f"{name}={value}")
     return values
 
@@ -191,13 +185,7 @@ def ufunc(kernel: Kernel) -> str:
 
 def about_arguments(program: Program) -> list[str]:
     """Lines that describe the arguments of all functions."""
-    return table([(a.name, _shapes(a), a.about) for a in program.arguments])
-
-
-def _shapes(argument: KernelArgument) -> str:
-    """The shape of an argument, and the one that its rows in one have if they may be."""
-    flat = f" or {_leading((len(argument.components),))}" if argument.may_be_flat else ""
-    return _leading(argument.shape) + flat
+    return table([(a.name, _leading(a.shape), a.about) for a in program.arguments])
 
 
 def _leading(shape: Sequence[int]) -> str:
@@ -213,7 +201,8 @@ def _listed(names: Sequence[str]) -> str:
 def about_function(kernel: Kernel) -> list[Paragraph]:
     """The paragraphs of a function's docstring."""
     rows = [
-        (a.name, _shapes(a), _listed(a.components) + in_units(a.units)) for a in kernel.arguments
+        (a.name, _leading(a.shape), _listed(a.components) + in_units(a.units))
+        for a in kernel.arguments
     ]
     results = ", ".join(map(_leading, kernel.parts or (kernel.shape,)))
     rows.append(("returns", results, f"in {kernel.unit}" if kernel.unit else ""))

@@ -1,0 +1,352 @@
+"""Values of SymPy expressions in any arithmetic: `evaluate(expression, arithmetic, values)`.
+
+An arithmetic gives numbers, rational powers and functions. `Intervals` are proved to enclose the
+true values: roots of negative numbers, quotients by zero and logarithms of numbers that are not
+positive have no real value there, and a value is returned only if it exists at every point of the
+intervals. `Floats` are NumPy arrays or plain numbers; `function_of` walks the expression once, and
+makes it a function of floats to be called thousands of times.
+"""
+
+from __future__ import annotations
+
+import math
+import operator
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache
+from typing import Any, NamedTuple, Protocol
+
+import mpmath
+import sympy as sp
+from sympy.core.function import AppliedUndef
+
+_REWRITTEN: dict[str, Callable[..., sp.Expr]] = {  # where an arithmetic has no such function
+    "tan": lambda x: sp.sin(x) / sp.cos(x),
+    "cot": lambda x: sp.cos(x) / sp.sin(x),
+    "sec": lambda x: 1 / sp.cos(x),
+    "csc": lambda x: 1 / sp.sin(x),
+    "cosh": lambda x: (sp.exp(x) + sp.exp(-x)) / 2,
+    "sech": lambda x: 2 / (sp.exp(x) + sp.exp(-x)),
+    "coth": lambda x: (sp.exp(2 * x) + 1) / (sp.exp(2 * x) - 1),
+    "csch": lambda x: 2 / (sp.exp(x) - sp.exp(-x)),
+    "acot": lambda x: sp.atan(1 / x),
+}
+_MONOTONE = frozenset({"atan", "asin", "acos", "sinh", "tanh", "asinh", "acosh", "atanh", "erf"})
+_LARGEST_EXPONENT = 10**5  # of exp, and angle of sin and cos: mpmath would need ever more digits
+
+
+class NotReal(ValueError):
+    """An expression without a real value: what it is, and the part that is at fault."""
+
+    def __init__(self, reason: str, part: sp.Expr) -> None:
+        super().__init__(f"{reason} {part}")
+        self.reason, self.part = reason, part
+
+
+class Unknown(ValueError):
+    """A part of an expression of which no value is known."""
+
+    def __init__(self, part: sp.Expr) -> None:
+        super().__init__(f"no value is known of {part}")
+        self.part = part
+
+
+class Arithmetic(Protocol):
+    """Numbers of one kind. Functions are given the expression too, for errors to name it."""
+
+    functions: frozenset[str]  # the names that `apply` knows
+
+    def number(self, numerator: int, denominator: int) -> Any:
+        """A rational number."""
+
+    def constant(self, name: str) -> Any:
+        """The number "pi" or "e"."""
+
+    def power(self, base: Any, exponent: sp.Rational, whole: sp.Expr) -> Any:
+        """A rational power."""
+
+    def apply(self, name: str, whole: sp.Expr, *values: Any) -> Any:
+        """A function of values."""
+
+
+def evaluate(expression: sp.Expr, arithmetic: Arithmetic, values: dict[sp.Expr, Any]) -> Any:
+    """The value of an expression; `values` holds those of symbols, and remembers those of parts.
+
+    Raises Unknown for a part that has none.
+    """
+    if expression not in values:
+        values[expression] = _value(expression, arithmetic, values)
+    return values[expression]
+
+
+def _value(e: sp.Expr, arithmetic: Arithmetic, values: dict[sp.Expr, Any]) -> Any:
+    if e.is_Rational:
+        return arithmetic.number(int(e.p), int(e.q))
+    if e.is_Float:
+        return arithmetic.number(*float(e).as_integer_ratio())
+    if e is sp.pi or e is sp.E:
+        return arithmetic.constant("pi" if e is sp.pi else "e")
+    name = e.func.__name__
+    if e.is_Add or e.is_Mul:
+        first, *others = (evaluate(part, arithmetic, values) for part in e.args)
+        for other in others:
+            first = first + other if e.is_Add else first * other
+        return first
+    if e.is_Pow:
+        if e.exp.is_Rational:
+            return arithmetic.power(evaluate(e.base, arithmetic, values), e.exp, e)
+        return evaluate(sp.exp(e.exp * sp.log(e.base), evaluate=False), arithmetic, values)
+    if isinstance(e, AppliedUndef) or not e.args:
+        raise Unknown(e)
+    if name in arithmetic.functions:
+        parts = (evaluate(part, arithmetic, values) for part in e.args)
+        return arithmetic.apply(name, e, *parts)
+    if name in _REWRITTEN:
+        return evaluate(_REWRITTEN[name](*e.args), arithmetic, values)
+    raise Unknown(e)
+
+
+class Intervals:
+    """Intervals of so many digits, by mpmath."""
+
+    functions = _MONOTONE | {"exp", "sin", "cos", "log", "Abs", "atan2"}
+
+    def __init__(self, digits: int) -> None:
+        self.context, self.numbers = context(digits, of_intervals=True), context(digits)
+
+    def around(self, middle: Any, radius: Any) -> Any:
+        """The interval of a radius about a number."""
+        return middle + self.context.mpf(radius) * self.context.mpf([-1, 1])
+
+    def number(self, numerator: int, denominator: int) -> Any:
+        return self.context.mpf(numerator) / self.context.mpf(denominator)
+
+    def constant(self, name: str) -> Any:
+        return +getattr(self.context, name)
+
+    def power(self, base: Any, exponent: sp.Rational, whole: sp.Expr) -> Any:
+        if exponent.q != 1 and base.a < 0:
+            raise NotReal("a root of a negative number,", whole.base)
+        if exponent < 0 and 0 in base:
+            raise NotReal("division by", whole.base)
+        return self._root(base, int(exponent.q)) ** int(exponent.p)
+
+    def _root(self, value: Any, degree: int) -> Any:
+        if degree < 3:
+            return value if degree == 1 else self.context.sqrt(value)
+        if 0 in value:
+            above = self.context.mpf(value.b) ** (self.context.mpf(1) / degree)
+            return self.context.mpf([0, above.b]) if value.b > 0 else self.context.mpf(0)
+        return self.context.exp(self.context.log(value) / degree)
+
+    def apply(self, name: str, whole: sp.Expr, *values: Any) -> Any:
+        (value, *others), context = values, self.context
+        if name in ("exp", "sin", "cos"):
+            if not abs(value) < _LARGEST_EXPONENT:
+                raise NotReal("a number that is too large,", whole)
+            return getattr(context, name)(value)
+        if name == "Abs":
+            return abs(value)
+        if name == "log":
+            if not value.a > 0:
+                part = whole.args[0]
+                raise NotReal("the logarithm of a number that is not positive,", part)
+            return context.log(value)
+        if name == "atan2":
+            return self._direction(value, others[0], whole)
+        return self._monotone(name, value, whole)
+
+    def _direction(self, y: Any, x: Any, whole: sp.Expr) -> Any:
+        """atan2 by the arc tangent of a quotient that stays finite."""
+        if x.a > 0:
+            return self._monotone("atan", y / x, whole)
+        if y.a > 0 or y.b < 0:
+            quarter = self.context.pi / 2 if y.a > 0 else -self.context.pi / 2
+            return quarter - self._monotone("atan", x / y, whole)
+        raise NotReal("no direction is known of", sp.Tuple(*whole.args[::-1]))
+
+    def _monotone(self, name: str, value: Any, whole: sp.Expr) -> Any:
+        """A monotone function, by its values at both ends."""
+        digits = self.context.dps
+        own = context(digits + 10)
+        ends = [getattr(own, name)(own.mpf(end)) for end in (value.a, value.b)]
+        if any(isinstance(end, own.mpc) or not own.isfinite(end) for end in ends):
+            raise NotReal("a value that is not real,", whole)
+        slack = own.mpf(10) ** -digits * (1 + max(map(abs, ends)))
+        return self.context.mpf([min(ends) - slack, max(ends) + slack])
+
+
+@cache
+def context(digits: int, *, of_intervals: bool = False) -> Any:
+    """mpmath's numbers or intervals of so many digits; it takes milliseconds to make them."""
+    made = mpmath.iv.__class__() if of_intervals else mpmath.mp.__class__()
+    made.dps = digits
+    return made
+
+
+class RealValues:
+    """Bounds on the values of expressions at one point, each worked out once.
+
+    `radii` bound the distances of the true values from those of the point.
+    """
+
+    def __init__(
+        self,
+        point: Mapping[sp.Expr, Any],
+        digits: int,
+        radii: Mapping[sp.Expr, Any] | None = None,
+    ) -> None:
+        self.intervals = Intervals(digits)
+        self.context, self.numbers = self.intervals.context, self.intervals.numbers
+        self._values: dict[sp.Expr, Any] = {}
+        for atom, value in point.items():
+            middle = self(value) if isinstance(value, sp.Expr) else self.context.mpf(value)
+            radius = (radii or {}).get(atom, 0)
+            self._values[atom] = self.intervals.around(middle, radius) if radius else middle
+
+    def set(self, atom: sp.Expr, value: Any) -> None:
+        """Give an atom its value, before anything that holds it is asked for."""
+        self._values[atom] = value
+
+    def middle(self, expression: sp.Expr) -> Any:
+        """The number in the middle of the bounds."""
+        return self.numbers.mpf(self(expression).mid)
+
+    def __call__(self, expression: sp.Expr) -> Any:
+        """The bounds; raises NotReal if there is no value, Unknown if none is known."""
+        return evaluate(expression, self.intervals, self._values)
+
+
+class Floats:
+    """Floats, one or an array of them, by a module of functions: NumPy, or math."""
+
+    _NAMES: Mapping[str, tuple[str, ...]] = {  # in SymPy: in the modules
+        **{name: (name,) for name in ("sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "log")},
+        **{f"a{name}": (f"a{name}", f"arc{name}") for name in ("sin", "cos", "tan", "tan2")},
+        "Abs": ("fabs",),
+        "erf": ("erf",),
+    }
+
+    def __init__(self, module: Any) -> None:
+        self._module = module
+        self._functions = {
+            name: getattr(module, own)
+            for name, names in self._NAMES.items()
+            for own in names
+            if hasattr(module, own)
+        }
+        self.functions = frozenset(self._functions)
+
+    def number(self, numerator: int, denominator: int) -> float:
+        return numerator / denominator
+
+    def constant(self, name: str) -> float:
+        return float(getattr(self._module, name))
+
+    def power(self, base: Any, exponent: sp.Rational, whole: sp.Expr) -> Any:  # noqa: ARG002
+        # a float, since NumPy takes no whole number to a negative whole power
+        return (base + 0.0) ** (int(exponent) if exponent.is_Integer else float(exponent))
+
+    def apply(self, name: str, whole: sp.Expr, *values: Any) -> Any:  # noqa: ARG002
+        return self._functions[name](*values)
+
+
+class _Deferred(NamedTuple):
+    """A float that is computed when it is called with the values of the symbols."""
+
+    call: Callable[[Sequence[float]], float]
+    value: float | None = None  # if it is the same for all of them
+
+    @classmethod
+    def of(cls, function: Callable[..., float], *parts: _Deferred) -> _Deferred:
+        if all(part.value is not None for part in parts):
+            value = function(*(part.value for part in parts))
+            return cls(lambda _: value, value)
+        calls = [part.call for part in parts]
+        if len(calls) == 1:
+            (one,) = calls
+            return cls(lambda values: function(one(values)))
+        one, two = calls
+        return cls(lambda values: function(one(values), two(values)))
+
+    def __add__(self, other: Any) -> _Deferred:
+        one, two = self.call, other.call
+        if self.value is None or other.value is None:
+            return _Deferred(lambda values: one(values) + two(values))
+        return self.of(operator.add, self, other)
+
+    def __mul__(self, other: Any) -> _Deferred:
+        one, two = self.call, other.call
+        if self.value is None or other.value is None:
+            return _Deferred(lambda values: one(values) * two(values))
+        return self.of(operator.mul, self, other)
+
+
+class _DeferredFloats(Floats):
+    def number(self, numerator: int, denominator: int) -> Any:
+        number = super().number(numerator, denominator)
+        return _Deferred(lambda _: number, number)
+
+    def constant(self, name: str) -> Any:
+        number = super().constant(name)
+        return _Deferred(lambda _: number, number)
+
+    def power(self, base: Any, exponent: sp.Rational, whole: sp.Expr) -> Any:  # noqa: ARG002
+        number = int(exponent) if exponent.is_Integer else float(exponent)
+        return _Deferred.of(lambda value: value**number, base)
+
+    def apply(self, name: str, whole: sp.Expr, *values: Any) -> Any:  # noqa: ARG002
+        return _Deferred.of(self._functions[name], *values)
+
+
+_DEFERRED = _DeferredFloats(math)
+
+
+def function_of(
+    expression: sp.Expr, symbols: Sequence[sp.Expr]
+) -> Callable[[Sequence[float]], float]:
+    """The value of an expression in floats, for values of the symbols in their order."""
+    places = {s: _Deferred(operator.itemgetter(k)) for k, s in enumerate(symbols)}
+    return evaluate(expression, _DEFERRED, places).call
+
+
+# Signs of expressions whose variables stay within bounds, told by their form
+
+
+Bounds = tuple[sp.Expr, sp.Expr]
+_HALF = sp.pi / 2
+
+
+def sign_within(expression: sp.Expr, bounds: Mapping[sp.Symbol, Bounds]) -> int | None:
+    """1 if an expression is never negative, −1 if it is never positive, None if its form is silent.
+
+    Symbols without bounds are constants, and positive.
+    """
+    if expression.is_number:
+        return 1 if bool(expression >= 0) else -1
+    if expression.is_Symbol:
+        low, high = bounds.get(expression, (sp.S.Zero, sp.oo))
+        if sign_within(low, bounds) == 1:
+            return 1
+        return -1 if sign_within(high, bounds) == -1 else None
+    if expression.is_Add:
+        signs = {sign_within(term, bounds) for term in expression.args}
+        return signs.pop() if len(signs) == 1 else None
+    if expression.is_Mul:
+        product = 1
+        for factor in expression.args:
+            product *= sign_within(factor, bounds) or 0
+        return product or None
+    if expression.is_Pow and expression.exp.is_Rational:
+        is_even = expression.exp.p % 2 == 0 or expression.exp.q % 2 == 0
+        return 1 if is_even else sign_within(expression.base, bounds)
+    if isinstance(expression, sp.sin | sp.cos):
+        first = sp.S.Zero if isinstance(expression, sp.sin) else -_HALF
+        return 1 if _lies_in(expression.args[0], (first, first + sp.pi), bounds) else None
+    return None
+
+
+def _lies_in(angle: sp.Expr, half: Bounds, bounds: Mapping[sp.Symbol, Bounds]) -> bool:
+    """Whether a multiple of one variable stays within half a turn, in numbers."""
+    number, variable = angle.as_coeff_Mul()
+    ends = [number * end for end in bounds.get(variable, ())]
+    return bool(ends) and all(end.is_number and half[0] <= end <= half[1] for end in ends)

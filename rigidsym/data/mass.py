@@ -1,0 +1,545 @@
+"""Mass, centre, inertia tensor and principal axes of particles and uniform meshes."""
+
+from __future__ import annotations
+
+import logging
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Any
+from warnings import catch_warnings
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rigidsym.data.columns import ColumnNames, counted, names_for
+from rigidsym.data.tables import ArrayTable, Table, TextTable, open_table
+from rigidsym.errors import BodyError, DataError, MissingExtra
+from rigidsym.system.processes import Progress
+
+Array = NDArray[np.float64]
+_EQUAL_PAIR = "The {} two principal moments are equal: all axes normal to the {} are principal."
+_EQUAL = 1e-9  # of the largest moment: closer moments count as equal
+_ROUNDING = 1e-14  # relative to the largest moment: smaller numbers are rounding errors
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class PrincipalAxes:
+    """Moments in ascending order, and their axes."""
+
+    moments: Array  # (3,), kg m²
+    axes: Array  # (3, 3), the columns are unit vectors, right-handed
+
+    @property
+    def repeated(self) -> str:
+        """A sentence on equal moments and the axes they leave free; empty if all differ."""
+        low, middle, high = self.moments
+        slack = _EQUAL * abs(high)
+        if high - low <= slack:
+            return "All principal moments are equal: every axis through the centre is principal."
+        if middle - low <= slack:
+            return _EQUAL_PAIR.format("first", "third")
+        if high - middle <= slack:
+            return _EQUAL_PAIR.format("last", "first")
+        return ""
+
+
+def principal_axes_of(inertia: ArrayLike) -> PrincipalAxes:
+    """The principal axes of an inertia tensor of numbers.
+
+    Parameters
+    ----------
+    inertia : array_like, (3, 3)
+        In kg m².
+
+    Returns
+    -------
+    PrincipalAxes
+        `moments` (3,) in ascending order, and `axes` (3, 3), whose columns are right-handed unit
+        vectors; the largest component of each of the first two is positive.
+
+    Raises
+    ------
+    BodyError
+        For a matrix that is not 3x3, finite and symmetric.
+
+    Examples
+    --------
+    >>> import rigidsym as rs
+    >>> rs.principal_axes_of([[2.0, 1, 0], [1, 2, 0], [0, 0, 5]]).moments.round(12).tolist()
+    [1.0, 3.0, 5.0]
+    """
+    matrix = np.asarray(inertia, dtype=float)
+    if matrix.shape != (3, 3) or not np.isfinite(matrix).all():
+        raise BodyError(f"expected an inertia tensor of 3x3 finite numbers, got {matrix.tolist()}")
+    skew = np.abs(matrix - matrix.T).max()
+    if skew > 1e-12 * np.abs(matrix).max():
+        raise BodyError(f"the inertia tensor is not symmetric: entries differ by {skew:g} kg m²")
+    if not (matrix - np.diag(np.diag(matrix))).any():  # diagonal already
+        order = np.argsort(np.diag(matrix), kind="stable")
+        moments, axes = np.diag(matrix)[order], np.eye(3)[:, order]
+    else:
+        moments, axes = np.linalg.eigh((matrix + matrix.T) / 2)
+    for k in (0, 1):
+        axes[:, k] *= np.sign(axes[np.argmax(np.abs(axes[:, k])), k])
+    axes[:, 2] = np.cross(axes[:, 0], axes[:, 1])
+    return PrincipalAxes(moments=moments, axes=axes)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class MassProperties:
+    """Mass, centre, inertia tensor and principal axes of a body, in SI units."""
+
+    count: int  # particles, or faces of a mesh
+    mass: float  # kg
+    centre: Array  # (3,), m
+    inertia: Array  # (3, 3), about the centre of mass, kg m²
+    principal: PrincipalAxes = field(init=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "principal", principal_axes_of(self.inertia))
+
+    @property
+    def radii(self) -> Array:
+        """Radii of gyration about the principal axes, (3,), m: √(Iₖ/M)."""
+        return np.sqrt(np.maximum(self.principal.moments, 0) / self.mass)
+
+    def text(self, noun: str = "particle") -> str:
+        """A few lines for a terminal; `noun` is particle or face."""
+        return f"{counted(self.count, noun)}\n{self._in_numbers()}"
+
+    def _repr_mimebundle_(self, **_: object) -> dict[str, str]:
+        """The text for Jupyter."""
+        return {"text/plain": self._in_numbers()}
+
+    def _in_numbers(self) -> str:
+        principal = self.principal
+        lines = [
+            f"mass                 M = {_number(self.mass)} kg",
+            f"centre of mass       c = ({_row(self.centre)}) m",
+            "inertia tensor about the centre of mass, kg m²",
+            *_grid(self.inertia),
+            f"principal moments    {_row(principal.moments)} kg m²",
+            "principal axes as columns, right-handed",
+            *_grid(principal.axes),
+            f"radii of gyration    {_row(self.radii)} m",
+        ]
+        return "\n".join([*lines, *([principal.repeated] if principal.repeated else [])])
+
+    def as_table(self) -> dict[str, object]:
+        """The values of [body] in a derivation file, without rounding errors of zeros."""
+
+        def clean(values: Array, scale: float) -> list[float]:
+            return [0 if abs(v) <= scale * _ROUNDING else v for v in values.tolist()]
+
+        scale = float(np.abs(self.inertia).max())
+        size = float(np.abs(self.centre).max()) + (scale / self.mass) ** 0.5
+        return {
+            "inertia": [clean(row, scale) for row in self.inertia],
+            "mass": self.mass,
+            "centre": clean(self.centre, size),
+        }
+
+    def record(self) -> dict[str, Any]:
+        """The properties as plain data."""
+        return {
+            **({"count": self.count} if self.count else {}),
+            "mass": self.mass,
+            "centre_of_mass": self.centre.tolist(),
+            "inertia_tensor": self.inertia.tolist(),
+            "principal_moments": self.principal.moments.tolist(),
+            "principal_axes": self.principal.axes.tolist(),
+            "radii_of_gyration": self.radii.tolist(),
+            "repeated": self.principal.repeated,
+        }
+
+
+def _number(value: float) -> str:
+    return f"{value + 0.0:.15g}"  # −0 + 0 is 0
+
+
+def _row(values: Iterable[float]) -> str:
+    return ", ".join(map(_number, values))
+
+
+def _grid(matrix: Array) -> list[str]:
+    rows = [[f"{entry + 0.0: .12g}" for entry in row] for row in matrix]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return [
+        "  " + "  ".join(e.ljust(width) for e, width in zip(row, widths, strict=True)).rstrip()
+        for row in rows
+    ]
+
+
+# Particles
+
+_AXES = ("x", "y", "z")
+_MASSES = ("m", "mass", "masses")
+_ROWS = 8192  # particles that are summed at once, so that they stay in the cache
+
+
+def inertia_of(
+    particles: Any,
+    *,
+    columns: Sequence[str] | None = None,
+    allow: bool = False,
+    progress: Progress | None = None,
+) -> MassProperties:
+    """Mass, centre of mass, inertia tensor about it and principal axes of point masses.
+
+    Parameters
+    ----------
+    particles : array_like, (n, 4) or (n, 3), data frame, mapping, or path
+        m, x, y, z of each particle, or x, y, z with 1 kg each, in kg and m. Columns with names, as
+        in a data frame or a file (NPY, CSV, Parquet), are found by these, and units in the names
+        are converted. A file is read in one pass, in bounded memory.
+    columns : sequence of str, optional
+        Names of the columns in their order, such as ("x", "y", "z", "m").
+    allow : bool, optional
+        Accept negative masses.
+    progress : callable, optional
+        Called with the share of the particles that have been read.
+
+    Returns
+    -------
+    MassProperties
+        `mass`, `centre` (3,), `inertia` (3, 3) about the centre, and `principal` axes.
+
+    Raises
+    ------
+    BodyError
+        For NaN, a total mass that is not positive, negative masses, and missing columns.
+
+    References
+    ----------
+    T. F. Chan, G. H. Golub, R. J. LeVeque, Updating formulae and a pairwise algorithm for computing
+    sample variances (1979).
+
+    Examples
+    --------
+    >>> import rigidsym as rs
+    >>> dumbbell = rs.inertia_of([[1.0, 0, 0, -1], [1.0, 0, 0, 1]])
+    >>> dumbbell.mass, dumbbell.inertia.diagonal().tolist()
+    (2.0, [2.0, 2.0, 0.0])
+    """
+    path = Path(particles) if isinstance(particles, str | Path) else None
+    if hasattr(particles, "dask"):
+        raise BodyError(
+            "expected an array in memory or the path of a file, got a Dask array; "
+            "to_npy_stack or to_parquet writes one in pieces"
+        )
+    try:
+        table = ArrayTable(particles) if path is None else open_table(path)
+        if isinstance(table, TextTable):
+            table.quotes = False  # it may be another kind of text
+        return _summed(_blocks(table, columns, progress), table, allow=allow)
+    except (BodyError, DataError) as error:
+        if path is None or str(path) in str(error):
+            raise BodyError(str(error)) from None
+        raise BodyError(f"{path}: {error}") from None
+
+
+def _blocks(
+    table: Table, names: Sequence[str] | None, progress: Progress | None
+) -> Iterator[tuple[Array, Array, int]]:
+    """Masses (n,) and positions (3, n), in kg and m, and the row of the first of them."""
+    columns, factors = _columns(table, names)
+    for batch in table.batches(columns, _ROWS):
+        rows = np.ascontiguousarray(batch.table.T, float)  # products of long rows are fastest
+        if (factors != 1).any():
+            rows *= factors[:, None]
+        masses = rows[3] if len(columns) == 4 else np.ones(len(batch.rows))
+        yield masses, rows[:3], int(batch.rows[0])
+        if progress is not None:
+            progress(batch.share)
+
+
+def _columns(table: Table, names: Sequence[str] | None) -> tuple[list[int], Array]:
+    """The columns of x, y, z and perhaps the mass, and what converts them to m and kg.
+
+    Raises BodyError if x, y or z is missing, if no column is the mass but one looks like it,
+    and for units that are not of length and mass.
+    """
+    named = names_for(names, table.width, table.names)
+    if named is None:
+        if table.width not in (3, 4):
+            raise BodyError(
+                f"expected 3 columns (x, y, z) or 4 (m, x, y, z), got {table.width}; --columns "
+                "names them"
+            )
+        named = ("m", *_AXES)[4 - table.width :]
+    header = ColumnNames(named)
+    if not any(map(header.has, (*_AXES, *_MASSES))):  # perhaps not to be shown
+        size = f"{Path(table.source).stat().st_size} bytes" if table.source else "an array"
+        raise BodyError(
+            f"{size} without a column named x, y, z or m; --columns names the columns in order"
+        )
+    axes, mass = [header.find([name]) for name in _AXES], header.find(_MASSES)
+    columns = [column for column in (*axes, mass) if column is not None]
+    others = [name for k, name in enumerate(header.plain) if k not in columns]
+    listed = ", ".join(header.names)
+    if None in axes:
+        missing = _AXES[axes.index(None)]
+        near = get_close_matches(missing, others, n=1)
+        hint = f"did you mean {near[0]}?" if near else "--columns names the columns in order"
+        raise BodyError(f"no column {missing} among {listed}; {hint}")
+    if mass is None and (near := get_close_matches("mass", others, n=1)):
+        raise BodyError(f"no column m or mass among {listed}; is {near[0]} the mass?")
+    units = ("m", "m", "m", "kg")[: len(columns)]
+    factors = [header.factor(c, unit) or 1.0 for c, unit in zip(columns, units, strict=True)]
+    return columns, np.array(factors)
+
+
+def _summed(
+    blocks: Iterable[tuple[Array, Array, int]], table: Table, *, allow: bool
+) -> MassProperties:
+    """All blocks as one body.
+
+    Each block is summed about its own centre of mass, where differences of coordinates are nearly
+    exact however far from the origin the body is. Its sums are then moved to the common centre of
+    mass by the parallel-axis theorem (Chan, Golub and LeVeque 1979).
+    """
+    sums: list[tuple[float, Array, Array, Array]] = []  # m, a, Σ m (x − a), Σ m (x − a)(x − a)ᵀ
+    count = 0
+    for masses, positions, first in blocks:
+        count += len(masses)
+        if not allow and (masses < 0).any():
+            row = int(np.argmax(masses < 0))
+            raise BodyError(
+                f"{_particle(table, first + row)}: the mass is {masses[row]:g} kg; expected a mass "
+                "that is not negative"
+            )
+        with np.errstate(all="ignore"):  # numbers that are not finite are found below
+            about = positions @ masses / masses.sum()
+            if not np.isfinite(about).all():  # no mass, or too much
+                about = positions[:, 0]
+            apart = positions - about[:, None]
+            weighted = apart * masses
+            second = weighted @ apart.T
+            sums.append((masses.sum(), about, weighted.sum(axis=1), second))
+        if not np.isfinite(second).all():
+            raise BodyError(_not_finite(masses, positions, first, table))
+    if not sums:
+        raise BodyError("expected at least one particle, got none")
+    m, about, moments, second = map(np.array, zip(*sums, strict=True))
+    with np.errstate(over="ignore"):
+        mass = float(m.sum())
+    if not 0 < mass < np.inf:
+        raise BodyError(f"the total mass is {mass:g} kg; expected a positive mass")
+    near = about[0]  # differences from it lose nothing if the body is far away
+    centre = near + (m @ (about - near) + moments.sum(axis=0)) / mass
+    apart = about - centre
+    rest = m @ apart + moments.sum(axis=0)  # zero but for rounding
+    mixed = moments.T @ apart
+    second = second.sum(axis=0) + mixed + mixed.T + (apart.T * m) @ apart
+    second -= np.outer(rest, rest / mass)
+    return MassProperties(
+        count=count, mass=mass, centre=centre + rest / mass, inertia=_inertia(second)
+    )
+
+
+def _particle(table: Table, row: int) -> str:
+    """How messages name a particle."""
+    if isinstance(table, TextTable):
+        return f"{table.source}, {table.place(row)}"
+    return f"particle {row}, counted from 0"
+
+
+def _not_finite(masses: Array, positions: Array, first: int, table: Table) -> str:
+    wrong = ~(np.isfinite(masses) & np.isfinite(positions).all(axis=0))
+    if not wrong.any():
+        return f"particles from {first} on: their moments are too large for double precision"
+    row = int(np.argmax(wrong))
+    x, y, z = positions[:, row]
+    return (
+        f"{_particle(table, first + row)}: expected finite numbers, got mass {masses[row]:g} at "
+        f"({x:g}, {y:g}, {z:g})"
+    )
+
+
+def _inertia(second: Array) -> Array:
+    """tr(J) 1 − J for J = Σ m x xᵀ, without adding numbers that cancel."""
+    inertia = -(second + second.T) / 2
+    for k in range(3):
+        inertia[k, k] = second[(k + 1) % 3, (k + 1) % 3] + second[(k + 2) % 3, (k + 2) % 3]
+    return inertia
+
+
+# Meshes
+
+ENDINGS = (".stl", ".obj", ".ply", ".off", ".glb", ".gltf")
+MOST_DRAWN, _MOST_CELLS = 400, 24
+_RELATIVE = re.compile(rb"^f\b(?:[^#\n]*\s)?(-\d+|0)(?=[/\s]|$)", re.MULTILINE)  # of a face of OBJ
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Mesh:
+    """Vertices (n, 3), in m, and triangles (k, 3) of their numbers."""
+
+    vertices: Array
+    faces: NDArray[np.int64]
+
+
+def read_mesh_file(path: Path, *, scale: float = 1.0) -> Mesh:
+    """A mesh from a file; lengths in it times `scale` are metres.
+
+    Raises MissingExtra without trimesh, BodyError for a file that holds no mesh of finite numbers.
+    """
+    trimesh = _trimesh()
+    log = logging.getLogger("trimesh")
+    if not log.handlers:
+        log.addHandler(logging.NullHandler())  # else Python prints tracebacks that trimesh logs
+    if not path.is_file():
+        raise BodyError(f"{path}: no such mesh")
+    if path.suffix.lower() not in ENDINGS:
+        raise BodyError(f"{path}: expected a mesh, a file that ends in {', '.join(ENDINGS)}")
+    if path.suffix.lower() == ".obj":
+        _check_relative(path)
+    try:
+        with np.errstate(all="ignore"), catch_warnings(action="ignore"):
+            loaded = trimesh.load(path, force="mesh", process=False, skip_materials=True)
+            _check_corners(path, np.asarray(loaded.faces), len(loaded.vertices))
+            loaded.process()
+            loaded.merge_vertices(merge_tex=True, merge_norm=True)
+            vertices = np.asarray(loaded.vertices, dtype=float).reshape(-1, 3) * scale
+            faces = np.asarray(loaded.faces, dtype=np.int64).reshape(-1, 3)
+    except ImportError as error:
+        raise MissingExtra(f"reading {path.name} ({error})", "mesh") from None
+    # trimesh trusts the counts and types in a file, so that a damaged one fails anywhere.
+    except (ValueError, TypeError, LookupError, ArithmeticError, RuntimeError) as error:
+        kind, size = path.suffix[1:].upper(), path.stat().st_size
+        raise BodyError(f"{path}: its {size} bytes cannot be read as a mesh in {kind}") from error
+    if not len(faces):
+        raise BodyError(f"{path}: expected a mesh with triangles, found none")
+    if not np.isfinite(vertices).all():
+        wrong = int(np.argmin(np.isfinite(vertices).all(axis=1)))
+        raise BodyError(f"{path}: vertex {wrong} is not finite: {vertices[wrong].tolist()}")
+    return Mesh(vertices=vertices, faces=faces)
+
+
+def _trimesh() -> Any:
+    try:
+        import trimesh
+    except ImportError:
+        raise MissingExtra("meshes", "mesh") from None
+    return trimesh
+
+
+def _check_corners(path: Path, faces: NDArray[np.int64], count: int) -> None:
+    """Raises BodyError for the first triangle with a corner that is none of the vertices.
+
+    NumPy counts negative numbers from the end.
+    """
+    for triangle, corner in np.argwhere((faces < 0) | (faces >= count))[:1]:
+        raise BodyError(
+            f"{path}: triangle {triangle + 1} has the corner {faces[triangle, corner]}; expected "
+            f"0 to {count - 1}, since the file has {count} vertices"
+        )
+
+
+def _check_relative(path: Path) -> None:
+    """Raises BodyError for a corner 0 of an OBJ file, and one that trimesh would misread.
+
+    Negative numbers count from the last vertex before the face; trimesh counts from the last one.
+    """
+    if not _RELATIVE.search(content := path.read_bytes()):
+        return
+    lines = content.split(b"\n")
+    last = max((k for k, line in enumerate(lines) if line.startswith(b"v ")), default=0)
+    for k, line in enumerate(lines):
+        if (corner := _RELATIVE.match(line)) and (corner[1] == b"0" or k < last):
+            expected = "corners from 1 on" if corner[1] == b"0" else "all vertices before this face"
+            raise BodyError(
+                f"{path}: line {k + 1}: the corner {corner[1].decode()}; expected {expected}"
+            )
+
+
+def mesh_inertia(
+    mesh: Mesh, *, mass: float | None = None, density: float | None = None, allow: bool = False
+) -> MassProperties:
+    """Mass, centre, inertia tensor and principal axes of a uniform solid bounded by a mesh.
+
+    `mass` in kg or `density` in kg/m³. Raises BodyError for a surface that is open, whose faces
+    are not oriented alike, or that is inside out; `allow` accepts the first two.
+    """
+    if (mass is None) == (density is None):
+        raise BodyError("mesh: expected either the mass or the density")
+    for what, value, unit in (("mass", mass, "kg"), ("density", density, "kg/m³")):
+        if value is not None and not (np.isfinite(value) and value > 0):
+            raise BodyError(f"mesh: the {what} is {value:g} {unit}; expected a positive number")
+    if not allow:
+        check_closed(mesh)
+    # Integrals of x² about the origin lose all digits of a body that is far from it.
+    inside = mesh.vertices.mean(axis=0)
+    triangles = (mesh.vertices - inside)[mesh.faces]
+    with np.errstate(all="ignore"):  # numbers that are too large are looked for below
+        solid = _trimesh().triangles.mass_properties(triangles, density=1.0)
+        volume = float(solid.volume)
+        if volume <= 0:
+            raise BodyError(
+                f"mesh: the surface is inside out: its volume is {volume:.6g} m³; flip its faces"
+                if volume
+                else "mesh: its volume is zero"
+            )
+        factor = np.float64(mass) / volume if density is None else density
+        inertia = np.asarray(solid.inertia) * factor
+    if not np.isfinite(inertia).all():
+        raise BodyError("mesh: its moments are too large or too small for double precision")
+    return MassProperties(
+        count=len(mesh.faces),
+        mass=float(volume * factor),
+        centre=inside + np.asarray(solid.center_mass),
+        inertia=(inertia + inertia.T) / 2,
+    )
+
+
+def outline_of(mesh: Mesh) -> dict[str, list[list[float]] | list[list[int]]]:
+    """Corners, in m, and at most MOST_DRAWN faces that show what the mesh looks like.
+
+    The vertices of a finer mesh are merged in cells of a grid (Rossignac and Borrel, 1993).
+    """
+    vertices, faces = mesh.vertices, mesh.faces
+    low, size = vertices.min(axis=0), float(np.ptp(vertices, axis=0).max())
+    cells = _MOST_CELLS
+    while len(faces) > MOST_DRAWN:
+        places = np.floor((mesh.vertices - low) * (cells / size))
+        _, cell, count = np.unique(places, axis=0, return_inverse=True, return_counts=True)
+        cell = cell.ravel()
+        merged = cell[mesh.faces]
+        merged = merged[(merged != np.roll(merged, 1, axis=1)).all(axis=1)]
+        first = merged.argmin(axis=1)[:, None]  # each triangle from its least corner
+        faces = np.unique(np.take_along_axis(merged, (first + np.arange(3)) % 3, axis=1), axis=0)
+        sums = [np.bincount(cell, weights=column) for column in mesh.vertices.T]
+        vertices = np.stack(sums, axis=1) / count[:, None]
+        cells -= 1
+    corners = [[float(f"{x:.4g}") for x in vertex] for vertex in vertices.tolist()]
+    return {"corners": corners, "faces": faces.tolist()}
+
+
+def check_closed(mesh: Mesh) -> None:
+    """Raises BodyError, with an edge, unless every edge joins two faces of one orientation."""
+    faces = mesh.faces
+    edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    count = len(mesh.vertices)
+    forward, backward = edges @ (count, 1), edges @ (1, count)
+    directed, times = np.unique(forward, return_counts=True)
+    if times.max() > 1:
+        edge = int(directed[np.argmax(times)])
+        raise BodyError(
+            f"mesh: some faces are turned over: {int((times > 1).sum())} edges have the same "
+            f"direction in both of their faces, such as {_edge(edge, mesh)}"
+        )
+    open_edges = np.setdiff1d(backward, directed)
+    if len(open_edges):
+        raise BodyError(
+            f"mesh: the surface is open: {len(open_edges)} edges have only one face, such as "
+            f"{_edge(int(open_edges[0]), mesh)}"
+        )
+
+
+def _edge(code: int, mesh: Mesh) -> str:
+    start, end = divmod(code, len(mesh.vertices))
+    places = (", ".join(f"{x:.6g}" for x in mesh.vertices[k]) for k in (start, end))
+    return " to ".join(f"({place})" for place in places)

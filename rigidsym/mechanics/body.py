@@ -1,0 +1,410 @@
+"""A body whose orientation a rotation model describes: its mass, inertia, energy and momentum.
+
+The workspace of the entries in `quantities.mass` and `quantities.energy`. Of the body only the mass
+and the inertia tensor are used; sums over its particles follow from them (`mechanics.particles`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import replace
+from functools import cache, cached_property, partial
+
+import sympy as sp
+from sympy.polys.rings import PolyElement
+
+from rigidsym.algebra.codec import Codec, codec_for
+from rigidsym.algebra.matrix import RingMatrix, hat
+from rigidsym.algebra.present import Rationals, agrees, half_form, half_of_squares, shortest_of
+from rigidsym.algebra.witness import Example
+from rigidsym.errors import QuantityError
+from rigidsym.mechanics import particles
+from rigidsym.mechanics.derivation import OfBody, Step
+from rigidsym.mechanics.dynamics.derive import equations_of_motion
+from rigidsym.mechanics.kinematics.chain import Chain
+from rigidsym.mechanics.kinematics.workspace import Values
+from rigidsym.mechanics.mass.bodies import rigid_body
+from rigidsym.mechanics.mass.moments import Moments, about_centre, moments_of
+from rigidsym.mechanics.mass.principal import Principal, principal_of
+from rigidsym.mechanics.prove import Prover
+from rigidsym.mechanics.quantities.dynamics import FLOW_QUANTITIES
+from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
+from rigidsym.mechanics.quantities.kinematics import KINEMATICS
+from rigidsym.mechanics.quantities.mass import BODY_ALONE, INERTIA_QUANTITIES
+from rigidsym.mechanics.quantities.table import DIRECTION, POINT
+from rigidsym.models.body import (
+    BodyDescription,
+    Composite,
+    Distribution,
+    Known,
+    Particles,
+    RigidBody,
+)
+from rigidsym.models.forces import Forces
+from rigidsym.models.parametrisations import DirectionCosines
+from rigidsym.models.rotation import RotationModel
+
+_MOST_TERMS = 60  # of a component that is worth being presented multiplied out
+_ONE = sp.eye(3)
+
+
+class BodyValues(Values):
+    """A body in one rotation, over the ring of both."""
+
+    def __init__(self, model: RotationModel, body: RigidBody, *, has_fixed_point: bool) -> None:
+        super().__init__(model, body, also=particles.SYMBOLS)
+        self.body: RigidBody = body
+        self._has_fixed_point = has_fixed_point
+
+    @cached_property
+    def traits(self) -> frozenset[str]:
+        traits = {
+            "distributed": self.is_distributed,
+            "particles": isinstance(self.body.distribution, Particles),
+            "composite": isinstance(self.body.distribution, Composite),
+            "fixed_point": self._has_fixed_point,
+        }
+        return super().traits | {trait for trait, holds in traits.items() if holds}
+
+    # The body by itself, in its constants
+
+    @property
+    def is_distributed(self) -> bool:
+        """Whether the distribution of the mass is known, and not only the tensor."""
+        return self.body.distribution is not None
+
+    @property
+    def conditions(self) -> tuple[tuple[sp.Expr, ...], Example]:
+        whole = self.body.distribution
+        return (whole.conditions, whole.example) if isinstance(whole, Composite) else ((), ())
+
+    @cached_property
+    def moments(self) -> Moments:
+        """The moments of the distribution, or equivalent ones if only the tensor is given."""
+        body = self.body
+        known = Known(mass=body.mass, centre=body.centre, inertia=body.inertia)
+        return moments_of(body.distribution or known)
+
+    @staticmethod
+    def steiner(mass: sp.Expr, by: sp.MatrixBase) -> sp.Matrix:
+        """M (|d|² 1 − d dᵀ)."""
+        return mass * (by.dot(by) * _ONE - by * by.T)
+
+    def inertia_of_parts(self) -> sp.Matrix:
+        """Σ (R I R ᵀ + m (|d|² 1 − d dᵀ)), a hole with a minus sign."""
+        assert isinstance(self.body.distribution, Composite)
+        total = sp.zeros(3)
+        for part in self.body.distribution.parts:
+            mass, centre, own = about_centre(part)
+            total += part.turned * own * part.turned.T
+            total += self.steiner(mass, centre - self.body.centre)
+        return total
+
+    @cached_property
+    def point(self) -> sp.Matrix:
+        return sp.Matrix(POINT)
+
+    @cached_property
+    def direction(self) -> sp.Matrix:
+        return sp.Matrix(DIRECTION)
+
+    @cached_property
+    def second_about_point(self) -> sp.Matrix:
+        """∫ (x − p)(x − p)ᵀ dm."""
+        m, p = self.moments, self.point
+        return m.second - m.first * p.T - p * m.first.T + m.mass * p * p.T
+
+    def shifted_inertia(self) -> sp.ImmutableMatrix:
+        """I′ + M (|d|² 1 − d dᵀ), each entry as short as it can be written."""
+        body, d = self.body, self.point - self.body.centre
+
+        def shifted(i: int, j: int) -> sp.Expr:
+            if i != j:
+                return body.inertia[i, j] - body.mass * d[i] * d[j]
+            return body.inertia[i, i] + body.mass * sum(d[k] ** 2 for k in range(3) if k != i)
+
+        return sp.ImmutableMatrix(3, 3, shifted)
+
+    def moment_about_line(self) -> sp.Expr:
+        """nᵀ I′ n + M |n × (p − c)|²."""
+        n, body = self.direction, self.body
+        squares: dict[sp.Expr, sp.Expr] = {}  # by entry, since equal ones have a factor in common
+        for k, entry in enumerate(body.inertia.diagonal()):
+            squares[entry] = squares.get(entry, sp.S.Zero) + n[k] ** 2
+        about_centre = sp.Add(
+            *(entry * square for entry, square in squares.items()),
+            *(2 * body.inertia[i, j] * n[i] * n[j] for i in range(3) for j in range(i + 1, 3)),
+        )
+        crossed = n.cross(self.point - body.centre)
+        return about_centre + body.mass * crossed.dot(crossed)
+
+    @cached_property
+    def diagonal(self) -> sp.Matrix:
+        return sp.Matrix(self.body.inertia.diagonal()).reshape(3, 1)
+
+    @cached_property
+    def radii(self) -> sp.ImmutableMatrix:
+        """√(I_jj/M)."""
+        field = Rationals([*self.diagonal, self.body.mass])
+        inverse = field.read(self.body.mass).inverse()
+        squares = [field.write(field.read(moment) * inverse) for moment in self.diagonal]
+        return sp.ImmutableMatrix([self._root(square) for square in squares])
+
+    @cached_property
+    def principal(self) -> Principal | None:
+        return principal_of(self.body.inertia)
+
+    @cached_property
+    def semi_axes(self) -> sp.ImmutableMatrix | None:
+        """1/√I_k; None if a principal moment is not known, or is 0."""
+        if self.principal is None or any(moment == 0 for moment in self.principal.moments):
+            return None
+        return sp.ImmutableMatrix([1 / self._root(moment) for moment in self.principal.moments])
+
+    def _root(self, square: sp.Expr) -> sp.Expr:
+        """The square root, in which √(a²) is a for a parameter that is positive."""
+        positive = {
+            p.symbol: sp.Symbol(p.symbol.name, positive=True)
+            for p in self.body.parameters
+            if p.positive
+        }
+        back = {new: old for old, new in positive.items()}
+        return sp.sqrt(square.xreplace(positive)).xreplace(back)
+
+    @staticmethod
+    def volume(columns: sp.MatrixBase) -> sp.Expr:
+        """The determinant of a matrix (3, 3); SymPy's own would search for zeros in it."""
+        first, second, third = (columns[:, k] for k in range(3))
+        return first.dot(second.cross(third))
+
+    # The body in its rotation, over the ring
+
+    @cached_property
+    def inertia(self) -> RingMatrix:
+        return self.codec.matrix(self.body.inertia)
+
+    @cached_property
+    def inertia_space(self) -> RingMatrix:
+        """R I′ Rᵀ."""
+        return self.rotation @ (self.inertia @ self.rotation.T)
+
+    def trace(self, matrix: RingMatrix) -> PolyElement:
+        return sum((matrix[k, k] for k in range(3)), self.codec.ring.zero)
+
+    @cached_property
+    def mass(self) -> PolyElement:
+        return self.codec.encode(self.body.mass)
+
+    @cached_property
+    def centre(self) -> RingMatrix:
+        return self.argument("centre")
+
+    @cached_property
+    def velocity(self) -> RingMatrix:
+        """Of the centre of mass."""
+        return self.argument("centre_dot")
+
+    @cached_property
+    def back(self) -> RingMatrix:
+        """RᵀΩ, for Ωᵀ (R I′ Rᵀ) Ω from the outside inwards."""
+        return self.rotation.T @ self.omega_space
+
+    @cached_property
+    def x(self) -> RingMatrix:
+        """The place x = R x′ of the generic particle, from the centre of mass."""
+        return self.rotation @ self.codec.column(particles.IN_BODY)
+
+    @cached_property
+    def x_dot(self) -> RingMatrix:
+        return self.rotation_rate @ self.codec.column(particles.IN_BODY)
+
+    def sum(self, summand: RingMatrix) -> RingMatrix:
+        """Σ m of a summand."""
+        return self._sums.of_matrix(summand.scale(self.codec.encode(particles.MASS)))
+
+    @cached_property
+    def _sums(self) -> particles.ParticleSums:
+        return particles.sums_of_body(self.codec, self.body.mass, self.body.inertia)
+
+    @staticmethod
+    def square(vector: RingMatrix) -> RingMatrix:
+        return vector.T @ vector
+
+    def half_of_squares(self, vector: RingMatrix) -> sp.Expr:
+        """½ M |v|², in the shortest form."""
+        return half_of_squares(self.present, self.mass, vector.entries)
+
+    def half_form(self, vector: RingMatrix) -> sp.Expr:
+        """½ vᵀ I′ v, the squares kept."""
+        return half_form(self.present, self.inertia, vector)
+
+    def read(self, value: sp.Expr | sp.MatrixBase) -> RingMatrix:
+        """A value as it is printed, over the ring."""
+        return self.codec.matrix(value if isinstance(value, sp.MatrixBase) else sp.Matrix([value]))
+
+    @cached_property
+    def twice_rotational(self) -> RingMatrix:
+        return self.omega_body.T @ self.momentum_body
+
+    @cached_property
+    def momentum_of_centre(self) -> RingMatrix:
+        return self.centre.cross(self.velocity).scale(self.mass)
+
+    @cached_property
+    def momentum_body(self) -> RingMatrix:
+        """I′Ω′."""
+        return self.inertia @ self.omega_body
+
+    @cached_property
+    def momentum(self) -> RingMatrix:
+        """L_R = R I′Ω′."""
+        return self.rotation @ self.momentum_body
+
+    # The angular momentum in forms that people read: by the moments, not multiplied out
+
+    @cached_property
+    def momentum_form_body(self) -> sp.ImmutableMatrix:
+        """I′Ω′, (3, 1): each moment times its component."""
+        return self._shortest([self._moments_times_velocity(self.inertia)], self.momentum_body)
+
+    @cached_property
+    def momentum_form(self) -> sp.ImmutableMatrix:
+        """R I′Ω′: multiplied out, row by row, or as b Ω + R (I′ − b 1) Ω′ for a moment b."""
+        momentum, element = self.momentum, self.present.element
+        forms = [self._rotated(list(self.momentum_form_body))]
+        if max(map(len, momentum.entries)) <= _MOST_TERMS:
+            forms.append([element(entry) for entry in momentum.entries])
+        along = [element(entry) for entry in self.omega_space.entries]
+        for moment in dict.fromkeys(self.inertia[k, k] for k in range(3)):
+            rest = self._rotated(
+                self._moments_times_velocity(self.inertia - self.one.scale(moment))
+            )
+            base = element(moment)
+            forms.append([base * w + more for w, more in zip(along, rest, strict=True)])
+        return self._shortest(forms, momentum)
+
+    def _moments_times_velocity(self, moments: RingMatrix) -> list[sp.Expr]:
+        element, omega = self.present.element, self.omega_body.entries
+        pairs = (zip(row, omega, strict=True) for row in moments.rows)
+        return [sp.Add(*(element(a) * element(w) for a, w in row if a)) for row in pairs]
+
+    def _rotated(self, column: list[sp.Expr]) -> list[sp.Expr]:
+        pairs = (zip(row, column, strict=True) for row in self.rotation.rows)
+        return [sp.Add(*(self.present.element(r) * c for r, c in row if r)) for row in pairs]
+
+    def _shortest(self, forms: list[list[sp.Expr]], momentum: RingMatrix) -> sp.ImmutableMatrix:
+        """The shortest form that the ring knows to be equal.
+
+        Where constraints bind the coordinates, b Ω may be equal and the ring unable to tell.
+        """
+        is_equal = partial(agrees, self.present)
+        return shortest_of([f for f in forms if all(map(is_equal, f, momentum.entries))])
+
+
+class NamedRotation(BodyValues):
+    """A body whose rotation is known by names for R and Ω′.
+
+    Of these only R Rᵀ = 1, det R = 1, Ω = R Ω′ and dR/dt = R C(Ω′) are used, which the derivation
+    of a chain of turns proves.
+    """
+
+    velocity_names = sp.symbols("omega_body_1:4")
+
+    @staticmethod
+    @cache
+    def names() -> RotationModel:
+        """The nine entries of R by name."""
+        return DirectionCosines([f"R_{row}{column}" for row in (1, 2, 3) for column in (1, 2, 3)])
+
+    @cached_property
+    def codec(self) -> Codec:
+        moving = [*self.arguments["centre"].symbols, *self.arguments["centre_dot"].symbols]
+        inputs = [*self.names().matrix, *self.velocity_names, *moving]
+        inputs += [self.body.mass, *self.body.inertia, sp.Rational(1, 2), *self._also]
+        return codec_for(inputs, order=1)
+
+    @cached_property
+    def prove(self) -> Prover:
+        return Prover(self.names(), self.codec)
+
+    @cached_property
+    def rotation(self) -> RingMatrix:
+        return self.codec.matrix(self.names().matrix)
+
+    @cached_property
+    def rotation_rate(self) -> RingMatrix:
+        return self.rotation @ hat(self.omega_body)
+
+    @cached_property
+    def omega_space(self) -> RingMatrix:
+        return self.rotation @ self.omega_body
+
+    @cached_property
+    def omega_body(self) -> RingMatrix:
+        return self.codec.column(self.velocity_names)
+
+    def renamed(self, step: Step, chain: Chain) -> Step:
+        """The step with R and Ω′ as a chain names them, and proves them to be."""
+        names = dict(zip(self.names().matrix, chain.partial[-1], strict=True))
+        names |= dict(zip(self.velocity_names, chain.omega_body, strict=True))
+        if not step.expression.has(*names):
+            return step
+        rests_on = (KINEMATICS["rotation_matrix"], KINEMATICS["angular_velocity_body"])
+        proofs = [p for q in rests_on for p in chain.proofs(q.presented(chain.traits))]
+        expression = sp.ImmutableMatrix(step.expression.xreplace(names))
+        return replace(step, expression=expression, proofs=(*step.proofs, *proofs))
+
+
+def steps_of_body(
+    model: RotationModel,
+    body: RigidBody | BodyDescription | Distribution,
+    forces: Forces | None,
+    only: Collection[str],
+    chain: Chain | None,
+) -> OfBody:
+    """The body, integrated, with the steps to its quantities.
+
+    With a `chain`, R and Ω′ are those that it names.
+    """
+    whole = rigid_body(body)
+    if forces is not None:
+        forces = forces.in_symbols_of(whole)
+        whole = forces.with_parameters(whole, model)
+    table = {**INERTIA_QUANTITIES, **ENERGY_QUANTITIES}
+    is_fixed = (
+        forces is not None
+        and forces.fix_a_point
+        and whole.distribution is None
+        and not any(table[name].of_centre for name in only if name in table)
+    )
+    wanted = only or {name for name, q in table.items() if not (is_fixed and q.of_centre)}
+    values = (NamedRotation if chain else BodyValues)(model, whole, has_fixed_point=is_fixed)
+    steps = [step for n, q in table.items() if n in wanted and (step := values.step(q))]
+    if BODY_ALONE not in only:
+        _check_absent({step.quantity.name for step in steps}, only, whole)
+    if isinstance(values, NamedRotation) and chain:
+        steps = [values.renamed(step, chain) for step in steps]
+    if forces is None:
+        return OfBody(values.arguments, steps, whole)
+    motion = equations_of_motion(model, whole, forces)
+    steps += motion.steps(tuple(only))
+    asks = not only or not {*only}.isdisjoint(FLOW_QUANTITIES)
+    functions = motion.functions() if asks else {}
+    follows = not only or "effective_potential" in only
+    return OfBody(
+        arguments={**values.arguments, **{a.name: a for a in motion.added}},
+        steps=steps,
+        body=whole,
+        forces=forces,
+        functions={n: f for n, f in functions.items() if not only or n in only},
+        first_integrals=motion.first_integrals,
+        consequences=tuple(motion.consequences()) if follows else (),
+    )
+
+
+def _check_absent(found: Collection[str], only: Collection[str], body: RigidBody) -> None:
+    """Raises QuantityError for quantities that were asked for by name and that the body lacks."""
+    absent = [q for n, q in INERTIA_QUANTITIES.items() if n in only and n not in found]
+    if absent:
+        reasons = (f"no quantity {quantity.name}: {quantity.without}" for quantity in absent)
+        raise QuantityError(f"{body.name} has {'; '.join(reasons)}")

@@ -1,0 +1,248 @@
+"""Singular orientations: where the rate matrix loses rank, the axis lost, the null rates.
+
+Of a long chain of turns they are found in time linear in their number. The columns of the rate
+matrix are the axes of the turns; it loses rank if all of them are in one plane. The axes of
+neighbouring turns always span a plane. So all axes are in one plane if and only if every three
+neighbours are, and their triple product depends only on the angle of the middle turn.
+"""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Iterator, Sequence
+from functools import reduce
+from itertools import pairwise, product
+
+import sympy as sp
+
+from rigidsym.algebra.codec import codec_for
+from rigidsym.algebra.generators import is_identically_zero
+from rigidsym.algebra.matrix import RingMatrix, primitive
+from rigidsym.algebra.present import presenter_for
+from rigidsym.algebra.stable_forms import at_zero, rewriter_for
+from rigidsym.algebra.zeros import FallingRank, Stratum, matrix_at, solver_for
+from rigidsym.mechanics.derivation import Measure, Place, Singularities, Singularity
+from rigidsym.mechanics.kinematics.chain import Chain
+from rigidsym.mechanics.kinematics.workspace import Values
+
+
+def singularities_of(values: Values) -> Singularities:
+    """The places where the rates that a model allows give fewer directions of Ω than elsewhere.
+
+    These are the common zeros of the minors of the rate matrix, solved where `Solver` can; else
+    the minors are reported and nothing is guessed.
+    """
+    if values.model.pullback is not None:
+        inverse = values.inverse("space")
+        if inverse is not None and inverse[1].is_ground:
+            # W G = 1 with a G that holds no divisor: the rank is 3 wherever the coordinates may be
+            return Singularities(
+                rank=3, measure="det W Wᵀ", determinant=None, minors=(), points=(), is_solved=True
+            )
+    study = _Study(values)
+    found = study.singularities()
+    missing = study.falling.solver.missing
+    if found.is_solved or not missing:
+        return found
+    return _Study(Values(values.model, also=missing)).singularities()
+
+
+class _Study:
+    """The rank of the rate matrix of one model."""
+
+    def __init__(self, values: Values) -> None:
+        model, codec, bound = values.model, values.codec, values.bound
+        self.present = presenter_for(codec)
+        self.coordinates = values.arguments["q"].symbols
+        # rank, kernel and minors are the same in every frame: between the middle ones of the turns
+        # each axis has been moved by few turns, and W is shortest
+        matrices = [turn.matrix for turn in model.turns[: len(model.turns) // 2]]
+        rotation, rates = values.rotation, values.rate_matrix("space")
+        one = RingMatrix.identity(codec.ring, 3)
+        self.to_space = reduce(operator.matmul, map(codec.matrix, matrices), one)
+        self.to_body = rotation.T @ self.to_space
+        here = self.to_space.T @ rates
+        self.whole = RingMatrix(codec.ring, (*here.rows, *(bound.rows if bound else ())))
+        self.falling = FallingRank(
+            codec,
+            self.coordinates,
+            self.whole,
+            bound=bound,
+            constraints=model.constraints,
+            example=model.example,
+        )
+
+    def singularities(self) -> Singularities:
+        found, rows, columns = self.falling, len(self.whole.rows), len(self.whole.rows[0])
+        rank, minors = found.rank - found.bound_rank, found.minors
+        measure = _measure(rows, columns, found.rank)
+        points = list(map(self._point, found.strata))
+        if rank < min(3, len(self.coordinates) - found.bound_rank):
+            points.insert(0, self._point(Stratum((), self.whole, found.rank)))
+        is_one = found.rank == rows == columns
+        squares = minors[0] if is_one else found.sum_of_squares(minors)
+        determinant = self.present.element(squares)
+        shown = list(map(self.present.element, minors))
+        is_solved = found.is_solved
+        if any(place.is_length for point in points for place in point.places):
+            is_solved = is_solved and self._is_regular_at_zero(shown)
+        return Singularities(
+            rank=rank,
+            measure=measure,
+            determinant=determinant,
+            minors=tuple(shown),
+            points=tuple(points),
+            is_solved=is_solved,
+        )
+
+    def _is_regular_at_zero(self, minors: Sequence[sp.Expr]) -> bool:
+        """Whether a minor is not zero at zero coordinates, by its form in Stumpff functions."""
+        rewriter = rewriter_for(self.falling.codec)
+        forms = (rewriter.rewritten(minor) for minor in minors) if rewriter else ()
+        return any(form is not None and bool(at_zero(form) != 0) for form in forms)
+
+    def _point(self, stratum: Stratum) -> Singularity:
+        zero, there, full = stratum
+        places = tuple(root.place for root in zero)
+        rank, axis = full - self.falling.bound_rank, None
+        if rank == 2:  # the direction that no rates give
+            axis = there.T.kernel(full).T.rows[0]
+        elif rank == 1:  # the direction of all that the allowed rates give
+            reached = RingMatrix(there.ring, there.rows[:3])
+            if self.falling.bound_rank:
+                bound = RingMatrix(there.ring, there.rows[3:])
+                reached = reached @ bound.kernel(self.falling.bound_rank)
+            axis = next(row for row in reached.T.rows if any(row))
+        in_space = in_body = None
+        if axis is not None:
+            ring, column = there.ring, RingMatrix.column
+            here = column(ring, axis[:3])
+            space, body = (
+                matrix_at(self.to_space, zero) @ here,
+                matrix_at(self.to_body, zero) @ here,
+            )
+            entries = primitive(ring, (*space.entries, *body.entries))
+            in_space = self.present.matrix(column(ring, entries[:3]))
+            in_body = self.present.matrix(column(ring, entries[3:]))
+        return Singularity(
+            places=places,
+            rank=rank,
+            lost_axis_space=in_space if rank == 2 else None,
+            lost_axis_body=in_body if rank == 2 else None,
+            null_rates=self.present.matrix(there.kernel(full)),
+            reachable_axis=in_space if rank == 1 else None,
+        )
+
+
+def _measure(rows: int, columns: int, rank: int) -> Measure:
+    if rows == columns == rank:
+        return "det W" if rows == 3 else "det [W, J]"
+    if rows == rank == 3:
+        return "det W Wᵀ"
+    return "det Wᵀ W" if columns == rank and rows == 3 else "minors"
+
+
+# Long chains of turns
+
+
+_MOST_POINTS = 8  # that are listed
+
+
+def margin_of(chain: Chain) -> Singularities:
+    """The determinant of W Wᵀ, in the names of the chain; where it vanishes is not solved for."""
+    rows = chain.orthogonal_rows("space")
+    determinant = sp.Mul(*rows.squares) if rows else None
+    return Singularities(
+        rank=3 if rows else min(2, len(chain.model.coordinates)),
+        measure="det W Wᵀ" if rows else "minors",
+        determinant=None,  # a name of the chain, which says nothing by itself
+        minors=() if determinant is None else (sp.sqrt(determinant),),
+        points=(),
+        is_solved=False,
+    )
+
+
+def planes_of_axes(chain: Chain, minors: Sequence[sp.Expr]) -> Singularities | None:
+    """Where all axes of a chain lie in one plane; None if that was not decided.
+
+    `minors` measure how far an orientation is from a singular one.
+    """
+    if tuple(chain.angles) != chain.model.coordinates or not _all_span_planes(chain.axes):
+        return None
+    choices: list[list[Place]] = []
+    for k in range(1, chain.count - 1):
+        places = _flat(chain, k)
+        if places is None:
+            return None
+        choices.append(places)
+    points = list(product(*choices))
+    if len(points) > _MOST_POINTS:
+        return None
+    return Singularities(
+        rank=3,
+        measure="det W Wᵀ",
+        determinant=None,
+        minors=tuple(minors),
+        points=tuple(_point(chain, places) for places in points),
+        is_solved=True,
+    )
+
+
+def _all_span_planes(axes: Sequence[sp.ImmutableMatrix]) -> bool:
+    """Whether neighbours are certainly not parallel."""
+    crossed = [first.cross(second) for first, second in pairwise(axes)]
+    return all(
+        normal.is_constant() and any(not is_identically_zero(entry) for entry in normal)
+        for normal in crossed
+    )
+
+
+def _flat(chain: Chain, k: int) -> list[Place] | None:
+    """The angles of turn k at which its axis and those of its neighbours lie in one plane."""
+    before, axis, after = chain.axes[k - 1 : k + 2]
+    codec = codec_for([*chain.plain[k], *before, *axis, *after], order=0)
+    triple = codec.encode(before.dot(axis.cross(chain.plain[k] * after)))
+    zeros, is_complete = solver_for(codec, (chain.angles[k],)).common([triple])
+    return _by_half_turns([root.place for (root,) in zeros]) if is_complete else None
+
+
+def _by_half_turns(places: Sequence[Place]) -> list[Place]:
+    """Two angles half a turn apart as one, modulo π."""
+    if len(places) == 2 and abs(places[0].value - places[1].value) == sp.pi:
+        value = next(p.value for p in places if -sp.pi / 2 < p.value <= sp.pi / 2)
+        return [Place(coordinate=places[0].coordinate, value=value, period=sp.pi)]
+    return list(places)
+
+
+def _point(chain: Chain, places: tuple[Place, ...]) -> Singularity:
+    first, second = chain.axes[:2]
+    in_space = in_body = first.cross(second)
+    values = {place.coordinate: place.value for place in places}
+    for turn in chain.plain[1:-1]:
+        in_body = turn.subs(values).T * in_body
+    return Singularity(
+        places=places,
+        rank=2,
+        lost_axis_space=_short(chain.plain[0] * in_space),
+        lost_axis_body=_short(chain.plain[-1].T * in_body),
+        null_rates=sp.ImmutableMatrix(sp.Matrix.hstack(*_null_rates(chain))),
+    )
+
+
+def _null_rates(chain: Chain) -> Iterator[sp.Matrix]:
+    """Rates of three neighbours that leave the body at rest if their axes are in one plane."""
+    for k in range(chain.count - 2):
+        u, v, after = chain.axes[k : k + 3]
+        w = chain.plain[k + 1] * after
+        square = u.dot(u) * v.dot(v) - u.dot(v) ** 2
+        column = sp.zeros(chain.count, 1)
+        column[k] = (w.dot(v) * u.dot(v) - w.dot(u) * v.dot(v)) / square
+        column[k + 1] = (w.dot(u) * u.dot(v) - w.dot(v) * u.dot(u)) / square
+        column[k + 2] = 1
+        yield _short(column)
+
+
+def _short(matrix: sp.MatrixBase) -> sp.ImmutableMatrix:
+    codec = codec_for(matrix, order=0)
+    entries = [presenter_for(codec).quotient(codec.encode_quotient(entry)) for entry in matrix]
+    return sp.ImmutableMatrix(*matrix.shape, entries)

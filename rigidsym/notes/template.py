@@ -1,0 +1,190 @@
+r"""What a note says, by templates: facts and Markdown with Jinja make the blocks of a document.
+
+A template prints facts by `{{ }}`: formulas, expressions of SymPy, the user's own texts, equations,
+tables and figures. Each leaves a mark in the Markdown, a letter of the private use area, so that
+nothing in it is read as Markdown. Formulas are also typed between dollar signs, as in LaTeX, where
+they may hold facts; `$$` begins and ends a display, and `\qquad` parts equations that may share a
+line. Paragraphs, headings, **strong words**, `code` and tables are those of Markdown.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from contextvars import ContextVar
+from itertools import groupby
+from typing import Any, NamedTuple
+
+import sympy as sp
+from jinja2 import TemplateRuntimeError, Undefined, pass_context
+from jinja2.runtime import Context
+from markupsafe import Markup
+
+from rigidsym.formula.letters import Letters
+from rigidsym.formula.reader import formula, text_of
+from rigidsym.formula.scalars import formula_of
+from rigidsym.formula.tree import Formula
+from rigidsym.notes.document.document import (
+    Code,
+    CodeBlock,
+    Equation,
+    EquationRow,
+    Figure,
+    NoteBlock,
+    NoteTable,
+    Paragraph,
+    Section,
+    Span,
+    Strong,
+    Text,
+)
+from rigidsym.system import resources
+
+_FIRST = 0xE000  # of the private use area, whose letters no font has
+_MARK = "[\ue000-\uf8ff]"
+_INLINE = re.compile(
+    rf"\$(?P<math>[^$]+)\$|\*\*(?P<strong>.+?)\*\*|`(?P<code>[^`]+)`|(?P<mark>{_MARK})"
+)
+_MARKUP = re.compile(rf"[$*`|#&\n]|{_MARK}")  # what would be read as Markdown, or as a mark
+_TABLE = "Table:"
+_BLOCKS = (Paragraph, Equation, EquationRow, NoteTable, CodeBlock, Figure, list)
+
+
+class _Marks(NamedTuple):
+    """What the marks of one text stand for, in the order in which they were printed."""
+
+    letters: Letters
+    things: list[Any]
+
+
+_MARKS: ContextVar[_Marks] = ContextVar("marks")
+
+
+@pass_context  # or Jinja would print constants once, when it compiles the template
+def _printed(_: Context, value: Any) -> Markup:
+    if isinstance(value, Markup):  # of a macro
+        return value
+    if isinstance(value, Undefined):
+        return Markup(str(value))  # raises
+    if value is None:
+        raise TemplateRuntimeError("this fact is None here; ask for it first, {% if ... %}")
+    if isinstance(value, int | str) and not _MARKUP.search(str(value)):
+        return Markup(str(value))
+    marks = _MARKS.get()
+    if isinstance(value, sp.Basic):
+        value = formula_of(value, marks.letters)
+    elif type(value) is tuple and value and isinstance(value[0], _BLOCKS):
+        value = [*value]  # blocks; other tuples are texts
+    marks.things.append(value)
+    return Markup(chr(_FIRST + len(marks.things) - 1))
+
+
+def sections_of(name: str, letters: Letters, **facts: Any) -> Iterator[Section]:
+    """The sections of a template: first what comes before any heading, with an empty title.
+
+    Raises TemplateFault, with the template and its line, for a fact that there is not.
+    """
+    marks = _Marks(letters, [])
+    token = _MARKS.set(marks)
+    try:
+        environment = resources.environment(autoescape=True, finalize=_printed)
+        markdown = environment.get_template(f"{name}.md.jinja").render(facts)
+    finally:
+        _MARKS.reset(token)
+    section = Section("", ())
+    blocks: list[NoteBlock] = []
+    for chunk in re.split(r"\n\s*\n", markdown.strip("\n")):
+        heading, _, rest = chunk.partition("\n") if chunk.startswith("#") else ("", "", chunk)
+        if heading:
+            yield section._replace(blocks=tuple(blocks))
+            words, page, _ = heading.partition("{page}")
+            title = text_of(_text(words.strip("# "), marks.things))
+            section, blocks = Section(title, (), on_own_page=bool(page)), []
+        if rest.strip():
+            blocks += _blocks(rest.strip(), marks.things)
+    yield section._replace(blocks=tuple(blocks))
+
+
+def blocks_of(name: str, letters: Letters, **facts: Any) -> tuple[NoteBlock, ...]:
+    """The blocks of a template without headings."""
+    (section,) = sections_of(name, letters, **facts)
+    return section.blocks
+
+
+def texts_of(name: str, letters: Letters, **facts: Any) -> tuple[Text, ...]:
+    """The paragraphs of a template of sentences only."""
+    blocks = blocks_of(name, letters, **facts)
+    return tuple(block.text for block in blocks if isinstance(block, Paragraph))
+
+
+def _blocks(chunk: str, things: list[Any]) -> Iterator[NoteBlock]:
+    if chunk.startswith("$$"):
+        inside = chunk.strip("$").strip()
+        equations = tuple(_equation(part, things) for part in inside.split(r"\qquad"))
+        yield EquationRow(equations) if len(equations) > 1 else equations[0]
+    elif chunk.startswith(("|", _TABLE)):
+        yield _table(chunk, things)
+    elif all(isinstance(thing, _BLOCKS) for thing in _marked(chunk, things)):
+        for thing in _marked(chunk, things):
+            yield from thing if isinstance(thing, list) else (thing,)
+    else:
+        yield Paragraph(_text(chunk, things))
+
+
+def _marked(chunk: str, things: list[Any]) -> Iterator[Any]:
+    """The things of a chunk that has nothing but marks, and None for anything else."""
+    for letter in chunk.replace("\n", ""):
+        yield things[ord(letter) - _FIRST] if re.match(_MARK, letter) else None
+
+
+def _equation(typed: str, things: list[Any]) -> Equation:
+    return Equation(sides=tuple(_formula(side, things) for side in re.split(r"\s=\s", typed)))
+
+
+def _formula(typed: str, things: list[Any]) -> Formula:
+    """A typed formula, with the facts in it."""
+    parts = [things[ord(mark) - _FIRST] for mark in re.findall(_MARK, typed)]
+    places = iter(range(1, 1 + len(parts)))
+    return formula(re.sub(_MARK, lambda _: f"#{next(places)}", typed.strip()), *parts)
+
+
+def _table(chunk: str, things: list[Any]) -> NoteTable:
+    """The rows of a table, below "Table:" and its caption; `:---` begins a column of words."""
+    lines = chunk.splitlines()
+    caption = lines.pop(0).removeprefix(_TABLE).strip() if chunk.startswith(_TABLE) else ""
+    rows = [[cell.strip() for cell in line.strip().strip("|").split("|")] for line in lines]
+    of_words = next((k for k, cell in enumerate(rows[1]) if cell.startswith(":")), None)
+    head, *others = (tuple(_text(cell, things) for cell in row) for row in (rows[0], *rows[2:]))
+    return NoteTable(text_of(_text(caption, things)), head, tuple(others), of_words)
+
+
+def _text(words: str, things: list[Any]) -> Text:
+    """The spans of a line, in which neighbouring words are one span."""
+    line = " ".join(part.strip() for part in words.splitlines()).replace("&nbsp;", "\u00a0")
+    spans: list[Span] = []
+    end = 0
+    for match in _INLINE.finditer(line):
+        spans.append(line[end : match.start()])
+        spans += _spans(match, things)
+        end = match.end()
+    spans.append(line[end:])
+    return _joined(spans)
+
+
+def _spans(match: re.Match[str], things: list[Any]) -> Iterable[Span]:
+    if match["math"]:
+        return (_formula(match["math"], things),)
+    if match["strong"]:
+        return (Strong(text_of(_text(match["strong"], things))),)
+    if match["code"]:
+        return (Code(text_of(_text(match["code"], things))),)
+    thing = things[ord(match["mark"]) - _FIRST]
+    return thing if type(thing) is tuple else (thing,)
+
+
+def _joined(spans: Iterable[Span]) -> Text:
+    found: list[Span] = []
+    for are_words, group in groupby(spans, lambda span: isinstance(span, str)):
+        together = list(group)
+        found += ["".join(map(str, together))] if are_words else together
+    return tuple(span for span in found if span != "")

@@ -1,0 +1,308 @@
+"""Generated functions over a file of any length, in bounded memory."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+from math import pi
+from pathlib import Path
+from typing import BinaryIO
+
+import numpy as np
+
+from rigidsym.data.columns import ColumnNames, counted, names_for
+from rigidsym.data.tables import (
+    ROWS,
+    Missing,
+    Numbers,
+    Rows,
+    TextTable,
+    check_ending,
+    open_table,
+    without_missing,
+    write_table,
+)
+from rigidsym.errors import DataError, QuantityError, RequestError, offer
+from rigidsym.motion import KernelModule, Motion
+from rigidsym.system.processes import Progress
+from rigidsym.tools.spellings import groups_of, of_component
+
+CONVERSIONS = ("quaternion", "from_quaternion", "from_rotation_matrix")
+_DEGREE = pi / 180
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Evaluated:
+    """What was written."""
+
+    path: Path
+    rows: int
+    columns: tuple[str, ...]
+
+
+def evaluate(
+    motion: Motion,
+    quantities: Sequence[str],
+    source: Path | BinaryIO,
+    path: Path | BinaryIO,
+    *,
+    columns: Sequence[str] | None = None,
+    given: Mapping[str, float] | None = None,
+    keep: Sequence[str] = (),
+    missing: Missing = "error",
+    degrees: bool = False,
+    threads: int = 1,
+    target: str = "numpy",
+    rows: int = ROWS,
+    progress: Progress | None = None,
+) -> Evaluated:
+    """Write functions of a motion for each row of a file: NPY, Parquet, or text with separators.
+
+    `quantities` are quantities or conversions (`quaternion`, `from_quaternion`,
+    `from_rotation_matrix`). `source` and `path` may be binary streams of text with commas. Columns
+    are found by their names, or by `columns`; without either they are the arguments in the order
+    of the functions. Units in names are converted; without one, angles and their rates are in
+    radians, with `degrees` in degrees, as they then are in the result. `given` has numbers for
+    arguments that are in no column. Columns to `keep` are written before the result. Rows with
+    `missing` numbers are an error, have NaN as their result, or are dropped. The result is in
+    place when all of it is there, or not at all. `rows` are in memory at once.
+
+    Raises DataError for rows that are not numbers and columns that do not fit, RequestError for a
+    request that cannot be met, such as an unknown ending of the result, and QuantityError.
+    """
+    if isinstance(source, Path):
+        table = open_table(source)
+    else:
+        table = TextTable(Path("standard input"), source)
+    where, stream = (path, None) if isinstance(path, Path) else (Path("standard output"), path)
+    if stream is None:
+        check_ending(where)
+        if isinstance(source, Path) and where.resolve() == source.resolve():
+            raise RequestError(f"{where}: the result would replace the file that is read")
+    chosen = motion.select(derived_for(quantities))
+    kernels = chosen.kernels(target, conversions=not {*CONVERSIONS}.isdisjoint(quantities))
+    calls = [(name, _arguments(chosen, kernels, name)) for name in quantities]
+    try:
+        names = names_for(columns, table.width, table.names)
+        header = None if names is None else ColumnNames(names)
+        used, inputs = _inputs(_needed(chosen, calls), header, table.width, given or {}, degrees)
+        kept = dict(_kept(header, name) for name in keep)
+    except RequestError:
+        raise
+    except DataError as error:
+        raise DataError(f"{table.source}: {error}") from None
+    if not used:
+        raise RequestError(f"{table.source}: no column is used; every row has the same result")
+    results = [result for name in quantities for result in _results(chosen, name)]
+    factors = [180 / pi if degrees and _is_angle(unit) else 1.0 for _, unit in results]
+    module = kernels.load()
+
+    def computed() -> Iterator[Rows]:
+        batches = table.batches(list(used), rows, list(kept))
+        for batch in without_missing(table, batches, list(used.values()), missing):
+            values = []
+            for name, arguments in calls:
+                taken = [inputs[argument].of(batch.table) for argument in arguments]
+                value = np.asarray(getattr(module, name)(*taken, threads=threads))
+                is_constant = not any(inputs[argument].columns for argument in arguments)
+                value = value.reshape(1 if is_constant else len(batch.table), -1)
+                values.append(np.broadcast_to(value, (len(batch.table), value.shape[1])))
+            result = np.concatenate(values, axis=1)
+            if any(factor != 1 for factor in factors):
+                result = result * np.array(factors).astype(result.dtype)
+            yield result, batch.kept
+            if progress is not None:
+                progress(batch.share)
+
+    titles = (*kept.values(), *(_title(*result, degrees=degrees) for result in results))
+    count = write_table(where, titles, table.dtype, computed(), stream)
+    return Evaluated(path=where, rows=count, columns=titles)
+
+
+# The functions, their arguments and results
+
+
+@dataclass(frozen=True, slots=True)
+class _Argument:
+    """A vector or matrix that a function takes, with a name and a unit for each component."""
+
+    name: str
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    shape: tuple[int, ...] = (-1,)
+
+
+_QUATERNION = _Argument("quaternion", ("qw", "qx", "qy", "qz"), ("",) * 4)
+_ENTRIES = tuple(f"r{row}{column}" for row, column in product("123", repeat=2))
+_MATRIX = _Argument("matrix", _ENTRIES, ("",) * 9, (3, 3))
+
+
+def derived_for(names: Sequence[str]) -> tuple[str, ...]:
+    """The quantities to derive for some functions."""
+    return tuple(name for name in names if name not in CONVERSIONS) or ("rotation_matrix",)
+
+
+def _needed(motion: Motion, calls: Sequence[tuple[str, Sequence[str]]]) -> list[_Argument]:
+    wanted = {argument for _, taken in calls for argument in taken}
+    known = [_Argument(a.name, a.names, a.units) for a in motion.arguments]
+    return [a for a in (*known, _QUATERNION, _MATRIX) if a.name in wanted]
+
+
+def _is_angle(unit: str) -> bool:
+    """Whether a unit holds radians: rad, rad/s, rad/s^2."""
+    return unit.split("/")[0] == "rad"
+
+
+def _arguments(motion: Motion, kernels: KernelModule, name: str) -> tuple[str, ...]:
+    """The names of the arguments of a function; raises RequestError if it has none."""
+    if name not in CONVERSIONS:
+        if not (inputs := motion.step(name).quantity.inputs):
+            raise RequestError(f"{name} takes no input: it is the same for every row")
+        return inputs
+    function = getattr(kernels.load(), name, None)
+    if function is None:
+        raise QuantityError(
+            f"this rotation has no function {name}: only the 24 Euler conventions and the named "
+            "parametrisations have it; for other coordinates, fit rotation_matrix(q) to the matrix "
+            "with scipy.optimize.least_squares"
+        )
+    taken = [
+        p.name for p in inspect.signature(function).parameters.values() if p.kind != p.KEYWORD_ONLY
+    ]
+    first = {"from_quaternion": "quaternion", "from_rotation_matrix": "matrix"}.get(name, taken[0])
+    return (first, *taken[1:])
+
+
+def _results(derivation: Motion, name: str) -> Iterable[tuple[str, str]]:
+    """The names and units of the columns of a result, entries row by row."""
+    if name == "quaternion":
+        return zip(_QUATERNION.names, _QUATERNION.units, strict=True)
+    of_coordinates = {"from_quaternion": "q", "from_rotation_matrix": "q"}
+    of_coordinates |= {f"rates_from_angular_velocity_{f}": "q_dot" for f in ("space", "body")}
+    if name in of_coordinates:
+        argument = derivation.argument(of_coordinates[name])
+        return zip(argument.names, argument.units, strict=True)
+    step = derivation.step(name)
+    indices = product(*(range(1, size + 1) for size in step.shape))
+    names = ["_".join(filter(None, [name, "".join(map(str, index))])) for index in indices]
+    return [(each, step.quantity.unit) for each in names]
+
+
+def _title(name: str, unit: str, *, degrees: bool) -> str:
+    unit = unit.replace("rad", "deg", 1) if degrees and _is_angle(unit) else unit
+    return f"{name} [{unit}]" if unit else name
+
+
+# Which column is which argument
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Input:
+    """One argument of a function: columns of each batch, or numbers that stay the same."""
+
+    columns: slice | None = None  # of the batch; None if the numbers are given
+    given: tuple[float, ...] = ()
+    factors: tuple[float, ...] = ()  # to the units of the functions
+    shape: tuple[int, ...] = (-1,)  # of the argument of one row
+
+    def of(self, table: Numbers) -> Numbers:
+        """The argument of each row, (rows, *shape), in the units of the functions."""
+        if self.columns is None:
+            return np.array(self.given, table.dtype).reshape(self.shape)
+        values = table[:, self.columns]
+        if any(factor != 1 for factor in self.factors):
+            values = values * np.array(self.factors).astype(table.dtype)
+        return values.reshape(len(table), *self.shape)
+
+
+def _inputs(
+    arguments: Sequence[_Argument],
+    header: ColumnNames | None,
+    width: int,
+    given: Mapping[str, float],
+    degrees: bool,
+) -> tuple[dict[int, str], dict[str, _Input]]:
+    """The columns to read for some arguments, with their names, and each argument from these.
+
+    Columns are found by their names or else by their order; `given` holds numbers for components
+    that no column has, such as constants. Numbers are in the unit that the name of their column
+    states, or else in radians, in degrees with `degrees`, and SI units. Raises DataError for a
+    column that is missing or twice there and for a unit that does not fit; RequestError for given
+    numbers that belong to no input.
+    """
+    known = [name for argument in arguments for name in argument.names]
+    if strange := [name for name in given if name not in known]:
+        raise RequestError(f"{strange[0]} is not an input; {offer(strange[0], sorted(known))}")
+    free = [a for a in arguments if not set(a.names) <= given.keys()]
+    if partly := [a for a in free if not given.keys().isdisjoint(a.names)]:
+        raise RequestError(
+            f"expected numbers for all of {', '.join(partly[0].names)}, or columns for all of them"
+        )
+    columns = _by_order(free, width) if header is None else _by_name(free, header)
+    inputs: dict[str, _Input] = {}
+    start = 0
+    for argument in arguments:
+        if argument not in free:
+            numbers = tuple(given[name] for name in argument.names)
+            inputs[argument.name] = _Input(given=numbers, shape=argument.shape)
+            continue
+        part = slice(start, start := start + len(argument.names))
+        pairs = zip(columns[part], argument.units, strict=True)
+        inputs[argument.name] = _Input(
+            columns=part,
+            factors=tuple(_factor(header, column, unit, degrees) for column, unit in pairs),
+            shape=argument.shape,
+        )
+    return dict(zip(columns, (n for a in free for n in a.names), strict=True)), inputs
+
+
+def _factor(header: ColumnNames | None, column: int, unit: str, degrees: bool) -> float:
+    """What the numbers of a column are multiplied by to be in the unit of the functions."""
+    stated = None if header is None else header.factor(column, unit)
+    if stated is not None:
+        return stated
+    return _DEGREE if degrees and _is_angle(unit) else 1.0
+
+
+def _by_order(arguments: Sequence[_Argument], width: int) -> list[int]:
+    wanted = [name for argument in arguments for name in argument.names]
+    if width != len(wanted):
+        raise DataError(
+            f"{counted(width, 'column')} without names: expected {len(wanted)} "
+            f"({', '.join(wanted)}); or name them with --columns"
+        )
+    return [*range(width)]
+
+
+def _by_name(arguments: Sequence[_Argument], header: ColumnNames) -> list[int]:
+    columns: list[int] = []
+    missing: list[str] = []
+    for argument in arguments:
+        groups = groups_of(argument.name, argument.names)
+        group = next((group for group in groups if all(map(header.has, group))), argument.names)
+        for name in group:
+            column = header.find(of_component(argument.name, name))
+            if column is None:
+                missing.append(name)
+            else:
+                columns.append(column)
+    if missing:
+        remedy = "--columns names the columns in order"
+        if any(a.name == "q" and len(a.names) == 3 and {*a.names} <= {*missing} for a in arguments):
+            remedy += (
+                ", or --angles the coordinates in the order of the turns, "
+                "such as `--angles yaw,pitch,roll`"
+            )
+        raise DataError(f"no column {', '.join(missing)} among {header.listed}; {remedy}")
+    return columns
+
+
+def _kept(header: ColumnNames | None, name: str) -> tuple[int, str]:
+    """A column to keep, and its name in the file."""
+    if header is None:
+        raise DataError("--keep needs names of columns; --columns gives them")
+    if (column := header.find([name])) is None:
+        raise DataError(f"no column {name} among {header.listed}")
+    return column, header.names[column]

@@ -1,0 +1,268 @@
+"""Whatever a user writes ends in a result or a message, and a killed command leaves whole files."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import warnings
+from collections.abc import Callable
+from datetime import timedelta
+from math import pi
+from pathlib import Path
+from random import Random
+from time import perf_counter, sleep
+
+import numpy as np
+import pytest
+import sympy as sp
+from hypothesis import HealthCheck, assume, given, reject, settings, strategies as st
+from scipy.spatial.transform import Rotation
+
+from helpers.command import RIGIDSYM, call
+from rigidsym.errors import LimitReached, RigidsymError
+from rigidsym.models.library import rotation_from
+from rigidsym.motion import derive
+from rigidsym.pipeline import read_record, read_spec
+from rigidsym.system import resources
+from rigidsym.system.processes import time_limit
+from rigidsym.text.expression import names_in, parse_expression
+from rigidsym.text.names import check_name
+
+pytestmark = pytest.mark.campaign
+SECONDS = 10.0
+many = settings(
+    max_examples=500,
+    deadline=timedelta(seconds=4 * SECONDS),
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much],
+)
+
+
+def is_answered(work: Callable[[], object]) -> None:
+    """Anything but a message, warnings too, goes through."""
+    with warnings.catch_warnings(action="error"):
+        try:
+            with time_limit(SECONDS):
+                work()
+        except RigidsymError as error:
+            message = error
+        else:
+            return
+    assert not isinstance(message, LimitReached)
+    assert "\x1b" not in str(message)
+
+
+# texts
+
+NAMES = ("phi", "theta", "psi", "a", "A", "x_1", "lambda", "φ", "phi_dot", "t", "pi", "e")
+NUMBERS = ("0", "1", "-2", "1/3", "0.5", "1e999", "9**9", "2**-3", ".5.", "0x1f", "1_0", "nan")
+FUNCTIONS = (
+    "sin",
+    "cos",
+    "tan",
+    "sqrt",
+    "exp",
+    "log",
+    "abs",
+    "atan2",
+    "asin",
+    "diff",
+    "__import__",
+)
+SPOILED = (
+    "(",
+    ")",
+    "**",
+    "//",
+    "^",
+    "°",
+    "%",
+    "\\",
+    '"',
+    "\n",
+    "\t",
+    "\x00",
+    "\u202e",
+    "\x1b[2J",
+    ".",
+)
+expressions = st.recursive(
+    st.sampled_from((*NAMES, *NUMBERS)),
+    lambda inner: st.one_of(
+        st.tuples(inner, st.sampled_from((" + ", "-", "*", " / ", "**", "")), inner).map("".join),
+        st.tuples(st.sampled_from(FUNCTIONS), inner).map(lambda call: "{}({})".format(*call)),
+        inner.map("({})".format),
+    ),
+    max_leaves=12,
+)
+
+
+@st.composite
+def spoiled(draw: st.DrawFn, texts: st.SearchStrategy[str]) -> str:
+    """A text into which up to three wrong characters have got, or which lost some."""
+    text = draw(texts)
+    for _ in range(draw(st.integers(0, 3))):
+        start = draw(st.integers(0, len(text)))
+        end = draw(st.integers(start, min(len(text), start + 8)))
+        text = text[:start] + draw(st.sampled_from((*SPOILED, *NAMES, *NUMBERS, ""))) + text[end:]
+    return text
+
+
+@many
+@given(spoiled(expressions))
+def test_expressions(text: str):
+    def parse() -> None:
+        names = {name: sp.Symbol(check_name(name)) for name in names_in(text)}
+        parse_expression(text, names)
+
+    is_answered(parse)
+
+
+turns = st.tuples(st.sampled_from(("x", "y", "z", "[1,1,0]", "[a,b,c]", "[0,0,0]")), expressions)
+rotations = st.one_of(
+    st.lists(turns.map(lambda turn: "{}({})".format(*turn)), min_size=1, max_size=5).map(" ".join),
+    st.sampled_from(("ZXZ", "zyx", "313", "ZZX", "zXz", "quaternion", "gibbs_vector", "davenport")),
+)
+
+
+@many
+@given(spoiled(rotations))
+def test_rotations(text: str):
+    is_answered(lambda: rotation_from(text))
+
+
+FILES = [
+    (resources.folder("derivations") / f"{name}.toml").read_text("utf-8")
+    for name in resources.names("derivations", ".toml")
+]
+VALUES = (
+    "[]",
+    "{}",
+    "true",
+    "-1",
+    "inf",
+    "07:32:00",
+    '"ZXZ"',
+    '["a", 1]',
+    "[[1, 2], [3]]",
+    '"m*("',
+)
+
+
+@st.composite
+def files(draw: st.DrawFn) -> str:
+    """A shipped derivation file with lines repeated, left out, moved or of another value."""
+    lines = draw(st.sampled_from(FILES)).splitlines()
+    for _ in range(draw(st.integers(1, 4))):
+        place, other = (draw(st.integers(0, len(lines) - 1)) for _ in range(2))
+        kind = draw(st.sampled_from(("repeat", "drop", "swap", "value", "expression")))
+        if kind == "repeat":
+            lines.insert(other, lines[place])
+        elif kind == "drop" and len(lines) > 1:
+            del lines[place]
+        elif kind == "swap":
+            lines[place], lines[other] = lines[other], lines[place]
+        elif "=" in lines[place]:
+            text = json.dumps(draw(expressions), ensure_ascii=False)
+            value = text if kind == "expression" else draw(st.sampled_from(VALUES))
+            lines[place] = f"{lines[place].partition('=')[0]}= {value}"
+    return "\n".join(lines)
+
+
+@many
+@given(spoiled(files()))
+def test_derivation_files(text: str):
+    def read() -> None:
+        spec = read_spec(text, source="file.toml", name="file", folder=Path("/nowhere"))
+        assert read_record(json.loads(json.dumps(spec.to_data()))) == spec
+
+    is_answered(read)
+
+
+# chains of turns, against SciPy
+
+AXES = {
+    **{e: [float(e == f) for f in "xyz"] for e in "xyz"},
+    "[1,2,2]": [1, 2, 2],
+    "[2,-3,6]": [2, -3, 6],
+}
+angles = st.tuples(
+    st.sampled_from(("a", "b", "c", "d0")),
+    st.sampled_from((1, -1, 2)),
+    st.sampled_from((0, 0, 1, 3, -4)),
+)
+
+
+@settings(many, max_examples=60)
+@given(st.lists(st.tuples(st.sampled_from([*AXES]), angles), min_size=1, max_size=4))
+def test_chains_are_the_rotations_of_scipy(chain: list[tuple[str, tuple[str, int, int]]]):
+    assume(any(name != "d0" for _, (name, _, _) in chain))
+    text = " ".join(f"{axis}({k}*{name} + {part}*pi/6)" for axis, (name, k, part) in chain)
+    try:
+        matrix = derive(text, ["rotation_matrix"], timeout=SECONDS).rotation_matrix
+    except LimitReached:  # sums of many angles take long
+        reject()
+    values = dict(zip(("a", "b", "c", "d0"), (0.7, -2.1, 1.3, 0.4), strict=True))
+    expected = Rotation.identity()
+    for axis, (name, k, part) in chain:
+        direction = np.divide(AXES[axis], np.linalg.norm(AXES[axis]))
+        expected *= Rotation.from_rotvec((k * values[name] + part * pi / 6) * direction)
+    names = {**{str(f.func): f for f in matrix.atoms(sp.Function) if f.args[0].is_Symbol}}
+    known = {**names, **{s.name: s for s in matrix.free_symbols}}
+    result = matrix.evalf(20, subs={known[n]: v for n, v in values.items() if n in known})
+    # four turns, each rounded in SciPy to some eps of its angle of at most 8
+    assert np.allclose(np.array(result, float), expected.as_matrix(), rtol=0, atol=1e-13)
+
+
+# commands that are killed
+
+COMMANDS = {
+    "derive": ("derive", "ZXZ", "--target", "numpy,c", "--only", "rotation_matrix"),
+    "page": ("page", "ZXZ"),
+    "eval": ("eval", "ZXZ", "log.npy", "--out", "out/log.npy", "--only", "rotation_matrix"),
+}
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    """All files but drafts, whose names begin with a point."""
+    return {
+        str(path.relative_to(folder)): path.read_bytes()
+        for path in folder.rglob("*")
+        if path.is_file() and not path.name.startswith(".")
+    }
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_a_killed_command_leaves_whole_files(name: str, tmp_path: Path):
+    np.save(tmp_path / "log.npy", np.random.default_rng(1).uniform(-1, 1, (100_000, 3)))
+    first = (
+        "derive",
+        "ZXZ",
+        "--angles",
+        "a,b,c",
+        "--target",
+        "numpy,c",
+        "--only",
+        "rotation_matrix",
+    )
+    call(*first, cwd=tmp_path)
+    before = contents(tmp_path)
+    start = perf_counter()
+    call(*COMMANDS[name], cwd=tmp_path)
+    seconds, after = perf_counter() - start, contents(tmp_path)
+    random = Random(name)
+    for _ in range(10):
+        for path, content in before.items():
+            (tmp_path / path).write_bytes(content)
+        with subprocess.Popen(
+            [*RIGIDSYM, *COMMANDS[name]], cwd=tmp_path, stdout=subprocess.DEVNULL
+        ) as process:
+            sleep(random.uniform(0.2, 2.0) * max(seconds, 0.5))
+            os.kill(process.pid, signal.SIGKILL)
+        for path, content in contents(tmp_path).items():
+            assert content in (before.get(path), after.get(path)), path
+        call(*COMMANDS[name], "--force", cwd=tmp_path) if name == "derive" else call(
+            *COMMANDS[name], cwd=tmp_path
+        )
+        assert contents(tmp_path) == after
