@@ -29,8 +29,8 @@ from rigidsym.notes.formats.record import record
 from rigidsym.notes.note import check_style
 from rigidsym.spec import derivation_file
 from rigidsym.spec.derivation_spec import DerivationSpec, spec_for
-from rigidsym.spec.tables import fault_at
-from rigidsym.spec.vocabulary import Vocabulary
+from rigidsym.spec.faults import fault_at
+from rigidsym.spec.schema import Vocabulary
 from rigidsym.system import resources
 
 if TYPE_CHECKING:

@@ -2,41 +2,38 @@
 
 from __future__ import annotations
 
-import errno
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+import tomllib
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from rigidsym.errors import Fault, SpecError, offer
 from rigidsym.models.forces import forces_on
-from rigidsym.models.parametrisations import EulerAngles
+from rigidsym.models.library import faults_in, rotation_from, rotation_given
+from rigidsym.models.parametrisations import DEFAULT_ANGLES, DIGITS, EULER_SEQUENCES, EulerAngles
 from rigidsym.models.rotation import RotationModel
 from rigidsym.spec.body_table import read_body
-from rigidsym.spec.derivation_spec import DerivationSpec, fault_of_name, fault_of_title
-from rigidsym.spec.rotation_table import KEYS, read_rotation
-from rigidsym.spec.tables import MOST_CHARACTERS, Faults, Table, read_toml, shortened
-from rigidsym.spec.vocabulary import NotationChoice, Vocabulary
+from rigidsym.spec.derivation_spec import (
+    DerivationSpec,
+    fault_of_name,
+    fault_of_title,
+    repeated,
+)
+from rigidsym.spec.faults import Place, shortened
+from rigidsym.spec.schema import Vocabulary, checked, schema_of
 from rigidsym.system import resources
 from rigidsym.system.files import read_bytes
+from rigidsym.text.expression import parse_expression
+from rigidsym.text.names import check_name
 
-_OF_BOTH = ("title", "theory", "parameters", "body", "dynamics", "notation")
-_FILE = (*_OF_BOTH, "rotation", "output")
-_RECORD = (*_OF_BOTH, "name", "rotations")
-_DYNAMICS = (
-    *("potential", "forces", "torque", "first_integrals", "parts", "frame_rate", "method"),
-    "examples",
-)
-_FORMER = ("measured",)  # in old records: errors that were printed with the kernels
-_REMOVED = {
-    "language": "another language is a folder of templates of notes, chosen by style",
-    "frames": "the frames are called space and body",
-    "text": "your own sentences belong in a template of notes; see `rigidsym templates --help`",
-}
-_OUTPUT = (
-    *("quantities", "kernels", "note", "style"),
-    *("conversions", "derivatives", "certificates"),
-)
+Data = Mapping[str, Any]
+_MOST_CHARACTERS = 50_000
+_MOST_BYTES = 4 * _MOST_CHARACTERS  # no character takes more than four
+_LONGEST_LINE = 1000  # tomllib's time grows with the square of the dots in a key
+_OF_SEQUENCES = ("sequence", "angles", "constants", "scalar_last")
+_OF_MATRICES = ("matrix", "coordinates", "constraints", "example")
+_NAMES = 'a list of names such as ["phi", "theta"]'
+_THREE_NAMES = 'a list of three names such as ["phi", "theta", "psi"]'
 
 
 def read_file(file: str, words: Vocabulary) -> DerivationSpec:
@@ -44,23 +41,30 @@ def read_file(file: str, words: Vocabulary) -> DerivationSpec:
 
     Raises SpecError with all its faults.
     """
+
+    def refused(message: str) -> SpecError:
+        return SpecError(file, [Fault(message=message)])
+
     shipped = resources.names("derivations", ".toml")
     path = Path(file)
     if path.suffix == ".json":
-        record = "expected a derivation file, NAME.toml; only `check` reads records (NAME.json)"
-        raise SpecError(file, [Fault(message=record)])
+        raise refused("expected a derivation file, NAME.toml; only `check` reads records")
     if file in shipped and not path.is_file():
         path = resources.folder("derivations") / f"{file}.toml"
     try:
-        text = _read_bytes(path).decode("utf-8")
+        content = read_bytes(path, _MOST_BYTES + 1)
     except FileNotFoundError:
-        missing = f"no such file, and no shipped derivation of this name; {offer(file, shipped)}"
-        raise SpecError(file, [Fault(message=missing)]) from None
-    except UnicodeDecodeError as error:
-        line = error.object.count(b"\n", 0, error.start) + 1
-        raise SpecError(file, [Fault(message=f"not UTF-8 text, at line {line}")]) from None
+        message = "no such file, and no shipped derivation of this name"
+        raise refused(f"{message}; {offer(file, shipped)}") from None
     except OSError as error:
-        raise SpecError(file, [Fault(message=f"cannot be read: {error.strerror}")]) from None
+        raise refused(f"cannot be read: {error.strerror}") from None
+    if len(content) > _MOST_BYTES:
+        raise refused(f"cannot be read: it has more than {_MOST_BYTES} bytes")
+    try:
+        text = content.decode("utf-8")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        raise refused(f"not UTF-8 text, at line {line}") from None
     return read_spec(text, words, source=file, name=path.stem, folder=path.parent)
 
 
@@ -72,229 +76,229 @@ def read_spec(
     `source` is the file in messages; `name` names a single derivation; paths in the text start
     from `folder`. Raises SpecError with all faults.
     """
-    table, faults = read_toml(text, source)
-    reader = _Reader(words)
-    table.refuse_others(_FILE, reader.hints)
-    rotation, output = table.table("rotation"), table.table("output")
-    if table.value("rotation") is None and table.value("body") is None:
-        table.fault('missing; expected [rotation] with sequence = "ZXZ" or another', "rotation")
-    models = reader.rotation(rotation, name) if rotation else [EulerAngles("ZXZ")]
-    is_list = rotation is not None and isinstance(rotation.value("sequence"), list)
-    if not is_list and (message := fault_of_name(name)):
-        table.fault(f"the file name is the name of the derivation: {message}")
-    if output:
-        output.refuse_others((*_OUTPUT, *words.target_options), reader.hints)
-    name = models[0].name if is_list and len(models) == 1 else name
-    return reader.spec(table, output, faults, name=name, models=models, folder=folder or Path())
+    place = Place({})
+    data = checked(_toml(text, source), schema_of("file", words), place)
+    if "rotation" not in data and "body" not in data:
+        place.at("rotation").fault('missing; expected [rotation] with sequence = "ZXZ" or another')
+    models: list[RotationModel] = [EulerAngles("ZXZ")]
+    sequence = None
+    if "rotation" in data:
+        rotation = data["rotation"]
+        sequence = rotation and rotation.get("sequence")
+        models = _rotation(rotation, place.at("rotation"), name)
+    if not isinstance(sequence, list) and (message := fault_of_name(name)):
+        place.fault(f"the file name is the name of the derivation: {message}")
+    if isinstance(sequence, list) and len(models) == 1:
+        name = models[0].name
+    output = data.get("output") or {}
+    return _spec(
+        data, output, place, place.at("output"), words, source, name, models, folder or Path()
+    )
 
 
 def from_data(data: object, words: Vocabulary, *, source: str = "request") -> DerivationSpec:
     """The specification that `DerivationSpec.to_data` wrote. Raises SpecError with all faults."""
     if not isinstance(data, Mapping):
         raise SpecError(source, [Fault(message="expected an object")])
-    faults = Faults(source)
-    faults.refuse_control_characters(data)
-    table = Table(data, (), faults)
-    reader = _Reader(words)
-    table.refuse_others((*_RECORD, *_OUTPUT, *words.target_options, *_FORMER))
-    name = table.text("name") or ""
-    if table.value("name") is None:
-        table.mistyped(None, "the name of the derivation", "name")
-    rotations = table.tables("rotations", "a list of objects with sequence and angles")
-    models = [model for rotation in rotations for model in reader.rotation(rotation, name)]
-    return reader.spec(table, table, faults, name=name, models=models, folder=None)
+    place = Place({})
+    read = checked(data, schema_of("record", words), place)
+    name = read["name"] or ""
+    models = [
+        model
+        for k, rotation in enumerate(read["rotations"] or [])
+        for model in _rotation(rotation, place.at("rotations", k), name)
+    ]
+    return _spec(read, read, place, place, words, source, name, models, None)
 
 
-@dataclass(frozen=True, slots=True)
-class _Reader:
-    """The tables of a file or a record, with the names that they may use."""
-
-    words: Vocabulary
-
-    @property
-    def hints(self) -> dict[str, str]:
-        return {
-            **_REMOVED,
-            **dict.fromkeys(self.words.choices, "it belongs in [notation]"),
-            **dict.fromkeys(_DYNAMICS, "it belongs in [dynamics]"),
-            **dict.fromkeys(_FILE, "it belongs at the top of the file, outside the tables"),
-            **dict.fromkeys(KEYS, "it belongs in [rotation]"),
-            **dict.fromkeys(_OUTPUT, "it belongs in [output]"),
-            "degrees": "kernels take radians; convert angles with np.radians and np.degrees",
-        }
-
-    def spec(
-        self,
-        table: Table,
-        output: Table | None,
-        faults: Faults,
-        *,
-        name: str,
-        models: Sequence[RotationModel],
-        folder: Path | None,
-    ) -> DerivationSpec:
-        """All but the rotations, and all faults raised together."""
-        title = table.text("title")
-        if message := fault_of_title(title):
-            table.fault(message, "title")
-        theory = bool(table.flag("theory"))
-        if theory and any(model.passive for model in models):
-            table.fault("the theory is written for active rotations; remove passive", "theory")
-        body, parameters = table.table("body"), table.table("parameters")
-        if body is None and table.value("parameters") is not None:
-            table.fault("parameters belong to a body; expected [body] as well", "parameters")
-        choices = {
-            "body": body and read_body(body, parameters, name, folder),
-            **_read_dynamics(table, models),
-            "notation": self.notation(table),
-            **(self.output(output) if output else {}),
-        }
-        faults.raise_if_any()
-        return DerivationSpec(
-            name=name,
-            title=title,
-            theory=theory,
-            models=tuple(models),
-            source=faults.source,
-            **choices,
-        )
-
-    def rotation(self, table: Table, name: str) -> list[RotationModel]:
-        table.refuse_others(KEYS, self.hints)
-        return read_rotation(table, name)
-
-    def notation(self, table: Table) -> NotationChoice | None:
-        """The choices of [notation]; a wrong one is noted and left out."""
-        notation, words = table.table("notation"), self.words
-        if notation is None:
-            return None
-        notation.refuse_others(tuple(words.choices), _REMOVED)
-        chosen: dict[str, Any] = {}
-        for key, known in words.choices.items():
-            choice = notation.text(key)
-            if choice in known:
-                chosen[key] = choice
-            elif choice is not None:
-                notation.fault(f"unknown choice {shortened(choice)}; {offer(choice, known)}", key)
-        return words.notation(**chosen)
-
-    def output(self, table: Table) -> dict[str, Any]:
-        words = self.words
-        chosen: dict[str, Any] = {
-            "quantities": table.choices("quantities", words.quantities),
-            "kernels": table.choices("kernels", words.kernels, may_be_empty=True),
-            "note": table.choices("note", words.note, may_be_empty=True),
-            "style": self.style(table),
-            "conversions": table.flag("conversions"),
-            "certificates": table.flag("certificates"),
-        }
-        chosen["target_options"] = self.target_options(table) or None
-        chosen["derivatives"] = self.derivatives(table, chosen["quantities"] or words.quantities)
-        return {key: choice for key, choice in chosen.items() if choice is not None}
-
-    def style(self, table: Table) -> str | None:
-        """The style of the note, shipped or the user's own."""
-        style = table.text("style")
-        with table.noting("style"):
-            return style and self.words.check_style(style)
-        return None
-
-    def target_options(self, table: Table) -> dict[str, dict[str, str | bool]]:
-        """What is chosen of the options of targets."""
-        found: dict[str, dict[str, str | bool]] = {}
-        for target, known in self.words.target_options.items():
-            if inner := table.table(target):
-                inner.refuse_others(tuple(known))
-                texts = {k: [v for v in known[k] if isinstance(v, str)] for k in known}
-                read = {k: inner.choice(k, t) if t else inner.flag(k) for k, t in texts.items()}
-                found[target] = {key: value for key, value in read.items() if value is not None}
-        return found
-
-    def derivatives(self, table: Table, quantities: Sequence[str]) -> tuple[str, ...]:
-        """The derivatives of the chosen quantities, each in its one spelling."""
-        key = "derivatives"
-        found = []
-        texts = table.texts(key, 'a list such as ["angular_velocity_body by q"]')
-        for place, text in texts.items():
-            with table.noting(key, place):
-                request = self.words.derivative(text)
-                if request.quantity not in quantities:
-                    shown = shortened(request.quantity)
-                    close = offer(request.quantity, quantities)
-                    table.fault(f"no quantity {shown}; {close}", key, place)
-                found.append(str(request))
-        return tuple(dict.fromkeys(found))
+def _toml(text: str, source: str) -> dict[str, Any]:
+    """The data of a whole file; raises SpecError for a text that is not TOML, or too long."""
+    text = text.removeprefix("\ufeff")  # some editors put this mark before everything else
+    faults = [
+        Fault(f"line {line} has {length} characters; expected at most {_LONGEST_LINE}")
+        for line, length in enumerate(map(len, text.split("\n")), start=1)
+        if length > _LONGEST_LINE
+    ]
+    if len(text) > _MOST_CHARACTERS:
+        faults = [Fault(f"a file of {len(text)} characters; expected at most {_MOST_CHARACTERS}")]
+    if faults:
+        raise SpecError(source, faults)
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise SpecError(source, [Fault(f"not TOML: {error}")]) from None
+    except RecursionError:
+        raise SpecError(source, [Fault("lists or tables nested too deeply to be read")]) from None
 
 
-def _read_dynamics(table: Table, models: Sequence[RotationModel]) -> dict[str, Any]:
-    """What [dynamics] holds, each key read once with the names of every model."""
-    dynamics = table.table("dynamics")
-    if dynamics is None:
-        return {}
-    dynamics.refuse_others(_DYNAMICS)
-    if table.value("body") is None:
-        table.fault("forces act on a body; expected [body] as well", "dynamics")
-    found = dict(_dynamics(dynamics))
+def _spec(
+    data: Data,
+    output: Data,
+    place: Place,
+    output_place: Place,
+    words: Vocabulary,
+    source: str,
+    name: str,
+    models: Sequence[RotationModel],
+    folder: Path | None,
+) -> DerivationSpec:
+    """All but the rotations, and all faults raised together."""
+    title, theory = data.get("title"), bool(data.get("theory"))
+    if message := fault_of_title(title):
+        place.at("title").fault(message)
+    if theory and any(model.passive for model in models):
+        place.at("theory").fault("the theory is written for active rotations; remove passive")
+    for key, message in (
+        ("parameters", "parameters belong to a body; expected [body] as well"),
+        ("dynamics", "forces act on a body; expected [body] as well"),
+    ):
+        if data.get(key) and "body" not in data:
+            place.at(key).fault(message)
+    body = data.get("body")
+    if body is not None:
+        body = read_body(body, data.get("parameters") or {}, place, name, folder)
+    chosen: dict[str, Any] = {
+        key: tuple(output[key])
+        for key in ("quantities", "kernels", "note")
+        if output.get(key) is not None
+    }
+    chosen |= {key: output[key] for key in ("conversions", "certificates") if output.get(key)}
+    if style := output.get("style"):
+        with output_place.at("style").noting():
+            chosen["style"] = words.check_style(style)
+    notation = data.get("notation")
+    dynamics = _dynamics(data.get("dynamics") or {}, place.at("dynamics"), models)
+    derivatives = _derivatives(
+        output.get("derivatives") or [],
+        output_place.at("derivatives"),
+        words,
+        chosen.get("quantities") or words.quantities,
+    )
+    options = {key: output[key] for key in words.target_options if output.get(key)}
+    place.raise_faults(source)
+    return DerivationSpec(
+        name=name,
+        title=title,
+        theory=theory,
+        models=tuple(models),
+        source=source,
+        body=body,
+        dynamics=dynamics if "dynamics" in data else None,
+        notation=None if notation is None else words.notation(**notation),
+        derivatives=derivatives,
+        target_options=options,
+        **chosen,
+    )
+
+
+def _dynamics(data: Data, place: Place, models: Sequence[RotationModel]) -> dict[str, Any]:
+    """What [dynamics] contains, each key read once with the names of every model."""
+    dynamics = {"potential": "0"} | {k: value for k, value in data.items() if value is not None}
     for model in models:
-        for key, value in found.items():
-            with dynamics.noting(key):
+        for key, value in dynamics.items():
+            with place.at(key).noting():
                 forces_on(model, **{key: value})
-    return {"dynamics": found}
+    return dynamics
 
 
-def _dynamics(table: Table) -> Iterator[tuple[str, Any]]:
-    """The keys of [dynamics] that are there, with values of the right type."""
-    yield "potential", table.text("potential") or "0"
-    if method := table.text("method"):
-        yield "method", method
-    for key in ("forces", "first_integrals"):
-        if inner := table.table(key):
-            yield key, {name: inner.text(name) or "0" for name in inner.data}
-    for key in ("torque", "frame_rate"):
-        if components := _expressions(table, key):
-            yield key, components
-    if table.value("parts") is not None:
-        parts = table.tables("parts", "a list of tables: [[dynamics.parts]]")
-        yield "parts", [dict(_part(part)) for part in parts]
-    if table.value("examples") is not None:
-        examples = table.tables("examples", "a list of tables: [[dynamics.examples]]")
-        yield "examples", [dict(_example(example)) for example in examples]
+def _derivatives(
+    texts: Sequence[str | None], place: Place, words: Vocabulary, quantities: Sequence[str]
+) -> tuple[str, ...]:
+    """The derivatives of the chosen quantities, each in its one spelling."""
+    spelled = []
+    for k, text in enumerate(texts):
+        with place.at(k).noting():
+            request = words.derivative(text or "")
+            if request.quantity not in quantities:
+                near = offer(request.quantity, quantities)
+                place.at(k).fault(f"no quantity {shortened(request.quantity)}; {near}")
+            spelled.append(str(request))
+    return tuple(dict.fromkeys(spelled))
 
 
-def _part(table: Table) -> Iterator[tuple[str, Any]]:
-    table.refuse_others(("rotation", "principal_moments", "velocity", "mass"))
-    for key in ("rotation", "mass"):
-        if text := table.text(key):
-            yield key, text
-    for key in ("principal_moments", "velocity"):
-        if components := _expressions(table, key):
-            yield key, components
+# rotations
 
 
-def _example(table: Table) -> Iterator[tuple[str, Any]]:
-    table.refuse_others(("parameters", "initial", "time"))
-    for key in ("parameters", "initial"):
-        if inner := table.table(key):
-            yield key, {name: inner.number(name) or 0 for name in inner.data}
-    if (time := table.number("time")) is not None:
-        yield "time", time
-
-
-def _expressions(table: Table, key: str) -> list[str]:
-    """A list of texts, of which some may be alike."""
-    value = table.value(key)
-    if value is None:
+def _rotation(data: Data | None, place: Place, name: str) -> list[RotationModel]:
+    """The models of a table: one per sequence, or one of its matrix, called `name`."""
+    if data is None:
         return []
-    if isinstance(value, list) and all(isinstance(text, str) for text in value):
-        return value
-    table.mistyped(value, "a list of three texts in quotes", key)
+    is_matrix = "matrix" in data
+    others = _OF_SEQUENCES if is_matrix else _OF_MATRICES
+    for key in data.keys() & {*others}:
+        message = "a rotation with matrix does not have this key"
+        place.at(key).fault(message if is_matrix else "only a rotation with matrix has this key")
+    if is_matrix:
+        return _matrix(data, place, name)
+    if "sequence" not in data:
+        place.at("sequence").mistyped(None, 'a sequence such as "ZXZ", or a list of sequences')
+    sequence = data.get("sequence")
+    entries = enumerate(sequence) if isinstance(sequence, list) else []
+    texts: dict[tuple[str | int, ...], str] = {
+        ("sequence", k): text for k, text in entries if text is not None
+    }
+    if isinstance(sequence, str):
+        texts = {("sequence",): sequence}
+    angles = _names(data, "angles", place)
+    is_euler = any(text.translate(DIGITS) in EULER_SEQUENCES for text in texts.values())
+    size = len(data.get("angles") or DEFAULT_ANGLES)
+    if is_euler and size != len(DEFAULT_ANGLES):
+        place.at("angles").fault(f"expected {_THREE_NAMES}, got {size}")
+        angles = None
+    if "angles" in data and any("(" in text for text in texts.values()):
+        place.at("angles").fault("the sequence names its angles itself; leave this key out")
+    models: dict[tuple[str | int, ...], RotationModel] = {}
+    for steps, text in texts.items():
+        with place.at(*steps).noting():
+            models[steps] = rotation_from(
+                text,
+                names=None if "(" in text else angles,
+                constants=_names(data, "constants", place) or (),
+                scalar_last=bool(data.get("scalar_last")),
+                passive=bool(data.get("passive")),
+            )
+    for k, message in repeated(models.values()).items():
+        place.at(*list(models)[k]).fault(message)
+    return list(models.values())
+
+
+def _matrix(data: Data, place: Place, name: str) -> list[RotationModel]:
+    if "coordinates" not in data:
+        place.at("coordinates").mistyped(None, _NAMES)
+    rows = [[e if e is None else str(e) for e in row or [None]] for row in data["matrix"] or []]
+    coordinates = _names(data, "coordinates", place)
+    constraints = [text for text in data.get("constraints") or [] if text is not None]
+    example = {key: str(entry) for key, entry in (data.get("example") or {}).items() if entry}
+    for key, text in example.items():
+        with place.at("example", key).noting():
+            parse_expression(text, {})
+    texts = [[entry for entry in row if entry is not None] for row in rows]
+    if not coordinates or not rows or texts != rows:
+        return []
+    for steps, message in faults_in(texts, coordinates, constraints).items():
+        place.at(*steps).fault(message)
+    with place.noting("matrix"):
+        return [
+            rotation_given(
+                texts,
+                name=name,
+                coordinates=coordinates,
+                constraints=constraints,
+                passive=bool(data.get("passive")),
+                example=example,
+            )
+        ]
     return []
 
 
-def _read_bytes(path: Path) -> bytes:
-    """The content of a file; OSError if it is too large for a derivation file."""
-    most = 4 * MOST_CHARACTERS  # bytes: no character takes more than four
-    content = read_bytes(path, most + 1)
-    if len(content) > most:
-        raise OSError(errno.EFBIG, f"it has more than {most} bytes")
-    return content
+def _names(data: Data, key: str, place: Place) -> list[str] | None:
+    """The names of a list; None if there are none, or a fault is noted."""
+    names: list[str] = []
+    listed = data.get(key) or []
+    for k, text in enumerate(listed):
+        if text is not None:
+            with place.at(key, k).noting():
+                if (name := check_name(text)) in names and text not in names:
+                    place.at(key, k).fault(f"{name} is named twice")
+                names.append(name)
+    return names if listed and len(set(names)) == len(listed) else None

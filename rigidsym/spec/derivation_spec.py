@@ -5,16 +5,14 @@ from __future__ import annotations
 import keyword
 import re
 import sys
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
-from typing import Any
+from typing import Any, ClassVar, Protocol
 
-from rigidsym.errors import ModelError
 from rigidsym.models.body import BodyDescription, RigidBody
 from rigidsym.models.library import request_of, rotation_from
 from rigidsym.models.rotation import RotationModel
-from rigidsym.spec.tables import Faults, shortened
-from rigidsym.spec.vocabulary import NotationChoice
+from rigidsym.spec.faults import Place, shortened
 
 _NAME = re.compile(r"[a-z][a-z0-9_]*")
 _DEVICES = re.compile(r"con|prn|aux|nul|com[1-9]|lpt[1-9]")  # not allowed as file names on Windows
@@ -22,6 +20,15 @@ _LONGEST_TITLE = 200
 
 
 Body = RigidBody | BodyDescription
+
+
+class NotationChoice(Protocol):
+    """The notation of notes and terminal, a dataclass with one field a choice."""
+
+    __dataclass_fields__: ClassVar[dict[str, Any]]
+
+    def check(self, model: RotationModel) -> None:
+        """Raise ModelError for a model whose names could be confused with this notation."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -51,19 +58,27 @@ class DerivationSpec:
     source: str = field(default="", compare=False, repr=False)  # the file, in messages
 
     def __post_init__(self) -> None:
-        faults = Faults(self.source or self.name)
+        place = Place({})
+        models = place.at("models")
         if not self.models:
-            faults.add(("models",), "expected at least one rotation")
-        for place, message in repeated(self.models).items():
-            faults.add(("models", place), message)
-        for place, model in enumerate(self.models):
-            for message in (*_clashes(model, self.body), *_in_notation(model, self.notation)):
-                faults.add(("models", place), message)
+            models.fault("expected at least one rotation")
+        for k, message in repeated(self.models).items():
+            models.at(k).fault(message)
+        own = {parameter.symbol.name for parameter in self.body.parameters} if self.body else set()
+        for k, model in enumerate(self.models):
+            used = {coordinate.func.__name__ for coordinate in model.coordinates}
+            used |= {symbol.name for symbol in model.constants}
+            for name in sorted(used & own):
+                message = f"{name} is a parameter of the body and also appears in the rotation"
+                models.at(k).fault(message)
+            if self.notation is not None:
+                with models.at(k).noting():
+                    self.notation.check(model)
         if len(self.models) == 1 and (message := fault_of_name(self.name)):
-            faults.add(("name",), message)
+            place.at("name").fault(message)
         if message := fault_of_title(self.title):
-            faults.add(("title",), message)
-        faults.raise_if_any()
+            place.at("title").fault(message)
+        place.raise_faults(self.source or self.name)
 
     def singles(self) -> tuple[DerivationSpec, ...]:
         """One specification per rotation; a title given to several rotations is dropped."""
@@ -78,6 +93,10 @@ class DerivationSpec:
 
         Raises ModelError for a rotation that was made in Python and cannot be written as text.
         """
+        notation: dict[str, Any] = {}
+        if self.notation is not None and self.notation != type(self.notation)():
+            notation = asdict(self.notation)
+            del notation["vector"]  # which is the model's
         optional: dict[str, Any] = {
             "theory": self.theory,
             "dynamics": dict(self.dynamics or {}),
@@ -85,7 +104,7 @@ class DerivationSpec:
             "conversions": self.conversions,
             "derivatives": list(self.derivatives),
             "certificates": self.certificates,
-            "notation": self._notation_data(),
+            "notation": notation,
         }
         return {
             "name": self.name,
@@ -98,12 +117,6 @@ class DerivationSpec:
             **(self.body.request if self.body else {}),
             **{key: value for key, value in optional.items() if value},
         }
-
-    def _notation_data(self) -> dict[str, Any]:
-        if self.notation is None or self.notation == type(self.notation)():
-            return {}
-        chosen = asdict(self.notation)
-        return {name: chosen[name] for name in chosen if name != "vector"}  # which is the model's
 
 
 def spec_for(
@@ -161,21 +174,3 @@ def fault_of_title(title: str | None) -> str:
     if not title.isprintable() or len(title) > _LONGEST_TITLE:
         return f"expected one line of at most {_LONGEST_TITLE} printable characters"
     return ""
-
-
-def _clashes(model: RotationModel, body: Body | None) -> Iterator[str]:
-    """Names that both a rotation and its body use."""
-    if body is None:
-        return
-    used = {coordinate.func.__name__ for coordinate in model.coordinates}
-    used |= {symbol.name for symbol in model.constants}
-    for name in sorted(used & {p.symbol.name for p in body.parameters}):
-        yield f"{name} is a parameter of the body and also appears in the rotation"
-
-
-def _in_notation(model: RotationModel, notation: NotationChoice | None) -> Iterator[str]:
-    try:
-        if notation is not None:
-            notation.check(model)
-    except ModelError as error:
-        yield str(error)

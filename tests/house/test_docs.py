@@ -30,7 +30,6 @@ from rigidsym.models.library import PARAMETRISATIONS, PRESETS
 from rigidsym.models.parametrisations import EULER_SEQUENCES
 from rigidsym.models.solids import SHAPES
 from rigidsym.pipeline import vocabulary
-from rigidsym.spec import body_table, derivation_file, rotation_table
 
 DOCS = ROOT / "docs"
 PAGES = [ROOT / "README.md", *sorted(DOCS.rglob("*.md"))]
@@ -179,30 +178,11 @@ def test_the_schema_takes_what_the_reader_takes(name, schema):
     jsonschema.validate(tomllib.loads(FILES[name]), schema)
 
 
-@pytest.mark.parametrize(
-    ("path", "keys"),
-    [
-        ((), derivation_file._FILE),
-        (("rotation",), rotation_table.KEYS),
-        (("output",), (*derivation_file._OUTPUT, *vocabulary().target_options)),
-        (("output", "c"), vocabulary().target_options["c"]),
-        (("notation",), tuple(vocabulary().choices)),
-    ],
-    ids=lambda value: "-".join(value) or "top",
-)
-def test_the_schema_has_the_keys_of_the_reader(path, keys, schema):
-    for step in path:
-        schema = schema["properties"][step]
-    assert set(schema["properties"]) == set(keys)
-
-
-def test_the_schema_has_every_key_of_a_body(schema):
-    lengths = {length.key for shape in SHAPES.values() for length in shape.lengths}
-    keys = {key for kind in body_table._KEYS.values() for key in kind} | lengths
-    body = schema["properties"]["body"]["properties"]
-    assert set(body) == keys | {*body_table._KINDS, "allow"}
-    of_part = {*body_table._OF_PARTS} - {"parts"} | {"label", "at", "turned", "hole"}
-    assert set(body["parts"]["items"]["properties"]) == keys | of_part
+def test_the_schema_has_the_options_of_every_target(schema):
+    for target, options in vocabulary().target_options.items():
+        keys = schema["properties"]["output"]["properties"][target]["properties"]
+        defaults = {key: keys[key].get("default", keys[key].get("enum", [None])[0]) for key in keys}
+        assert defaults == {key: values[0] for key, values in options.items()}
 
 
 @pytest.mark.parametrize("text", ["rotation = 3", "[rotation]\nsequenc = 'ZXZ'", "[notation]"])

@@ -94,8 +94,8 @@ def test_kernels_import_their_representation_and_not_the_reverse():
 
 BUDGETS = {  # what was reached; who makes the house smaller lowers them
     "files": 236,
-    "lines of code": 34_700,
-    "lines of tests": 29_700,
+    "lines of code": 34_650,
+    "lines of tests": 29_620,
     "lines of benchmarks": 2_700,
 }
 

@@ -25,18 +25,6 @@ def read(text: str, name: str = "top") -> DerivationSpec:
 # what a file says
 
 
-def test_a_small_file_asks_for_everything():
-    spec = read('[rotation]\nsequence = "ZXZ"')
-    assert spec == DerivationSpec(
-        name="top",
-        title=None,
-        models=(EulerAngles("ZXZ"),),
-        quantities=(),
-        kernels=("numpy",),
-        note=("tex", "html"),
-    )
-
-
 def test_a_full_file():
     spec = read(
         """
@@ -59,16 +47,22 @@ def test_a_full_file():
         kernels=("numpy",),
         note=("tex", "pdf"),
     )
+    # a small file asks for everything
+    small = DerivationSpec(name="top", models=(EulerAngles("ZXZ"),), note=("tex", "html"))
+    assert read('[rotation]\nsequence = "ZXZ"') == small
+    assert small.to_data() == {
+        "name": "top",
+        "title": None,
+        "rotations": [{"sequence": "ZXZ", "angles": ["phi", "theta", "psi"], "passive": False}],
+        "quantities": None,
+        "kernels": ["numpy"],
+        "note": ["tex", "html"],
+    }
 
 
 @pytest.mark.parametrize("sequence", ["ZXZ", "313", "z(phi) x(theta) z(psi)", "z(φ)*x(θ)*z(ψ)"])
 def test_spellings_of_one_rotation(sequence):
     assert read(f'[rotation]\nsequence = "{sequence}"').models == (EulerAngles("ZXZ"),)
-
-
-def test_turns_name_their_angles():
-    (model,) = read('[rotation]\nsequence = "x(a) y(b) z(c)"').models
-    assert model == EulerAngles("XYZ", ("a", "b", "c"))
 
 
 def test_a_list_names_its_derivations_itself():
@@ -79,12 +73,9 @@ def test_a_list_names_its_derivations_itself():
     ]
     assert [single.title for single in spec.singles()] == [None, None]
     assert [len(single.models) for single in spec.singles()] == [1, 1]
-
-
-def test_a_list_of_one_names_its_derivation_too():
-    spec = read('[rotation]\nsequence = ["zxz"]', name="My file")
-    assert spec.name == "euler_zxz_extrinsic"
-    assert spec.singles() == (spec,)
+    one = read('[rotation]\nsequence = ["zxz"]', name="My file")
+    assert one.name == "euler_zxz_extrinsic"
+    assert one.singles() == (one,)
 
 
 def test_a_byte_order_mark_and_other_line_ends_do_no_harm():
@@ -118,17 +109,10 @@ def test_files_that_are_no_text(tmp_path, content, fault):
     with pytest.raises(SpecError) as caught:
         read_file(str(file))
     assert str(caught.value) == f"{file}: 1 fault, nothing written\n  {fault}"
-
-
-def test_files_that_cannot_be_opened(tmp_path):
     with pytest.raises(SpecError, match=r"cannot be read: Is a directory$"):
         read_file(str(tmp_path))
-    with pytest.raises(SpecError) as caught:
+    with pytest.raises(SpecError, match=r"no shipped derivation .*; did you mean euler_zxz or"):
         read_file("euler_xzx")
-    assert str(caught.value) == (
-        "euler_xzx: 1 fault, nothing written\n  no such file, and no shipped derivation of this "
-        "name; did you mean euler_zxz or euler_all?"
-    )
 
 
 # the shipped files
@@ -140,10 +124,6 @@ def test_shipped_files_are_good_and_explained(name):
     assert spec.title
     assert (SHIPPED / f"{name}.toml").read_text(encoding="utf-8").startswith("# ")
     assert read_record(spec.to_data()) == spec
-
-
-def test_the_shipped_lecture_is_the_lecture():
-    assert read_file("euler_zxz").models == (EulerAngles("ZXZ", ("phi", "theta", "psi")),)
 
 
 def test_the_shipped_aircraft_has_the_matrix_that_its_comment_says():
@@ -159,14 +139,6 @@ def test_the_shipped_list_has_all_sequences():
 
 
 # specifications in Python
-
-
-def test_the_specification_of_one_rotation():
-    model = EulerAngles("zyx", ("a", "b", "c"), passive=True)
-    assert spec_for("zyx", angles=["a", "b", "c"], passive=True) == DerivationSpec(
-        name=model.name, models=(model,)
-    )
-    assert spec_for("z(a) x(b) z(c)").models == (EulerAngles("ZXZ", ("a", "b", "c")),)
 
 
 @pytest.mark.parametrize(
@@ -203,25 +175,10 @@ def test_a_specification_checks_itself():
 # as plain data
 
 
-@pytest.mark.parametrize("passive", [False, True])
-def test_the_data_of_every_rotation_goes_through_json_and_back(sequence, passive):
-    spec = spec_for(sequence, angles=["alpha", "lambda", "gamma"], passive=passive)
+def test_the_data_of_every_rotation_goes_through_json_and_back(sequence):
+    spec = spec_for(sequence, angles=["alpha", "lambda", "gamma"], passive=True)
     data = json.loads(json.dumps(spec.to_data()))
     assert read_record(data) == spec
-
-
-def test_the_form_of_the_data():
-    spec = read('title = "T"\n[rotation]\nsequence = "313"\n[output]\nquantities = ["spin_matrix"]')
-    assert spec.to_data() == {
-        "name": "top",
-        "title": "T",
-        "rotations": [
-            {"sequence": "ZXZ", "angles": ["phi", "theta", "psi"], "passive": False},
-        ],
-        "quantities": ["spin_matrix"],
-        "kernels": ["numpy"],
-        "note": ["tex", "html"],
-    }
 
 
 def test_wrong_data_has_every_fault_at_once():
@@ -230,7 +187,7 @@ def test_wrong_data_has_every_fault_at_once():
         read_record({"rotations": rotations, "note": 1, "nam": ""}, source="top.json")
     assert [str(fault) for fault in caught.value.faults] == [
         "nam: unknown key; did you mean name?",
-        "name: missing; expected the name of the derivation",
+        "name: missing; expected a text in quotes",
         'note: expected a list of names such as ["tex"], got the number 1',
         "rotations[0].sequence: 'ZZX' is not an Euler sequence: consecutive axes must differ: Z "
         "follows Z",
@@ -239,19 +196,7 @@ def test_wrong_data_has_every_fault_at_once():
     ]
 
 
-@pytest.mark.parametrize("data", [None, [], "top"])
-def test_data_that_is_no_object(data):
-    with pytest.raises(SpecError, match="expected an object"):
-        read_record(data)
-
-
 def test_a_rotation_that_no_file_can_name_has_no_data():
     model = replace(EulerAngles("ZXZ"), name="mine", request={})
     with pytest.raises(ModelError, match="mine was made in Python; no derivation file"):
         DerivationSpec(name="mine", models=(model,)).to_data()
-
-
-def test_errors_that_old_records_state_are_ignored():
-    spec = spec_for("ZXZ")
-    old = spec.to_data() | {"measured": ["# numpy: NumPy 2.4", "digest,points", 1]}
-    assert read_record(old) == spec

@@ -1,0 +1,209 @@
+"""The JSON Schema of derivation files, and the check of a file by it.
+
+`keys.toml` declares every key. Here the names that the code knows are filled in, and a file is
+compared with the result: all faults are noted with their paths, and what is right is kept.
+"""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from math import isfinite
+from pathlib import Path
+from typing import Any, Protocol
+from unicodedata import category
+
+from rigidsym.errors import offer
+from rigidsym.models.solids import SHAPES
+from rigidsym.spec.derivation_spec import NotationChoice
+from rigidsym.spec.faults import Place, dotted, shortened
+
+Schema = dict[str, Any]
+
+_TYPES: Mapping[str, tuple[type, ...]] = {
+    "string": (str,),
+    "boolean": (bool,),
+    "number": (int, float),
+    "integer": (int,),
+    "array": (list,),
+    "object": (Mapping,),
+}
+_NOUNS = {  # in singular and plural
+    "string": ("text in quotes", "texts in quotes"),
+    "number": ("number", "numbers"),
+    "integer": ("whole number", "whole numbers"),
+    "object": ("table", "tables"),
+}
+_LARGEST = 1e300  # sums and products of numbers in a file stay finite
+_REMOVED = {
+    "language": "another language is a folder of templates of notes, chosen by style",
+    "frames": "the frames are called space and body",
+    "text": "your own sentences belong in a template of notes; see `rigidsym templates --help`",
+    "degrees": "kernels take radians; convert angles with np.radians and np.degrees",
+}
+
+
+class RequestedDerivative(Protocol):
+    """A derivative of a quantity; its text is "QUANTITY by VECTOR"."""
+
+    @property
+    def quantity(self) -> str: ...
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Vocabulary:
+    """What the keys of [output] and [notation] may say, from the rooms above."""
+
+    quantities: tuple[str, ...]
+    kernels: tuple[str, ...]
+    target_options: Mapping[str, Mapping[str, tuple[str | bool, ...]]]  # of [output.TARGET]
+    note: tuple[str, ...]
+    check_style: Callable[[str], str]  # raises ModelError for a style without a template
+    notation: Callable[..., NotationChoice]
+    choices: Mapping[str, tuple[str, ...]]  # of [notation], the default first
+    derivative: Callable[[str], RequestedDerivative]  # raises KernelError
+
+
+def schema_of(kind: str, words: Vocabulary) -> Schema:
+    """The schema of a "file", or of the request in a "record"."""
+    text = Path(__file__).with_name("keys.toml").read_text(encoding="utf-8")
+    definitions = tomllib.loads(text)["definitions"]
+    lengths = {length.key: length for shape in SHAPES.values() for length in shape.lengths}
+    distribution = definitions["distribution"]["properties"]
+    for key, length in lengths.items():
+        distribution.setdefault(key, {"use": "lengths" if length.names[1:] else "length"})
+    for key, names in words.choices.items():
+        choice = {"type": "string", "enum": [*names], "description": f"by default {names[0]}"}
+        definitions["notation"]["properties"][key] = choice
+    enums = {
+        "shapes": (*SHAPES, "polyhedron", "given"),
+        "quantities": words.quantities,
+        "kernels": words.kernels,
+        "note": words.note,
+        **{f"{t}.{key}": v for t, keys in words.target_options.items() for key, v in keys.items()},
+    }
+
+    def expanded(entry: Any) -> Any:
+        """The entry with what it uses, and with the names that the code knows."""
+        if isinstance(entry, list):
+            return [expanded(part) for part in entry]
+        if not isinstance(entry, dict):
+            return entry
+        used = entry.get("use", [])
+        bases = [used] if isinstance(used, str) else used
+        own = {key: expanded(value) for key, value in entry.items() if key != "use"}
+        if isinstance(names := own.get("enum"), str):
+            own["enum"] = [*enums[names]]
+        merged: Schema = {}
+        for part in (*(expanded(definitions[name]) for name in bases), own):
+            properties = merged.get("properties", {}) | part.get("properties", {})
+            merged |= part | ({"properties": properties} if properties else {})
+        if "properties" in merged:
+            merged |= {"type": "object", "additionalProperties": False}
+        return merged
+
+    schema = expanded(definitions[kind])
+    tables = {key: entry for key, entry in schema["properties"].items() if "properties" in entry}
+    hints = {key: f"it belongs in [{t}]" for t in tables for key in tables[t]["properties"]}
+    top = "it belongs at the top of the file, outside the tables"
+    hints = _REMOVED | hints | dict.fromkeys(schema["properties"], top)
+    for table in (schema, *tables.values()):
+        table["hints"] = hints
+    return schema
+
+
+def checked(value: Any, schema: Schema, place: Place) -> Any:
+    """The value at a place of a file, as far as it is right; every fault is noted.
+
+    A key that is not known is left out; a value that is wrong becomes None.
+    """
+    kinds = [schema] if "type" in schema else schema["anyOf"]
+    kind = next((kind for kind in kinds if _is_of(value, kind["type"])), None)
+    if kind is None:
+        place.mistyped(value, expected(schema, place))
+        return None
+    if isinstance(value, Mapping):
+        return _checked_table(value, kind, place)
+    if isinstance(value, list):
+        return _checked_list(value, kind, place)
+    if isinstance(value, str):
+        return _checked_text(value, kind, place)
+    if isfinite(value) and abs(value) < _LARGEST:
+        return value
+    place.fault(f"expected a finite number, got {value:.3g}")
+    return None
+
+
+def _is_of(value: object, types: str | list[str]) -> bool:
+    """Whether a value is of one of the types; true and false are not numbers."""
+    for name in [types] if isinstance(types, str) else types:
+        if isinstance(value, _TYPES[name]) and isinstance(value, bool) == (name == "boolean"):
+            return True
+    return False
+
+
+def _checked_table(value: Mapping[str, Any], schema: Schema, place: Place) -> dict[str, Any]:
+    keys = schema.get("properties", dict.fromkeys(value, schema["additionalProperties"]))
+    for key in value.keys() - keys.keys():
+        place.at(key).fault(f"unknown key; {schema.get('hints', {}).get(key) or offer(key, keys)}")
+    # null in JSON is as good as nothing; a missing key that is required is noted as None
+    present = [
+        key for key in keys if value.get(key) is not None or key in schema.get("required", ())
+    ]
+    return {key: checked(value.get(key), keys[key], place.at(key)) for key in present}
+
+
+def _checked_list(value: list[Any], schema: Schema, place: Place) -> list[Any] | None:
+    least = schema.get("minItems", 0)
+    if len(value) < least == 1:
+        place.fault(f"the list is empty; expected {expected(schema, place)}")
+        return None
+    if not least <= len(value) <= schema.get("maxItems", len(value)):
+        place.mistyped(value, expected(schema, place))
+        return None
+    for k, entry in enumerate(value):
+        if schema.get("uniqueItems") and isinstance(entry, str) and entry in value[:k]:
+            place.at(k).fault(f"{entry} is named twice")
+    return [checked(entry, schema["items"], place.at(k)) for k, entry in enumerate(value)]
+
+
+def _checked_text(value: str, schema: Schema, place: Place) -> str | None:
+    if value not in schema.get("enum", [value]):
+        place.fault(f"unknown name {shortened(value)}; {offer(value, schema['enum'])}")
+        return None
+    # A control character would end a comment or a line of what is printed from the text.
+    allowed = "" if schema.get("format") == "line" else "\n\t"
+    for character in value:
+        if category(character) in ("Cc", "Cs") and character not in allowed:
+            place.fault(f"the text contains the control character U+{ord(character):04X}")
+            return None
+    return value
+
+
+def expected(schema: Schema, place: Place) -> str:
+    """What a message says that a value should be."""
+    if "type" not in schema:
+        return " or ".join(expected(kind, place) for kind in schema["anyOf"])
+    kind = schema["type"]
+    if kind == "object" and place.path and isinstance(place.path[-1], str):
+        return f"a table [{dotted(place.path)}]"
+    if kind == "boolean":
+        return "true or false"
+    if isinstance(kind, list):
+        return 'a number, or an expression in quotes such as "2*a"'
+    noun = "list" + _plural(schema).removeprefix("lists") if kind == "array" else _NOUNS[kind][0]
+    such = [json.dumps(example, ensure_ascii=False) for example in schema.get("examples", ())]
+    return f"a {noun}" + "".join(f" such as {text}" for text in such)
+
+
+def _plural(schema: Schema) -> str:
+    """lists of 3 expressions"""
+    kind = schema["type"]
+    if kind == "array":
+        size = f"{schema['maxItems']} " if "maxItems" in schema else ""
+        return f"lists of {size}{_plural(schema['items'])}"
+    if "enum" in schema:
+        return "names"
+    return "expressions" if isinstance(kind, list) else _NOUNS[kind][1]
