@@ -40,8 +40,7 @@ def command(
     """Compute the mass, centre, inertia tensor and principal axes of particles or a mesh.
 
     FILE contains particles (NPY, CSV or Parquet, with the columns m, x, y, z, or x, y, z for
-    particles of 1 kg) or a closed mesh (STL, OBJ or PLY). NPY files are memory-mapped and read
-    once.
+    particles of 1 kg) or a closed mesh (STL, OBJ or PLY).
     """
     of_mesh = {"--mass": mass, "--density": density, "--scale": scale}
     if file.suffix.lower() in ENDINGS:

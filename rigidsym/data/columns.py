@@ -77,7 +77,7 @@ class ColumnNames:
         return stated or next(filter(None, self._others[column].values()), "")
 
     def factor(self, column: int, expected: str) -> float | None:
-        """By what its numbers are multiplied for a unit; None if its name states no unit.
+        """The factor from the unit in its name to the expected one; None without a unit.
 
         Raises DataError for a unit that is unknown or of another quantity.
         """

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from pathlib import Path
@@ -177,7 +177,6 @@ def _grid(matrix: Array) -> list[str]:
 
 _AXES = ("x", "y", "z")
 _MASSES = ("m", "mass", "masses")
-_ROWS = 8192  # particles that are summed at once, so that they stay in the cache
 
 
 def inertia_of(
@@ -194,7 +193,7 @@ def inertia_of(
     particles : array_like, (n, 4) or (n, 3), data frame, mapping, or path
         m, x, y, z of each particle, or x, y, z with 1 kg each, in kg and m. Columns with names, as
         in a data frame or a file (NPY, CSV, Parquet), are found by these, and units in the names
-        are converted. A file is read in one pass, in bounded memory.
+        are converted.
     columns : sequence of str, optional
         Names of the columns in their order, such as ("x", "y", "z", "m").
     allow : bool, optional
@@ -234,26 +233,63 @@ def inertia_of(
         table = ArrayTable(particles) if path is None else open_table(path)
         if isinstance(table, TextTable):
             table.quotes = False  # it may be another kind of text
-        return _summed(_blocks(table, columns, progress), table, allow=allow)
+        used, factors = _columns(table, columns)
+        parts = [np.empty((0, len(factors)))]
+        for batch in table.batches(used):
+            parts.append(np.asarray(batch.table, float) * factors)
+            if progress is not None:
+                progress(batch.share)
+        return _properties(np.concatenate(parts), table, allow=allow)
     except (BodyError, DataError) as error:
         if path is None or str(path) in str(error):
             raise BodyError(str(error)) from None
         raise BodyError(f"{path}: {error}") from None
 
 
-def _blocks(
-    table: Table, names: Sequence[str] | None, progress: Progress | None
-) -> Iterator[tuple[Array, Array, int]]:
-    """Masses (n,) and positions (3, n), in kg and m, and the row of the first of them."""
-    columns, factors = _columns(table, names)
-    for batch in table.batches(columns, _ROWS):
-        rows = np.ascontiguousarray(batch.table.T, float)  # products of long rows are fastest
-        if (factors != 1).any():
-            rows *= factors[:, None]
-        masses = rows[3] if len(columns) == 4 else np.ones(len(batch.rows))
-        yield masses, rows[:3], int(batch.rows[0])
-        if progress is not None:
-            progress(batch.share)
+def _properties(rows: Array, table: Table, *, allow: bool) -> MassProperties:
+    """The body of particles x, y, z, m (n, 4), or x, y, z of 1 kg each (n, 3).
+
+    Σ m x xᵀ is summed about the centre of mass, where differences of coordinates are nearly exact
+    however far from the origin the body is. What rounding leaves of Σ m x about that point then
+    corrects both (Chan, Golub and LeVeque 1979).
+    """
+    if not len(rows):
+        raise BodyError("expected at least one particle, got none")
+    positions = rows[:, :3]
+    masses = rows[:, 3] if rows.shape[1] == 4 else np.ones(len(rows))
+
+    def refuse(wrong: NDArray[np.bool_], expected: str) -> None:
+        if wrong.any():
+            row = int(np.argmax(wrong))
+            is_text = isinstance(table, TextTable)
+            name = (
+                f"{table.source}, {table.place(row)}"
+                if is_text
+                else f"particle {row}, counted from 0"
+            )
+            x, y, z = positions[row]
+            fault = f"expected {expected}, got mass {masses[row]:g} at ({x:g}, {y:g}, {z:g})"
+            raise BodyError(f"{name}: {fault}")
+
+    refuse(np.asarray(~np.isfinite(rows).all(axis=1)), "finite numbers")
+    if not allow:
+        refuse(masses < 0, "a mass that is not negative")
+    with np.errstate(all="ignore"):  # what overflows is refused
+        mass = float(masses.sum())
+        if not 0 < mass < np.inf:
+            raise BodyError(f"the total mass is {mass:g} kg; expected a positive mass")
+        start = np.median(positions, axis=0)  # unlike the mean, no outlier moves it away
+        about = start + masses @ (positions - start) / mass
+        apart = positions - about
+        rest = masses @ apart
+        second = (apart.T * masses) @ apart - np.outer(rest, rest / mass)
+    if not np.isfinite(second).all():
+        raise BodyError("the moments are too large for double precision")
+    # tr(J) 1 − J for J = Σ m x xᵀ, without adding numbers that cancel
+    inertia = -(second + second.T) / 2
+    for k in range(3):
+        inertia[k, k] = second[(k + 1) % 3, (k + 1) % 3] + second[(k + 2) % 3, (k + 2) % 3]
+    return MassProperties(count=len(rows), mass=mass, centre=about + rest / mass, inertia=inertia)
 
 
 def _columns(table: Table, names: Sequence[str] | None) -> tuple[list[int], Array]:
@@ -292,86 +328,11 @@ def _columns(table: Table, names: Sequence[str] | None) -> tuple[list[int], Arra
     return columns, np.array(factors)
 
 
-def _summed(
-    blocks: Iterable[tuple[Array, Array, int]], table: Table, *, allow: bool
-) -> MassProperties:
-    """All blocks as one body.
-
-    Each block is summed about its own centre of mass, where differences of coordinates are nearly
-    exact however far from the origin the body is. Its sums are then moved to the common centre of
-    mass by the parallel-axis theorem (Chan, Golub and LeVeque 1979).
-    """
-    sums: list[tuple[float, Array, Array, Array]] = []  # m, a, Σ m (x − a), Σ m (x − a)(x − a)ᵀ
-    count = 0
-    for masses, positions, first in blocks:
-        count += len(masses)
-        if not allow and (masses < 0).any():
-            row = int(np.argmax(masses < 0))
-            raise BodyError(
-                f"{_particle(table, first + row)}: the mass is {masses[row]:g} kg; expected a mass "
-                "that is not negative"
-            )
-        with np.errstate(all="ignore"):  # numbers that are not finite are found below
-            about = positions @ masses / masses.sum()
-            if not np.isfinite(about).all():  # no mass, or too much
-                about = positions[:, 0]
-            apart = positions - about[:, None]
-            weighted = apart * masses
-            second = weighted @ apart.T
-            sums.append((masses.sum(), about, weighted.sum(axis=1), second))
-        if not np.isfinite(second).all():
-            raise BodyError(_not_finite(masses, positions, first, table))
-    if not sums:
-        raise BodyError("expected at least one particle, got none")
-    m, about, moments, second = map(np.array, zip(*sums, strict=True))
-    with np.errstate(over="ignore"):
-        mass = float(m.sum())
-    if not 0 < mass < np.inf:
-        raise BodyError(f"the total mass is {mass:g} kg; expected a positive mass")
-    near = about[0]  # differences from it lose nothing if the body is far away
-    centre = near + (m @ (about - near) + moments.sum(axis=0)) / mass
-    apart = about - centre
-    rest = m @ apart + moments.sum(axis=0)  # zero but for rounding
-    mixed = moments.T @ apart
-    second = second.sum(axis=0) + mixed + mixed.T + (apart.T * m) @ apart
-    second -= np.outer(rest, rest / mass)
-    return MassProperties(
-        count=count, mass=mass, centre=centre + rest / mass, inertia=_inertia(second)
-    )
-
-
-def _particle(table: Table, row: int) -> str:
-    """How messages name a particle."""
-    if isinstance(table, TextTable):
-        return f"{table.source}, {table.place(row)}"
-    return f"particle {row}, counted from 0"
-
-
-def _not_finite(masses: Array, positions: Array, first: int, table: Table) -> str:
-    wrong = ~(np.isfinite(masses) & np.isfinite(positions).all(axis=0))
-    if not wrong.any():
-        return f"particles from {first} on: their moments are too large for double precision"
-    row = int(np.argmax(wrong))
-    x, y, z = positions[:, row]
-    return (
-        f"{_particle(table, first + row)}: expected finite numbers, got mass {masses[row]:g} at "
-        f"({x:g}, {y:g}, {z:g})"
-    )
-
-
-def _inertia(second: Array) -> Array:
-    """tr(J) 1 − J for J = Σ m x xᵀ, without adding numbers that cancel."""
-    inertia = -(second + second.T) / 2
-    for k in range(3):
-        inertia[k, k] = second[(k + 1) % 3, (k + 1) % 3] + second[(k + 2) % 3, (k + 2) % 3]
-    return inertia
-
-
 # Meshes
 
 ENDINGS = (".stl", ".obj", ".ply", ".off", ".glb", ".gltf")
 MOST_DRAWN, _MOST_CELLS = 400, 24
-_RELATIVE = re.compile(rb"^f\b(?:[^#\n]*\s)?(-\d+|0)(?=[/\s]|$)", re.MULTILINE)  # of a face of OBJ
+_RELATIVE = re.compile(rb"^f\b(?:[^#\n]*\s)?(-\d+|0)(?=[/\s]|$)", re.MULTILINE)  # corner in OBJ
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -395,8 +356,10 @@ def read_mesh_file(path: Path, *, scale: float = 1.0) -> Mesh:
         raise BodyError(f"{path}: no such mesh")
     if path.suffix.lower() not in ENDINGS:
         raise BodyError(f"{path}: expected a mesh, a file that ends in {', '.join(ENDINGS)}")
-    if path.suffix.lower() == ".obj":
-        _check_relative(path)
+    if path.suffix.lower() == ".obj" and (corner := _RELATIVE.search(path.read_bytes())):
+        line = corner.string.count(b"\n", 0, corner.start()) + 1
+        number = corner[1].decode()
+        raise BodyError(f"{path}: line {line}: the corner {number}; expected corners from 1 on")
     try:
         with np.errstate(all="ignore"), catch_warnings(action="ignore"):
             loaded = trimesh.load(path, force="mesh", process=False, skip_materials=True)
@@ -437,23 +400,6 @@ def _check_corners(path: Path, faces: NDArray[np.int64], count: int) -> None:
             f"{path}: triangle {triangle + 1} has the corner {faces[triangle, corner]}; expected "
             f"0 to {count - 1}, since the file has {count} vertices"
         )
-
-
-def _check_relative(path: Path) -> None:
-    """Raises BodyError for a corner 0 of an OBJ file, and one that trimesh would misread.
-
-    Negative numbers count from the last vertex before the face; trimesh counts from the last one.
-    """
-    if not _RELATIVE.search(content := path.read_bytes()):
-        return
-    lines = content.split(b"\n")
-    last = max((k for k, line in enumerate(lines) if line.startswith(b"v ")), default=0)
-    for k, line in enumerate(lines):
-        if (corner := _RELATIVE.match(line)) and (corner[1] == b"0" or k < last):
-            expected = "corners from 1 on" if corner[1] == b"0" else "all vertices before this face"
-            raise BodyError(
-                f"{path}: line {k + 1}: the corner {corner[1].decode()}; expected {expected}"
-            )
 
 
 def mesh_inertia(
@@ -519,27 +465,14 @@ def outline_of(mesh: Mesh) -> dict[str, list[list[float]] | list[list[int]]]:
 
 
 def check_closed(mesh: Mesh) -> None:
-    """Raises BodyError, with an edge, unless every edge joins two faces of one orientation."""
-    faces = mesh.faces
-    edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    """Raises BodyError, with a corner, unless every edge joins two faces of one orientation."""
     count = len(mesh.vertices)
-    forward, backward = edges @ (count, 1), edges @ (1, count)
-    directed, times = np.unique(forward, return_counts=True)
-    if times.max() > 1:
-        edge = int(directed[np.argmax(times)])
-        raise BodyError(
-            f"mesh: some faces are turned over: {int((times > 1).sum())} edges have the same "
-            f"direction in both of their faces, such as {_edge(edge, mesh)}"
-        )
-    open_edges = np.setdiff1d(backward, directed)
-    if len(open_edges):
-        raise BodyError(
-            f"mesh: the surface is open: {len(open_edges)} edges have only one face, such as "
-            f"{_edge(int(open_edges[0]), mesh)}"
-        )
-
-
-def _edge(code: int, mesh: Mesh) -> str:
-    start, end = divmod(code, len(mesh.vertices))
-    places = (", ".join(f"{x:.6g}" for x in mesh.vertices[k]) for k in (start, end))
-    return " to ".join(f"({place})" for place in places)
+    edges = mesh.faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
+    directed, times = np.unique(edges @ (count, 1), return_counts=True)
+    for wrong, what in (
+        (directed[times > 1], "some faces are turned over: {} edges have the same direction twice"),
+        (np.setdiff1d(edges @ (1, count), directed), "the surface is open: {} edges have one face"),
+    ):
+        if len(wrong):
+            corner = ", ".join(f"{x:.6g}" for x in mesh.vertices[wrong[0] // count])
+            raise BodyError(f"mesh: {what.format(len(wrong))}; the first begins at ({corner})")

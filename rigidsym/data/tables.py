@@ -9,12 +9,11 @@ from __future__ import annotations
 import csv
 import errno
 import io
-import mmap
 import os
 import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Sequence
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
 from itertools import chain, islice
 from pathlib import Path
@@ -35,7 +34,6 @@ ROWS = 65_536  # in memory at once
 ENDINGS = (".npy", ".csv", ".txt", ".parquet", ".pq")  # that are written
 MOST_SHOWN = 10  # faults in one message
 _NUMERIC = "fiub"
-_FORGET = 32 << 20  # bytes after which pages that were read are given back
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,6 +49,11 @@ class Batch:
         """Some of its rows."""
         kept = tuple(column[which] for column in self.kept)
         return Batch(self.table[which], self.rows[which], self.share, kept)
+
+    def split(self, rows: int) -> Iterator[Batch]:
+        """The batch in pieces of at most so many rows."""
+        for start in range(0, len(self.rows), rows):
+            yield self.at(slice(start, start + rows))
 
 
 class Table(ABC):
@@ -72,9 +75,15 @@ class Table(ABC):
         """
 
     def sample(self, columns: Sequence[int], rows: int) -> Batch:
-        """A few rows, from all over the table if that is cheap."""
-        none = Batch(np.empty((0, len(columns))), np.empty(0, np.intp), 1.0)
-        return next(self.batches(columns, rows), none)
+        """About as many rows, evenly spaced over the whole table."""
+        step, table, numbers = 1, np.empty((0, len(columns))), np.empty(0, np.intp)
+        for batch in self.batches(columns, 8192):
+            some = batch.at(batch.rows % step == 0)
+            table, numbers = np.vstack([table, some.table]), np.append(numbers, some.rows)
+            while len(numbers) > rows:  # twice as far apart
+                step *= 2
+                table, numbers = table[numbers % step == 0], numbers[numbers % step == 0]
+        return Batch(table, numbers, 1.0)
 
     def place(self, row: int) -> str:
         """How messages name a row: row 3, line 17."""
@@ -90,7 +99,7 @@ def open_table(path: Path) -> Table:
         fault = "not a regular file; `eval` reads a stream from -"
         raise DataError(f"{path}: {fault if path.exists() else 'no such file'}")
     if path.suffix.lower() == ".npy":
-        return _npy_table(path)
+        return NpyTable(path)
     return (ParquetTable if path.suffix.lower() in (".parquet", ".pq") else TextTable)(path)
 
 
@@ -124,26 +133,21 @@ def without_missing(
 class ArrayTable(Table):
     """Arrays (rows, columns) side by side; data with named columns have these names.
 
-    Nothing is copied but the rows that are asked for; pages of a memory map are given back.
     Raises DataError for other shapes and for types that are not numbers.
     """
 
     def __init__(self, *arrays: Any) -> None:
         if len(arrays) == 1 and (names := names_of(arrays[0])):
             self.names, arrays = _named(arrays[0], names)
-        arrays = tuple(map(np.asanyarray, arrays))
+        arrays = tuple(map(np.asarray, arrays))
         for array in arrays:
             if array.ndim != 2 or array.dtype.kind not in _NUMERIC:
                 raise DataError(
                     f"expected numbers of shape (rows, columns), got {array.dtype} of shape "
                     f"{array.shape}"
                 )
-        self._maps = {id(m): m for a in arrays if (m := getattr(a, "_mmap", None)) is not None}
-        arrays = tuple(map(np.asarray, arrays))  # rows of a memory map are slow to take
         self._columns = [column for array in arrays for column in array.T]
-        self._whole = arrays[0] if len(arrays) == 1 else None
         self.width, self._length = len(self._columns), len(arrays[0])
-        self._row_bytes = sum(array.shape[1] * array.itemsize for array in arrays)
         floats = [a.dtype for a in arrays if a.dtype.kind == "f"]
         is_single = len(floats) == len(arrays) and all(kind.itemsize == 4 for kind in floats)
         self.dtype = np.dtype(np.float32 if is_single else np.float64)
@@ -156,27 +160,43 @@ class ArrayTable(Table):
         self, columns: Sequence[int], rows: int = ROWS, kept: Sequence[int] = ()
     ) -> Iterator[Batch]:
         """As `Table.batches`."""
-        unread = 0
         for first in range(0, len(self), rows):
-            some = np.arange(first, min(first + rows, len(self)))
-            part = slice(first, first + rows)
-            passed = tuple(self._columns[column][part].copy() for column in kept)
-            yield Batch(self._rows(part, columns), some, (some[-1] + 1) / len(self), passed)
-            unread += len(some) * self._row_bytes
-            if unread > _FORGET or some[-1] + 1 == len(self):
-                unread = 0
-                for each in self._maps.values() if hasattr(mmap, "MADV_DONTNEED") else ():
-                    each.madvise(mmap.MADV_DONTNEED)
+            some = slice(first, min(first + rows, len(self)))
+            yield Batch(
+                np.stack([self._columns[k][some].astype(self.dtype) for k in columns], axis=1),
+                np.arange(some.start, some.stop),
+                some.stop / len(self),
+                tuple(self._columns[k][some].copy() for k in kept),
+            )
 
-    def sample(self, columns: Sequence[int], rows: int) -> Batch:
-        """As `Table.sample`: evenly spaced."""
-        which = np.unique(np.linspace(0, len(self) - 1, rows).round().astype(np.intp))
-        return Batch(self._rows(which, columns), which, 1.0)
 
-    def _rows(self, which: slice | NDArray[np.intp], columns: Sequence[int]) -> Numbers:
-        if self._whole is not None:
-            return np.asarray(self._whole[which][:, [*columns]], self.dtype)
-        return np.stack([self._columns[k][which].astype(self.dtype) for k in columns], axis=1)
+class NpyTable(ArrayTable):
+    """An NPY file; the fields of a structured array are its columns."""
+
+    def __init__(self, path: Path) -> None:
+        self.source, self._path = str(path), path
+        with path.open("rb") as file:
+            begins = file.read(6)
+        if begins != b"\x93NUMPY":
+            kind = "another kind of file" if begins else "an empty file"
+            raise DataError(f"{path}: not an NPY file of numbers, but {kind}")
+        try:
+            super().__init__(np.load(path, mmap_mode="r", allow_pickle=False))
+        except DataError as error:
+            raise DataError(f"{path}: {error}") from None
+        # NumPy parses the header as Python, and maps as many bytes as it states.
+        except (ValueError, TypeError, SyntaxError, TokenError, EOFError, OverflowError):
+            size = path.stat().st_size
+            message = f"{path}: not an NPY file of numbers, or damaged ({size} bytes)"
+            raise DataError(message) from None
+
+    def batches(
+        self, columns: Sequence[int], rows: int = ROWS, kept: Sequence[int] = ()
+    ) -> Iterator[Batch]:
+        """As `Table.batches`; the file is mapped anew for each, which frees what was read."""
+        for batch in super().batches(columns, rows, kept):
+            yield batch
+            ArrayTable.__init__(self, np.load(self._path, mmap_mode="r", allow_pickle=False))
 
 
 def names_of(data: Any) -> list[str]:
@@ -200,25 +220,6 @@ def _named(data: Any, names: Sequence[str]) -> tuple[tuple[str, ...], tuple[NDAr
     if not arrays:
         raise DataError("no field of the structured array holds numbers")
     return tuple(arrays), tuple(column[:, None] for column in arrays.values())
-
-
-def _npy_table(path: Path) -> ArrayTable:
-    """An NPY file, mapped into memory; the fields of a structured array are its columns."""
-    with path.open("rb") as file:
-        begins = file.read(6)
-    if begins != b"\x93NUMPY":
-        kind = "another kind of file" if begins else "an empty file"
-        raise DataError(f"{path}: not an NPY file of numbers, but {kind}")
-    try:
-        table = ArrayTable(np.load(path, mmap_mode="r", allow_pickle=False))
-    except DataError as error:
-        raise DataError(f"{path}: {error}") from None
-    # NumPy parses the header as Python, and maps as many bytes as it states.
-    except (ValueError, TypeError, SyntaxError, TokenError, EOFError, OverflowError):
-        size = path.stat().st_size
-        raise DataError(f"{path}: not an NPY file of numbers, or damaged ({size} bytes)") from None
-    table.source = str(path)
-    return table
 
 
 # Parquet
@@ -259,13 +260,12 @@ class ParquetTable(Table):
             with self._reported():
                 frame = self._scan.select(chosen).slice(start, at_once).collect()
             whole = Batch(
-                np.stack([_numbers(frame[self._names[k]], self.dtype) for k in columns], axis=1),
+                frame.select(self._names[k] for k in columns).to_numpy().astype(self.dtype),
                 np.arange(start, start + len(frame)),
                 (start + len(frame)) / self._length,
                 tuple(frame[self._names[k]].to_numpy() for k in kept),
             )
-            for first in range(0, len(frame), rows):
-                yield whole.at(slice(first, first + rows))
+            yield from whole.split(rows)
 
     @contextmanager
     def _reported(self) -> Iterator[None]:
@@ -276,16 +276,11 @@ class ParquetTable(Table):
             raise DataError(f"{self.source}: not a Parquet file, or a damaged one") from None
 
 
-def _numbers(column: Any, dtype: np.dtype[Any]) -> NDArray[Any]:
-    return np.asarray(column.to_numpy(), dtype)
-
-
 # Text
 
-_COMMENTS = ("#", "%")
 _MISSING = frozenset({"", "-", "na", "n/a", "nan", "null", "none", "#n/a"})
 _CASES = (str.lower, str.upper, str.capitalize)
-_BLOCK = 1 << 22  # bytes that are read at once
+_LINES = 50_000  # that are read at once
 _LONGEST = 1 << 20  # bytes in a line
 _WIDEST = 10_000  # columns
 _AFTER_QUOTES = re.compile(r'((?<!")")[ \t]+(?=[,;\t]|$)')  # blanks that no dialect expects
@@ -310,9 +305,9 @@ class TextTable(Table):
 
     Comments begin with # or %; the last one before the numbers names them if no other line does. A
     second line may hold the units. Quoted fields, a byte-order mark and, unless commas separate
-    the columns, decimal commas are read. polars reads blocks of whole lines; if it refuses one, or
-    rows differ in length, the fields of the block are read one by one, so that a fault is named
-    with its line. Raises DataError for what is not such a table.
+    the columns, decimal commas are read. polars reads the rows; if it refuses them, or they differ
+    in length, each field is read by itself, so that a fault is named with its line. Raises
+    DataError for what is not such a table.
     """
 
     quotes = True  # whether messages show fields that are not numbers
@@ -322,15 +317,13 @@ class TextTable(Table):
         self.path, self.source = path, str(path)
         self._stream = stream and io.BufferedReader(stream)  # type: ignore[type-var]
         self._size = 0 if stream else path.stat().st_size
-        self._ahead: list[bytes] = []  # lines that are read to find the header
+        self._ahead: list[bytes] = []  # lines that were read to find the header
         with self._opened() as file:
             begin = file.peek(4096)[:4096]
             kind = next((kind for magic, kind in _KINDS.items() if begin.startswith(magic)), None)
             if kind or b"\0" in begin:
-                raise DataError(
-                    f"{path} holds {kind or 'no text'}; expected text in UTF-8, or an NPY or "
-                    "Parquet file"
-                )
+                what = kind or "no text"
+                raise DataError(f"{path} holds {what}; expected text in UTF-8, NPY or Parquet")
             lines = iter(lambda: self._line(file), b"")
             comments, first = self._first_row(lines)
             self.separator = _separator(first)
@@ -341,11 +334,8 @@ class TextTable(Table):
                 raise DataError(f"{path}: {len(fields)} columns; at most {_WIDEST} are read")
             self.names, self._header = self._read_header(fields, comments, lines)
         self.width = len(fields)
-        begin_of_rows = sum(map(len, self._ahead[: self._header]))
-        # row, lines and bytes before each block that was read
-        self._starts = [(0, self._header, begin_of_rows)]
 
-    def _opened(self) -> AbstractContextManager[Any]:
+    def _opened(self) -> Any:
         return nullcontext(self._stream) if self._stream else self.path.open("rb")
 
     def _line(self, file: io.BufferedReader) -> bytes:
@@ -365,7 +355,7 @@ class TextTable(Table):
         """The comments before the first line that is none, and that line."""
         comments: list[str] = []
         for text in (_decoded(line).strip() for line in lines):
-            if text and not text.startswith(_COMMENTS):
+            if _is_row(text):
                 return comments, text
             comments += [text.lstrip("#% ")] if text else []
         if not comments:
@@ -412,82 +402,67 @@ class TextTable(Table):
         """How messages name a row: by its line, or else by its number."""
         if self._stream:
             return super().place(row)
-        first, before, begin = max(start for start in self._starts if start[0] <= row)
         with self.path.open("rb") as file:
-            file.seek(begin)
-            rows = (number for number, line in enumerate(file, before + 1) if _is_row(line))
-            return f"line {next(islice(rows, row - first, None))}"
-
-    def _blocks(self) -> Iterator[tuple[bytes, int, int]]:
-        """Blocks of whole lines, the number of lines before each, and the byte where it begins."""
-        with self._opened() as file:
-            head = self._ahead if self._stream else [*islice(file, self._header)]
-            block, rest = b"", b"".join(head[self._header :])
-            before, begin = self._header, sum(map(len, head[: self._header]))
-            while new := file.read1(_BLOCK) if self._stream else file.read(_BLOCK):
-                if block:
-                    yield block, before, begin
-                before, begin = before + block.count(b"\n"), begin + len(block)
-                whole, end, rest = (rest + new).rpartition(b"\n")
-                block = whole + end
-                self._check_length(rest, before + block.count(b"\n") + 1)
-            if block or rest:  # a last line without its end belongs to the last block
-                yield block + rest, before, begin
+            lines = enumerate(map(_decoded, file), start=1)
+            numbers = (n for n, line in lines if n > self._header and _is_row(line))
+            return f"line {next(islice(numbers, row, None))}"
 
     def batches(
         self, columns: Sequence[int], rows: int = ROWS, kept: Sequence[int] = ()
     ) -> Iterator[Batch]:
         """As `Table.batches`; columns that are kept are texts."""
-        first = 0
-        self._starts.clear()
-        for block, before, begin in self._blocks():
-            self._starts.append((first, before, begin))
-            read = self._at_once(block, columns, kept)
-            table, passed = read or self._by_field(block, before, columns, kept)
-            share = (begin + len(block)) / self._size if self._size else 1.0
-            whole = Batch(table, np.arange(first, first := first + len(table)), share, passed)
-            for start in range(0, len(table), rows):
-                yield whole.at(slice(start, start + rows))
+        first, before, done = 0, self._header, sum(map(len, self._ahead[: self._header]))
+        with self._opened() as file:
+            if self._stream:
+                file = chain(self._ahead[self._header :], iter(file.readline, b""))
+            else:
+                file.seek(done)
+            while block := [*islice(file, _LINES)]:
+                if max(map(len, block)) >= _LONGEST:
+                    for number, line in enumerate(block, before + 1):
+                        self._check_length(line, number)
+                lines = _decoded(b"".join(block)).replace("\r\n", "\n").split("\n")
+                read = self._at_once(lines, columns, kept)
+                table, texts = read or self._by_field(lines, before, columns, kept)
+                before, done = before + len(block), done + sum(map(len, block))
+                numbers = np.arange(first, first := first + len(table))
+                share = done / self._size if self._size else 1.0
+                yield from Batch(table, numbers, share, texts).split(rows)
 
     def _at_once(
-        self, block: bytes, columns: Sequence[int], kept: Sequence[int]
+        self, lines: Sequence[str], columns: Sequence[int], kept: Sequence[int]
     ) -> tuple[Numbers, tuple[NDArray[Any], ...]] | None:
         """The numbers as polars reads them; None if it refuses them or rows differ in length."""
-        pl = self._polars
-        block = block.removeprefix(b"\xef\xbb\xbf").replace(b"\r\n", b"\n")
-        mark = (self.separator or " ").encode()
-        if _odd_starts(block) or (not self.separator and (b"  " in block or b" \n" in block)):
-            rows = filter(_is_row, block.split(b"\n"))
-            # polars takes each blank for a separator
-            block = b"\n".join(rows if self.separator else (b" ".join(r.split()) for r in rows))
-        has_comma = mark != b"," and b"," in block
-        if b'"' in block or b"\r" in block or (has_comma and b"." in block):
+        pl, mark = self._polars, self.separator or " "
+        rows = [line for line in lines if _is_row(line)]
+        if not self.separator:  # polars takes each blank for a separator
+            rows = [" ".join(row.split()) for row in rows]
+        text = "\n".join(rows)
+        has_comma = mark != "," and "," in text
+        if not rows or '"' in text or "\r" in text or (has_comma and "." in text):
             return None
-        if not _has_rows_of(block, mark, self.width):
+        marks = pl.Series(rows).str.count_matches(mark, literal=True)
+        if (marks != self.width - 1).any():  # polars fills short rows and cuts long ones
             return None
-        schema = {str(k): pl.Float64 if k in columns else pl.String for k in range(self.width)}
+        names = [str(k) for k in range(self.width)]
         missing = [case(word) for word in _MISSING if word for case in _CASES]
-        scan = pl.scan_csv(
-            io.BytesIO(block),
-            has_header=False,
-            separator=mark.decode(),
-            quote_char=None,
-            schema=schema,
-            null_values=missing,
-            decimal_comma=has_comma,
-        )
-        wanted = [str(k) for k in dict.fromkeys([*columns, *kept])]
         try:
-            frame = scan.select(wanted).collect()
+            frame = pl.read_csv(
+                io.StringIO(text),
+                has_header=False,
+                separator=mark,
+                quote_char=None,
+                schema={n: pl.Float64 if int(n) in columns else pl.String for n in names},
+                null_values=missing,
+                decimal_comma=has_comma,
+            )
         except pl.exceptions.PolarsError:
             return None
-        table = np.empty((len(frame), len(columns)))
-        for place, k in enumerate(columns):
-            table[:, place] = frame[str(k)].to_numpy()
-        return table, tuple(frame[str(k)].to_numpy() for k in kept)
+        numbers = np.stack([frame[names[k]].to_numpy() for k in columns], axis=1)
+        return numbers.astype(float), tuple(frame[names[k]].to_numpy() for k in kept)
 
     def _by_field(
-        self, block: bytes, before: int, columns: Sequence[int], kept: Sequence[int] = ()
+        self, lines: Sequence[str], before: int, columns: Sequence[int], kept: Sequence[int]
     ) -> tuple[Numbers, tuple[NDArray[Any], ...]]:
         """The numbers of each line, NaN for those that are missing.
 
@@ -497,10 +472,10 @@ class TextTable(Table):
         table: list[list[float]] = []
         texts: list[list[str]] = []
         marks: set[str] = set()
-        for number, line in enumerate(block.split(b"\n"), before + 1):
+        for number, line in enumerate(lines, before + 1):
             if not _is_row(line):
                 continue
-            fields = self._fields(_decoded(line))
+            fields = self._fields(line)
             if fields is None:
                 faults.append(f"line {number}: {_QUOTES}")
                 continue
@@ -532,26 +507,6 @@ class TextTable(Table):
         numbers = np.array(table, float).reshape(-1, len(columns))
         return numbers, tuple(np.array(column, object) for column in zip(*texts, strict=True))
 
-    def sample(self, columns: Sequence[int], rows: int) -> Batch:
-        """As `Table.sample`: found by seeking; those that do not read are left out."""
-        with self.path.open("rb") as file:
-            start = sum(map(len, islice(file, self._header)))
-            file.seek(start)
-            lines = [file.readline(_LONGEST) for _ in range(rows)]
-            for offset in np.linspace(start, self._size, rows, endpoint=False).astype(int):
-                file.seek(int(offset))
-                file.readline(_LONGEST)  # the rest of a line
-                lines.append(file.readline(_LONGEST))
-        good: list[Numbers] = []
-        for line in filter(_is_row, lines):
-            try:
-                good.append(self._by_field(line, 0, columns)[0])
-            except DataError:
-                continue
-        if not good:
-            return super().sample(columns, rows)
-        return Batch(np.concatenate(good), np.zeros(len(good), np.intp), 0.0)
-
 
 def listed(path: Path | str, faults: Sequence[str], count: int | None = None) -> str:
     """What is wrong with a file: one fault in a line, or the first ten in a list."""
@@ -575,33 +530,9 @@ def _decoded(line: bytes) -> str:
     return line.decode(errors="replace").removeprefix("\ufeff")
 
 
-def _is_row(line: bytes) -> bool:
-    text = line.strip()
-    return bool(text) and not text.startswith((b"#", b"%"))
-
-
-def _line_starts(block: bytes) -> tuple[NDArray[np.uint8], NDArray[np.intp]]:
-    letters = np.frombuffer(block.removesuffix(b"\n"), np.uint8)
-    return letters, np.concatenate([[0], np.flatnonzero(letters == ord("\n")) + 1])
-
-
-def _odd_starts(block: bytes) -> bool:
-    """Whether a line may be no row: it is empty, or begins with a blank, # or %."""
-    letters, starts = _line_starts(block)
-    if starts[-1] >= len(letters):
-        return True
-    return bool(np.isin(letters[starts], np.frombuffer(b"#% \t\n", np.uint8)).any())
-
-
-def _has_rows_of(block: bytes, mark: bytes, width: int) -> bool:
-    """Whether each line has as many fields; polars fills short rows and cuts long ones."""
-    letters, starts = _line_starts(block)
-    marks = np.flatnonzero(letters == ord(mark))
-    if not len(letters) or len(marks) != len(starts) * (width - 1):
-        return False
-    of_line = marks.reshape(len(starts), width - 1)
-    ends = np.append(starts[1:], len(letters))
-    return bool((of_line >= starts[:, None]).all() and (of_line < ends[:, None]).all())
+def _is_row(line: str) -> bool:
+    bare = line.lstrip()
+    return bare != "" and bare[0] not in "#%"
 
 
 def _separator(line: str) -> str | None:
@@ -704,7 +635,7 @@ def _write_text(
 def _write_parquet(
     file: BinaryIO, names: Sequence[str], dtype: np.dtype[Any], rows: Iterable[Rows]
 ) -> None:
-    """polars takes the frames from here as it writes them."""
+    """polars asks for the next frame when it has written one."""
     pl = _polars()
     from polars.io.plugins import register_io_source
 

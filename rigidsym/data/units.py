@@ -82,7 +82,7 @@ def unit_of(text: str) -> Unit:
 
 
 def conversion(text: str, expected: str) -> float:
-    """By what numbers in one unit are multiplied to have another: π/180 for deg and rad.
+    """The factor from one unit to another: π/180 for deg and rad.
 
     Raises DataError for an unknown unit, and for one of another quantity.
     """

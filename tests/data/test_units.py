@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import product
 from math import pi
 
 import pytest
@@ -12,74 +13,48 @@ from rigidsym.errors import DataError
 
 DEGREE = pi / 180
 ANGLES = {
-    "rad": 1,
+    "rad Radians": 1,
     "mrad": 1e-3,
-    "µrad": 1e-6,
-    "μrad": 1e-6,
-    "urad": 1e-6,
-    "Radians": 1,
-    "deg": DEGREE,
-    "°": DEGREE,
-    "Degrees": DEGREE,
-    "DEG": DEGREE,
+    "µrad μrad urad": 1e-6,
+    "deg ° Degrees DEG": DEGREE,
     "cdeg": DEGREE / 100,
     "mdeg": DEGREE / 1000,
-    "arcmin": DEGREE / 60,
-    "′": DEGREE / 60,
+    "arcmin ′": DEGREE / 60,
     "arcsec": DEGREE / 3600,
     "mas": DEGREE / 3600e3,
-    "turn": 2 * pi,
-    "turns": 2 * pi,
-    "rev": 2 * pi,
-    "gon": pi / 200,
-    "gradian": pi / 200,
+    "turn turns rev": 2 * pi,
+    "gon gradian": pi / 200,
 }
-TIMES = {"s": 1, "sec": 1, "ms": 1e-3, "min": 60, "h": 3600, "hr": 3600, "hour": 3600}
+TIMES = {"s sec": 1, "ms": 1e-3, "min": 60, "h hr hour": 3600}
 RATES = {
-    "dps": DEGREE,
-    "rpm": 2 * pi / 60,
-    "rev/min": 2 * pi / 60,
-    "rad s^-1": 1,
-    "rad s-1": 1,
-    "rad·s⁻¹": 1,
-    "rad*s**-1": 1,
-    "deg.s^-1": DEGREE,
-    "degrees per second": DEGREE,
-    "deg per hour": DEGREE / 3600,
+    "dps, deg.s^-1, degrees per second": DEGREE,
     "mdps": DEGREE / 1000,
+    "rpm, rev/min": 2 * pi / 60,
+    "rad s^-1, rad s-1, rad·s⁻¹, rad*s**-1": 1,
+    "deg per hour": DEGREE / 3600,
 }
+OTHERS = [
+    *((unit, "rad/s^2", DEGREE) for unit in ("deg/s^2", "°/s²", "deg/s/s", "deg s^-2")),
+    ("mm", "m", 1e-3),
+    ("g", "kg", 1e-3),
+    ("g cm^2", "kg m^2", 1e-7),
+    ("kg/(m s)", "kg/m/s", 1),
+]
 
 
-@pytest.mark.parametrize("unit", ANGLES)
-def test_angles_become_radians(unit):
-    assert conversion(unit, "rad") == pytest.approx(ANGLES[unit], rel=1e-14)
-    assert is_angular(unit)
-
-
-@pytest.mark.parametrize("time", TIMES)
-@pytest.mark.parametrize("form", ["{}/{}", "{} / {}", "{} {}^-1", "{} per {}"])
-@pytest.mark.parametrize("unit", ["rad", "°", "mrad", "turns"])
-def test_rates_become_radians_per_second(unit, form, time):
-    expected = ANGLES[unit] / TIMES[time]
-    assert conversion(form.format(unit, time), "rad/s") == pytest.approx(expected, rel=1e-14)
-
-
-@pytest.mark.parametrize("unit", RATES)
-def test_rates_with_names_of_their_own(unit):
-    assert conversion(unit, "rad/s") == pytest.approx(RATES[unit], rel=1e-14)
-
-
-@pytest.mark.parametrize("unit", ["deg/s^2", "°/s²", "deg/s/s", "deg s^-2"])
-def test_accelerations(unit):
-    assert conversion(unit, "rad/s^2") == pytest.approx(DEGREE, rel=1e-14)
-
-
-@pytest.mark.parametrize(
-    ("unit", "expected", "factor"),
-    [("mm", "m", 1e-3), ("g", "kg", 1e-3), ("g cm^2", "kg m^2", 1e-7), ("kg/(m s)", "kg/m/s", 1)],
-)
-def test_lengths_and_masses(unit, expected, factor):
-    assert conversion(unit, expected) == pytest.approx(factor, rel=1e-14)
+def test_units_are_converted_however_they_are_written():
+    cases = [*OTHERS]
+    for names, angle in ANGLES.items():
+        cases += [(name, "rad", angle) for name in names.split()]
+        assert all(map(is_angular, names.split()))
+    for (names, angle), (times, time) in product(ANGLES.items(), TIMES.items()):
+        for unit, second in product(names.split(), times.split()):
+            rates = (f"{unit}/{second}", f"{unit} / {second}", f"{unit} {second}^-1")
+            cases += [(rate, "rad/s", angle / time) for rate in (*rates, f"{unit} per {second}")]
+    for names, rate in RATES.items():
+        cases += [(name, "rad/s", rate) for name in names.split(", ")]
+    for unit, expected, factor in cases:
+        assert conversion(unit, expected) == pytest.approx(factor, rel=1e-14), unit
 
 
 @pytest.mark.parametrize("unit", ["grad", "rps", "foo", "deg/fortnight", "Hz", "mil", "filtered"])

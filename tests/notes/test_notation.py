@@ -161,7 +161,7 @@ def test_faults_of_a_notation_are_all_named():
         read_spec(text, source="top.toml", name="top")
     assert [str(fault) for fault in caught.value.faults] == [
         "notation.body: expected a text in quotes, got the number 1",
-        'notation.rates: unknown choice "dots"; did you mean dot?',
+        'notation.rates: unknown name "dots"; did you mean dot?',
         "notation.vector: unknown key; did you mean vectors?",
     ]
 

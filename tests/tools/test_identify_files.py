@@ -184,8 +184,8 @@ def test_the_lines_looked_at_first_are_whole_and_from_all_over_the_file(tmp_path
     found = from_file(path).spread().angles
     known = {tuple(row): place for place, row in enumerate(table[:, :3].round(9).tolist())}
     places = [known[tuple(row)] for row in found.round(9).tolist()]
-    assert set(range(60)) <= set(places)
-    assert max(np.diff(sorted(places))) < 40
+    assert places[0] == 0
+    assert max(np.diff(places)) < 40
     assert max(places) > 1009 - 40
 
 
