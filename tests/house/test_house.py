@@ -93,9 +93,9 @@ def test_kernels_import_their_representation_and_not_the_reverse():
 # sizes
 
 BUDGETS = {  # what was reached; who makes the house smaller lowers them
-    "files": 236,
-    "lines of code": 34_650,
-    "lines of tests": 29_620,
+    "files": 233,
+    "lines of code": 34_450,
+    "lines of tests": 29_450,
     "lines of benchmarks": 2_700,
 }
 
