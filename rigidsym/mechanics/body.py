@@ -20,7 +20,7 @@ from rigidsym.algebra.witness import Example
 from rigidsym.errors import QuantityError
 from rigidsym.mechanics import particles
 from rigidsym.mechanics.derivation import OfBody, Step
-from rigidsym.mechanics.dynamics.derive import equations_of_motion
+from rigidsym.mechanics.dynamics.lagrange import equations_of_motion
 from rigidsym.mechanics.kinematics.chain import Chain
 from rigidsym.mechanics.kinematics.workspace import Values
 from rigidsym.mechanics.mass.bodies import rigid_body

@@ -188,11 +188,10 @@ class FirstIntegral(NamedTuple):
 
 
 class Consequence(NamedTuple):
-    """An equation that follows from the equations of motion, with the words that lead to it."""
+    """An equation that follows from the equations of motion."""
 
-    title: str  # of the paragraph; "" if it goes on with the one before
-    text: str  # a sentence, with {} in the positions of the spans
-    spans: tuple[Formula | sp.Expr, ...]
+    name: str  # of its sentences, a macro of templates/notes/en/consequences.md.jinja
+    spans: Mapping[str, Any]  # formulas, expressions and words in these sentences
     left: Formula | sp.Expr
     value: Formula | sp.Expr
     proofs: tuple[Proof, ...] = ()

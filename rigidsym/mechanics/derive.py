@@ -3,7 +3,7 @@
 1. The kinematics of the rotation follow from R(q), entry by entry of `quantities.kinematics`, in
    the ring of the model (`kinematics.workspace`), or in names for a chain (`kinematics.chain`).
 2. The inertia of the body, its energy and its momentum follow; with forces, the equations of motion
-   (`body`, `dynamics.derive`).
+   (`body`, `dynamics.lagrange`).
 3. The steps are numbered.
 4. The singular orientations follow (`singularities.derive`).
 5. The equations of the lecture may go before all of it (`lecture`).

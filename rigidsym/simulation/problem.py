@@ -23,9 +23,8 @@ from rigidsym.errors import BodyError, ModelError, QuantityError, offer
 from rigidsym.kernels.module import generate
 from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.derive import derive
-from rigidsym.mechanics.dynamics.derive import LagrangeEquations, equations_of_motion
 from rigidsym.mechanics.dynamics.euler import EulerEquations
-from rigidsym.mechanics.dynamics.lagrange import is_bound
+from rigidsym.mechanics.dynamics.lagrange import LagrangeEquations, equations_of_motion, is_bound
 from rigidsym.mechanics.quantities.dynamics import EULER_QUANTITIES, FLOW_QUANTITIES
 from rigidsym.models.forces import OMEGA, OMEGA_COMPONENTS, Forces, initial_values
 from rigidsym.models.rotation import TIME, RotationModel, as_typed

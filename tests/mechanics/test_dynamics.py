@@ -14,8 +14,7 @@ from sympy.physics.mechanics import LagrangesMethod
 import rigidsym as rs
 from helpers.witness import agree, evaluate, mp
 from rigidsym.errors import ModelError
-from rigidsym.mechanics.dynamics.derive import LagrangeEquations
-from rigidsym.mechanics.dynamics.lagrange import Lagrange
+from rigidsym.mechanics.dynamics.lagrange import LagrangeEquations
 from rigidsym.mechanics.quantities.dynamics import bias_vector
 from rigidsym.models.forces import Forces
 
@@ -304,10 +303,10 @@ def test_an_integral_that_depends_on_the_time_is_proved():
 
 
 def test_a_wrong_bias_is_refuted():
-    work = Lagrange(rs.EulerAngles("ZXZ"), rs.principal_moments(A, A, C), Forces())
+    work = LagrangeEquations(rs.EulerAngles("ZXZ"), rs.principal_moments(A, A, C), Forces())
     work.gyroscopic = work.gyroscopic.scale(work.ring.one + work.ring.one)
     with pytest.raises(rs.RigidsymError, match="is false"):
-        LagrangeEquations(work).step(bias_vector)
+        work.step(bias_vector)
 
 
 @pytest.mark.parametrize(

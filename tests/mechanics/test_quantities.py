@@ -13,7 +13,7 @@ import sympy as sp
 import rigidsym as rs
 from rigidsym.errors import DerivationError, NotARotation
 from rigidsym.mechanics.body import BodyValues
-from rigidsym.mechanics.dynamics.derive import equations_of_motion
+from rigidsym.mechanics.dynamics.lagrange import equations_of_motion
 from rigidsym.mechanics.kinematics.chain import Chain
 from rigidsym.mechanics.kinematics.workspace import Values
 from rigidsym.mechanics.mass.bodies import rigid_body

@@ -77,9 +77,9 @@ def test_the_gyroscope_in_gimbals_has_the_equations_that_sympy_finds():
     assert satisfied(motion, lagrangian - m * g * l * sp.cos(THETA), [PHI, THETA, PSI])
     names = [integral.name for integral in motion.first_integrals]
     assert names == ["energy", "momentum_phi", "momentum_psi"]
-    titles = [each.title for each in motion.consequences]  # upright, its momenta may differ
-    assert "The effective potential" in titles
-    assert "The upright motion" not in titles
+    consequences = [each.name for each in motion.consequences]  # upright, its momenta may differ
+    assert "effective_potential" in consequences
+    assert "upright_motion" not in consequences
 
 
 def test_the_dual_spin_satellite_has_the_equations_that_sympy_finds():
@@ -196,19 +196,19 @@ def test_kovalevskayas_integral_is_proved_and_a_wrong_one_refuted():
 
 def test_the_effective_potential_of_the_heavy_top_and_what_follows_from_it():
     motion = shipped("heavy_symmetric_top")
-    found = {each.title: each for each in motion.consequences}
+    found = {each.name: each for each in motion.consequences}
     assert all(proof.is_exact for each in motion.consequences for proof in each.proofs)
     u, energy, p_phi, p_psi, p = sp.symbols("u E p_phi p_psi p")
     textbook = 2 * (1 - u**2) * (energy - p_psi**2 / (2 * C) - m * g * l * u) / A
     textbook -= ((p_phi - p_psi * u) / A) ** 2
-    assert sp.expand(found["The equation for the cosine"].value - textbook) == 0
-    assert sp.expand(found["The upright motion"].value - (p**2 / (4 * A) - m * g * l)) == 0
+    assert sp.expand(found["cubic_for_cosine"].value - textbook) == 0
+    assert sp.expand(found["upright_motion"].value - (p**2 / (4 * A) - m * g * l)) == 0
     steady = A * sp.cos(THETA) * PHI.diff(T) ** 2 - p_psi * PHI.diff(T) + m * g * l
-    assert sp.expand(found["Steady motion"].value - steady) == 0
+    assert sp.expand(found["steady_motion"].value - steady) == 0
     u_1, u_3 = sp.symbols("u_1 u_3")
-    (_, rate), _ = found["Nutation in elliptic functions"].where
+    (_, rate), _ = found["nutation"].where
     assert rate == m * g * l * (u_3 - u_1) / (2 * A)
-    rising = found["The motion that rises to the vertical"]
+    rising = found["rising_motion"]
     assert sp.expand(rising.value - (p**2 / (2 * A * m * g * l) - 1)) == 0
 
 
@@ -226,38 +226,14 @@ def test_the_rates_of_the_ignorable_coordinates_are_those_that_solve_the_momenta
     assert single == m * g * l / p_psi  # of a horizontal axis
 
 
-@pytest.mark.parametrize("name", ["u", "p", "E", "gamma"])
+@pytest.mark.parametrize("name", ["u", "p", "E"])
 def test_constants_may_be_named_as_what_the_note_of_a_top_introduces(name):
     only = ["energy", "effective_potential"]
     moments, potential = rs.principal_moments(A, A, C), f"{name}*cos(theta)"
     model = rs.EulerAngles("ZXZ", angles=("phi", "theta", "psi"))
     motion = rs.derive(model, only, body=moments, potential=potential)
-    cubic = next(c for c in motion.consequences if c.title == "The equation for the cosine")
+    cubic = next(c for c in motion.consequences if c.name == "cubic_for_cosine")
     assert sp.Symbol(name + "_0" if name in "uE" else "u") in cubic.value.free_symbols
-
-
-def test_the_top_that_rises_for_ever_solves_the_equation_for_the_cosine():
-    """1/cos θ = 1 + 1/cosh γt, by substitution of s = 1/cosh γt with ṡ² = γ² s² (1 − s²)"""
-    motion = shipped("heavy_symmetric_top")
-    cubic = next(c for c in motion.consequences if c.title == "The equation for the cosine").value
-    gamma, s, u = sp.symbols("gamma s u")
-    start = {THETA: sp.pi / 3, THETA.diff(T): 0, PHI.diff(T): 2 * gamma / sp.sqrt(3)}
-    start[PSI.diff(T)] = (3 * A - C) * gamma / (C * sp.sqrt(3))
-    weight = {m: A * gamma**2 / (g * l)}
-    names = {"energy": "E", "momentum_phi": "p_phi", "momentum_psi": "p_psi"}
-    constants = {
-        sp.Symbol(names[i.name]): i.expression.subs(start).subs(weight)
-        for i in motion.first_integrals
-    }
-    value = 1 / (1 + s)
-    left = sp.diff(value, s) ** 2 * gamma**2 * s**2 * (1 - s**2)
-    assert sp.cancel(cubic.subs(constants).subs(weight).subs(u, value) - left) == 0
-    shown = motion.consequences[-1]
-    assert shown.left == 1 / sp.cos(THETA)
-    assert shown.value == 1 + 1 / sp.cosh(gamma * T)
-    printed = [span for span in shown.spans if isinstance(span, sp.Expr)]
-    given = [start[PHI.diff(T)], start[PSI.diff(T)], gamma**2, m * g * l / A]
-    assert [sp.simplify(one - two) for one, two in zip(printed, given, strict=True)] == [0] * 4
 
 
 def test_a_pendulum_and_its_effective_potential_need_no_third_coordinate():
@@ -278,14 +254,14 @@ def test_the_middle_axis_of_a_free_body_is_unstable_and_the_others_are_not():
     assert [sp.sign(each.value.subs(values)) for each in found] == [-1, 1, -1]
     assert all(proof.is_exact for each in found for proof in each.proofs)
     symmetric = rs.derive("unit_quaternion", body=rs.principal_moments(A, A, C), potential=0)
-    rate = next(c for c in symmetric.consequences if c.title == "The symmetric body").value
+    rate = next(c for c in symmetric.consequences if c.name == "symmetric_body").value
     assert sp.expand(rate - (C - A) / A * sp.Symbol("Omega_body_3")) == 0
 
 
 def test_the_closed_form_of_a_free_symmetric_body_is_its_motion_in_both_frames():
     """R = Rz(α₀ + α̇ t) Rx(β) Rz(γ₀ + γ̇ t) with the third axis of space along L"""
     motion = shipped("free_symmetric_body")
-    shown = next(c for c in motion.consequences if c.title == "The symmetric body in space")
+    shown = next(c for c in motion.consequences if c.name == "symmetric_body_in_space")
     assert shown.proofs[0].is_exact
     cosine, precession, spin = (value for _, value in shown.where)
     size, angle, values = 3.0, 0.8, {A: 1.4, C: 0.9}

@@ -25,7 +25,7 @@ from rigidsym.mechanics.derivation import (
     Quantity,
     Step,
 )
-from rigidsym.mechanics.dynamics.free import of_free_body
+from rigidsym.mechanics.dynamics.consequences import FreeBody
 from rigidsym.mechanics.kinematics.workspace import Workspace
 from rigidsym.mechanics.quantities import dynamics as claims
 from rigidsym.mechanics.quantities.table import (
@@ -118,10 +118,8 @@ class Flow(Workspace):
         """What follows of the motion as a whole."""
         if not self.driving.is_zero():
             yield Consequence(
-                title="The energy",
-                text="The potential depends on the time, so that the energy is not constant: {} "
-                "with",
-                spans=(claims.energy.presented(self.traits).laws[0].claim,),
+                name="driven_energy",
+                spans={"rate": claims.energy.presented(self.traits).laws[0].claim},
                 left=claims.DRIVING,
                 value=self.present.matrix(self.driving)[0],
             )
@@ -130,7 +128,7 @@ class Flow(Workspace):
             turning = self.step(claims.angular_acceleration_from_torque)
             assert turning is not None
             slopes = turning.expression.xreplace(still)
-            yield from of_free_body(self.body.inertia, list(slopes), self.model.name)
+            yield from FreeBody(self.body.inertia, [*slopes], self.model.name).consequences()
 
     def in_state(self, value: sp.Expr) -> sp.Expr:
         """The value with Ω′ written in the state."""

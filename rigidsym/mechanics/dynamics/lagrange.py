@@ -1,4 +1,4 @@
-"""Lagrange's equations of bodies that turn about a fixed point, over one ring.
+"""Equations of motion of a body that turns about a fixed point: Lagrange's, over one ring.
 
 Each moving part has a velocity v = J q̇ + j and an inertia I: of a body v is its angular velocity
 Ω′ and J its rate matrix W′, of a particle its velocity in space. With T = ½ Σ vᵀ I v,
@@ -9,12 +9,12 @@ Each moving part has a velocity v = J q̇ + j and an inertia I: of a body v is i
 
 The first line is proved in the ring; the others follow from it. It fails for velocities that no
 coordinates have (rolling); the other lines are then those of d'Alembert's principle. j is what a
-turning frame of reference adds.
+turning frame of reference adds. What does not depend on a coordinate, or on time, is conserved.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import cached_property, reduce
 from operator import add
 from typing import NamedTuple
@@ -24,12 +24,30 @@ from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import codec_for
 from rigidsym.algebra.matrix import Inverse, RingMatrix
+from rigidsym.algebra.present import half_form, presenter_for
 from rigidsym.errors import ModelError
-from rigidsym.mechanics.dynamics.flow import turned
+from rigidsym.mechanics.derivation import Consequence, FirstIntegral
+from rigidsym.mechanics.dynamics.consequences import Reduced
+from rigidsym.mechanics.dynamics.euler import EulerEquations
+from rigidsym.mechanics.dynamics.flow import Flow, StateBlock, turned
 from rigidsym.mechanics.kinematics.workspace import Values
+from rigidsym.mechanics.quantities import dynamics as claims
 from rigidsym.models.body import RigidBody
 from rigidsym.models.forces import OMEGA_BODY, Forces, MovingPart
 from rigidsym.models.rotation import TIME, RotationModel, as_typed
+
+
+def equations_of_motion(model: RotationModel, body: RigidBody, forces: Forces) -> Flow:
+    """Lagrange's equations for free coordinates, else Euler's, unless one is asked for."""
+    if (forces.method or ("euler" if is_bound(model) else "lagrange")) == "euler":
+        return EulerEquations(model, body, forces)
+    return LagrangeEquations(model, body, forces)
+
+
+def is_bound(model: RotationModel) -> bool:
+    """Whether coordinates depend on one another, or do not matter, as the length of q."""
+    is_spare = not model.turns and len(model.coordinates) > 3
+    return bool(model.constraints) or model.pullback is not None or is_spare
 
 
 class Moving(NamedTuple):
@@ -41,13 +59,16 @@ class Moving(NamedTuple):
     turns: bool  # a body, else a particle
 
 
-class Lagrange:
-    """T, V, p, M, h and the accelerations of one rotation, its body, and what moves with it."""
+class LagrangeEquations(Flow):
+    """The steps of a rotation, a body, what moves with it and the forces, in Lagrange's form."""
+
+    table = claims.DYNAMICS_QUANTITIES
+    second = "q_dot"
 
     def __init__(self, model: RotationModel, body: RigidBody, forces: Forces) -> None:
         self.is_bound = is_bound(model)
         self.back = self._inverse_rates(model, forces) if self.is_bound else None
-        self.model, self.body, self.acting = model, body, forces
+        self.model, self.body, self.forces = model, body, forces
         self.potential = forces.potential
         self.rates = [sp.diff(q, TIME) for q in model.coordinates]
         self.accelerations = [sp.diff(q, TIME, 2) for q in model.coordinates]
@@ -57,20 +78,21 @@ class Lagrange:
         torque = sp.Matrix(forces.torque or [0, 0, 0])
         in_rates = dict(zip(OMEGA_BODY, omega, strict=True))
         acting = main.jacobian.T * torque.xreplace(in_rates)
-        self.forces = [
+        self.generalised = [
             forces.generalised.get(q, sp.S.Zero).xreplace(in_rates) + part
             for q, part in zip(model.coordinates, acting, strict=True)
         ]
         self.gradient = [sp.diff(self.potential, q) for q in model.coordinates]
         held = [e for part in self.moving for m in part[:3] for e in m]
         held += [*omega, sp.Rational(1, 2), self.potential]
-        held += [*self.gradient, *self.forces, *self.rates]
+        held += [*self.gradient, *self.generalised, *self.rates]
         held += [*forces.first_integrals.values()]
         held += self.accelerations if self.back is None else [*self.back[0], self.back[1]]
         order = 1 if self.is_bound else 2
         bounds = model.constraints
-        self.codec = codec_for([e for e in held if e != 0], constraints=bounds, order=order)
-        self.ring = self.codec.ring
+        codec = codec_for([e for e in held if e != 0], constraints=bounds, order=order)
+        super().__init__(model, body, forces, codec)
+        self.ring = codec.ring
 
     @staticmethod
     def _inverse_rates(model: RotationModel, forces: Forces) -> tuple[sp.ImmutableMatrix, sp.Expr]:
@@ -96,7 +118,7 @@ class Lagrange:
     def _moving(self) -> Iterator[Moving]:
         """The body itself first."""
         yield self._turning(self.model, self.body.inertia)
-        for part in self.acting.parts:
+        for part in self.forces.parts:
             if part.rotation is not None:
                 yield self._turning(part.rotation, sp.ImmutableMatrix(sp.diag(*part.inertia)))
             else:
@@ -110,7 +132,7 @@ class Lagrange:
             entries.col(model.coordinates.index(q)) if q in model.coordinates else sp.zeros(3, 1)
             for q in self.model.coordinates
         ]
-        frame = sp.Matrix(self.acting.frame_rate or [0, 0, 0])
+        frame = sp.Matrix(self.forces.frame_rate or [0, 0, 0])
         shift = sp.ImmutableMatrix(model.matrix.T * frame)
         return Moving(sp.ImmutableMatrix.hstack(*columns), shift, inertia, turns=True)
 
@@ -184,7 +206,7 @@ class Lagrange:
     @cached_property
     def applied(self) -> RingMatrix:
         """Q − ∂V/∂q."""
-        return self.codec.column(self.forces) - self.codec.column(self.gradient)
+        return self.codec.column(self.generalised) - self.codec.column(self.gradient)
 
     @cached_property
     def solved(self) -> Inverse:
@@ -197,7 +219,7 @@ class Lagrange:
         elif len(self.terms) == 1 and len(self.rates) == 3:
             above, below = self._solved_by_euler()
         else:
-            above = self.mass_matrix.adjugate() @ (self.codec.column(self.forces) - self.bias)
+            above = self.mass_matrix.adjugate() @ (self.codec.column(self.generalised) - self.bias)
             below = self.mass_matrix.det()
         if not below:
             raise ModelError(
@@ -250,8 +272,246 @@ class Lagrange:
         above = within.scale(below) + across.scale(size)
         return above, self.ring.reduce(size * below**3)
 
+    @cached_property
+    def blocks(self) -> tuple[StateBlock, StateBlock]:
+        return (
+            StateBlock(self.model.coordinates, self.q_dot, self.ring.one),
+            StateBlock(self.rates, *self.solved),
+        )
 
-def is_bound(model: RotationModel) -> bool:
-    """Whether coordinates depend on one another, or do not matter, as the length of q."""
-    is_spare = not model.turns and len(model.coordinates) > 3
-    return bool(model.constraints) or model.pullback is not None or is_spare
+    def _half(self, *, shifted: bool = True, moved: bool = True) -> sp.Expr:
+        """½ Σ vᵀ I v, or its part in J q̇ or in j only, the squares kept."""
+        halves = []
+        for jacobian, shift, inertia, _ in self.terms:
+            moving = jacobian @ self.q_dot
+            velocity = (moving + shift if shifted else moving) if moved else shift
+            halves.append(half_form(self.present, inertia, velocity))
+        return sp.Add(*halves)
+
+    @cached_property
+    def kinetic(self) -> sp.Expr:
+        """T = ½ Σ vᵀ I v."""
+        return self._half()
+
+    @cached_property
+    def whole(self) -> sp.Expr:
+        """E = T + V; in a turning frame Jacobi's integral, T₂ − T₀ + V."""
+        if not self.forces.frame_rate:
+            return self.kinetic + self.potential
+        return self._half(shifted=False) - self._half(moved=False) + self.potential
+
+    def _scalar(self, expression: sp.Expr) -> RingMatrix:
+        return self.codec.column([expression])
+
+    @cached_property
+    def of_lagrange(self) -> RingMatrix:
+        """d/dt ∂T/∂q̇ − ∂T/∂q − (M q̈ + h − ∂V/∂q); not zero if the body rolls."""
+        turning = self.mass_matrix @ self.codec.column(self.accelerations)
+        return self.momenta.dt() - self._slopes - turning - self.gyroscopic
+
+    @property
+    def lagrange_along_possible(self) -> tuple[RingMatrix, PolyElement]:
+        """Uᵀ (d/dt ∂L/∂q̇ − ∂L/∂q − Q) for the accelerations found, and its divisor.
+
+        So says d'Alembert's principle for the displacements U δθ, which are possible.
+        """
+        rates = [self.rate(sp.diff(self.kinetic, rate)) for rate in self.rates]
+        divisor = rates[0][1]
+        changes = RingMatrix(self.ring, tuple(above.rows[0] for above, _ in rates))
+        left = changes - (self._slopes + self.applied).scale(divisor)
+        return self.possible[0].T @ left, divisor
+
+    @cached_property
+    def _slopes(self) -> RingMatrix:
+        """∂T/∂q; of T as it is written, if the coordinates depend on one another."""
+        if self.is_bound:
+            return self.codec.column([sp.diff(self.kinetic, q) for q in self.model.coordinates])
+        return self.slopes(self.codec.encode(self.kinetic))
+
+    @cached_property
+    def is_holonomic(self) -> bool:
+        turn = all(part.turns for part in self.moving)
+        return turn or self.is_bound or self.of_lagrange.is_zero()
+
+    @cached_property
+    def traits(self) -> frozenset[str]:
+        turns_frame = bool(self.forces.frame_rate)
+        traits = {
+            "parts": len(self.moving) > 1 or turns_frame,  # T is not E_R
+            "turning_frame": turns_frame,
+            "bound": self.is_bound,
+            "rolling": not self.is_holonomic,
+        }
+        return frozenset(self._shared_traits) | {t for t, holds in traits.items() if holds}
+
+    def energy_rate(self, value: sp.Expr) -> RingMatrix:
+        """dE/dt − q̇·(M q̈ + h) − ∂V/∂t; times a divisor if the coordinates depend on one another."""
+        if self.is_bound:
+            rate, divisor = self.rate(value)
+            power = self.q_dot.T @ self.codec.column(self.generalised)
+            return rate - (power + self.driving).scale(divisor)
+        left = self.mass_matrix @ self.codec.column(self.accelerations) + self.bias  # M q̈ + h
+        return self._scalar(value).dt() - self.q_dot.T @ left - self.driving
+
+    @property
+    def slopes_by_rates(self) -> RingMatrix:
+        """∂T/∂q̇ of T as it is written."""
+        return self.codec.column([sp.diff(self.kinetic, rate) for rate in self.rates])
+
+    def form_of_rates(self, matrix: RingMatrix) -> RingMatrix:
+        """q̇ᵀ M q̇."""
+        return self.q_dot.T @ matrix @ self.q_dot
+
+    @property
+    def twice_quadratic(self) -> RingMatrix:
+        """Twice the part of T that is quadratic in the rates, as it is written."""
+        return self._scalar(2 * self._half(shifted=False))
+
+    @cached_property
+    def coriolis(self) -> RingMatrix | None:
+        """C q̇ = h − ∂V/∂q with the skew Ṁ − 2C, by Christoffel's symbols of M."""
+        if not self.is_holonomic or self.forces.frame_rate or self.is_bound:
+            return None
+        places = range(len(self.rates))
+        half = self.ring.one / 2
+        slope = {(i, j): self.slopes(self.mass_matrix[i, j]) for i in places for j in places}
+        rows = [
+            [
+                self.ring.dot(
+                    (
+                        slope[i, j][k, 0] + slope[i, k][j, 0] - slope[j, k][i, 0],
+                        half * self.q_dot[k, 0],
+                    )
+                    for k in places
+                )
+                for j in places
+            ]
+            for i in places
+        ]
+        return RingMatrix.of(self.ring, rows)
+
+    def skew_part(self, coriolis: RingMatrix) -> RingMatrix:
+        """Ṁ − 2C."""
+        return self.mass_matrix.dt() - coriolis - coriolis
+
+    def left_over(self, above: RingMatrix, below: PolyElement) -> RingMatrix:
+        """M q̈ + h − Q for the accelerations above/below, times their divisor."""
+        bias = self.bias - self.codec.column(self.generalised)
+        return self.mass_matrix @ above + bias.scale(below)
+
+    @property
+    def mass_and_forces(self) -> sp.ImmutableMatrix:
+        """(M, Q − h), from which q̈ follows by elimination."""
+        forces = self.codec.column(self.generalised) - self.bias
+        mass = self.present.matrix(self.mass_matrix)
+        return sp.ImmutableMatrix.hstack(mass, self.present.matrix(forces))
+
+    @property
+    def hamiltonian(self) -> sp.Expr | None:
+        """H(q, p), with the momenta as inputs in a ring of their own."""
+        if not self.is_holonomic or self.forces.frame_rate or self.is_bound:
+            return None
+        return self._in_momenta(self.arguments["momenta"].symbols)
+
+    @property
+    def energy_by_momenta(self) -> RingMatrix:
+        """(pᵀ M⁻¹ p − 2T) det M."""
+        above = self.momenta.T @ self.mass_matrix.adjugate() @ self.momenta
+        return above - self._scalar(2 * self.kinetic).scale(self.mass_matrix.det())
+
+    def _in_momenta(self, momenta: Sequence[sp.Expr]) -> sp.Expr:
+        """½ pᵀ M⁻¹ p + V."""
+        held = [e for part in self.moving for m in (part.jacobian, part.inertia) for e in m]
+        held += [sp.Rational(1, 2), self.potential, *momenta]
+        codec = codec_for([entry for entry in held if entry != 0], order=0)
+        own = reduce(
+            add,
+            (
+                codec.matrix(part.jacobian).T
+                @ codec.matrix(part.inertia)
+                @ codec.matrix(part.jacobian)
+                for part in self.moving
+            ),
+        )
+        p = codec.column(momenta)
+        twice = p.T @ own.adjugate() @ p
+        half = presenter_for(codec).matrix(twice, codec.encode(sp.Integer(2)) * own.det())
+        return half[0] + self.potential
+
+    @cached_property
+    def single(self) -> int | None:
+        """The position of the only coordinate that moves if the others are ignorable."""
+        constant = {integral.name for integral in self.own_integrals()}
+        names = [q.func.__name__ for q in self.model.coordinates]
+        moving = [k for k, name in enumerate(names) if f"momentum_{name}" not in constant]
+        if not self.is_holonomic or len(moving) != 1 or self.forces.frame_rate:
+            return None
+        (k,) = moving
+        others = [q for j, q in enumerate(self.model.coordinates) if j != k]
+        if self.potential.has(*others):  # it is written with them, though it does not depend
+            return None
+        is_apart = not any(self.mass_matrix[k, j] for j in range(len(names)) if j != k)
+        return k if is_apart and len(names) > 1 else None  # p_k = 0 means that it is at rest
+
+    @cached_property
+    def effective(self) -> sp.Expr:
+        momenta = self.arguments["momenta"].symbols
+        return self._in_momenta(
+            [sp.S.Zero if j == self.single else p for j, p in enumerate(momenta)]
+        )
+
+    def consequences(self) -> Iterator[Consequence]:
+        yield from super().consequences()
+        k = self.single
+        if k is None or self.forces.leave_free(self.model) or not self.driving.is_zero():
+            return  # the free body is known; in a driving potential the energy is not constant
+        q = self.model.coordinates
+        momenta = self.present.matrix(self.momenta)
+        others = [j for j in range(len(q)) if j != k]
+        reduced = Reduced(
+            name=self.model.name,
+            coordinate=q[k],
+            ignorable=tuple(q[j] for j in others),
+            mass=self.present.matrix(self.mass_matrix)[k, k],
+            potential=self.effective,
+            symbols=tuple(self.arguments["momenta"].symbols[j] for j in others),
+            momenta=tuple(momenta[j] for j in others),
+            energy=self.whole,
+            acceleration=self.present.matrix(*self.solved)[k],
+        )
+        yield from reduced.consequences()
+
+    def in_state(self, value: sp.Expr) -> sp.Expr:
+        """Ω′ = W′ q̇."""
+        return value.xreplace(dict(zip(OMEGA_BODY, self.present.matrix(self.omega), strict=True)))
+
+    def own_integrals(self) -> Iterator[FirstIntegral]:
+        if self.is_bound and not self.forces.frame_rate:
+            euler = EulerEquations(self.model, self.body, self.forces).own_integrals()
+            yield from (self.constant(i.name, i.symbol, i.expression) for i in euler)
+            return
+        power = self.q_dot.T @ self.codec.column(self.generalised)  # 0 of gyroscopic forces as well
+        if power.is_zero() and self.driving.is_zero():
+            residual = self.energy_rate(self.whole) + power
+            yield FirstIntegral(
+                name="energy",
+                symbol=claims.ENERGY,
+                expression=self.whole,
+                proof=self.prove.vanishes(residual, claims.is_constant(claims.ENERGY)),
+            )
+        if self.is_bound:
+            return
+        if not self.is_holonomic:
+            return
+        momenta = self.present.matrix(self.momenta)
+        for k, q in enumerate(self.model.coordinates):
+            applied = RingMatrix.of(self.ring, [self.applied.rows[k]])
+            slope = RingMatrix.of(self.ring, [self._slopes.rows[k]])
+            if applied.is_zero() and slope.is_zero():
+                claim = claims.momentum_is_constant(k + 1)
+                yield FirstIntegral(
+                    name=f"momentum_{q.func.__name__}",
+                    symbol=self.arguments["momenta"].notation[k],
+                    expression=momenta[k],
+                    proof=self.prove.vanishes(slope + applied, claim),
+                )

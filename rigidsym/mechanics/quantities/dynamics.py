@@ -1,6 +1,6 @@
 r"""The quantities of motion, one entry each, and what is claimed of motions as a whole.
 
-A workspace k (`dynamics.derive`, `dynamics.euler`) has the equations of motion in Lagrange's or
+A workspace k (`dynamics.lagrange`, `dynamics.euler`) has the equations of motion in Lagrange's or
 Euler's form. Of one body about a fixed point the kinetic energy is E_R, that of its rotation; T has
 the energies of all `parts`, or what a turning frame adds.
 """
@@ -111,7 +111,7 @@ generalised_momenta = Quantity(
     shape="vector",
     definition=formula(r"\mathbf{W}'^{\mathsf T}\mathbf{I}'\boldsymbol{\Omega}'"),
     source=SOURCES["Goldstein 8.1"],
-    value=lambda k: k.work.momenta if k.is_holonomic else None,
+    value=lambda k: k.momenta if k.is_holonomic else None,
     laws=(
         Law(
             formula(r"\mathbf{p} = \frac{\partial E_R}{\partial \dot{\mathbf{q}}}"),
@@ -143,7 +143,7 @@ mass_matrix = Quantity(
     unit="kg m^2",
     inputs=("q",),
     definition=formula(r"\mathbf{W}'^{\mathsf T}\mathbf{I}'\mathbf{W}'"),
-    value=lambda k: k.work.mass_matrix,
+    value=lambda k: k.mass_matrix,
     laws=(
         Law(formula(_FORM_OF_RATES + "E_R"), lambda k, x: k.form_of_rates(x) - k.twice_quadratic),
     ),
@@ -181,7 +181,7 @@ bias_vector = Quantity(
     inputs=("q", "q_dot"),
     shape="vector",
     source=SOURCES["Goldstein 1.4"],
-    value=lambda k: k.work.bias,
+    value=lambda k: k.bias,
     laws=(
         Law(
             formula(
@@ -190,7 +190,7 @@ bias_vector = Quantity(
                 r"\left(\mathbf{I}'\,\dot{\boldsymbol{\Omega}}' + "
                 r"\boldsymbol{\Omega}'\times\mathbf{I}'\,\boldsymbol{\Omega}'\right)"
             ),
-            lambda k, x: k.of_lagrange + k.work.bias - x,
+            lambda k, x: k.of_lagrange + k.bias - x,
         ),
     ),
     reason="rest_of_lagrange",
@@ -206,7 +206,7 @@ bias_vector = Quantity(
                         r"\mathbf{M}\ddot{\mathbf{q}} + \mathbf{h} "
                         r"- \frac{\partial V}{\partial\mathbf{q}}"
                     ),
-                    lambda k, x: k.of_lagrange + k.work.bias - x,
+                    lambda k, x: k.of_lagrange + k.bias - x,
                 ),
             ),
         ),
@@ -228,7 +228,7 @@ coriolis_matrix = Quantity(
             formula(
                 r"\mathbf{C}\dot{\mathbf{q}} = \mathbf{h} - \frac{\partial V}{\partial\mathbf{q}}"
             ),
-            lambda k, x: x @ k.work.q_dot - k.work.gyroscopic,
+            lambda k, x: x @ k.q_dot - k.gyroscopic,
         ),
         Law(
             formula(
@@ -253,7 +253,7 @@ accelerations = Quantity(
     shape="vector",
     definition=formula(r"\mathbf{M}^{-1}\left(\mathbf{Q} - \mathbf{h}\right)"),
     source=SOURCES["Goldstein 1.4"],
-    value=lambda k: k.work.solved,
+    value=lambda k: k.solved,
     laws=(
         Law(
             formula(r"\mathbf{M}\ddot{\mathbf{q}} + \mathbf{h} = \mathbf{Q}"),
@@ -273,7 +273,7 @@ accelerations = Quantity(
                         _POSSIBLE
                         + r"\mathbf{M}\ddot{\mathbf{q}} + \mathbf{h} - \mathbf{Q}\right) = 0"
                     ),
-                    lambda k, x: k.work.possible[0].T @ k.left_over(*x),
+                    lambda k, x: k.possible[0].T @ k.left_over(*x),
                 ),
                 Law(
                     formula(
@@ -295,7 +295,7 @@ accelerations = Quantity(
                         _POSSIBLE
                         + r"\mathbf{M}\ddot{\mathbf{q}} + \mathbf{h} - \mathbf{Q}\right) = 0"
                     ),
-                    lambda k, x: k.work.possible[0].T @ k.left_over(*x),
+                    lambda k, x: k.possible[0].T @ k.left_over(*x),
                 ),
                 Law(
                     formula(
@@ -320,7 +320,7 @@ hamiltonian = Quantity(
     definition=formula(r"\tfrac{1}{2}\,\mathbf{p}^{\mathsf T}\,\mathbf{M}^{-1}\mathbf{p} + V"),
     source=SOURCES["Goldstein 8.1"],
     value=lambda k: k.hamiltonian,
-    laws=(Law(formula("H = E"), lambda k, _: (k.energy_by_momenta, k.work.mass_matrix.det())),),
+    laws=(Law(formula("H = E"), lambda k, _: (k.energy_by_momenta, k.mass_matrix.det())),),
     reason="energy_in_momenta",
     section=MOTION,
 )

@@ -5,19 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property, partial, reduce
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import sympy as sp
 
 from rigidsym.formula.letters import Letters
-from rigidsym.formula.reader import decimal, formula, sentence
+from rigidsym.formula.reader import decimal, formula
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import Formula, equal
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.quantities.dynamics import LETTERS
 from rigidsym.models.forces import OMEGA_BODY, OMEGA_COMPONENTS, Example, MovingPart, initial_values
 from rigidsym.models.rotation import TIME
-from rigidsym.notes.document.document import Equation, EquationRow, Figure, NoteBlock, Text
+from rigidsym.notes.document.document import Equation, EquationRow, Figure, NoteBlock
 from rigidsym.notes.figure.motion_picture import MotionPicture, motion_picture
 from rigidsym.notes.figure.phase_portrait import phase_portrait
 from rigidsym.notes.template import texts_of
@@ -51,10 +51,10 @@ class MovingFacts(NamedTuple):
 
 
 class ConsequenceFacts(NamedTuple):
-    """What follows from the first integrals: an equation and the sentence that leads to it."""
+    """What follows from the first integrals: an equation and what leads to it."""
 
-    title: str
-    text: Text
+    name: str  # of the macro
+    spans: dict[str, Any]
     equation: Equation
     definitions: list[NoteBlock]
     portrait: Figure | None
@@ -171,17 +171,19 @@ class MotionFacts:
         """The motion as a whole: effective potential, steady motions, exact solutions."""
         letters = replace(self.letters, names={**self.letters.names, **LETTERS})
 
-        def printed(span: Formula | sp.Expr) -> Formula:
-            return span if isinstance(span, Formula) else formula_of(span, letters)
+        def printed(span: Any) -> Any:
+            if isinstance(span, tuple) and not isinstance(span, Formula):
+                return [*map(printed, span)]
+            return formula_of(span, letters) if isinstance(span, sp.Basic) else span
 
         for found in self.derivation.consequences:
             claims = tuple(proof.claim for proof in found.proofs)
             exact = all(proof.is_exact for proof in found.proofs)
             pairs = [Equation(sides=tuple(map(printed, pair))) for pair in found.where]
-            is_potential = found.title == "The effective potential"
+            is_potential = found.name == "effective_potential"
             yield ConsequenceFacts(
-                found.title,
-                tuple(sentence(found.text, *map(printed, found.spans))),
+                found.name,
+                {key: printed(span) for key, span in found.spans.items()},
                 Equation(
                     sides=(printed(found.left), printed(found.value)),
                     proved=claims if exact else (),
