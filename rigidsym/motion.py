@@ -19,14 +19,7 @@ from rigidsym.kernels.module import KernelModule as KernelModule, generate
 from rigidsym.mechanics.derivation import Derivation, Proof, Step
 from rigidsym.mechanics.derive import Body, derive as derivation_of
 from rigidsym.mechanics.prove import identity
-from rigidsym.mechanics.quantities.dynamics import (
-    DYNAMICS_QUANTITIES,
-    EULER_QUANTITIES,
-    FLOW_QUANTITIES,
-)
-from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
-from rigidsym.mechanics.quantities.kinematics import KINEMATICS
-from rigidsym.mechanics.quantities.mass import BODY_ALONE, INERTIA_QUANTITIES
+from rigidsym.mechanics.quantities.catalogue import NAMES
 from rigidsym.models.forces import forces_on
 from rigidsym.models.library import rotation_from
 from rigidsym.models.rotation import RotationModel
@@ -38,10 +31,7 @@ if TYPE_CHECKING:
     from rigidsym.simulation.ensemble import Ensemble
     from rigidsym.simulation.trajectory import Trajectory
 
-QUANTITIES = (
-    *(*KINEMATICS, BODY_ALONE, *INERTIA_QUANTITIES, *ENERGY_QUANTITIES),
-    *dict.fromkeys((*DYNAMICS_QUANTITIES, *EULER_QUANTITIES, *FLOW_QUANTITIES)),
-)
+QUANTITIES = NAMES
 _MEANT = {"omega_body": "angular_velocity_body", "omega_space": "angular_velocity_space"}
 
 

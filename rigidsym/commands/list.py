@@ -10,14 +10,8 @@ import click
 from rigidsym.commands.command import Command, command as make
 from rigidsym.formula.unicode_pen import columns
 from rigidsym.kernels.targets import TARGETS
-from rigidsym.mechanics.quantities.dynamics import (
-    DYNAMICS_QUANTITIES,
-    EULER_QUANTITIES,
-    FLOW_QUANTITIES,
-)
-from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
-from rigidsym.mechanics.quantities.kinematics import KINEMATICS
-from rigidsym.mechanics.quantities.mass import BODY_ALONE, INERTIA_QUANTITIES
+from rigidsym.mechanics.quantities.catalogue import QUANTITIES
+from rigidsym.mechanics.quantities.mass import BODY_ALONE
 from rigidsym.models.library import ALIASES, PARAMETRISATIONS, PRESETS, rotation_from
 from rigidsym.models.parametrisations import EULER_SEQUENCES, EulerAngles
 from rigidsym.models.solids import SHAPES
@@ -77,15 +71,7 @@ def _solids() -> list[str]:
 
 
 def _quantities() -> list[str]:
-    known = {
-        **KINEMATICS,
-        **INERTIA_QUANTITIES,
-        **ENERGY_QUANTITIES,
-        **DYNAMICS_QUANTITIES,
-        **EULER_QUANTITIES,
-        **FLOW_QUANTITIES,
-    }
-    rows = [(name, quantity.symbol.text, quantity.about) for name, quantity in known.items()]
+    rows = [(name, quantity.symbol.text, quantity.about) for name, quantity in QUANTITIES.items()]
     return _table([(BODY_ALONE, "", "all quantities that a body has without a rotation"), *rows])
 
 

@@ -3,7 +3,8 @@ r"""Formulas, and sentences with formulas in them, as they are typed in the sour
     formula(r"\mathbf{I}' = #1\,\mathbf{R}", OMEGA)
     sentence(r"The axis $\mathbf{e}$ of {}", ROTATION)
 
-A formula is a small part of TeX, read once into a tree.
+A formula is a small part of TeX, read once into a tree. It has short commands of its own: a
+single letter or digit is bold, `\R` for `\mathbf{R}`, and so is `\Om` for Ω.
 
 `#1`, `#2`, ... stand for formulas that are given. Known are letters, numbers, `\mathbf` and
 `\boldsymbol`, `\dot`, primes, indices, powers, `\frac`, `\sqrt`, brackets, functions, sums,
@@ -44,6 +45,7 @@ _ATOMS: dict[str, tree.Formula] = {
     "…": tree.Symbol("…"),
     "-": tree.MINUS,
     r"\varphi": tree.Symbol("φ"),
+    r"\Om": tree.Symbol("Ω", "bold"),
     r"\sum": tree.Big("∑"),
     r"\int": tree.Big("∫"),
     r"\partial": tree.Differential("∂"),
@@ -197,6 +199,8 @@ class _TexReader:
     def _macro(self, token: str) -> tree.Formula | None:
         match = _TOKEN.fullmatch(token)
         assert match
+        if len(token) == 2 and token[1].isalnum():
+            return tree.Symbol(token[1], "bold")
         if match["text"] is not None:
             return tree.Words(match["text"])
         if match["word"]:

@@ -27,8 +27,8 @@ from rigidsym.mechanics.mass.bodies import rigid_body
 from rigidsym.mechanics.mass.moments import Moments, about_centre, moments_of
 from rigidsym.mechanics.mass.principal import Principal, principal_of
 from rigidsym.mechanics.prove import Prover
+from rigidsym.mechanics.quantities.catalogue import OF_BODY
 from rigidsym.mechanics.quantities.dynamics import FLOW_QUANTITIES
-from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
 from rigidsym.mechanics.quantities.kinematics import KINEMATICS
 from rigidsym.mechanics.quantities.mass import BODY_ALONE, INERTIA_QUANTITIES
 from rigidsym.mechanics.quantities.table import DIRECTION, POINT
@@ -370,16 +370,15 @@ def steps_of_body(
     if forces is not None:
         forces = forces.in_symbols_of(whole)
         whole = forces.with_parameters(whole, model)
-    table = {**INERTIA_QUANTITIES, **ENERGY_QUANTITIES}
     is_fixed = (
         forces is not None
         and forces.fix_a_point
         and whole.distribution is None
-        and not any(table[name].of_centre for name in only if name in table)
+        and not any(OF_BODY[name].of_centre for name in only if name in OF_BODY)
     )
-    wanted = only or {name for name, q in table.items() if not (is_fixed and q.of_centre)}
+    wanted = only or {name for name, q in OF_BODY.items() if not (is_fixed and q.of_centre)}
     values = (NamedRotation if chain else BodyValues)(model, whole, has_fixed_point=is_fixed)
-    steps = [step for n, q in table.items() if n in wanted and (step := values.step(q))]
+    steps = [step for n, q in OF_BODY.items() if n in wanted and (step := values.step(q))]
     if BODY_ALONE not in only:
         _check_absent({step.quantity.name for step in steps}, only, whole)
     if isinstance(values, NamedRotation) and chain:

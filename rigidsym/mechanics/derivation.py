@@ -13,7 +13,7 @@ import sympy as sp
 
 from rigidsym.algebra.zeros import Place as Place
 from rigidsym.errors import DerivationError, QuantityError, offer
-from rigidsym.formula.reader import Sentence
+from rigidsym.formula.reader import Sentence, formula
 from rigidsym.formula.tree import NOTHING, Formula
 from rigidsym.models.rotation import Citation, RotationModel
 
@@ -64,6 +64,7 @@ class Frame(NamedTuple):
     """The axes that components are along, with the letters of the angular velocity in them."""
 
     name: str  # "space" or "body"
+    prime: str  # on letters: "" or "'"
     omega: Formula
     matrix: Formula  # W, with Ω = W q̇
     inverse: Formula
@@ -82,6 +83,11 @@ class Law(NamedTuple):
     is_of_inverse: bool = False  # which holds for every matrix W that has one
 
 
+def law(claim: str, residual: Callable[[Any, Any], Any], *parts: Formula) -> Law:
+    """The law with a claim that is typed as `formula` reads it."""
+    return Law(formula(claim, *parts), residual)
+
+
 class Quantity(NamedTuple):
     """A quantity: its one entry among the `quantities`, and how a step presents it.
 
@@ -89,9 +95,9 @@ class Quantity(NamedTuple):
     differs for models with certain traits: "passive", "chain", ... (`Values.traits`).
     """
 
-    name: str  # in Python, in kernels, in JSON
     symbol: Formula
     about: str  # words: "angular velocity, space components"
+    name: str = ""  # in Python, in kernels, in JSON: that of its entry
     unit: str = ""  # SI, "" for a pure number
     unit_of: str = ""  # the argument that it is a value of, whose unit it has
     inputs: tuple[str, ...] = ()  # the arguments it depends on, by name: "q", "q_dot", ...
@@ -142,10 +148,10 @@ def when(*traits: str, **changes: Any) -> tuple[frozenset[str], Mapping[str, Any
     return frozenset(traits), changes
 
 
-def by_name(entries: Mapping[str, Any]) -> Mapping[str, Quantity]:
-    """The quantities among the names of a module, in their order: that of the derivation."""
-    found = {name: entry for name, entry in entries.items() if isinstance(entry, Quantity)}
-    assert all(name == quantity.name for name, quantity in found.items())
+def by_name(module: dict[str, Any]) -> Mapping[str, Quantity]:
+    """The quantities of a module, which get their names in it, in the order of the derivation."""
+    found = {n: q._replace(name=n) for n, q in module.items() if isinstance(q, Quantity)}
+    module.update(found)
     return MappingProxyType(found)
 
 

@@ -29,14 +29,9 @@ from rigidsym.mechanics.derivation import (
 )
 from rigidsym.mechanics.kinematics.chain import Chain, is_shorter
 from rigidsym.mechanics.kinematics.workspace import Values
-from rigidsym.mechanics.quantities.dynamics import (
-    DYNAMICS_QUANTITIES,
-    EULER_QUANTITIES,
-    FLOW_QUANTITIES,
-)
-from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
+from rigidsym.mechanics.quantities.catalogue import OF_BODY, OF_MOTION
 from rigidsym.mechanics.quantities.kinematics import KINEMATICS
-from rigidsym.mechanics.quantities.mass import BODY_ALONE, INERTIA_QUANTITIES, OF_BODY_ALONE
+from rigidsym.mechanics.quantities.mass import BODY_ALONE, OF_BODY_ALONE
 from rigidsym.mechanics.singularities import margin_of, planes_of_axes, singularities_of
 from rigidsym.models.body import BodyDescription, Distribution, RigidBody
 from rigidsym.models.forces import Forces
@@ -155,14 +150,15 @@ def _resting_on(
 
 
 def _check_names(only: Collection[str], *, has_body: bool, has_forces: bool) -> None:
-    of_body = (BODY_ALONE, *INERTIA_QUANTITIES, *ENERGY_QUANTITIES)
-    of_motion = (*DYNAMICS_QUANTITIES, *EULER_QUANTITIES, *FLOW_QUANTITIES)
-    known = (*KINEMATICS, *(of_body if has_body else ()), *(of_motion if has_forces else ()))
+    of_body = (BODY_ALONE, *OF_BODY)
+    known = (*KINEMATICS, *(of_body if has_body else ()), *(OF_MOTION if has_forces else ()))
     for name in only:
-        if name not in known:
-            lacking = "a body" if name in of_body else "a body and forces or a potential"
-            why = f"it needs {lacking}" if name in (*of_body, *of_motion) else offer(name, known)
-            raise QuantityError(f"no quantity {name}; {why}")
+        if name in known:
+            continue
+        why = offer(name, known)
+        if name in of_body or name in OF_MOTION:
+            why = f"it needs a body{'' if name in of_body else ' and forces or a potential'}"
+        raise QuantityError(f"no quantity {name}; {why}")
 
 
 class _LazySteps(Mapping[str, Step]):

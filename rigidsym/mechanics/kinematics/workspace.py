@@ -236,6 +236,9 @@ class Values(Workspace):
 
     # The rates of the coordinates
 
+    def omega(self, frame: str) -> RingMatrix:
+        return self.omega_space if frame == "space" else self.omega_body
+
     def rate_matrix(self, frame: str) -> RingMatrix:
         """W = ∂Ω/∂q̇ or W′.
 
@@ -244,8 +247,7 @@ class Values(Workspace):
         if frame not in self._rate_matrices:
             index = self.codec.ring.index
             places = [index[q] for q in self.arguments["q_dot"].symbols]
-            omega = self.omega_space if frame == "space" else self.omega_body
-            self._rate_matrices[frame] = omega.jacobian(places)
+            self._rate_matrices[frame] = self.omega(frame).jacobian(places)
         return self._rate_matrices[frame]
 
     def inverse(self, frame: str) -> Inverse | None:

@@ -7,191 +7,166 @@ follow from the mass and the inertia tensor (`mechanics.particles`).
 
 from __future__ import annotations
 
+from typing import Any
+
 from rigidsym.formula.reader import formula
-from rigidsym.mechanics.derivation import Law, Quantity, by_name, when
+from rigidsym.mechanics.derivation import Quantity, by_name, law, when
 from rigidsym.models.rotation import SOURCES
 
-CENTRE = formula(r"\mathbf{r}_C")
+CENTRE = formula(r"\r_C")
 ROTATIONAL = formula("E_R")
-MOMENTUM_ROTATION = formula(r"\mathbf{L}_R")
-MOMENTUM_BODY = formula(r"\mathbf{L}'_R")
+MOMENTUM_ROTATION = formula(r"\L_R")
+MOMENTUM_BODY = formula(r"\L'_R")
 ENERGY, MOMENTUM = "energy", "momentum"  # sections
 _SUM = formula(r"{\textstyle\sum_i} m_i")
-_IN_SUMMARY = {ENERGY: "The kinetic energy", MOMENTUM: "The angular momentum"}
+
+_ENERGY: dict[str, Any] = {
+    **{"unit": "J", "shape": "scalar", "source": SOURCES["Landau 32"]},
+    **{"section": ENERGY, "group": "The kinetic energy"},
+}
+_MOMENTUM: dict[str, Any] = {
+    **{"unit": "kg m^2/s", "shape": "vector"},
+    **{"section": MOMENTUM, "group": "The angular momentum"},
+}
 
 translational_energy = Quantity(
-    name="translational_energy",
+    **_ENERGY,
     symbol=formula("E_C"),
     about="kinetic energy of the motion of the centre of mass",
-    unit="J",
     inputs=("centre_dot",),
-    shape="scalar",
-    definition=formula(r"\tfrac{1}{2} M\,|\dot{\mathbf{r}}_C|^2"),
-    source=SOURCES["Landau 32"],
+    definition=formula(r"\tfrac{1}{2} M\,|\dot\r_C|^2"),
     value=lambda k: k.half_of_squares(k.velocity),
     laws=(
-        Law(
-            formula(r"\tfrac{1}{2} #1\,|\dot{\mathbf{r}}_C|^2 = E_C", _SUM),
+        law(
+            r"\tfrac{1}{2} #1\,|\dot\r_C|^2 = E_C",
             lambda k, x: k.sum(k.square(k.velocity)) - k.read(2 * x),
+            _SUM,
         ),
     ),
     reason="energy_of_centre",
-    section=ENERGY,
-    group=_IN_SUMMARY[ENERGY],
     of_centre=True,
 )
 
 rotational_energy = Quantity(
-    name="rotational_energy",
+    **_ENERGY,
     symbol=ROTATIONAL,
     about="kinetic energy of the rotation about the centre of mass",
-    unit="J",
     inputs=("q", "q_dot"),
-    shape="scalar",
-    definition=formula(
-        r"\tfrac{1}{2}\,\boldsymbol{\Omega}'^{\mathsf T}\,\mathbf{I}'\,\boldsymbol{\Omega}'"
-    ),
-    source=SOURCES["Landau 32"],
+    definition=formula(r"\tfrac{1}{2}\,\Om'^T\,\I'\,\Om'"),
     value=lambda k: k.half_form(k.omega_body),
     laws=(
-        Law(
-            formula(
-                r"\tfrac{1}{2}\,\boldsymbol{\Omega}^{\mathsf T}\,"
-                r"#1\,\boldsymbol{\Omega} = E_R",
-                formula(r"(\mathbf{R}\,\mathbf{I}'\,\mathbf{R}^{\mathsf T})"),
-            ),
+        law(
+            r"\tfrac{1}{2}\,\Om^T\,#1\,\Om = E_R",
             lambda k, x: k.back.T @ k.inertia @ k.back - k.read(2 * x),
+            formula(r"(\R\,\I'\,\R^T)"),
         ),
-        Law(
-            formula(r"\tfrac{1}{2} #1\,|\dot{\mathbf{x}}_i|^2 = E_R", _SUM),
+        law(
+            r"\tfrac{1}{2} #1\,|\dot\x_i|^2 = E_R",
             lambda k, x: k.sum(k.square(k.x_dot)) - k.read(2 * x),
+            _SUM,
         ),
     ),
     reason="quadratic_form",
-    section=ENERGY,
-    group=_IN_SUMMARY[ENERGY],
     is_result=True,
     variants=(when("fixed_point", about="kinetic energy of the rotation about the fixed point"),),
 )
 
 kinetic_energy = Quantity(
-    name="kinetic_energy",
+    **_ENERGY,
     symbol=formula("E_K"),
     about="kinetic energy",
-    unit="J",
     inputs=("q", "q_dot", "centre_dot"),
-    shape="scalar",
     definition=formula("E_C + E_R"),
-    source=SOURCES["Landau 32"],
     value=lambda k: k.half_of_squares(k.velocity) + k.half_form(k.omega_body),
     laws=(
-        Law(
-            formula(r"\tfrac{1}{2} #1\,|\dot{\mathbf{r}}_i|^2 = E_C + E_R", _SUM),
+        law(
+            r"\tfrac{1}{2} #1\,|\dot\r_i|^2 = E_C + E_R",
             lambda k, x: k.sum(k.square(k.velocity + k.x_dot)) - k.read(2 * x),
+            _SUM,
         ),
     ),
     reason="energy_splits",
-    section=ENERGY,
-    group=_IN_SUMMARY[ENERGY],
     is_result=True,
     of_centre=True,
 )
 
 angular_momentum_centre = Quantity(
-    name="angular_momentum_centre",
-    symbol=formula(r"\mathbf{L}_C"),
+    **_MOMENTUM,
+    symbol=formula(r"\L_C"),
     about="angular momentum of the motion of the centre of mass, space components",
-    unit="kg m^2/s",
     inputs=("centre", "centre_dot"),
-    shape="vector",
-    definition=formula(r"\mathbf{r}_C\times(M\,\dot{\mathbf{r}}_C)"),
+    definition=formula(r"\r_C\times(M\,\dot\r_C)"),
     source=SOURCES["Goldstein 1.2"],
     value=lambda k: k.momentum_of_centre,
     laws=(
-        Law(
-            formula(r"#1\,\mathbf{r}_C\times\dot{\mathbf{r}}_C = \mathbf{L}_C", _SUM),
+        law(
+            r"#1\,\r_C\times\dot\r_C = \L_C",
             lambda k, x: k.sum(k.centre.cross(k.velocity)) - x,
+            _SUM,
         ),
     ),
     reason="momentum_of_centre",
-    section=MOMENTUM,
-    group=_IN_SUMMARY[MOMENTUM],
     of_centre=True,
 )
 
 angular_momentum_rotation_body = Quantity(
-    name="angular_momentum_rotation_body",
+    **_MOMENTUM,
     symbol=MOMENTUM_BODY,
     about="angular momentum of the rotation, body components",
-    unit="kg m^2/s",
     inputs=("q", "q_dot"),
-    shape="vector",
-    definition=formula(r"\mathbf{I}'\boldsymbol{\Omega}'"),
+    definition=formula(r"\I'\Om'"),
     source=SOURCES["Landau 33"],
     value=lambda k: k.momentum_form_body,
     laws=(
-        Law(
-            formula(r"\mathbf{L}'_R\cdot\boldsymbol{\Omega}' = 2 E_R"),
+        law(
+            r"\L'_R\cdot\Om' = 2 E_R",
             lambda k, x: k.read(x).T @ k.omega_body - k.twice_rotational,
         ),
     ),
     reason="tensor_times_velocity",
-    section=MOMENTUM,
-    group=_IN_SUMMARY[MOMENTUM],
     is_result=True,
 )
 
 angular_momentum_rotation = Quantity(
-    name="angular_momentum_rotation",
+    **_MOMENTUM,
     symbol=MOMENTUM_ROTATION,
     about="angular momentum of the rotation, space components",
-    unit="kg m^2/s",
     inputs=("q", "q_dot"),
-    shape="vector",
-    definition=formula(r"\mathbf{I}\boldsymbol{\Omega}"),
+    definition=formula(r"\I\Om"),
     source=SOURCES["Landau 33"],
     value=lambda k: k.momentum_form,
     laws=(
-        Law(
-            formula(r"\mathbf{I}\,\boldsymbol{\Omega} = \mathbf{R}\,\mathbf{L}'_R"),
-            lambda k, x: k.rotation @ (k.inertia @ k.back) - k.read(x),
-        ),
-        Law(
-            formula(r"\mathbf{L}_R\cdot\boldsymbol{\Omega} = 2 E_R"),
+        law(r"\I\,\Om = \R\,\L'_R", lambda k, x: k.rotation @ (k.inertia @ k.back) - k.read(x)),
+        law(
+            r"\L_R\cdot\Om = 2 E_R",
             lambda k, x: k.read(x).T @ k.omega_space - k.twice_rotational,
         ),
-        Law(
-            formula(r"#1\,\mathbf{x}_i\times\dot{\mathbf{x}}_i = \mathbf{L}_R", _SUM),
+        law(
+            r"#1\,\x_i\times\dot\x_i = \L_R",
             lambda k, x: k.sum(k.x.cross(k.x_dot)) - k.read(x),
+            _SUM,
         ),
     ),
     reason="momentum_rotated",
-    section=MOMENTUM,
-    group=_IN_SUMMARY[MOMENTUM],
     is_result=True,
 )
 
 angular_momentum = Quantity(
-    name="angular_momentum",
-    symbol=formula(r"\mathbf{L}"),
+    **_MOMENTUM,
+    symbol=formula(r"\L"),
     about="angular momentum about the origin, space components",
-    unit="kg m^2/s",
     inputs=("q", "q_dot", "centre", "centre_dot"),
-    shape="vector",
-    definition=formula(r"\mathbf{L}_C + \mathbf{L}_R"),
+    definition=formula(r"\L_C + \L_R"),
     source=SOURCES["Goldstein 1.2"],
     value=lambda k: k.present.matrix(k.momentum_of_centre) + k.momentum_form,
     laws=(
-        Law(
-            formula(
-                r"#1\,\mathbf{r}_i\times\dot{\mathbf{r}}_i = \mathbf{L}_C + \mathbf{L}_R", _SUM
-            ),
+        law(
+            r"#1\,\r_i\times\dot\r_i = \L_C + \L_R",
             lambda k, x: k.sum((k.centre + k.x).cross(k.velocity + k.x_dot)) - k.read(x),
+            _SUM,
         ),
     ),
     reason="momentum_splits",
-    section=MOMENTUM,
-    group=_IN_SUMMARY[MOMENTUM],
     is_result=True,
     of_centre=True,
 )

@@ -11,53 +11,42 @@ direction cosine matrix, in its place.
 
 from __future__ import annotations
 
+from typing import Any
+
 from rigidsym.algebra.matrix import hat
 from rigidsym.formula.reader import formula
-from rigidsym.formula.tree import Bracket, Rate
-from rigidsym.mechanics.derivation import OF_RATES, Frame, Law, Quantity, by_name, when
+from rigidsym.formula.tree import Bracket, Formula, Rate
+from rigidsym.mechanics.derivation import OF_RATES, Frame, Law, Quantity, by_name, law, when
 from rigidsym.models.rotation import SOURCES
 
-SPACE = Frame(
-    name="space",
-    omega=formula(r"\boldsymbol{\Omega}"),
-    matrix=formula(r"\mathbf{W}"),
-    inverse=formula(r"\mathbf{W}^{-1}"),
-    right_inverse=formula(r"\mathbf{W}^{+}"),
+SPACE, BODY = (
+    Frame(name, p, *map(formula, (rf"\Om{p}", rf"\W{p}", rf"\W{p}^{{-1}}", rf"\W{p}^{{+}}")))
+    for name, p in (("space", ""), ("body", "'"))
 )
-BODY = Frame(
-    name="body",
-    omega=formula(r"\boldsymbol{\Omega}'"),
-    matrix=formula(r"\mathbf{W}'"),
-    inverse=formula(r"\mathbf{W}'^{-1}"),
-    right_inverse=formula(r"\mathbf{W}'^{+}"),
+ROTATION, COSINES, RATES = map(formula, (r"\R", r"\A", r"\dot\q"))
+SPIN, SPIN_OF_COSINES = (formula(rf"\frac{{d\{m}}}{{dt}}\{m}^T") for m in "RA")
+IS_SKEW, COSINES_ARE_SKEW = (
+    formula(r"#1 + \left(#1\right)^T = \0", spin) for spin in (SPIN, SPIN_OF_COSINES)
 )
-ROTATION = formula(r"\mathbf{R}")
-COSINES = formula(r"\mathbf{A}")
-SPIN = formula(r"\frac{d\mathbf{R}}{dt}\mathbf{R}^{\mathsf T}")
-SPIN_OF_COSINES = formula(r"\frac{d\mathbf{A}}{dt}\mathbf{A}^{\mathsf T}")
-RATES = formula(r"\dot{\mathbf{q}}")
-ALPHA = formula(r"\dot{\boldsymbol{\Omega}}")
-ALPHA_BODY = formula(r"\dot{\boldsymbol{\Omega}}'")
+ORTHOGONAL, COSINES_ARE_ORTHOGONAL = (formula(rf"\{m}\{m}^T = \1") for m in "RA")
 # sections of the note
 TURNED, ANGULAR_VELOCITY, ACCELERATION = "rotation", "angular_velocity", "angular_acceleration"
 PASSIVE, CHAIN, WIDE = "passive", "chain", "wide"  # traits: see `Values.traits`
 
-IS_SKEW = formula(r"#1 + \left(#1\right)^{\mathsf T} = \mathbf{0}", SPIN)
-COSINES_ARE_SKEW = formula(r"#1 + \left(#1\right)^{\mathsf T} = \mathbf{0}", SPIN_OF_COSINES)
-ORTHOGONAL = formula(r"\mathbf{R}\mathbf{R}^{\mathsf T} = \mathbf{1}")
-COSINES_ARE_ORTHOGONAL = formula(r"\mathbf{A}\mathbf{A}^{\mathsf T} = \mathbf{1}")
+
+def _of_rotation(matrix: str, orthogonal: Formula) -> tuple[Law, ...]:
+    return (
+        Law(orthogonal, lambda k, x: x.gram() - k.one),
+        law(rf"\det \{matrix} = 1", lambda k, x: k.scalar(x.det() - 1)),
+    )
 
 
 rotation_matrix = Quantity(
-    name="rotation_matrix",
     symbol=ROTATION,
     about="rotation matrix, body to space components",
     inputs=("q",),
     value=lambda k: k.shown,
-    laws=(
-        Law(ORTHOGONAL, lambda k, x: x.gram() - k.one),
-        Law(formula(r"\det \mathbf{R} = 1"), lambda k, x: k.scalar(x.det() - 1)),
-    ),
+    laws=_of_rotation("R", ORTHOGONAL),
     vectors="matrix",
     reason="product_of_turns",
     section=TURNED,
@@ -69,84 +58,61 @@ rotation_matrix = Quantity(
         when(
             PASSIVE,
             symbol=COSINES,
-            definition=formula(r"\mathbf{R}^{\mathsf T}"),
+            definition=formula(r"\R^T"),
             about="direction cosine matrix, space to body components",
-            laws=(
-                Law(COSINES_ARE_ORTHOGONAL, lambda k, x: x.gram() - k.one),
-                Law(formula(r"\det \mathbf{A} = 1"), lambda k, x: k.scalar(x.det() - 1)),
-            ),
+            laws=_of_rotation("A", COSINES_ARE_ORTHOGONAL),
             reason="transposed_product",
         ),
         when(PASSIVE, "given", reason="transposed_matrix"),
-        when(
-            CHAIN,
-            reason="turn_by_turn",
-            recursion=r"\mathbf{P}_{LAST}, \quad \mathbf{P}_k = \mathbf{P}_{k-1}\,\mathbf{T}_k",
-        ),
+        when(CHAIN, reason="turn_by_turn", recursion=r"\P_{LAST}, \quad \P_k = \P_{k-1}\,\T_k"),
         when(
             CHAIN,
             PASSIVE,
             reason="turn_by_turn_transposed",
-            recursion=r"\mathbf{P}_{LAST}^{\mathsf T}, \quad "
-            r"\mathbf{P}_k = \mathbf{P}_{k-1}\,\mathbf{T}_k",
+            recursion=r"\P_{LAST}^T, \quad \P_k = \P_{k-1}\,\T_k",
         ),
     ),
 )
 
+
+def _keeps_length(matrix: str) -> tuple[Law, ...]:
+    """R Rᵀ is constant."""
+    claim = r"\frac{d\R}{dt}\R^T + \R\frac{d\R^T}{dt} = \0".replace("R", matrix)
+    return (law(claim, lambda k, _: k.shown_spin + k.shown_spin.T),)
+
+
 rotation_rate = Quantity(
-    name="rotation_rate",
-    symbol=formula(r"\frac{d\mathbf{R}}{dt}"),
+    symbol=formula(r"\frac{d\R}{dt}"),
     about="time derivative of the rotation matrix",
     unit="1/s",
     inputs=("q", "q_dot"),
     value=lambda k: k.shown_rate,
-    laws=(
-        Law(
-            formula(
-                r"\frac{d\mathbf{R}}{dt}\mathbf{R}^{\mathsf T} "
-                r"+ \mathbf{R}\frac{d\mathbf{R}^{\mathsf T}}{dt} = \mathbf{0}"
-            ),
-            lambda k, _: k.shown_spin + k.shown_spin.T,
-        ),
-    ),
+    laws=_keeps_length("R"),
     reason="chain_rule",
     section=ANGULAR_VELOCITY,
     variants=(
         when(
             PASSIVE,
-            symbol=formula(r"\frac{d\mathbf{A}}{dt}"),
+            symbol=formula(r"\frac{d\A}{dt}"),
             about="time derivative of the direction cosine matrix",
-            laws=(
-                Law(
-                    formula(
-                        r"\frac{d\mathbf{A}}{dt}\mathbf{A}^{\mathsf T} "
-                        r"+ \mathbf{A}\frac{d\mathbf{A}^{\mathsf T}}{dt} = \mathbf{0}"
-                    ),
-                    lambda k, _: k.shown_spin + k.shown_spin.T,
-                ),
-            ),
+            laws=_keeps_length("A"),
         ),
         when(
             CHAIN,
             also=("angular_velocity_space",),
             reason="rate_from_angular_velocity",
-            recursion=r"\mathbf{C}(\boldsymbol{\Omega})\,\mathbf{R}",
+            recursion=r"\C(\Om)\,\R",
         ),
-        when(
-            CHAIN,
-            PASSIVE,
-            recursion=r"\left(\mathbf{C}(\boldsymbol{\Omega})\,\mathbf{R}\right)^{\mathsf T}",
-        ),
+        when(CHAIN, PASSIVE, recursion=r"\left(\C(\Om)\,\R\right)^T"),
     ),
 )
 
 spin_matrix = Quantity(
-    name="spin_matrix",
     symbol=SPIN,
     about="spin matrix, the operator Ω × in space components",
     unit="rad/s",
     inputs=("q", "q_dot"),
-    definition=formula(r"\mathbf{C}(\boldsymbol{\Omega})"),
+    definition=formula(r"\C(\Om)"),
     source=SOURCES["Murray 2.4"],
     value=lambda k: k.shown_spin,
     laws=(Law(IS_SKEW, lambda _, x: x + x.T),),
@@ -157,402 +123,235 @@ spin_matrix = Quantity(
             PASSIVE,
             symbol=SPIN_OF_COSINES,
             about="spin matrix of the direction cosines, the operator −Ω′ × in body components",
-            definition=formula(r"-\mathbf{C}(\boldsymbol{\Omega}')"),
+            definition=formula(r"-\C(\Om')"),
             laws=(
                 Law(COSINES_ARE_SKEW, lambda _, x: x + x.T),
-                Law(
-                    formula(r"#1 = -\mathbf{C}(\boldsymbol{\Omega}')", SPIN_OF_COSINES),
-                    lambda k, x: x + hat(k.omega_body),
-                ),
+                law(r"#1 = -\C(\Om')", lambda k, x: x + hat(k.omega_body), SPIN_OF_COSINES),
             ),
             reason="skew_matrix_of_cosines",
         ),
-        when(
-            CHAIN,
-            also=("angular_velocity_space",),
-            reason="operator",
-            recursion=r"\mathbf{C}(\boldsymbol{\Omega})",
-        ),
-        when(
-            CHAIN,
-            PASSIVE,
-            also=(),
-            reason="operator_of_cosines",
-            recursion=r"-\mathbf{C}(\boldsymbol{\Omega}')",
-        ),
+        when(CHAIN, also=("angular_velocity_space",), reason="operator", recursion=r"\C(\Om)"),
+        when(CHAIN, PASSIVE, also=(), reason="operator_of_cosines", recursion=r"-\C(\Om')"),
     ),
 )
 
+_VELOCITY: dict[str, Any] = {
+    **{"unit": "rad/s", "inputs": ("q", "q_dot"), "shape": "vector", "vectors": "vector"},
+    **{"source": SOURCES["Murray 2.4"], "section": ANGULAR_VELOCITY, "is_result": True},
+    "group": "The angular velocity",
+}
+
 angular_velocity_space = Quantity(
-    name="angular_velocity_space",
+    **_VELOCITY,
     frame=SPACE,
     symbol=SPACE.omega,
     about="angular velocity, space components",
-    unit="rad/s",
-    inputs=("q", "q_dot"),
-    shape="vector",
-    definition=formula(r"\mathbf{C}^{-1}(#1)", SPIN),
-    source=SOURCES["Murray 2.4"],
+    definition=formula(r"\C^{-1}(#1)", SPIN),
     value=lambda k: k.omega_space,
-    laws=(
-        Law(formula(r"#1 = \mathbf{C}(\boldsymbol{\Omega})", SPIN), lambda k, x: k.spin - hat(x)),
-    ),
-    vectors="vector",
+    laws=(law(r"#1 = \C(\Om)", lambda k, x: k.spin - hat(x), SPIN),),
     reason="entries_of_spin",
-    section=ANGULAR_VELOCITY,
-    group="The angular velocity",
-    is_result=True,
     variants=(
         when(
             PASSIVE,
-            definition=formula(r"\mathbf{C}^{-1}(\frac{d\mathbf{A}^{\mathsf T}}{dt}\,\mathbf{A})"),
+            definition=formula(r"\C^{-1}(\frac{d\A^T}{dt}\,\A)"),
             reason="entries_of_spin_of_cosines",
         ),
         when(
             CHAIN,
             reason="later_turns",
-            recursion=r"\mathbf{u}_1, \quad "
-            r"\mathbf{u}_k = \dot{\theta}_k\,\mathbf{n}_k + \mathbf{T}_k\,\mathbf{u}_{k+1}",
+            recursion=r"\u_1, \quad \u_k = \dot{\theta}_k\,\n_k + \T_k\,\u_{k+1}",
         ),
     ),
 )
 
 angular_velocity_body = Quantity(
-    name="angular_velocity_body",
+    **_VELOCITY,
     frame=BODY,
     symbol=BODY.omega,
     about="angular velocity, body components",
-    unit="rad/s",
-    inputs=("q", "q_dot"),
-    shape="vector",
-    definition=formula(r"\mathbf{R}^{\mathsf T}\boldsymbol{\Omega}"),
-    source=SOURCES["Murray 2.4"],
+    definition=formula(r"\R^T\Om"),
     value=lambda k: k.omega_body,
-    laws=(
-        Law(
-            formula(r"\boldsymbol{\Omega} = \mathbf{R}\,\boldsymbol{\Omega}'"),
-            lambda k, x: k.rotation @ x - k.omega_space,
-        ),
-    ),
-    vectors="vector",
+    laws=(law(r"\Om = \R\,\Om'", lambda k, x: k.rotation @ x - k.omega_space),),
     reason="into_the_body",
-    section=ANGULAR_VELOCITY,
-    group="The angular velocity",
-    is_result=True,
     variants=(
-        when(
-            PASSIVE,
-            definition=formula(r"\mathbf{A}\,\boldsymbol{\Omega}"),
-            reason="into_the_body_by_cosines",
-        ),
+        when(PASSIVE, definition=formula(r"\A\,\Om"), reason="into_the_body_by_cosines"),
         when(
             CHAIN,
             reason="earlier_turns",
-            recursion=r"\mathbf{w}_{LAST}, \quad \mathbf{w}_k = \dot{\theta}_k\,\mathbf{n}_k + "
-            r"\mathbf{T}_k^{\mathsf T}\,\mathbf{w}_{k-1}",
+            recursion=r"\w_{LAST}, \quad \w_k = \dot{\theta}_k\,\n_k + \T_k^T\,\w_{k-1}",
         ),
     ),
 )
 
-rate_matrix_space = Quantity(
-    name="rate_matrix_space",
-    frame=SPACE,
-    symbol=SPACE.matrix,
-    about="rate matrix to space components of the angular velocity",
-    inputs=("q",),
-    definition=formula(r"\frac{\partial \boldsymbol{\Omega}}{\partial \dot{\mathbf{q}}}"),
-    source=SOURCES["Diebel 5"],
-    value=lambda k: k.rate_matrix("space"),
-    laws=(
-        Law(
-            formula(r"\mathbf{W}\dot{\mathbf{q}} = \boldsymbol{\Omega}"),
-            lambda k, x: x @ k.argument("q_dot") - k.omega_space,
-        ),
-    ),
-    vectors="matrix",
-    reason="coefficients",
-    section=OF_RATES,
-    group="The rate matrices",
-    variants=(
-        when("by_turns", reason="axes_of_turns"),
-        when("one_coordinate", reason="axis_of_turn"),
-        when(CHAIN, reason="columns_are_axes"),
-        when(
-            CHAIN,
-            "in_order",
-            recursion=r"\begin{pmatrix} \mathbf{n}_1 & \mathbf{P}_1\,\mathbf{n}_2 & \ldots & "
-            r"\mathbf{P}_{BEFORE}\,\mathbf{n}_{LAST} \end{pmatrix}",
-        ),
-    ),
-)
+# The rates of the coordinates: in both frames the same, apart from reasons
 
-inverse_rate_matrix_space = Quantity(
-    name="inverse_rate_matrix_space",
-    frame=SPACE,
-    symbol=SPACE.inverse,
-    about="inverse rate matrix from space components",
-    inputs=("q",),
-    source=SOURCES["Diebel 5"],
-    value=lambda k: k.inverse("space"),
-    laws=(
-        Law(
-            formula(r"\mathbf{W}\mathbf{W}^{-1} = \mathbf{1}"),
-            lambda k, x: k.excess("space", *x, k.one),
-            is_of_inverse=True,
+
+def _rate_matrix(frame: Frame, *, of_chain: str, columns: str) -> Quantity:
+    """W; `columns` are the axes of the turns of a chain."""
+    name, symbols = frame.name, (frame.matrix, frame.omega)
+    return Quantity(
+        frame=frame,
+        symbol=frame.matrix,
+        about=f"rate matrix to {name} components of the angular velocity",
+        inputs=("q",),
+        definition=formula(r"\frac{\partial #2}{\partial\dot\q}", *symbols),
+        source=SOURCES["Diebel 5"],
+        value=lambda k: k.rate_matrix(name),
+        laws=(
+            law(r"#1\dot\q = #2", lambda k, x: x @ k.argument("q_dot") - k.omega(name), *symbols),
         ),
-    ),
-    vectors="matrix",
-    reason="inverse",
-    section=OF_RATES,
-    group="Their inverses",
-    variants=(
-        when(
-            WIDE,
-            symbol=SPACE.right_inverse,
-            about="right inverse of the rate matrix from space components",
-            laws=(
-                Law(
-                    formula(r"\mathbf{W}\mathbf{W}^{+} = \mathbf{1}"),
-                    lambda k, x: k.excess("space", *x, k.one),
-                    is_of_inverse=True,
-                ),
+        vectors="matrix",
+        reason=f"coefficients_{name}",
+        section=OF_RATES,
+        group="The rate matrices",
+        variants=(
+            when("by_turns", reason=f"axes_of_turns_{name}"),
+            when("one_coordinate", reason=f"axis_of_turn_{name}"),
+            when(CHAIN, reason=of_chain),
+            when(CHAIN, "in_order", recursion=columns),
+        ),
+    )
+
+
+def _inverse_rate_matrix(frame: Frame, **reasons: str) -> Quantity:
+    """W⁻¹, or W⁺ where there are more coordinates than dimensions."""
+    name, p = frame.name, frame.prime
+
+    def inverts(inverse: Formula) -> tuple[Law, ...]:
+        claim = formula(r"#1 #2 = \1", frame.matrix, inverse)
+        return (Law(claim, lambda k, x: k.excess(name, *x, k.one), is_of_inverse=True),)
+
+    return Quantity(
+        frame=frame,
+        symbol=frame.inverse,
+        about=f"inverse rate matrix from {name} components",
+        inputs=("q",),
+        source=SOURCES["Diebel 5"],
+        value=lambda k: k.inverse(name),
+        laws=inverts(frame.inverse),
+        vectors="matrix",
+        reason=f"inverse_{name}",
+        section=OF_RATES,
+        group="Their inverses",
+        variants=(
+            when(
+                WIDE,
+                symbol=frame.right_inverse,
+                about=f"right inverse of the rate matrix from {name} components",
+                laws=inverts(frame.right_inverse),
             ),
-            reason="least_rates",
-        ),
-        when(WIDE, "vector", reason="constant_length"),
-        when(WIDE, "bound", reason="rates_within_conditions"),
-        when(
-            CHAIN,
-            reason="least_norm",
-            recursion=r"\mathbf{W}^{\mathsf T}"
-            r"\left(\mathbf{W}\,\mathbf{W}^{\mathsf T}\right)^{-1}",
-        ),
-    ),
-)
-
-rates_from_angular_velocity_space = Quantity(
-    name="rates_from_angular_velocity_space",
-    frame=SPACE,
-    symbol=RATES,
-    about="rates of the coordinates from space components of the angular velocity",
-    unit="rad/s",
-    unit_of="q_dot",
-    inputs=("q", "omega_space"),
-    shape="vector",
-    definition=formula(r"\mathbf{W}^{-1}\boldsymbol{\Omega}"),
-    source=SOURCES["Diebel 5"],
-    value=lambda k: k.rates("space"),
-    laws=(
-        Law(
-            formula(r"\mathbf{W}\,(\mathbf{W}^{-1}\boldsymbol{\Omega}) = \boldsymbol{\Omega}"),
-            lambda k, x: k.excess("space", *x, k.argument("omega_space")),
-            is_of_inverse=True,
-        ),
-    ),
-    vectors="rates",
-    reason="rates_from_space",
-    section=OF_RATES,
-    group="The rates of the coordinates",
-    is_result=True,
-    variants=(
-        when(
-            WIDE,
-            definition=formula(r"\mathbf{W}^{+}\boldsymbol{\Omega}"),
-            laws=(
-                Law(
-                    formula(
-                        r"\mathbf{W}\,(\mathbf{W}^{+}\boldsymbol{\Omega}) = \boldsymbol{\Omega}"
-                    ),
-                    lambda k, x: k.excess("space", *x, k.argument("omega_space")),
-                    is_of_inverse=True,
-                ),
+            *(when(WIDE, trait, reason=reason) for trait, reason in reasons.items()),
+            when(
+                CHAIN,
+                reason=reasons[CHAIN],
+                recursion=rf"\W{p}^T\left(\W{p}\,\W{p}^T\right)^{{-1}}",
             ),
         ),
-        when(CHAIN, recursion=r"\mathbf{W}^{-1}\,\boldsymbol{\Omega}"),
-        when(CHAIN, WIDE, recursion=r"\mathbf{W}^{+}\,\boldsymbol{\Omega}"),
-    ),
-)
+    )
 
-rate_matrix_body = Quantity(
-    name="rate_matrix_body",
-    frame=BODY,
-    symbol=BODY.matrix,
-    about="rate matrix to body components of the angular velocity",
-    inputs=("q",),
-    definition=formula(r"\frac{\partial \boldsymbol{\Omega}'}{\partial \dot{\mathbf{q}}}"),
-    source=SOURCES["Diebel 5"],
-    value=lambda k: k.rate_matrix("body"),
-    laws=(
-        Law(
-            formula(r"\mathbf{W}'\dot{\mathbf{q}} = \boldsymbol{\Omega}'"),
-            lambda k, x: x @ k.argument("q_dot") - k.omega_body,
-        ),
-    ),
-    vectors="matrix",
-    reason="coefficients_body",
-    section=OF_RATES,
-    group="The rate matrices",
-    variants=(
-        when("by_turns", reason="axes_of_turns_body"),
-        when("one_coordinate", reason="axis_of_turn_body"),
-        when(CHAIN, reason="axes_of_turns_body"),
-        when(
-            CHAIN,
-            "in_order",
-            recursion=r"\begin{pmatrix} \mathbf{B}_2^{\mathsf T}\,\mathbf{n}_1 & \ldots & "
-            r"\mathbf{B}_{LAST}^{\mathsf T}\,\mathbf{n}_{BEFORE} & \mathbf{n}_{LAST} "
-            r"\end{pmatrix}, \quad \mathbf{B}_k = \mathbf{T}_k\,\mathbf{B}_{k+1}",
-        ),
-    ),
-)
 
-inverse_rate_matrix_body = Quantity(
-    name="inverse_rate_matrix_body",
-    frame=BODY,
-    symbol=BODY.inverse,
-    about="inverse rate matrix from body components",
-    inputs=("q",),
-    source=SOURCES["Diebel 5"],
-    value=lambda k: k.inverse("body"),
-    laws=(
-        Law(
-            formula(r"\mathbf{W}'\mathbf{W}'^{-1} = \mathbf{1}"),
-            lambda k, x: k.excess("body", *x, k.one),
-            is_of_inverse=True,
-        ),
-    ),
-    vectors="matrix",
-    reason="inverse_body",
-    section=OF_RATES,
-    group="Their inverses",
-    variants=(
-        when(
-            WIDE,
-            symbol=BODY.right_inverse,
-            about="right inverse of the rate matrix from body components",
-            laws=(
-                Law(
-                    formula(r"\mathbf{W}'\mathbf{W}'^{+} = \mathbf{1}"),
-                    lambda k, x: k.excess("body", *x, k.one),
-                    is_of_inverse=True,
-                ),
-            ),
-            reason="right_inverse_body",
-        ),
-        when(
-            CHAIN,
-            reason="right_inverse_body",
-            recursion=r"\mathbf{W}'^{\mathsf T}"
-            r"\left(\mathbf{W}'\,\mathbf{W}'^{\mathsf T}\right)^{-1}",
-        ),
-    ),
-)
+def _rates(frame: Frame) -> Quantity:
+    """q̇ = W⁻¹ Ω, or W⁺ Ω."""
+    name, omega, p = frame.name, frame.omega, frame.prime
 
-rates_from_angular_velocity_body = Quantity(
-    name="rates_from_angular_velocity_body",
-    frame=BODY,
-    symbol=RATES,
-    about="rates of the coordinates from body components of the angular velocity",
-    unit="rad/s",
-    unit_of="q_dot",
-    inputs=("q", "omega_body"),
-    shape="vector",
-    definition=formula(r"\mathbf{W}'^{-1}\boldsymbol{\Omega}'"),
-    source=SOURCES["Diebel 5"],
-    value=lambda k: k.rates("body"),
-    laws=(
-        Law(
-            formula(r"\mathbf{W}'\,(\mathbf{W}'^{-1}\boldsymbol{\Omega}') = \boldsymbol{\Omega}'"),
-            lambda k, x: k.excess("body", *x, k.argument("omega_body")),
-            is_of_inverse=True,
+    def by(inverse: Formula) -> dict[str, Any]:
+        claim = formula(r"#1\,(#2 #3) = #3", frame.matrix, inverse, omega)
+
+        def residual(k: Any, x: Any) -> Any:
+            return k.excess(name, *x, k.argument(f"omega_{name}"))
+
+        laws = (Law(claim, residual, is_of_inverse=True),)
+        return {"definition": formula("#1 #2", inverse, omega), "laws": laws}
+
+    return Quantity(
+        frame=frame,
+        symbol=RATES,
+        about=f"rates of the coordinates from {name} components of the angular velocity",
+        unit="rad/s",
+        unit_of="q_dot",
+        inputs=("q", f"omega_{name}"),
+        shape="vector",
+        **by(frame.inverse),
+        source=SOURCES["Diebel 5"],
+        value=lambda k: k.rates(name),
+        vectors="rates",
+        reason=f"rates_from_{name}",
+        section=OF_RATES,
+        group="The rates of the coordinates",
+        is_result=True,
+        variants=(
+            when(WIDE, **by(frame.right_inverse)),
+            when(CHAIN, recursion=rf"\W{p}^{{-1}}\,\Om{p}"),
+            when(CHAIN, WIDE, recursion=rf"\W{p}^{{+}}\,\Om{p}"),
         ),
-    ),
-    vectors="rates",
-    reason="rates_from_body",
-    section=OF_RATES,
-    group="The rates of the coordinates",
-    is_result=True,
-    variants=(
-        when(
-            WIDE,
-            definition=formula(r"\mathbf{W}'^{+}\boldsymbol{\Omega}'"),
-            laws=(
-                Law(
-                    formula(
-                        r"\mathbf{W}'\,(\mathbf{W}'^{+}\boldsymbol{\Omega}') = "
-                        r"\boldsymbol{\Omega}'"
-                    ),
-                    lambda k, x: k.excess("body", *x, k.argument("omega_body")),
-                    is_of_inverse=True,
-                ),
-            ),
-        ),
-        when(CHAIN, recursion=r"\mathbf{W}'^{-1}\,\boldsymbol{\Omega}'"),
-        when(CHAIN, WIDE, recursion=r"\mathbf{W}'^{+}\,\boldsymbol{\Omega}'"),
-    ),
+    )
+
+
+rate_matrix_space = _rate_matrix(
+    SPACE,
+    of_chain="columns_are_axes",
+    columns=r"\begin{pmatrix} \n_1 & \P_1\,\n_2 & \ldots & \P_{BEFORE}\,\n_{LAST} \end{pmatrix}",
 )
+inverse_rate_matrix_space = _inverse_rate_matrix(
+    SPACE,
+    wide="least_rates",
+    vector="constant_length",
+    bound="rates_within_conditions",
+    chain="least_norm",
+)
+rates_from_angular_velocity_space = _rates(SPACE)
+rate_matrix_body = _rate_matrix(
+    BODY,
+    of_chain="axes_of_turns_body",
+    columns=r"\begin{pmatrix} \B_2^T\,\n_1 & \ldots & \B_{LAST}^T\,\n_{BEFORE} & \n_{LAST} "
+    r"\end{pmatrix}, \quad \B_k = \T_k\,\B_{k+1}",
+)
+inverse_rate_matrix_body = _inverse_rate_matrix(
+    BODY, wide="right_inverse_body", chain="right_inverse_body"
+)
+rates_from_angular_velocity_body = _rates(BODY)
+
+_ACCELERATION: dict[str, Any] = {
+    **{"unit": "rad/s^2", "inputs": ("q", "q_dot", "q_ddot"), "shape": "vector"},
+    **{"source": SOURCES["Diebel 5"], "section": ACCELERATION, "is_result": True},
+    "group": "The angular acceleration",
+}
 
 angular_acceleration_space = Quantity(
-    name="angular_acceleration_space",
+    **_ACCELERATION,
     frame=SPACE,
-    symbol=ALPHA,
+    symbol=formula(r"\dot\Om"),
     about="angular acceleration, space components",
-    unit="rad/s^2",
-    inputs=("q", "q_dot", "q_ddot"),
-    shape="vector",
-    definition=formula(r"\frac{d\boldsymbol{\Omega}}{dt}"),
-    source=SOURCES["Diebel 5"],
+    definition=formula(r"\frac{d\Om}{dt}"),
     value=lambda k: k.alpha_space,
-    laws=(
-        Law(
-            formula(r"#1 = \mathbf{C}(\dot{\boldsymbol{\Omega}})", Rate(Bracket(SPIN))),
-            lambda k, x: k.spin_rate - hat(x),
-        ),
-    ),
+    laws=(law(r"#1 = \C(\dot\Om)", lambda k, x: k.spin_rate - hat(x), Rate(Bracket(SPIN))),),
     reason="derivative_of_velocity",
-    section=ACCELERATION,
-    group="The angular acceleration",
-    is_result=True,
     variants=(
         when(
             CHAIN,
             also=("angular_velocity_space",),
             reason="derivative_of_recursion",
-            recursion=r"\dot{\mathbf{u}}_1, \quad \dot{\mathbf{u}}_k = "
-            r"\ddot{\theta}_k\,\mathbf{n}_k + \dot{\theta}_k\,\mathbf{n}_k\times\mathbf{u}_k + "
-            r"\mathbf{T}_k\,\dot{\mathbf{u}}_{k+1}",
+            recursion=r"\dot\u_1, \quad \dot\u_k = \ddot{\theta}_k\,\n_k + "
+            r"\dot{\theta}_k\,\n_k\times\u_k + \T_k\,\dot\u_{k+1}",
         ),
     ),
 )
 
 angular_acceleration_body = Quantity(
-    name="angular_acceleration_body",
+    **_ACCELERATION,
     frame=BODY,
-    symbol=ALPHA_BODY,
+    symbol=formula(r"\dot\Om'"),
     about="angular acceleration, body components",
-    unit="rad/s^2",
-    inputs=("q", "q_dot", "q_ddot"),
-    shape="vector",
-    definition=formula(r"\mathbf{R}^{\mathsf T}\frac{d\boldsymbol{\Omega}}{dt}"),
-    source=SOURCES["Diebel 5"],
+    definition=formula(r"\R^T\frac{d\Om}{dt}"),
     value=lambda k: k.alpha_body,
-    laws=(
-        Law(
-            formula(r"\dot{\boldsymbol{\Omega}} = \mathbf{R}\,\dot{\boldsymbol{\Omega}}'"),
-            lambda k, x: k.rotation @ x - k.alpha_space,
-        ),
-    ),
+    laws=(law(r"\dot\Om = \R\,\dot\Om'", lambda k, x: k.rotation @ x - k.alpha_space),),
     reason="derivative_in_body",
-    section=ACCELERATION,
-    group="The angular acceleration",
-    is_result=True,
     variants=(
         when(
             CHAIN,
             reason="derivative_of_recursion_body",
-            recursion=r"\dot{\mathbf{w}}_{LAST}, \quad \dot{\mathbf{w}}_k = "
-            r"\ddot{\theta}_k\,\mathbf{n}_k - \dot{\theta}_k\,\mathbf{n}_k\times\mathbf{w}_k + "
-            r"\mathbf{T}_k^{\mathsf T}\,\dot{\mathbf{w}}_{k-1}",
+            recursion=r"\dot\w_{LAST}, \quad \dot\w_k = \ddot{\theta}_k\,\n_k - "
+            r"\dot{\theta}_k\,\n_k\times\w_k + \T_k^T\,\dot\w_{k-1}",
         ),
     ),
 )

@@ -6,49 +6,44 @@ A workspace k (`mechanics.body`) has the body, and the moments of its mass distr
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import sympy as sp
 
 from rigidsym.formula.reader import formula
-from rigidsym.formula.tree import Formula
-from rigidsym.mechanics.derivation import Law, Quantity, by_name, when
+from rigidsym.mechanics.derivation import Quantity, by_name, law, when
 from rigidsym.models.rotation import SOURCES
 
 MASS = formula("M")
-INERTIA = formula(r"\mathbf{I}'")
-INERTIA_SPACE = formula(r"\mathbf{I}")
-PLACE = formula(r"\mathbf{x}'")
-POINT = formula(r"\mathbf{p}")
-DIRECTION = formula(r"\mathbf{n}")
+INERTIA = formula(r"\I'")
+INERTIA_SPACE = formula(r"\I")
+PLACE = formula(r"\x'")
+POINT = formula(r"\p")
+DIRECTION = formula(r"\n")
 # I′ + M (|d|² 1 − d dᵀ), the theorem of parallel axes
-STEINER = r"#1 + #2\,(|#3|^2\,\mathbf{1} - #4 #4^{\mathsf T})"
+STEINER = r"#1 + #2\,(|#3|^2\,\1 - #4 #4^T)"
 _ONE = sp.eye(3)
 OF_BODY, OF_INERTIA = "body", "inertia"  # sections of the note
 
+_TOTAL = r"\int\,dm"
+_MEAN = r"\frac{1}{M}\int \x'\,dm"
+_TENSOR = r"\int \left(|\x'-\c|^2\,\1 - (\x'-\c)(\x'-\c)^T\right)\,dm"
 
-def _of_particles(integral: str) -> Formula:
+
+def _of_particles(integral: str) -> str:
     """An integral over the mass as a sum over particles: Σ mᵢ xᵢ′ for ∫ x′ dm."""
     whole = integral.replace(r"\int", r"\sum_i m_i\,").replace(r"\,dm", "")
-    return formula(whole.replace(r"\mathbf{x}'", r"\mathbf{x}'_i"))
+    return whole.replace(r"\x'", r"\x'_i")
 
 
-_TOTAL = r"\int\,dm"
-_MEAN = r"\frac{1}{M}\int \mathbf{x}'\,dm"
-_CENTRED = r"\int (\mathbf{x}'-\mathbf{c})\,dm = \mathbf{0}"
-_TENSOR = (
-    r"\int \left(|\mathbf{x}'-\mathbf{c}|^2\,\mathbf{1} "
-    r"- (\mathbf{x}'-\mathbf{c})(\mathbf{x}'-\mathbf{c})^{\mathsf T}\right)\,dm"
-)
-_ABOUT_POINT = (
-    r"\mathbf{I}'_P = \int \left(|\mathbf{x}'-\mathbf{p}|^2\,\mathbf{1} "
-    r"- (\mathbf{x}'-\mathbf{p})(\mathbf{x}'-\mathbf{p})^{\mathsf T}\right)\,dm"
-)
-_ABOUT_LINE = r"I_n = \int |\mathbf{n}\times(\mathbf{x}'-\mathbf{p})|^2\,dm"
+def _integrated(claim: str, residual: Callable[[Any, Any], Any]) -> dict[str, Any]:
+    """A law about an integral over the mass, which is a sum for particles."""
+    of_particles = when("particles", laws=(law(_of_particles(claim), residual),))
+    return {"laws": (law(claim, residual),), "variants": (of_particles,)}
 
 
 mass = Quantity(
-    name="mass",
     symbol=MASS,
     about="mass",
     unit="kg",
@@ -60,12 +55,12 @@ mass = Quantity(
     reason="sum_of_parts",
     section=OF_BODY,
     is_result=True,
-    variants=(when("particles", definition=_of_particles(_TOTAL)),),
+    variants=(when("particles", definition=formula(_of_particles(_TOTAL))),),
 )
 
+_IS_CENTRE = _integrated(r"\int (\x'-\c)\,dm = \0", lambda k, x: k.moments.first - k.body.mass * x)
 centre_of_mass = Quantity(
-    name="centre_of_mass",
-    symbol=formula(r"\mathbf{c}"),
+    symbol=formula(r"\c"),
     about="centre of mass, in the axes of the description",
     unit="m",
     shape="vector",
@@ -73,46 +68,34 @@ centre_of_mass = Quantity(
     source=SOURCES["Landau 8"],
     value=lambda k: k.body.centre if k.is_distributed else None,
     rests_on=lambda k: k.moments.proofs if k.body.mass.is_Symbol else (),
-    laws=(Law(formula(_CENTRED), lambda k, x: k.moments.first - k.body.mass * x),),
+    laws=_IS_CENTRE["laws"],
     without="how its mass is distributed is not given",
     reason="mean_position",
     section=OF_BODY,
     is_result=True,
     variants=(
-        when(
-            "particles",
-            definition=_of_particles(_MEAN),
-            laws=(
-                Law(
-                    _of_particles(_CENTRED),
-                    lambda k, x: k.moments.first - k.body.mass * x,
-                ),
-            ),
-        ),
+        when("particles", definition=formula(_of_particles(_MEAN))),
+        *_IS_CENTRE["variants"],
     ),
 )
 
-_SYMMETRIC = Law(formula(r"\mathbf{I}' = \mathbf{I}'^{\mathsf T}"), lambda _, x: x - x.T)
-_ABOUT_ORIGIN = Law(
-    formula(rf"\mathbf{{I}}'_O = {STEINER}", INERTIA, MASS, *(formula(r"\mathbf{c}"),) * 2),
+_SYMMETRIC = law(r"\I' = \I'^T", lambda _, x: x - x.T)
+_ABOUT_ORIGIN = law(
+    rf"\I'_O = {STEINER}",
     lambda k, x: (
         k.moments.second.trace() * _ONE
         - k.moments.second
         - x
         - k.steiner(k.body.mass, k.body.centre)
     ),
+    *(INERTIA, MASS, formula(r"\c"), formula(r"\c")),
 )
-_OF_PARTS = Law(
-    formula(
-        r"\mathbf{I}' = \sum_k \left(\mathbf{R}_k\mathbf{I}'_k\mathbf{R}_k^{\mathsf T} "
-        r"+ m_k(|\mathbf{d}_k|^2\,\mathbf{1} - \mathbf{d}_k\mathbf{d}_k^{\mathsf T})"
-        r"\right)"
-    ),
+_OF_PARTS = law(
+    r"\I' = \sum_k \left(\R_k\I'_k\R_k^T + m_k(|\d_k|^2\,\1 - \d_k\d_k^T)\right)",
     lambda k, x: k.inertia_of_parts() - x,
 )
 
 inertia_tensor = Quantity(
-    name="inertia_tensor",
     symbol=INERTIA,
     about="inertia tensor about the centre of mass, body components",
     unit="kg m^2",
@@ -129,7 +112,7 @@ inertia_tensor = Quantity(
             laws=(_SYMMETRIC, _ABOUT_ORIGIN),
             reason="tensor_about_centre",
         ),
-        when("particles", definition=_of_particles(_TENSOR)),
+        when("particles", definition=formula(_of_particles(_TENSOR))),
         when("composite", laws=(_SYMMETRIC, _ABOUT_ORIGIN, _OF_PARTS), reason="tensors_of_parts"),
         when(
             "fixed_point",
@@ -140,37 +123,20 @@ inertia_tensor = Quantity(
 )
 
 inertia_tensor_point = Quantity(
-    name="inertia_tensor_point",
-    symbol=formula(r"\mathbf{I}'_P"),
+    symbol=formula(r"\I'_P"),
     about="inertia tensor about a point p, body components",
     unit="kg m^2",
     inputs=("point",),
-    definition=formula(
-        r"\mathbf{I}' + M\,(|\mathbf{p}-\mathbf{c}|^2\,\mathbf{1} "
-        r"- (\mathbf{p}-\mathbf{c})(\mathbf{p}-\mathbf{c})^{\mathsf T})"
-    ),
+    definition=formula(r"\I' + M\,(|\p-\c|^2\,\1 - (\p-\c)(\p-\c)^T)"),
     source=SOURCES["Landau 32 (32.12)"],
     value=lambda k: k.shifted_inertia(),
-    laws=(
-        Law(
-            formula(_ABOUT_POINT),
-            lambda k, x: k.second_about_point.trace() * _ONE - k.second_about_point - x,
-        ),
+    **_integrated(
+        r"\I'_P = \int \left(|\x'-\p|^2\,\1 - (\x'-\p)(\x'-\p)^T\right)\,dm",
+        lambda k, x: k.second_about_point.trace() * _ONE - k.second_about_point - x,
     ),
     reason="parallel_axes",
     section=OF_INERTIA,
     of_centre=True,
-    variants=(
-        when(
-            "particles",
-            laws=(
-                Law(
-                    _of_particles(_ABOUT_POINT),
-                    lambda k, x: k.second_about_point.trace() * _ONE - k.second_about_point - x,
-                ),
-            ),
-        ),
-    ),
 )
 
 
@@ -181,34 +147,28 @@ def _moment_by_mass(k: Any, x: sp.Expr) -> sp.Matrix:
 
 
 moment_of_inertia = Quantity(
-    name="moment_of_inertia",
     symbol=formula("I_n"),
     about="moment of inertia about the line through p along n, a unit vector",
     unit="kg m^2",
     inputs=("point", "direction"),
     shape="scalar",
-    definition=formula(r"\mathbf{n}^{\mathsf T}\,\mathbf{I}'_P\,\mathbf{n}"),
+    definition=formula(r"\n^T\,\I'_P\,\n"),
     source=SOURCES["Goldstein 5.3"],
     value=lambda k: k.moment_about_line(),
-    laws=(Law(formula(_ABOUT_LINE), _moment_by_mass),),
+    **_integrated(r"I_n = \int |\n\times(\x'-\p)|^2\,dm", _moment_by_mass),
     reason="form_of_tensor",
     section=OF_INERTIA,
     of_centre=True,
-    variants=(when("particles", laws=(Law(_of_particles(_ABOUT_LINE), _moment_by_mass),)),),
 )
 
 radii_of_gyration = Quantity(
-    name="radii_of_gyration",
     symbol=formula(r"\left(k_x, k_y, k_z\right)"),
     about="radii of gyration about the axes through the centre of mass",
     unit="m",
     shape="vector",
     value=lambda k: k.radii,
     laws=(
-        Law(
-            formula("M k_j^2 = I'_{jj}"),
-            lambda k, x: k.body.mass * x.applyfunc(lambda radius: radius**2) - k.diagonal,
-        ),
+        law("M k_j^2 = I'_{jj}", lambda k, x: k.body.mass * x.multiply_elementwise(x) - k.diagonal),
     ),
     reason="root_of_moment",
     section=OF_INERTIA,
@@ -216,7 +176,6 @@ radii_of_gyration = Quantity(
 )
 
 principal_moments = Quantity(
-    name="principal_moments",
     symbol=formula(r"\left(I_1, I_2, I_3\right)"),
     about="principal moments of inertia",
     unit="kg m^2",
@@ -224,8 +183,8 @@ principal_moments = Quantity(
     source=SOURCES["Landau 32"],
     value=lambda k: k.principal and k.principal.moments,
     laws=(
-        Law(
-            formula(r"\det(\mathbf{I}' - I_k\mathbf{1}) = 0"),
+        law(
+            r"\det(\I' - I_k\1) = 0",
             # the axes, if there are any, prove it
             lambda k, x: (
                 sp.Matrix([k.volume(k.body.inertia - m * _ONE) for m in x])
@@ -241,18 +200,17 @@ principal_moments = Quantity(
 )
 
 principal_axes = Quantity(
-    name="principal_axes",
-    symbol=formula(r"\mathbf{E}"),
+    symbol=formula(r"\E"),
     about="principal axes as columns, right-handed, body components",
     source=SOURCES["Landau 32"],
     value=lambda k: k.principal and k.principal.axes,
     laws=(
-        Law(
-            formula(r"\mathbf{I}'\,\mathbf{E} = \mathbf{E}\,\operatorname{diag}(I_1, I_2, I_3)"),
+        law(
+            r"\I'\,\E = \E\,\operatorname{diag}(I_1, I_2, I_3)",
             lambda k, x: k.body.inertia * x - x * sp.diag(*k.principal.moments),
         ),
-        Law(
-            formula(r"\mathbf{E}^{\mathsf T}\mathbf{E} = \mathbf{1},\ \det\mathbf{E} = 1"),
+        law(
+            r"\E^T\E = \1,\ \det\E = 1",
             lambda k, x: (x.T * x - _ONE).col_join(sp.Matrix([[k.volume(x) - 1, 0, 0]])),
         ),
     ),
@@ -262,18 +220,15 @@ principal_axes = Quantity(
 )
 
 inertia_ellipsoid = Quantity(
-    name="inertia_ellipsoid",
     symbol=formula(r"\left(a_1, a_2, a_3\right)"),
     about="semi-axes of the inertia ellipsoid, along the principal axes",
     unit="(kg m^2)^(-1/2)",
     shape="vector",
     value=lambda k: k.semi_axes,
     laws=(
-        Law(
-            formula(r"a_k^2\,I_k = 1"),
-            lambda k, x: sp.Matrix(
-                [a**2 * m - 1 for a, m in zip(x, k.principal.moments, strict=True)]
-            ),
+        law(
+            r"a_k^2\,I_k = 1",
+            lambda k, x: sp.diag(*k.principal.moments) * x.multiply_elementwise(x) - sp.ones(3, 1),
         ),
     ),
     without="no principal moments were found, or one of them is 0",
@@ -282,21 +237,20 @@ inertia_ellipsoid = Quantity(
 )
 
 inertia_tensor_space = Quantity(
-    name="inertia_tensor_space",
     symbol=INERTIA_SPACE,
     about="inertia tensor about the centre of mass, space components",
     unit="kg m^2",
     inputs=("q",),
-    definition=formula(r"\mathbf{R}\,\mathbf{I}'\,\mathbf{R}^{\mathsf T}"),
+    definition=formula(r"\R\,\I'\,\R^T"),
     source=SOURCES["Goldstein 5.2"],
     value=lambda k: k.inertia_space,
     laws=(
-        Law(
-            formula(r"\mathbf{I}' = \mathbf{R}^{\mathsf T}\,\mathbf{I}\,\mathbf{R}"),
+        law(
+            r"\I' = \R^T\,\I\,\R",
             lambda k, x: k.rotation.T @ (x @ k.rotation) - k.inertia,
         ),
-        Law(
-            formula(r"\operatorname{tr} \mathbf{I} = \operatorname{tr} \mathbf{I}'"),
+        law(
+            r"\operatorname{tr} \I = \operatorname{tr} \I'",
             lambda k, x: k.scalar(k.trace(x - k.inertia)),
         ),
     ),
