@@ -151,7 +151,12 @@ def _motion(source: str, options: SimulationOptions) -> Motion:
     is_page = options.animate is not None and options.animate.suffix == ".html"
     if spec.dynamics is not None and len(spec.models) == 1 and not is_page:
         spec = replace(spec, quantities=NEEDED)
-    return motion_of(spec)
+    motion = motion_of(spec)
+    if is_page:
+        from rigidsym.page.print_page import check_shown
+
+        check_shown(motion)  # before minutes of simulation
+    return motion
 
 
 def _animated(

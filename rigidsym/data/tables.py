@@ -96,7 +96,7 @@ def open_table(path: Path) -> Table:
     Raises DataError for a file that holds no table of numbers.
     """
     if not path.is_file():
-        fault = "not a regular file; `eval` reads a stream from -"
+        fault = "not a regular file"
         raise DataError(f"{path}: {fault if path.exists() else 'no such file'}")
     if path.suffix.lower() == ".npy":
         return NpyTable(path)

@@ -258,7 +258,7 @@ def turned_by(
     names no rotation, BodyError where the number of values is wrong or they break a condition.
     """
     if values is None and "(" in text:
-        turns = tuple(_turn(axis, angle, _constant) for axis, angle in parse_turns(text))
+        turns = tuple(_turn(*turn, _constant) for turn in parse_turns(text))
         if any(part.free_symbols for turn in turns for part in turn.components):
             raise ExpressionError(f"{text}: expected an axis with numbers as components")
         return product_of(turns), ()
@@ -340,7 +340,7 @@ def _turned(
         raise ModelError(f"{text} names its angles itself; leave the other names out")
     try:
         symbol = partial(_symbol, constants=constants)
-        turns = [_turn(axis, angle, symbol) for axis, angle in parse_turns(text)]
+        turns = [_turn(*turn, symbol) for turn in parse_turns(text)]
     except ExpressionError as error:
         raise ExpressionError(f"column {error.column}: {error.message}") from None
     return _euler(turns, passive) or chain(turns, passive=passive)
@@ -357,9 +357,12 @@ def _euler(turns: Sequence[Turn], passive: bool) -> RotationModel | None:
     return EulerAngles(letters, [angle.func.__name__ for angle in angles], passive=passive)
 
 
-def _turn(axis: str, angle: str, symbol: Callable[[str], sp.Expr]) -> Turn:
+def _turn(axis: str, angle: str, column: int, symbol: Callable[[str], sp.Expr]) -> Turn:
     """One turn, with the symbols of the names in its angle; those in an axis are constants."""
-    value = parse_expression(angle, {name: symbol(name) for name in names_in(angle)})
+    try:
+        value = parse_expression(angle, {name: symbol(name) for name in names_in(angle)})
+    except ExpressionError as error:
+        raise ExpressionError(error.message, column=column + error.column - 1) from None
     if axis in AXES:
         return Turn(axis=axis, angle=value)
     parts = axis[1:-1].split(",")

@@ -81,7 +81,7 @@ def print_page(
 
     Raises ModelError for a motion that the figure cannot show.
     """
-    _check_shown(derivation)
+    check_shown(derivation)
     example, seconds = _first_example(derivation)
     start = start or example
     functions = functions_of(derivation)
@@ -176,7 +176,7 @@ def _moving(
     return dict(zip((*q, *wanted), begun.tolist(), strict=True))
 
 
-def _check_shown(derivation: Derivation) -> None:
+def check_shown(derivation: Derivation) -> None:
     """Raises ModelError for a motion that the figure, one body about a fixed point, cannot show."""
     forces, why = derivation.forces, ""
     if forces is not None and forces.parts:

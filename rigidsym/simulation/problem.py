@@ -79,13 +79,15 @@ class Problem:
         ).load()
         self.start = self.state_of(initial)
         self.check_rotations(self.start[None])
-        changes = map(abs, self._changes(self.start))
-        if max(changes, default=0) > _UNIT * np.abs(self.start).max():
-            bounds = " and ".join(f"{as_typed(c)} = 0" for c in self.model.constraints)
-            raise ModelError(
-                f"{derivation.name}: the rates violate {bounds}; expected rates that keep "
-                f"these conditions, or {OMEGA}"
-            )
+        if self.model.constraints and not self.is_euler:
+            parts = np.split(self.start, [self.count])
+            changes = self._conditions.rates(*parts, *self._constants)
+            if np.abs(changes).max() > _UNIT * np.abs(self.start).max():
+                bounds = " and ".join(f"{as_typed(c)} = 0" for c in self.model.constraints)
+                raise ModelError(
+                    f"{derivation.name}: the rates violate {bounds}; expected rates that keep "
+                    f"these conditions, or {OMEGA}"
+                )
 
     @cached_property
     def _functions(self) -> Derivation:
@@ -137,7 +139,9 @@ class Problem:
         """Raises ModelError for the first of the states, (m, k), whose R is no rotation."""
         rotation = self.rotation(states)
         error = np.abs(rotation @ np.swapaxes(rotation, 1, 2) - np.eye(3)).max(axis=(1, 2))
-        error = np.maximum(error, self._off(states[:, : self.count]))
+        if self.model.constraints:
+            off = self._conditions.bounds(states[:, : self.count], *self._constants)
+            error = np.maximum(error, np.abs(off).max(axis=(1, 2)))
         for k in np.flatnonzero(error > _UNIT)[:1]:
             which = f"motion {k + 1} of {len(states)}: " if len(states) > 1 else ""
             q = zip(self.coordinates, states[k].tolist(), strict=False)
@@ -146,33 +150,15 @@ class Problem:
                 f"{self.derivation.name}: {which}no rotation has the coordinates {values}"
             )
 
-    def _off(self, q: Array) -> Array:
-        """How far the conditions on the coordinates are from 0 at most, (m,)."""
-        largest = np.zeros(len(q))
-        for condition in self.model.constraints:
-            fixed = condition.xreplace(self._values)
-            if fixed.is_polynomial(*self.model.coordinates):
-                terms = sp.Poly(fixed, *self.model.coordinates).terms()
-                off = sum(float(factor) * np.prod(q**powers, axis=1) for powers, factor in terms)
-            else:
-                rows = (dict(zip(self.model.coordinates, row, strict=True)) for row in q.tolist())
-                off = np.array([float(fixed.xreplace(row)) for row in rows])
-            largest = np.maximum(largest, np.abs(off))
-        return largest
-
-    def _changes(self, y: Array) -> list[float]:
-        """The rates of the conditions on the coordinates."""
-        if self.is_euler:
-            return []
-        q = self.model.coordinates
-        state = [*q, *(sp.diff(x, TIME) for x in q)]
-        values = dict(zip(state, y.tolist(), strict=False)) | self._values
-        return [float(sp.diff(c, TIME).xreplace(values)) for c in self.model.constraints]
-
-    @property
-    def _values(self) -> dict[sp.Basic, float]:
-        names = map(sp.Symbol, self.names.get("parameters", ()))
-        return dict(zip(names, self.parameters, strict=True))
+    @cached_property
+    def _conditions(self) -> ModuleType:
+        """The conditions on the coordinates, and their rates, as functions."""
+        bounds = sp.ImmutableMatrix(self.model.constraints)
+        functions = {
+            "bounds": self._step("bounds", bounds, ("q",), shape="matrix"),
+            "rates": self._step("rates", sp.diff(bounds, TIME), ("q", "q_dot"), shape="matrix"),
+        }
+        return generate(replace(self.derivation.select(()), functions=functions)).load()
 
     def _parameters(self, parameters: Mapping[str, float]) -> list[float]:
         constants = self.names.get("parameters", ())
@@ -276,6 +262,10 @@ class Problem:
                 "without this pole, such as unit_quaternion"
             )
         return rates
+
+    @property
+    def _constants(self) -> list[list[float]]:
+        return [self.parameters] if "parameters" in self.names else []
 
     @property
     def angles(self) -> list[list[float]]:

@@ -37,7 +37,7 @@ def simulate(
     timeout: float | None = None,
     progress: Progress | None = None,
 ) -> Trajectory:
-    """The motion from t = 0 to `t_end`, in seconds; without forces, that of the free body.
+    """Integrate the motion from t = 0 to `t_end` seconds. A body without forces is free.
 
     `initial` contains coordinates by name (theta), and their rates (theta_dot) or the body
     components of the angular velocity (angular_velocity_body, or angular_velocity_body_1, _2, _3);

@@ -16,7 +16,6 @@ Array = NDArray[np.float64]
 
 PICTURES = (".png", ".svg", ".pdf")
 ANIMATIONS = (".gif",)
-_SPHERE = np.ones(3)  # its semi-axes
 _ONE_TURN = 360
 _VIEW = (25, -60)  # elevation and azimuth of the eye, degrees
 _GREEK = ["alpha", "beta", "gamma", "delta", "theta", "phi", "psi", "sigma", "chi", "omega"]
@@ -115,17 +114,20 @@ def save_plot(path: Path, motion: Trajectory) -> Path:
         rows = [["q", "q", "axis"], ["polhode", "herpolhode", "drift"]]
     size = (4 * len(rows[0]), 4 * len(rows))
     figure = _figure_class()(figsize=size, layout="constrained")
-    panels = figure.subplot_mosaic(
-        rows, per_subplot_kw={("axis", "polhode")[: len(rows)]: {"projection": "3d"}}
-    )
-    angles = {name: motion.q[:, k] for k, name in enumerate(motion.coordinates)}
-    _draw_coordinates(panels["q"], motion.t, angles, in_degrees=motion.is_in_angles)
-    _draw_trace(panels["axis"], motion.rotation_matrix[:, :, 2], _SPHERE)
+    solids = ("axis", "polhode")[: len(rows)]
+    panels = figure.subplot_mosaic(rows, per_subplot_kw={solids: {"projection": "3d"}})
+    _draw_coordinates(panels["q"], motion)
+    _draw_trace(panels["axis"], motion.rotation_matrix[:, :, 2], np.ones(3))
     panels["axis"].set_title("Trace of the third body axis")
     if motion.is_free:
         _draw_poinsot(panels["polhode"], panels["herpolhode"], motion)
     if motion.first_integrals:
-        _draw_drift(panels["drift"], motion.t, motion.changes)
+        axes = panels["drift"]
+        for name, values in motion.changes.items():
+            largest = np.maximum.accumulate(np.nan_to_num(values))
+            axes.semilogy(motion.t, np.maximum(largest, _SMALLEST), label=name.replace("_", " "))
+        axes.set(xlabel="t in s", ylabel="largest change so far, relative", title="First integrals")
+        axes.legend(loc="lower right", fontsize="x-small")
     path.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(path, dpi=150)
     return path
@@ -146,7 +148,7 @@ def save_animation(path: Path, motion: Trajectory) -> Path:
     places = np.linspace(0, len(motion.t) - 1, round(seconds * _FRAMES_PER_SECOND))
     frames = np.unique(places.round().astype(int))
     axes = figure.add_subplot(projection="3d")
-    _draw_trace(axes, motion.rotation_matrix[:1, :, 2], _SPHERE)
+    _draw_trace(axes, motion.rotation_matrix[:1, :, 2], np.ones(3))
     (trace,) = axes.plot([], [], [], color="C3", linewidth=1.2)
     corners = _cuboid(motion.inertia)
     faces = Poly3DCollection(np.zeros((6, 4, 3)), facecolors=_COLOURS, edgecolors="k", alpha=0.9)
@@ -207,75 +209,33 @@ def _draw_poinsot(solid: Any, plane: Any, motion: Trajectory) -> None:
     plane.set(aspect="equal", xlabel="rad/s", title="Herpolhode in the invariable plane")
 
 
-def _draw_coordinates(
-    axes: Any, t: Array, coordinates: Mapping[str, Array], *, in_degrees: bool
-) -> None:
-    """All of them; of angles, those that wind on are left out, since they would dwarf others."""
-    shown = {n: np.degrees(v) if in_degrees else v for n, v in coordinates.items()}
-    swinging = {n: v for n, v in shown.items() if np.ptp(v) < _ONE_TURN} or shown
+def _draw_coordinates(axes: Any, motion: Trajectory) -> None:
+    """All of them; angles that wind on are left out, since they would dwarf the others."""
+    names = (f"$\\{name}$" if name in _GREEK else name for name in motion.coordinates)
+    shown = np.degrees(motion.q) if motion.is_in_angles else motion.q
+    curves = dict(zip(names, shown.T, strict=True))
+    swinging = {n: v for n, v in curves.items() if np.ptp(v) < _ONE_TURN} or curves
     for name, values in swinging.items():
-        axes.plot(t, values, label=_symbol(name))
-    winding = ", ".join(_symbol(name) for name in shown if name not in swinging)
+        axes.plot(motion.t, values, label=name)
+    winding = ", ".join(curves.keys() - swinging.keys())
     title = f"Coordinates\n({winding}: more than a turn, not shown)" if winding else "Coordinates"
-    axes.set(xlabel="t in s", ylabel="degrees" if in_degrees else "", title=title)
+    axes.set(xlabel="t in s", ylabel="degrees" if motion.is_in_angles else "", title=title)
     axes.legend(fontsize="small")
 
 
-def _symbol(name: str) -> str:
-    """Greek letters by their names, as Matplotlib writes them."""
-    return f"$\\{name}$" if name in _GREEK else name
-
-
 def _draw_trace(axes: Any, points: Array, size: Array, names: str = "xyz") -> None:
-    """A curve on an ellipsoid of circles; what is behind it is pale."""
-    angle = np.linspace(0, 2 * np.pi, 181)
-    flat = np.cos(angle), np.sin(angle)
-    circles = [
-        (flat[0] * np.sqrt(1 - h * h), flat[1] * np.sqrt(1 - h * h), angle * 0 + h)
-        for h in np.linspace(-0.8, 0.8, 5)
-    ]
-    circles += [
-        (flat[0] * np.cos(turn), flat[0] * np.sin(turn), flat[1])
-        for turn in np.linspace(0, np.pi, 7)[:-1]
-    ]
-    elevation, azimuth = np.radians(_VIEW)
-    eye = np.array(
-        [
-            np.cos(elevation) * np.cos(azimuth),
-            np.cos(elevation) * np.sin(azimuth),
-            np.sin(elevation),
-        ]
-    )
-    for circle in circles:
-        _draw_curve(axes, np.array(circle).T * size, eye, size, "0.75", 0.6)
-    _draw_curve(axes, points, eye, size, "C0", 1.4)
+    """A curve on an ellipsoid, its beginning, and the axes."""
+    latitude, longitude = np.meshgrid(np.linspace(0, np.pi, 37), np.linspace(0, 2 * np.pi, 73))
+    across = np.sin(latitude)
+    sphere = (across * np.cos(longitude), across * np.sin(longitude), np.cos(latitude))
+    surface = (part * length for part, length in zip(sphere, size, strict=True))
+    axes.plot_wireframe(*surface, rstride=6, cstride=6, color="0.75", linewidth=0.5)
+    axes.plot(*points.T, color="C0", linewidth=1.4)
     axes.scatter(*points[:1].T, color="C3", s=18)
-    for k, name in enumerate(names):
-        end = size[k] * np.eye(3)[k]
-        pale = 0.4 if end @ eye < 0 else 1.0
-        axes.plot(*np.array([end, 1.15 * end]).T, color="0.4", linewidth=1, alpha=pale)
-        axes.text(*(1.28 * end), name, color="0.4", ha="center", va="center", alpha=pale)
+    for name, end in zip(names, np.diag(size), strict=True):
+        axes.plot(*np.array([end, 1.15 * end]).T, color="0.4", linewidth=1)
+        axes.text(*(1.28 * end), name, color="0.4", ha="center", va="center")
     axes.view_init(*_VIEW)
     axes.set_box_aspect(size / size.max(), zoom=1.1)
     axes.set(xlim=(-size[0], size[0]), ylim=(-size[1], size[1]), zlim=(-size[2], size[2]))
     axes.set_axis_off()
-
-
-def _draw_curve(
-    axes: Any, points: Array, eye: Array, size: Array, color: str, width: float
-) -> None:
-    """In front of the ellipsoid opaque, behind it pale."""
-    is_front = (points / size**2) @ eye >= 0
-    for shown, alpha in ((is_front, 1.0), (~is_front, 0.25)):
-        part = np.where(shown[:, None], points, np.nan)
-        axes.plot(*part.T, color=color, linewidth=width, alpha=alpha)
-
-
-def _draw_drift(axes: Any, t: Array, changes: Mapping[str, Array]) -> None:
-    """The largest change so far."""
-    for name, values in changes.items():
-        largest = np.maximum.accumulate(np.nan_to_num(values))
-        shown = name.replace("_", " ")
-        axes.semilogy(t, np.maximum(largest, _SMALLEST), label=shown)
-    axes.set(xlabel="t in s", ylabel="largest relative change", title="Drift of first integrals")
-    axes.legend(loc="lower right", fontsize="x-small")

@@ -72,24 +72,25 @@ def parse_expression(text: str, names: Mapping[str, sp.Expr]) -> sp.Expr:
         ) from None
 
 
-def parse_turns(text: str) -> tuple[tuple[str, str], ...]:
-    """(axis, text of the angle) of each turn in `z(phi) x(theta) [1,1,0](psi)`, left to right.
+def parse_turns(text: str) -> tuple[tuple[str, str, int], ...]:
+    """(axis, angle, column of the angle) of each turn in `z(phi) [1,1,0](psi)`, left to right.
 
     Turns follow one another, with or without `*`; an axis is x, y, z, or its components in
     square brackets. Raises ExpressionError with the column.
     """
     _check_length(text)
-    turns: list[tuple[str, str]] = []
+    turns: list[tuple[str, str, int]] = []
     place = len(text) - len(text.lstrip())
     while place < len(text) or not turns:
         turn = _TURN.match(text, place)
         if turn is None:
             raise _expected("a turn: x(...), y(...), z(...) or [1,1,0](...)", text, place)
         end = _closing(text, turn.end())
-        angle = text[turn.end() : end].strip()
-        if not angle:
+        inside = text[turn.end() : end]
+        if not inside.strip():
             raise _expected("an angle", text, end)
-        turns.append((turn[1], angle))
+        column = end - len(inside.lstrip()) + 1
+        turns.append((turn[1], inside.strip(), column))
         between = _BETWEEN_TURNS.match(text, end + 1)
         place = between.end() if between else end + 1
         if between and between[1] and place == len(text):

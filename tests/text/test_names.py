@@ -105,7 +105,8 @@ def test_a_name_that_is_taken_is_plain(text):
     ],
 )
 def test_turns_are_read_left_to_right(text, turns):
-    assert parse_turns(text) == turns
+    assert tuple(turn[:2] for turn in parse_turns(text)) == turns
+    assert all(text[column - 1 :].startswith(angle) for _, angle, column in parse_turns(text))
 
 
 A_TURN = "expected a turn: x(...), y(...), z(...) or [1,1,0](...), found"

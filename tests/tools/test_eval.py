@@ -143,7 +143,7 @@ def test_what_is_no_table_of_numbers_is_refused(tmp_path):
     for path in sorted(tmp_path.iterdir()):
         with pytest.raises(DataError, match=path.name):
             open_table(path)
-    with pytest.raises(DataError, match="/dev/null: not a regular file; `eval` reads a stream"):
+    with pytest.raises(DataError, match="/dev/null: not a regular file"):
         open_table(Path("/dev/null"))
 
 
