@@ -24,7 +24,7 @@ from rigidsym.mechanics.lecture import theory
 from rigidsym.notes.formats.pdf import typeset
 from rigidsym.notes.formats.record import record
 from rigidsym.notes.formats.terminal import show
-from rigidsym.pipeline import output_of, read_file, read_record, read_spec
+from rigidsym.pipeline import output_of, read_file, read_spec
 
 (PATH,) = paths(1, size=6, seed=7)
 SMALL = mp.mpf(10) ** -38
@@ -312,12 +312,6 @@ def test_the_terminal_and_the_record_hold_the_theory():
     data = json.loads(json.dumps(record(lecture(), {})))
     assert [s["number"] for s in data["theory"] if s["number"]] == list(range(1, 17))
     assert {p["status"] for s in data["theory"] for p in s["proofs"]} == {"exact"}
-
-
-def test_the_request_asks_for_the_theory_again():
-    again = read_record(LECTURE.to_data())
-    assert again.theory
-    assert again == LECTURE
 
 
 def test_the_theory_goes_with_any_rotation_and_says_what_it_cannot():

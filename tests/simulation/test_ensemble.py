@@ -112,12 +112,3 @@ def test_what_was_computed_before_an_integrator_fails_is_kept():
     assert 95 < len(found.t) < 102
     exact = -np.log(1 - found.t[:90])
     assert np.abs(found.q[:90, 0] - exact).max() < 1e-8
-
-
-def test_a_name_that_is_all_but_a_coordinate_is_no_constant():
-    with pytest.raises(rs.RigidsymError, match="unknown name thetta; did you mean theta"):
-        rs.derive(
-            rs.EulerAngles("ZXZ", angles=("phi", "theta", "psi")),
-            body=rs.principal_moments(A, A, C),
-            potential="m*g*l*cos(thetta)",
-        )

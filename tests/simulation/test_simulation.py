@@ -48,11 +48,9 @@ def test_the_top_that_rises_to_the_vertical_in_infinite_time():
     assert max(found.drift.values()) < 1e-10
 
 
-@pytest.mark.parametrize(("choose", "t_end"), [(min, 105.0), (max, 162.0)])
-def test_steady_precession_goes_on_for_a_thousand_turns(choose, t_end):
-    """A cos θ φ̇² − C ω₃ φ̇ + m g l = 0 keeps θ constant, with ω₃ = ψ̇ + φ̇ cos θ; the slow one for
-    a thousand turns of the spin, the fast one for a thousand of its own
-    """
+@pytest.mark.parametrize("choose", [min, max])
+def test_steady_precession_goes_on_for_a_hundred_turns(choose):
+    """A cos θ φ̇² − C ω₃ φ̇ + m g l = 0 keeps θ constant, with ω₃ = ψ̇ + φ̇ cos θ"""
     theta, spin = 0.6, 60.0
     a, c, weight = TOP["A"], TOP["C"], TOP["m"] * TOP["g"] * TOP["l"]
     rate = choose(np.roots([a * np.cos(theta), -c * spin, weight]).real)
@@ -61,21 +59,9 @@ def test_steady_precession_goes_on_for_a_thousand_turns(choose, t_end):
         "phi_dot": rate,
         "psi_dot": spin - rate * np.cos(theta),
     }
-    found = top().simulate(start, TOP, t_end, samples=201)
-    assert found.q[-1, 0 if choose is max else 2] > 2 * np.pi * 990
+    found = top().simulate(start, TOP, 16.0, samples=21)
+    assert found.q[-1, 0 if choose is max else 2] > 2 * np.pi * 98
     assert np.abs(found.q[:, 1] - theta).max() < 1e-6
-
-
-def test_the_angular_velocity_of_a_free_symmetric_body_turns_at_a_constant_rate():
-    """Ω′₁ + iΩ′₂ turns at (C − A)/A Ω′₃ about the axis of symmetry"""
-    values = {"A": 2.0, "C": 1.2}
-    start = REST | {"theta": 0.9, "phi_dot": 1.1, "psi_dot": 0.7}
-    found = free().simulate(start, values, 12.0)
-    omega = found.angular_velocity_body
-    rate = (values["C"] - values["A"]) / values["A"] * omega[0, 2]
-    exact = (omega[0, 0] + 1j * omega[0, 1]) * np.exp(1j * rate * found.t)
-    assert np.abs(omega[:, 0] + 1j * omega[:, 1] - exact).max() < 1e-8
-    assert np.abs(omega[:, 2] - omega[0, 2]).max() < 1e-9
 
 
 def test_a_torque_that_grows_with_the_time_turns_as_its_cube():
@@ -84,30 +70,6 @@ def test_a_torque_that_grows_with_the_time_turns_as_its_cube():
     found = driven.simulate({"phi": 0, "phi_dot": 0}, {"A": 1, "B": 1, "C": 1.5, "k": 2.0}, 3.0)
     assert np.abs(found.q[:, 0] - 2.0 * found.t**3 / 9).max() < 1e-10
     assert not found.first_integrals
-
-
-def test_rotation_about_the_intermediate_axis_grows_at_the_known_rate():
-    """Small deviations grow as exp(σt), σ² = Ω² (B − A)(C − B)/(A C) about the axis of B"""
-    values = {"A": 1.0, "B": 1.5, "C": 2.1}
-    spin, small = 2.0, 1e-6
-    a, b, c = values.values()
-    rate = spin * np.sqrt((b - a) * (c - b) / (a * c))
-    # about the second axis: θ = π/2, ψ = 0 gives Ω′ = (θ̇, φ̇, ψ̇); along the growing direction
-    start = REST | {"theta": np.pi / 2, "phi_dot": spin, "psi_dot": small}
-    start |= {"theta_dot": (b - c) * spin / (a * rate) * small}
-    found = free(symmetric=False).simulate(start, values, 6.0)
-    size = np.linalg.norm(found.angular_velocity_body[:, [0, 2]], axis=1)
-    small_still = size < 1e-2
-    slope = np.polyfit(found.t[small_still], np.log(size[small_still]), 1)[0]
-    assert slope == pytest.approx(rate, rel=1e-3)
-
-
-def test_a_motion_straight_through_the_pole_goes_on_with_its_integrals_kept():
-    start = REST | {"theta": 1.0, "theta_dot": -1.0}
-    found = free().simulate(start, {"A": 1.0, "C": 0.5}, 3.0)
-    assert not found.ended
-    assert found.q[-1, 1] == pytest.approx(-2.0, abs=1e-9)
-    assert max(found.drift.values()) < 1e-9
 
 
 def test_a_motion_that_starts_at_a_pole_is_that_of_the_quaternion():
@@ -178,6 +140,18 @@ def test_what_a_simulation_cannot_begin_with_is_said(initial, values, t_end, mes
         top().simulate(initial, values, t_end)
 
 
+def test_what_cannot_be_simulated_is_said(tmp_path):
+    with pytest.raises(rs.RigidsymError, match="no method 'euler'; known: DOP853"):
+        top().simulate(REST, TOP, 1.0, method="euler")
+    with pytest.raises(rs.RigidsymError, match="expected a positive number of seconds"):
+        top().simulate_many(REST, TOP, 0.0)
+    with pytest.raises(rs.RigidsymError, match="has no equations of motion"):
+        rs.derive("ZXZ", ("angular_velocity_body",)).simulate({}, {}, 1.0)
+    given = ["simulate", "rolling_disc", "--time=1e9", "--animate=disc.html"]  # for ever
+    refused = call(*given, cwd=tmp_path, status=2)
+    assert "there is no live page of this motion" in refused.stderr
+
+
 def test_a_state_in_which_the_equations_of_motion_fail_is_refused_at_once():
     """A disc that lies flat; its parts do not move with a quaternion"""
     disc = motion_of(read("rolling_disc"))
@@ -200,26 +174,6 @@ def test_a_free_body_goes_through_a_pole_of_its_coordinates():
 def test_a_body_at_rest_stays_where_it_is():
     found = free().simulate(REST | {"theta": 1}, {"A": 1, "C": 2}, 1.0, samples=3, method="exact")
     assert np.ptp(found.rotation_matrix, axis=0).max() == 0
-
-
-@pytest.mark.parametrize(
-    ("simulated", "message"),
-    [
-        (
-            lambda: top().simulate(REST, TOP, 1.0, method="euler"),
-            "no method 'euler'; known: DOP853",
-        ),
-        (lambda: top().simulate_many(REST, TOP, 0.0), "expected a positive number of seconds"),
-    ],
-)
-def test_what_cannot_be_simulated_is_said(simulated, message):
-    with pytest.raises(rs.RigidsymError, match=message):
-        simulated()
-
-
-def test_a_derivation_without_forces_cannot_be_simulated():
-    with pytest.raises(rs.RigidsymError, match="has no equations of motion"):
-        rs.derive("ZXZ", ("angular_velocity_body",)).simulate({}, {}, 1.0)
 
 
 def test_the_command_writes_a_table_and_a_picture(tmp_path):
@@ -436,27 +390,3 @@ def test_a_force_that_depends_on_rates_is_the_same_in_both_forms():
         start = REST | {"theta": 0.8, "psi_dot": 3, "phi_dot": 0.5}
         found.append(motion.simulate(start, {"A": 1, "C": 0.7, "k": 0.4}, 2.0, samples=3))
     assert found[0].q == pytest.approx(found[1].q, rel=1e-8)
-
-
-@pytest.mark.parametrize(
-    ("acting", "message"),
-    [
-        (
-            {"parts": [{"velocity": ["theta_dot**2", "a*phi_dot", "0"], "mass": "m"}]},
-            r"the velocity \(theta_dot\*\*2, a\*phi_dot, 0\) is not linear in the rates",
-        ),
-        ({"potential": "theta_dot*w"}, r"the potential theta_dot\*w depends on rates"),
-        ({"potential": "w*cos(thets)"}, "unknown name thets; did you mean theta?"),
-    ],
-)
-def test_what_cannot_act_is_told_as_it_was_typed(acting, message):
-    body = rs.principal_moments(*sp.symbols("A A C"))
-    with pytest.raises(rs.RigidsymError, match=message):
-        rs.derive("ZXZ", body=body, **acting)
-
-
-def test_the_command_starts_a_top_upright(tmp_path):
-    """At the pole of ZXZ"""
-    start = ("--initial=theta=0", "--initial=psi_dot=20", "--time=1")
-    done = call("simulate", "heavy_symmetric_top", *start, cwd=tmp_path)
-    assert "near a pole of the coordinates at t = 0 s; continued as a quaternion" in done.stdout
