@@ -211,11 +211,6 @@ def inertia_of(
     BodyError
         For NaN, a total mass that is not positive, negative masses, and missing columns.
 
-    References
-    ----------
-    T. F. Chan, G. H. Golub, R. J. LeVeque, Updating formulae and a pairwise algorithm for computing
-    sample variances (1979).
-
     Examples
     --------
     >>> import rigidsym as rs
@@ -250,8 +245,7 @@ def _properties(rows: Array, table: Table, *, allow: bool) -> MassProperties:
     """The body of particles x, y, z, m (n, 4), or x, y, z of 1 kg each (n, 3).
 
     Σ m x xᵀ is summed about the centre of mass, where differences of coordinates are nearly exact
-    however far from the origin the body is. What rounding leaves of Σ m x about that point then
-    corrects both (Chan, Golub and LeVeque 1979).
+    however far from the origin the body is.
     """
     if not len(rows):
         raise BodyError("expected at least one particle, got none")
@@ -281,15 +275,14 @@ def _properties(rows: Array, table: Table, *, allow: bool) -> MassProperties:
         start = np.median(positions, axis=0)  # unlike the mean, no outlier moves it away
         about = start + masses @ (positions - start) / mass
         apart = positions - about
-        rest = masses @ apart
-        second = (apart.T * masses) @ apart - np.outer(rest, rest / mass)
+        second = (apart.T * masses) @ apart
     if not np.isfinite(second).all():
         raise BodyError("the moments are too large for double precision")
     # tr(J) 1 − J for J = Σ m x xᵀ, without adding numbers that cancel
     inertia = -(second + second.T) / 2
     for k in range(3):
         inertia[k, k] = second[(k + 1) % 3, (k + 1) % 3] + second[(k + 2) % 3, (k + 2) % 3]
-    return MassProperties(count=len(rows), mass=mass, centre=about + rest / mass, inertia=inertia)
+    return MassProperties(count=len(rows), mass=mass, centre=about, inertia=inertia)
 
 
 def _columns(table: Table, names: Sequence[str] | None) -> tuple[list[int], Array]:

@@ -27,7 +27,7 @@ from rigidsym.mechanics.dynamics.euler import EulerEquations
 from rigidsym.mechanics.dynamics.lagrange import LagrangeEquations, equations_of_motion, is_bound
 from rigidsym.mechanics.quantities.dynamics import EULER_QUANTITIES, FLOW_QUANTITIES
 from rigidsym.models.forces import OMEGA, OMEGA_COMPONENTS, Forces, initial_values
-from rigidsym.models.rotation import TIME, RotationModel, as_typed
+from rigidsym.models.rotation import RotationModel, as_typed
 from rigidsym.simulation.trajectory import Array, Trajectory
 
 EQUATIONS = "equations_of_motion"  # (M, Q − h), for elimination in numbers
@@ -79,15 +79,6 @@ class Problem:
         ).load()
         self.start = self.state_of(initial)
         self.check_rotations(self.start[None])
-        if self.model.constraints and not self.is_euler:
-            parts = np.split(self.start, [self.count])
-            changes = self._conditions.rates(*parts, *self._constants)
-            if np.abs(changes).max() > _UNIT * np.abs(self.start).max():
-                bounds = " and ".join(f"{as_typed(c)} = 0" for c in self.model.constraints)
-                raise ModelError(
-                    f"{derivation.name}: the rates violate {bounds}; expected rates that keep "
-                    f"these conditions, or {OMEGA}"
-                )
 
     @cached_property
     def _functions(self) -> Derivation:
@@ -120,7 +111,7 @@ class Problem:
         """
         forces = self.derivation.forces
         is_long = bool(forces and forces.parts) or self.count > 3
-        if is_long and not self.is_euler and not is_bound(self.model):
+        if is_long and not self.is_euler:
             assert self.derivation.body is not None
             flow = equations_of_motion(self.model, self.derivation.body, self.forces)
             assert isinstance(flow, LagrangeEquations)
@@ -135,12 +126,20 @@ class Problem:
         quantity = FLOW_QUANTITIES["state_derivative"]._replace(name=name, inputs=inputs, **changes)
         return Step(quantity=quantity, expression=value)
 
+    def _loaded(self, step: Step) -> ModuleType:
+        """A kernel of one function."""
+        functions = {step.quantity.name: step}
+        return generate(replace(self.derivation.select(()), functions=functions)).load()
+
     def check_rotations(self, states: Array) -> None:
         """Raises ModelError for the first of the states, (m, k), whose R is no rotation."""
         rotation = self.rotation(states)
         error = np.abs(rotation @ np.swapaxes(rotation, 1, 2) - np.eye(3)).max(axis=(1, 2))
         if self.model.constraints:
-            off = self._conditions.bounds(states[:, : self.count], *self._constants)
+            bounds = sp.ImmutableMatrix(self.model.constraints)
+            functions = self._loaded(self._step("bounds", bounds, ("q",), shape="matrix"))
+            inputs = [self.parameters] if "parameters" in self.names else []
+            off = functions.bounds(states[:, : self.count], *inputs)
             error = np.maximum(error, np.abs(off).max(axis=(1, 2)))
         for k in np.flatnonzero(error > _UNIT)[:1]:
             which = f"motion {k + 1} of {len(states)}: " if len(states) > 1 else ""
@@ -149,16 +148,6 @@ class Problem:
             raise ModelError(
                 f"{self.derivation.name}: {which}no rotation has the coordinates {values}"
             )
-
-    @cached_property
-    def _conditions(self) -> ModuleType:
-        """The conditions on the coordinates, and their rates, as functions."""
-        bounds = sp.ImmutableMatrix(self.model.constraints)
-        functions = {
-            "bounds": self._step("bounds", bounds, ("q",), shape="matrix"),
-            "rates": self._step("rates", sp.diff(bounds, TIME), ("q", "q_dot"), shape="matrix"),
-        }
-        return generate(replace(self.derivation.select(()), functions=functions)).load()
 
     def _parameters(self, parameters: Mapping[str, float]) -> list[float]:
         constants = self.names.get("parameters", ())
@@ -203,8 +192,7 @@ class Problem:
             doubtful |= ~(np.broadcast_to(parameters[name], members) > 0)
         if body.inertia.free_symbols:
             step = self._step("inertia", body.inertia, (), shape="matrix")
-            functions = replace(self.derivation.select(()), functions={"inertia": step})
-            tensors = generate(functions).load().inertia(self.parameters_of(members, parameters))
+            tensors = self._loaded(step).inertia(self.parameters_of(members, parameters))
             a, b, c = np.linalg.eigvalsh(tensors).T
             doubtful |= ~((a >= 0) & (c <= a + b))
         for k in np.flatnonzero(doubtful):  # the limits of rounding are those of one body
@@ -264,10 +252,6 @@ class Problem:
         return rates
 
     @property
-    def _constants(self) -> list[list[float]]:
-        return [self.parameters] if "parameters" in self.names else []
-
-    @property
     def angles(self) -> list[list[float]]:
         """The parameters as the functions of a rotation with constants take them."""
         return [self.parameters] if self.model.constants else []
@@ -286,8 +270,7 @@ class Problem:
     def _slopes_of_many(self) -> ModuleType:
         if not self.is_quaternion:
             return self.kernels
-        functions = {self.slopes_step.quantity.name: self.slopes_step}
-        return generate(replace(self.derivation.select(()), functions=functions)).load()
+        return self._loaded(self.slopes_step)
 
     def slopes_of_many(self, t: float, y: Array, constants: Array) -> Array:
         """The derivative of states (m, k), with parameters of all (p,) or of each (m, p)."""
@@ -363,8 +346,7 @@ class Problem:
         step = self._step(
             "torque_body", self.torque, ("t", *EULER_QUANTITIES["torque_body"].inputs)
         )
-        functions = replace(self.derivation.select(()), functions={"torque_body": step})
-        scalar: Callable[..., Sequence[float]] = generate(functions).load().torque_body_scalar
+        scalar: Callable[..., Sequence[float]] = self._loaded(step).torque_body_scalar
         return scalar
 
     def quaternion(self, y: Array) -> Array:

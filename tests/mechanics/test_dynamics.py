@@ -311,10 +311,6 @@ NOWHERE = ("did you mean omega_body_2?", "Omega_body_2 angular_velocity_space_2 
             {"sequence": "direction_cosines", "potential": 0} | LAGRANGE,
             "need independent coordinates",
         ),
-        (
-            {"sequence": "quaternion", "potential": "k*(w*w + x*x)"} | LAGRANGE,
-            "such as the length of a quaternion",
-        ),
         ({"sequence": "unit_quaternion", "frame_rate": ["0", "0", "n"]}, "in an inertial frame"),
         ({"sequence": "unit_quaternion", "parts": [POINT]}, "one body in an inertial frame"),
     ],

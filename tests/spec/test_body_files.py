@@ -161,6 +161,8 @@ def test_parts_in_numbers_become_numbers():
     assert body.inertia[2, 2] == M * sp.Symbol("a") ** 2 / 2
     meanings = {"M": "mass", "a": "radius", "h": "height"}
     assert {str(p.symbol): p.about for p in body.parameters} == meanings
+    body = body_in('[body]\nparts = [{ shape = "sphere" }, { shape = "sphere" }]')
+    assert {str(symbol) for symbol in body.inertia.free_symbols} == {"M_1", "a_1", "M_2", "a_2"}
     body = body_in(BRACKET)
     assert body.title == "Composite body"
     assert {str(symbol) for symbol in body.inertia.free_symbols} == {"I_11", "I_22", "I_33"}

@@ -38,8 +38,8 @@ class EulerEquations(Flow):
         """Raises ModelError for parts, for a frame that turns, and if there is no q̇ = U Ω′."""
         if forces.parts or forces.frame_rate:
             raise ModelError(
-                f"{model.name}: Euler's equations hold for one body in an inertial frame; "
-                'expected method = "lagrange"'
+                f"{model.name}: Euler's equations hold for one body in an inertial frame; expected "
+                'independent coordinates, such as Euler angles, and method = "lagrange"'
             )
         rotation = Values(model)
         solved = rotation.inverse("body")

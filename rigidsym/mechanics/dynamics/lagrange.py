@@ -66,8 +66,12 @@ class LagrangeEquations(Flow):
     second = "q_dot"
 
     def __init__(self, model: RotationModel, body: RigidBody, forces: Forces) -> None:
-        self.is_bound = is_bound(model)
-        self.back = self._inverse_rates(model, forces) if self.is_bound else None
+        """Raises ModelError for coordinates that depend on one another."""
+        if is_bound(model):
+            raise ModelError(
+                f"{model.name}: Lagrange's equations need independent coordinates, such as Euler "
+                'angles; expected such a rotation, or method = "euler"'
+            )
         self.model, self.body, self.forces = model, body, forces
         self.potential = forces.potential
         self.rates = [sp.diff(q, TIME) for q in model.coordinates]
@@ -87,33 +91,10 @@ class LagrangeEquations(Flow):
         held += [*omega, sp.Rational(1, 2), self.potential]
         held += [*self.gradient, *self.generalised, *self.rates]
         held += [*forces.first_integrals.values()]
-        held += self.accelerations if self.back is None else [*self.back[0], self.back[1]]
-        order = 1 if self.is_bound else 2
-        bounds = model.constraints
-        codec = codec_for([e for e in held if e != 0], constraints=bounds, order=order)
+        held += self.accelerations
+        codec = codec_for([e for e in held if e != 0], order=2)
         super().__init__(model, body, forces, codec)
         self.ring = codec.ring
-
-    @staticmethod
-    def _inverse_rates(model: RotationModel, forces: Forces) -> tuple[sp.ImmutableMatrix, sp.Expr]:
-        """U and its divisor, with q̇ = U Ω′, which spans the motions that are possible.
-
-        Raises ModelError if there is no U, and for other parts.
-        """
-        values = Values(model)
-        is_free = model.pullback is None and not forces.parts
-        inverse = values.inverse("body") if is_free else None
-        if inverse is None:
-            raise ModelError(
-                f"{model.name}: Lagrange's equations need independent coordinates, such as Euler "
-                "angles, or one body whose angular velocity determines the rates; expected such a "
-                'rotation, or method = "euler"'
-            )
-        above, below = inverse
-        short = values.present.matrix(above, below)
-        if all(sp.denom(entry).is_number for entry in short):
-            return short, sp.S.One
-        return values.codec.decoded(above), values.codec.decode(below)
 
     def _moving(self) -> Iterator[Moving]:
         """The body itself first."""
@@ -214,9 +195,7 @@ class LagrangeEquations(Flow):
 
         Raises ModelError if the mass matrix has no inverse.
         """
-        if self.is_bound:
-            above, below = self._solved_in_bounds()
-        elif len(self.terms) == 1 and len(self.rates) == 3:
+        if len(self.terms) == 1 and len(self.rates) == 3:
             above, below = self._solved_by_euler()
         else:
             above = self.mass_matrix.adjugate() @ (self.codec.column(self.generalised) - self.bias)
@@ -238,39 +217,6 @@ class LagrangeEquations(Flow):
             return back @ inner.scale(-self.ring.one), self.ring.reduce(size * below)
         torque = tensor.adjugate() @ (back.T @ self.applied)
         return back @ (torque - inner.scale(below)), self.ring.reduce(size * below * below)
-
-    @cached_property
-    def possible(self) -> tuple[RingMatrix, PolyElement]:
-        """U and its divisor; the equations of motion hold for the displacements U δθ.
-
-        Raises ModelError for forces on what does not matter, such as the length of a quaternion.
-        """
-        assert self.back is not None
-        back, below = self.codec.matrix(self.back[0]), self.codec.encode(self.back[1])
-        seen = self.terms[0][0].T @ (back.T @ self.applied)
-        if not self.model.constraints and not (seen - self.applied.scale(below)).is_zero():
-            raise ModelError(
-                f"{self.model.name}: the potential or a force depends on coordinates that R does "
-                "not determine, such as the length of a quaternion; expected one that does not, "
-                "or unit_quaternion"
-            )
-        return back, below
-
-    def _solved_in_bounds(self) -> Inverse:
-        """q̈ from W′ q̈ = dΩ′/dt − dj/dt − dW′/dt q̇ and q̇ = U W′ q̇, differentiated.
-
-        dΩ′/dt follows from Euler's equations with the torque Uᵀ (Q − ∂V/∂q).
-        """
-        back, below = self.possible
-        ((jacobian, shift, tensor, _),) = self.terms
-        size, turning = tensor.det(), jacobian @ self.q_dot
-        torque = back.T @ self.applied - turned(tensor, self.omega).scale(below)
-        slopes = (shift.dt() + jacobian.dt() @ self.q_dot).scale(size * below)
-        within = back @ (tensor.adjugate() @ torque - slopes)  # over det I d²
-        moving = (back.dt().scale(below) - back.scale(self.ring.dt(below))) @ turning  # over d²
-        across = moving.scale(below) - back @ (jacobian @ moving)  # over d³
-        above = within.scale(below) + across.scale(size)
-        return above, self.ring.reduce(size * below**3)
 
     @cached_property
     def blocks(self) -> tuple[StateBlock, StateBlock]:
@@ -309,29 +255,14 @@ class LagrangeEquations(Flow):
         turning = self.mass_matrix @ self.codec.column(self.accelerations)
         return self.momenta.dt() - self._slopes - turning - self.gyroscopic
 
-    @property
-    def lagrange_along_possible(self) -> tuple[RingMatrix, PolyElement]:
-        """Uᵀ (d/dt ∂L/∂q̇ − ∂L/∂q − Q) for the accelerations found, and its divisor.
-
-        So says d'Alembert's principle for the displacements U δθ, which are possible.
-        """
-        rates = [self.rate(sp.diff(self.kinetic, rate)) for rate in self.rates]
-        divisor = rates[0][1]
-        changes = RingMatrix(self.ring, tuple(above.rows[0] for above, _ in rates))
-        left = changes - (self._slopes + self.applied).scale(divisor)
-        return self.possible[0].T @ left, divisor
-
     @cached_property
     def _slopes(self) -> RingMatrix:
-        """∂T/∂q; of T as it is written, if the coordinates depend on one another."""
-        if self.is_bound:
-            return self.codec.column([sp.diff(self.kinetic, q) for q in self.model.coordinates])
+        """∂T/∂q."""
         return self.slopes(self.codec.encode(self.kinetic))
 
     @cached_property
     def is_holonomic(self) -> bool:
-        turn = all(part.turns for part in self.moving)
-        return turn or self.is_bound or self.of_lagrange.is_zero()
+        return all(part.turns for part in self.moving) or self.of_lagrange.is_zero()
 
     @cached_property
     def traits(self) -> frozenset[str]:
@@ -339,17 +270,12 @@ class LagrangeEquations(Flow):
         traits = {
             "parts": len(self.moving) > 1 or turns_frame,  # T is not E_R
             "turning_frame": turns_frame,
-            "bound": self.is_bound,
             "rolling": not self.is_holonomic,
         }
         return frozenset(self._shared_traits) | {t for t, holds in traits.items() if holds}
 
     def energy_rate(self, value: sp.Expr) -> RingMatrix:
-        """dE/dt − q̇·(M q̈ + h) − ∂V/∂t; times a divisor if the coordinates depend on one another."""
-        if self.is_bound:
-            rate, divisor = self.rate(value)
-            power = self.q_dot.T @ self.codec.column(self.generalised)
-            return rate - (power + self.driving).scale(divisor)
+        """dE/dt − q̇·(M q̈ + h) − ∂V/∂t."""
         left = self.mass_matrix @ self.codec.column(self.accelerations) + self.bias  # M q̈ + h
         return self._scalar(value).dt() - self.q_dot.T @ left - self.driving
 
@@ -370,7 +296,7 @@ class LagrangeEquations(Flow):
     @cached_property
     def coriolis(self) -> RingMatrix | None:
         """C q̇ = h − ∂V/∂q with the skew Ṁ − 2C, by Christoffel's symbols of M."""
-        if not self.is_holonomic or self.forces.frame_rate or self.is_bound:
+        if not self.is_holonomic or self.forces.frame_rate:
             return None
         places = range(len(self.rates))
         half = self.ring.one / 2
@@ -409,7 +335,7 @@ class LagrangeEquations(Flow):
     @property
     def hamiltonian(self) -> sp.Expr | None:
         """H(q, p), with the momenta as inputs in a ring of their own."""
-        if not self.is_holonomic or self.forces.frame_rate or self.is_bound:
+        if not self.is_holonomic or self.forces.frame_rate:
             return None
         return self._in_momenta(self.arguments["momenta"].symbols)
 
@@ -486,10 +412,6 @@ class LagrangeEquations(Flow):
         return value.xreplace(dict(zip(OMEGA_BODY, self.present.matrix(self.omega), strict=True)))
 
     def own_integrals(self) -> Iterator[FirstIntegral]:
-        if self.is_bound and not self.forces.frame_rate:
-            euler = EulerEquations(self.model, self.body, self.forces).own_integrals()
-            yield from (self.constant(i.name, i.symbol, i.expression) for i in euler)
-            return
         power = self.q_dot.T @ self.codec.column(self.generalised)  # 0 of gyroscopic forces as well
         if power.is_zero() and self.driving.is_zero():
             residual = self.energy_rate(self.whole) + power
@@ -499,8 +421,6 @@ class LagrangeEquations(Flow):
                 expression=self.whole,
                 proof=self.prove.vanishes(residual, claims.is_constant(claims.ENERGY)),
             )
-        if self.is_bound:
-            return
         if not self.is_holonomic:
             return
         momenta = self.present.matrix(self.momenta)

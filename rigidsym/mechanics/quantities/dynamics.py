@@ -21,7 +21,7 @@ EFFECTIVE = formula(r"V_{\mathrm{eff}}")
 ENERGY = formula("E")
 MOTION = "motion"  # section of the note
 DRIVING = formula(r"\frac{\partial V}{\partial t}")
-_PARTS, _TURNING, _BOUND, _EULER = "parts", "turning_frame", "bound", "euler"  # traits
+_PARTS, _TURNING, _EULER = "parts", "turning_frame", "euler"  # traits
 _FREE = "no_potential"
 _ENERGY: dict[str, Any] = {"unit": "J", "shape": "scalar", "section": MOTION}
 
@@ -160,7 +160,6 @@ bias_vector = Quantity(
     section=MOTION,
     variants=(
         when(_PARTS, laws=_rest("T", r"\M\ddot\q + \h - \frac{\partial V}{\partial\q}")),
-        when(_BOUND, laws=()),
         when("rolling", laws=(), reason="possible_rolling"),
     ),
 )
@@ -187,19 +186,6 @@ coriolis_matrix = Quantity(
 )
 
 
-def _along_possible(T: str) -> tuple[Law, ...]:
-    """The equations of motion along possible displacements."""
-    along = r"\left(\W'^{+}\right)^T\left("
-    slopes = rf"{_of_lagrange(T)} + \frac{{\partial V}}{{\partial\q}}"
-    return (
-        law(
-            along + r"\M\ddot\q + \h - \Q\right) = 0",
-            lambda k, x: k.possible[0].T @ k.left_over(*x),
-        ),
-        law(along + slopes + r" - \Q\right) = 0", lambda k, _: k.lagrange_along_possible),
-    )
-
-
 accelerations = Quantity(
     symbol=formula(r"\ddot\q"),
     about="second derivatives of the coordinates",
@@ -213,15 +199,6 @@ accelerations = Quantity(
     reason="solved",
     section=MOTION,
     is_result=True,
-    variants=(
-        when(
-            _BOUND,
-            definition=formula(r"\frac{d}{dt}\left(\W'^{+}\,\Om'\right)"),
-            laws=_along_possible("E_R"),
-            reason="possible_displacements",
-        ),
-        when(_BOUND, _PARTS, laws=_along_possible("T")),
-    ),
 )
 
 hamiltonian = Quantity(
