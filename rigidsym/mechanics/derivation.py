@@ -26,18 +26,19 @@ OF_RATES = "rates"  # the section of the quantities that the singularities are a
 
 
 @cache
-def _reasons() -> Mapping[str, str]:
+def phrases(file: str) -> Mapping[str, Any]:
+    """The sentences of a file of templates/notes/en by their keys."""
     # both are imported by whatever prints a note, but not by a derivation that nobody prints
     import tomllib
 
     from rigidsym.system.resources import text
 
-    return tomllib.loads(text("templates/notes", "en/reasons.toml"))
+    return tomllib.loads(text("templates/notes", f"en/{file}.toml"))
 
 
 def sentence_of(reason: str) -> str:
     """The sentence of a reason by its key; nothing for no reason."""
-    return _reasons()[reason] if reason else ""
+    return str(phrases("reasons")[reason]) if reason else ""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -7,6 +7,7 @@ presents the transpose.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property, reduce
 
@@ -25,6 +26,7 @@ from rigidsym.mechanics.conversions.function import (
     ConversionInput,
     Converted,
     NamedValues,
+    Vector,
     Where,
     argument_of,
     half_turn,
@@ -39,6 +41,7 @@ from rigidsym.mechanics.conversions.function import (
     unit,
 )
 from rigidsym.mechanics.conversions.inverse import (
+    WORDS,
     ClosedForm,
     EulerRule,
     InverseRule,
@@ -53,30 +56,16 @@ from rigidsym.models.parametrisations import SHUSTER, UnitQuaternion
 from rigidsym.models.rotation import RotationModel, rotation_of
 
 LONGEST_CHAIN = 4  # turns whose product is written out: its terms double with each
-P = formula(r"\mathbf{p}")
 QUATERNION = Quantity(
     name="quaternion",
-    symbol=P,
+    symbol=formula(r"\p"),
     about="unit quaternion of the rotation, scalar first",
-    unit="",
     inputs=("q",),
     shape="vector",
     source=SHUSTER,
 )
 UNIT = "_unit"  # ends the names of what holds for quaternions of length one
 _OF_UNIT_LENGTH = ("rotation_matrix", "angular_velocity_space", "angular_velocity_body")
-_FACTORS = sentence(
-    r"Each turn by $\beta$ about $\mathbf{e}$ is the quaternion "
-    r"$\cos\frac{\beta}{2} + \mathbf{e}\sin\frac{\beta}{2}$; they are multiplied from left to "
-    "right."
-)
-_TURNS = formula(r"\mathbf{R}(\mathbf{p}) = \mathbf{R}")
-_UNIT = formula(r"\mathbf{p}\cdot\mathbf{p} = 1")
-WITHOUT_INVERSE = (
-    "Coordinates follow from a rotation in closed form for the 24 Euler conventions and the named "
-    "parametrisations. For others, fit rotation_matrix(q) to the given matrix with "
-    "scipy.optimize.least_squares, or use the nearest of the 24."
-)
 
 
 @dataclass(frozen=True)
@@ -102,11 +91,11 @@ class Conversions:
         """The unit quaternion; None if it has no formula of its own, but is taken from R."""
         model, form = self.model, self._form
         if form is not None:
-            return _of_form(model, form) if form.quaternion else None
+            return self._step_of_form(form) if form.quaternion else None
         if not model.turns or len(model.turns) > LONGEST_CHAIN:
             return None
         try:
-            step = _step_of_turns(model)
+            step = self._step_of_turns()
         except AlgebraError:  # half of a fixed angle need not have a sine that is a root
             return None
         # Where it is a root of a root, the ring may not know that; R, which is proved, is taken.
@@ -115,12 +104,12 @@ class Conversions:
     @property
     def because(self) -> Sentence:
         """How the quaternion follows."""
-        return sentence(self._form.forward) if self._form else _FACTORS
+        return sentence(WORDS[self._form.rule if self._form else "turns"]["forward"])
 
     @property
     def without(self) -> str:
         """What to use in place of an inverse; empty if there is one."""
-        return "" if self.inverse else WITHOUT_INVERSE
+        return "" if self.inverse else WORDS["without"]
 
     @property
     def from_matrix(self) -> Proof:
@@ -131,11 +120,12 @@ class Conversions:
     def variants(self) -> tuple[Step, ...]:
         """Quantities of a quaternion of any length, for those who know that its length is one."""
         model, form = self.model, self._form
-        if form is None or form.rule != "quaternion" or model.constraints:
+        if form is None or form.rule != "quaternion":
             return ()
         names = [model.coordinates[place].func.__name__ for place in form.order]
         unit = UnitQuaternion(names, scalar_last=form.is_scalar_last, passive=model.passive)
-        return tuple(map(_of_unit_length, map(derive(unit).step, _OF_UNIT_LENGTH)))
+        steps = map(derive(unit).step, _OF_UNIT_LENGTH)
+        return tuple(replace(step, quantity=_of_unit_length(step.quantity)) for step in steps)
 
     @property
     def proofs(self) -> tuple[Proof, ...]:
@@ -146,53 +136,47 @@ class Conversions:
     def is_proved(self) -> bool:
         return all(proof.is_exact for proof in self.proofs)
 
+    def _step_of_form(self, form: ClosedForm) -> Step:
+        """In the order of the coordinates: (x, y, z, w) if the scalar is last."""
+        model = self.model
+        codec = codec_for([*model.matrix, *form.quaternion], constraints=model.constraints, order=0)
+        step = self._proved_step(codec, sp.ImmutableMatrix(form.quaternion))
+        if not form.is_scalar_last:
+            return step
+        quantity = step.quantity._replace(about="unit quaternion of the rotation, scalar last")
+        moved = sp.ImmutableMatrix(scalar_last(form.quaternion))
+        return replace(step, quantity=quantity, expression=moved)
 
-def _of_unit_length(step: Step) -> Step:
-    quantity = step.quantity
+    def _step_of_turns(self) -> Step:
+        """The product of cos(β/2) + sin(β/2) e over all turns, in the form of textbooks."""
+        model = self.model
+        factors = [half_turn(turn.direction, turn.angle) for turn in model.turns]
+        entries = [*model.matrix, *(part for factor in factors for part in factor)]
+        codec = codec_for(entries, constraints=model.constraints, order=0)
+        whole = reduce(product, (tuple(map(codec.encode, factor)) for factor in factors))
+        column = RingMatrix.column(codec.ring, map(codec.ring.reduce, whole))
+        return self._proved_step(codec, presenter_for(codec).matrix(column))
+
+    def _proved_step(self, codec: Codec, value: sp.ImmutableMatrix) -> Step:
+        """That the quaternion represents R, and that its length is one."""
+        model, prove = self.model, Prover(self.model, codec)
+        is_fixed = value.free_symbols.isdisjoint(model.constants)
+        same = codec.column(rotation_of(list(value)) - model.matrix)
+        length = codec.column([value.dot(value) - 1])
+        return Step(
+            quantity=QUATERNION if is_fixed else QUATERNION._replace(inputs=("q", "parameters")),
+            expression=value,
+            words=text_of(self.because),
+            proofs=(
+                prove.vanishes(same, formula(r"\R(\p) = \R")),
+                prove.vanishes(length, formula(r"\p\cdot\p = 1")),
+            ),
+        )
+
+
+def _of_unit_length(quantity: Quantity) -> Quantity:
     about = f"{quantity.about}, for a quaternion of length one"
-    return replace(step, quantity=quantity._replace(name=quantity.name + UNIT, about=about))
-
-
-def _of_form(model: RotationModel, form: ClosedForm) -> Step:
-    """In the order of the coordinates: (x, y, z, w) if the scalar is last."""
-    codec = codec_for([*model.matrix, *form.quaternion], constraints=model.constraints, order=0)
-    shown = sp.ImmutableMatrix(form.quaternion)
-    step = _proved_step(model, codec, shown, sentence(form.forward))
-    if not form.is_scalar_last:
-        return step
-    quantity = step.quantity._replace(about="unit quaternion of the rotation, scalar last")
-    moved = sp.ImmutableMatrix(scalar_last(form.quaternion))
-    return replace(step, quantity=quantity, expression=moved)
-
-
-def _step_of_turns(model: RotationModel) -> Step:
-    """The product of cos(β/2) + sin(β/2) e over all turns, in the form of textbooks."""
-    factors = [half_turn(turn.direction, turn.angle) for turn in model.turns]
-    codec = codec_for(
-        [*model.matrix, *(part for factor in factors for part in factor)],
-        constraints=model.constraints,
-        order=0,
-    )
-    whole = reduce(product, (tuple(map(codec.encode, factor)) for factor in factors))
-    column = RingMatrix.column(codec.ring, map(codec.ring.reduce, whole))
-    return _proved_step(model, codec, presenter_for(codec).matrix(column), _FACTORS)
-
-
-def _proved_step(
-    model: RotationModel, codec: Codec, shown: sp.ImmutableMatrix, because: Sentence
-) -> Step:
-    prove = Prover(model, codec)
-    is_fixed = shown.free_symbols.isdisjoint(model.constants)
-    return Step(
-        number=0,
-        quantity=QUATERNION if is_fixed else QUATERNION._replace(inputs=("q", "parameters")),
-        expression=shown,
-        words=text_of(because),
-        proofs=(
-            prove.vanishes(codec.column(rotation_of(list(shown)) - model.matrix), _TURNS),
-            prove.vanishes(codec.column([shown.dot(shown) - 1]), _UNIT),
-        ),
-    )
+    return quantity._replace(name=quantity.name + UNIT, about=about)
 
 
 @cache
@@ -200,23 +184,13 @@ def _read_off() -> Proof:
     """4 p pᵀ = K(R): sums and differences of the entries of R, for every unit quaternion p."""
     model = UnitQuaternion()
     column = sp.Matrix(model.coordinates)
-    text = r"4\,\mathbf{p}\mathbf{p}^{\mathsf T} = \mathbf{K}"
     residual = outer_product(model.matrix) - 4 * column * column.T
-    return vanishing(model, [claim(text, *residual)])[0]
+    return vanishing(model, [claim(r"4\,\p\p^T = \mathbf{K}", *residual)])[0]
 
 
 # Conversions as functions: their arguments, their values in order, and remarks on them
 
-
 MATRIX = tuple(f"r{row}{column}" for row in (1, 2, 3) for column in (1, 2, 3))
-
-_TWO_SETS = (
-    "Two sets of angles in [−π, π] give each rotation, and whole turns may be added to them. Each "
-    "sample gets the angles nearest to the sample before. At a pole, only the sum or the "
-    "difference of the outer angles is determined. The other is taken from the last sample away "
-    "from poles, or from the first one if there is none before. A sample within 32 eps (radians) "
-    "of a pole counts as at the pole, which changes R by up to twice that."
-)
 
 
 def converted(derivation: Derivation) -> Converted:
@@ -224,16 +198,49 @@ def converted(derivation: Derivation) -> Converted:
     conversions = Conversions(derivation.model)
     inverse = conversions.inverse
     steps, functions = _quaternion(derivation, conversions)
+    continuity = None
     if inverse is not None:
-        functions += (_from_quaternion(derivation, inverse), from_matrix(derivation, inverse))
-        functions += _shadow_sets(derivation, inverse)
+        functions += (_from_quaternion(inverse), from_matrix(derivation, inverse))
+        if inverse.rule == "modified_rodrigues":
+            functions += _shadow_sets(derivation)
+        if "continuity" in inverse.words:  # the coordinates are not unique
+            kind = inverse.rule
+            if isinstance(inverse, ClosedForm) and inverse.has_both_signs:
+                kind = "quaternion"
+            quarters = inverse.quarters if isinstance(inverse, EulerRule) else 0
+            continuity = Continuity(kind, (inverse.words["continuity"],), quarters)
     names = {step.quantity.name for step in derivation.steps}
     variants = (v for v in conversions.variants if v.quantity.name.removesuffix(UNIT) in names)
     return Converted(
         steps=(*steps, *variants),
         functions=functions,
-        continuity=_continuity(inverse) if inverse else None,
+        continuity=continuity,
         remarks=(conversions.without,) if conversions.without else (),
+    )
+
+
+def _function(
+    values: NamedValues,
+    name: str,
+    inputs: Sequence[ConversionInput],
+    outputs: Vector,
+    *remarks: str,
+    words: str = "",
+    symbol: str = "q",
+    unit: str = "",
+    **holes: object,
+) -> ConversionFunction:
+    """A function, with the sentences of its name, or of `words`, whose holes are filled."""
+    texts = WORDS["functions"][words or name]
+    return ConversionFunction(
+        name=name,
+        symbol=symbol,
+        inputs=tuple(inputs),
+        values=tuple(values.lines),
+        outputs=tuple(outputs),
+        about=texts["about"].format(**holes),
+        remarks=(*remarks, *(r.format(**holes) for r in texts.get("remarks", ()))),
+        unit=unit,
     )
 
 
@@ -241,53 +248,51 @@ def _quaternion(
     derivation: Derivation, conversions: Conversions
 ) -> tuple[tuple[Step, ...], tuple[ConversionFunction, ...]]:
     """The unit quaternion, as a step where it has a formula of its own."""
-    number_in_note = len(derivation.steps) + 1
+    number = len(derivation.steps) + 1  # in the note
     rule = conversions.inverse
-    if isinstance(rule, ClosedForm) and conversions.variants:
-        return (), (_of_any_length(derivation, rule, number_in_note),)
-    if isinstance(rule, ClosedForm) and rule.rule == "rotation_vector":
-        return (), (_of_rotation_vector(derivation, number_in_note),)
+    if rule is not None and conversions.variants:
+        return (), (_of_any_length(derivation, rule, number),)
+    if rule is not None and rule.rule == "rotation_vector":
+        return (), (_of_rotation_vector(derivation, number),)
     if conversions.quaternion is not None:
-        return (replace(conversions.quaternion, number=number_in_note),), ()
+        return (replace(conversions.quaternion, number=number),), ()
     return (), (_quaternion_of_matrix(derivation),)
 
 
-def _from_quaternion(derivation: Derivation, inverse: InverseRule) -> ConversionFunction:
-    given = symbols(PARTS)
-    values = NamedValues(given[0])
-    quaternion = scaled(values, given)
+def _from_quaternion(inverse: InverseRule) -> ConversionFunction:
+    parts = symbols(PARTS)
+    values = NamedValues(parts[0])
     order = "last" if inverse.is_scalar_last else "first"
-    listed = scalar_last(given) if inverse.is_scalar_last else given
-    rotation = argument_of("quaternion", listed, f"a quaternion of any length, scalar {order}")
-    return values.function(
+    listed = scalar_last(parts) if inverse.is_scalar_last else parts
+    about = WORDS["functions"]["from_quaternion"]["input"].format(order=order)
+    return _function(
+        values,
         "from_quaternion",
-        [ConversionInput(argument=rotation)],
-        inverse.from_quaternion(values, quaternion),
-        f"the coordinates of a quaternion, scalar {order}",
+        [ConversionInput(argument=argument_of("quaternion", listed, about))],
+        inverse.from_quaternion(values, scaled(values, parts)),
         *_remarks(inverse),
-        "The length of the quaternion does not matter; a zero quaternion gives NaN.",
-        unit=_unit(derivation.model),
+        unit=_unit(inverse.model),
+        order=order,
     )
 
 
 def from_matrix(derivation: Derivation, inverse: InverseRule) -> ConversionFunction:
     """The function `from_rotation_matrix`."""
     model = derivation.model
-    given = symbols(MATRIX)
-    values = NamedValues(given[0])
-    matrix = sp.Matrix(3, 3, given)
-    outputs = inverse.from_matrix(values, matrix.T if model.passive else matrix)
+    entries = symbols(MATRIX)
+    values = NamedValues(entries[0])
+    matrix = sp.Matrix(3, 3, entries)
     shown = "A, the transpose of R" if model.passive else "R"
-    rotation = argument_of("matrix", given, f"a rotation matrix {shown}")
-    return values.function(
+    about = WORDS["functions"]["from_rotation_matrix"]["input"].format(shown=shown)
+    return _function(
+        values,
         "from_rotation_matrix",
-        [ConversionInput(argument=rotation, is_matrix=True)],
-        outputs,
-        f"the coordinates of a rotation matrix {shown}, as `rotation_matrix` gives it",
+        [ConversionInput(argument=argument_of("matrix", entries, about), is_matrix=True)],
+        inverse.from_matrix(values, matrix.T if model.passive else matrix),
         *_remarks(inverse),
-        f"The largest component of the quaternion is computed first ({SHEPPERD}). The matrix is "
-        "assumed to be a rotation; this is not checked.",
         unit=_unit(model),
+        shown=shown,
+        shepperd=SHEPPERD,
     )
 
 
@@ -301,10 +306,10 @@ def _unit(model: RotationModel) -> str:
 
 
 def _quaternion_of_matrix(derivation: Derivation) -> ConversionFunction:
-    """The quaternion of a rotation that is known by its matrix alone."""
+    """The quaternion of a rotation that is known only by its matrix."""
     model = derivation.model
-    found = {step.quantity.name: step.expression for step in derivation.steps}
-    presented = found.get("rotation_matrix")
+    steps = {step.quantity.name: step.expression for step in derivation.steps}
+    presented = steps.get("rotation_matrix")
     if presented is None:
         matrix = sp.Matrix(model.matrix)
     else:
@@ -313,36 +318,35 @@ def _quaternion_of_matrix(derivation: Derivation) -> ConversionFunction:
     values = NamedValues(model.coordinates[0])
     quaternion = short_way(values, shepperd(values, sp.Matrix(3, 3, entries)))
     names = ("q", "parameters") if model.constants else ("q",)
-    function = values.function(
+    function = _function(
+        values,
         "quaternion",
         [ConversionInput(argument=derivation.argument(name)) for name in names],
         unit(values, quaternion),
-        "unit quaternion of the rotation, scalar first and not negative",
-        f"Its largest component is computed first, from R ({SHEPPERD}).",
+        words="quaternion_of_matrix",
         symbol="p",
+        shepperd=SHEPPERD,
     )
     return replace(function, shared=tuple(zip(entries, matrix, strict=True)))
 
 
-def _of_any_length(
-    derivation: Derivation, rule: ClosedForm, number_in_note: int
-) -> ConversionFunction:
+def _of_any_length(derivation: Derivation, rule: InverseRule, number: int) -> ConversionFunction:
     q, is_last = derivation.model.coordinates, rule.is_scalar_last
     values = NamedValues(q[0])
     parts = unit(values, scaled(values, (q[3], *q[:3]) if is_last else q))
-    order = "last" if is_last else "first"
-    return values.function(
+    return _function(
+        values,
         "quaternion",
         [ConversionInput(argument=derivation.argument("q"))],
         scalar_last(parts) if is_last else parts,
-        f"unit quaternion of the rotation, scalar {order}",
-        f"Equation ({number_in_note}) of the note.",
-        "The coordinates are divided by their length; zero gives NaN.",
+        words="quaternion_of_any_length",
         symbol="p",
+        order="last" if is_last else "first",
+        number=number,
     )
 
 
-def _of_rotation_vector(derivation: Derivation, number_in_note: int) -> ConversionFunction:
+def _of_rotation_vector(derivation: Derivation, number: int) -> ConversionFunction:
     """Where n² is too small for a float, sin(n/2)/n is 1/2."""
     q = derivation.argument("q")
     values = NamedValues(q.symbols[0])
@@ -350,49 +354,23 @@ def _of_rotation_vector(derivation: Derivation, number_in_note: int) -> Conversi
     none = sp.Eq(size, 0)
     length = values.let("length", sp.sqrt(Where(none, sp.S.One, size)))
     factor = values.let("factor", Where(none, sp.S.Half, sp.sin(length / 2) / length))
-    return values.function(
-        "quaternion",
-        [ConversionInput(argument=q)],
-        [Where(none, sp.S.One, sp.cos(length / 2)), *(factor * part for part in q.symbols)],
-        "unit quaternion of the rotation, scalar first: cos(n/2) and v sin(n/2)/n",
-        f"Equation ({number_in_note}) of the note; accurate at every length.",
-        symbol="p",
-    )
+    parts = (Where(none, sp.S.One, sp.cos(length / 2)), *(factor * part for part in q.symbols))
+    inputs = [ConversionInput(argument=q)]
+    words = "quaternion_of_vector"
+    return _function(values, "quaternion", inputs, parts, words=words, symbol="p", number=number)
 
 
-def _shadow_sets(derivation: Derivation, inverse: InverseRule) -> tuple[ConversionFunction, ...]:
+def _shadow_sets(derivation: Derivation) -> tuple[ConversionFunction, ...]:
     """The other set of modified Rodrigues parameters, and the shorter of both."""
-    if not isinstance(inverse, ClosedForm) or inverse.rule != "modified_rodrigues":
-        return ()
     q = derivation.argument("q")
+    inputs = [ConversionInput(argument=q)]
     shadow, shorter = NamedValues(q.symbols[0]), NamedValues(q.symbols[0])
     size = shadow.let("square", square(q.symbols))
     length = shorter.let("square", square(q.symbols))
     scale = shorter.let("scale", Where(length > 1, -length, sp.S.One))
+    other = tuple(-part / size for part in q.symbols)
+    nearer = tuple(part / scale for part in q.symbols)
     return (
-        shadow.function(
-            "shadow_set",
-            [ConversionInput(argument=q)],
-            [-part / size for part in q.symbols],
-            "the other set of the same rotation, −s/(s·s)",
-            "The shadow of zero is at infinity; the result is NaN.",
-            symbol="s",
-        ),
-        shorter.function(
-            "shorter_set",
-            [ConversionInput(argument=q)],
-            [part / scale for part in q.symbols],
-            "the same rotation by the set with s·s ≤ 1: the shadow set where s·s > 1",
-            symbol="s",
-        ),
+        _function(shadow, "shadow_set", inputs, other, symbol="s"),
+        _function(shorter, "shorter_set", inputs, nearer, symbol="s"),
     )
-
-
-def _continuity(inverse: InverseRule) -> Continuity | None:
-    """The continuity of the coordinates; None if they are unique."""
-    if isinstance(inverse, EulerRule):
-        return Continuity(kind="euler", remarks=(_TWO_SETS,), quarters=inverse.quarters)
-    if not isinstance(inverse, ClosedForm) or not inverse.continuity:
-        return None
-    kind = "quaternion" if inverse.has_both_signs else inverse.rule
-    return Continuity(kind=kind, remarks=(inverse.continuity,))

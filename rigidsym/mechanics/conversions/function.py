@@ -102,28 +102,6 @@ class NamedValues:
         self._known: dict[sp.Expr, sp.Symbol] = {}
         self._eps = Epsilon(given)
 
-    def function(
-        self,
-        name: str,
-        inputs: Iterable[ConversionInput],
-        outputs: Sequence[sp.Expr],
-        about: str,
-        *remarks: str,
-        symbol: str = "q",
-        unit: str = "",
-    ) -> ConversionFunction:
-        """The function with these outputs."""
-        return ConversionFunction(
-            name=name,
-            symbol=symbol,
-            inputs=tuple(inputs),
-            values=tuple(self.lines),
-            outputs=tuple(outputs),
-            about=about,
-            remarks=remarks,
-            unit=unit,
-        )
-
     @property
     def tiny(self) -> sp.Expr:
         """Four times the distance from one to the next float."""
