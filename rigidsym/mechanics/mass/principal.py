@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from rigidsym.algebra.present import Rationals
+from rigidsym.mechanics.derivation import sentence_of
 
 _LAMBDA = sp.Symbol("lambda")
 _MOST_OPERATIONS = 200  # of a tensor whose characteristic polynomial is tried
@@ -16,11 +17,16 @@ _LETTERS = ("x", "y", "z")
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Principal:
-    """Principal moments (3, 1) and axes (3, 3), and how they were found."""
+    """Principal moments (3, 1) and axes (3, 3), and how they follow."""
 
     moments: sp.ImmutableMatrix
-    axes: sp.ImmutableMatrix | None  # None if no direction was found
-    because: str
+    axes: sp.ImmutableMatrix | None  # None if no direction has a closed form
+    reasons: tuple[str, ...]  # keys of templates/notes/en/reasons.toml
+    axis: str = ""  # of the description, which these name
+
+    @property
+    def because(self) -> str:
+        return " ".join(sentence_of(reason).format(axis=self.axis) for reason in self.reasons)
 
 
 def principal_of(inertia: sp.ImmutableMatrix) -> Principal | None:
@@ -28,39 +34,30 @@ def principal_of(inertia: sp.ImmutableMatrix) -> Principal | None:
 
     There are no axes where they would be too long for use.
     """
-    found = _found(inertia)
-    if found is None or found.axes is None or sp.count_ops(found.axes) <= _MOST_OF_AXES:
-        return found
-    because = f"{found.because} The axes in symbols would be too long for use."
-    return replace(found, axes=None, because=because)
+    principal = _closed_form(inertia)
+    if principal is None or principal.axes is None or sp.count_ops(principal.axes) <= _MOST_OF_AXES:
+        return principal
+    return replace(principal, axes=None, reasons=(*principal.reasons, "axes_too_long"))
 
 
-def _found(inertia: sp.ImmutableMatrix) -> Principal | None:
+def _closed_form(inertia: sp.ImmutableMatrix) -> Principal | None:
     if inertia.is_diagonal():
         return _diagonal(inertia)
     for alone in (2, 1, 0):
-        others = [k for k in range(3) if k != alone]
-        if all(inertia[alone, k] == 0 for k in others):
-            found = _one_axis_apart(inertia, alone)
-            if found is not None:
-                return found
+        if not any(inertia[alone, k] for k in range(3) if k != alone):
+            principal = _one_axis_apart(inertia, alone)
+            if principal is not None:
+                return principal
     return _factored(inertia)
 
 
 def _diagonal(inertia: sp.ImmutableMatrix) -> Principal:
     moments = list(inertia.diagonal())
-    because = "The inertia tensor is diagonal: the axes of the description are principal axes"
-    equal = [k for k in range(3) if moments.count(moments[k]) > 1]
-    if len(equal) == 3:
-        because += ", and since all moments are equal, so is every axis through the centre"
-    elif equal:
-        (other,) = set(range(3)) - set(equal)
-        because += f", and since two moments are equal, so is every axis across {_LETTERS[other]}"
-    return Principal(
-        moments=sp.ImmutableMatrix(moments),
-        axes=sp.ImmutableMatrix(sp.eye(3)),
-        because=f"{because}.",
-    )
+    single = [k for k in range(3) if moments.count(moments[k]) == 1]
+    reason = {0: "diagonal_sphere", 1: "diagonal_symmetric", 3: "diagonal"}[len(single)]
+    axes = sp.ImmutableMatrix(sp.eye(3))
+    axis = _LETTERS[single[0]] if single else ""
+    return Principal(moments=sp.ImmutableMatrix(moments), axes=axes, reasons=(reason,), axis=axis)
 
 
 def _square_root(expression: sp.Expr) -> sp.Expr:
@@ -93,18 +90,29 @@ def _one_axis_apart(inertia: sp.ImmutableMatrix, alone: int) -> Principal | None
     field = Rationals([p, q])
     half = field.write(field.read((p + q) / 2))
     apart = field.write(field.read(p - q))
-    cosine = sp.sqrt(sp.Rational(1, 2) + apart / (2 * root))
-    sine = r / (root * cosine)
-    moments, axes = [sp.S.Zero] * 3, sp.zeros(3)
-    moments[i], moments[j], moments[alone] = half + root / 2, half - root / 2, inertia[alone, alone]
-    axes[i, i], axes[j, i] = cosine, sine
-    axes[i, j], axes[j, j] = -sine, cosine
-    axes[alone, alone] = sp.S.One
+    basis = sp.eye(3)
+    moments, axes = [inertia[alone, alone]] * 3, sp.eye(3)
+    moments[i], moments[j] = half + root / 2, half - root / 2
+    axes[:, i], axes[:, j] = _across(basis[:, i], basis[:, j], apart, r, root)
     return Principal(
         moments=sp.ImmutableMatrix(moments),
         axes=sp.ImmutableMatrix(axes),
-        because=f"The {_LETTERS[alone]}-axis is principal; across it a quadratic equation is left.",
+        reasons=("one_axis_apart",),
+        axis=_LETTERS[alone],
     )
+
+
+def _across(
+    first: sp.Matrix, second: sp.Matrix, apart: sp.Expr, product: sp.Expr, root: sp.Expr
+) -> tuple[sp.Matrix, sp.Matrix]:
+    """The principal axes in the plane of two unit vectors.
+
+    The moments about them are `apart`, their product of inertia is `product`, and `root` is
+    √(apart² + 4 product²).
+    """
+    cosine = sp.sqrt(sp.Rational(1, 2) + apart / (2 * root))
+    sine = product / (root * cosine)
+    return cosine * first + sine * second, cosine * second - sine * first
 
 
 def _factored(inertia: sp.ImmutableMatrix) -> Principal | None:
@@ -128,10 +136,6 @@ def _factored(inertia: sp.ImmutableMatrix) -> Principal | None:
     apart = [root for root in roots if not _has_root(root)]
     if len(apart) == 1:
         return _about_one_axis(inertia, apart[0])
-    repeated = len(set(roots)) < 3
-    because = "The characteristic polynomial factors"
-    if repeated:
-        because += "; two moments are equal, so that every axis across the third is principal"
     shares = {root: sp.cancel(root / sum(roots)) for root in roots}
     is_ordered = all(share.is_Rational for share in shares.values())
     roots = sorted(
@@ -140,7 +144,8 @@ def _factored(inertia: sp.ImmutableMatrix) -> Principal | None:
     )
     axes = _axes(inertia, roots)
     moments = sp.ImmutableMatrix([sp.factor(root) for root in roots])
-    return Principal(moments=moments, axes=axes, because=f"{because}.")
+    reason = "factored_symmetric" if len(set(roots)) < 3 else "factored"
+    return Principal(moments=moments, axes=axes, reasons=(reason,))
 
 
 def _is_irreducible(inertia: sp.ImmutableMatrix) -> bool:
@@ -173,15 +178,13 @@ def _about_one_axis(inertia: sp.ImmutableMatrix, moment: sp.Expr) -> Principal |
     )
     product = first.dot(inertia * second)
     root = _square_root((p - q) ** 2 + 4 * sp.cancel(product**2 / (squares[0] * squares[1])))
-    cosine = sp.sqrt(sp.Rational(1, 2) + (p - q) / (2 * root))
-    sine = product / (lengths[0] ** 2 * lengths[1] * root * cosine)
-    axes = [cosine * frame[0] + sine * frame[1], cosine * frame[1] - sine * frame[0], frame[2]]
+    scaled = product / (lengths[0] ** 2 * lengths[1])
+    axes = [*_across(frame[0], frame[1], p - q, scaled, root), frame[2]]
     half = sp.cancel((p + q) / 2)
     return Principal(
         moments=sp.ImmutableMatrix([half + root / 2, half - root / 2, moment]),
         axes=sp.ImmutableMatrix(sp.Matrix.hstack(*axes)),
-        because="The characteristic polynomial has one linear factor, whose axis follows from "
-        "linear equations; across it a quadratic equation is left.",
+        reasons=("linear_factor",),
     )
 
 
