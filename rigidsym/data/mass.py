@@ -245,7 +245,7 @@ def _properties(rows: Array, table: Table, *, allow: bool) -> MassProperties:
     """The body of particles x, y, z, m (n, 4), or x, y, z of 1 kg each (n, 3).
 
     Σ m x xᵀ is summed about the centre of mass, where differences of coordinates are nearly exact
-    however far from the origin the body is.
+    however far from the origin the body is; `rest` is what its rounding leaves of Σ m x.
     """
     if not len(rows):
         raise BodyError("expected at least one particle, got none")
@@ -275,14 +275,15 @@ def _properties(rows: Array, table: Table, *, allow: bool) -> MassProperties:
         start = np.median(positions, axis=0)  # unlike the mean, no outlier moves it away
         about = start + masses @ (positions - start) / mass
         apart = positions - about
-        second = (apart.T * masses) @ apart
+        rest = masses @ apart
+        second = (apart.T * masses) @ apart - np.outer(rest, rest / mass)
     if not np.isfinite(second).all():
         raise BodyError("the moments are too large for double precision")
     # tr(J) 1 − J for J = Σ m x xᵀ, without adding numbers that cancel
     inertia = -(second + second.T) / 2
     for k in range(3):
         inertia[k, k] = second[(k + 1) % 3, (k + 1) % 3] + second[(k + 2) % 3, (k + 2) % 3]
-    return MassProperties(count=len(rows), mass=mass, centre=about, inertia=inertia)
+    return MassProperties(count=len(rows), mass=mass, centre=about + rest / mass, inertia=inertia)
 
 
 def _columns(table: Table, names: Sequence[str] | None) -> tuple[list[int], Array]:

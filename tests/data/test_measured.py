@@ -46,12 +46,13 @@ def exactly(table: np.ndarray) -> tuple[mpmath.mpf, np.ndarray, np.ndarray]:
     [
         rows(),
         rows(far=1e8),  # a body of a metre, a hundred thousand kilometres away
+        rows(far=1e12),  # where the centre of mass is rounded to 0.1 mm
         rows(far=1e6, size=1e-3),
         rows(20_000, far=1e7),
         np.vstack([[1e-3, 0, 0, 0], rows(far=1e9)]),  # the first particle is an outlier
         np.vstack([rows(far=1e9), [1e-9, 0, 0, 0]]),
     ],
-    ids=["near", "far", "tiny", "many", "outlier first", "outlier last"],
+    ids=["near", "far", "farther", "tiny", "many", "outlier first", "outlier last"],
 )
 def test_a_cloud_loses_nothing_that_the_data_hold(table):
     mass, centre, inertia = exactly(table)
@@ -188,7 +189,7 @@ def test_what_is_no_cloud_is_refused(table, fault):
     ("text", "fault"),
     [
         ("m,x,y,z\n1,0,0,0\n1,0,zero,0\n", "line 3"),
-        ("m,x,y,z\n1,0,0,0\n1,0,0\n", "line 3"),
+        ("m,x,y,z\n1,0,0,0\n1,0,0\n", "line 3: 3 fields, expected 4"),
         ("m,x,y\n1,0,0\n", r"cloud\.csv: no column z among m, x, y"),
         (
             "m,x,y,z\n1,0,0,0\n\n# -\n-2,0,0,0\n",
