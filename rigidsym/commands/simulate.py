@@ -20,7 +20,7 @@ from rigidsym.motion import Motion
 from rigidsym.pipeline import motion_of, read
 from rigidsym.simulation.problem import NEEDED
 from rigidsym.simulation.solver import METHODS
-from rigidsym.simulation.trajectory import ANIMATIONS, PICTURES, check_picture
+from rigidsym.simulation.trajectory import PICTURES, check_picture
 from rigidsym.system.files import whole_file
 from rigidsym.system.processes import bar
 
@@ -98,9 +98,7 @@ class SimulationOptions:
     )
     out: Path | None = option("--out", help="Write the motion: .csv, .npy, .npz or .parquet.")
     plot: Path | None = option("--plot", help="Draw the motion: .png, .svg or .pdf.")
-    animate: Path | None = option(
-        "--animate", help="Animate the motion: .gif, or .html for a live page."
-    )
+    animate: Path | None = option("--animate", help="Write a live page of the motion: .html.")
 
 
 @make(
@@ -118,7 +116,7 @@ def command(source: str, options: SimulationOptions) -> None:
     """
     if options.out is not None:
         check_ending(options.out, _ARCHIVE)
-    for path, endings in ((options.plot, PICTURES), (options.animate, (*ANIMATIONS, ".html"))):
+    for path, endings in ((options.plot, PICTURES), (options.animate, (".html",))):
         if path is not None:
             check_picture(path, endings)
     motion = _motion(source, options)
@@ -148,7 +146,7 @@ def command(source: str, options: SimulationOptions) -> None:
 def _motion(source: str, options: SimulationOptions) -> Motion:
     """The rotation with the quantities that a simulation needs, or with all for a page."""
     spec = read(source)
-    is_page = options.animate is not None and options.animate.suffix == ".html"
+    is_page = options.animate is not None
     if spec.dynamics is not None and len(spec.models) == 1 and not is_page:
         spec = replace(spec, quantities=NEEDED)
     motion = motion_of(spec)
@@ -162,9 +160,7 @@ def _motion(source: str, options: SimulationOptions) -> Motion:
 def _animated(
     motion: Motion, found: Trajectory, constants: Mapping[str, float], path: Path
 ) -> Path:
-    """The file of the animation."""
-    if path.suffix != ".html":
-        return found.animate(path)
+    """The live page, which begins as the motion does."""
     start = dict(constants)
     for k, name in enumerate(found.coordinates):
         start |= {name: found.q[0, k], f"{name}_dot": found.q_dot[0, k]}

@@ -15,16 +15,10 @@ from rigidsym.errors import MissingExtra, ModelError
 Array = NDArray[np.float64]
 
 PICTURES = (".png", ".svg", ".pdf")
-ANIMATIONS = (".gif",)
 _ONE_TURN = 360
 _VIEW = (25, -60)  # elevation and azimuth of the eye, degrees
 _GREEK = ["alpha", "beta", "gamma", "delta", "theta", "phi", "psi", "sigma", "chi", "omega"]
 _SMALLEST = 1e-17  # of a relative change in the picture of the drift
-_FRAMES_PER_SECOND = 15
-_LENGTHS = (4.0, 12.0)  # seconds, of the shortest and the longest animation
-_THINNEST = 0.1  # of the longest edge: a plate is drawn with some thickness
-_FACES = ((0, 1, 3, 2), (4, 5, 7, 6), (0, 1, 5, 4), (2, 3, 7, 6), (0, 2, 6, 4), (1, 3, 7, 5))
-_COLOURS = ("C1", "C1", "C2", "C2", "C0", "C0")  # of opposite faces, so that spins are seen
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, repr=False)
@@ -80,10 +74,6 @@ class Trajectory:
         """Draw the motion into a PNG, SVG or PDF file. Needs Matplotlib."""
         return save_plot(Path(path), self)
 
-    def animate(self, path: str | Path) -> Path:
-        """Animate the motion as a GIF. Needs Matplotlib."""
-        return save_animation(Path(path), self)
-
 
 def relative_changes(integrals: Mapping[str, Array], momentum: Array) -> dict[str, Array]:
     """Of values over time, (n, ...), by name; `momentum` is |L| at the beginning, (...).
@@ -108,12 +98,16 @@ def save_plot(path: Path, motion: Trajectory) -> Path:
     Of a free body it shows the polhode on the ellipsoid of energy, and the herpolhode in the
     invariable plane.
     """
-    check_picture(path, PICTURES)
-    rows = [["q", "axis", "drift"] if motion.first_integrals else ["q", "axis"]]
+    check_picture(path)
+    try:
+        from matplotlib.figure import Figure
+    except ModuleNotFoundError as error:
+        raise MissingExtra("a picture", "plot") from error
+    rows: list[Any] = [["q", "axis", "drift"] if motion.first_integrals else ["q", "axis"]]
     if motion.is_free:
         rows = [["q", "q", "axis"], ["polhode", "herpolhode", "drift"]]
     size = (4 * len(rows[0]), 4 * len(rows))
-    figure = _figure_class()(figsize=size, layout="constrained")
+    figure = Figure(figsize=size, layout="constrained")
     solids = ("axis", "polhode")[: len(rows)]
     panels = figure.subplot_mosaic(rows, per_subplot_kw={solids: {"projection": "3d"}})
     _draw_coordinates(panels["q"], motion)
@@ -133,64 +127,10 @@ def save_plot(path: Path, motion: Trajectory) -> Path:
     return path
 
 
-def save_animation(path: Path, motion: Trajectory) -> Path:
-    """A GIF of a cuboid with the moments of the body, and the trace of the third body axis.
-
-    In real time if it takes 4 to 12 seconds. Raises ModelError for another ending, and
-    MissingExtra without Matplotlib.
-    """
-    check_picture(path, ANIMATIONS)
-    figure = _figure_class()(figsize=(5, 5), layout="constrained")
-    from matplotlib.animation import FuncAnimation
-    from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import-untyped]
-
-    seconds = float(np.clip(motion.t[-1], *_LENGTHS))
-    places = np.linspace(0, len(motion.t) - 1, round(seconds * _FRAMES_PER_SECOND))
-    frames = np.unique(places.round().astype(int))
-    axes = figure.add_subplot(projection="3d")
-    _draw_trace(axes, motion.rotation_matrix[:1, :, 2], np.ones(3))
-    (trace,) = axes.plot([], [], [], color="C3", linewidth=1.2)
-    corners = _cuboid(motion.inertia)
-    faces = Poly3DCollection(np.zeros((6, 4, 3)), facecolors=_COLOURS, edgecolors="k", alpha=0.9)
-    axes.add_collection3d(faces)
-
-    def frame(k: int) -> list[Any]:
-        rotation = motion.rotation_matrix[k]
-        faces.set_verts([corners[list(face)] @ rotation.T for face in _FACES])
-        trace.set_data_3d(*motion.rotation_matrix[: k + 1, :, 2].T)
-        axes.set_title(f"t = {motion.t[k]:.2f} s")
-        return [faces, trace]
-
-    path.parent.mkdir(parents=True, exist_ok=True)
-    fps: Any = len(frames) / seconds  # Matplotlib takes fractions, its types say whole numbers
-    FuncAnimation(figure, frame, frames=frames.tolist()).save(
-        path, writer="pillow", fps=fps, dpi=90
-    )
-    return path
-
-
-def _cuboid(inertia: Array) -> Array:
-    """The corners of the cuboid with these principal moments, (8, 3), in a sphere of radius 0.8."""
-    moments, axes = np.linalg.eigh(inertia)
-    half = np.sqrt(np.maximum(moments.sum() / 2 - moments, 0))  # in proportion to the edges
-    half = np.maximum(half, _THINNEST * half.max())
-    signs = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
-    return np.asarray(0.8 * signs * half / np.linalg.norm(half) @ axes.T)
-
-
-def check_picture(path: Path, endings: Collection[str]) -> None:
+def check_picture(path: Path, endings: Collection[str] = PICTURES) -> None:
     """Raises ModelError for a file with another ending."""
     if path.suffix not in endings:
         raise ModelError(f"{path}: expected a file that ends in {', '.join(endings)}")
-
-
-def _figure_class() -> Any:
-    """Matplotlib's Figure; raises MissingExtra."""
-    try:
-        from matplotlib.figure import Figure
-    except ModuleNotFoundError as error:
-        raise MissingExtra("a picture", "plot") from error
-    return Figure
 
 
 def _draw_poinsot(solid: Any, plane: Any, motion: Trajectory) -> None:

@@ -268,7 +268,8 @@ def _matrix(data: Data, place: Place, name: str) -> list[RotationModel]:
     rows = [[e if e is None else str(e) for e in row or [None]] for row in data["matrix"] or []]
     coordinates = _names(data, "coordinates", place)
     constraints = [text for text in data.get("constraints") or [] if text is not None]
-    example = {key: str(entry) for key, entry in (data.get("example") or {}).items() if entry}
+    point = data.get("example") or {}
+    example = {key: str(entry) for key, entry in point.items() if entry is not None}
     for key, text in example.items():
         with place.at("example", key).noting():
             parse_expression(text, {})

@@ -179,15 +179,15 @@ PINCHED = """\
 [rotation]
 matrix = [["cos(phi)", "-sin(phi)", "0"], ["sin(phi)", "cos(phi)", "0"], ["0", "0", "1"]]
 coordinates = ["phi"]
-constraints = ["(b - a**2)**2 + (a - 3)**2"]
-example = { a = 3, b = "9" }
+constraints = ["(b - a**2)**2 + (a - 3)**2 + c**2"]
+example = { a = 3, b = "9", c = 0 }
 """
 
 
 def test_a_point_of_constraints_is_read_and_kept():
     spec = read(PINCHED)
     (model,) = spec.models
-    assert {str(name): value for name, value in model.example} == {"a": 3, "b": 9}
+    assert {str(name): value for name, value in model.example} == {"a": 3, "b": 9, "c": 0}
     again = read_record(spec.to_data())
     assert again.models == spec.models
 
