@@ -93,9 +93,9 @@ def test_kernels_import_their_representation_and_not_the_reverse():
 # sizes
 
 BUDGETS = {  # what was reached; who makes the house smaller lowers them
-    "files": 233,
-    "lines of code": 33_530,
-    "lines of tests": 29_450,
+    "files": 231,
+    "lines of code": 33_480,
+    "lines of tests": 29_090,
     "lines of benchmarks": 2_700,
 }
 
@@ -107,7 +107,7 @@ def test_the_house_keeps_within_its_budgets():
     }
     sizes = {
         "files": len(HOUSE.sources),
-        "lines of code": 33_530sum(map(lines_of_code, HOUSE.texts.values())),
+        "lines of code": sum(map(lines_of_code, HOUSE.texts.values())),
         "lines of tests": lines["tests"],
         "lines of benchmarks": lines["benchmarks"],
     }
