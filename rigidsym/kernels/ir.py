@@ -249,6 +249,11 @@ class Kernel:
         """The names of all inputs, in the order of the arguments."""
         return tuple(name for argument in self.arguments for name in argument.components)
 
+    @property
+    def results(self) -> tuple[tuple[int, ...], ...]:
+        """The shapes of what it returns: of its value, or of a value and its derivative."""
+        return self.parts or (self.shape,)
+
     @cached_property
     def values(self) -> tuple[Expression, ...]:
         """Of all assignments, then the outputs."""

@@ -15,7 +15,7 @@ from rigidsym.kernels.lowering.derivatives import (
     read_requests,
 )
 from rigidsym.kernels.lowering.lower import NO_CONVERSIONS, lower
-from rigidsym.kernels.targets import TARGETS, check_options, printer
+from rigidsym.kernels.targets import TARGETS, check_options, load, printer
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.system.files import write_text
 
@@ -49,7 +49,7 @@ class KernelModule:
         once, and other processes can unpickle the functions. Raises MissingTool or MissingExtra
         if a tool or package is not installed.
         """
-        return printer(self.target).load(self.name, self.files)
+        return load(self.target, self.name, self.files)
 
     def write(self, path: str | Path) -> Path:
         """Write the files, each whole or not at all, and return the path of the main one.

@@ -9,7 +9,7 @@ import sympy as sp
 
 from rigidsym.kernels.ir import Kernel
 from rigidsym.kernels.lowering.lower import lower
-from rigidsym.kernels.targets.javascript import printer as javascript
+from rigidsym.kernels.targets import javascript
 from rigidsym.mechanics.derivation import Derivation, FirstIntegral, Step
 from rigidsym.mechanics.derive import derive as derivation_of
 from rigidsym.models.body import RigidBody

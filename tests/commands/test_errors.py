@@ -16,7 +16,7 @@ import rigidsym as rs
 from rigidsym import errors
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.commands.cli import commands
-from rigidsym.kernels.targets.c import compiling
+from rigidsym.kernels.targets import compiling
 from rigidsym.mechanics.body import BodyValues
 from rigidsym.mechanics.derive import derive as derivation_of
 from rigidsym.notes.formats.pdf import typeset

@@ -11,15 +11,13 @@ from rigidsym.kernels.lowering.cse import Reader
 from rigidsym.kernels.lowering.naming import Names
 from rigidsym.kernels.lowering.rounding import guarded
 from rigidsym.kernels.lowering.schedule import write
-from rigidsym.kernels.targets.text.infix import guard_arguments, infix
+from rigidsym.kernels.targets.infix import infix
 
 A, B, C = sp.symbols("a b c")
 ARGUMENT = ir.KernelArgument(name="q", components=("a", "b", "c"), units=("1",) * 3, about="")
 
 
 def text(expression: ir.Expression) -> str:
-    if isinstance(expression, ir.Guarded):
-        return f"or_nan({', '.join(guard_arguments(expression, 'None'))})"
     return infix(expression)
 
 

@@ -22,7 +22,7 @@ from rigidsym.kernels.ir import (
     Product,
     Sum,
 )
-from rigidsym.kernels.targets.text.infix import guard_arguments, infix
+from rigidsym.kernels.targets.infix import infix
 
 VALUES = {name: mp.mpf(k) / 7 for name, k in zip("abcde", (3, -5, 11, 16, -2), strict=True)}
 NUMBERS = [Number(Fraction(n)) for n in (2, -3, Fraction(1, 3), Fraction(-7, 5), Fraction(1, 2))]
@@ -126,6 +126,7 @@ def test_a_target_has_its_own_words():
 
 
 def test_a_guard_names_its_power_if_it_is_not_one():
-    assert guard_arguments(Guarded(a, None), "null") == ["a", "null"]
-    assert guard_arguments(Guarded(a, b), "null") == ["a", "b"]
-    assert guard_arguments(Guarded(a, b, 2), "null") == ["a", "b", "2"]
+    words = {"or_nan": "keep", "None": "null"}
+    assert infix(Guarded(a, None), words) == "keep(a, null)"
+    assert infix(Guarded(a, b), {"or_nan": "keep({}, eps=e)"}) == "keep(a, b, eps=e)"
+    assert infix(Guarded(a, b, 2)) == "or_nan(a, b, 2)"

@@ -16,7 +16,7 @@ from helpers.motions import derived
 from helpers.target_modules import turned_by
 from rigidsym.errors import MissingTool
 from rigidsym.kernels.ir import Kernel, KernelArgument, Name, Negative
-from rigidsym.kernels.targets.javascript import printer as javascript
+from rigidsym.kernels.targets import javascript
 from rigidsym.motion import derive
 
 NAME = "euler_zxz_intrinsic"

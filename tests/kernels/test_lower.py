@@ -8,7 +8,7 @@ import rigidsym as rs
 from helpers.motions import derived
 from rigidsym.kernels import ir
 from rigidsym.kernels.lowering.lower import MARGIN, lower
-from rigidsym.kernels.targets.text.infix import infix
+from rigidsym.kernels.targets.infix import infix
 from rigidsym.models.library import rotation_from
 from rigidsym.motion import derive
 

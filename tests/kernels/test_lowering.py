@@ -17,9 +17,9 @@ from rigidsym.kernels.lowering.cse import Reader
 from rigidsym.kernels.lowering.lower import MARGIN, lower
 from rigidsym.kernels.lowering.naming import Names
 from rigidsym.kernels.lowering.schedule import narrowed, write
-from rigidsym.kernels.targets.text.infix import infix
-from rigidsym.kernels.targets.text.python import assignment_lines, bracketed
-from rigidsym.kernels.targets.text.remarks import Operations, count
+from rigidsym.kernels.targets.infix import infix
+from rigidsym.kernels.targets.python import bracketed, statement
+from rigidsym.kernels.targets.remarks import count
 from rigidsym.mechanics.conversions.function import Where
 
 A, B, C, D = sp.symbols("a b c d")
@@ -268,7 +268,7 @@ def test_items_are_laid_out_by_width(second, lines):
 
 @pytest.mark.parametrize(("size", "lines"), [(42, 1), (43, 3), (80, 3), (81, 4)])
 def test_wide_assignments_get_brackets(size, lines):
-    text = assignment_lines(4, "a" * 39, f"{'b' * (size - 4)} * c")
+    text = statement(4, "a" * 39, Product((Name("b" * (size - 4)), c)), {})
     assert len(text.splitlines()) == lines
     assert max(map(len, text.splitlines())) <= 88
 
@@ -281,14 +281,8 @@ def test_operations_are_counted_as_written():
         Sum((Negative(a), Negative(b))),
         Call("sqrt", a),
     ]
-    counted = count(expressions)
-    assert counted == Operations(roots=1, multiplications=2, divisions=1, additions=4, negations=2)
-    assert str(counted) == (
-        "10 operations: 1 square root, 2 multiplications, 1 division, 4 additions, "
-        "2 changes of sign"
-    )
-    assert str(Operations()) == "no operations"
-    assert str(Operations(additions=1)) == "1 operation: 1 addition"
+    counts = {"roots": 1, "multiplications": 2, "divisions": 1, "additions": 4, "negations": 2}
+    assert {kind: n for kind, n in count(expressions).items() if n} == counts
 
 
 KERNEL = ir.Kernel(

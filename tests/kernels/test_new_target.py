@@ -1,4 +1,4 @@
-"""A new target is one new folder: here a toy language from a temporary folder prints ZXZ."""
+"""A new target is one new file: here a toy language from a temporary folder prints ZXZ."""
 
 from __future__ import annotations
 
@@ -12,16 +12,13 @@ from rigidsym.commands.list import inventory
 from rigidsym.errors import KernelError
 from rigidsym.kernels import targets
 
-INIT = """
-from rigidsym.kernels.targets import Target
-
-TARGET = Target(about="NAME.toy: a list of assignments", ending=".toy")
-"""
+TARGET = 'TARGET = Target(about="NAME.toy: a list of assignments", ending=".toy")'
 PRINTER = """
 from types import ModuleType
 
 from rigidsym.kernels.ir import FUNCTIONS
-from rigidsym.kernels.targets.text.infix import infix
+from rigidsym.kernels.targets import Target
+from rigidsym.kernels.targets.infix import infix
 
 RESERVED = frozenset({"theta"})
 
@@ -54,25 +51,22 @@ FUNCTION angular_velocity_body(phi, theta_, psi, phi_dot, theta_dot, psi_dot)
 """
 
 
-def folder_of_a_target(parent: Path, init: str = INIT) -> Path:
-    folder = parent / "toy"
-    folder.mkdir()
-    (folder / "__init__.py").write_text(init, encoding="utf-8")
-    (folder / "printer.py").write_text(PRINTER, encoding="utf-8")
-    return folder
+def file_of_a_target(folder: Path, described: str = TARGET) -> Path:
+    file = folder / "toy.py"
+    file.write_text(PRINTER + described, encoding="utf-8")
+    return file
 
 
 @pytest.fixture
 def toy(tmp_path):
-    targets.register(folder_of_a_target(tmp_path))
+    targets.register(file_of_a_target(tmp_path))
     yield
     del targets._KNOWN["toy"]
-    for name in [name for name in sys.modules if name.startswith(f"{targets.__name__}.toy")]:
-        del sys.modules[name]
+    del sys.modules[f"{targets.__name__}.toy"]
 
 
 @pytest.mark.usefixtures("toy")
-def test_a_registered_folder_prints_and_loads():
+def test_a_registered_file_prints_and_loads():
     motion = rs.derive("ZXZ", only=["angular_velocity_body"])
     kernels = motion.kernels("toy")
     assert kernels.source.splitlines() == ZXZ.splitlines()
@@ -83,19 +77,19 @@ def test_a_registered_folder_prints_and_loads():
 def test_its_name_is_listed_and_not_taken_twice(tmp_path):
     assert list(targets.TARGETS)[-1] == "toy"
     with pytest.raises(KernelError, match="a target named toy exists already"):
-        targets.register(tmp_path / "toy")
+        targets.register(tmp_path / "toy.py")
     with pytest.raises(KernelError, match=r"no target 'toi'; there is numpy, .*toy"):
         targets.check_target("toi")
 
 
-def test_a_folder_that_is_no_target_is_refused(tmp_path):
-    with pytest.raises(KernelError, match=r"no __init__\.py and no printer\.py"):
-        targets.register(tmp_path / "nothing")
+def test_a_file_that_is_no_target_is_refused(tmp_path):
+    with pytest.raises(KernelError, match=r"nothing\.py is not a Python file"):
+        targets.register(tmp_path / "nothing.py")
     with pytest.raises(KernelError, match="defines no TARGET"):
-        targets.register(folder_of_a_target(tmp_path, init=""))
+        targets.register(file_of_a_target(tmp_path, ""))
 
 
-def test_every_shipped_target_is_a_folder_of_the_same_form():
+def test_every_shipped_target_is_a_file_of_the_same_form():
     for name, target in targets.TARGETS.items():
         printer = targets.printer(name)
         assert {"RESERVED", "render", "load"} <= vars(printer).keys()

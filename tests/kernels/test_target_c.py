@@ -20,7 +20,7 @@ from helpers.command import call
 from helpers.target_modules import STRICT
 from helpers.witness import mp
 from rigidsym.errors import CheckError, MissingTool
-from rigidsym.kernels.targets.c import compiling as c_build
+from rigidsym.kernels.targets import compiling as c_build
 
 REQUIRED = os.environ.get("RIGIDSYM_REQUIRE_COMPILERS") == "1"  # then they fail, not skip
 COMPILERS = [

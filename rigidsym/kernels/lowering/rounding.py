@@ -76,14 +76,6 @@ class Rounding(NamedTuple):
     of_any_size: tuple[str, ...]  # arguments whose components are angles alone
     up_to_one: tuple[str, ...]  # arguments with components that it holds for up to one
 
-    def __str__(self) -> str:
-        ranges = []
-        if self.of_any_size:
-            ranges.append(f"angles {' and '.join(self.of_any_size)} of any size")
-        if self.up_to_one:
-            ranges.append(f"components of {' and '.join(self.up_to_one)} up to 1")
-        return f"Bound on rounding: {self.error:g} eps in any entry, for {'; '.join(ranges)}."
-
 
 @lru_cache(maxsize=256)  # each language tells the bound, and the module that there is one
 def rounding(kernel: Kernel) -> Rounding | None:

@@ -1,15 +1,10 @@
-"""The languages that kernels can be printed in: one folder each.
+"""The languages that kernels can be printed in: one file each, LANGUAGE.py.
 
-The folder LANGUAGE/ holds
-
-- `__init__.py` with `TARGET`, which describes the language and what loading its modules needs;
-- `printer.py` with `RESERVED`, the names that no variable may have, `render(program)`, which
-  gives the texts of the files by name, the main one first, and `load(name, files)`, which makes a
-  Python module of them. It is imported when the target is asked for. `render` also takes the
-  `options` of its `TARGET` by name.
-
-The folders here are those of the package, their templates are in templates/LANGUAGE/; `register`
-adds a folder from anywhere.
+It holds `RESERVED`, the names that no variable may have; `render(program)`, which gives the texts
+of the files by name, the main one first, and takes the `options` of its `Target` by name; and
+`load(name, files)`, which makes a Python module of them. It is imported when the target is asked
+for. `TARGETS` describes the shipped ones, whose templates are in templates/LANGUAGE/; `register`
+adds a file from anywhere, which holds its `TARGET` too.
 """
 
 from __future__ import annotations
@@ -24,12 +19,11 @@ from pathlib import Path
 from types import MappingProxyType, ModuleType
 from typing import TYPE_CHECKING, Protocol, cast
 
-from rigidsym.errors import KernelError, offer
+from rigidsym.errors import KernelError, MissingExtra, offer
 
 if TYPE_CHECKING:
     from rigidsym.kernels.ir import Program
 
-_DEFAULT = "numpy"
 _REMOVED = {"degrees": "angles are in radians; convert them with np.radians and np.degrees"}
 
 
@@ -56,7 +50,7 @@ class Target:
 
 
 class Printer(Protocol):
-    """The contents of a target's printer.py."""
+    """The contents of LANGUAGE.py."""
 
     RESERVED: frozenset[str]
 
@@ -65,29 +59,54 @@ class Printer(Protocol):
     def load(self, name: str, files: Mapping[str, str]) -> ModuleType: ...
 
 
-_KNOWN: dict[str, Target] = {}
+_KNOWN: dict[str, Target] = {
+    "numpy": Target(about="NAME.py: a Python module that depends only on NumPy", ending=".py"),
+    "c": Target(
+        about="NAME.h, NAME.c: C99; rigidsym build compiles the Python module NAME_c.py",
+        ending=".c",
+        stands_alone=False,
+        programs=("cc", "gcc", "clang"),
+        options={
+            "precision": ("both", "double", "float"),
+            "arrays": (True, False),
+            "libm": (False, True),
+        },
+    ),
+    "javascript": Target(
+        about="NAME.mjs: an ES module without dependencies, and its types in NAME.d.mts; no unwrap",
+        ending=".mjs",
+        programs=("node",),
+        has_single=False,
+    ),
+    "jax": Target(
+        about="NAME_jax.py: a Python module for JAX: jit, vmap, grad; no unwrap",
+        ending="_jax.py",
+        package="jax",
+    ),
+    "numba": Target(
+        about="NAME_numba.py: a Python module that Numba compiles",
+        ending="_numba.py",
+        package="numba",
+    ),
+}
 TARGETS: Mapping[str, Target] = MappingProxyType(_KNOWN)  # the default first
 
 
-def register(folder: Path) -> None:
-    """Add the language of a folder such as /home/me/fortran, under the folder's name.
+def register(file: Path) -> None:
+    """Add the language of a file such as /home/me/fortran.py, under the file's name.
 
-    Raises KernelError if there is a target of this name or if the folder is not one of a target.
+    Raises KernelError if there is a target of this name or if the file describes none.
     """
-    name = folder.name
+    name = file.stem
     if name in TARGETS:
         raise KernelError(f"a target named {name} exists already")
-    if missing := [f for f in ("__init__.py", "printer.py") if not (folder / f).is_file()]:
-        raise KernelError(f"{folder} is not the folder of a target: no {' and no '.join(missing)}")
-    spec = spec_from_file_location(
-        f"{__name__}.{name}", folder / "__init__.py", submodule_search_locations=[str(folder)]
-    )
-    if spec is None or spec.loader is None:
-        raise KernelError(f"{folder / '__init__.py'} cannot be imported")
+    spec = spec_from_file_location(f"{__name__}.{name}", file)
+    if not file.is_file() or spec is None or spec.loader is None:
+        raise KernelError(f"{file} is not a Python file")
     module = module_from_spec(spec)
     spec.loader.exec_module(module)
     if not isinstance(getattr(module, "TARGET", None), Target):
-        raise KernelError(f"{folder / '__init__.py'} defines no TARGET of the class Target")
+        raise KernelError(f"{file} defines no TARGET of the class Target")
     sys.modules[spec.name] = module
     _KNOWN[name] = module.TARGET
 
@@ -114,13 +133,11 @@ def check_options(target: str, options: Mapping[str, str | bool]) -> None:
 def printer(target: str) -> Printer:
     """The printer of a target; raises KernelError if there is none of this name."""
     check_target(target)
-    return cast(Printer, import_module(f"{__name__}.{target}.printer"))
+    return cast(Printer, import_module(f"{__name__}.{target}"))
 
 
-def _register_shipped() -> None:
-    names = (path.parent.name for path in Path(__file__).parent.glob("*/printer.py"))
-    for name in sorted(names, key=lambda name: (name != _DEFAULT, name)):
-        _KNOWN[name] = import_module(f"{__name__}.{name}").TARGET
-
-
-_register_shipped()
+def load(target: str, name: str, files: Mapping[str, str]) -> ModuleType:
+    """A Python module of the files; raises MissingExtra if its package is not installed."""
+    if TARGETS[target].package and TARGETS[target].missing:
+        raise MissingExtra(f"the target {target}", target)
+    return printer(target).load(name, files)

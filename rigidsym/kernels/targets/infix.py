@@ -36,10 +36,11 @@ def infix(
 ) -> str:
     """The expression in one line; `functions` are the target's names for functions.
 
-    A function without a name there keeps its own, a guard is or_nan(value, scale), and `number`
-    is how the target writes a number. "choice" there is a form with three places, the condition
-    first, "nan" a word, and "==" the sign of equality. With `explicit`, no reader needs to know
-    which operator binds more tightly (MISRA C:2012, rule 12.1).
+    A function without a name there keeps its own; "or_nan" names the function of guards, "None"
+    their missing scale. A name with {} is a form for the arguments. "choice" there is a form with
+    three places, the condition first, "nan" a word, and "==" the sign of equality. `number` is how
+    the target writes a number. With `explicit`, no reader needs to know which operator binds more
+    tightly (MISRA C:2012, rule 12.1).
     """
     return _whole(expression, tuple(functions.items()), number, explicit)
 
@@ -75,8 +76,8 @@ def _text(
             ratio = (number(float(whole)) for whole in Fraction(value).as_integer_ratio())
             return " / ".join(ratio), _PRODUCT
         case Call(function):
-            given = ", ".join(argument.text for argument in expression.arguments)
-            return f"{functions.get(function, function)}({given})", _ATOM
+            names = [argument.text for argument in expression.arguments]
+            return _called(functions.get(function, function), names), _ATOM
         case Compare(relation, left, right):
             sign = functions.get(relation, relation)
             side = _ATOM if explicit else _SUM
@@ -85,9 +86,10 @@ def _text(
             form = functions.get("choice", "{1} if {0} else {2}")
             held = _ATOM if explicit else _CHOICE
             return form.format(*(within(part, held) for part in parts(expression))), _CHOICE
-        case Guarded(value, scale):
-            limit = "None" if scale is None else within(scale, _SUM)
-            return f"or_nan({value.text}, {limit})", _ATOM
+        case Guarded(value, scale, power):
+            limit = functions.get("None", "None") if scale is None else within(scale, _SUM)
+            given = [value.text, limit, *([str(power)] if power != 1 else [])]
+            return _called(functions.get("or_nan", "or_nan"), given), _ATOM
         case Negative(operand):
             return f"-{within(operand, _ATOM if explicit else _PRODUCT)}", _SUM
         case Sum(terms):
@@ -107,7 +109,6 @@ def _text(
             return f"{above} / {f'({below})' if len(divisors) > 1 else below}", _PRODUCT
 
 
-def guard_arguments(guard: Guarded, nothing: str) -> list[str]:
-    """The value, its scale or `nothing`, and the power if it is not one."""
-    scale = nothing if guard.scale is None else infix(guard.scale)
-    return [guard.value.text, scale, *([str(guard.power)] if guard.power != 1 else [])]
+def _called(function: str, arguments: list[str]) -> str:
+    listed = ", ".join(arguments)
+    return function.format(listed) if "{}" in function else f"{function}({listed})"

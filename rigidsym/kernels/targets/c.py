@@ -12,15 +12,14 @@ from math import pi
 from types import ModuleType
 from typing import Any
 
-from rigidsym.kernels.ir import Kernel, Program, functions_of, last_order
+from rigidsym.kernels.ir import Program, functions_of, last_order
 from rigidsym.kernels.lowering.schedule import narrowed
 from rigidsym.kernels.lowering.trigonometry import two_over_pi
-from rigidsym.kernels.targets.c.expected_values import samples_of
-from rigidsym.kernels.targets.c.function import Contents, Function, show
-from rigidsym.kernels.targets.c.module_files import module_files
-from rigidsym.kernels.targets.numpy import printer as numpy
-from rigidsym.kernels.targets.text import remarks
-from rigidsym.kernels.targets.text.precision import EITHER, PRECISIONS, Precision
+from rigidsym.kernels.targets import numpy, remarks
+from rigidsym.kernels.targets.c_function import Contents, Function, show
+from rigidsym.kernels.targets.c_module import module_files
+from rigidsym.kernels.targets.expected_values import samples_of
+from rigidsym.kernels.targets.precision import EITHER, PRECISIONS, Precision
 from rigidsym.system import resources
 
 _WORDS = (
@@ -54,7 +53,7 @@ def render(program: Program, **options: Any) -> dict[str, str]:
 
 def load(name: str, files: Mapping[str, str]) -> ModuleType:
     """The Python module, compiled once a machine."""
-    from rigidsym.kernels.targets.c.compiling import build, load_built
+    from rigidsym.kernels.targets.compiling import build, load_built
 
     return load_built(f"{name}_c", files, lambda folder: build(folder / f"{name}.c"))
 
@@ -115,65 +114,28 @@ def _test(program: Program, functions: Sequence[Sequence[Function]]) -> dict[str
 
 
 def _header(program: Program, functions: Sequence[Sequence[Function]]) -> str:
+    contents = functions[0][0].contents
+    about = remarks.about_module(
+        "c/header.txt.jinja",
+        program,
+        has_floats=contents.precision != "double",
+        arrays=contents.arrays,
+        libm=contents.libm,
+        tile=_TILE,
+    )
+    kernels = [one.kernel for one in functions[0]]
+    comments = [_comment(remarks.about_kernel("c/function.txt.jinja", k)) for k in kernels]
+    each = zip(comments, zip(*functions, strict=True), strict=True)
     return _template("c/header.h.jinja").render(
-        about=_comment(_about(program, functions[0][0].contents)),
+        about=_comment(about),
         guard=f"{program.name.upper()}_H",
-        arrays=functions[0][0].contents.arrays,
-        functions=[
-            {"about": _comment(_about_kernel(both[0].kernel)), "precisions": both}
-            for both in zip(*functions, strict=True)
-        ],
+        arrays=contents.arrays,
+        functions=[{"about": text, "precisions": both} for text, both in each],
     )
 
 
 def _template(name: str) -> Any:
     return resources.environment().get_template(name)
-
-
-def _about(program: Program, contents: Contents) -> list[remarks.Paragraph]:
-    """The paragraphs at the head of the header."""
-    arrays = (
-        "An array function computes `count` orientations. The `step` of an argument is the "
-        "distance from one orientation to the next (0 uses one for all), its `stride` the distance "
-        "from one component to the next, both in elements; contiguous rows, with a step of the "
-        "row's length and a stride of 1, are the fastest. `out` may not overlap an argument.",
-        "No function allocates memory, recurses or keeps state; an array function keeps "
-        f"{_TILE} orientations on the stack.",
-        "With -DCLONES, gcc and clang for x86-64 compile array functions that choose between AVX2, "
-        "AVX-512 and neither when they are called.",
-    )
-    one = (
-        "`out` may not overlap an argument.",
-        "No function allocates memory, recurses or keeps state.",
-    )
-    sines = (
-        "Sine, cosine and atan2 are taken from <math.h>; their errors add to the errors of the "
-        "functions."
-        if contents.libm
-        else "Sine and cosine are computed here, within 2 eps of their size (eps is 2^-52 in "
-        "double, 2^-23 in float) at any finite angle."
-    )
-    floats = "" if contents.precision == "double" else "Names that end in f are of type float. "
-    first, *others = arrays if contents.arrays else one
-    return remarks.about_module(
-        program,
-        "functions in C99",
-        "Arguments, in radians and SI units:",
-        [f"  {a.name}[{len(a.components)}]  {a.about}" for a in program.arguments],
-        f"Matrices are filled row by row. {floats}{first}",
-        *others,
-        sines,
-    )
-
-
-def _about_kernel(kernel: Kernel) -> list[remarks.Paragraph]:
-    rows = [
-        f"  {a.name}[{len(a.components)}]  {', '.join(a.components)}{remarks.in_units(a.units)}"
-        for a in kernel.arguments
-    ]
-    unit = f"  in {kernel.unit}" if kernel.unit else ""
-    shape = f"  {' by '.join(map(str, kernel.shape))}, row by row" if len(kernel.shape) > 1 else ""
-    return remarks.about_kernel(kernel, [*rows, f"  out[{len(kernel.outputs)}]{shape}{unit}"])
 
 
 def _comment(paragraphs: Sequence[remarks.Paragraph]) -> str:

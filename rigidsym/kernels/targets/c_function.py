@@ -9,9 +9,9 @@ from textwrap import wrap
 from typing import Any
 
 from rigidsym.kernels.ir import Call, Compare, Expression, Guarded, Kernel, names_in
-from rigidsym.kernels.targets.text.infix import infix
-from rigidsym.kernels.targets.text.precision import Precision
-from rigidsym.kernels.targets.text.python import WIDTH
+from rigidsym.kernels.targets.infix import infix
+from rigidsym.kernels.targets.precision import Precision
+from rigidsym.kernels.targets.python import WIDTH
 
 _FORMS = {"choice": "{0} ? {1} : {2}"}
 _WIDTH = 92

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from typing import Any
 
 from rigidsym.kernels.ir import Kernel, Program
-from rigidsym.kernels.targets.numpy import printer as numpy
-from rigidsym.kernels.targets.text.precision import PRECISIONS
+from rigidsym.kernels.targets import numpy
+from rigidsym.kernels.targets.precision import PRECISIONS
 from rigidsym.system import resources
 
 _LETTERS = {"double": "NPY_DOUBLE", "float": "NPY_FLOAT"}

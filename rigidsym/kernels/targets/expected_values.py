@@ -23,7 +23,7 @@ from rigidsym.kernels.ir import (
     Product,
     Sum,
 )
-from rigidsym.kernels.targets.c.function import Function
+from rigidsym.kernels.targets.c_function import Function
 
 _POINTS, _TRIED = 2, 12  # of each function; where a result is not real, the next is tried
 _ALLOWED = 1024  # eps of the largest entry

@@ -16,7 +16,6 @@ from rigidsym.kernels.ir import (
     FUNCTIONS,
     Call,
     Expression,
-    Guarded,
     Kernel,
     KernelArgument,
     Program,
@@ -25,8 +24,8 @@ from rigidsym.kernels.ir import (
 )
 from rigidsym.kernels.lowering.naming import Names
 from rigidsym.kernels.lowering.schedule import narrowed
-from rigidsym.kernels.targets.text import remarks
-from rigidsym.kernels.targets.text.infix import guard_arguments, infix
+from rigidsym.kernels.targets import remarks
+from rigidsym.kernels.targets.infix import infix
 from rigidsym.system import resources
 from rigidsym.version import OWNERSHIP
 
@@ -39,20 +38,25 @@ RESERVED = frozenset({*_WORDS.split(), *FUNCTIONS})
 _WIDTH = 88
 _TYPES = """type Vector = ArrayLike<number>;
 type Matrix = Vector | ArrayLike<Vector>;"""
-_FORMS = {"choice": "{0} ? {1} : {2}", "nan": "NaN", "==": "==="}
+_SPELLED = {
+    **{"choice": "{0} ? {1} : {2}", "nan": "NaN", "==": "==="},
+    **{"or_nan": "_or_nan", "None": "null"},
+}
 
 
 def render(program: Program) -> dict[str, str]:
     """The module, and its types for TypeScript."""
     name, kernels = program.name, program.kernels
+    rows = [(a.name, f"({', '.join(map(str, a.shape))})", a.about) for a in program.arguments]
+    about = remarks.about_module("javascript/module.txt.jinja", program, table=remarks.table(rows))
     declared = "\n".join(line for kernel in kernels for line in _declared(kernel))
     types = f"// The types of {name}.mjs. {OWNERSHIP}\n\n{_TYPES}\n\n{declared}\n"
-    return {f"{name}.mjs": _module(_about(program), kernels), f"{name}.d.mts": types}
+    return {f"{name}.mjs": _module(about, kernels), f"{name}.d.mts": types}
 
 
 def load(name: str, files: Mapping[str, str]) -> ModuleType:
     """The functions as a Python module that runs node; for comparison, each call is a process."""
-    from rigidsym.kernels.targets.javascript.node import module
+    from rigidsym.kernels.targets.node import module
 
     return module(name, files[f"{name}.mjs"])
 
@@ -78,7 +82,7 @@ def _module(about: Sequence[remarks.Paragraph], kernels: Sequence[Kernel]) -> st
             has_series=last >= 0,
             has_divisors=has_guards,
             has_batches=bool(about),
-            has_matrices=any(len(shape) > 1 for k in kernels for shape in k.parts or (k.shape,)),
+            has_matrices=any(len(shape) > 1 for k in kernels for shape in k.results),
             takes_matrices=any(a.is_matrix for kernel in kernels for a in kernel.arguments),
         )
     )
@@ -98,12 +102,12 @@ def _declared(kernel: Kernel) -> Iterator[str]:
 
 def _kind(kernel: Kernel) -> str:
     """The type of what is returned: number[][], or those of a value and its derivative."""
-    kinds = ["number" + "[]" * len(shape) for shape in kernel.parts or (kernel.shape,)]
+    kinds = ["number" + "[]" * len(shape) for shape in kernel.results]
     return f"[{', '.join(kinds)}]" if kernel.parts else kinds[0]
 
 
 def _show(expression: Expression) -> str:
-    return infix(expression, _FORMS)
+    return infix(expression, _SPELLED)
 
 
 @lru_cache(maxsize=64)  # all pages compare with the same conventions
@@ -124,10 +128,18 @@ def _function(kernel: Kernel) -> dict[str, object]:
         for k, name in enumerate(argument.components)
         if name in kernel.used
     ]
+    shapes = " and ".join(f"({', '.join(map(str, s))})" for s in kernel.results if s)
+    returns = f"{{{_kind(kernel)}}}" + (f" {shapes}" if shapes else "")
+    about = remarks.about_kernel(
+        "javascript/function.txt.jinja",
+        kernel,
+        vectors=list(zip(vectors, arguments, strict=True)),
+        returns=returns + (f" in {kernel.unit}" if kernel.unit else ""),
+    )
     given = [f"  out[{_placed('at', k)}] = {_show(e)};" for k, e in enumerate(kernel.outputs)]
     return {
         "name": kernel.name,
-        "about": _comment(_about_kernel(kernel, vectors)),
+        "about": _comment(about),
         "parameters": ", ".join(vectors),
         "given": ", ".join(f"{vector}, {place}" for vector, place, *_ in each),
         "taken": ", ".join(f'_taken("{a.name}", {flat}, {n}), 0' for _, _, n, a, flat in each),
@@ -153,8 +165,6 @@ def _placed(place: str, count: int) -> str:
 def _lines(kernel: Kernel) -> Iterator[str]:
     for name, value in kernel.statements:
         match value:
-            case Guarded():
-                yield f"  const {name} = _or_nan({', '.join(guard_arguments(value, 'null'))});"
             case Call("eps"):
                 yield f"  const {name} = Number.EPSILON;"
             case dict():  # all functions c_k of one square
@@ -190,36 +200,6 @@ def _entry(order: int) -> str:
     line = f"  {order}: [{', '.join(items)}],"
     inside = "".join(f"    {item},\n" for item in items)
     return line if len(line) <= _WIDTH else f"  {order}: [\n{inside}  ],"
-
-
-def _about(program: Program) -> list[remarks.Paragraph]:
-    """The paragraphs of the module's comment."""
-    rows = [(a.name, f"({', '.join(map(str, a.shape))})", a.about) for a in program.arguments]
-    return remarks.about_module(
-        program,
-        "functions of plain arrays",
-        "Arguments, arrays of numbers in radians and SI units:",
-        remarks.table(rows),
-        "Vectors are arrays, and matrices are arrays of rows.",
-        "Each function has a version ..._batch for many orientations. Its arguments and its result "
-        "are flat arrays, row after row, matrices row by row; an argument with a single row is "
-        "used for all orientations. It fills and returns `out`, by default a new Float64Array; "
-        "`out` must not share memory with an argument. There are no threads (use workers), and no "
-        "float32, since JavaScript computes in double precision only.",
-    )
-
-
-def _about_kernel(kernel: Kernel, vectors: Sequence[str]) -> list[remarks.Paragraph]:
-    """The paragraphs of a function's comment."""
-    lines = []
-    for vector, a in zip(vectors, kernel.arguments, strict=True):
-        rows = "; rows, or the entries row by row" if a.is_matrix else ""
-        about = f"{', '.join(a.components)}{remarks.in_units(a.units)}{rows}"
-        lines.append(f"@param {{ArrayLike<number>}} {vector} {about}")
-    shapes = [f"({', '.join(map(str, s))})" for s in kernel.parts or (kernel.shape,) if s]
-    unit = f" in {kernel.unit}" if kernel.unit else ""
-    returned = " ".join([f"@returns {{{_kind(kernel)}}}", *filter(None, [" and ".join(shapes)])])
-    return [*remarks.about_kernel(kernel), [*lines, returned + unit]]
 
 
 def _comment(paragraphs: Sequence[remarks.Paragraph]) -> str:

@@ -1,0 +1,81 @@
+"""Kernels as a Python module of functions for JAX: pure, so that jit, vmap and grad apply."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from types import ModuleType
+
+from rigidsym.kernels import loaded
+from rigidsym.kernels.ir import FUNCTIONS, Kernel, Program, functions_of, last_order
+from rigidsym.kernels.lowering.schedule import narrowed
+from rigidsym.kernels.targets import python
+from rigidsym.kernels.targets.infix import infix
+from rigidsym.kernels.targets.python import WIDTH, bracketed, exploded
+from rigidsym.system import resources
+
+RESERVED = python.RESERVED | {"jax", "jnp", "like", "parts", "both"}
+_DERIVATIVES = 2  # that functions of n = |v| have: each takes two functions c_k more
+_WORDS = {
+    **{name: f"jnp.{name}" for name in FUNCTIONS},
+    **{"atan2": "jnp.arctan2", "eps": "_eps", "or_nan": "_or_nan", "entire": "_entire"},
+    **{"nan": "jnp.nan", "choice": "jnp.where({0}, {1}, {2})"},
+}
+
+
+def render(program: Program) -> dict[str, str]:
+    """The module."""
+    kernels = [
+        narrowed(kernel, infix, line=WIDTH - 4, output=WIDTH - 8 - len(","))
+        for kernel in program.kernels
+    ]
+    functions = [
+        {
+            "ufunc": python.ufunc(kernel),
+            "signature": python.signature(kernel),
+            "about": python.about_function(kernel),
+            "body": "\n".join(_body(kernel)),
+        }
+        for kernel in kernels
+    ]
+    has_series = last_order(kernels) >= 0
+    text = (
+        resources.environment()
+        .get_template("jax/module.py.jinja")
+        .render(
+            about=python.about_module("jax/module.txt.jinja", program),
+            exports=python.exports([kernel.name for kernel in kernels]),
+            components=python.components(program),
+            functions=functions,
+            has_parts=any(kernel.parts for kernel in kernels),
+            has_divisors=any(kernel.guards for kernel in kernels),
+            has_matrices=any(a.is_matrix for kernel in kernels for a in kernel.arguments),
+            has_eps="eps" in functions_of(kernels),
+            series=python.series(kernels, more=2 * _DERIVATIVES) if has_series else "",
+        )
+    )
+    return {f"{program.name}_jax.py": text}
+
+
+def load(name: str, files: Mapping[str, str]) -> ModuleType:
+    """The module itself."""
+    return loaded.load(f"{name}_jax", files)
+
+
+def _body(kernel: Kernel) -> Iterator[str]:
+    """The components that are used, by argument; the assignments; and what is returned."""
+    is_used = not kernel.used.isdisjoint(kernel.components)
+    head = f"like, {'parts' if is_used else '_'} = _components("
+    yield bracketed(4, head, python.passed(kernel, "jnp"), ")")
+    for argument in kernel.arguments:
+        names = [name if name in kernel.used else "_" for name in argument.components]
+        if kernel.used.intersection(names):
+            left = ", ".join(names) if len(names) > 1 else f"({names[0]},)"
+            line = f'    {left} = parts["{argument.name}"]'
+            wide = exploded(4, "(", names, f') = parts["{argument.name}"]')
+            yield line if len(line) <= WIDTH else wide
+    for name, value in kernel.statements:
+        yield python.statement(4, name, value, _WORDS)
+    entries = ["like", str(kernel.shape), *map(infix, kernel.outputs)]
+    yield bracketed(4, f"{'both =' if kernel.parts else 'return'} _together(", entries, ")")
+    if kernel.parts:
+        yield bracketed(4, "return _parted(", ["both", *map(str, kernel.parts)], ")")

@@ -1,0 +1,171 @@
+"""Text that all Python modules share: for NumPy, Numba, JAX and compiled modules.
+
+It has the layout that `ruff format` gives it, so that no formatter need run.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+
+from rigidsym.algebra.stable_forms import FIRST_SERIES, series_of, taylor
+from rigidsym.kernels.ir import FUNCTIONS, Call, Choice, Expression, Kernel, Program, last_order
+from rigidsym.kernels.targets import remarks
+from rigidsym.kernels.targets.infix import infix
+
+WIDTH = 88
+MANY = 8  # components
+_UNWELCOME = ("l", "O", "I")  # linters refuse these names
+RESERVED = frozenset({*FUNCTIONS, *_UNWELCOME, "nan", "max", "min"})
+_CALL = re.compile(r"([A-Za-z_][\w.]*\()(.*)\)")
+_BEFORE_AN_OPERATOR = re.compile(r" (?=[-+*/] )")
+_BEFORE_A_WORD = re.compile(r" (?=if |else )")
+_QUOTES = '"""'
+
+
+def statement(
+    indent: int, name: str, value: Expression | dict[str, Call], words: Mapping[str, str]
+) -> str:
+    """One assignment, or that of all functions c_k of one square, which words["entire"] computes.
+
+    What is too wide for a line is broken in the brackets of its call, at its conditions, or before
+    each operator in brackets of its own.
+    """
+    if isinstance(value, dict):
+        calls = sorted(value.items(), key=lambda named: named[1].order or 0)
+        name = ", ".join(name for name, _ in calls) if len(calls) > 1 else f"({calls[0][0]},)"
+        given = [calls[0][1].argument.text, *(str(call.order) for _, call in calls)]
+        text = f"{words['entire']}({', '.join(given)})"
+    else:
+        text = infix(value, words)
+    margin, inner = " " * indent, " " * (indent + 4)
+    line = f"{margin}{name} = {text}"
+    if len(line) <= WIDTH:
+        return line
+    if call := _CALL.fullmatch(text):
+        return bracketed(indent, f"{name} = {call[1]}", call[2].split(", "), ")")
+    if isinstance(value, Choice):
+        pieces = _BEFORE_A_WORD.split(text)
+    elif "(" in text:
+        return line
+    else:
+        pieces = [text] if len(inner + text) <= WIDTH else _BEFORE_AN_OPERATOR.split(text)
+    body = "\n".join(inner + piece for piece in pieces)
+    return f"{margin}{name} = (\n{body}\n{margin})"
+
+
+def series(kernels: Sequence[Kernel], *, more: int = 0) -> str:
+    """The table of series, a line each: k, the switch, c_{k-2}(0), and the coefficients."""
+    lines = []
+    for order in range(FIRST_SERIES, last_order(kernels) + more + 1):
+        one = series_of(order)
+        numbers = [one.switch, taylor(order - 2)[0], *one.coefficients]
+        lines.append(exploded(4, f"{order}: (", [repr(float(n)) for n in numbers], "),"))
+    return "\n".join(lines)
+
+
+def signature(kernel: Kernel, *options: str) -> str:
+    """Of a function of arrays, with types."""
+    arrays = [f"{a.name}: ArrayLike" for a in kernel.arguments]
+    given = [*arrays, *(["*", *options] if options else [])]
+    result = "tuple[Array, Array]" if kernel.parts else "Array"
+    return bracketed(0, f"def {kernel.name}(", given, f") -> {result}:")
+
+
+def passed(kernel: Kernel, library: str) -> list[str]:
+    """What a function of arrays passes on: name=value."""
+    values = {a.name: a.name for a in kernel.arguments}
+    for a in kernel.arguments:
+        if a.is_matrix:
+            values[a.name] = f'_entries("{a.name}", {a.name}, {a.shape})'
+        if a.is_scalar:
+            values[a.name] = f"{library}.asarray({a.name})[..., None]"
+    return [f"{name}={value}" for name, value in values.items()]
+
+
+def exports(names: Sequence[str]) -> str:
+    return "\n".join(f'    "{name}",' for name in sorted(names))
+
+
+def components(program: Program) -> str:
+    """The table of components: "q": ("phi", "theta", "psi"), a line each if it fits."""
+    lines = []
+    for argument in program.arguments:
+        names = [f'"{name}"' for name in argument.components]
+        line = f'    "{argument.name}": {tuple_of(names)},'
+        wide = exploded(4, f'"{argument.name}": (', names, "),")
+        lines.append(line if len(line) <= WIDTH else wide)
+    return "\n".join(lines)
+
+
+def ufunc(kernel: Kernel) -> str:
+    """A line of the table of signatures as generalised ufuncs: "f": "(3),(3)->(3)","""
+    given, results = (
+        ",".join(f"({','.join(map(str, shape))})" for shape in shapes)
+        for shapes in ([a.shape for a in kernel.arguments], kernel.results)
+    )
+    return f'    "{kernel.name}": "{given}->{results}",'
+
+
+# docstrings
+
+
+def about_module(template: str, program: Program, **facts: object) -> str:
+    """The inside of a module's docstring."""
+    rows = [(a.name, _leading(a.shape), a.about) for a in program.arguments]
+    table = remarks.table(rows)
+    return docstring(remarks.about_module(template, program, table=table, **facts))
+
+
+def about_function(kernel: Kernel) -> str:
+    """The inside of a function's docstring; of many components it names the ends."""
+    rows = []
+    for a in kernel.arguments:
+        names = a.components
+        names = names if len(names) <= MANY else (*names[:2], "...", names[-1])
+        units = remarks.in_units(a.units)
+        rows.append((a.name, _leading(a.shape), ", ".join(names) + units))
+    results = ", ".join(map(_leading, kernel.results))
+    rows.append(("returns", results, f"in {kernel.unit}" if kernel.unit else ""))
+    template = "python/function.txt.jinja"
+    return docstring(remarks.about_kernel(template, kernel, table=remarks.table(rows)), indent=4)
+
+
+def _leading(shape: Sequence[int]) -> str:
+    return f"({', '.join(['...', *map(str, shape)])})"
+
+
+def docstring(paragraphs: Sequence[remarks.Paragraph], indent: int = 0) -> str:
+    """The inside of a docstring: paragraphs are filled, sequences of lines kept."""
+    room = WIDTH - indent
+    first = remarks.filled(paragraphs[0], room - len(_QUOTES) * (2 if len(paragraphs) == 1 else 1))
+    blocks = [first, *(remarks.filled(paragraph, room) for paragraph in paragraphs[1:])]
+    margin = " " * indent
+    text = "\n\n".join("\n".join(margin + line for line in block) for block in blocks)
+    text = text.strip().replace("\\", "\\\\").replace(_QUOTES, r"\"\"\"")
+    return f"{text}\n{margin}" if "\n" in text else text
+
+
+# layout
+
+
+def bracketed(indent: int, head: str, items: Sequence[str], tail: str) -> str:
+    """Items between brackets: in one line, or in a line of their own, or each in one."""
+    margin, inner = " " * indent, " " * (indent + 4)
+    joined = ", ".join(items)
+    if len(f"{margin}{head}{joined}{tail}") <= WIDTH:
+        return f"{margin}{head}{joined}{tail}"
+    if len(inner + joined) <= WIDTH:
+        return f"{margin}{head}\n{inner}{joined}\n{margin}{tail}"
+    return exploded(indent, head, items, tail)
+
+
+def exploded(indent: int, head: str, items: Sequence[str], tail: str) -> str:
+    """Items between brackets, each in a line of its own; an item may hold lines already."""
+    margin, inner = " " * indent, " " * (indent + 4)
+    lines = "".join(f"{inner}{item},\n" for item in items)
+    return f"{margin}{head}\n{lines}{margin}{tail}"
+
+
+def tuple_of(items: Sequence[str]) -> str:
+    return f"({', '.join(items)}{',' if len(items) == 1 else ''})"

@@ -1,0 +1,182 @@
+"""Facts about generated files for their templates, and how paragraphs of text are set."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import lru_cache, partial
+from math import ceil
+from textwrap import wrap
+
+from rigidsym.algebra.stable_forms import FIRST_SERIES, series_of
+from rigidsym.kernels.ir import (
+    Call,
+    Choice,
+    Expression,
+    Guarded,
+    Kernel,
+    Name,
+    Negative,
+    Product,
+    Program,
+    Sum,
+    functions_of,
+    last_order,
+    names_in,
+    rebuilt,
+    walk,
+)
+from rigidsym.kernels.lowering.rounding import SINE, adds_angles, rounding
+from rigidsym.kernels.targets.infix import infix
+from rigidsym.system import resources
+from rigidsym.version import OWNERSHIP, __version__
+
+_LONGEST_DIVISOR = 16  # operations and inputs of a divisor that is written out
+_MOST_NAMES = 8
+_BLANK_LINES = re.compile(r"\n\s*\n")
+_COUNTED = {"sin": "trigonometric", "cos": "trigonometric", "sqrt": "roots", "abs": "sizes"}
+_COUNTED["atan2"] = "inverse"
+
+Paragraph = str | Sequence[str]  # filled, or lines that are kept
+
+
+def paragraphs(template: str, **facts: object) -> list[Paragraph]:
+    """What a template says; lines that begin with a blank or @ are kept, others are filled."""
+    text = resources.environment().get_template(template).render(**facts)
+    blocks = (block.strip("\n") for block in _BLANK_LINES.split(text) if block.strip())
+    return [b.split("\n") if b[0] in " @" else b.replace("\n", " ") for b in blocks]
+
+
+def about_module(template: str, program: Program, **facts: object) -> list[Paragraph]:
+    """The paragraphs at the head of a file."""
+    kernels, last = program.kernels, last_order(program.kernels)
+    series = map(series_of, range(FIRST_SERIES, last + 1))
+    return paragraphs(
+        template,
+        program=program,
+        has_angles=not functions_of(kernels).isdisjoint(("sin", "cos")),
+        adds_angles=any(map(adds_angles, kernels)),
+        has_bounds=any(map(rounding, kernels)),
+        sine=f"{SINE:g}",
+        has_series=last >= 0,
+        series=[
+            {
+                "order": each.order,
+                "terms": len(each.coefficients),
+                "switch": f"{float(each.switch):g}",
+                "error": ceil(each.error),
+            }
+            for each in series
+        ],
+        guards={kind for kernel in kernels for kind in _kinds(kernel)},
+        version=__version__,
+        ownership=OWNERSHIP,
+        **facts,
+    )
+
+
+def about_kernel(template: str, kernel: Kernel, **facts: object) -> list[Paragraph]:
+    """The paragraphs on a function."""
+    divisors = [divisor.text for divisor in kernel.divisors if isinstance(divisor, Name)]
+    values = [kernel.guards[name].value for name in divisors if name in kernel.guards]
+    return paragraphs(
+        template,
+        kernel=kernel,
+        operations=count(kernel.values),
+        bound=rounding(kernel),
+        poles=list(dict.fromkeys(_divisor(kernel, value) for value in values)),
+        in_units=in_units,
+        **facts,
+    )
+
+
+def in_units(units: Sequence[str]) -> str:
+    """The unit of components behind their names: " in rad"; pure numbers have none."""
+    if not any(units):
+        return ""
+    same = len(set(units)) == 1
+    return f" in {units[0] if same else '(' + ', '.join(unit or '1' for unit in units) + ')'}"
+
+
+def table(rows: Sequence[tuple[str, str, str]]) -> str:
+    """Rows with their first two columns aligned."""
+    first, second = (max((len(row[k]) for row in rows), default=0) for k in (0, 1))
+    return "\n".join(f"  {a:<{first}}  {b:<{second}}  {c}".rstrip() for a, b, c in rows)
+
+
+def filled(paragraph: Paragraph, width: int) -> list[str]:
+    """The lines of a paragraph."""
+    return list(_wrapped(paragraph, width) if isinstance(paragraph, str) else paragraph)
+
+
+@lru_cache(maxsize=1024)  # modules of one kind have most paragraphs in common
+def _wrapped(paragraph: str, width: int) -> list[str]:
+    return wrap(paragraph, width, break_long_words=False, break_on_hyphens=False)
+
+
+def comment(texts: Sequence[Paragraph], width: int, safe: Callable[[str], str]) -> str:
+    """Lines of a comment; `safe` sees to it that no text can end it."""
+    blocks = (filled(paragraph, width - len(" * ")) for paragraph in texts)
+    text = safe("\n\n".join("\n".join(block) for block in blocks))
+    return "\n".join(f" * {line}".rstrip() for line in text.split("\n"))
+
+
+def _kinds(kernel: Kernel) -> Iterator[str]:
+    """The kinds of divisors that are guarded."""
+    for guard in kernel.guards.values():
+        call = kernel.calls.get(guard.value.text)
+        if call is not None:
+            yield "angle" if call.order is None else "length"
+        else:
+            yield "squares" if guard.scale is None else {1: "sum", 2: "minors"}[guard.power]
+
+
+def _divisor(kernel: Kernel, divisor: Name) -> str:
+    """A divisor as a formula if it is short, else what it depends on."""
+    sizes = dict.fromkeys(kernel.components, 1)
+    inputs: dict[str, tuple[str, ...]] = {name: (name,) for name in kernel.components}
+    for name, value in kernel.assignments:
+        sizes[name] = sum(sizes.get(n.text, 0) if isinstance(n, Name) else 1 for n in walk(value))
+        behind = dict.fromkeys(i for n in names_in(value) for i in inputs[n])
+        inputs[name] = tuple(n for n in kernel.components if n in behind)
+    if sizes[divisor.text] > _LONGEST_DIVISOR:
+        names = inputs[divisor.text]
+        listed = ", ".join(names) if len(names) <= _MOST_NAMES else f"{len(names)} of the inputs"
+        return f"an expression in {listed}"
+    return infix(_in_inputs(divisor, dict(kernel.assignments)))
+
+
+def _in_inputs(expression: Expression, values: Mapping[str, Expression]) -> Expression:
+    """The expression with its definition for each name."""
+    written = partial(_in_inputs, values=values)
+    match expression:
+        case Name(text) if text in values:
+            return written(values[text])
+        case Call(function):
+            return Call(function, *(Name(infix(written(name))) for name in expression.arguments))
+        case Guarded(value):
+            return written(value)
+    return rebuilt(written, expression)
+
+
+def count(expressions: Iterable[Expression]) -> Counter[str]:
+    """The operations in expressions as they are written; subtractions count as additions."""
+    counts: Counter[str] = Counter()
+    for node in (node for expression in expressions for node in walk(expression)):
+        match node:
+            case Choice():
+                counts["choices"] += 1
+            case Call("eps"):
+                pass  # a constant of the type
+            case Call(function):
+                counts[_COUNTED.get(function, "entire")] += 1
+            case Product(factors, divisors):
+                counts["multiplications"] += len(factors) - 1 + max(len(divisors) - 1, 0)
+                counts["divisions"] += bool(divisors)
+            case Sum(terms):
+                counts["additions"] += len(terms) - 1
+                counts["negations"] -= sum(isinstance(term, Negative) for term in terms[1:])
+            case Negative():
+                counts["negations"] += 1
+    return counts
