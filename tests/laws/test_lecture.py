@@ -19,54 +19,30 @@ from rigidsym.models.rotation import SOURCES, elementary, hat, lecture
 phi, theta, psi = dynamicsymbols("phi theta psi")
 phi_dot, theta_dot, psi_dot = dynamicsymbols("phi theta psi", 1)
 
-R_PRINTED = sp.ImmutableMatrix(
-    [
-        [
-            cos(phi) * cos(psi) - sin(phi) * sin(psi) * cos(theta),
-            -cos(phi) * sin(psi) - sin(phi) * cos(psi) * cos(theta),
-            sin(phi) * sin(theta),
-        ],
-        [
-            sin(phi) * cos(psi) + cos(phi) * sin(psi) * cos(theta),
-            cos(phi) * cos(psi) * cos(theta) - sin(phi) * sin(psi),
-            -cos(phi) * sin(theta),
-        ],
-        [sin(psi) * sin(theta), cos(psi) * sin(theta), cos(theta)],
-    ]
+
+def typed(*rows: str) -> sp.ImmutableMatrix:
+    """A matrix in the letters c and s of the angles f, t and p, with their rates F, T and P."""
+    names = {
+        f"{name}{angle}": function(q)
+        for name, function in (("c", cos), ("s", sin))
+        for angle, q in (("f", phi), ("t", theta), ("p", psi))
+    }
+    names |= {"F": phi_dot, "T": theta_dot, "P": psi_dot}
+    return sp.ImmutableMatrix([[sp.sympify(e, names) for e in row.split(",")] for row in rows])
+
+
+R_PRINTED = typed(
+    "cf*cp - sf*sp*ct, -cf*sp - sf*cp*ct, sf*st",
+    "sf*cp + cf*sp*ct, cf*cp*ct - sf*sp, -cf*st",
+    "sp*st, cp*st, ct",
 )
-SPIN_PRINTED = sp.ImmutableMatrix(
-    [
-        [
-            0,
-            -phi_dot - psi_dot * cos(theta),
-            sin(phi) * theta_dot - psi_dot * cos(phi) * sin(theta),
-        ],
-        [
-            phi_dot + psi_dot * cos(theta),
-            0,
-            -psi_dot * sin(phi) * sin(theta) - cos(phi) * theta_dot,
-        ],
-        [
-            psi_dot * cos(phi) * sin(theta) - sin(phi) * theta_dot,
-            psi_dot * sin(phi) * sin(theta) + cos(phi) * theta_dot,
-            0,
-        ],
-    ]
+SPIN_PRINTED = typed(
+    "0, -F - P*ct, sf*T - P*cf*st",
+    "F + P*ct, 0, -P*sf*st - cf*T",
+    "P*cf*st - sf*T, P*sf*st + cf*T, 0",
 )
-OMEGA_PRINTED = sp.ImmutableMatrix(
-    [
-        psi_dot * sin(phi) * sin(theta) + cos(phi) * theta_dot,
-        sin(phi) * theta_dot - psi_dot * cos(phi) * sin(theta),
-        phi_dot + psi_dot * cos(theta),
-    ]
-)
-EQUATION_18 = sp.ImmutableMatrix(
-    [
-        phi_dot * sin(psi) * sin(theta) + theta_dot * cos(psi),
-        phi_dot * sin(theta) * cos(psi) - theta_dot * sin(psi),
-        phi_dot * cos(theta) + psi_dot,
-    ]
-)
+OMEGA_PRINTED = typed("P*sf*st + cf*T", "sf*T - P*cf*st", "F + P*ct")
+EQUATION_18 = typed("F*sp*st + T*cp", "F*st*cp - T*sp", "F*ct + P")
 
 
 def turn_z(beta: sp.Expr) -> sp.Matrix:

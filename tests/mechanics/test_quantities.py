@@ -1,92 +1,190 @@
-"""Each quantity is one entry: its reasons are sentences, its laws refute a wrong value."""
+"""Each quantity is one entry: its reasons are sentences, its laws refute a wrong value.
+
+Quantities that are asked for by name tell the same story as all of them.
+"""
 
 from __future__ import annotations
 
 import pickle
 import re
-import tomllib
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 import sympy as sp
 
 import rigidsym as rs
-from rigidsym.errors import DerivationError, NotARotation
+from helpers.command import call
+from rigidsym.errors import DerivationError, NotARotation, QuantityError
 from rigidsym.mechanics.body import BodyValues
+from rigidsym.mechanics.conversions.conversions import Conversions
+from rigidsym.mechanics.derivation import Proof, phrases
 from rigidsym.mechanics.dynamics.lagrange import equations_of_motion
 from rigidsym.mechanics.kinematics.chain import Chain
 from rigidsym.mechanics.kinematics.workspace import Values
 from rigidsym.mechanics.mass.bodies import rigid_body
-from rigidsym.mechanics.quantities.catalogue import OF_BODY, QUANTITIES as ENTRIES
+from rigidsym.mechanics.quantities.catalogue import OF_BODY, QUANTITIES
 from rigidsym.mechanics.quantities.dynamics import DYNAMICS_QUANTITIES, EULER_QUANTITIES
 from rigidsym.mechanics.quantities.kinematics import KINEMATICS
 from rigidsym.models.forces import Forces
-from rigidsym.system.resources import text
-
-REASONS = tomllib.loads(text("templates/notes", "en/reasons.toml"))
-MECHANICS = Path(rs.__file__).parent / "mechanics"
-
-
-def test_every_reason_is_a_sentence_and_every_sentence_a_reason():
-    reasons = {entry.reason for entry in (*ENTRIES.values(), *EULER_QUANTITIES.values())} - {""}
-    reasons |= {c["reason"] for q in ENTRIES.values() for _, c in q.variants if "reason" in c}
-    assert reasons <= REASONS.keys()
-    sources = "".join(path.read_text("utf-8") for path in MECHANICS.rglob("*.py"))
-    assert set(REASONS) - reasons <= {*re.findall(r'"(\w+)"', sources)}
-
-
-def doubled(value):
-    """Twice a value: of the ring, over a divisor, or as it is printed."""
-    if isinstance(value, tuple):
-        return doubled(value[0]), value[1]
-    return value + value
-
+from rigidsym.notes.formats.record import record
+from rigidsym.notes.formats.terminal import show
+from rigidsym.pipeline import output_of
+from rigidsym.spec.derivation_spec import spec_for
 
 # proved by their own construction, or without a law of their own
 UNSEEN = {"rotation_rate", "potential_energy", "lagrangian", "hamiltonian"}
 UNSEEN |= {"effective_potential", "mass", "principal_moments"}  # whose law is that of the axes
-UNSEEN |= {"spin_matrix"}  # twice a skew matrix is skew
+UNSEEN |= {"spin_matrix", "torque_body"}  # twice a skew matrix is skew
+
+
+def test_every_reason_is_a_sentence_and_every_sentence_a_reason():
+    entries = (*QUANTITIES.values(), *EULER_QUANTITIES.values())
+    reasons = {entry.reason for entry in entries} - {""}
+    reasons |= {c["reason"] for q in entries for _, c in q.variants if "reason" in c}
+    assert reasons <= phrases("reasons").keys()
+    mechanics = Path(rs.__file__).parent / "mechanics"
+    sources = "".join(path.read_text("utf-8") for path in mechanics.rglob("*.py"))
+    assert phrases("reasons").keys() - reasons <= {*re.findall(r'"(\w+)"', sources)}
+
+
+def doubled(value):
+    """Twice a value: of the ring, over a divisor, or as it is printed."""
+    return (doubled(value[0]), value[1]) if isinstance(value, tuple) else value + value
+
+
+def workspaces(name):
+    if name in KINEMATICS:
+        # the inverse of a chain is that of the rows, whose factors are proved
+        is_inverse = any(law.is_of_inverse for law in QUANTITIES[name].laws)
+        chain = Chain(rs.rotation_from("z(a) x(b) z(c) x(d) z(e)"))
+        return [Values(rs.EulerAngles("ZXZ")), *([] if is_inverse else [chain])]
+    if name in OF_BODY:
+        cone = rigid_body(rs.solid("cone", mass=sp.Symbol("M")))
+        return [BodyValues(rs.EulerAngles("ZXZ"), cone, has_fixed_point=False)]
+    top = rs.principal_moments(*sp.symbols("A A C"))
+    forces = Forces(potential=sp.cos(rs.EulerAngles("ZXZ").coordinates[1]))
+    return [equations_of_motion(rs.EulerAngles("ZXZ"), top, forces)]
 
 
 @pytest.mark.parametrize(
-    "name",
-    [n for n in (*KINEMATICS, *OF_BODY) if n not in UNSEEN],
+    "name", [n for n in (*KINEMATICS, *OF_BODY, *DYNAMICS_QUANTITIES) if n not in UNSEEN]
 )
 def test_twice_the_value_of_an_entry_is_refuted(name):
-    entry = ENTRIES[name]
-    wrong = entry._replace(value=lambda k: doubled(entry.value(k)))
-    body = rigid_body(rs.solid("cone", mass=sp.Symbol("M")))
-    work = BodyValues(rs.EulerAngles("ZXZ"), body, has_fixed_point=False)
-    if name in KINEMATICS:
-        work = Values(rs.EulerAngles("ZXZ"))
-    assert work.step(entry).proofs
-    with pytest.raises((DerivationError, NotARotation), match=r"false|not a rotation"):
-        work.step(wrong)
-
-
-@pytest.mark.parametrize("name", [n for n in DYNAMICS_QUANTITIES if n not in UNSEEN])
-def test_twice_a_quantity_of_motion_is_refuted(name):
-    top = rs.principal_moments(*sp.symbols("A A C"))
-    forces = Forces(potential=sp.cos(rs.EulerAngles("ZXZ").coordinates[1]))
-    work = equations_of_motion(rs.EulerAngles("ZXZ"), top, forces)
-    entry = ENTRIES[name]
-    assert work.step(entry).proofs
-    with pytest.raises(DerivationError, match="false"):
-        work.step(entry._replace(value=lambda k: doubled(entry.value(k))))
-
-
-@pytest.mark.parametrize("name", [n for n in KINEMATICS if n not in UNSEEN])
-def test_twice_the_value_of_a_chain_is_refuted(name):
-    entry, chain = ENTRIES[name], Chain(rs.rotation_from("z(a) x(b) z(c) x(d) z(e)"))
-    assert chain.step(entry).proofs
-    if any(law.is_of_inverse for law in entry.laws):
-        return  # the value is that of the rows, whose factors are proved
-    with pytest.raises((DerivationError, NotARotation), match=r"false|not a rotation"):
-        Chain(chain.model).step(entry._replace(value=lambda k: doubled(entry.value(k))))
+    entry = QUANTITIES[name]
+    for work in workspaces(name):
+        assert work.step(entry).proofs
+        with pytest.raises((DerivationError, NotARotation), match=r"false|not a rotation"):
+            work.step(entry._replace(value=lambda k: doubled(entry.value(k))))
 
 
 def test_a_step_travels_to_another_process_without_its_functions():
-    step = rs.derive("ZXZ", ["rotation_rate"]).step("rotation_rate")
-    copy = pickle.loads(pickle.dumps(step.quantity))
+    quantity = rs.derive("ZXZ", ["rotation_rate"]).step("rotation_rate").quantity
+    copy = pickle.loads(pickle.dumps(quantity))
     assert copy.value is None
-    assert (copy.name, copy.inputs) == ("rotation_rate", step.quantity.inputs)
+    assert (copy.name, copy.symbol, copy.inputs) == (
+        *("rotation_rate", quantity.symbol),
+        quantity.inputs,
+    )
+
+
+# Quantities by name
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        ("rotation_matrix", "angular_velocity_body"),
+        ("angular_acceleration_space", "rate_matrix_space"),
+        ("rates_from_angular_velocity_body",),
+    ],
+    ids=" ".join,
+)
+@pytest.mark.parametrize("text", ["ZXZ", "quaternion", "z(phi) x(theta) z(psi) y(delta)"])
+def test_what_is_derived_alone_is_what_is_selected(text, names):
+    """Also the singular points, and that there are none beside quantities without rates."""
+    alone, selected = rs.derive(text, only=names), rs.derive(text).select(names)
+    assert alone.steps == selected.steps
+    assert alone.singularities == selected.singularities
+    assert (alone.singularities is None) == (not any("rate" in name for name in names))
+    has_rates = "The rates of the coordinates" in alone.note().markdown()
+    assert has_rates == (alone.singularities is not None)
+
+
+@pytest.mark.parametrize(
+    ("text", "name", "message"),
+    [
+        ("z(phi) x(theta)", "rates_from_angular_velocity_space", "chain_zx has no .* no inverse"),
+        ("ZXZ", "anglar_velocity_body", "did you mean angular_velocity_body"),
+        ("ZXZ", "inertia_tensor", "it needs a body$"),
+        ("ZXZ", "accelerations", "it needs a body and forces or a potential"),
+    ],
+)
+def test_quantities_that_there_are_not_are_refused(text, name, message):
+    with pytest.raises(QuantityError, match=message):
+        rs.derive(text, only=(name,))
+
+
+def test_a_misspelled_attribute_is_answered_with_the_nearest():
+    with pytest.raises(AttributeError, match="did you mean angular_velocity_body"):
+        rs.derive("ZXZ").anglar_velocity_body  # noqa: B018
+
+
+def test_a_file_derives_only_what_it_asks_for(monkeypatch):
+    """Eight turns: the accelerations, which no one asked for, would take their time."""
+    asked = []
+
+    def watched(model, only, **more):
+        asked.append(list(only))
+        return rs.derive(model, only, **more)
+
+    monkeypatch.setattr("rigidsym.pipeline.derive", watched)
+    spec = spec_for("z(a) x(b) z(c) x(d) y(e) z(f) x(g) y(h)")
+    made = output_of(replace(spec, quantities=("angular_velocity_space",)))
+    assert asked == [[step.quantity.name for step in made.motion.steps]]
+    assert asked == [["angular_velocity_space"]]
+
+
+def test_a_prompt_shows_one_line():
+    motion = rs.derive("ZXZ", only=["rotation_matrix", "angular_velocity_body"])
+    names = "rotation_matrix, angular_velocity_body"
+    assert repr(motion) == f"<Motion euler_zxz_intrinsic, proved: {names}>"
+    first = motion.steps[0]
+    doubtful = replace(first, proofs=(replace(first.proofs[0], status="unproved"),))
+    part = replace(motion, steps=(doubtful, *motion.steps[1:]))
+    assert repr(part) == f"<Motion euler_zxz_intrinsic, 1 unproved: {names}>"
+
+
+# Conversions beside them
+
+
+def test_conversions_are_part_of_what_is_proved(monkeypatch):
+    motion = rs.derive("gibbs_vector")
+    conversions = Conversions(motion.model)
+    assert record(motion, {}, conversions)["is_proved"]
+    open_claim = Proof(claim=conversions.from_matrix.claim, status="unproved")
+    monkeypatch.setattr(Conversions, "from_matrix", open_claim)
+    assert not record(motion, {}, conversions)["is_proved"]
+
+
+def test_the_terminal_shows_conversions_and_their_proofs():
+    motion = rs.derive("ZXZ")
+    text = show(motion, width=120, conversions=motion.conversions)
+    proofs = text.partition("Identities verified")[2]
+    for proof in motion.conversions.proofs:
+        assert f"exact     {proof.claim.text}" in proofs
+    assert "Conversions" not in show(motion, width=120)
+    motion = rs.derive("z(phi) x(phi)")
+    text = " ".join(show(motion, width=120, conversions=motion.conversions).split())
+    assert motion.conversions.without in text
+
+
+def test_the_summary_counts_the_proofs_of_conversions(tmp_path):
+    (tmp_path / "two.toml").write_text(
+        '[rotation]\nsequence = ["ZXZ", "ZYX"]\n[output]\nnote = ["tex"]\n'
+    )
+    counts = [
+        int(call("run", "two.toml", *more, cwd=tmp_path).stdout.split()[1])
+        for more in ((), ("--conversions",))
+    ]
+    assert counts[1] > counts[0]

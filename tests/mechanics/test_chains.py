@@ -1,0 +1,213 @@
+"""Long products of turns by recursion: the expanded form, true at 50 digits, linear in n."""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+import sympy as sp
+
+import rigidsym as rs
+from helpers.witness import mp
+from rigidsym.algebra.codec import codec_for
+from rigidsym.mechanics.derive import derive
+from rigidsym.mechanics.kinematics import chain as chain_of_turns
+from rigidsym.mechanics.kinematics.chain import Chain, is_shorter
+from rigidsym.mechanics.kinematics.workspace import Values
+from rigidsym.mechanics.quantities.kinematics import KINEMATICS
+
+LETTERS = "zxzyxyzxyzxyzxzyxyzx"
+TOLERANCE = mp.mpf(10) ** -40
+
+
+def chain(count: int, *, oblique: int = 0) -> rs.RotationModel:
+    """`count` turns about coordinate axes, or about axes of small whole numbers by a seed."""
+    generator = random.Random(oblique)
+    axes = [
+        "[{},{},{}]".format(*(generator.randint(1, 3) for _ in range(3))) if oblique else letter
+        for letter in LETTERS[:count]
+    ]
+    return rs.rotation_from(" ".join(f"{axis}(q{k})" for k, axis in enumerate(axes, 1)))
+
+
+@pytest.mark.parametrize(("count", "oblique"), [(1, 0), (2, 0), (3, 0), (6, 0), (3, 1)])
+def test_the_recursion_is_the_expanded_form_in_the_ring(count, oblique):
+    model = chain(count, oblique=oblique)
+    work, values = Chain(model), Values(model)
+    for name, expanded in (
+        ("rotation_matrix", values.rotation),
+        ("angular_velocity_space", values.omega_space),
+        ("angular_velocity_body", values.omega_body),
+        ("rate_matrix_space", values.rate_matrix("space")),
+        ("rate_matrix_body", values.rate_matrix("body")),
+        ("angular_acceleration_space", values.omega_space.dt()),
+        ("angular_acceleration_body", values.omega_body.dt()),
+    ):
+        matrix, spelled = work.step(KINEMATICS[name]).expression, {}
+        for definition in work.definitions_of([matrix]):
+            spelled[definition.symbol] = definition.expression.xreplace(spelled)
+        entries = map(values.codec.encode, matrix.xreplace(spelled))
+        assert not any(e - x for e, x in zip(entries, expanded.entries, strict=True)), name
+
+
+def test_a_wrong_definition_is_not_proved():
+    work = Chain(chain(5))
+    (symbol,) = [s for s in work.partial[3].free_symbols if s.name == "P3_11"]
+    work._groups["P3"][symbol] += symbol
+    with pytest.raises(rs.RigidsymError, match="is false"):
+        work.step(KINEMATICS["rotation_matrix"])
+
+
+@pytest.mark.parametrize("law", ["velocity", "acceleration"])
+@pytest.mark.parametrize("frame", ["space", "body"])
+def test_a_wrong_law_of_composition_is_refuted(monkeypatch, law, frame):
+    monkeypatch.setattr(chain_of_turns, law, lambda R, own, *others: own - R @ others[-1])
+    monkeypatch.setattr(chain_of_turns, "_composition", chain_of_turns._composition.__wrapped__)
+    with pytest.raises(rs.RigidsymError, match="is false"):
+        Chain(chain(5)).step(KINEMATICS[f"angular_{law}_{frame}"])
+
+
+def test_definitions_grow_linearly_and_begin_with_five_turns():
+    counts = {n: len(derive(chain(n)).definitions) for n in (4, 5, 6, 12, 18)}
+    assert counts[18] - counts[12] == counts[12] - counts[6]
+    assert counts[4] == 0 < counts[5]
+    assert not is_shorter(rs.EulerAngles("ZXZ"))
+
+
+def test_the_attributes_of_a_motion_are_in_the_coordinates_only():
+    motion = rs.derive(chain(5))
+    matrix = motion.rotation_matrix
+    assert not matrix.free_symbols - {sp.Symbol("t")}
+    assert matrix.atoms(sp.core.function.AppliedUndef) == {*motion.model.coordinates}
+    codec = codec_for([*matrix], order=0)
+    assert not any(map(codec.encode, matrix * matrix.T - sp.eye(3)))
+
+
+def test_turns_whose_axes_stay_in_a_plane_have_no_right_inverse():
+    inverse = KINEMATICS["inverse_rate_matrix_space"]
+    assert Chain(rs.rotation_from("z(a) z(b) z(c) x(d)")).step(inverse) is None
+    assert Chain(rs.rotation_from("z(a) z(b) z(c) x(d) z(e)")).step(inverse).proofs
+
+
+def test_a_body_on_a_long_chain_has_the_energy_and_momentum_of_the_expanded_rotation():
+    model, body = chain(5), rs.solid("cylinder", radius=sp.Symbol("a"), height=sp.Symbol("h"))
+    motion = rs.derive(model, body=body)
+    assert motion.is_proved
+    values = Values(model, motion.body)
+    omega, inertia = values.omega_body, values.codec.matrix(motion.body.inertia)
+    encode = values.codec.encode
+    assert encode(2 * motion.rotational_energy) == (omega.T @ inertia @ omega)[0, 0]
+    momentum = (values.rotation @ (inertia @ omega)).entries
+    assert tuple(map(encode, motion.angular_momentum_rotation)) == momentum
+    turned = values.rotation @ inertia @ values.rotation.T
+    assert tuple(map(encode, motion.inertia_tensor_space)) == turned.entries
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        " ".join(f"z(a{k})" for k in range(1, 21)),
+        f"z({' + '.join(f'sqrt({p})*a' for p in (2, 3, 5, 7, 11, 13, 17, 19, 23, 29))}) x(b)",
+        "[a,b,c](x) [d,e,f](y) [g,h,i](z)",
+    ],
+    ids=["twenty turns about one axis", "ten roots in an angle", "three symbolic axes"],
+)
+def test_what_grows_exponentially_if_it_is_multiplied_out_is_not(text):
+    motion = rs.derive(rs.rotation_from(text))
+    assert motion.is_proved
+    assert len(motion.kernels().source) < 200_000
+
+
+# At 50 digits
+
+
+def value_of(expression, known):
+    """A number of 50 digits for sums, products, powers, sines and cosines of what is known."""
+    if expression in known:
+        return known[expression]
+    if expression.is_Rational:
+        return mp.mpf(int(expression.p)) / int(expression.q)
+    parts = [value_of(argument, known) for argument in expression.args]
+    operations = {sp.Add: lambda *p: mp.fsum(p), sp.Mul: lambda *p: mp.fprod(p), sp.Pow: mp.power}
+    return {**operations, sp.sin: mp.sin, sp.cos: mp.cos}[expression.func](*parts)
+
+
+def matrix_of(expression, known):
+    return mp.matrix([[value_of(entry, known) for entry in row] for row in expression.tolist()])
+
+
+def hat(v):
+    return mp.matrix([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
+
+
+def turned_by(model, known):
+    """R, W, Ω and dΩ/dt, turn by turn, by Rodrigues' formula."""
+    turned, rates = mp.eye(3), mp.matrix(3, len(model.turns))
+    velocity, acceleration = mp.matrix(3, 1), mp.matrix(3, 1)
+    for place, turn in enumerate(model.turns):
+        direction = matrix_of(sp.Matrix(turn.direction), known)
+        axis, angle = turned * direction, known[turn.angle]
+        rates[:, place] = axis
+        rate, second = (known.get(turn.angle.diff("t", k), 0) for k in (1, 2))
+        acceleration += second * axis + rate * hat(velocity) * axis
+        velocity += rate * axis
+        skew = hat(direction)
+        turned = turned * (mp.eye(3) + mp.sin(angle) * skew + (1 - mp.cos(angle)) * skew * skew)
+    return turned, rates, velocity, acceleration
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize(("count", "oblique"), [(5, 0), (6, 3), (9, 4), (20, 0), (20, 5)])
+def test_all_quantities_are_true_at_fifty_digits(count, oblique):
+    model = chain(count, oblique=oblique)
+    derivation, generator = derive(model), random.Random(7)
+    assert derivation.is_proved
+    known = {}
+    for argument in derivation.arguments:
+        known |= {symbol: mp.mpf(generator.randint(-900, 900)) / 300 for symbol in argument.symbols}
+    for definition in derivation.definitions:
+        known[definition.symbol] = value_of(definition.expression, known)
+    turned, rates, velocity, acceleration = turned_by(model, known)
+    for name, expected in (
+        ("rotation_matrix", turned),
+        ("angular_velocity_space", velocity),
+        ("angular_velocity_body", turned.T * velocity),
+        ("rate_matrix_space", rates),
+        ("rate_matrix_body", turned.T * rates),
+        ("inverse_rate_matrix_space", rates.T * mp.inverse(rates * rates.T)),
+        ("angular_acceleration_space", acceleration),
+        ("angular_acceleration_body", turned.T * acceleration),
+    ):
+        found = matrix_of(derivation.step(name).expression, known)
+        assert mp.norm(found - expected) < TOLERANCE, name
+
+
+@pytest.mark.parametrize(
+    "text", ["z(a) y(b) z(c) x(d) z(e)", "z(a) [0,1,8](b) z(c) [0,1,8](d) z(e)"]
+)
+def test_a_long_chain_is_singular_where_all_axes_lie_in_one_plane_and_not_nearby(text):
+    motion, generator = rs.derive(rs.rotation_from(text)), random.Random(3)
+    coordinates, (point,) = motion.model.coordinates, motion.singularities.points
+    assert motion.singularities.is_solved
+    assert [place.coordinate for place in point.places] == [*coordinates[1:-1]]
+    for shifted in (None, *point.places):
+        known = {q: mp.mpf(generator.randint(-300, 300)) / 100 for q in coordinates}
+        for p in point.places:
+            half_turns = generator.choice((0, 1)) + p.value / sp.pi
+            known[p.coordinate] = value_of(half_turns, {}) * mp.pi
+        if shifted is not None:
+            known[shifted.coordinate] += mp.mpf("0.3")
+        turned, rates, *_ = turned_by(motion.model, known)
+        if shifted is not None:
+            assert mp.det(rates * rates.T) > 1e-9
+            continue
+        assert mp.norm(matrix_of(point.lost_axis_space, known).T * rates) < TOLERANCE
+        assert mp.norm(matrix_of(point.lost_axis_body, known).T * turned.T * rates) < TOLERANCE
+        assert mp.norm(rates * matrix_of(point.null_rates, known)) < TOLERANCE
+
+
+def test_a_chain_whose_neighbours_may_share_an_axis_says_that_its_singularities_are_open():
+    model = rs.rotation_from("z(a) z(b) x(c) y(d) z(e) x(f)")
+    found = rs.derive(model, ["rate_matrix_space"]).singularities
+    assert not found.is_solved
+    assert found.points == ()

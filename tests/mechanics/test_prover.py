@@ -1,0 +1,443 @@
+"""Nothing false, and nothing empty, is called exact.
+
+Coordinates and constants are real. Each rotation here was once, or could be, a proof of something
+that holds nowhere, divides by zero, or is not real.
+"""
+
+from __future__ import annotations
+
+import pytest
+import sympy as sp
+from sympy import Abs, Rational, acos, asin, cos, cosh, exp, log, pi, sin, sqrt, tan
+
+import rigidsym as rs
+from helpers.witness import mp
+from rigidsym.algebra import witness as witness_module
+from rigidsym.algebra.codec import Codec, codec_for
+from rigidsym.algebra.generators import combination
+from rigidsym.algebra.matrix import RingMatrix
+from rigidsym.algebra.ring import Quotient, Ring
+from rigidsym.algebra.witness import Witness, configurations, witness_for
+from rigidsym.errors import AlgebraError, Defect, DerivationError, ModelError, NotARotation
+from rigidsym.formula.reader import formula
+from rigidsym.mechanics.derive import derive
+from rigidsym.mechanics.prove import Conditions, Prover, consequence, identity
+from rigidsym.models.parametrisations import chain
+from rigidsym.models.rotation import (
+    TIME,
+    Pullback,
+    RotationModel,
+    Turn,
+    elementary,
+    time_function,
+)
+
+a, b, x, y, z = map(time_function, "abxyz")
+phi, psi, theta = map(time_function, ("phi", "psi", "theta"))
+m, u, w = sp.symbols("m u w")
+ABOUT_Z = elementary("z", phi)
+NOWHERE = "no real value|does not satisfy|needs an `example`"
+CLAIM = formula("a = b")
+HIDDEN = sqrt(4 * m**2 + 4) - 2 * sqrt(m**2 + 1)  # zero, which the ring does not see
+
+
+def own(matrix: sp.Matrix, *constraints: sp.Expr, example=()) -> RotationModel:
+    return rs.given(matrix, name="sample", constraints=constraints, example=dict(example))
+
+
+def turns(*pairs: tuple[str, sp.Expr]) -> RotationModel:
+    return chain([Turn(axis=axis, angle=angle) for axis, angle in pairs])
+
+
+def about_z(cosine: sp.Expr, sine: sp.Expr) -> sp.Matrix:
+    return sp.Matrix([[cosine, -sine, 0], [sine, cosine, 0], [0, 0, 1]])
+
+
+# Conditions that hold nowhere: everything would follow from them
+
+
+@pytest.mark.parametrize(
+    "constraints",
+    [
+        [a**2 + b**2 + 1],
+        [sin(x) - 2],
+        [sqrt(x) + 1],
+        [exp(x) + 1],
+        [cosh(x)],
+        [Abs(x) + 1],
+        [x**2 + y**2 - 1, x - 3],
+        [sin(x) ** 2 - 1, cos(x) ** 2 - 1],
+    ],
+    ids=str,
+)
+def test_conditions_that_no_real_values_satisfy_are_refused(constraints):
+    """Without an example, and with one: exact, nearly right, and of numbers that are not real."""
+    for matrix in (ABOUT_Z * (1 + constraints[0]), ABOUT_Z):
+        with pytest.raises(ModelError, match="needs an `example`: give exact values of"):
+            derive(own(matrix, *constraints))
+        names = sp.Tuple(*constraints).atoms(sp.Function) & {a, b, x, y}
+        for value in (0, 1, -1, pi / 2):
+            with pytest.raises(ModelError, match=NOWHERE):
+                derive(own(matrix, *constraints, example=dict.fromkeys(names, value)))
+
+
+@pytest.mark.parametrize(
+    ("constraint", "example"),
+    [
+        (log(x) ** 2 + pi**2, {x: -1}),  # holds in complex numbers
+        (x**2 - 2, {x: Rational(14142135623730950488016887242096980785696718753769, 10**49)}),
+        (x**2 + y**2 - 1, {x: Rational(3, 5)}),
+        (acos(x) - y, {x: Rational(1, 3), y: Rational(1230959417340774682, 10**18)}),
+        (x - 3, {"z": 1}),
+        (x - 3, {"x": 0.5}),
+        (x - 3, {"x": sp.I}),
+        (x - 3, {"x": y}),
+    ],
+    ids=str,
+)
+def test_an_example_is_checked_exactly_and_in_real_numbers(constraint, example):
+    with pytest.raises(ModelError):
+        derive(own(ABOUT_Z, constraint, example=example))
+
+
+@pytest.mark.parametrize(
+    ("constraints", "example"),
+    [
+        ([x**2 + y**2 - 1], {x: Rational(3, 5), y: Rational(4, 5)}),
+        ([(x - 1) ** 2], {x: 1}),
+        ([exp(x) - 2], {x: log(2)}),
+        ([cosh(x) ** 2 - sp.sinh(x) ** 2 - 1], {}),
+        ([sin(x) - cos(y)], {x: pi / 3, y: pi / 6}),
+        ([acos(x) - 1], {x: cos(1)}),
+        ([x**4 - 2 * x**2 * y + y**2 + (x - 3) ** 2], {"x": 3, y: 9}),  # zero only there
+        ([x * y * z - 1, x + y + z], {x: -1, y: (1 + sqrt(5)) / 2, z: (1 - sqrt(5)) / 2}),
+    ],
+    ids=str,
+)
+def test_conditions_that_an_example_satisfies_pass(constraints, example):
+    assert derive(own(ABOUT_Z, *constraints, example=example), ["rotation_matrix"]).is_proved
+
+
+@pytest.mark.parametrize(
+    ("constraint", "example"),
+    [
+        (x**2 + y**2 - 1, {x: Rational(3, 5), y: Rational(4, 5)}),
+        (exp(x) - 2, {x: log(2)}),
+        ((x - 3) ** 2, {x: sp.Integer(3)}),
+    ],
+)
+def test_a_configuration_satisfies_its_constraints_with_its_rates(constraint, example):
+    (found,) = configurations("sample", (constraint,), (), tuple(example.items()))
+    for order in range(3):
+        derivative = sp.diff(constraint, TIME, order)
+        assert abs(found.numbers([derivative])(derivative)) < 1e-40
+        assert 0 in found.intervals([derivative])(derivative)
+    assert not constraint.has(y) or found.values[x.diff(TIME)] != 0
+
+
+@pytest.mark.parametrize("axes", ["[a,b,c](p) [c,3/5,0]", "[a,1/2,0]", "[a,a,b]", "[0,b,0]"])
+def test_symbols_in_axes_have_an_example(axes):
+    model = rs.rotation_from(f"{axes}(phi) x(theta)")
+    assert derive(model, ["rotation_matrix"]).is_proved
+    for condition in model.constraints:
+        assert sp.expand(condition.xreplace(dict(model.example))) == 0
+
+
+# Matrices that are real nowhere, or at a point only
+
+
+@pytest.mark.parametrize(
+    "model",
+    [
+        own(about_z(sqrt(2 + x**2), sqrt(-1 - x**2)) * ABOUT_Z),
+        own(about_z(sqrt(1 + x**2), sqrt(-(x**2))) * ABOUT_Z),
+        own(about_z(sqrt(2 - sin(x)), sqrt(sin(x) - 1)) * ABOUT_Z),
+        own(about_z(asin(2 + x**2), sqrt(1 - asin(2 + x**2) ** 2)) * ABOUT_Z),
+        *(turns(("z", e), ("x", phi)) for e in (sqrt(-(x**2)), log(-exp(x)), acos(3 + x**2))),
+    ],
+    ids=str,
+)
+def test_rotations_that_are_not_real_are_refused(model):
+    with pytest.raises((ModelError, AlgebraError)):
+        derive(model)
+
+
+@pytest.mark.parametrize(
+    ("cosine", "sine", "example"),
+    [
+        (sqrt(1 - x**2), x, {}),
+        (sqrt(101 - x), sqrt(x - 100), {x: 100 + Rational(1, 3)}),
+        (x / sqrt(x**2 + y**2), y / sqrt(x**2 + y**2), {}),
+        (1 / sqrt(1 + tan(x) ** 2), tan(x) / sqrt(1 + tan(x) ** 2), {}),
+    ],
+    ids=str,
+)
+def test_matrices_that_are_real_somewhere_pass(cosine, sine, example):
+    step = derive(own(about_z(cosine, sine), example=example)).step("rotation_matrix")
+    assert step.proofs[0].is_exact
+
+
+# Zeros in disguise
+
+ZEROS = {
+    "a square root of a square": sqrt(5 + 2 * sqrt(6)) - sqrt(2) - sqrt(3),
+    "of a difference": sqrt(7 - 4 * sqrt(3)) - 2 + sqrt(3),
+    "a cube root": (7 + 5 * sqrt(2)) ** Rational(1, 3) - 1 - sqrt(2),
+    "an inverse": 1 / (sqrt(3) - sqrt(2)) - sqrt(3) - sqrt(2),
+}
+QUOTIENTS = (u / (w + 1) + u * w / (w + 1) - u, 1 / (u - w) + 1 / (w - u), u / w - u**2 / (u * w))
+
+
+@pytest.mark.parametrize("zero", ZEROS.values(), ids=ZEROS)
+def test_division_by_a_zero_in_disguise_is_refused(zero):
+    with pytest.raises((ModelError, AlgebraError), match=r"division by|contradict one another"):
+        derive(own(ABOUT_Z * (1 + (zero**2 + zero) / zero - zero - 1)))
+
+
+@pytest.mark.parametrize("zero", [*ZEROS.values(), 10**120 * ZEROS["a cube root"], *QUOTIENTS])
+def test_a_turn_by_a_zero_in_disguise_is_no_turn(zero):
+    found = derive(turns(("z", phi), ("x", zero * theta), ("z", psi)))
+    assert not any(step.quantity.name.startswith("inverse") for step in found.steps)
+    assert found.singularities.rank == 1 or found.singularities.points[0].rank == 1
+
+
+def test_an_inverse_is_not_claimed_if_the_determinant_may_be_zero():
+    tilt = theta * HIDDEN
+    middle = sp.Matrix([[1, 0, 0], [0, 1, -tilt], [0, tilt, 1]])
+    found = derive(own(ABOUT_Z * middle * elementary("z", psi)))
+    for step in found.steps:
+        if step.quantity.name.startswith(("inverse", "rates_from")):
+            assert not all(proof.is_exact for proof in step.proofs)
+
+
+@pytest.mark.parametrize(
+    ("angle", "plain"),
+    [
+        (phi * u / (u + w) + phi * w / (u + w), phi),
+        (x**2 / (x + y) - y**2 / (x + y), x - y),
+        (phi + psi * u / (u + w) + psi * w / (u + w), phi + psi),
+        (x**3 / (x - 1) - x / (x - 1), x**2 + x),
+    ],
+    ids=str,
+)
+def test_rotations_with_quotients_in_their_angles_are_rotations(angle, plain):
+    expected = derive(own(elementary("z", plain))).angular_velocity_space[2]
+    for model in (own(elementary("z", angle)), turns(("z", angle))):
+        found = derive(model)
+        assert found.is_proved
+        assert combination(plain) == combination(angle)
+        assert sp.expand(found.angular_velocity_space[2] - expected) == 0
+
+
+@pytest.mark.parametrize("angle", [phi / u, phi * psi / (u + w), phi * sqrt(2), pi / 3 + phi / 2])
+def test_angles_that_do_not_cancel_stay_as_they_are_written(angle):
+    assert Turn(axis="z", angle=angle).angle == angle
+
+
+@pytest.mark.parametrize("axes", ["xyzx", "zxzx", "zyxy"])
+@pytest.mark.parametrize(("constraint", "value"), [(sin(x), pi), (sin(x) - Rational(1, 2), pi / 6)])
+def test_singular_points_satisfy_the_conditions(axes, constraint, value):
+    matrix = sp.eye(3)
+    for axis, angle in zip(axes, (x, y, z, a), strict=True):
+        matrix = matrix * elementary(axis, angle)
+    found = derive(own(matrix, constraint, example={x: value}), ["rate_matrix_space"])
+    for point in found.singularities.points:
+        values = {place.coordinate: place.value for place in point.places}
+        assert constraint.xreplace(values).has(x) or constraint.xreplace(values) == 0
+        assert point.rank > 0
+
+
+# Claims are evaluated
+
+
+def test_a_false_claim_that_the_ring_takes_for_true_is_a_defect(monkeypatch):
+    monkeypatch.setattr(RingMatrix, "is_zero", lambda *_: True)
+    with pytest.raises(Defect, match="a defect of rigidsym"):
+        derive(own(sp.diag(1, 1, -1) * ABOUT_Z))
+
+
+@pytest.mark.parametrize("rotation", ["ZXZ", "unit_quaternion", "rotation_vector"])
+def test_every_claim_of_a_derivation_is_evaluated(monkeypatch, rotation):
+    seen, values = [], []
+    vanish, disagrees = Prover.vanish, Witness.disagrees
+
+    def evaluated(self, residual, known):
+        values.append(residual)
+        return disagrees(self, residual, known)
+
+    def claimed(self, claims, **given):
+        proofs = vanish(self, claims, **given)
+        seen.extend(claim for residual, claim, _ in claims if residual in values)
+        return proofs
+
+    monkeypatch.setattr(Witness, "disagrees", evaluated)
+    monkeypatch.setattr(Prover, "vanish", claimed)
+    assert {proof.claim for proof in rs.derive(rotation).proofs} <= set(seen)
+
+
+def test_what_is_false_on_the_conditions_is_refuted_by_a_value():
+    with pytest.raises(NotARotation, match="left over"):
+        derive(own(ABOUT_Z * (x**2 + y**2), x**2 + y**2 - 4, example={x: 0, y: 2}))
+
+
+# The prover in small rings
+
+
+def column(codec: Codec, *entries: sp.Expr) -> RingMatrix:
+    return RingMatrix.column(codec.ring, map(codec.encode, map(sp.sympify, entries)))
+
+
+def prover_of(*entries: sp.Expr, **subject) -> tuple[Prover, RingMatrix]:
+    """A prover in a ring that holds the entries, and the entries as a column."""
+    known = Conditions("sample", **subject)
+    codec = codec_for([*entries, x, y], constraints=known.constraints)
+    return Prover(known, codec), column(codec, *entries)
+
+
+ONE = {"constraints": ((x - 1) ** 2,), "example": ((x, sp.S.One),)}
+SIGN = {"constraints": (x**2 - 1,), "example": ((x, -sp.S.One),)}
+CIRCLE = {"pullback": Pullback((cos(theta), sin(theta)), ())}
+
+
+@pytest.mark.parametrize(
+    ("entries", "subject", "verdict"),
+    [
+        ((sp.S.Zero, sp.S.Zero), {}, "exact"),
+        ((sp.S.Zero, x), {}, r"left over: x in row 2, column 1"),
+        ((HIDDEN,), {}, "unproved"),
+        ((HIDDEN, x), {}, "row 2"),
+        ((x - 1,), ONE, "unproved"),  # a double root
+        ((x**2 * y - y, 2 * x**3 - 2 * x), SIGN, "exact"),
+        ((x**2 + y**2 - 1,), CIRCLE, "exact"),
+        ((sp.expand((x * x.diff(TIME) + y * y.diff(TIME)).diff(TIME)),), CIRCLE, "exact"),
+        ((x - y,), CIRCLE, "is false"),
+    ],
+)
+def test_claims_are_exact_unproved_or_false(entries, subject, verdict):
+    prover, residual = prover_of(*entries, coordinates=(x, y), **subject)
+    if verdict not in ("exact", "unproved"):
+        with pytest.raises(DerivationError, match=verdict):
+            prover.vanishes(residual, CLAIM)
+        return
+    proof = prover.vanishes(residual, CLAIM)
+    assert proof.status == verdict
+    assert proof.residual == (None if verdict == "exact" else sp.ImmutableMatrix(entries))
+
+
+def test_a_message_names_coordinates_and_their_rates_plainly():
+    prover, found = prover_of(x + x.diff(TIME), sp.S.Zero, x.diff(TIME, 2), coordinates=(x, y))
+    with pytest.raises(DerivationError) as failed:
+        prover.vanishes(found.T, CLAIM)
+    assert str(failed.value) == (
+        "sample: a = b is false; left over: x + x_dot in row 1, column 1; x_ddot in row 1, column 3"
+    )
+    with pytest.raises(NotARotation, match=r"since a = b fails; left over: x$"):
+        prover.vanish([(column(prover.codec, x), CLAIM, ())], error=NotARotation)
+
+
+def test_quotients_cancel_if_their_numerators_do_and_no_divisor_is_a_hidden_zero():
+    prover, entries = prover_of(sp.S.Zero, HIDDEN, 1 + x**2)
+    ring, (zero, hidden, positive) = prover.codec.ring, entries.entries
+    for above, below, status in (
+        (zero, positive, "exact"),
+        (zero, hidden, "unproved"),
+        (hidden, positive, "unproved"),
+    ):
+        found = prover.cancel([Quotient(ring, above, below)], CLAIM)
+        assert (found.status, found.residual is None) == (status, status == "exact")
+    with pytest.raises(DerivationError):
+        prover.cancel([Quotient(ring, positive, ring.one)], CLAIM)
+    divided = prover.vanishes(column(prover.codec, 0), CLAIM, divided_by=hidden)
+    assert divided.residual == sp.ImmutableMatrix([HIDDEN])
+
+
+def test_a_root_is_exact_only_if_it_is_known_to_be_positive():
+    bounds = {u: (sp.S.Zero, sp.S.One)}
+    prover, entries = prover_of(sp.S.Zero, u - 1)
+    zero = column(prover.codec, 0)
+    assert prover.is_root(zero, u + 1, bounds, CLAIM).is_exact
+    for value in (-u - 1, 2 * u - 1):
+        proof = prover.is_root(zero, value, bounds, CLAIM)
+        assert (proof.status, proof.residual) == ("unproved", sp.ImmutableMatrix([[value]]))
+    with pytest.raises(DerivationError):
+        prover.is_root(entries, u + 1, bounds, CLAIM)
+    prover, hidden = prover_of(HIDDEN)
+    assert prover.is_root(hidden, u + 1, bounds, CLAIM).residual == sp.ImmutableMatrix([HIDDEN])
+
+
+def test_what_follows_from_claims_is_as_exact_as_they_are():
+    prover, entries = prover_of(sp.S.Zero, HIDDEN)
+    exact = prover.vanishes(column(prover.codec, 0), CLAIM)
+    unsure = prover.vanishes(entries, CLAIM)
+    other = formula("c = d")
+    assert consequence([exact, exact], other).is_exact
+    for proofs in ([exact, unsure], [unsure, exact]):
+        found = consequence(proofs, other)
+        assert (found.claim, found.status, found.residual) == (other, "unproved", unsure.residual)
+    with pytest.raises(ValueError, match="follows from nothing"):
+        consequence([], other)
+
+
+def test_identities_of_rational_functions_cancel():
+    left = sp.Matrix([1 / (u - w) + 1 / (w - u), (u**2 - w**2) / (u - w) - u - w])
+    assert identity(left, CLAIM, "sample").is_exact
+    assert identity(sp.Matrix([u**2 - 4]), CLAIM, "sample", [u - 2], ((u, sp.Integer(2)),)).is_exact
+    with pytest.raises(DerivationError):
+        identity(left + sp.Matrix([1, 0]), CLAIM, "sample")
+
+
+@pytest.mark.parametrize("entries", [(x, 0), (0, x)])
+def test_a_wrong_product_in_the_ring_is_a_defect(monkeypatch, entries):
+    """The values are those of the factors, and not of their product in the ring."""
+    codec = codec_for([x, y])
+    prover = Prover(Conditions("sample"), codec)
+    zeros, factors, factor = (column(codec, *part) for part in ((0, 0), entries, (x,)))
+    monkeypatch.setattr(Ring, "dot", lambda self, *_, **__: self.zero)
+    wrong = factors @ factor
+    for residual in (wrong, zeros + wrong, zeros - wrong, wrong.T, wrong.scale(codec.encode(x))):
+        assert residual.is_zero()
+        with pytest.raises(Defect, match="is proved, and yet is false at a point"):
+            prover.vanishes(residual, CLAIM)
+
+
+CASES = {
+    "free": ((), codec_for([x, y, sin(theta), Rational(1, 3)])),
+    "bound": (
+        (x**2 + y**2 - 4,),
+        codec_for([x, y, Rational(2, 3)], constraints=(x**2 + y**2 - 4,)),
+    ),
+    "roots": ((), codec_for([sqrt(sp.Symbol("m", positive=True) + 1), 1 / (x**2 + 1), y])),
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_values_of_products_are_those_of_their_entries(monkeypatch, case):
+    """Of every kind of origin, by the fast numbers, and within the bounds of the intervals."""
+    constraints, codec = CASES[case]
+    example = ((x, Rational(6, 5)), (y, Rational(8, 5))) if constraints else ()
+    witness = witness_for(codec, "sample", constraints, example)
+    bounds, number = witness._bounds(witness._first), witness._number
+    p, q, r = (codec.ring.polynomials.gens * 2)[:3]
+    one = RingMatrix.of(codec.ring, [[p * q - 2, 5 * r**2], [q, p**2 * r + 1]])
+    two = RingMatrix.of(codec.ring, [[p, codec.ring.one], [r - q, q * r]])
+    for matrix in (one, one @ two, one + two.T, one.scale(p + 2), (one @ two - two @ one).T):
+        by_factors = witness_module._values(matrix, {}, number, lambda e: e >> 240)
+        values = [value for row in by_factors for value in row]
+        for entry, value in zip(matrix.entries, values, strict=True):
+            assert abs(number(entry) - value) < 1 << 80
+            found = witness_module._bounds_of(entry, bounds, witness_module.DIGITS)
+            low, high = (mp.mpf(str(e).strip("[]").split(",")[0]) for e in (found.a, found.b))
+            assert low - mp.mpf(10) ** -40 <= mp.mpf(value) / 2**240 <= high + mp.mpf(10) ** -40
+        with monkeypatch.context() as patch:
+            patch.setattr(Witness, "_bounds", None)  # the fast numbers suffice
+            assert not witness.disagrees(matrix - RingMatrix(codec.ring, matrix.rows), {})
+    with monkeypatch.context() as patch:
+        patch.setattr(Witness, "_number", lambda *_: 1 << 240)  # and the intervals decide
+        assert not witness.disagrees(RingMatrix.of(codec.ring, [[codec.ring.zero]]), {})
+
+
+def test_an_element_is_not_zero_if_it_is_not_zero_at_a_point():
+    codec = codec_for([x, y], constraints=(x**3 - x,))
+    witness = witness_for(codec, "sample", (x**3 - x,), ((x, sp.S.One),))
+    for element, is_nonzero in ((x + 1, True), (x - 1, False), (y * x, True), (x**3 - x, False)):
+        assert witness.is_nonzero(codec.encode(element)) == is_nonzero
