@@ -94,8 +94,8 @@ def test_kernels_import_their_representation_and_not_the_reverse():
 
 BUDGETS = {  # what was reached; who makes the house smaller lowers them
     "files": 231,
-    "lines of code": 33_480,
-    "lines of tests": 29_090,
+    "lines of code": 33_120,
+    "lines of tests": 28_540,
     "lines of benchmarks": 2_700,
 }
 
