@@ -237,6 +237,7 @@ def test_constants_may_be_named_as_what_the_note_of_a_top_introduces(name):
 def test_a_pendulum_and_its_effective_potential_need_no_third_coordinate():
     motion = rs.derive("x(theta)", body=rs.principal_moments(A, B, C), potential="m*g*l*cos(theta)")
     assert motion.accelerations[0] - m * g * l * sp.sin(THETA) / A == 0
+    assert not motion.consequences
     found = motion.simulate(
         {"theta": 3.0, "theta_dot": 0.0},
         {"A": 1, "B": 1, "C": 1, "m": 1, "g": 9.81, "l": 1},
