@@ -82,12 +82,41 @@ def simulate_ensemble(
     step: float | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Ensemble:
-    """Motions from t = 0 to `t_end` seconds, in steps of order 8 of the same length for all.
+    """Integrate m motions from t = 0 to `t_end`, in steps of order 8 of one length.
 
-    `initial` and `parameters` are as for `simulate`, but each value may be an array, (m,), or for
-    angular_velocity_body (m, 3). `step` is in seconds; by default, the fastest body turns 0.05 rad
-    in a step. The drift shows whether this was short enough. Raises ModelError as `simulate` does,
-    and for arrays whose lengths differ.
+    Parameters
+    ----------
+    derivation : Derivation
+        A rotation, a body, and what acts on it.
+    initial, parameters : mapping
+        As for `simulate`; each value may be an array, (m,), and angular_velocity_body (m, 3).
+    t_end : float
+        In s.
+    samples : int, optional
+        Number of times.
+    step : float, optional
+        In s. By default, the fastest body turns 0.05 rad in a step; the drift shows whether this
+        was short enough.
+    progress : callable, optional
+        Called with the share of the work that is done.
+
+    Returns
+    -------
+    Ensemble
+        Times (n,), states (n, m, k), and the drift (m,) of each first integral.
+
+    Raises
+    ------
+    ModelError
+        As `simulate` does, and for arrays whose lengths differ.
+
+    Examples
+    --------
+    >>> import rigidsym as rs
+    >>> flywheel = rs.derive("z(phi)", body=rs.principal_moments(1, 1, 2), torque=[0, 0, "u"])
+    >>> motions = flywheel.simulate_many({"phi_dot": [1.0, 2.0]}, {"u": 4.0}, 3.0, samples=2)
+    >>> motions.states[-1].round(9).tolist()
+    [[12.0, 7.0], [15.0, 8.0]]
     """
     if not (np.isfinite(t_end) and t_end > 0):
         raise ModelError(f"the end time is {t_end}; expected a positive number of seconds")

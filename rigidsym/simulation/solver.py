@@ -37,17 +37,55 @@ def simulate(
     timeout: float | None = None,
     progress: Progress | None = None,
 ) -> Trajectory:
-    """Integrate the motion from t = 0 to `t_end` seconds. A body without forces is free.
+    """Integrate the motion from t = 0 to `t_end`; a body without forces is free.
 
-    `initial` contains coordinates by name (theta), and their rates (theta_dot) or the body
-    components of the angular velocity (angular_velocity_body, or angular_velocity_body_1, _2, _3);
-    what it omits is 0. `parameters` contains the constants. `method` is an integrator of SciPy, or
-    "exact" for a free body in elliptic functions. Near a pole of the coordinates the integration
-    continues with a unit quaternion and Ω′, and the report says so. `timeout` limits the time that
-    the computation takes, in seconds.
+    Near a pole of the coordinates the integration continues with a unit quaternion and Ω′, and the
+    report says so.
 
-    Raises ModelError for names that are missing or unknown, and if the derivation has no
-    equations of motion; MissingExtra without SciPy; LimitReached when the time is up.
+    Parameters
+    ----------
+    derivation : Derivation
+        A rotation, a body, and what acts on it.
+    initial : mapping
+        Coordinates by name (theta), in rad, and their rates (theta_dot) or the body components of
+        the angular velocity (angular_velocity_body of shape (3,), or angular_velocity_body_1, _2,
+        _3), in rad/s; what it omits is 0.
+    parameters : mapping
+        The constants by name, in SI units.
+    t_end : float
+        In s.
+    samples : int, optional
+        Number of times.
+    method : str, optional
+        An integrator of SciPy, with the tolerances `rtol` and `atol`; "exact" computes the motion
+        of a free body in elliptic functions.
+    timeout : float, optional
+        Limit of the computation time, in s.
+    progress : callable, optional
+        Called with the share of the time that has been integrated.
+
+    Returns
+    -------
+    Trajectory
+        Times (n,), coordinates (n, k), rotation matrices (n, 3, 3) from body to space components,
+        Ω′ (n, 3), and the drift of each first integral.
+
+    Raises
+    ------
+    ModelError
+        For names that are missing or unknown, and a derivation without equations of motion.
+    MissingExtra
+        Without SciPy.
+    LimitReached
+        When the time is up.
+
+    Examples
+    --------
+    >>> import rigidsym as rs
+    >>> flywheel = rs.derive("z(phi)", body=rs.principal_moments(1, 1, 2), torque=[0, 0, "u"])
+    >>> motion = flywheel.simulate({"phi_dot": 1.0}, {"u": 4.0}, 3.0, samples=4)
+    >>> motion.q_dot[:, 0].round(9).tolist()
+    [1.0, 3.0, 5.0, 7.0]
     """
     if method not in METHODS:
         raise ModelError(f"no method {method!r}; {offer(method, METHODS)}")

@@ -364,8 +364,11 @@ def test_named_columns_in_any_order(form):
     assert (inertia_of(named).inertia == inertia_of(table).inertia).all()
 
 
-@pytest.mark.parametrize("module", ["rigidsym.data.mass", "rigidsym.tools.identify.identification"])
+@pytest.mark.parametrize(
+    "module",
+    ["data.mass", "tools.identify.identification", "simulation.solver", "simulation.ensemble"],
+)
 def test_the_examples_in_docstrings_run(module):
-    failed, attempted = doctest.testmod(importlib.import_module(module))
+    failed, attempted = doctest.testmod(importlib.import_module(f"rigidsym.{module}"))
     assert attempted
     assert not failed
