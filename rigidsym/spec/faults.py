@@ -32,8 +32,8 @@ class Place(NamedTuple):
 
     def mistyped(self, value: object, expected: str) -> None:
         """Note that the value here is missing or has the wrong type."""
-        found = f"expected {expected}, got {described(value)}"
-        self.fault(f"missing; expected {expected}" if value is None else found)
+        got = f"expected {expected}, got {described(value)}"
+        self.fault(f"missing; expected {expected}" if value is None else got)
 
     def noting(self, *steps: str | int) -> Noting:
         """Note an error of the block as a fault some steps below this place."""

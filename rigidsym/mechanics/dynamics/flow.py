@@ -93,7 +93,7 @@ class Flow(Workspace):
         return parts[0] + parts[1] + self.explicit_rate(value).scale(divisor), ring.reduce(divisor)
 
     def explicit_rate(self, value: sp.Expr) -> RingMatrix:
-        """∂F/∂t, the state being held."""
+        """∂F/∂t at a fixed state."""
         return self.codec.column(slopes_of(value, [TIME], [TIME, *self.arguments["y"].symbols]))
 
     @cached_property
@@ -178,8 +178,8 @@ class FreeTurning(Workspace):
         self.model, self.body, self.arguments = model, body, arguments
         self.traits = frozenset()
         omega, torque = arguments["omega_body"].symbols, arguments["torque"].symbols
-        held = [e for e in (*body.inertia, *omega, *torque) if e != 0]
-        self.codec = codec_for(held, order=0)
+        entries = [e for e in (*body.inertia, *omega, *torque) if e != 0]
+        self.codec = codec_for(entries, order=0)
         w, n = map(self.codec.column, (omega, torque))
         self.inertia = self.codec.matrix(body.inertia)
         self.left = n - turned(self.inertia, w)  # N′ − Ω′ × I′ Ω′
@@ -210,5 +210,5 @@ def slopes_of(
     """The derivatives of a value by symbols; a rate does not follow its coordinate."""
     plain = {symbol: sp.Dummy() for symbol in reversed(independent)}  # the rates first
     back = {dummy: symbol for symbol, dummy in plain.items()}
-    held = value.xreplace(plain)
-    return [sp.diff(held, plain[symbol]).xreplace(back) for symbol in symbols]
+    frozen = value.xreplace(plain)
+    return [sp.diff(frozen, plain[symbol]).xreplace(back) for symbol in symbols]

@@ -87,12 +87,12 @@ class LagrangeEquations(Flow):
             for q, part in zip(model.coordinates, acting, strict=True)
         ]
         self.gradient = [sp.diff(self.potential, q) for q in model.coordinates]
-        held = [e for part in self.moving for m in part[:3] for e in m]
-        held += [*omega, sp.Rational(1, 2), self.potential]
-        held += [*self.gradient, *self.generalised, *self.rates]
-        held += [*forces.first_integrals.values()]
-        held += self.accelerations
-        codec = codec_for([e for e in held if e != 0], order=2)
+        entries = [e for part in self.moving for m in part[:3] for e in m]
+        entries += [*omega, sp.Rational(1, 2), self.potential]
+        entries += [*self.gradient, *self.generalised, *self.rates]
+        entries += [*forces.first_integrals.values()]
+        entries += self.accelerations
+        codec = codec_for([e for e in entries if e != 0], order=2)
         super().__init__(model, body, forces, codec)
         self.ring = codec.ring
 
@@ -347,9 +347,9 @@ class LagrangeEquations(Flow):
 
     def _in_momenta(self, momenta: Sequence[sp.Expr]) -> sp.Expr:
         """½ pᵀ M⁻¹ p + V."""
-        held = [e for part in self.moving for m in (part.jacobian, part.inertia) for e in m]
-        held += [sp.Rational(1, 2), self.potential, *momenta]
-        codec = codec_for([entry for entry in held if entry != 0], order=0)
+        entries = [e for part in self.moving for m in (part.jacobian, part.inertia) for e in m]
+        entries += [sp.Rational(1, 2), self.potential, *momenta]
+        codec = codec_for([entry for entry in entries if entry != 0], order=0)
         own = reduce(
             add,
             (
