@@ -13,7 +13,7 @@ from rigidsym.commands.command import command as make, option, with_options
 from rigidsym.commands.options import FolderOptions, KernelOptions, RotationOptions
 from rigidsym.commands.output_folder import printed, with_existing_files, write
 from rigidsym.errors import CheckError
-from rigidsym.kernels.targets.c_function import Contents
+from rigidsym.kernels.targets.c import Contents
 from rigidsym.kernels.targets.compiling import build
 from rigidsym.pipeline import integrated, read
 

@@ -10,35 +10,11 @@ import keyword
 import re
 from collections.abc import Iterable
 from itertools import count
+from pathlib import Path
 from unicodedata import normalize
 
-_OF_C = (
-    "auto bool break case char const continue default do double else enum extern float for goto if "
-    "inline int long register restrict return short signed sizeof static struct switch typedef "
-    "union unsigned void volatile while asm typeof"
-)
-_OF_CPP = (
-    "alignas alignof and and_eq bitand bitor catch char8_t char16_t char32_t class co_await "
-    "co_return co_yield compl concept consteval constexpr constinit const_cast decltype delete "
-    "dynamic_cast explicit export false friend mutable namespace new noexcept not not_eq nullptr "
-    "operator or or_eq private protected public reinterpret_cast requires static_assert "
-    "static_cast template this thread_local throw true try typeid typename using virtual wchar_t "
-    "xor xor_eq"
-)
-_OF_JAVASCRIPT = (
-    "arguments await debugger eval extends finally function implements import in instanceof "
-    "interface let null package super undefined var with yield"
-)
-_OF_MATH_H = (
-    "j0 j1 jn y0 y1 yn NAN INFINITY HUGE_VAL HUGE_VALF HUGE_VALL math_errhandling M_E M_LOG2E "
-    "M_LOG10E M_LN2 M_LN10 M_PI M_PI_2 M_PI_4 M_1_PI M_2_PI M_2_SQRTPI M_SQRT2 M_SQRT1_2 MAXFLOAT "
-    "FP_NAN FP_INFINITE FP_ZERO FP_SUBNORMAL FP_NORMAL FP_ILOGB0 FP_ILOGBNAN DOMAIN OVERFLOW "
-    "UNDERFLOW SING PLOSS TLOSS signgam isnan isinf isfinite isnormal signbit fpclassify"
-)
-WORDS = frozenset(
-    {*keyword.kwlist, *_OF_C.split(), *_OF_CPP.split(), *_OF_JAVASCRIPT.split()}
-    | {*_OF_MATH_H.split()}
-)
+_LINES = Path(__file__).with_name("reserved_words.txt").read_text(encoding="utf-8").splitlines()
+WORDS = frozenset(keyword.kwlist).union(*(x.split() for x in _LINES if not x.startswith("#")))
 _NOT_IN_A_NAME = re.compile(r"\W+")
 
 

@@ -23,7 +23,7 @@ from rigidsym.kernels.ir import (
     Product,
     Sum,
 )
-from rigidsym.kernels.targets.c_function import Function
+from rigidsym.kernels.targets.precision import Precision
 
 _POINTS, _TRIED = 2, 12  # of each function; where a result is not real, the next is tried
 _ALLOWED = 1024  # eps of the largest entry
@@ -32,17 +32,16 @@ _RELATIONS = {"<": lt, "<=": le, ">": gt, ">=": ge, "==": eq}
 _ROTATION = (12 / 13, -3 / 13, 4 / 13, 4 / 13, 12 / 13, -3 / 13, -3 / 13, 4 / 13, 12 / 13)
 
 
-def samples_of(function: Function) -> Iterator[dict[str, Any]]:
+def samples_of(kernel: Kernel, precision: Precision) -> Iterator[dict[str, Any]]:
     """What the test of a function gives to it and expects of it."""
-    precision, arguments = function.precision, function.kernel.arguments
-    found = 0
+    arguments, samples = kernel.arguments, 0
     for point in range(_TRIED):
         inputs = [
             _row(a.shape == (3, 3), len(a.components), point + k) for k, a in enumerate(arguments)
         ]
-        values = _values(function.kernel, [x for row in inputs for x in row], precision.eps)
-        if found < _POINTS and all(map(isfinite, values)):
-            found += 1
+        values = _values(kernel, [x for row in inputs for x in row], precision.eps)
+        if samples < _POINTS and all(map(isfinite, values)):
+            samples += 1
             rows = {a.name: row for a, row in zip(arguments, inputs, strict=True)}
             yield {
                 "arrays": [
