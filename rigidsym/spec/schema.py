@@ -37,12 +37,6 @@ _NOUNS = {  # in singular and plural
     "object": ("table", "tables"),
 }
 _LARGEST = 1e300  # sums and products of numbers in a file stay finite
-_REMOVED = {
-    "language": "another language is a folder of templates of notes, chosen by style",
-    "frames": "the frames are called space and body",
-    "text": "your own sentences belong in a template of notes; see `rigidsym templates --help`",
-    "degrees": "kernels take radians; convert angles with np.radians and np.degrees",
-}
 
 
 class RequestedDerivative(Protocol):
@@ -69,7 +63,8 @@ class Vocabulary:
 def schema_of(kind: str, words: Vocabulary) -> Schema:
     """The schema of a "file", or of the request in a "record"."""
     text = Path(__file__).with_name("keys.toml").read_text(encoding="utf-8")
-    definitions = tomllib.loads(text)["definitions"]
+    declared = tomllib.loads(text)
+    definitions = declared["definitions"]
     lengths = {length.key: length for shape in SHAPES.values() for length in shape.lengths}
     distribution = definitions["distribution"]["properties"]
     for key, length in lengths.items():
@@ -108,7 +103,7 @@ def schema_of(kind: str, words: Vocabulary) -> Schema:
     tables = {key: entry for key, entry in schema["properties"].items() if "properties" in entry}
     hints = {key: f"it belongs in [{t}]" for t in tables for key in tables[t]["properties"]}
     top = "it belongs at the top of the file, outside the tables"
-    hints = _REMOVED | hints | dict.fromkeys(schema["properties"], top)
+    hints = declared["removed"] | hints | dict.fromkeys(schema["properties"], top)
     for table in (schema, *tables.values()):
         table["hints"] = hints
     return schema
