@@ -10,6 +10,7 @@ from textwrap import dedent
 import pytest
 
 from rigidsym.errors import ModelError, RigidsymError, SpecError
+from rigidsym.models.library import rotation_from, rotation_given
 from rigidsym.models.parametrisations import EULER_SEQUENCES, EulerAngles
 from rigidsym.pipeline import read_file, read_record, read_spec
 from rigidsym.spec.derivation_spec import DerivationSpec, spec_for
@@ -35,8 +36,14 @@ def test_a_full_file():
         passive = true
         [output]
         quantities = ["angular_velocity_body", "rotation_matrix"]
-        kernels = ["numpy"]
+        kernels = ["numpy", "c"]
         note = ["tex", "pdf"]
+        style = "audit"
+        conversions = true
+        certificates = true
+        derivatives = ["angular_velocity_body:q"]
+        [output.c]
+        libm = true
         """
     )
     assert spec == DerivationSpec(
@@ -44,9 +51,15 @@ def test_a_full_file():
         title="Ω of a ship",
         models=(EulerAngles("zyx", ("psi", "theta", "lambda"), passive=True),),
         quantities=("angular_velocity_body", "rotation_matrix"),
-        kernels=("numpy",),
+        kernels=("numpy", "c"),
+        target_options={"c": {"libm": True}},
         note=("tex", "pdf"),
+        style="audit",
+        conversions=True,
+        certificates=True,
+        derivatives=("angular_velocity_body by q",),
     )
+    assert read_record(spec.to_data()) == spec
     # a small file asks for everything
     small = DerivationSpec(name="top", models=(EulerAngles("ZXZ"),), note=("tex", "html"))
     assert read('[rotation]\nsequence = "ZXZ"') == small
@@ -63,6 +76,26 @@ def test_a_full_file():
 @pytest.mark.parametrize("sequence", ["ZXZ", "313", "z(phi) x(theta) z(psi)", "z(φ)*x(θ)*z(ψ)"])
 def test_spellings_of_one_rotation(sequence):
     assert read(f'[rotation]\nsequence = "{sequence}"').models == (EulerAngles("ZXZ"),)
+
+
+@pytest.mark.parametrize(
+    ("sequence", "options"),
+    [("quaternion", {"scalar_last": True}), ("z(phi) x(incline)", {"constants": ["incline"]})],
+)
+def test_a_rotation_has_the_options_of_its_kind(sequence, options):
+    ((key, value),) = options.items()
+    text = f'[rotation]\nsequence = "{sequence}"\n{key} = {json.dumps(value)}'
+    assert read(text).models == (rotation_from(sequence, **options),)
+    assert read(f'[rotation]\nsequence = "{sequence}"').models != read(text).models
+
+
+def test_a_matrix_of_its_own_has_conditions_and_an_example():
+    own = {"coordinates": ["c", "s"], "constraints": ["c**2 + s**2 - 1"], "passive": True}
+    rows, example = [["c", "-s", "0"], ["s", "c", "0"], ["0", "0", "1"]], {"c": "3/5", "s": "4/5"}
+    spec = read_record({"name": "own", "rotations": [{"matrix": rows, "example": example, **own}]})
+    assert spec.models == (rotation_given(rows, name="own", example=example, **own),)
+    assert spec.models[0].passive
+    assert spec.models[0].constraints
 
 
 def test_a_list_names_its_derivations_itself():

@@ -259,7 +259,7 @@ class Reduced:
         where: Sequence[tuple[sp.Expr, sp.Expr]] = (),
         **spans: Any,
     ) -> Consequence:
-        """A consequence; in the residual, E and the momenta are those of the motion."""
+        """A consequence; in a residual with θ(t), E and p_j are those of the motion, else free."""
         values = dict(zip(self.symbols, self.momenta, strict=True)) | {self.letters.E: self.energy}
         if residual.has(self.coordinate):
             residual = residual.xreplace(values)
@@ -469,9 +469,14 @@ class Reduced:
         simple = sp.Poly(sp.cancel(value / (1 - u) ** 2), u)
         first = sp.expand(-simple.coeff_monomial(1) / simple.LC())
         residual = value - lead * (1 - u) ** 2 * (u - first)
-        given: dict[str, Any] = {"momenta": self._equal_momenta, "energy": energy}
         yield self._follows(
-            "rising_motion", _FIRST, first, claims.DOUBLE_ROOT, residual, **spans, **given
+            "rising_motion",
+            _FIRST,
+            first,
+            claims.DOUBLE_ROOT,
+            residual,
+            momenta=self._equal_momenta,
+            energy=energy,
         )
         s = sp.Dummy("s")  # 1/cosh λt, with ṡ² = λ² s² (1 − s²)
         rate_squared = lead * (1 - _FIRST) / 4
