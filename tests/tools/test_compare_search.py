@@ -19,7 +19,7 @@ from helpers.command import ROOT, call
 from rigidsym.commands.cli import commands
 from rigidsym.errors import ExpressionError
 from rigidsym.tools.compare.language import read_formula
-from rigidsym.tools.compare.program import formula_words
+from rigidsym.tools.compare.program import formula_matrix
 from rigidsym.tools.compare.search import formulas, search, source_files
 
 W_BODY = "[[1, 0, -sin(b)], [0, cos(a), sin(a)*cos(b)], [0, -sin(a), cos(a)*cos(b)]]"
@@ -33,6 +33,9 @@ W_BODY = "[[1, 0, -sin(b)], [0, cos(a), sin(a)*cos(b)], [0, -sin(a), cos(a)*cos(
         ("[1 - s, 0\n 2 c*s]", "[[1-s,0],[2,c*s]]"),
         ("[a; b]'", "[[a],[b]].T"),
         ("np.array([self.phi, x[3]*2.0], dtype=float)", "[phi, x_3*2.0]"),
+        ("[1 - c^2, -2^2]", "[1 - c**2, -4]"),
+        ("float R[9] = {1, 0, 0, 0, c, -s, 0, s, c};", "[[1, 0, 0], [0, c, -s], [0, s, c]]"),
+        ("R = [[1, 2], [s, c]]", "[[1, 2], [s, c]]"),
         ("x[3]*2.0f + 1.f", "x_3*2.0 + 1.0"),
         ("pow(q.w(), 2) + state->roll", "pow(q_w,2)+roll"),
         (r"\dot\phi \sin^2\theta + \tfrac12 x_1", "phi_dot*sin(theta)**(2)+((1)/(2))*x_1"),
@@ -42,7 +45,7 @@ W_BODY = "[[1, 0, -sin(b)], [0, cos(a), sin(a)*cos(b)], [0, -sin(a), cos(a)*cos(
 )
 def test_notations_are_read_as_one_language(text, read):
     expected = read_formula(read or "[[a, b], [w*x, sin(2*theta)]]")
-    assert read_formula(formula_words(text)) == expected
+    assert formula_matrix(text) == expected
 
 
 @pytest.mark.parametrize("name", ["ZXZ", "xyz", "unit_quaternion"])
@@ -118,22 +121,18 @@ def test_products_and_transposes_of_matrices_are_read_in_latex(text, read):
     ],
 )
 def test_what_stands_beside_a_matrix_in_latex_is_left_out(text):
-    assert read_formula(formula_words(text.replace("#", ABOUT_Z))) == read_formula(
-        formula_words(ABOUT_Z)
-    )
+    assert formula_matrix(text.replace("#", ABOUT_Z)) == formula_matrix(ABOUT_Z)
 
 
 def test_arrays_with_columns_and_styled_indices_are_read_in_latex():
     array = ABOUT_Z.replace("{bmatrix}", "{array}").replace(
         r"\begin{array}", r"\begin{array}{c c|c}"
     )
-    assert read_formula(formula_words(array)) == read_formula(formula_words(ABOUT_Z))
+    assert formula_matrix(array) == formula_matrix(ABOUT_Z)
     index = ABOUT_X.replace(r"\phi", r"\phi_\mathrm{rel}")
-    assert {symbol.name for symbol in read_formula(formula_words(index)).free_symbols} == {
-        "phi_rel"
-    }
+    assert {symbol.name for symbol in formula_matrix(index).free_symbols} == {"phi_rel"}
     with pytest.raises(ExpressionError, match="unexpected"):
-        formula_words("\\cos\ue000")
+        formula_matrix("\\cos\ue000")
 
 
 def test_a_letter_without_a_meaning_is_refused_in_latex():
@@ -458,6 +457,12 @@ CHANGED = {  # statements of a function of phi and psi: what its matrix is
     f"{SINES}; M = {TURN}; M *= -1; M[0] = [0, 0, 1]; return M": "",
     f"def g():\n        nonlocal phi\n        phi = -phi\n    g(); {SINES}; return {TURN}": "",
     f"self.phi = -phi; {SINES}; return {TURN}": "equal to",
+    f"{SINES}; M = {TURN}; N = M\n    if flip: pass\n    N[0, 1] = s; return M": "entry (1, 2)",
+    f"{SINES}; M = {TURN}; N = M; N *= -1; return M": "",
+    f"{SINES}\n    try: g()\n    except OSError: s = -s\n    return {TURN}": "",
+    f"{SINES}; return np.array([c, -s, 0, s, c, 0, 0, 0, 1]).reshape((3, 3), order='F')": "",
+    f"phi = psi % 1.4; {SINES}; return {TURN}": "",
+    f"q = psi % 1.4; {SINES.replace('phi', 'q')}; return {TURN}": "the value of q in line 3 is not",
     f"turn = lambda phi: {TURN.replace('c', 'np.cos(phi)').replace('s,', 'np.sin(phi),')}; "
     f"{SINES}; return {TURN}": "equal to",
 }  # fmt: skip
@@ -471,6 +476,16 @@ def test_all_that_happens_to_a_name_before_its_use_is_followed(tmp_path, text, s
     whole = [each for each in said_of_all if "of z(" in each]
     assert bool(whole) == bool(said), whole
     assert all(said in each for each in whole)
+
+
+def test_a_choice_may_end_at_any_break(tmp_path):
+    lines = "switch (n) { case 1: if (n > 0) { s = -s; break; } f(); }"
+    for middle, count in (("", 1), (lines, 0)):
+        text = (
+            f"void f(float a, int n) {{ float c = cos(a), s = sin(a); {middle}"
+            "float R[9] = {c, -s, 0, s, c, 0, 0, 0, 1}; }"
+        )
+        assert len(found_in(tmp_path, "a.c", text)) == count
 
 
 def test_a_quaternion_with_the_other_sign_of_its_vector_is_transposed(tmp_path):

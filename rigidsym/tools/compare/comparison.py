@@ -13,7 +13,7 @@ from sympy.core.function import AppliedUndef
 
 from rigidsym.errors import ExpressionError
 from rigidsym.motion import Motion
-from rigidsym.tools.compare.language import read_formula, spelled_out
+from rigidsym.tools.compare.language import spelled_out
 from rigidsym.tools.compare.matching import (
     Comparison,
     against,
@@ -24,7 +24,7 @@ from rigidsym.tools.compare.matching import (
     is_right_at_some,
     likely,
 )
-from rigidsym.tools.compare.program import formula_words
+from rigidsym.tools.compare.program import formula_matrix
 from rigidsym.tools.compare.repair import Meaning
 from rigidsym.tools.compare.targets import SHAPES, KnownQuantity, target
 
@@ -49,11 +49,9 @@ def compare(
         return identified(_checked(matrix))
     goal = _goal(rotation, quantity)
     found = against(matrix, goal)
-    return (
-        found
-        if found.found or not isinstance(formula, str)
-        else in_text(found, formula_words(formula))
-    )
+    if isinstance(formula, str) and not found.found:
+        return in_text(found, formula, formula_matrix)
+    return found
 
 
 def _checked(formula: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
@@ -73,7 +71,7 @@ def _checked(formula: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
 def as_matrix(formula: Any) -> sp.ImmutableMatrix:
     """The matrix that a formula stands for."""
     if isinstance(formula, str):
-        return read_formula(formula_words(formula))
+        return formula_matrix(formula)
     if isinstance(formula, sp.MatrixBase):
         return _in_symbols(formula)
     rows = [row if isinstance(row, list | tuple) else [row] for row in formula]

@@ -14,7 +14,7 @@ import ast
 import re
 import warnings
 from collections.abc import Callable, Collection, Mapping
-from functools import reduce
+from functools import reduce, wraps
 from typing import Any
 
 import sympy as sp
@@ -26,7 +26,7 @@ from rigidsym.text.names import spelled
 _LARGEST = 20  # rows or columns
 _MOST_PARTS = 50_000  # of the entries of a matrix
 _LONGEST_NUMBER = 40  # digits
-_MINUS = Sized.number(sp.S.NegativeOne)
+MINUS = Sized.number(sp.S.NegativeOne)
 
 
 def read_formula(
@@ -46,10 +46,10 @@ def read_formula(
         with warnings.catch_warnings():
             warnings.simplefilter("error", SyntaxWarning)  # 1or is no formula
             tree = ast.parse(text.strip(), mode="eval")
-        return _matrix(reader.value(tree.body))
+        return as_matrix(reader.value(tree.body))
     except SyntaxError as error:
         raise _misread(text.strip(), error) from None
-    except (ValueError, TypeError, IndexError, AttributeError) as error:  # sizes do not fit
+    except (ValueError, IndexError) as error:  # NUL in the text, m[9, 9]
         raise ExpressionError(f"not a formula: {error}") from None
     except (RecursionError, MemoryError):
         raise ExpressionError("operations are nested too deeply") from None
@@ -66,7 +66,8 @@ def _misread(text: str, error: SyntaxError) -> ExpressionError:
     return ExpressionError(f"{near}; expected a formula, as in -s*phi_dot + c/2", column=place)
 
 
-def _matrix(value: Any) -> sp.ImmutableMatrix:
+def as_matrix(value: Any) -> sp.ImmutableMatrix:
+    """A scalar is 1x1."""
     return sp.ImmutableMatrix(value if isinstance(value, sp.MatrixBase) else [[_plain(value)]])
 
 
@@ -74,7 +75,7 @@ def _plain(value: Any) -> Any:
     return value.expression if isinstance(value, Sized) else value
 
 
-def _checked(value: Any) -> Any:
+def sized(value: Any) -> Any:
     """A result that may be large, with its size; raises ExpressionError if it is too large."""
     if isinstance(value, sp.MatrixBase):
         if max(value.shape) > _LARGEST:
@@ -103,7 +104,7 @@ OF_MATRICES: dict[str, Callable[..., Any]] = {
     "T": lambda matrix: matrix.T,
     "one": _unit,
     "col": lambda *entries: sp.Matrix(entries),
-    "stack": lambda *parts: sp.Matrix.vstack(*map(_matrix, parts)),
+    "stack": lambda *parts: sp.Matrix.vstack(*map(as_matrix, parts)),
     "dot": lambda a, b: a.dot(b) if 1 in a.shape else a * b,
     "cross": lambda a, b: a.cross(b),
     "outer": lambda a, b: a * b.T,
@@ -118,7 +119,8 @@ SPELLINGS = {f + end: f for f in FUNCTIONS for end in "fF"} | {  # of functions 
 }
 FUNCTION_NAMES = {*FUNCTIONS, "pow", "sq", "pi", "M_PI", "one"}
 _SHORT = {"c": "cos", "s": "sin", "t": "tan", "C": "cos", "S": "sin", "T": "tan"}
-_CONSTANTS = {"pi": sp.pi, "M_PI": sp.pi}
+CONSTANTS = dict.fromkeys(("pi", "M_PI", "PI", "Pi"), sp.pi)
+CONSTANTS |= {"M_PI_2": sp.pi / 2, "HALF_PI": sp.pi / 2, "DEG_TO_RAD": sp.pi / 180}
 
 
 class _FormulaWalk:
@@ -130,94 +132,124 @@ class _FormulaWalk:
         self.names = names
         self.free = free
         self.functions = functions
-        self.known = OF_MATRICES | dict(functions)
 
     def value(self, node: ast.expr) -> Any:
+        column = getattr(node, "col_offset", 0) + 1
         match node:
-            case ast.Constant(value=int() | float() as number) if not isinstance(number, bool):
-                return _number(number, node.col_offset + 1)
+            case ast.Constant(value=int() | float() as value) if not isinstance(value, bool):
+                return number(repr(value), column)
             case ast.Constant(value=str() as word) if self.functions:
                 return word
             case ast.Name(id=name):
-                return self._name(spelled(name), node.col_offset + 1)
+                return self._name(spelled(name), column)
             case ast.UnaryOp(op=ast.UAdd(), operand=operand):
                 return self.value(operand)
             case ast.UnaryOp(op=ast.USub(), operand=operand):
-                return self._operate(ast.Mult(), _MINUS, self.value(operand), node.col_offset + 1)
+                return combined("*", MINUS, self.value(operand), column)
             case ast.BinOp(left=left, op=op, right=right):
-                return self._operate(op, self.value(left), self.value(right), node.col_offset + 1)
+                word = next((w for w, kind in _OPERATORS.items() if isinstance(op, kind)), "")
+                return combined(word, self.value(left), self.value(right), column)
             case ast.List(elts=parts) | ast.Tuple(elts=parts) if parts:
-                return _rows([self.value(part) for part in parts])
+                return rows([self.value(part) for part in parts])
             case ast.Attribute(value=inner, attr="T"):
-                return _matrix(self.value(inner)).T
+                return as_matrix(self.value(inner)).T
             case ast.Subscript(
                 value=inner,
                 slice=ast.Tuple(elts=[ast.Constant(value=int(i)), ast.Constant(value=int(j))]),
             ) if min(i, j) > 0:
-                return _checked(_matrix(self.value(inner))[i - 1, j - 1])
+                return sized(as_matrix(self.value(inner))[i - 1, j - 1])
             case ast.Call(func=ast.Name(id=name), args=arguments, keywords=[]):
                 values = [self.value(argument) for argument in arguments]
-                return self._call(spelled(name), values, node.col_offset + 1)
-        raise ExpressionError(f"{type(node).__name__} is not allowed", column=node.col_offset + 1)
+                return called(spelled(name), values, self.functions, column)
+        raise ExpressionError(f"{type(node).__name__} is not allowed", column=column)
 
     def _name(self, name: str, column: int) -> Any:
         if name in self.names:
-            return _checked(self.names[name])
-        if self.free or name in _CONSTANTS:
-            return Sized.atom(_CONSTANTS.get(name, sp.Symbol(name, real=True)))
+            return sized(self.names[name])
+        if self.free or name in CONSTANTS:
+            return Sized.atom(CONSTANTS.get(name, sp.Symbol(name, real=True)))
         raise ExpressionError(f"unknown name {name!r}; {offer(name, self.names)}", column=column)
 
-    def _operate(self, op: ast.operator, left: Any, right: Any, column: int) -> Any:
-        if isinstance(left, Sized) and isinstance(right, Sized):
-            is_product = isinstance(op, ast.MatMult | ast.Mod)
-            return operate(ast.Mult() if is_product else op, left, right, column)
-        one, other = _plain(left), _plain(right)
-        if isinstance(op, ast.Mod) and Sized not in (type(left), type(right)):
-            return _checked(sp.matrix_multiply_elementwise(sp.Matrix(one), sp.Matrix(other)))
-        match op:
-            case ast.Add():
-                return _checked(one + other)
-            case ast.Sub():
-                return _checked(one - other)
-            case ast.Mult() | ast.MatMult() | ast.Mod():
-                product = one * other
-                is_scalar = isinstance(product, sp.MatrixBase) and product.shape == (1, 1)
-                return _checked(product[0] if is_scalar else product)
-            case ast.Div() if isinstance(right, Sized) and other != 0:
-                return _checked(one / other)
-            case ast.Pow() if other in range(1, 9):
-                return reduce(lambda a, b: _checked(a * b), [one] * int(other))
-        raise ExpressionError("this operation is not defined for matrices", column=column)
 
-    def _call(self, name: str, values: list[Any], column: int) -> Any:
-        if len(values) == 1 and isinstance(values[0], Sized):
-            name = _SHORT.get(name, name) if name not in self.functions else name
-        elif name in WRAPPERS and len(values) == 1:
-            return _matrix(values[0])
-        if name in ("pow", "sq"):
-            exponent = values[1] if name == "pow" else Sized.number(sp.Integer(2))
-            return self._operate(ast.Pow(), values[0], exponent, column)
-        if name in self.known:
-            return _checked(self.known[name](*map(_plain, values)))
-        if name not in FUNCTIONS:
-            hint = offer(name, [*FUNCTIONS, *self.known])
-            raise ExpressionError(f"{name!r} is not a function; {hint}", column=column)
-        if len(values) != 1 + (name == "atan2") or not all(isinstance(v, Sized) for v in values):
-            raise ExpressionError(f"{name}: wrong arguments", column=column)
-        return apply(name, values, column)
+_OPERATORS: dict[str, type[ast.operator]] = {
+    **{"+": ast.Add, "-": ast.Sub, "*": ast.Mult, "/": ast.Div, "**": ast.Pow},
+    **{"@": ast.MatMult, "%": ast.Mod},  # % is the product entry by entry
+}
 
 
-def _rows(parts: list[Any]) -> sp.ImmutableMatrix:
-    """A column of scalars, or rows; a row is what a list inside the list holds."""
+def _of_fitting_sizes(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Raises ExpressionError for matrices and arguments that do not fit."""
+
+    @wraps(function)
+    def checked(*arguments: Any) -> Any:
+        try:
+            return function(*arguments)
+        except (ValueError, TypeError, IndexError, AttributeError) as error:
+            raise ExpressionError(f"not a formula: {error}") from None
+
+    return checked
+
+
+@_of_fitting_sizes
+def combined(operator: str, left: Any, right: Any, column: int = 1) -> Any:
+    """left + right, and so on, of expressions and matrices."""
+    op = _OPERATORS[operator]() if operator in _OPERATORS else ast.BitXor()
+    if isinstance(left, Sized) and isinstance(right, Sized):
+        return operate(ast.Mult() if operator in "@%" else op, left, right, column)
+    one, other = _plain(left), _plain(right)
+    match operator:
+        case "%" if Sized not in (type(left), type(right)):
+            return sized(sp.matrix_multiply_elementwise(sp.Matrix(one), sp.Matrix(other)))
+        case "+":
+            return sized(one + other)
+        case "-":
+            return sized(one - other)
+        case "*" | "@" | "%":
+            product = one * other
+            is_scalar = isinstance(product, sp.MatrixBase) and product.shape == (1, 1)
+            return sized(product[0] if is_scalar else product)
+        case "/" if isinstance(right, Sized) and other != 0:
+            return sized(one / other)
+        case "**" if other in range(1, 9):
+            return reduce(lambda a, b: sized(a * b), [one] * int(other))
+    raise ExpressionError("this operation is not defined for matrices", column=column)
+
+
+@_of_fitting_sizes
+def called(
+    name: str, values: list[Any], functions: Mapping[str, Any] | None = None, column: int = 1
+) -> Any:
+    """A function of expressions and matrices: its own, or one of `functions`."""
+    own = OF_MATRICES | dict(functions or {})
+    if len(values) == 1 and isinstance(values[0], Sized):
+        name = _SHORT.get(name, name) if name not in (functions or ()) else name
+    elif name in WRAPPERS and len(values) == 1:
+        return as_matrix(values[0])
+    if name in ("pow", "sq"):
+        exponent = values[1] if name == "pow" else Sized.number(sp.Integer(2))
+        return combined("**", values[0], exponent, column)
+    if name in own:
+        return sized(own[name](*map(_plain, values)))
+    if name not in FUNCTIONS:
+        hint = offer(name, [*FUNCTIONS, *own])
+        raise ExpressionError(f"{name!r} is not a function; {hint}", column=column)
+    if len(values) != 1 + (name == "atan2") or not all(isinstance(v, Sized) for v in values):
+        raise ExpressionError(f"{name}: wrong arguments", column=column)
+    return apply(name, values, column)
+
+
+@_of_fitting_sizes
+def rows(parts: list[Any]) -> sp.ImmutableMatrix:
+    """A column of scalars, or rows; a list inside the list is a row."""
     if all(isinstance(part, Sized) for part in parts):
-        return _checked(sp.Matrix([part.expression for part in parts]))
-    rows = (_matrix(part) for part in parts)
-    return _checked(sp.Matrix.vstack(*(row.T if row.cols == 1 else row for row in rows)))
+        return sized(sp.Matrix([part.expression for part in parts]))
+    matrices = (as_matrix(part) for part in parts)
+    return sized(sp.Matrix.vstack(*(row.T if row.cols == 1 else row for row in matrices)))
 
 
-def _number(number: float, column: int) -> Sized:
-    text = repr(number)
-    if len(text) > _LONGEST_NUMBER or not re.fullmatch(r"[\d.]+(e[+-]?\d\d?)?", text):
+def number(text: str, column: int = 1) -> Sized:
+    """A number in decimal digits."""
+    if len(text) > _LONGEST_NUMBER or not re.fullmatch(r"[\d.]+([eE][+-]?\d\d?)?", text):
         raise ExpressionError(f"a number of more than {_LONGEST_NUMBER} digits", column=column)
     return Sized.number(sp.Rational(text))
 

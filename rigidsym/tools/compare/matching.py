@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain, islice
 from typing import Any
@@ -11,7 +11,7 @@ from typing import Any
 import sympy as sp
 
 from rigidsym.errors import AlgebraError, DerivationError, ModelError
-from rigidsym.tools.compare.language import read_formula, spelled_out
+from rigidsym.tools.compare.language import spelled_out
 from rigidsym.tools.compare.repair import (
     Meaning,
     Repair,
@@ -219,23 +219,30 @@ def identified(
     return Comparison(formula=formula, asked=None)
 
 
-_SIGNS = {"+": "-", "-": "+", "sin": "cos", "cos": "sin", "**2": ""}
+_SIGNS = {"+": "-", "-": "+", "sin": "cos", "cos": "sin"}
 
 
-def in_text(unknown: Comparison, text: str) -> Comparison:
+def in_text(
+    unknown: Comparison, text: str, read: Callable[[str], sp.ImmutableMatrix]
+) -> Comparison:
     """The comparison after one change in the text, such as a sign between matrices."""
     goal = unknown.asked
     assert goal is not None
-    for match in re.finditer(r"[+-]|\b(?:sin|cos)\b|\*\*2\b", text):
-        changed = text[: match.start()] + _SIGNS[match[0]] + text[match.end() :]
-        formula = spelled_out(read_formula(changed))
+    for match in re.finditer(r"[+-]|\b(?:sin|cos)\b|(?:\*\*|\^)2\b", text):
+        changed = text[: match.start()] + _SIGNS.get(match[0], "") + text[match.end() :]
+        formula = spelled_out(read(changed))
         for names in readings(formula, goal):
             reading = Meaning.of(formula, goal, names)
             if reading.agrees(formula, goal):
                 before = text[max(0, match.start() - 15) : match.end() + 15]
                 after = changed[max(0, match.start() - 15) : match.end() + 15]
-                words = f"...{before}... should be ...{after}...".replace("%", "*")
-                kind = {"s": "sine and cosine", "c": "sine and cosine", "*": "square"}
+                words = f"...{before}... should be ...{after}..."
+                kind = {
+                    "s": "sine and cosine",
+                    "c": "sine and cosine",
+                    "*": "square",
+                    "^": "square",
+                }
                 change = Repair(
                     kind=kind.get(match[0][0], "sign"), words=words, formula=formula, goal=goal
                 )

@@ -1,15 +1,16 @@
-"""The formulas of a program: a walk over its syntax tree, which follows every assignment.
+"""The formulas of a program: an abstract interpreter over its syntax tree.
 
-The walk keeps what each name holds. A name that is changed in a way that cannot be followed, on a
-condition or in a loop, holds nothing from there on, and a formula that uses it is unreadable. A new
-name for something that is not understood, or is long, is an input of the formulas after it. So a
-formula is only read if it says the same in the program. Programs are parsed, never run.
+It runs each function with symbols in place of numbers, and keeps the value of each name: an
+expression, a matrix, or the reason why the value is unreadable. A condition or a loop makes every
+name unreadable that it may change. A new name for an unreadable or a long value becomes an input of
+the formulas after it. A formula is therefore only read if the program computes the same. Two
+tables give the meaning of each type of node in every language. Programs are parsed, never run.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from importlib import import_module
@@ -18,14 +19,23 @@ from typing import TYPE_CHECKING, Any
 import sympy as sp
 
 from rigidsym.errors import ExpressionError, MissingExtra
-from rigidsym.text.bounds import FUNCTIONS
+from rigidsym.text.bounds import FUNCTIONS, Sized
+from rigidsym.text.names import spelled
 from rigidsym.tools.compare.language import (
     ANGLE,
+    CONSTANTS,
     FUNCTION_NAMES,
+    MINUS,
     OF_MATRICES,
     WRAPPERS,
+    as_matrix,
+    called,
+    combined,
     name_of,
+    number,
     read_formula,
+    rows,
+    sized,
     spelled_out,
 )
 from rigidsym.tools.compare.latex import tex_words
@@ -33,6 +43,7 @@ from rigidsym.tools.compare.targets import stem_of
 
 if TYPE_CHECKING:
     from tree_sitter import Node
+
 
 GRAMMARS = {
     ".py": "python",
@@ -42,21 +53,53 @@ GRAMMARS = {
     **{".m": "matlab", ".ts": "typescript", ".rs": "rust", ".java": "java"},
     ".cs": "c_sharp",
 }
+_SHARING = (".py", ".js", ".mjs", ".jsx", ".ts", ".java", ".cs")  # b = a is the same matrix
 _DEEPEST = 60  # nested nodes of an expression; formulas of real programs have fewer than 30
 _DEEPEST_BLOCK = 40
 _LONGEST_PATH = 8  # members of members
 _MOST_NODES = 400_000  # of a file: a generated megabyte is not worth reading
+_MOST_CHARACTERS = 20_000  # of a formula
 _LONG_IN_LONG = 3  # names for long values that use other such names
 _MOST_PARTS = 2_000  # of a matrix
 _INLINED = 3  # calls of functions of the same file inside one another
+
+_NUMBERS = re.compile(r"((?:\d[\d_]*\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)_?[fFlLuUdDmM]*(?:32|64)?")
+_NUMPY = re.compile(r"^\s*(?:import|from) (?:numpy|jax)\b", re.MULTILINE)
+_MATRICES = re.compile(r"\bsympy\b|\bcasadi\b|\b(?:np|numpy)\.mat\(|[mM]atrix\(")  # whose * is @
+_MATRIX_NAME = re.compile(r"mat|rot|dcm|basis|tensor|^set|setvalue|new|tf", re.IGNORECASE)
+_VECTOR_NAME = re.compile(r"vec|quat|^set|new|array", re.IGNORECASE)
+_MAY_BE_MATRIX = re.compile(r"[\[{].*,|(?i:sin|cos|mat|quat|dcm)", re.DOTALL)
+_BY_COLUMNS = re.compile(r"from_?col|^f?mat3x?3?$|column_stack|hstack|^c_$", re.IGNORECASE)
+_HARMLESS = re.compile(
+    r"print|disp|log|assert|plot|show|append|push|test|check|expect", re.IGNORECASE
+)
+_ELEMENT = re.compile(r"(?P<stem>.*?)_?(?P<row>[0-3])_?(?P<column>[0-3])")
+_ROW = re.compile(r"(?P<stem>(?:.*\.)?)(?P<row>[abc])\.(?P<column>[xyz])")  # Matrix3 of ArduPilot
+_CASTS = {
+    *("T", "Scalar", "float", "double", "Real", "real", "real_t", "float32", "float64", "f32"),
+    *("f64", "Float", "Double", "btScalar", "static_cast", "Type", "Number", "number", "S"),
+}
+_SAME = {"copy", "clone", "astype", "to", "reshape", "view", "eval", "noalias", "finished", "into"}
+_STACKS = {"stack", "vstack", "row_stack", "block", "concatenate"}
+_ZEROS, _UNITS = {"zeros", "Zero"}, {"eye", "identity", "Identity"}
+_ENTRIES = {"at", "coeff", "coeffRef", "get", "operator()", "element"}  # of a matrix: at(0, 1)
+_AXES = {"x": 0, "y": 1, "z": 2, "X": 0, "Y": 1, "Z": 2}
+_BOOLEANS = {"0": False, "false": False, "False": False, "1": True, "true": True, "True": True}
+_OPERATORS = ("+", "-", "*", "/", "**", "@")
+_ELEMENTWISE = {".*": "%", "./": "/", ".^": "**", "^": "**"}  # MATLAB
+_FLAT = {9: (3, 3), 12: (4, 3), 16: (4, 4)}
+
+# Types of nodes
 
 _FUNCTIONS = {
     *("function_definition", "function_declaration", "method_definition", "arrow_function"),
     *("function_expression", "function_item", "method_declaration", "constructor_declaration"),
     *("local_function_statement", "lambda", "lambda_expression", "closure_expression"),
 }
-_NUMBERS = re.compile(r"((?:\d[\d_]*\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)_?[fFlLuUdDmM]*(?:32|64)?")
-_NAMES = {"identifier", "field_identifier", "property_identifier", "this", "self", "super"}
+_NAMES = {
+    *("identifier", "namespace_identifier", "field_identifier", "property_identifier"),
+    *("this", "self", "super"),
+}
 _MEMBERS = {
     *("attribute", "field_expression", "member_expression", "member_access_expression"),
     *("field_access", "qualified_identifier", "scoped_identifier"),
@@ -76,43 +119,32 @@ _LISTS = {
 _WRAPPED = {  # nodes whose only meaning is their child
     *("parenthesized_expression", "parenthesis", "condition_clause", "as_expression", "argument"),
     *("non_null_expression", "reference_expression", "array_creation_expression", "else_clause"),
+    *("cast_expression", "type_cast_expression", "static_cast_expression"),
 }
-_ASSIGNMENTS = {"assignment", "assignment_expression", "let_declaration"}
-_DECLARATORS = {"init_declarator", "variable_declarator"}
-_UPDATES = {"augmented_assignment", "augmented_assignment_expression", "compound_assignment_expr"}
-_CHANGES = {*_UPDATES, "update_expression", "assignment_expression"}
+_ASSIGNMENTS = {
+    *("assignment", "assignment_expression", "let_declaration"),
+    *("init_declarator", "variable_declarator"),
+}
+_UPDATES = {
+    *("augmented_assignment", "augmented_assignment_expression", "compound_assignment_expr"),
+    "update_expression",
+}
+_TUPLES = {
+    *("pattern_list", "tuple_pattern", "array_pattern", "multioutput_variable", "tuple"),
+    *("list_pattern", "structured_binding_declarator"),
+}
 _LOOPS = {
     *("for_statement", "while_statement", "do_statement", "for_in_statement", "for_range_loop"),
     *("for_expression", "while_expression", "loop_expression", "foreach_statement"),
     "enhanced_for_statement",
 }
-_BRANCHES = {"if_statement", "if_expression"}
-_CHOICES = {"switch_statement", "switch_expression", "match_statement", "match_expression"}
+_ELIFS = {"elif_clause", "elseif_clause"}
 _CASES = {
     *("case_statement", "switch_case", "switch_default", "case_clause", "match_arm"),
     *("switch_section", "switch_block_statement_group", "switch_rule", "otherwise_clause"),
 }
-_ENDS = {"raise_statement", "throw_statement", "break_statement", "continue_statement"}
-_ENDS |= {"return_statement", "return_expression", "goto_statement"}
-
-_OPERATORS = {"+": "+", "-": "-", "*": "*", "/": "/", "**": "**", "@": "@"}
-_ELEMENTWISE = {".*": "%", "./": "/", ".^": "**", "^": "**"}  # MATLAB
-_CASTS = {
-    *("T", "Scalar", "float", "double", "Real", "real", "real_t", "float32", "float64", "f32"),
-    *("f64", "Float", "Double", "btScalar", "static_cast", "Type", "Number", "number", "S"),
-}
-_SAME = {"copy", "clone", "astype", "to", "reshape", "view", "eval", "noalias", "finished", "into"}
-_AXES = {"x": 0, "y": 1, "z": 2, "X": 0, "Y": 1, "Z": 2}
-_MATRIX_NAME = re.compile(r"mat|rot|dcm|basis|tensor|^set|setvalue|new|tf", re.IGNORECASE)
-_VECTOR_NAME = re.compile(r"vec|quat|^set|new|array", re.IGNORECASE)
-_MAY_BE_MATRIX = re.compile(r"[\[{].*,|(?i:sin|cos|mat|quat|dcm)", re.DOTALL)
-_BY_COLUMNS = re.compile(r"from_?col|^f?mat3x?3?$|column_stack|hstack|^c_$", re.IGNORECASE)
-_HARMLESS = re.compile(
-    r"print|disp|log|assert|plot|show|append|push|test|check|expect", re.IGNORECASE
-)
-_ELEMENT = re.compile(r"(?P<stem>.*?)_?(?P<row>[0-3])_?(?P<column>[0-3])")
-_ROW = re.compile(r"(?P<stem>(?:.*\.)?)(?P<row>[abc])\.(?P<column>[xyz])")  # Matrix3 of ArduPilot
-SHAPES = {9: (3, 3), 12: (4, 3), 16: (4, 4)}
+_LEFT = ("left", "declarator", "name", "pattern", "argument")
+_INNER = ("argument", "value", "object", "expression", "array", "scope", "path")
 
 
 class _Unreadable(ExpressionError):
@@ -128,6 +160,7 @@ class Formula:
     matrix: sp.ImmutableMatrix | None
     reason: str = ""
     whole: sp.ImmutableMatrix | None = None  # with names for long values replaced by these values
+    unread: tuple[tuple[str, int], ...] = ()  # names in it whose values are not read, and lines
 
 
 @dataclass
@@ -140,7 +173,10 @@ class _Grid:
     is_whole: bool = False  # assigned at once
 
     @classmethod
-    def of(cls, line: int, name: str, matrix: sp.MatrixBase) -> _Grid:
+    def of(cls, line: int, matrix: sp.MatrixBase, name: str = "") -> _Grid:
+        """Nine, twelve or sixteen numbers in a row are a matrix."""
+        if 1 in matrix.shape and len(matrix) in _FLAT:
+            matrix = matrix.reshape(*_FLAT[len(matrix)])
         places = ((i, j) for i in range(matrix.rows) for j in range(matrix.cols))
         return cls(line, name, {place: matrix[place] for place in places}, is_whole=True)
 
@@ -153,58 +189,55 @@ class _Grid:
         if len(widths) != 1:
             return None
         grid = sorted(self.entries)
-        rows = sorted({index[0] for index in grid})
-        columns = sorted({index[-1] for index in grid}) if widths == {2} else [0]
-        if len(rows) * len(columns) != len(grid):
+        height = len({index[0] for index in grid})
+        width = len({index[-1] for index in grid}) if widths == {2} else 1
+        if height * width != len(grid):
             return None
-        values = [self.entries[index] for index in grid]
-        return shaped(sp.ImmutableMatrix(len(rows), len(columns), values))
-
-
-def shaped(matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
-    """Nine, twelve or sixteen numbers in a row are a matrix."""
-    is_flat = 1 in matrix.shape and len(matrix) in SHAPES
-    return matrix.reshape(*SHAPES[len(matrix)]) if is_flat else matrix
+        matrix = sp.ImmutableMatrix(height, width, [self.entries[index] for index in grid])
+        is_flat = 1 in matrix.shape and len(matrix) in _FLAT
+        return matrix.reshape(*_FLAT[len(matrix)]) if is_flat else matrix
 
 
 @dataclass
 class _State:
-    """What the names of a function hold at one place of it."""
+    """The values of all names at one place of a function; a text says why a value is unreadable."""
 
-    values: dict[str, Any] = field(
-        default_factory=dict
-    )  # an expression, a _Grid, or a str: why not
+    values: dict[str, sp.Expr | _Grid | str] = field(default_factory=dict)
     is_over: bool = False  # after a return
 
     def copy(self) -> _State:
-        values = {k: v.copy() if isinstance(v, _Grid) else v for k, v in self.values.items()}
-        return _State(values, self.is_over)
+        grids = {id(v): v.copy() for v in self.values.values() if isinstance(v, _Grid)}
+        return _State({k: grids.get(id(v), v) for k, v in self.values.items()}, self.is_over)
+
+
+@dataclass(frozen=True)
+class _Program:
+    """All functions know this of their file."""
+
+    suffix: str
+    functions: Mapping[str, Node] = field(default_factory=dict)
+    is_numpy: bool = False  # * is the product entry by entry
+    is_formula: bool = False  # a formula on its own, with the words of `language`
 
 
 def program_formulas(text: str, suffix: str) -> list[Formula]:
     """All matrices and vectors of a program, in the order of its lines."""
-    parser = _parser(GRAMMARS[suffix])
-    tree = parser.parse(text.encode())
-    if tree.root_node.descendant_count > _MOST_NODES:
+    root = _parser(GRAMMARS[suffix]).parse(text.encode()).root_node
+    if root.descendant_count > _MOST_NODES:
         return []
-    functions = list(_functions(tree.root_node))
-    helpers: dict[str, Node] = {}
-    for node in functions:
-        name = _function_name(node)
-        if name:
-            helpers[name] = node
+    functions = [node for node in _below([root]) if node.type in _FUNCTIONS]
+    by_name = {name: node for node in functions if (name := _function_name(node))}
     is_numpy = suffix == ".py" and bool(_NUMPY.search(text)) and not _MATRICES.search(text)
+    program = _Program(suffix, by_name, is_numpy)
     formulas: dict[tuple[int, str, Any], Formula] = {}
-    for scope in (tree.root_node, *functions):
-        walk = _Walk(suffix, helpers, is_numpy=is_numpy)
-        walk.run_scope(scope)
-        for formula in walk.formulas:
+    for scope in (root, *functions):
+        for formula in _Interpreter(program).formulas_of(scope):
             formulas.setdefault((formula.line, formula.name, formula.matrix), formula)
     return sorted(formulas.values(), key=lambda each: each.line)
 
 
-def formula_words(text: str) -> str:
-    """A single formula in Python, C, MATLAB or LaTeX, in the words of `read_formula`.
+def formula_matrix(text: str) -> sp.ImmutableMatrix:
+    """The matrix of a single formula in Python, C, MATLAB or LaTeX; a scalar is 1x1.
 
     Raises ExpressionError for a text in none of these languages, and for one that is too long.
     """
@@ -213,24 +246,34 @@ def formula_words(text: str) -> str:
             f"a formula of {len(text)} characters; expected at most {_MOST_CHARACTERS}"
         )
     if re.search(r"\\[A-Za-z]", text):
-        return tex_words(text)
+        return read_formula(tex_words(text))
+    is_numpy = bool(re.search(r"\b(?:np|numpy|jnp)\.(?:array|asarray)\b", text))
     for suffix in (".cpp",) if "{" in text else (".py", ".m", ".cpp"):
-        # a line ends a row in MATLAB only
-        line = f"x = {text};" if suffix == ".m" else "x = {};".format(text.replace("\n", " "))
-        root = _parser(GRAMMARS[suffix]).parse(f"{'auto ' * (suffix == '.cpp')}{line}".encode())
-        stack = [root.root_node]
-        while stack and stack[0].type not in (*_ASSIGNMENTS, *_DECLARATORS):
-            stack = [*_children(stack[0]), *stack[1:]]
-        value = _part(stack[0], "right", "value") if stack else None
-        if not root.root_node.has_error and value is not None:
-            is_numpy = bool(re.search(r"\b(?:np|numpy|jnp)\.(?:array|asarray)\b", text))
-            return _Walk(suffix, {}, is_numpy=is_numpy, is_formula=True).read(value)
-    raise ExpressionError(f"not a formula in Python, C, MATLAB or LaTeX: {text[:40]}")
+        value = _assigned_value(text, suffix)
+        if value is not None:
+            program = _Program(suffix, is_numpy=is_numpy, is_formula=True)
+            matrix = as_matrix(_Interpreter(program).read(value))
+            is_array = "{" in text and 1 in matrix.shape and len(matrix) in _FLAT  # float R[9] =
+            return matrix.reshape(*_FLAT[len(matrix)]) if is_array else matrix
+    text = text if len(text) < 200 else f"{text[:200]}..."
+    raise ExpressionError(f"not a formula in Python, C, MATLAB or LaTeX: {text}")
 
 
-_MOST_CHARACTERS = 20_000  # of a formula
-_NUMPY = re.compile(r"^\s*(?:import|from) (?:numpy|jax)\b", re.MULTILINE)
-_MATRICES = re.compile(r"\bsympy\b|\bcasadi\b|\b(?:np|numpy)\.mat\(|[mM]atrix\(")  # whose * is @
+def _assigned_value(text: str, suffix: str) -> Node | None:
+    """The right-hand side, if the text or `x = text` is an assignment in a language."""
+    line = text.strip().rstrip(";")
+    if suffix != ".m":  # a line ends a row in MATLAB only
+        line = line.replace("\n", " ")
+    if suffix == ".py":  # in Python, ^ would bind less than +
+        line = line.replace("^", "**")
+    for program in (f"{'auto ' * (suffix == '.cpp')}x = {line};", f"{line};"):
+        root = _parser(GRAMMARS[suffix]).parse(program.encode()).root_node
+        first = next((node for node in _below([root]) if node.type in _ASSIGNMENTS), None)
+        while first is not None and first.type in _ASSIGNMENTS and not root.has_error:
+            first = _part(first, "right", "value")
+        if first is not None and not root.has_error:
+            return first
+    return None
 
 
 @cache
@@ -245,13 +288,15 @@ def _parser(grammar: str) -> Any:
     return Parser(Language(language()))
 
 
-def _functions(root: Node) -> Iterator[Node]:
-    """All functions of a file, outer ones first, without recursion."""
-    stack = [root]
+# Nodes
+
+
+def _below(nodes: Iterable[Node]) -> Iterator[Node]:
+    """Nodes and all that they contain, in the order of the text, without recursion."""
+    stack = [*nodes][::-1]
     while stack:
         node = stack.pop()
-        if node.type in _FUNCTIONS:
-            yield node
+        yield node
         stack += node.named_children[::-1]
 
 
@@ -264,7 +309,7 @@ def _function_name(node: Node) -> str:
         part = _part(node, "name", "declarator")
         while part is not None and part.type.endswith("declarator"):
             part = _part(part, "declarator")
-    return _text(part).rpartition("::")[2] if part is not None else ""
+    return _text(part).rpartition("::")[2]
 
 
 def _part(node: Node, *fields: str) -> Node | None:
@@ -284,470 +329,463 @@ def _children(node: Node) -> list[Node]:
     return [c for c in node.named_children if c.type not in ("comment", "line_continuation")]
 
 
+def _child(node: Node, *kinds: str) -> Node | None:
+    return next((child for child in node.named_children if child.type in kinds), None)
+
+
 def _operator(node: Node) -> str:
-    return next((_text(c) for c in node.children if not c.is_named), "")
+    own = _part(node, "operator")
+    return _text(own or next((c for c in node.children if not c.is_named), None))
 
 
-class _Walk:
+def _targets(left: Node) -> list[Node]:
+    """The parts of a tuple on the left, or the only one."""
+    return _children(left) if left.type in _TUPLES else [left]
+
+
+def _left(node: Node) -> Node | None:
+    """The name, entry or tuple that an assignment writes to."""
+    left = _part(node, *_LEFT) or next(iter(_children(node)), None)
+    while left and left.type in ("array_declarator", "pointer_declarator", "reference_declarator"):
+        left = _part(left, "declarator") or next(iter(_children(left)), None)
+    return left
+
+
+def _arguments(node: Node) -> list[Node]:
+    outer = _part(node, "arguments", "value") or _child(node, "arguments")
+    return _children(outer) if outer is not None else []
+
+
+def _member(node: Node) -> tuple[Node | None, str]:
+    """The object and the name of its member."""
+    return _part(node, *_INNER), _text(_part(node, "attribute", "field", "property", "name"))
+
+
+def _path(node: Node | None, depth: int = 0) -> str | None:
+    """self.phi, p->x, q.w() and ns::name with dots, or None for other expressions."""
+    if node is None or depth > _LONGEST_PATH:
+        return None
+    if node.type in _NAMES:
+        return _text(node)
+    inner, member, children = None, "", _children(node)
+    if node.type in _WRAPPED and len(children) == 1:
+        return _path(children[0], depth + 1)
+    if node.type == "pointer_expression" and _operator(node) == "*":
+        return _path(children[-1], depth + 1)
+    if node.type in _MEMBERS:
+        inner, member = _member(node)
+        member = "" if member == "T" else member
+    elif node.type == "call_expression" and not _arguments(node):
+        function = _part(node, "function")
+        if function is not None and function.type in _MEMBERS:
+            inner, member = _member(function)
+            member = member if member in "wxyz" or ANGLE.fullmatch(member) else ""
+    elif node.type in _SUBSCRIPTS and (key := re.search(r"""\[["'](\w+)["']\]$""", _text(node))):
+        inner, member = node.named_children[0], key[1]  # state["phi"]
+    base = _path(inner, depth + 1)
+    return f"{base}.{member}" if base and re.fullmatch(r"\w+", member) else None
+
+
+def _callee(node: Node) -> str:
+    """The path of the function that is called: np.array, Math.sin, R.transpose, ?.transpose."""
+    function = _part(node, *(("name",) if node.type == "function_call" else ()))
+    function = function or _part(node, "function", "constructor", "type")
+    if node.type == "method_invocation":
+        inner, name = _part(node, "object"), _text(_part(node, "name"))
+        return f"{_path(inner) or '?'}.{name}" if inner is not None else name
+    if function is not None and function.type in _MEMBERS:
+        inner, name = _member(function)
+        return f"{_path(inner) or '?'}.{name}"
+    return re.sub(r"<.*>", "", _text(function)).replace("::", ".")
+
+
+class _Interpreter:
     """One function, or the code of a file outside of all functions."""
 
-    def __init__(
-        self, suffix: str, helpers: Mapping[str, Node], *, is_numpy: bool, is_formula: bool = False
-    ) -> None:
-        self.suffix = suffix
-        self.is_formula = is_formula  # on its own, with the words of `language`
-        self.helpers = helpers
-        self.is_numpy = is_numpy
-        self.shares = suffix in (".py", ".js", ".mjs", ".jsx", ".ts", ".java", ".cs")  # matrices
-        self.first = int(suffix == ".m")  # the first index
+    def __init__(self, program: _Program, inlined: int = 0) -> None:
+        self.program = program
+        self.inlined = inlined
+        self.is_matlab = program.suffix == ".m"
         self.state = _State()
         self.formulas: list[Formula] = []
         self.paths: dict[str, str] = {}  # name: its path in the program
         self.inputs: set[str] = set()  # names that were read before anything was assigned
-        self.cut: set[str] = set()  # names of inputs that stand for something computed
-        self.long: dict[str, sp.Expr] = {}  # what they stand for, if that is known
-        self.untracked: set[str] = set()
+        self.cut: dict[str, sp.Expr | None] = {}  # names that stand for values, if these are read
         self.lines: dict[str, int] = {}  # where a name was first assigned
+        self.untracked: set[str] = set()
         self.scalars: list[tuple[str, sp.Expr, int]] = []  # the last ones assigned in a row
         self.runs: list[tuple[int, tuple[str, ...], tuple[sp.Expr, ...]]] = []
         self.result: Any = None
+        self.results = 0
         self.depth = 0
-        self.inlined = 0
+
+    def unreadable(self, node: Node, reason: str = "is not understood") -> _Unreadable:
+        text = re.sub(r"\s+", " ", _text(node))
+        text = text if len(text) <= 60 else f"{text[:57]}..."
+        where = "" if self.program.is_formula else f" in line {_line(node)}"
+        return _Unreadable(f"`{text}`{where} {reason}")
 
     # Statements
 
-    def run_scope(self, node: Node) -> None:
-        self.untracked = self._changed_out_of_order(node)
-        if node.type in _FUNCTIONS:
-            body = _part(node, "body") or next(
-                (c for c in node.named_children if c.type == "block"), None
-            )
-            if body is None:
-                return
-            self.inputs |= set(self.parameters(node))
-            if not body.type.endswith(("block", "statement", "body")):  # an arrow's expression
-                self._return(body)
-            else:
-                self._run(body)
-                last = _children(body)[-1:] if self.suffix == ".rs" else []
-                if last and not last[0].type.endswith(("statement", "declaration")):
-                    self._return(last[0])
+    def formulas_of(self, scope: Node) -> list[Formula]:
+        """Run a function, or the whole file; the formulas in it."""
+        self.untracked = {n for n, is_late in self._writes(scope.named_children) if is_late}
+        is_function = scope.type in _FUNCTIONS
+        body = (_part(scope, "body") or _child(scope, "block")) if is_function else scope
+        if is_function:
+            self.inputs |= set(self.parameters(scope))
+        if body is None:
+            return []
+        if is_function and not body.type.endswith(("block", "statement", "body")):
+            self._return(body)  # the expression of an arrow
         else:
-            self._run(node)
-        self._end()
-
-    def _changed_out_of_order(self, scope: Node) -> set[str]:
-        """Names that expressions (a := b) or inner functions change: nobody knows when."""
-        names: set[str] = set()
-        stack = [(child, False) for child in scope.named_children]
-        while stack:
-            node, is_inner = stack.pop()
-            is_inner |= node.type in _FUNCTIONS
-            if node.type == "named_expression":
-                names.add(self._written(node))
-            elif node.type in ("nonlocal_statement", "global_statement"):
-                names |= {_text(child) for child in node.named_children}
-            elif is_inner and self.suffix != ".py" and node.type in _CHANGES:
-                left = _part(node, "left", "argument") or next(iter(_children(node)), None)
-                names |= {self._written(left)} if left is not None else set()
-            stack += [(child, is_inner) for child in node.named_children]
-        return names - {""}
+            self.run(body)
+            last = _children(body)[-1:] if self.program.suffix == ".rs" else []
+            if last and not last[0].type.endswith(("statement", "declaration")):
+                self._return(last[0])
+        if not self.state.is_over:
+            self._emit(self.state.values)
+        self._add_runs()
+        self._add_elements()
+        return self.formulas
 
     def parameters(self, node: Node) -> list[str]:
         """The names of the parameters of a function."""
-        outer = _part(node, "parameters", "declarator")
-        if outer is None:
-            outer = next((c for c in node.named_children if c.type == "function_arguments"), None)
-        if outer is not None and outer.type.endswith("declarator"):
-            while outer is not None and outer.type != "parameter_list":
-                outer = _part(outer, "parameters", "declarator")
-        return [name for c in (_children(outer) if outer else ()) if (name := self._parameter(c))]
+        outer = _part(node, "parameters", "declarator") or _child(node, "function_arguments")
+        while outer is not None and outer.type.endswith("declarator"):
+            outer = _part(outer, "parameters", "declarator")
+        names = []
+        for child in _children(outer) if outer is not None else ():
+            part: Node | None = child
+            while part is not None and part.type not in _NAMES:
+                part = _part(part, "declarator", "pattern", "name") or next(
+                    (c for c in part.named_children if c.type in _NAMES or "declar" in c.type), None
+                )
+            names += [self.name_of_path(_text(part))] if part is not None else []
+        return names
 
-    def _parameter(self, node: Node) -> str:
-        while node.type not in _NAMES:
-            inner = _part(node, "declarator", "pattern", "name") or next(
-                (c for c in node.named_children if c.type in _NAMES or "declarator" in c.type), None
-            )
-            if inner is None or inner == node:
-                return ""
-            node = inner
-        return self._name_of_path(_text(node))
-
-    def _run(self, node: Node) -> None:
+    def run(self, node: Node) -> None:
         """One statement, or all statements in a block."""
-        if self.state.is_over or (node.type in _FUNCTIONS and self.inlined == 0):
+        if self.state.is_over or node.type in _FUNCTIONS:
             return
         self.depth += 1
-        try:
-            if self.depth > _DEEPEST_BLOCK:
-                self._forget(node, "nested too deeply")
-            else:
-                self._statement(node)
-        finally:
-            self.depth -= 1
-
-    def _statement(self, node: Node) -> None:
-        kind = node.type
-        if kind in _ASSIGNMENTS or kind in _DECLARATORS:
-            self._assignment(node)
-        elif kind in _UPDATES or (kind == "update_expression"):
-            self._update(node)
-        elif kind in _BRANCHES:
-            self._branches(node)
-        elif kind in _LOOPS:
-            self._loop(node)
-        elif kind in _CHOICES:
-            self._choice(node)
-        elif kind in _ENDS:
-            self._return(next(iter(_children(node)), None), is_value=kind.startswith("return"))
-        elif kind in _CALLS:
-            self._call_statement(node)
-        elif kind == "binary_expression" and "<<" in (_operator(node),):
-            self._stream(node, [])
-        elif kind == "comma_expression":
-            self._comma(node)
+        if self.depth > _DEEPEST_BLOCK:
+            self._forget([node], f"it changes in line {_line(node)}, which is nested too deeply")
+        elif node.type in STATEMENTS:
+            STATEMENTS[node.type](self, node)
         else:
-            self.scalars = self.scalars if kind.endswith(("statement", "declaration")) else []
+            if not node.type.endswith(("statement", "declaration")):
+                self.scalars = []
             for child in _children(node):
-                self._run(child)
+                self.run(child)
+        self.depth -= 1
 
     def _assignment(self, node: Node) -> None:
-        left = _part(node, "left", "declarator", "name", "pattern")
-        right = _part(node, "right", "value")
+        left, right = _left(node), _part(node, "right", "value")
         if right is None and node.type == "variable_declarator":  # C#: no field
             right = next(iter(_children(node)[1:]), None)
-        operator = _operator(node)
         if left is None or right is None:
             if left is not None and node.type == "assignment_expression":
-                self._drop(left, "not understood")
-            return
-        if operator not in ("=", ":", "") and operator.endswith("="):  # C: a += b
+                self._drop(left, self.unreadable(node))
+        elif (operator := _operator(node)).endswith("=") and operator != "=":  # C: a += b
             self._update(node)
-            return
-        if right.type in _ASSIGNMENTS:  # a = b = c
-            self._run(right)
-        while left.type in ("array_declarator", "pointer_declarator", "reference_declarator"):
-            inner = _part(left, "declarator") or next(iter(_children(left)), None)
-            if inner is None:
-                return
-            left = inner
-        self._assign(left, right)
+        else:
+            if right.type in _ASSIGNMENTS:  # a = b = c
+                self.run(right)
+                right = _left(right) or right
+            self._assign(left, right)
 
     def _assign(self, left: Node, right: Node) -> None:
-        targets = self._targets(left)
+        targets = _targets(left)
         try:
             value = self.value(right)
-        except ExpressionError as error:
-            for target in targets or [left]:
-                self._drop(target, str(error))
-            self.scalars = []
-            return
-        if targets:
+            if left in targets:
+                self._store(left, value)
+                return
             matrix = value.matrix() if isinstance(value, _Grid) else None
-            if matrix is not None and len(matrix) == len(targets) and 1 in matrix.shape:
-                for target, entry in zip(targets, matrix, strict=True):
-                    self._store(target, entry)
-            else:  # w, x, y, z = q
-                for target in targets:
-                    self._drop(target, "part of a value that is not understood")
-            return
-        self._store(left, value)
+            if matrix is None or len(matrix) != len(targets) or 1 not in matrix.shape:
+                raise self.unreadable(right)  # w, x, y, z = q
+            for target, entry in zip(targets, matrix, strict=True):
+                self._store(target, entry)
+        except ExpressionError as error:
+            self._drop(left, error)
+            self.scalars = []
 
-    def _targets(self, left: Node) -> list[Node]:
-        """The parts of a tuple on the left."""
-        kinds = ("pattern_list", "tuple_pattern", "array_pattern", "multioutput_variable")
-        return _children(left) if left.type in (*kinds, "tuple", "list_pattern") else []
-
-    def _store(self, left: Node, value: Any) -> None:
+    def _store(self, left: Node, value: sp.Expr | _Grid) -> None:
         """An assignment to a name, a member, or an entry."""
-        index = self._index(left)
+        index = self.index(left)
         if index is not None:
             self._store_entry(left, *index, value)
             return
-        path = self._path(left)
-        if path is None:
-            self._drop(left, "an assignment that is not understood")
-            return
-        name = self._name_of_path(path)
+        name = self.written(left) if _path(left) is not None else ""
+        if not name:
+            raise self.unreadable(left)
+        if isinstance(value, _Grid) and len(value.entries) == 1:
+            (value,) = value.entries.values()
         if isinstance(value, _Grid):
-            self._emit(name)
-            matrix = value.matrix()
+            self._emit([name])
             if not value.name:
                 value.line, value.name = _line(left), name
-            elif not self.shares:
+            elif self.program.suffix not in _SHARING:
                 value = value.copy()
-            if matrix is not None and len(matrix) == 1:
-                value = matrix[0]
-            else:
-                self.state.values[name] = value
-                self.scalars = []
-                return
-        self._store_scalar(name, value, _line(left))
+            self.state.values[name] = value
+            self.scalars = []
+        else:
+            self._store_scalar(name, value, _line(left))
 
     def _store_scalar(self, name: str, value: sp.Expr, line: int) -> None:
-        is_input = name in self.inputs
         self.lines.setdefault(name, line)
-        if _is_short(value) or is_input or name in self.cut:
+        if _is_short(value) or name in self.inputs or name in self.cut:
             self.state.values[name] = value
-        else:  # a long value, or a number to begin with: an input of the formulas after it
-            self.state.values[name] = sp.Symbol(name, real=True)
-            self.cut.add(name)
-            self.long[name] = value
+        else:
+            self._cut(name, value)
         self.scalars = [*self.scalars, (name, value, line)][-4:]
         for length in (3, 4):
-            names = tuple(each for each, _, _ in self.scalars[-length:])
+            last = self.scalars[-length:]
+            names = tuple(each for each, _, _ in last)
             if len(names) == length and _are_components(names):
-                column = tuple(each for _, each, _ in self.scalars[-length:])
-                self.runs.append((line, names, column))
+                self.runs.append((line, names, tuple(each for _, each, _ in last)))
 
-    def _store_entry(self, left: Node, base: str, place: tuple[int, ...], value: Any) -> None:
-        if isinstance(value, _Grid):
-            self.state.values[base] = "a block of it is assigned"
-            return
+    def _cut(self, name: str, value: sp.Expr | None) -> None:
+        """A new name for a long or an unreadable value is an input of the formulas after it."""
+        self.cut[name] = value
+        self.state.values[name] = sp.Symbol(name, real=True)
+
+    def _store_entry(
+        self, left: Node, base: str, place: tuple[int, ...], value: sp.Expr | _Grid
+    ) -> None:
         grid = self.state.values.get(base)
         if isinstance(grid, str):
             return
-        if isinstance(grid, _Grid) and not grid.is_whole:
-            matrix = grid.matrix()
-            is_anew = place == next(iter(grid.entries)) and matrix is not None
-            if is_anew and len(grid.entries) > 1:
-                self._emit(base)
-                grid = None
+        if isinstance(value, _Grid):
+            raise self.unreadable(left, "is a block that is assigned")
+        if isinstance(grid, _Grid) and not grid.is_whole and len(grid.entries) > 1:
+            is_anew = place == next(iter(grid.entries)) and grid.matrix() is not None
+            if is_anew:
+                self._emit([base])
+            grid = None if is_anew else grid
         if not isinstance(grid, _Grid):
             grid = _Grid(_line(left), base, {})
             self.state.values[base] = grid
         if grid.is_whole and len(place) == 1 and (place[0], 0) in grid.entries:
             place = (place[0], 0)
         if grid.is_whole and place not in grid.entries:
-            self.state.values[base] = "an entry outside of it is assigned"
-            return
+            raise self.unreadable(left, "is an entry outside of the matrix")
         grid.entries[place] = value
 
     def _update(self, node: Node) -> None:
         """a += b, or a++."""
-        left = _part(node, "left", "argument", "name") or next(iter(_children(node)), None)
-        right = _part(node, "right")
-        operator = _operator(node) or _text(_part(node, "operator"))
+        left, right, operator = _left(node), _part(node, "right"), _operator(node)
         if left is None:
             return
         try:
-            if right is None or operator[:-1] not in _OPERATORS:
-                raise _Unreadable(f"{operator} is not followed")
-            text = self._combined(operator[:-1], self.read(left), self.read(right))
-            value = self._valued(node, text)
+            if right is None:
+                raise self.unreadable(node)
+            read = combined(self._operation(node, operator[:-1]), self.read(left), self.read(right))
+            value = self._valued(node, read)
+            grid = self.state.values.get(self.written(left))
+            if isinstance(grid, _Grid) and isinstance(value, _Grid):
+                grid.entries = value.entries  # also of other names for this matrix
+            else:
+                self._store(left, value)
         except ExpressionError as error:
-            self._drop(left, str(error))
-            return
-        if self._index(left) is None:
-            self.state.values.pop(self._written(left), None)  # no formula of its own any more
-        self._store(left, value)
+            self._drop(left, error)
 
-    def _drop(self, left: Node, reason: str) -> None:
-        """What is assigned is not understood: a new name is an input, another holds nothing."""
-        for target in self._targets(left):
-            self._drop(target, reason)
-        index = self._index(left)
-        name = index[0] if index else self._written(left)
-        if not name:
-            return
-        reason = f"{name}: {reason}"
-        is_new = name not in self.inputs and name not in self.cut and index is None
-        if is_new and not isinstance(self.state.values.get(name), _Grid):
-            self.cut.add(name)
-            self.state.values[name] = sp.Symbol(name, real=True)
-        else:
-            self.state.values[name] = reason
+    def _drop(self, left: Node, reason: object) -> None:
+        """The value is unreadable: a new name for it is an input, any other name unreadable."""
+        for target in _targets(left):
+            name = self.written(target)
+            if not name:
+                continue
+            is_new = name not in self.inputs and name not in self.cut and self.index(target) is None
+            if is_new and not isinstance(self.state.values.get(name), _Grid):
+                self.lines.setdefault(name, _line(target))
+                self._cut(name, None)
+            else:
+                self._spoil(name, str(reason))
 
-    def _written(self, left: Node) -> str:
+    def _spoil(self, name: str, reason: str) -> None:
+        """A name, and all others for the same matrix, become unreadable."""
+        held = self.state.values.get(name)
+        for other, value in self.state.values.items():
+            if value is held and isinstance(held, _Grid):
+                self.state.values[other] = reason
+        self.state.values[name] = reason
+
+    def _forget(self, nodes: Sequence[Node], reason: str, *, only_known: bool = False) -> None:
+        for name, _ in self._writes(nodes):
+            if not only_known or name in self.state.values or name in self.inputs:
+                self._spoil(name, reason)
+
+    def _writes(self, nodes: Sequence[Node]) -> Iterator[tuple[str, bool]]:
+        """Names that are written to, and whether by an inner function or expression.
+
+        When that happens is unknown; Python's inner functions need `nonlocal` for it.
+        """
+        stack = [(node, False) for node in nodes]
+        while stack:
+            node, is_inner = stack.pop()
+            is_inner |= node.type in _FUNCTIONS
+            names: set[str] = set()
+            is_late = is_inner and self.program.suffix != ".py" and node.type not in _DECLARED
+            if node.type == "named_expression":
+                names, is_late = {self.written(node)}, True
+            elif node.type in ("nonlocal_statement", "global_statement"):
+                names, is_late = {_text(child) for child in node.named_children}, True
+            elif node.type in _ASSIGNMENTS or node.type in _UPDATES:
+                left = _left(node)
+                names = set(map(self.written, _targets(left))) if left is not None else set()
+            elif node.type in _CALLS or node.type == "binary_expression":
+                names, is_late = self._reached(node), False
+            yield from ((name, is_late) for name in names if name)
+            stack += [(child, is_inner) for child in node.named_children]
+
+    def written(self, left: Node) -> str:
         """The name that an assignment writes to, also through parts that are not understood."""
         node: Node | None = left
         while node is not None:
-            path = self._path(node)
+            path = _path(node)
             if path is not None:
-                return self._name_of_path(path)
-            node = _part(node, "argument", "value", "object", "expression", "array", "name") or (
-                next(iter(_children(node)), None)
-            )
+                return self.name_of_path(path)
+            node = _part(node, *_INNER, "name") or next(iter(_children(node)), None)
         return ""
 
     def _branches(self, node: Node) -> None:
-        """if, else: each branch from the same state; what differs afterwards holds nothing."""
+        """if, elif, else."""
+        first = _part(node, "consequence") or _child(node, "block")
         branches: list[tuple[Node | None, Node]] = []
-        consequence = _part(node, "consequence") or next(
-            (c for c in node.named_children if c.type == "block"), None
-        )
-        if consequence is not None:
-            branches.append((_part(node, "condition"), consequence))
-        for child in node.named_children:
-            if child.type in ("elif_clause", "elseif_clause"):
-                branches.append((_part(child, "condition"), child))
-        other = next((c for c in node.named_children if c.type == "else_clause"), None)
-        other = other or _part(node, "alternative")
-        if other is not None and other.type not in ("elif_clause", "elseif_clause"):
+        if first is not None:
+            branches.append((_part(node, "condition"), first))
+        branches += [(_part(c, "condition"), c) for c in node.named_children if c.type in _ELIFS]
+        other = _child(node, "else_clause") or _part(node, "alternative")
+        if other is not None and other.type not in _ELIFS:
             branches.append((None, other))
-        before, ends, has_all = self.state, [], False
+        possible, is_sure = [], False
         for condition, block in branches:
-            constant = self._constant(condition)
-            if constant == 0:
-                continue
-            ends.append(self._branch(before, block))
-            if condition is None or constant is not None:
-                has_all = True
+            constant = _BOOLEANS.get(_text(condition).strip("()"))
+            if constant is not False:
+                possible.append(block)
+            if condition is None or constant:
+                is_sure = True
                 break
-        self._merge(before, ends, has_all=has_all, line=_line(node))
-
-    def _branch(self, before: _State, block: Node) -> _State:
-        self.state = before.copy()
-        self.scalars = []
-        if block.type in ("elif_clause", "elseif_clause", "else_clause"):
-            skipped = _part(block, "condition")
-            for child in _children(block):
-                if child != skipped:
-                    self._run(child)
-        else:
-            self._run(block)
-        for name, value in self.state.values.items():
-            if isinstance(value, _Grid) and name not in before.values:
-                self._emit(name)
-        return self.state
-
-    def _constant(self, condition: Node | None) -> int | None:
-        """0 or 1 for a constant condition."""
-        text = _text(condition).strip("()") if condition is not None else ""
-        return {"0": 0, "false": 0, "False": 0, "1": 1, "true": 1, "True": 1}.get(text)
-
-    def _merge(self, before: _State, ends: Sequence[_State], *, has_all: bool, line: int) -> None:
-        paths = [*ends, *([] if has_all else [before])]
-        alive = [state for state in paths if not state.is_over]
-        self.scalars = []
-        if not alive:
-            self.state = before.copy()
-            self.state.is_over = bool(paths)
-            return
-        self.state = alive[0].copy()
-        for name in {name for state in alive for name in state.values}:
-            values = [state.values.get(name) for state in alive]
-            if all(_same(values[0], value) for value in values[1:]):
-                continue
-            reason = f"{name} depends on the condition in line {line}"
-            is_new = name not in before.values and name not in self.inputs | self.cut
-            if is_new and not any(isinstance(value, _Grid) for value in values):
-                self.cut.add(name)
-                self.state.values[name] = sp.Symbol(name, real=True)
-            else:
-                self.state.values[name] = reason
-
-    def _loop(self, node: Node) -> None:
-        """A loop may run many times or never: what changes in it holds nothing at its start."""
-        before = self.state.copy()
-        for name in self._assigned(node):
-            if name in self.state.values or name in self.inputs:
-                self.state.values[name] = f"{name} changes in the loop in line {_line(node)}"
-        body = _part(node, "body") or next(
-            (c for c in node.named_children if c.type == "block"), node
-        )
-        for part in ("left", "initializer", "pattern"):
-            header = _part(node, part)
-            if header is not None and node.type != "for_statement":
-                self._drop(header, "changes in a loop")
-        start = self.state
-        end = self._branch(start, body)
-        end.is_over = False
-        self._merge(before, [end], has_all=False, line=_line(node))
-
-    def _assigned(self, node: Node) -> set[str]:
-        """The names that are written to somewhere in a part of a program."""
-        names, stack = set(), [node]
-        kinds = {*_ASSIGNMENTS, *_DECLARATORS, *_UPDATES, "update_expression"}
-        while stack:
-            each = stack.pop()
-            if each.type in kinds:
-                left = _part(each, "left", "declarator", "name", "pattern", "argument")
-                left = left or next(iter(_children(each)), None)
-                for target in (self._targets(left) or [left]) if left is not None else ():
-                    names.add(self._written(target))
-            elif each.type in _CALLS or each.type == "binary_expression":
-                names |= self._reached(each)
-            stack += each.named_children
-        return names - {""}
+        self._either(possible, node, is_sure=is_sure)
 
     def _choice(self, node: Node) -> None:
-        before, ends, stack = self.state, [], _children(node)
-        while stack:
-            each = stack.pop(0)
-            if each.type in _CASES:
-                end = self._branch(before, each)
-                end.is_over = False  # a break leaves only the choice
-                ends.append(end)
-            elif each.type not in _FUNCTIONS:
-                stack = [*_children(each), *stack]
-        self._merge(before, ends, has_all=False, line=_line(node))
+        """switch, match."""
+        cases = [each for each in _below(_children(node)) if each.type in _CASES]
+        known = self.state.values.keys() | self.inputs
+        self._either(cases, node, ends_at_break=True)
+        for name, _ in self._writes([node]):  # a break inside of a case ends it early
+            if name in known:
+                self._spoil(name, f"{name} depends on the condition in line {_line(node)}")
 
-    def _forget(self, node: Node, reason: str) -> None:
-        for name in self._assigned(node):
-            self.state.values[name] = reason
+    def _loop(self, node: Node) -> None:
+        """A loop may run many times or never: what changes in it is unreadable at its start."""
+        reason = f"it changes in the loop in line {_line(node)}"
+        before = self.state.copy()
+        self._forget([node], reason, only_known=True)
+        header = _part(node, "left", "initializer", "pattern")
+        if header is not None and node.type != "for_statement":
+            self._drop(header, reason)
+        body = _part(node, "body") or _child(node, "block") or node
+        self._either([body], node, before=before, ends_at_break=True)
 
-    def _return(self, node: Node | None, *, is_value: bool = True) -> None:
-        if node is not None and is_value:
+    def _maybe(self, node: Node) -> None:
+        """The handler of an exception."""
+        self._either([node], node)
+
+    def _either(
+        self,
+        blocks: Sequence[Node],
+        node: Node,
+        *,
+        before: _State | None = None,
+        is_sure: bool = False,
+        ends_at_break: bool = False,
+    ) -> None:
+        """Run each block from the same state, and merge: differing values are unreadable."""
+        start, before = self.state, before or self.state
+        paths = [] if is_sure else [before]
+        for block in blocks:
+            self.state, self.scalars = start.copy(), []
+            condition = _part(block, "condition") if block.type in _ELIFS else None
+            is_simple = block.type in STATEMENTS and block != node
+            for child in [block] if is_simple else _children(block):
+                if child != condition:
+                    self.run(child)
+            values = self.state.values
+            self._emit([k for k, v in values.items() if k not in start.values])
+            self.state.is_over &= not ends_at_break  # a break ends only the loop or the choice
+            paths.append(self.state)
+        self.scalars = []
+        alive = [path for path in paths if not path.is_over]
+        self.state = (alive or [before])[0].copy()
+        self.state.is_over = not alive
+        for name in {name for path in alive for name in path.values}:
+            values_at_end = [path.values.get(name) for path in alive]
+            if all(_same(values_at_end[0], value) for value in values_at_end[1:]):
+                continue
+            is_new = name not in before.values and name not in self.inputs | self.cut.keys()
+            if is_new and not any(isinstance(value, _Grid) for value in values_at_end):
+                self.lines.setdefault(name, _line(node))
+                self._cut(name, None)
+            else:
+                self.state.values[name] = f"{name} depends on the condition in line {_line(node)}"
+
+    def _end(self, node: Node) -> None:
+        """return, break, raise."""
+        value = next(iter(_children(node)), None)
+        self._return(value if node.type.startswith("return") else None)
+
+    def _return(self, node: Node | None) -> None:
+        if node is not None:
+            self.results += 1
             try:
-                value = self.value(node)
-                self.result = (self.result, value) if self.result is not None else value
-                path = self._path(node)
-                if isinstance(value, _Grid) and path is None:
-                    self._add(_line(node), "returned", value.matrix())
+                self.result = self.value(node)
+                if isinstance(self.result, _Grid) and _path(node) is None:
+                    self._add(_line(node), "returned", self.result.matrix())
             except ExpressionError as error:
+                self.result = None
                 if _MAY_BE_MATRIX.search(_text(node)):
-                    self._add(_line(node), "returned", None, str(error))
-        for name, value in self.state.values.items():
-            if isinstance(value, _Grid):
-                self._emit(name)
+                    self.formulas.append(Formula(_line(node), "returned", None, str(error)))
+        self._emit(self.state.values)
         self.state.is_over = True
 
     def _call_statement(self, node: Node) -> None:
-        """A call may change the object and the matrices that it is given."""
-        arguments = self._arguments(node)
-        function = self._callee(node)
+        """m.set(...) is an assignment; other calls may change their object and matrices."""
+        path = _callee(node)
+        base, method = path.rpartition(".")[::2]
         if "::" in _text(_part(node, "function")):  # of a type, not of an object
             return
-        base, method = function.rpartition(".")[::2]
         if base and (_MATRIX_NAME.search(method) or _VECTOR_NAME.search(method)):
             try:
-                texts = [self.read(argument) for argument in arguments]
-                if len(texts) in (3, 4, 9, 16):
-                    name = self._name_of_path(base)
-                    matrix = shaped(self._formula(f"[{','.join(texts)}]"))
-                    self._emit(name)
-                    self.state.values[name] = _Grid.of(_line(node), name, matrix)
+                values = [self.read(argument) for argument in _arguments(node)]
+                if len(values) in (3, 4, 9, 16):
+                    name = self.name_of_path(base)
+                    self._emit([name])
+                    self.state.values[name] = _Grid.of(_line(node), rows(values), name)
                     return
             except ExpressionError:
                 pass  # the call is taken as any other below
-        if _HARMLESS.search(function):
-            return
-        for name in self._reached(node):
-            if name in self.state.values or name in self.inputs:
-                self.state.values[name] = f"{name} may be changed by {function}"
+        if not _HARMLESS.search(path):
+            for name in self._reached(node):
+                if name in self.state.values or name in self.inputs:
+                    self._spoil(name, f"{name} may be changed by {path}() in line {_line(node)}")
 
     def _reached(self, node: Node) -> set[str]:
         """Names that a call, or a stream, may change: its object, matrices, and &name."""
         if node.type not in _CALLS:
-            return {self._written(node)} if _operator(node) == "<<" else set()
-        names = set()
-        base = self._callee(node).rpartition(".")[0]
-        if base and isinstance(self.state.values.get(self._name_of_path(base)), _Grid):
-            names.add(self._name_of_path(base))
-        for argument in self._arguments(node):
-            path = self._path(argument)
-            if argument.type == "pointer_expression" or (
-                path is not None
-                and isinstance(self.state.values.get(self._name_of_path(path)), _Grid)
-            ):
-                names.add(self._written(argument))
-        return names - {""}
+            return {self.written(node)} if _operator(node) == "<<" else set()
+        paths = [path for path in map(_path, _arguments(node)) if path is not None]
+        names = map(self.name_of_path, [_callee(node).rpartition(".")[0], *paths])
+        pointers = [each for each in _arguments(node) if each.type == "pointer_expression"]
+        return {n for n in names if isinstance(self.state.values.get(n), _Grid)} | set(
+            map(self.written, pointers)
+        )
 
     def _comma(self, node: Node) -> None:
         """a = b, c = d; or R << a, b, c."""
-        parts: list[Node] = []
-        rest: Node = node
+        parts, rest = [], node
         while rest.type == "comma_expression":
             left, right = _part(rest, "left"), _part(rest, "right")
             if left is None or right is None:
@@ -755,456 +793,412 @@ class _Walk:
             parts.append(left)
             rest = right
         parts.append(rest)
-        if parts[0].type == "binary_expression" and _operator(parts[0]) == "<<":
+        if parts[0].type == "binary_expression":
             self._stream(parts[0], parts[1:])
-            return
-        for part in parts:
-            self._run(part)
+        else:
+            for part in parts:
+                self.run(part)
 
-    def _stream(self, node: Node, others: Sequence[Node]) -> None:
+    def _stream(self, node: Node, others: Sequence[Node] = ()) -> None:
         """Eigen's comma initialiser."""
         left, right = _part(node, "left"), _part(node, "right")
-        if left is None or right is None:
+        if left is None or right is None or _operator(node) != "<<":
             return
         try:
-            texts = [self.read(part) for part in (right, *others)]
-            value = _Grid.of(_line(node), "", shaped(self._formula(f"[{','.join(texts)}]")))
+            read = rows([self.read(part) for part in (right, *others)])
+            self._store(left, _Grid.of(_line(node), read))
         except ExpressionError as error:
-            self._drop(left, str(error))
-            return
-        self._store(left, value)
+            self._drop(left, error)
 
-    # What is found
+    # Formulas
 
-    def _emit(self, name: str) -> None:
-        """A name is about to hold something else, or the function ends."""
-        grid = self.state.values.get(name)
-        if isinstance(grid, _Grid) and grid.name:  # not what a helper returned
-            self._add(grid.line, grid.name, grid.matrix())
+    def _emit(self, names: Iterable[str]) -> None:
+        """The matrices of some names have their final values."""
+        for name in names:
+            grid = self.state.values.get(name)
+            if isinstance(grid, _Grid) and grid.name:  # not the result of a helper
+                self._add(grid.line, grid.name, grid.matrix())
 
-    def _end(self) -> None:
-        if not self.state.is_over:
-            for name in list(self.state.values):
-                self._emit(name)
-        for line, names, column in self.runs:
-            held = [self.state.values.get(name) for name in names]
-            values = [
-                sp.sympify(last).xreplace(
-                    {sp.Symbol(k, real=True): v for k, v in self.long.items()}
-                )
-                if isinstance(last, sp.Expr) and last != sp.Symbol(name, real=True)
-                else first
-                for name, last, first in zip(names, held, column, strict=True)
-            ]
-            self._add(line, ", ".join(names), sp.ImmutableMatrix(values))
-        self._add_elements()
+    def _add_runs(self) -> None:
+        """Scalars that were assigned in a row and are one vector."""
+        long = {sp.Symbol(k, real=True): v for k, v in self.cut.items() if v is not None}
+        for line, names, first in self.runs:
+            column = []
+            for name, value in zip(names, first, strict=True):
+                last = self.state.values.get(name)
+                if isinstance(last, sp.Expr) and last != sp.Symbol(name, real=True):
+                    value = last.xreplace(long)
+                column.append(value)
+            self._add(line, ", ".join(names), sp.ImmutableMatrix(column))
 
     def _add_elements(self) -> None:
         """m00 to m22, m11 to m33, and a.x to c.z: nine names that are one matrix."""
-        grids: dict[str, dict[tuple[int, ...], sp.Expr]] = {}
-        lines: dict[str, int] = {}
-        for name, held in self.state.values.items():
-            value = self.long.get(name) if name in self.long else held
-            path = self.paths.get(name, name)
-            match = _ROW.fullmatch(path) or _ELEMENT.fullmatch(name)
+        grids: dict[str, _Grid] = {}
+        for name, last in self.state.values.items():
+            value = self.cut.get(name) if name in self.cut else last
+            match = _ROW.fullmatch(self.paths.get(name, name)) or _ELEMENT.fullmatch(name)
             if match and isinstance(value, sp.Expr):
                 place = (int(match["row"], 36) % 10, int(match["column"], 36))
                 if match["column"] in _AXES:
                     place = ("abc".index(match["row"]), _AXES[match["column"]])
-                grids.setdefault(match["stem"], {})[place] = value
-                lines.setdefault(match["stem"], self.lines.get(name, 1))
-        for stem, entries in grids.items():
-            grid = _Grid(0, stem, entries)
-            matrix = grid.matrix() if len(entries) == 9 else None
+                stem = match["stem"]
+                grid = grids.setdefault(stem, _Grid(self.lines.get(name, 1), stem, {}))
+                grid.entries[place] = value
+        for stem, grid in grids.items():
+            matrix = grid.matrix()
             if matrix is not None and matrix.shape == (3, 3):
-                self._add(lines[stem], stem.strip("._") or "elements", matrix)
+                self._add(grid.line, stem.strip("._") or "elements", matrix)
 
-    def _add(
-        self, line: int, name: str, matrix: sp.ImmutableMatrix | None, reason: str = ""
-    ) -> None:
-        whole = None
-        if matrix is not None:
-            computed = {sp.Symbol(name, real=True) for name in self.cut}
-            whole, matrix = self._whole(matrix), spelled_out(matrix, computed)
-            whole = spelled_out(whole, computed) if whole is not None else None
-        if matrix is not None or reason:
-            self.formulas.append(Formula(line, name, matrix, reason, whole))
-
-    def _whole(self, matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix | None:
-        """The matrix with the values of its long names, unless it is then too large to compare."""
-        values = {sp.Symbol(name, real=True): value for name, value in self.long.items()}
-        whole = matrix
+    def _add(self, line: int, name: str, matrix: sp.ImmutableMatrix | None) -> None:
+        if matrix is None:
+            return
+        values = {sp.Symbol(k, real=True): v for k, v in self.cut.items() if v is not None}
+        whole: sp.ImmutableMatrix | None = matrix
         for _ in range(_LONG_IN_LONG):
-            whole = whole.xreplace(values)
-            if sum(1 for entry in whole for _ in sp.preorder_traversal(entry)) > _MOST_PARTS:
-                return None
-        return whole if whole != matrix else None
+            if whole is not None:
+                whole = whole.xreplace(values)
+                parts = sum(1 for entry in whole for _ in sp.preorder_traversal(entry))
+                whole = whole if parts <= _MOST_PARTS else None
+        computed = {sp.Symbol(each, real=True) for each in self.cut}
+        unread = tuple(
+            (symbol.name, self.lines.get(symbol.name, line))
+            for symbol in sorted((whole or matrix).free_symbols & computed, key=str)
+            if self.cut[symbol.name] is None
+        )
+        whole = spelled_out(whole, computed) if whole is not None and whole != matrix else None
+        self.formulas.append(
+            Formula(line, name, spelled_out(matrix, computed), whole=whole, unread=unread)
+        )
 
-    # Values
+    # Expressions
 
-    def value(self, node: Node) -> Any:
-        """An expression, or a _Grid; raises ExpressionError if it is not understood."""
-        path = self._path(node)
-        held = self.state.values.get(self._name_of_path(path)) if path is not None else None
-        if isinstance(held, _Grid):
-            return held
-        return self._valued(node, self.read(node))
+    def value(self, node: Node) -> sp.Expr | _Grid:
+        """An expression, or a matrix that may be shared; raises ExpressionError."""
+        path = _path(node)
+        held = self.state.values.get(self.name_of_path(path)) if path is not None else None
+        return held if isinstance(held, _Grid) else self._valued(node, self.read(node))
 
-    def _valued(self, node: Node, text: str) -> Any:
-        matrix = self._formula(text)
-        return matrix[0] if len(matrix) == 1 else _Grid.of(_line(node), "", shaped(matrix))
+    def _valued(self, node: Node, value: Any) -> sp.Expr | _Grid:
+        matrix = as_matrix(value)
+        return matrix[0] if len(matrix) == 1 else _Grid.of(_line(node), matrix)
 
-    def _formula(self, text: str) -> sp.ImmutableMatrix:
-        names = {
-            name: value.matrix() if isinstance(value, _Grid) else value
-            for name, value in self.state.values.items()
-            if not isinstance(value, str)
-        }
-        return read_formula(text, {k: v for k, v in names.items() if v is not None}, free=True)
-
-    def read(self, node: Node) -> str:
-        """An expression in the words of `read_formula`."""
+    def read(self, node: Node) -> Any:
+        """The value of an expression; raises ExpressionError if it is not understood."""
         self.depth += 1
         try:
             if self.depth > _DEEPEST:
-                raise _Unreadable("nested too deeply")
-            return self._expression(node)
+                raise self.unreadable(node, "is nested too deeply")
+            digits = _NUMBERS.fullmatch(_text(node)) if not _children(node) else None
+            if digits:
+                text = digits[1].replace("_", "")
+                return number(text if text.isdigit() else repr(float(text)))
+            return EXPRESSIONS.get(node.type, _Interpreter._named_node)(self, node)
+        except _Unreadable:
+            raise
+        except ExpressionError as error:
+            raise self.unreadable(node, f"is not read: {error}") from None
         finally:
             self.depth -= 1
 
-    def _expression(self, node: Node) -> str:
-        kind, children = node.type, _children(node)
-        if (match := _NUMBERS.fullmatch(_text(node))) and not children:
-            return match[1].replace("_", "")
-        if kind in _WRAPPED and children:
-            return self.read(_part(node, "value") or children[-1])
-        if kind in ("cast_expression", "type_cast_expression", "static_cast_expression"):
-            return self.read(_part(node, "value") or children[-1])
-        if kind in ("unary_operator", "unary_expression", "prefix_unary_expression"):
-            return self._unary(node)
-        if kind == "pointer_expression" and _operator(node) == "*":
-            return self.read(children[-1])
-        if kind in ("binary_operator", "binary_expression"):
-            return self._binary(node)
-        if kind in ("conditional_expression", "ternary_expression"):
-            return self._conditional(node)
-        if kind == "matrix":
-            rows = [c for c in children if c.type == "row"]
-            cells = [[self.read(cell) for cell in _children(row)] for row in rows]
-            return "[" + ",".join(f"[{','.join(row)}]" for row in cells) + "]"
-        if kind in _LISTS and children:
-            return "[" + ",".join(self.read(child) for child in children) + "]"
-        if kind == "postfix_operator" and children:
-            return f"({self.read(children[0])}).T"
-        index = self._index(node)
-        if index is not None:
-            return self._entry(*index)
-        if kind in _CALLS:
-            return self._call(node)
-        if kind in _MEMBERS:
-            inner, member = self._member(node)
-            if inner is not None and member == "T":
-                return f"({self.read(inner)}).T"
-        path = self._path(node)
-        if path is None:
-            raise _Unreadable(f"{kind.replace('_', ' ')} is not understood")
-        return self._named(path)
+    def _inner(self, node: Node) -> Any:
+        children = _children(node)
+        if not children:
+            raise self.unreadable(node)
+        return self.read(_part(node, "value") or children[-1])
 
-    def _named(self, path: str) -> str:
-        if path.rpartition(".")[2] in ("pi", "PI", "M_PI", "Pi"):
-            return "pi"
-        base, _, member = path.rpartition(".")
-        grid = self.state.values.get(self._name_of_path(base)) if base else None
-        if isinstance(grid, _Grid) and member in _AXES and len(grid.entries) == 3:
-            return self._entry(self._name_of_path(base), (_AXES[member],))
-        name = self._name_of_path(path)
-        if name in self.untracked:
-            raise _Unreadable(f"{name} is changed inside an expression or an inner function")
-        held = self.state.values.get(name)
-        if isinstance(held, str):
-            raise _Unreadable(held)
-        if isinstance(held, _Grid) and held.matrix() is None:
-            raise _Unreadable(f"{name} has entries that are not known")
-        if held is None:
-            self.inputs.add(name)
-        return name
+    def _list(self, node: Node) -> Any:
+        if not _children(node):
+            raise self.unreadable(node)
+        return rows([self.read(child) for child in _children(node)])
 
-    def _unary(self, node: Node) -> str:
-        operator = _operator(node)
-        if operator not in ("+", "-"):
-            raise _Unreadable(f"{operator} is not understood")
-        return f"({operator}{self.read(_children(node)[-1])})"
+    def _matlab_matrix(self, node: Node) -> Any:
+        read = [[self.read(c) for c in _children(r)] for r in _children(node) if r.type == "row"]
+        lines = [rows(cells) for cells in read]
+        return rows([line.T if line.cols == 1 else line for line in lines])
 
-    def _binary(self, node: Node) -> str:
+    def _transposed(self, node: Node) -> Any:
+        return as_matrix(self.read(_children(node)[0])).T
+
+    def _pointer(self, node: Node) -> Any:
+        if _operator(node) != "*":
+            raise self.unreadable(node)
+        return self.read(_children(node)[-1])
+
+    def _unary(self, node: Node) -> Any:
+        value = self.read(_children(node)[-1])
+        match _operator(node):
+            case "+":
+                return value
+            case "-":
+                return combined("*", MINUS, value)
+        raise self.unreadable(node)
+
+    def _binary(self, node: Node) -> Any:
         left, right = _children(node)[0], _children(node)[-1]
-        return self._combined(_operator(node), self.read(left), self.read(right))
+        operator = self._operation(node, _operator(node))
+        return combined(operator, self.read(left), self.read(right))
 
-    def _combined(self, operator: str, left: str, right: str) -> str:
-        is_matlab = self.suffix == ".m" or self.is_formula
-        word = _ELEMENTWISE.get(operator) if is_matlab else None
-        word = word or _OPERATORS.get(operator)
-        if word is None:
-            raise _Unreadable(f"{operator} is not understood")
-        if word == "*" and self.is_numpy:
-            word = "%"
-        return f"({left}{word}{right})"
+    def _operation(self, node: Node, operator: str) -> str:
+        if self.is_matlab:
+            operator = _ELEMENTWISE.get(operator, operator)
+        elif operator not in _OPERATORS:
+            raise self.unreadable(node)
+        return "%" if operator == "*" and self.program.is_numpy else operator
 
-    def _conditional(self, node: Node) -> str:
-        if self.suffix == ".py":
+    def _conditional(self, node: Node) -> Any:
+        if self.program.suffix == ".py":
             first, condition, other = _children(node)
         else:
             parts = (_part(node, f) for f in ("consequence", "condition", "alternative"))
             first, condition, other = (part or node for part in parts)
-        constant = self._constant(condition)
+        constant = _BOOLEANS.get(_text(condition).strip("()"))
         if constant is None:
-            raise _Unreadable(f"it depends on a condition: {_text(condition)[:40]}")
+            raise self.unreadable(condition, "is a condition that decides on it")
         return self.read(first if constant else other)
 
-    def _index(self, node: Node) -> tuple[str, tuple[int, ...]] | None:
+    def _subscript(self, node: Node) -> Any:
+        index = self.index(node)
+        return self._entry(node, *index) if index is not None else self._named_node(node)
+
+    def index(self, node: Node) -> tuple[str, tuple[int, ...]] | None:
         """The matrix and the indices, from 0, of m[0][1], m(0, 1), m.at(0, 1)."""
-        places: list[int] = []
-        inner: Node | None = node
-        while inner is not None and inner.type in _SUBSCRIPTS:
-            base = _part(inner, "argument", "value", "object", "expression", "array")
-            base = base or inner.named_children[0]
+        places: list[int | None] = []
+        inner, path = node, None
+        while inner.type in _SUBSCRIPTS:
+            base = _part(inner, *_INNER) or inner.named_children[0]
             indices = [c for c in _children(inner) if c != base]
             if len(indices) == 1 and indices[0].type.endswith("argument_list"):
                 indices = _children(indices[0])
-            numbers = [self._number(index) for index in indices]
-            if not numbers or None in numbers:
-                return None
-            places = [int(n) for n in numbers if n is not None] + places
+            places = [*map(self._whole_number, indices), *places] if indices else [None]
             inner = base
-        if inner is not None and not places and inner.type in ("call_expression", "function_call"):
-            function = self._callee(inner)
-            if name_of(function.rpartition(".")[2]) in (*FUNCTION_NAMES, *OF_MATRICES, *_CASTS):
+        if places:
+            path = _path(inner)
+        elif inner.type in ("call_expression", "function_call"):
+            path = _callee(inner)
+            base_path, method = path.rpartition(".")[::2]
+            places = [self._whole_number(each) for each in _arguments(inner)]
+            is_function = path in self.program.functions and not self.is_matlab
+            words = (*FUNCTION_NAMES, *OF_MATRICES, *_CASTS)
+            if is_function or len(places) > 2 or (method and name_of(method) in words):
                 return None
-            numbers = [self._number(each) for each in self._arguments(inner)]
-            if not numbers or None in numbers or len(numbers) > 2:
-                return None
-            base_path, method = function.rpartition(".")[::2]
-            is_method = method in ("at", "coeff", "coeffRef", "get", "operator()", "element")
-            if not function or (function in self.helpers and self.suffix != ".m"):
-                return None
-            places = [int(n) - self.first for n in numbers if n is not None]
-            path: str | None = base_path if is_method else function
-        else:
-            path = self._path(inner) if inner is not None and places else None
-            places = [n - self.first for n in places]
-        if path is None or not path or min(places) < 0:
+            path = base_path if method in _ENTRIES else path
+        from0 = tuple(place - self.is_matlab for place in places if place is not None)
+        if not path or not from0 or len(from0) < len(places) or min(from0) < 0:
             return None
-        return self._name_of_path(path), tuple(places)
+        return self.name_of_path(path), from0
 
-    def _number(self, node: Node) -> int | None:
-        """A constant index: a number, or x, y, z."""
+    def _whole_number(self, node: Node) -> int | None:
+        """A constant index: a number, or X, Y, Z."""
         text = _text(node.named_children[0] if node.type == "argument" else node)
         if text.isdecimal() and len(text) < 3:
             return int(text)
-        is_axis = text in _AXES and text not in self.inputs and text not in self.state.values
-        return _AXES[text] + self.first if is_axis and text.isupper() else None
+        is_axis = text in "XYZ" and text not in self.inputs and text not in self.state.values
+        return _AXES[text] + self.is_matlab if is_axis and text else None
 
-    def _entry(self, base: str, place: tuple[int, ...]) -> str:
+    def _entry(self, node: Node, base: str, place: tuple[int, ...]) -> Any:
         grid = self.state.values.get(base)
         if isinstance(grid, str):
             raise _Unreadable(grid)
         if isinstance(grid, _Grid):
-            place = (*place, 0) if (*place, 0) in grid.entries else place
-            value = grid.entries.get(place)
+            value = grid.entries.get((*place, 0), grid.entries.get(place))
             if value is None:
-                raise _Unreadable(f"{base} has no entry {place}")
-            name = "_".join(["entry", base, *map(str, place)])
-        else:
-            name = "_".join([base, *(str(n + self.first) for n in place)])
-            value = self.state.values.get(name)
-            if value is None:
-                self.inputs |= {name, base}
-                return name
-        if isinstance(value, str):
-            raise _Unreadable(value)
-        self.state.values[name] = value
-        return name
+                raise self.unreadable(node, "has no value")
+            return sized(value)
+        self.inputs.add(base)
+        return self._symbol(node, "_".join([base, *(str(n + self.is_matlab) for n in place)]))
 
-    # Calls
+    def _symbol(self, node: Node, name: str) -> Any:
+        """The value of a name; an input if nothing was assigned."""
+        held = self.state.values.get(name)
+        if name in self.untracked:
+            raise self.unreadable(node, "is changed inside an expression or an inner function")
+        if isinstance(held, str):
+            raise _Unreadable(held if held.startswith((f"{name} ", "`")) else f"{name}: {held}")
+        if held is None:
+            self.inputs.add(name)
+        value = held.matrix() if isinstance(held, _Grid) else held
+        if value is None and held is not None:
+            raise self.unreadable(node, "has entries without values")
+        return Sized.atom(sp.Symbol(name, real=True)) if value is None else sized(value)
 
-    def _callee(self, node: Node) -> str:
-        """The path of the function that is called: np.array, Math.sin, R.transpose."""
-        function = _part(node, "function", "constructor", "type")
-        if node.type == "method_invocation":
-            inner, name = _part(node, "object"), _text(_part(node, "name"))
-            base = self._path(inner) if inner is not None else ""
-            return f"{base}.{name}" if base else name
-        if node.type == "function_call":  # MATLAB
-            function = _part(node, "name")
-        if function is None:
-            return ""
-        if function.type in _MEMBERS:
-            inner, member = self._member(function)
-            base = self._path(inner) if inner is not None else ""
-            return f"{base}.{member}" if base else f"?.{member}"
-        return re.sub(r"<.*>", "", _text(function)).replace("::", ".")
+    def _named_node(self, node: Node) -> Any:
+        path = _path(node)
+        if path is None:
+            raise self.unreadable(node)
+        return self._named(node, path)
 
-    def _arguments(self, node: Node) -> list[Node]:
-        outer = _part(node, "arguments", "value")
-        outer = outer or next((c for c in node.named_children if c.type == "arguments"), None)
-        return _children(outer) if outer is not None else []
+    def _named(self, node: Node, path: str) -> Any:
+        base, _, member = path.rpartition(".")
+        if member in CONSTANTS:
+            return Sized.atom(CONSTANTS[member])
+        grid = self.state.values.get(self.name_of_path(base)) if base else None
+        if isinstance(grid, _Grid) and member in _AXES and len(grid.entries) == 3:
+            return self._entry(node, self.name_of_path(base), (_AXES[member],))
+        return self._symbol(node, self.name_of_path(path))
 
-    def _call(self, node: Node) -> str:
-        path = self._callee(node)
-        base, last = path.rpartition(".")[::2]
-        name = name_of(last) if last.isidentifier() else last
-        function = _part(node, "function")
-        inner = self._member(function)[0] if function is not None and base else None
-        inner = inner or _part(node, "object")
-        arguments = [a for a in self._arguments(node) if a.type != "keyword_argument"]
-        if self._path(node) is not None:  # q.w()
-            return self._named(self._path(node) or "")
-        if name in FUNCTIONS and arguments:
-            return f"{name}({','.join(map(self.read, arguments))})"
-        is_value = inner is not None and (base == "?" or self._is_held(base))
-        if is_value and inner is not None:
-            return self._method(name, inner, arguments)
-        if name in FUNCTIONS and inner is not None:  # Rust: a.sin()
-            return f"{name}({self.read(inner)})"
-        if name in ("powi", "powf") and inner is not None:
-            return f"pow({self.read(inner)},{self.read(arguments[0])})"
-        if name in ("pow", "sq"):
-            return f"{name}({','.join(map(self.read, arguments))})"
-        if self.is_formula and (name in OF_MATRICES or (name in "cstCST" and len(arguments) == 1)):
-            return f"{name}({','.join(map(self.read, arguments))})"
-        if last in _CASTS and len(arguments) == 1:
-            return self.read(arguments[0])
-        if name in WRAPPERS or last in ("tensor", "array"):
-            if len(arguments) == 1 or (arguments and arguments[0].type in _LISTS):
-                return self.read(arguments[0])
-        elif last in ("dot", "matmul") and len(arguments) == 2:
-            return f"dot({','.join(map(self.read, arguments))})"
-        elif last in ("transpose",) and len(arguments) == 1:
-            return f"({self.read(arguments[0])}).T"
-        elif last in ("zeros", "eye", "identity", "Identity", "Zero", "empty"):
-            return self._filled(last, arguments)
-        if last in ("stack", "vstack", "row_stack", "block", "concatenate") or (
-            _BY_COLUMNS.search(last)
-        ):
-            return self._stacked(node, last, arguments)
-        if last in self.helpers and base in ("", "self", "this"):
-            return self._inline(last, arguments)
-        if _MATRIX_NAME.search(path) or _VECTOR_NAME.search(path):
-            return self._constructed(path, arguments)
-        raise _Unreadable(f"{path or 'a call'}() is not understood")
+    def _member_of(self, node: Node) -> Any:
+        inner, member = _member(node)
+        return (
+            as_matrix(self.read(inner)).T
+            if inner is not None and member == "T"
+            else self._named_node(node)
+        )
 
-    def _is_held(self, base: str) -> bool:
-        return isinstance(self.state.values.get(self._name_of_path(base)), _Grid)
-
-    def _method(self, name: str, inner: Node, arguments: Sequence[Node]) -> str:
-        """A method of a matrix."""
-        if name in ("transpose", "transposed", "t", "T"):
-            return f"({self.read(inner)}).T"
-        if name in _SAME:
-            return self.read(inner)
-        if name in ("dot", "matmul", "mul", "multiply") and len(arguments) == 1:
-            return f"dot({self.read(inner)},{self.read(arguments[0])})"
-        if name in FUNCTIONS and not arguments:
-            return f"{name}({self.read(inner)})"
-        if name in ("powi", "powf"):
-            return f"pow({self.read(inner)},{self.read(arguments[0])})"
-        if _MATRIX_NAME.search(name) and arguments:  # new Matrix3().set(...)
-            return self._constructed(name, arguments)
-        raise _Unreadable(f"{name}() is not understood")
-
-    def _filled(self, name: str, arguments: Sequence[Node]) -> str:
-        digits = re.findall(r"\d+", " ".join(map(_text, arguments)))
-        sizes = [int(d) for d in digits[:2]] or [3]
-        rows, columns = sizes[0], sizes[-1] if len(sizes) > 1 or self.suffix == ".m" else sizes[0]
-        if rows not in (3, 4) or columns not in (3, 4) or name == "empty":
-            raise _Unreadable(f"{name}() is not understood")
-        if name in ("zeros", "Zero"):
-            return "[" + ",".join("[" + ",".join("0" * columns) + "]" for _ in range(rows)) + "]"
-        return f"one({rows})"
-
-    def _stacked(self, node: Node, name: str, arguments: Sequence[Node]) -> str:
-        axis = next((_text(a) for a in self._arguments(node) if a.type == "keyword_argument"), "")
-        if axis and not re.fullmatch(r"(axis|dim)\s*=\s*(0|1|-1|-2)", axis):
-            raise _Unreadable(f"{name}({axis}) is not understood")
-        by_columns = bool(_BY_COLUMNS.search(name)) ^ axis.endswith(("=1", "=-1", "= 1", "= -1"))
-        listed = len(arguments) == 1 and arguments[0].type in _LISTS
-        text = self.read(arguments[0]) if listed else f"[{','.join(map(self.read, arguments))}]"
-        matrix = self._formula(text)
-        return f"({text}).T" if by_columns and 1 not in matrix.shape else text
-
-    def _constructed(self, path: str, arguments: Sequence[Node]) -> str:
-        """A matrix of nine numbers or three rows, or a vector of three or four numbers."""
-        texts = [self.read(argument) for argument in arguments]
-        count = len(texts)
-        is_vector = count in (3, 4) and bool(_VECTOR_NAME.search(path))
-        is_matrix = count in (3, 9, 16) and bool(_MATRIX_NAME.search(path))
-        if not (is_vector or is_matrix):
-            raise _Unreadable(f"{path}() with {count} arguments is not understood")
-        return f"[{','.join(texts)}]"
-
-    def _inline(self, name: str, arguments: Sequence[Node]) -> str:
-        """The value of a function of the same file."""
-        if self.inlined >= _INLINED:
-            raise _Unreadable(f"{name}() calls too many others")
-        node = self.helpers[name]
-        walk = _Walk(self.suffix, self.helpers, is_numpy=self.is_numpy)
-        walk.inlined = self.inlined + 1
-        names = [each for each in walk.parameters(node) if each not in ("self", "this")]
-        if len(names) != len(arguments):
-            raise _Unreadable(f"{name}() is called with {len(arguments)} arguments")
-        for each, argument in zip(names, arguments, strict=True):
-            value = self.value(argument)
-            walk.state.values[each] = value.copy() if isinstance(value, _Grid) else value
-        walk.run_scope(node)
-        if isinstance(walk.result, tuple) or walk.result is None or walk.inputs - set(names):
-            raise _Unreadable(f"{name}() is not understood")
-        if walk.cut:
-            raise _Unreadable(f"{name}() is not understood")
-        word = f"result_{len(self.state.values)}"
-        self.state.values[word] = walk.result
-        return word
-
-    # Names
-
-    def _member(self, node: Node) -> tuple[Node | None, str]:
-        """The object and the name of its member."""
-        inner = _part(node, "object", "argument", "value", "expression", "scope", "path")
-        member = _part(node, "attribute", "field", "property", "name")
-        return inner, _text(member)
-
-    def _path(self, node: Node, depth: int = 0) -> str | None:
-        """self.phi, p->x, q.w() and ns::name with dots, or None for other expressions."""
-        if node.type in _NAMES:
-            return _text(node)
-        if depth > _LONGEST_PATH:
-            return None
-        depth += 1
-        if node.type in _WRAPPED and len(_children(node)) == 1:
-            return self._path(_children(node)[0], depth)
-        if node.type == "pointer_expression" and _operator(node) == "*":
-            return self._path(_children(node)[-1], depth)
-        if node.type in _MEMBERS:
-            inner, member = self._member(node)
-            base = self._path(inner, depth) if inner is not None else ""
-            is_name = re.fullmatch(r"\w+", member) and member != "T"
-            return f"{base}.{member}" if base and is_name else None
-        if node.type == "call_expression" and not self._arguments(node):
-            function = _part(node, "function")
-            if function is not None and function.type in _MEMBERS:
-                inner, member = self._member(function)
-                base = self._path(inner, depth) if inner is not None else ""
-                is_component = member in "wxyz" or ANGLE.fullmatch(member)
-                return f"{base}.{member}" if base and is_component else None
-        if node.type in _SUBSCRIPTS and _text(node)[-2:-1] in ("'", '"'):  # state["phi"]
-            base = self._path(node.named_children[0], depth)
-            return f"{base}.{_text(node)[:-2].rpartition(_text(node)[-2])[2]}" if base else None
-        return None
-
-    def _name_of_path(self, path: str) -> str:
-        """The name of a path, short where no other path of the function has it."""
-        for name in (name_of(path), re.sub(r"\W+", "_", path)):
+    def name_of_path(self, path: str) -> str:
+        """The name of a path, short if no other path of the function has it."""
+        path = spelled(path)
+        for name in (name_of(path), re.sub(r"\W+", "_", path)) if path else ():
             if self.paths.setdefault(name, path) == path:
                 return name
         return re.sub(r"\W+", "__", path)
+
+    # Calls
+
+    def _call(self, node: Node) -> Any:
+        """A function of numbers, a method of a matrix, a constructor, or a function of the file."""
+        index = self.index(node)
+        if index is not None:
+            return self._entry(node, *index)
+        if (component := _path(node)) is not None:  # q.w()
+            return self._named(node, component)
+        path = _callee(node)
+        base, last = path.rpartition(".")[::2]
+        name = name_of(last) if last.isidentifier() else last
+        nodes = [each for each in _arguments(node) if each.type != "keyword_argument"]
+        options = [_text(each) for each in _arguments(node) if each.type == "keyword_argument"]
+        function = _part(node, "function")
+        is_member = function is not None and function.type in _MEMBERS
+        owner = _member(function)[0] if function and is_member else _part(node, "object")
+        held = self.state.values.get(self.name_of_path(base)) if base else None
+        is_value = owner is not None and (base == "?" or isinstance(held, _Grid))
+        if owner is not None and (is_value or (name in _OF_NUMBERS and len(nodes) < _arity(name))):
+            return self._method(node, name, [owner, *nodes], options)
+        if name in _OF_NUMBERS and nodes:
+            return called(_OF_NUMBERS[name], [self.read(each) for each in nodes])
+        is_letter = name in [*"cstCST"] and len(nodes) == 1
+        if self.program.is_formula and (name in OF_MATRICES or is_letter):
+            return called(name, [self.read(each) for each in nodes])
+        is_listed = len(nodes) == 1 or (nodes and nodes[0].type in _LISTS)
+        if (last in _CASTS and len(nodes) == 1) or (
+            (name in WRAPPERS or last in ("tensor", "array")) and is_listed
+        ):
+            return self.read(nodes[0])
+        if last in ("dot", "matmul") and len(nodes) == 2:
+            return called("dot", [self.read(each) for each in nodes])
+        if last == "transpose" and len(nodes) == 1:
+            return as_matrix(self.read(nodes[0])).T
+        if last in _ZEROS | _UNITS:
+            return self._filled(node, last, nodes)
+        if last in _STACKS or _BY_COLUMNS.search(last):
+            return self._stacked(node, last, nodes, options)
+        if last in self.program.functions and base in ("", "self", "this"):
+            return self._inline(node, last, nodes)
+        return self._constructed(node, path, nodes)
+
+    def _method(self, node: Node, name: str, nodes: Sequence[Node], options: Sequence[str]) -> Any:
+        """A method of a matrix or a number; its object is the first of `nodes`."""
+        if name in ("transpose", "transposed", "t", "T"):
+            return as_matrix(self.read(nodes[0])).T
+        if name in _SAME and not any(option.startswith("order") for option in options):
+            return self.read(nodes[0])
+        if name in ("dot", "matmul", "mul", "multiply") and len(nodes) == 2:
+            return called("dot", [self.read(each) for each in nodes])
+        if name in _OF_NUMBERS:
+            return called(_OF_NUMBERS[name], [self.read(each) for each in nodes])
+        if len(nodes) > 1:
+            return self._constructed(node, name, nodes[1:])  # new Matrix3().set(...)
+        raise self.unreadable(node)
+
+    def _filled(self, node: Node, name: str, nodes: Sequence[Node]) -> Any:
+        sizes = [int(digits) for digits in re.findall(r"\d+", " ".join(map(_text, nodes)))] or [3]
+        is_column = len(sizes) == 1 and bool(nodes) and name in _ZEROS and not self.is_matlab
+        height, width = sizes[0], 1 if is_column else sizes[-1]
+        if not {height, width} <= {3, 4} or _VECTOR_NAME.search(_callee(node)):
+            raise self.unreadable(node)
+        filled = sp.zeros(height, width) if name in _ZEROS else sp.eye(height, width)
+        return sp.ImmutableMatrix(filled)
+
+    def _stacked(self, node: Node, name: str, nodes: Sequence[Node], options: Sequence[str]) -> Any:
+        axis = re.sub(r"\s", "", "".join(options))
+        if axis and not re.fullmatch(r"(axis|dim)=(0|1|-1|-2)", axis):
+            raise self.unreadable(node)
+        by_columns = bool(_BY_COLUMNS.search(name)) ^ axis.endswith(("=1", "=-1"))
+        is_listed = len(nodes) == 1 and nodes[0].type in _LISTS
+        matrix = self.read(nodes[0]) if is_listed else rows([self.read(each) for each in nodes])
+        return as_matrix(matrix).T if by_columns and 1 not in as_matrix(matrix).shape else matrix
+
+    def _constructed(self, node: Node, path: str, nodes: Sequence[Node]) -> Any:
+        """A matrix of nine numbers or three rows, or a vector of three or four numbers."""
+        count = len(nodes)
+        is_vector = count in (3, 4) and bool(_VECTOR_NAME.search(path))
+        is_matrix = count in (3, 9, 16) and bool(_MATRIX_NAME.search(path))
+        if not (is_vector or is_matrix):
+            raise self.unreadable(node)
+        return rows([self.read(each) for each in nodes])
+
+    def _inline(self, node: Node, name: str, nodes: Sequence[Node]) -> Any:
+        """The value of a function of the same file."""
+        function = self.program.functions[name]
+        inner = _Interpreter(self.program, self.inlined + 1)
+        names = [each for each in inner.parameters(function) if each not in ("self", "this")]
+        if len(names) != len(nodes) or self.inlined >= _INLINED:
+            raise self.unreadable(node)
+        for each, argument in zip(names, nodes, strict=True):
+            value = self.value(argument)
+            inner.state.values[each] = value.copy() if isinstance(value, _Grid) else value
+        inner.formulas_of(function)
+        result = inner.result.matrix() if isinstance(inner.result, _Grid) else inner.result
+        if inner.results != 1 or result is None or inner.inputs - set(names) or inner.cut:
+            raise self.unreadable(node)
+        return sized(result)
+
+
+_DECLARED = {
+    "let_declaration",
+    "init_declarator",
+    "variable_declarator",
+    "assignment",
+}  # names of their own
+_OF_NUMBERS = {
+    **{name: name for name in FUNCTIONS},
+    **{"pow": "pow", "powi": "pow", "powf": "pow", "sq": "sq"},
+}
+
+
+def _arity(name: str) -> int:
+    return 2 if _OF_NUMBERS[name] in ("pow", "atan2") else 1
+
+
+STATEMENTS: dict[str, Callable[[_Interpreter, Node], None]] = {
+    **dict.fromkeys(_ASSIGNMENTS, _Interpreter._assignment),
+    **dict.fromkeys(_UPDATES, _Interpreter._update),
+    **dict.fromkeys(("if_statement", "if_expression"), _Interpreter._branches),
+    **dict.fromkeys(_LOOPS, _Interpreter._loop),
+    **dict.fromkeys(("switch_statement", "switch_expression"), _Interpreter._choice),
+    **dict.fromkeys(("match_statement", "match_expression"), _Interpreter._choice),
+    **dict.fromkeys(("except_clause", "catch_clause"), _Interpreter._maybe),
+    **dict.fromkeys(("raise_statement", "throw_statement"), _Interpreter._end),
+    **dict.fromkeys(("break_statement", "continue_statement"), _Interpreter._end),
+    **dict.fromkeys(("return_statement", "return_expression"), _Interpreter._end),
+    "goto_statement": _Interpreter._end,
+    **dict.fromkeys(_CALLS, _Interpreter._call_statement),
+    "binary_expression": _Interpreter._stream,
+    "comma_expression": _Interpreter._comma,
+}
+EXPRESSIONS: dict[str, Callable[[_Interpreter, Node], Any]] = {
+    **dict.fromkeys(_WRAPPED, _Interpreter._inner),
+    **dict.fromkeys(_LISTS, _Interpreter._list),
+    **dict.fromkeys(_SUBSCRIPTS, _Interpreter._subscript),
+    **dict.fromkeys(_CALLS, _Interpreter._call),
+    **dict.fromkeys(_MEMBERS, _Interpreter._member_of),
+    **dict.fromkeys(("unary_operator", "unary_expression"), _Interpreter._unary),
+    "prefix_unary_expression": _Interpreter._unary,
+    **dict.fromkeys(("binary_operator", "binary_expression"), _Interpreter._binary),
+    **dict.fromkeys(("conditional_expression", "ternary_expression"), _Interpreter._conditional),
+    "pointer_expression": _Interpreter._pointer,
+    "matrix": _Interpreter._matlab_matrix,
+    "postfix_operator": _Interpreter._transposed,
+}
 
 
 def _same(one: Any, other: Any) -> bool:

@@ -31,15 +31,19 @@ class FormulaInFile:
     name: str
     comparison: Comparison | None
     reason: str = ""
+    unread: tuple[tuple[str, int], ...] = ()  # names in it whose values are not read, and lines
 
     def __str__(self) -> str:
         name = f"{self.name}: " if self.name else ""
         text = self.comparison.text() if self.comparison else f"not read, since {self.reason}"
+        for computed, line in self.unread:
+            text += f"; the value of {computed} in line {line} is not read"
         return f"{self.path}:{self.line}: {name}{text}"
 
     def record(self) -> dict[str, Any]:
         """For JSON."""
         place = {"path": str(self.path), "line": self.line, "name": self.name}
+        place |= {"unread": dict(self.unread)}
         return place | (self.comparison.record() if self.comparison else {})
 
 
@@ -89,7 +93,7 @@ def search(path: Path, also: Sequence[KnownQuantity] = ()) -> Iterator[FormulaIn
             yield FormulaInFile(path, line, name, None, str(error))
             continue
         if comparison.found is not None or comparison.is_reflection:
-            yield FormulaInFile(path, line, name, comparison)
+            yield FormulaInFile(path, line, name, comparison, unread=formula.unread)
 
 
 def formulas(text: str, suffix: str) -> Iterator[Formula]:
