@@ -6,8 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
-from rigidsym.errors import KernelError
+from rigidsym.errors import KernelError, offer
 from rigidsym.kernels.lowering.derivatives import (
     Asked,
     Derivative,
@@ -18,6 +19,8 @@ from rigidsym.kernels.lowering.lower import NO_CONVERSIONS, lower
 from rigidsym.kernels.targets import TARGETS, check_options, load, printer
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.system.files import write_text
+
+_CONVERSIONS = ("quaternion", "from_quaternion", "from_rotation_matrix", "unwrap")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -47,9 +50,22 @@ class KernelModule:
 
         They are kept in the user's cache folder (XDG_CACHE_HOME), so that each source is compiled
         once, and other processes can unpickle the functions. Raises MissingTool or MissingExtra
-        if a tool or package is not installed.
+        if a tool or package is not installed. A name that the module lacks is an AttributeError
+        that names what adds it, or the nearest one.
         """
-        return load(self.target, self.name, self.files)
+        module = load(self.target, self.name, self.files)
+        names = vars(module).get("__all__", [n for n in vars(module) if not n.startswith("_")])
+
+        def lacking(name: str) -> Any:  # Python calls it for names that are not there
+            remedy = offer(name, names)
+            if name in _CONVERSIONS:
+                remedy = "conversions=True adds the conversions"
+            elif "_jacobian_" in name:
+                remedy = "derivatives=[...] adds derivatives"
+            raise AttributeError(f"{self.main} has no function {name}; {remedy}", name=name)
+
+        vars(module).setdefault("__getattr__", lacking)
+        return module
 
     def write(self, path: str | Path) -> Path:
         """Write the files, each whole or not at all, and return the path of the main one.

@@ -16,9 +16,8 @@ from typing import Any
 import sympy as sp
 
 import rigidsym as rs
-from helpers.swept_kernels import of_series, swept
 from rigidsym import __version__
-from rigidsym.kernels.targets import TARGETS, printer
+from rigidsym.kernels.targets import TARGETS
 from rigidsym.models.library import rotation_from
 from rigidsym.system import resources
 
@@ -91,13 +90,3 @@ def of_rotations(target: str) -> Iterator[str]:
         for way in (*ways, *(OF_C.get(name, ()) if target == "c" else ())):
             for file, text in motion(name).kernels(target, **way).files.items():
                 yield described(file, _PROSE.sub("", text), " ".join(way))
-
-
-def of_widths(target: str) -> Iterator[str]:
-    """The same of kernels made by hand, whose lines have every width."""
-    programs = [(program, {}) for program in (swept(), *map(of_series, range(4)))]
-    if target == "c":
-        programs += [(program, LEAN) for program in (swept(), of_series(0))]
-    for program, way in programs:
-        for file, text in printer(target).render(program, **way).items():
-            yield described(file, text)

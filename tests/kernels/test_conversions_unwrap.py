@@ -84,28 +84,6 @@ def test_a_start_at_a_pole_takes_the_angles_of_the_first_sample_away_from_it():
     assert_allclose(module("ZXZ").unwrap(q), expected, atol=1e-14)
 
 
-def test_long_steps_of_the_outer_angles_do_not_turn_the_middle_one_over():
-    """More than a quarter turn a sample, where the other set of angles is further away."""
-    functions = module("ZXZ")
-    count = np.arange(40.0)
-    path = np.stack([1.7 * count, 1.0 + 0 * count, -1.7 * count], axis=-1)
-    found = functions.unwrap(functions.from_rotation_matrix(functions.rotation_matrix(path)))
-    assert_allclose(found, path, atol=1e-12)
-
-
-@pytest.mark.parametrize("text", ["ZXZ", "zyx"])
-def test_a_rest_at_the_pole_does_not_jump(text):
-    """Samples at the pole itself take what is not determined from the sample before."""
-    functions = module(text)
-    pole = 0.0 if text[0] == text[2] else np.pi / 2
-    middle = pole + np.array([-0.02, -0.01, 0.0, 0.0, 0.0, 0.01, 0.02])
-    path = np.stack([np.full(7, 0.4), middle, np.full(7, -1.1)], axis=-1)
-    found = functions.unwrap(functions.from_rotation_matrix(functions.rotation_matrix(path)))
-    assert steps(found) < 0.0101
-    expected = functions.rotation_matrix(path)
-    assert_allclose(functions.rotation_matrix(found), expected, atol=1e-14)
-
-
 @pytest.mark.parametrize("text", ["quaternion", "unit_quaternion", "cayley_klein"])
 def test_quaternions_do_not_change_sign(text):
     functions = module(text)
@@ -130,17 +108,6 @@ def test_axes_and_angles_go_on_through_whole_turns(text):
     if text == "axis_angle":
         found = found[:, :3] * found[:, 3:]
     assert_allclose(found, axis * TIMES[:, None], atol=1e-13)
-
-
-def test_an_axis_without_a_turn_is_that_of_its_neighbours():
-    functions = module("axis_angle")
-    angles = np.array([0.0, 0.1, 0.0, 2 * np.pi - 0.1])
-    given = functions.from_rotation_matrix(
-        Rotation.from_rotvec(np.array([0.0, 0.6, 0.8]) * angles[:, None]).as_matrix()
-    )
-    found = functions.unwrap(given)
-    assert_allclose(found[:, :3], np.broadcast_to([0.0, 0.6, 0.8], (4, 3)), atol=1e-14)
-    assert_allclose(found[:, 3], [0.0, 0.1, 0.0, -0.1], atol=1e-14)
 
 
 def test_modified_rodrigues_parameters_take_the_shadow_set():
@@ -190,8 +157,3 @@ def test_types_shapes_and_bad_input(text):
     kept = single.copy()
     functions.unwrap(single)
     assert_array_equal(single, kept)
-
-
-def test_where_coordinates_are_unique_there_is_nothing_to_unwrap():
-    assert not hasattr(module("gibbs_vector"), "unwrap")
-    assert not hasattr(module("direction_cosines"), "unwrap")

@@ -47,12 +47,6 @@ def test_functions_of_the_length_pass_through_zero_and_over_the_switch():
         np.testing.assert_allclose(found, expected, rtol=0, atol=20 * 2.0**-52)
 
 
-def test_an_argument_of_the_wrong_length_is_named():
-    kernels = derived("ZXZ").kernels("javascript").load()
-    with pytest.raises(ValueError, match="q_dot: expected 3 numbers, got 2"):
-        kernels.angular_velocity_body([0.1, 0.2, 0.3], [0.1, 0.2])
-
-
 BATCHES = """
 import * as kernels from "./euler_zxz_intrinsic.mjs";
 
@@ -106,32 +100,6 @@ def test_many_orientations_are_flat_arrays(tmp_path: Path):
     ]
 
 
-@pytest.mark.parametrize("rotation", ["rotation_vector"])
-def test_batches_of_every_quantity_are_numpys(rotation):
-    motion = motion_of(rotation)
-    kernels, known = motion.kernels("javascript").load(), motion.kernels().load()
-    for step in motion.steps:
-        arrays = given(motion, step.quantity.inputs, 50)
-        found = getattr(kernels, f"{step.quantity.name}_batch")(*(a.ravel() for a in arrays))
-        expected = getattr(known, step.quantity.name)(*arrays)
-        np.testing.assert_allclose(found, expected.ravel(), rtol=1e-11, atol=1e-12)
-
-
-def test_a_derivative_comes_with_its_value():
-    asked = ["angular_velocity_body by q", "angular_velocity_body by q_dot"]
-    motion = derived("ZXZ").select(["angular_velocity_body"])
-    kernels, known = (motion.kernels(t, derivatives=asked).load() for t in ("javascript", "numpy"))
-    q, q_dot = given(motion, ("q", "q_dot"), 5)
-    for name, arrays in (
-        ("angular_velocity_body_jacobian_q", (q, q_dot)),
-        ("angular_velocity_body_jacobian_q_dot", (q, q_dot)),
-    ):
-        for found, expected in zip(
-            getattr(kernels, name)(*arrays), getattr(known, name)(*arrays), strict=True
-        ):
-            np.testing.assert_allclose(found, expected, rtol=0, atol=4e-14)
-
-
 def test_text_in_a_title_stays_in_its_comment():
     motion = turned_by("turns", "await", "Math", "of")
     odd = rs.Motion(**{**vars(motion), "title": "*/ throw 1; /* </script>"})
@@ -151,14 +119,6 @@ def test_a_component_may_be_called_as_its_vector_is():
     assert made.minus([2.0]) == -2.0
 
 
-def test_a_module_is_written_and_node_accepts_it(tmp_path: Path):
-    kernels = derived("ZXZ").kernels("javascript", conversions=True)
-    path = kernels.write(tmp_path)
-    assert path == tmp_path / f"{NAME}.mjs"
-    subprocess.run(["node", "--check", path], check=True)
-    assert kernels.load().quaternion([0.0, 0.0, 0.0]).tolist() == [1.0, 0.0, 0.0, 0.0]
-
-
 def test_every_function_is_declared_for_typescript(tmp_path: Path):
     asked = {"angular_velocity_body": "q"}
     kernels = derived("ZXZ").kernels("javascript", conversions=True, derivatives=asked)
@@ -169,43 +129,6 @@ def test_every_function_is_declared_for_typescript(tmp_path: Path):
     assert declared == written
     assert "export function rotation_matrix(q: Vector): number[][];" in types
     assert kernels.write(tmp_path / "mine.mjs") == tmp_path / "mine.mjs"
-
-
-CALLS = """
-import * as functions from "./NAME.mjs";
-const type = (value) =>
-  typeof value === "number" ? "number"
-  : value instanceof Float64Array ? "Float64Array"
-  : value.every((entry) => typeof entry === "number") ? "number[]"
-  : new Set(value.map(type)).size === 1 ? "number[][]"
-  : `[${value.map(type).join(", ")}]`;
-const found = {};
-for (const [name, sizes] of Object.entries(SIZES)) {
-  found[name] = type(functions[name](...sizes.map((size) => new Float64Array(size).fill(0.3))));
-}
-console.log(JSON.stringify(found));
-"""
-
-
-def test_functions_take_typed_arrays_and_return_the_types_that_are_declared(tmp_path: Path):
-    asked = {"angular_velocity_body": ("q", "q_dot")}
-    kernels = derived("ZXZ").kernels("javascript", conversions=True, derivatives=asked)
-    kernels.write(tmp_path / f"{NAME}.mjs")
-    types = kernels.files[f"{NAME}.d.mts"]
-    declared = re.findall(r"^export function (\w+)\((.*)\): (.*);$", types, re.M)
-    of_size = {"q": 3, "q_dot": 3, "q_ddot": 3, "omega_space": 3, "omega_body": 3}
-    of_size |= {"matrix": 9, "quaternion": 4}
-    sizes = {
-        name: [of_size[given] for given in re.findall(r"(\w+): ", taken)]
-        for name, taken, _ in declared
-    }
-    program = CALLS.replace("SIZES", json.dumps(sizes)).replace("NAME", NAME)
-    (tmp_path / "calls.mjs").write_text(program, encoding="utf-8")
-    done = subprocess.run(
-        ["node", "calls.mjs"], cwd=tmp_path, capture_output=True, text=True, check=True
-    )
-    assert json.loads(done.stdout) == {name: type_ for name, _, type_ in declared}
-    assert len(declared) == 38
 
 
 def test_without_node_it_is_said(monkeypatch):

@@ -8,15 +8,12 @@ import subprocess
 
 import numpy as np
 import pytest
-import sympy as sp
 
 import rigidsym as rs
 from helpers.target_modules import EVERY
 from rigidsym.kernels.lowering.lower import lower
 from rigidsym.kernels.lowering.naming import Names, identifier
 from rigidsym.kernels.targets import TARGETS
-from rigidsym.models.rotation import RotationModel, elementary, lecture, time_function
-from rigidsym.motion import derive
 
 
 @pytest.mark.parametrize(
@@ -44,31 +41,6 @@ def test_names_are_given_once():
         "lambda__",
     ]
     assert [names.numbered("x"), names.numbered("x")] == ["x1", "x2"]
-
-
-def turned_by(*names: str) -> rs.Motion:
-    """Turns about z, x and z by angles of any names."""
-    angles = [time_function(name) for name in names]
-    matrix = elementary("z", angles[0]) * elementary("x", angles[1]) * elementary("z", angles[2])
-    return derive(
-        RotationModel(
-            name="clashes",
-            title="Names that clash",
-            convention=(),
-            coordinates=tuple(angles),
-            matrix=sp.ImmutableMatrix(matrix),
-            source=lecture("17"),
-        )
-    )
-
-
-@pytest.mark.parametrize(
-    "names", [("x0", "x1", "x2"), ("phi", "sin_phi", "phi_dot"), ("lambda", "np", "out")]
-)
-def test_names_of_a_person_clash_with_nothing(names):
-    kernels = lower(turned_by(*names), {"lambda", "np"}).kernels
-    for kernel in kernels:  # each Kernel refuses a name that is defined twice
-        assert not {"lambda", "np"} & {*kernel.components, *(a.name for a in kernel.assignments)}
 
 
 WORDS = [

@@ -14,8 +14,7 @@ import pytest
 import rigidsym as rs
 from helpers.command import call
 from helpers.target_modules import STRICT
-from rigidsym.errors import CheckError, KernelError, SpecError
-from rigidsym.pipeline import read_spec
+from rigidsym.errors import KernelError
 
 pytestmark = pytest.mark.campaign
 
@@ -133,11 +132,6 @@ def test_other_options_are_refused_by_name(target, options, named):
         rs.derive("ZXZ", only="rotation_matrix").kernels(target, **options)
 
 
-def test_no_python_module_is_made_of_lean_c():
-    with pytest.raises(CheckError, match=r"_c\.py: not found.* with arrays"):
-        rs.derive("ZXZ", only="rotation_matrix").kernels("c", **LEAN).load()
-
-
 FILE = """\
 [rotation]
 sequence = "ZYX"
@@ -164,20 +158,6 @@ def test_a_file_and_the_command_line_ask_for_it(tmp_path):
     refused = call("build", "euler_zyx_intrinsic.toml", "--out", "c", cwd=tmp_path, status=2)
     assert "with arrays and both precisions" in refused.stderr
     assert not (tmp_path / "c").exists()  # nothing is written first
-
-
-@pytest.mark.parametrize(
-    ("line", "fault"),
-    [
-        ('precision = "half"', 'output.c.precision: unknown name "half"; known: both'),
-        ("arrays = 0", "output.c.arrays: expected true or false, got the number 0"),
-        ("libn = true", "output.c.libn: unknown key; did you mean libm?"),
-    ],
-)
-def test_a_wrong_option_in_a_file_is_named(line, fault):
-    text = FILE.split("precision")[0] + line
-    with pytest.raises(SpecError, match=re.escape(fault)):
-        read_spec(text, source="file.toml", name="top")
 
 
 def test_the_files_of_the_lecture(golden):

@@ -39,12 +39,6 @@ def test_quantities_come_in_the_order_of_their_equations_and_the_margin_last():
     assert program.arguments[0].components == ("phi", "theta", "psi")
 
 
-def test_arguments_that_no_kernel_takes_are_not_in_the_program():
-    chosen = lower(derive(FREE, only=["rotation_matrix"]))
-    assert [a.name for a in chosen.arguments] == ["q", "parameters"]
-    assert not any(a.is_scalar for a in chosen.arguments)
-
-
 @pytest.mark.parametrize(
     ("rotation", "product", "presented", "bound"),
     [
@@ -87,9 +81,3 @@ def test_the_margin_is_scaled_to_one_if_its_largest_value_is_known(name, value, 
     assert (found.symbol, found.shape, infix(found.outputs[0])) == (symbol, (), value)
     assert found.about == f"how far the coordinates are from a singular orientation{end}"
     assert [a.name for a in found.arguments] == ["q"]
-
-
-def test_the_words_of_a_target_are_no_names():
-    motion = derive(rs.EulerAngles("ZXZ", ("a", "b", "c")), only=["rotation_matrix"])
-    (names,) = lower(motion, reserved=["b"]).arguments
-    assert names.components == ("a", "b_", "c")

@@ -10,12 +10,14 @@ import sympy as sp
 from hypothesis import given, settings, strategies as st
 
 import rigidsym as rs
+from rigidsym.algebra.stable_forms import Stumpff
 from rigidsym.errors import KernelError
 from rigidsym.kernels import ir
 from rigidsym.kernels.ir import Assignment, Call, Guarded, Name, Negative, Number, Product, Sum
 from rigidsym.kernels.lowering.cse import Reader
 from rigidsym.kernels.lowering.lower import MARGIN, lower
 from rigidsym.kernels.lowering.naming import Names
+from rigidsym.kernels.lowering.rounding import guarded
 from rigidsym.kernels.lowering.schedule import narrowed, write
 from rigidsym.kernels.targets.infix import infix
 from rigidsym.kernels.targets.python import bracketed, statement
@@ -203,6 +205,49 @@ def test_assignments_are_few_and_in_order(golden):
         lines += [title, *(f"    {a.name} = {infix(a.value, SAME)}" for a in assignments)]
         lines += [f"    -> {infix(output, SAME)}" for output in written]
     golden("kernels/lowered.txt", "\n".join(lines) + "\n")
+
+
+LENGTHS = [1 / Stumpff(k, A) for k in range(3)]
+QUOTIENT_OF_C = C / sp.sin(A)
+GUARDED = {  # divisors, which are NaN where rounding leaves no digit of them
+    "a sine that divides is zero up to the rounding of its angle": (
+        *(B / sp.sin(A), C / sp.cos(A) + 1 / sp.sin(A)),
+    ),
+    "squares and a number never vanish": (C / (A**2 + 1), C / (A**2 + B**2 + sp.Rational(1, 2))),
+    "inputs and their products have no rounding": (C / A, C / (A * B)),
+    "squares of inputs vanish where they underflow": (C / (A**2 + B**2), 1 / (2 * A**2 + 3 * B**2)),
+    "a difference is told from zero by the sizes of its terms": (C / (A - B),),
+    "squares are their own sizes": (C / (A**2 - B), C / (A**2 - 1)),
+    "so are no odd powers and products": (C / (A * B + 1), C / (2 * A * B + 1), C / (A**3 + 1)),
+    "squares of sines are told from zero by the squares of their angles": (
+        *(C / (sp.sin(A) ** 2 + B**2), 1 / (B**2 * sp.sin(A) ** 2 + C**2)),
+    ),
+    "functions c_k are zero up to the rounding of their argument": LENGTHS,
+    "what divides by nothing or a number stays": (A * sp.sin(B), A / 3),
+    "a divisor behind a name is guarded once": (
+        *(B + QUOTIENT_OF_C, -C * (B + QUOTIENT_OF_C), 1 / (1 + QUOTIENT_OF_C**2)),
+    ),
+    "a divisor of a divisor is guarded first": (C / (B + 1 / sp.sin(A)),),
+}
+
+
+def test_divisors_are_guarded_where_they_can_vanish(golden):
+    q = ir.KernelArgument(name="q", components=tuple("abcd"), units=("",) * 4, about="")
+    lines = []
+    for title, expressions in GUARDED.items():
+        assignments, outputs = lower_all(expressions)
+        plain = ir.Kernel(
+            name="k",
+            arguments=(q,),
+            assignments=assignments,
+            outputs=outputs,
+            shape=(len(outputs),),
+        )
+        names = Names([*q.components, *(a.name for a in assignments)])
+        whole = guarded(plain, names)
+        lines += [title, *(f"    {a.name} = {infix(a.value)}" for a in whole.assignments)]
+        lines += [f"    -> {infix(output)}" for output in whole.outputs]
+    golden("kernels/guarded.txt", "\n".join(lines) + "\n")
 
 
 @pytest.mark.parametrize(("length", "name"), [(20, f"sin_{'a' * 20}"), (21, "sin_0")])

@@ -16,7 +16,6 @@ import numpy as np
 import pytest
 import sympy as sp
 
-import rigidsym as rs
 from helpers.target_modules import (
     EPS,
     EVERY,
@@ -26,13 +25,12 @@ from helpers.target_modules import (
     module,
     motion,
     names,
-    plain,
     rows_of,
     worst_error,
 )
 from helpers.witness import mp
 from rigidsym.commands.list import inventory
-from rigidsym.errors import MissingExtra, RigidsymError
+from rigidsym.errors import RigidsymError
 from rigidsym.kernels import loaded
 from rigidsym.kernels.lowering.rounding import SINE
 from rigidsym.kernels.targets import TARGETS
@@ -233,27 +231,6 @@ def test_out_may_overlap_the_arguments_and_threads_change_nothing(target, count)
 
 
 @pytest.mark.parametrize("target", ARRAYS)
-def test_threads_share_any_axes(target):
-    turned = module("ZXZ", target).rotation_matrix
-    for shape in ((2, 3, 9000), (20_000, 1, 2), (1, 1, 20_001), (1, 1), (0, 5)):
-        (q,) = inputs("ZXZ", "rotation_matrix", shape)
-        rows = turned(q.reshape(-1, 3)).reshape(*shape, 3, 3)
-        found = turned(np.asfortranarray(q), threads=3)
-        np.testing.assert_allclose(found, rows, rtol=0, atol=MOST * 2.0**-52)
-
-
-@pytest.mark.parametrize("target", ARRAYS)
-def test_what_cannot_be_taken_is_refused_by_name(target):
-    loaded = module("ZXZ", target)
-    with pytest.raises(TypeError, match=r"^q: got dtype complex128"):
-        loaded.rotation_matrix(np.zeros(3, complex))
-    with pytest.raises(ValueError, match=r"^q: got shape \(4,\); expected \(\.\.\., 3\)"):
-        loaded.rotation_matrix(np.zeros(4))
-    with pytest.raises(TypeError, match=r"^out: got dtype float32"):
-        loaded.rotation_matrix(np.zeros(3), out=np.zeros((3, 3), np.float32))
-
-
-@pytest.mark.parametrize("target", ARRAYS)
 def test_functions_of_loaded_kernels_are_unpickled_by_another_process(target, tmp_path):
     """As the workers of process pools do, which start without the module."""
     function = module("ZXZ", target).rotation_matrix
@@ -316,24 +293,6 @@ def test_without_its_tools_a_target_is_written_and_loading_ends_in_code_4(
     assert TARGETS[target].missing in inventory()
 
 
-def test_a_missing_package_is_named_with_its_extra(monkeypatch):
-    monkeypatch.setattr("rigidsym.kernels.targets.find_spec", lambda _: None)
-    kernels = motion("ZXZ").kernels("numba")  # written all the same
-    with pytest.raises(MissingExtra, match=r"pip install '.\[numba\]'"):
-        kernels.load()
-    assert TARGETS["numba"].missing == "the package numba"
-
-
-@pytest.mark.skipif(bool(TARGETS["numba"].missing), reason=TARGETS["numba"].missing)
-def test_neither_threads_nor_the_place_in_a_batch_change_a_bit_of_numba():
-    motion = rs.derive("rotation_vector", only=["rotation_rate"])
-    rotation_rate = motion.kernels("numba").load().rotation_rate
-    q, q_dot = np.random.default_rng(1).uniform(-3, 3, (2, 100_003, 3))
-    found = rotation_rate(q, q_dot)
-    np.testing.assert_array_equal(rotation_rate(q, q_dot, threads=2), found)
-    np.testing.assert_array_equal(rotation_rate(q[5:], q_dot[5:]), found[5:])
-
-
 @pytest.mark.skipif(bool(TARGETS["numba"].missing), reason=TARGETS["numba"].missing)
 @pytest.mark.parametrize("count", [7, 300, 100_001])
 def test_rows_of_any_number_are_computed_by_compiled_functions(count, monkeypatch):
@@ -378,21 +337,3 @@ def test_functions_of_numba_are_called_in_compiled_functions():
     np.testing.assert_allclose(rows, velocity(q, q_dot[0]), rtol=0, atol=1e-14)
     with pytest.raises(ValueError, match="wrong number of components"):
         both(q[:, :2], q_dot)
-
-
-def test_a_module_with_no_argument_but_those_of_conversions_is_printed():
-    motion = rs.derive("axis_angle", only=["principal_axes"], body=rs.solid("cylinder"))
-    for target in TARGETS:
-        assert motion.kernels(target, conversions=True).source
-
-
-@pytest.mark.parametrize("target", TARGETS)
-def test_every_file_says_which_angles_are_accurate_and_what_nan_gives(target):
-    angles = " ".join(motion("ZXZ").kernels(target).files.values())
-    sums = " ".join(rs.derive("z(2*phi-psi) x(theta)").kernels(target).files.values())
-    none = " ".join(rs.derive("unit_quaternion").kernels(target).files.values())
-    for text in (angles, sums, none):
-        assert "makes every entry that depends on it NaN" in plain(text)
-    assert "accurate for angles of any magnitude." in plain(angles)
-    assert "If angles are added or multiplied before a sine is taken" in plain(sums)
-    assert "angles of any magnitude" not in plain(none)
