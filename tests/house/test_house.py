@@ -93,9 +93,9 @@ def test_kernels_import_their_representation_and_not_the_reverse():
 # sizes
 
 BUDGETS = {  # what was reached; who makes the house smaller lowers them
-    "files": 231,
-    "lines of code": 33_120,
-    "lines of tests": 28_540,
+    "files": 223,
+    "lines of code": 33_030,
+    "lines of tests": 27_600,
     "lines of benchmarks": 2_700,
 }
 
