@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Collection, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass, fields, replace
@@ -16,7 +15,7 @@ from rigidsym.formula.notation import CHOICES as CHOICES, DEFAULT as DEFAULT, No
 from rigidsym.formula.tree import Words
 from rigidsym.kernels.lowering.derivatives import Asked
 from rigidsym.kernels.module import KernelModule as KernelModule, generate
-from rigidsym.mechanics.derivation import Derivation, Proof, Step
+from rigidsym.mechanics.derivation import Derivation, Proof
 from rigidsym.mechanics.derive import Body, derive as derivation_of
 from rigidsym.mechanics.prove import identity
 from rigidsym.mechanics.quantities.catalogue import NAMES
@@ -27,6 +26,7 @@ from rigidsym.system.processes import time_limit
 
 if TYPE_CHECKING:
     from rigidsym.mechanics.conversions.conversions import Conversions
+    from rigidsym.notes.formats.jupyter import EquationPrinter
     from rigidsym.notes.note import Note
     from rigidsym.simulation.ensemble import Ensemble
     from rigidsym.simulation.trajectory import Trajectory
@@ -50,9 +50,14 @@ class Motion(Derivation):
     notation: Notation = DEFAULT
 
     def __post_init__(self) -> None:
-        printer = _Printer(self)
-        steps = tuple(replace(step, printer=printer) for step in self.steps)
+        steps = tuple(replace(step, printer=self._printer) for step in self.steps)
         object.__setattr__(self, "steps", steps)
+
+    def _printer(self) -> EquationPrinter:
+        # the notes are imported when something is printed
+        from rigidsym.notes.formats.jupyter import EquationPrinter
+
+        return EquationPrinter(arguments=self.arguments, model=self.model, notation=self.notation)
 
     def __repr__(self) -> str:
         """One line, since the steps themselves would fill pages."""
@@ -181,11 +186,6 @@ class Motion(Derivation):
         """
         return replace(self, notation=replace(self.notation, **choices))
 
-    def written(self, **choices: Any) -> Motion:
-        """The old name of `with_notation`."""
-        warnings.warn("written() is now called with_notation()", DeprecationWarning, stacklevel=2)
-        return self.with_notation(**choices)
-
     def _repr_mimebundle_(self, **_: object) -> dict[str, str]:
         """What Jupyter shows: the note, the equations, or the text of the terminal."""
         from rigidsym.notes.formats.jupyter import bundle_of
@@ -194,28 +194,6 @@ class Motion(Derivation):
 
     def _repr_latex_(self) -> str:
         return self._repr_mimebundle_()["text/latex"]
-
-
-@dataclass(frozen=True, slots=True)
-class _Printer:
-    """Prints the steps of a motion; the notes are imported when something is printed."""
-
-    motion: Motion
-
-    def latex(self, step: Step) -> str:
-        return self._equations.latex(step)
-
-    def text(self, step: Step) -> str:
-        return self._equations.text(step)
-
-    @property
-    def _equations(self) -> Any:
-        from rigidsym.notes.formats.jupyter import EquationPrinter
-
-        motion = self.motion
-        return EquationPrinter(
-            arguments=motion.arguments, model=motion.model, notation=motion.notation
-        )
 
 
 def derive(

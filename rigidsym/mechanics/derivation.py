@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Protocol, Self
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Self
 
 import sympy as sp
 
@@ -205,14 +204,6 @@ class Consequence(NamedTuple):
     where: tuple[tuple[Formula | sp.Expr, sp.Expr], ...] = ()  # symbols of it with their values
 
 
-class StepPrinter(Protocol):
-    """Prints the equation of a step."""
-
-    def latex(self, step: Step) -> str: ...
-
-    def text(self, step: Step) -> str: ...
-
-
 @dataclass(frozen=True, slots=True)
 class OfBody:
     """What a body and the forces on it add to the derivation of a rotation."""
@@ -244,7 +235,8 @@ class Step:
     vector_form: VectorForm | None = None  # where the coordinates form a vector
     recursion: Formula | None = None  # shown for the entries, if these are names of its parts
     words: str = ""  # a sentence in place of that of the quantity's reason
-    printer: StepPrinter | None = field(default=None, repr=False, compare=False)  # set by Motion
+    # of equations, in the notation of the motion
+    printer: Callable[[], Any] | None = field(default=None, repr=False, compare=False)
 
     def __repr__(self) -> str:
         """One line, for a prompt; `text` shows the equation."""
@@ -258,16 +250,16 @@ class Step:
 
     def latex(self) -> str:
         """The equation in LaTeX, without its number."""
-        return self._printer().latex(self)
+        return str(self._printer().latex(self))
 
     def text(self) -> str:
         """The equation as the terminal shows it."""
-        return self._printer().text(self)
+        return str(self._printer().text(self))
 
-    def _printer(self) -> StepPrinter:
+    def _printer(self) -> Any:
         if self.printer is None:
             raise DerivationError("only a step of rs.derive(...) can print itself")
-        return self.printer
+        return self.printer()
 
     def _repr_mimebundle_(self, **_: object) -> dict[str, str]:
         """What Jupyter shows: the equation with its number, or plain text."""
@@ -313,21 +305,6 @@ class Singularity:
     lost_axis_body: sp.ImmutableMatrix | None  # its line in body components
     null_rates: sp.ImmutableMatrix  # columns that span the q̇ with Ω = 0, (n, k)
     reachable_axis: sp.ImmutableMatrix | None = None  # of all Ω, if the rank is 1; (3, 1)
-
-    def __getattr__(self, name: str) -> Any:
-        """The attributes by their former names, with a DeprecationWarning."""
-        if name not in _FORMER_NAMES:
-            raise AttributeError(name)
-        warnings.warn(f"{name} is now {_FORMER_NAMES[name]}", DeprecationWarning, stacklevel=2)
-        return getattr(self, _FORMER_NAMES[name])
-
-
-_FORMER_NAMES = {
-    "lost_space": "lost_axis_space",
-    "lost_body": "lost_axis_body",
-    "undetermined": "null_rates",
-    "reached": "reachable_axis",
-}
 
 
 Measure = Literal["det W", "det [W, J]", "det W Wᵀ", "det Wᵀ W", "minors"]

@@ -18,7 +18,6 @@ from scipy.spatial.transform import Rotation
 from helpers.parametrisations import CHAINS, CONSTANTS, IN_A_PLANE, WITNESSES, motion_of
 from helpers.witness import evaluate, mp, number
 from rigidsym.models.library import PARAMETRISATIONS
-from rigidsym.motion import derive
 from rigidsym.notes.formats.record import record
 from rigidsym.notes.formats.terminal import show
 
@@ -293,10 +292,3 @@ def test_at_the_points_rates_are_nan_and_never_huge(text, dtype):
             values = getattr(kernels(text), name)(*arguments(text, name, q, dtype))
             assert np.isnan(values).any(), (q, values)
             assert np.abs(values[~np.isnan(values)]).max(initial=0) < 100, (q, values)
-
-
-def test_former_names_of_what_is_lost_still_work_and_warn():
-    point = derive("ZXZ").singularities.points[0]
-    for old, new in (("lost_space", "lost_axis_space"), ("undetermined", "null_rates")):
-        with pytest.warns(DeprecationWarning, match=f"{old} is now {new}"):
-            assert getattr(point, old) == getattr(point, new)

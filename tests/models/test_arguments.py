@@ -160,12 +160,6 @@ def test_without_coordinates_of_no_rotation_all_are_zero():
     assert no_rotation(rs.rotation_from("quaternion")) == {"w": 1.0, "x": 0.0, "y": 0.0, "z": 0.0}
 
 
-def test_the_former_name_of_a_choice_of_notation_goes_on_working():
-    motion = rs.derive("z(a)")
-    with pytest.warns(DeprecationWarning, match=r"written\(\) is now called with_notation\(\)"):
-        assert motion.written(rates="fraction") == motion.with_notation(rates="fraction")
-
-
 def test_numbers_describe_a_solid():
     ball = rs.solid("sphere", radius=1, mass=2)
     assert ball.mass == 2
