@@ -50,7 +50,6 @@ from rigidsym.mechanics.conversions.inverse import (
     vanishing,
 )
 from rigidsym.mechanics.derivation import Derivation, Proof, Quantity, Step
-from rigidsym.mechanics.derive import derive
 from rigidsym.mechanics.prove import Prover
 from rigidsym.models.parametrisations import SHUSTER, UnitQuaternion
 from rigidsym.models.rotation import RotationModel, rotation_of
@@ -64,8 +63,6 @@ QUATERNION = Quantity(
     shape="vector",
     source=SHUSTER,
 )
-UNIT = "_unit"  # ends the names of what holds for quaternions of length one
-_OF_UNIT_LENGTH = ("rotation_matrix", "angular_velocity_space", "angular_velocity_body")
 
 
 @dataclass(frozen=True)
@@ -116,17 +113,6 @@ class Conversions:
         """That 4 p pᵀ can be read off from R."""
         return _read_off()
 
-    @cached_property
-    def variants(self) -> tuple[Step, ...]:
-        """Quantities of a quaternion of any length, for those who know that its length is one."""
-        model, form = self.model, self._form
-        if form is None or form.rule != "quaternion":
-            return ()
-        names = [model.coordinates[place].func.__name__ for place in form.order]
-        unit = UnitQuaternion(names, scalar_last=form.is_scalar_last, passive=model.passive)
-        steps = map(derive(unit).step, _OF_UNIT_LENGTH)
-        return tuple(replace(step, quantity=_of_unit_length(step.quantity)) for step in steps)
-
     @property
     def proofs(self) -> tuple[Proof, ...]:
         forward = self.quaternion.proofs if self.quaternion else ()
@@ -174,11 +160,6 @@ class Conversions:
         )
 
 
-def _of_unit_length(quantity: Quantity) -> Quantity:
-    about = f"{quantity.about}, for a quaternion of length one"
-    return quantity._replace(name=quantity.name + UNIT, about=about)
-
-
 @cache
 def _read_off() -> Proof:
     """4 p pᵀ = K(R): sums and differences of the entries of R, for every unit quaternion p."""
@@ -209,10 +190,8 @@ def converted(derivation: Derivation) -> Converted:
                 kind = "quaternion"
             quarters = inverse.quarters if isinstance(inverse, EulerRule) else 0
             continuity = Continuity(kind, (inverse.words["continuity"],), quarters)
-    names = {step.quantity.name for step in derivation.steps}
-    variants = (v for v in conversions.variants if v.quantity.name.removesuffix(UNIT) in names)
     return Converted(
-        steps=(*steps, *variants),
+        steps=steps,
         functions=functions,
         continuity=continuity,
         remarks=(conversions.without,) if conversions.without else (),
@@ -250,7 +229,7 @@ def _quaternion(
     """The unit quaternion, as a step where it has a formula of its own."""
     number = len(derivation.steps) + 1  # in the note
     rule = conversions.inverse
-    if rule is not None and conversions.variants:
+    if rule is not None and rule.rule == "quaternion":
         return (), (_of_any_length(derivation, rule, number),)
     if rule is not None and rule.rule == "rotation_vector":
         return (), (_of_rotation_vector(derivation, number),)
