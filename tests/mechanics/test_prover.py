@@ -11,8 +11,6 @@ import sympy as sp
 from sympy import Abs, Rational, acos, asin, cos, cosh, exp, log, pi, sin, sqrt, tan
 
 import rigidsym as rs
-from helpers.witness import mp
-from rigidsym.algebra import witness as witness_module
 from rigidsym.algebra.codec import Codec, codec_for
 from rigidsym.algebra.generators import combination
 from rigidsym.algebra.matrix import RingMatrix
@@ -398,42 +396,6 @@ def test_a_wrong_product_in_the_ring_is_a_defect(monkeypatch, entries):
         assert residual.is_zero()
         with pytest.raises(Defect, match="is proved, and yet is false at a point"):
             prover.vanishes(residual, CLAIM)
-
-
-CASES = {
-    "free": ((), codec_for([x, y, sin(theta), Rational(1, 3)])),
-    "bound": (
-        (x**2 + y**2 - 4,),
-        codec_for([x, y, Rational(2, 3)], constraints=(x**2 + y**2 - 4,)),
-    ),
-    "roots": ((), codec_for([sqrt(sp.Symbol("m", positive=True) + 1), 1 / (x**2 + 1), y])),
-}
-
-
-@pytest.mark.parametrize("case", CASES)
-def test_values_of_products_are_those_of_their_entries(monkeypatch, case):
-    """Of every kind of origin, by the fast numbers, and within the bounds of the intervals."""
-    constraints, codec = CASES[case]
-    example = ((x, Rational(6, 5)), (y, Rational(8, 5))) if constraints else ()
-    witness = witness_for(codec, "sample", constraints, example)
-    bounds, number = witness._bounds(witness._first), witness._number
-    p, q, r = (codec.ring.polynomials.gens * 2)[:3]
-    one = RingMatrix.of(codec.ring, [[p * q - 2, 5 * r**2], [q, p**2 * r + 1]])
-    two = RingMatrix.of(codec.ring, [[p, codec.ring.one], [r - q, q * r]])
-    for matrix in (one, one @ two, one + two.T, one.scale(p + 2), (one @ two - two @ one).T):
-        by_factors = witness_module._values(matrix, {}, number, lambda e: e >> 240)
-        values = [value for row in by_factors for value in row]
-        for entry, value in zip(matrix.entries, values, strict=True):
-            assert abs(number(entry) - value) < 1 << 80
-            found = witness_module._bounds_of(entry, bounds, witness_module.DIGITS)
-            low, high = (mp.mpf(str(e).strip("[]").split(",")[0]) for e in (found.a, found.b))
-            assert low - mp.mpf(10) ** -40 <= mp.mpf(value) / 2**240 <= high + mp.mpf(10) ** -40
-        with monkeypatch.context() as patch:
-            patch.setattr(Witness, "_bounds", None)  # the fast numbers suffice
-            assert not witness.disagrees(matrix - RingMatrix(codec.ring, matrix.rows), {})
-    with monkeypatch.context() as patch:
-        patch.setattr(Witness, "_number", lambda *_: 1 << 240)  # and the intervals decide
-        assert not witness.disagrees(RingMatrix.of(codec.ring, [[codec.ring.zero]]), {})
 
 
 def test_an_element_is_not_zero_if_it_is_not_zero_at_a_point():

@@ -39,8 +39,8 @@ from rigidsym.algebra.matrix import RingMatrix, hat as operator
 from rigidsym.algebra.witness import configurations
 from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Formula
-from rigidsym.mechanics.derivation import Definition, Law, Proof, Quantity, Step
-from rigidsym.mechanics.kinematics.workspace import Values, traits_of
+from rigidsym.mechanics.derivation import Definition, Law, Proof, Quantity
+from rigidsym.mechanics.kinematics.workspace import Values, Workspace, traits_of
 from rigidsym.mechanics.prove import Conditions, Prover, consequence, identity
 from rigidsym.mechanics.quantities.kinematics import KINEMATICS
 from rigidsym.mechanics.quantities.table import arguments_of
@@ -235,12 +235,11 @@ def _composition(
 # A chain of turns
 
 
-class Chain:
+class Chain(Workspace):
     """The rotation and the angular velocity of a product of turns, in names for their parts."""
 
     def __init__(self, model: RotationModel) -> None:
         self.model = model
-        self.traits = traits_of(model) | {"chain"}
         self._groups: dict[str, dict[sp.Symbol, sp.Expr]] = {}
         self._named: dict[str, tuple[sp.ImmutableMatrix, sp.MatrixBase]] = {}  # and its value
         plain = {q.func.__name__ for q in model.coordinates}
@@ -254,6 +253,10 @@ class Chain:
         self._rate_matrices: dict[str, sp.ImmutableMatrix] = {}
         self._rows: dict[str, OrthogonalRows] = {}
         self._factored: dict[str, list[Proof]] = {}
+
+    @cached_property
+    def traits(self) -> frozenset[str]:
+        return traits_of(self.model) | {"chain"}
 
     # Names
 
@@ -482,23 +485,14 @@ class Chain:
 
     # Steps
 
-    def step(self, entry: Quantity) -> Step | None:
-        """The value of an entry in names, with the proofs of its laws; None if there is none."""
-        quantity = entry.presented(self.traits)
-        assert quantity.value is not None
-        value = quantity.value(self)
-        if value is None:
-            return None
-        recursion = quantity.recursion.replace("LAST", str(self.count))
-        recursion = recursion.replace("BEFORE", str(self.count - 1))
-        return Step(
-            quantity=quantity.measured(self.arguments),
-            expression=sp.ImmutableMatrix(value),
-            proofs=tuple(self.proofs(quantity)),
-            recursion=formula(recursion) if recursion else None,
-        )
+    def recursion(self, quantity: Quantity) -> Formula | None:
+        text = quantity.recursion.replace("LAST", str(self.count))
+        return formula(text.replace("BEFORE", str(self.count - 1))) if text else None
 
-    def proofs(self, quantity: Quantity) -> Iterator[Proof]:
+    def proofs(self, quantity: Quantity, _value: Any = None) -> tuple[Proof, ...]:
+        return tuple(self._proofs_of(quantity))
+
+    def _proofs_of(self, quantity: Quantity) -> Iterator[Proof]:
         """The laws of a quantity, and of those that its value is written with."""
         laws = [(quantity, law) for law in quantity.laws]
         others = (KINEMATICS[name].presented(self.traits) for name in quantity.also)

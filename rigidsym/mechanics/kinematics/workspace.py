@@ -18,6 +18,7 @@ from rigidsym.algebra.matrix import Inverse, RingMatrix, hat, unhat
 from rigidsym.algebra.present import Presenter, presenter_for
 from rigidsym.algebra.witness import Example, configurations
 from rigidsym.errors import DerivationError, NotARotation
+from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Argument, Proof, Quantity, Step, VectorForm
 from rigidsym.mechanics.kinematics.vector_forms import matrix_form, vector_form
 from rigidsym.mechanics.prove import Prover, identity
@@ -98,11 +99,16 @@ class Workspace:
             expression=self._printed(value),
             proofs=(*proofs, form.proof) if form else proofs,
             vector_form=form,
+            recursion=self.recursion(quantity),
             words=quantity.words(self) if quantity.words else "",
         )
 
     def vector_form(self, _quantity: Quantity, _value: Any, /) -> VectorForm | None:
         """The quantity as a function of the vector of the coordinates, if it is one."""
+        return None
+
+    def recursion(self, _quantity: Quantity, /) -> Formula | None:
+        """How the entries follow turn by turn, if they are named."""
         return None
 
     def _printed(self, value: Any) -> sp.ImmutableMatrix:
