@@ -154,6 +154,22 @@ def test_particles_in_symbols():
         '[body]\nparticles = [{ mass = "m", at = ["a", 0, 0] }, { mass = "m", at = ["-a", 0, 0] }]'
     )
     assert body.inertia == sp.diag(0, *[2 * sp.Symbol("m") * sp.Symbol("a") ** 2] * 2)
+    body = body_in("[body]\nparticles = [{ mass = 1.5, at = [0.5, 0, 0] }]")
+    assert (body.mass, body.centre[0], body.parameters) == (sp.Rational(3, 2), sp.S.Half, ())
+
+
+def test_a_coordinate_of_the_centre_may_have_any_sign():
+    text = '[body]\ninertia = [["A", 0, 0], [0, "A", 0], [0, 0, "C"]]\ncentre = ["c", 0, 0]'
+    signs = {str(p.symbol): p.positive for p in body_in(text).parameters}
+    assert signs == {"M": True, "A": True, "C": True, "c": False}
+
+
+def test_a_file_of_particles_may_have_holes_if_that_is_allowed(tmp_path):
+    np.save(tmp_path / "cloud.npy", [[3.0, 0, 0, 1], [3.0, 0, 1, 0], [-1.0, 0, 0, 0]])
+    text = '[body]\nparticles = "cloud.npy"\n'
+    with pytest.raises(SpecError, match="a mass that is not negative"):
+        read_spec(text, source="a", name="a", folder=tmp_path)
+    assert read_spec(text + "allow = true\n", source="a", name="a", folder=tmp_path).body
 
 
 def test_parts_in_numbers_become_numbers():
@@ -186,6 +202,10 @@ def test_a_condition_of_a_turn_is_kept():
     body = body_in(f"[body]\nparts = [{part}]")
     assert body.inertia.trace() == 28
     assert "breaks" not in "".join(map(str, body.inertia))
+    free = read_spec(
+        f"[body]\nparts = [{part.replace('3/5', 'w').replace('4/5', 'z')}]", source="a", name="a"
+    )
+    assert free.body.distribution.conditions == (sp.Symbol("w") ** 2 + sp.Symbol("z") ** 2 - 1,)
     wrong = part.replace("4/5", "3/5")
     assert "the values break its condition" in "".join(faults_of(f"[body]\nparts = [{wrong}]"))
 
