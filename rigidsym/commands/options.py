@@ -41,15 +41,21 @@ class TemplateOptions:
 
     templates: Path | None = option(
         "--templates",
-        type=click.Path(exists=True, file_okay=False, path_type=Path),
+        type=click.Path(file_okay=False, path_type=Path),
         metavar="DIR",
         help="Custom template directory; `rigidsym templates DIR` copies the shipped ones.",
     )
 
     def __post_init__(self) -> None:
         """Use the templates of the directory until the command ends."""
-        if self.templates is not None:
-            click.get_current_context().with_resource(overridden_by(self.templates))
+        if self.templates is None:
+            return
+        if not self.templates.is_dir():
+            raise click.UsageError(
+                f"--templates {self.templates}: no such folder; `rigidsym templates "
+                f"{self.templates}` makes it, with the shipped templates"
+            )
+        click.get_current_context().with_resource(overridden_by(self.templates))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -76,6 +76,8 @@ def write(output: Output, out: Path, *, force: bool) -> list[Path]:
                 "overwrite it, or --out for another folder"
             )
         _report_other_files(output, folder)
+        if PDF not in output.spec.note:
+            report_old_pdf(folder / f"{folder.name}.tex", output.files.get(f"{folder.name}.tex"))
         return [write_text(folder / name, text) for name, text in output.files.items()]
 
 
@@ -98,7 +100,14 @@ def _report_other_files(output: Output, folder: Path) -> None:
     if before is None or _is_same(before, now):
         return
     if before.models != now.models:
-        message(f"overwriting {folder}, which held a different rotation (use --out to keep both)")
+        (one,), (other,) = before.models, now.models
+        what = "a different rotation"
+        if len(one.coordinates) == len(other.coordinates):
+            renamed = dict(zip(one.coordinates, other.coordinates, strict=True))
+            if one.matrix.xreplace(renamed) == other.matrix:
+                names = ", ".join(q.func.__name__ for q in one.coordinates)
+                what = f"the same rotation with the coordinates {names}"
+        message(f"overwriting {folder}, which held {what} (use --out to keep both)")
     left = list(_kept(_outputs(before), now, folder))
     if CERTIFICATE in left:
         left.remove(CERTIFICATE)
@@ -111,6 +120,15 @@ def _report_other_files(output: Output, folder: Path) -> None:
             f"{folder} still contains {', '.join(left)} from an earlier run, which `check` will "
             "ignore"
         )
+
+
+def report_old_pdf(source: Path, text: str | None) -> None:
+    """A message on standard error if the TeX file of a PDF is about to change, and not the PDF."""
+    pdf = source.with_suffix(".pdf")
+    if text is None or not (pdf.is_file() and source.is_file()):
+        return
+    if source.read_bytes() != text.encode():
+        message(f"{pdf} is of an earlier run; use --pdf to typeset it again, or delete it")
 
 
 def _is_same(before: DerivationSpec, now: DerivationSpec) -> bool:

@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from rigidsym.commands.command import command as make
+from rigidsym.commands.output_folder import report_old_pdf
 from rigidsym.notes.formats import FORMATS
 from rigidsym.notes.formats.pdf import typeset
 from rigidsym.notes.problems.exercise import sheet_of
@@ -72,7 +73,10 @@ def command(
     for document in documents:
         for ending in _ENDINGS:
             path = out / sheet.name / f"{document.name}.{ending}"
-            click.echo(write_text(path, FORMATS[ending].render(document)))
+            text = FORMATS[ending].render(document)
+            if ending == "tex" and not pdf:
+                report_old_pdf(path, text)
+            click.echo(write_text(path, text))
     if moodle:
         click.echo(write_text(out / sheet.name / f"{sheet.name}.xml", sheet.moodle))
     for document in documents if pdf else ():

@@ -14,7 +14,7 @@ import numpy as np
 
 from rigidsym.commands.command import command as make, option, with_options
 from rigidsym.data.tables import check_ending, write_table
-from rigidsym.errors import DerivationError
+from rigidsym.errors import DerivationError, ModelError
 from rigidsym.models.forces import Example
 from rigidsym.motion import Motion
 from rigidsym.pipeline import motion_of, read
@@ -147,7 +147,12 @@ def _motion(source: str, options: SimulationOptions) -> Motion:
     """The rotation with the quantities that a simulation needs, or with all for a page."""
     spec = read(source)
     is_page = options.animate is not None
-    if spec.dynamics is not None and len(spec.models) == 1 and not is_page:
+    if spec.dynamics is None:
+        raise ModelError(
+            f"{source} has no equations of motion; expected a derivation file with [body] and "
+            "[dynamics], or a shipped one such as heavy_symmetric_top (`rigidsym list`)"
+        )
+    if len(spec.models) == 1 and not is_page:
         spec = replace(spec, quantities=NEEDED)
     motion = motion_of(spec)
     if is_page:

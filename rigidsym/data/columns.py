@@ -104,7 +104,10 @@ def names_for(
     if names is None:
         return None if former is None else tuple(former)
     if len(names) != width:
-        raise DataError(f"{counted(width, 'column')}, but {counted(len(names), 'name')}")
+        raise DataError(
+            f"{counted(width, 'column')}, but {counted(len(names), 'name')} in --columns; "
+            "expected one name a column, in order, and - for a column to leave out"
+        )
     if former is None:
         return tuple(names)
     before, after = ColumnNames(former), ColumnNames(names)

@@ -106,7 +106,8 @@ def _what_is_wrong(text: str) -> str:
     if len(letters) != 3 or not set(letters.lower()) <= set(AXES):
         return "expected three axes such as ZXZ (intrinsic), zxz (extrinsic) or 313 (intrinsic)"
     place = 1 if letters[0] == letters[1] else 2
-    return f"consecutive axes must differ: {text[place]} follows {text[place - 1]}"
+    here = [sequence for sequence in EULER_SEQUENCES if sequence.isupper() == letters.isupper()]
+    return f"{text[place]} follows {text[place - 1]}; {offer(letters, here)}"
 
 
 def _order_in_words(manner: str, turns: Sequence[Turn]) -> str:
@@ -165,7 +166,7 @@ def chain(
     if not coordinates:
         raise ModelError(
             f"{' '.join(map(str, turns))} does not move: expected an angle that is a function "
-            "of time"
+            "of time; angles are in radians, 30° is pi/6"
         )
     units = (sum(part**2 for part in turn.direction) - 1 for turn in turns)
     constraints = tuple(dict.fromkeys(c for c in units if not is_identically_zero(c)))

@@ -23,11 +23,12 @@ from jinja2 import (
     TemplateError,
     TemplateNotFound,
     TemplateSyntaxError,
+    nodes,
 )
 from jinja2.runtime import Context
 from jinja2.sandbox import ImmutableSandboxedEnvironment
 
-from rigidsym.errors import TemplateFault
+from rigidsym.errors import TemplateFault, offer
 from rigidsym.system.files import cache_folder
 
 _PACKAGE = Path(__file__).resolve().parent.parent
@@ -143,7 +144,33 @@ class SandboxedTemplates(ImmutableSandboxedEnvironment):
             raise TemplateFault(f"{name} is not text in UTF-8: {error.reason}") from error
         except (FileNotFoundError, ValueError):  # also a name with NUL
             return None
+        if not Path(file).is_relative_to(folder("templates")):
+            self._check_blocks(name, text, file)
         return text, file, lambda: (self._load(name) or ())[:2] == (text, file)
+
+    def _check_blocks(self, name: str, text: str, file: str) -> None:
+        """Raises TemplateFault if a template overrides a block that its parent does not have.
+
+        Jinja2 ignores such a block, so that a misspelt name would change nothing.
+        """
+        tree = self.parse(text, name, file)
+        parent = next((e.template for e in tree.find_all(nodes.Extends)), None)
+        if not isinstance(parent, nodes.Const):
+            return
+        known: set[str] = set()
+        while isinstance(parent, nodes.Const):
+            try:
+                base = self.parse(*self._find(parent.value))
+            except (FileNotFoundError, ValueError):  # Jinja2 says so, with the line
+                return
+            known |= {block.name for block in base.find_all(nodes.Block)}
+            parent = next((e.template for e in base.find_all(nodes.Extends)), None)
+        for block in tree.body:
+            if isinstance(block, nodes.Block) and block.name not in known:
+                fault = f"there is no block {block.name} to override"
+                raise TemplateFault(
+                    f"{file}, line {block.lineno}: {fault}; {offer(block.name, sorted(known))}"
+                )
 
     def handle_exception(self, source: str | None = None) -> NoReturn:
         """Jinja2 comes here with every exception from a template."""

@@ -289,7 +289,7 @@ def _by_name(arguments: Sequence[_Argument], header: ColumnNames) -> list[int]:
             else:
                 columns.append(column)
     if missing:
-        remedy = "--columns names the columns in order"
+        remedy = "if the file names them otherwise, --columns gives all its columns names, in order"
         if any(a.name == "q" and len(a.names) == 3 and {*a.names} <= {*missing} for a in arguments):
             remedy += (
                 ", or --angles the coordinates in the order of the turns, "

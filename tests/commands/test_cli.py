@@ -131,7 +131,6 @@ def test_a_wrong_file_tells_all_faults_and_writes_nothing(tmp_path):
         ("derive", "Missing argument"),
         ("derive ZXZ --frobnicate", "No such option"),
         ("check nowhere", "does not exist"),
-        ("fly", "No such command"),
         ("derive ZXZ --timeout much", "much"),
     ],
 )

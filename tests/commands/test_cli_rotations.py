@@ -121,4 +121,7 @@ def test_one_folder_is_not_written_over_in_silence(tmp_path):
     call("derive", "ZXZ", cwd=tmp_path)
     assert call("derive", "ZXZ", "--conversions", cwd=tmp_path).stderr == ""
     done = call("derive", "ZXZ", "--angles", "a,b,c", cwd=tmp_path)
-    assert "which held a different rotation (use --out to keep both)" in done.stderr
+    assert (
+        "which held the same rotation with the coordinates phi, theta, psi (use --out to keep both)"
+        in done.stderr
+    )

@@ -60,8 +60,8 @@ def test_files_of_another_derivation_are_named(tmp_path):
         "`check` will ignore"
     )
     assert said == [
-        f"rigidsym: overwriting {tmp_path / NAME}, which held a different rotation (use --out to "
-        "keep both)",
+        f"rigidsym: overwriting {tmp_path / NAME}, which held the same rotation with the "
+        "coordinates phi, theta, psi (use --out to keep both)",
         kept,
     ]
     _run("derive", "ZXZ", "--target", "numpy,javascript", *out)
@@ -123,3 +123,14 @@ def test_a_quiet_command_prints_only_the_names_of_its_files(command, tmp_path):
     done = CliRunner().invoke(commands, words)
     assert done.exit_code == 0
     assert all(Path(line).is_file() for line in done.output.splitlines())
+
+
+@pytest.mark.parametrize("command", [("derive", "ZXZ"), ("problems", "euler", "--number", "1")])
+def test_a_pdf_of_an_earlier_note_is_named(tmp_path, command):
+    _run(*command, "--out", str(tmp_path))
+    source = next(tmp_path.rglob("*.tex"))
+    source.with_suffix(".pdf").write_bytes(b"%PDF")
+    assert _run(*command, "--out", str(tmp_path)).count(" is of an earlier run") == 0
+    source.write_text("old")
+    said = _run(*command, "--out", str(tmp_path), *["--force"] * (command[0] == "derive"))
+    assert f"{source.with_suffix('.pdf')} is of an earlier run; use --pdf" in said

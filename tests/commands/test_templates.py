@@ -128,6 +128,17 @@ def test_a_lecturer_changes_one_sentence(tmp_path: Path):
     assert len(note.document.sections) == len(before.document.sections)
 
 
+def test_a_misspelt_block_is_refused_and_a_new_one_inside_a_block_is_not(tmp_path: Path):
+    text = '{% extends "en/lecture.md.jinja" %}\n{% block rates %}{% block mine %}{% endblock %}\n'
+    own(tmp_path, "en/handout.md.jinja", text + "{% endblock %}\n{% block singlar %}{% endblock %}")
+    with resources.overridden_by(tmp_path), pytest.raises(TemplateFault) as caught:
+        derived("ZXZ").note(style="handout")
+    assert str(caught.value) == (
+        f"{tmp_path}/en/handout.md.jinja, line 4: there is no block singlar to override; did you "
+        "mean singular?"
+    )
+
+
 def test_a_fact_that_there_is_not_is_named_with_its_template_and_line(tmp_path: Path):
     (tmp_path / "en").mkdir()
     own = tmp_path / "en" / "singular.md.jinja"
