@@ -11,17 +11,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import replace
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Any
 
 import sympy as sp
 
 from rigidsym.errors import QuantityError, offer
 from rigidsym.mechanics.derivation import (
     OF_RATES,
-    Definition,
     Derivation,
     OfBody,
     Singularities,
@@ -89,20 +88,18 @@ def derive(
     named = [step.expression for step in steps]
     named += singularities.minors if singularities else ()
     definitions = chain.definitions_of(named) if chain else ()
-    constants = set(arguments["parameters"].symbols) if "parameters" in arguments else set()
-    constants |= _resting_on(constants, definitions)
-    inputs = _Inputs(constants, is_driven=forces is not None and forces.depend_on_time)
+    constants = {*arguments["parameters"].symbols} if "parameters" in arguments else set()
+    for symbol, expression in definitions:
+        if not expression.free_symbols.isdisjoint(constants):
+            constants.add(symbol)
+    finished = partial(_with_inputs, constants, forces is not None and forces.depend_on_time)
     return Derivation(
         name=model.name,
         title=model.title,
         model=model,
         arguments=tuple(arguments.values()),
-        steps=tuple(
-            inputs.of(replace(step, number=number)) for number, step in enumerate(steps, start=1)
-        ),
-        functions=_LazySteps(
-            {name: partial(inputs.of_made, make) for name, make in of_body.functions.items()}
-        ),
+        steps=tuple(finished(replace(step, number=k)) for k, step in enumerate(steps, start=1)),
+        functions=_LazySteps(of_body.functions, finished),
         singularities=singularities,
         body=of_body.body,
         forces=of_body.forces,
@@ -138,17 +135,6 @@ def _singularities(values: Values, chain: Chain | None) -> Singularities:
     return found or (singularities_of(values) if is_easy else margin)
 
 
-def _resting_on(
-    constants: Collection[sp.Symbol], definitions: Sequence[Definition]
-) -> set[sp.Symbol]:
-    """The named intermediate quantities that depend on a constant."""
-    found: set[sp.Symbol] = set()
-    for definition in definitions:
-        if not definition.expression.free_symbols.isdisjoint({*constants, *found}):
-            found.add(definition.symbol)
-    return found
-
-
 def _check_names(only: Collection[str], *, has_body: bool, has_forces: bool) -> None:
     of_body = (BODY_ALONE, *OF_BODY)
     known = (*KINEMATICS, *(of_body if has_body else ()), *(OF_MOTION if has_forces else ()))
@@ -161,16 +147,30 @@ def _check_names(only: Collection[str], *, has_body: bool, has_forces: bool) -> 
         raise QuantityError(f"no quantity {name}; {why}")
 
 
-class _LazySteps(Mapping[str, Step]):
-    """Steps by name, each derived when it is first asked for."""
+def _with_inputs(constants: Collection[sp.Symbol], is_driven: bool, step: Step) -> Step:
+    """The step with the time and the parameters among its inputs if it depends on them."""
+    inputs = step.quantity.inputs
+    if is_driven and "t" not in inputs and depends_on_time(step.expression):
+        inputs += ("t",)
+    if not step.expression.free_symbols.isdisjoint(constants):
+        inputs += ("parameters",)
+    if inputs == step.quantity.inputs:
+        return step
+    return replace(step, quantity=step.quantity._replace(inputs=inputs))
 
-    def __init__(self, makers: Mapping[str, Callable[[], Step]]) -> None:
-        self._makers, self._made = makers, dict[str, Step]()
+
+class _LazySteps(Mapping[str, Step]):
+    """Steps by name, each derived and finished when it is first asked for."""
+
+    def __init__(
+        self, makers: Mapping[str, Callable[[], Step]], finished: Callable[[Step], Step]
+    ) -> None:
+        self._makers, self._finished, self._steps = makers, finished, dict[str, Step]()
 
     def __getitem__(self, name: str) -> Step:
-        if name not in self._made:
-            self._made[name] = self._makers[name]()
-        return self._made[name]
+        if name not in self._steps:
+            self._steps[name] = self._finished(self._makers[name]())
+        return self._steps[name]
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._makers)
@@ -180,24 +180,3 @@ class _LazySteps(Mapping[str, Step]):
 
     def __reduce__(self) -> tuple[Any, ...]:
         return dict, (dict(self),)
-
-
-class _Inputs(NamedTuple):
-    """What quantities may depend on besides the inputs that their table names."""
-
-    constants: Collection[sp.Symbol]
-    is_driven: bool  # whether the time may occur by itself
-
-    def of_made(self, make: Callable[[], Step]) -> Step:
-        return self.of(make())
-
-    def of(self, step: Step) -> Step:
-        """The step with the time and the parameters among its inputs if it depends on them."""
-        inputs = step.quantity.inputs
-        if self.is_driven and "t" not in inputs and depends_on_time(step.expression):
-            inputs += ("t",)
-        if self.constants and not step.expression.free_symbols.isdisjoint(self.constants):
-            inputs += ("parameters",)
-        if inputs == step.quantity.inputs:
-            return step
-        return replace(step, quantity=step.quantity._replace(inputs=inputs))

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache, lru_cache, singledispatch
 from itertools import pairwise, product
+from typing import Any
 
 import sympy as sp
 from sympy.polys.rings import PolyElement
@@ -144,43 +145,34 @@ def _(solid: Solid) -> Moments:
     constant, varying = work.split(measure)
     weight = codec.ring.dot([(varying, codec.encode(density))])
     place = [codec.encode(entry) for entry in solid.place]
-    volume = work.integral(weight)
-    first = [work.integral(codec.ring.dot([(weight, x)])) for x in place]
-    second = [
-        work.integral(codec.ring.dot([(weight, codec.ring.dot([(place[i], place[j])]))]))
-        for i, j in _PAIRS
-    ]
-    scale = _scale(codec, solid, volume)
-    if solid.mass is None:
-        scale = Quotient.whole(codec.ring, constant)
-    return _presented(
-        Rationals.over(codec),
-        *_scaled(scale, volume, first, second),
+    products = [codec.ring.dot([(place[i], place[j])]) for i, j in _PAIRS]
+    weighted = (codec.ring.dot([(weight, each)]) for each in (*place, *products))
+    integrals = [work.integral(weight), *map(work.integral, weighted)]
+    return _weighed(
+        codec,
+        solid,
+        Quotient.whole(codec.ring, constant),
+        integrals,
         element=presenter_for(codec).element(measure),
         proofs=(*proofs, work.antiderivatives()),
     )
 
 
-def _scale(codec: Codec, solid: Solid | Polyhedron, volume: PolyElement) -> Quotient:
-    """What moments of unit density are multiplied by: the mass over the volume."""
-    ring = codec.ring
+def _weighed(
+    codec: Codec,
+    body: Solid | Polyhedron,
+    density: Quotient,
+    integrals: Sequence[PolyElement],
+    **more: Any,
+) -> Moments:
+    """∫ dm, ∫ x dm and ∫ x xᵀ dm from the integrals for a density of one."""
+    volume, ring = integrals[0], codec.ring
     if not volume:
         raise BodyError("the solid has no volume, area or length")
-    if solid.mass is None:
-        return Quotient.whole(ring, ring.one)
-    return Quotient(ring, codec.encode(solid.mass), volume)
-
-
-def _scaled(
-    scale: Quotient,
-    volume: PolyElement,
-    first: Sequence[PolyElement],
-    second: Sequence[PolyElement],
-) -> tuple[Quotient, list[Quotient], list[Quotient]]:
-    def times(element: PolyElement) -> Quotient:
-        return Quotient.whole(scale.ring, element) * scale
-
-    return times(volume), [*map(times, first)], [*map(times, second)]
+    if body.mass is not None:
+        density = Quotient(ring, codec.encode(body.mass), volume)
+    mass, *others = (Quotient.whole(ring, integral) * density for integral in integrals)
+    return _presented(Rationals.over(codec), mass, others[:3], others[3:], **more)
 
 
 def _in_coordinates(density: sp.Expr, solid: Solid) -> sp.Expr:
@@ -315,11 +307,10 @@ def _(given: Polyhedron) -> Moments:
         raise BodyError(
             f"the surface is inside out: its volume is {float(value):.6g} m³; flip its faces"
         )
-    scale = _scale(codec, given, volume)
+    density = Quotient.whole(ring, ring.one)
     if given.density is not None:
-        scale = codec.encode_quotient(given.density)
-    reduced = [ring.reduce(f) for f in first]
-    return _presented(Rationals.over(codec), *_scaled(scale, volume, reduced, second))
+        density = codec.encode_quotient(given.density)
+    return _weighed(codec, given, density, [volume, *map(ring.reduce, first), *second])
 
 
 def _triangles(
