@@ -58,25 +58,18 @@ def statements() -> tuple[Statement, ...]:
 def _statement(section: str, heading: str, body: str) -> Statement:
     number, name, place, *more = heading.split()
     words, *items = _ITEM.split(body)
-    pairs = [
-        (mark, formula(_plain(item))) for mark, item in zip(items[::2], items[1::2], strict=True)
-    ]
+    pairs = [(mark, formula(item)) for mark, item in zip(items[::2], items[1::2], strict=True)]
     return Statement(
         name=name,
         number=None if number == "-" else int(number),
         section=section,
-        because=sentence(_plain(words)),
+        because=sentence(" ".join(words.split())),
         sides=tuple(side for mark, side in pairs if mark == "="),
         claims=tuple((mark[:-1], claim) for mark, claim in pairs if mark != "="),
         source=lecture("" if number == "-" else number, f"section {place}"),
         is_result="result" in more,
         shows_summands="summands" in more,
     )
-
-
-def _plain(typed: str) -> str:
-    """On one line, with the transpose as `formula` reads it."""
-    return " ".join(typed.split()).replace("^T", r"^{\mathsf T}")
 
 
 @cache
