@@ -93,6 +93,14 @@ def test_a_sleeping_top_keeps_its_angular_velocity_and_its_integrals():
         assert values == pytest.approx(np.full(11, values[0]))
 
 
+def test_a_pole_has_rates_for_some_angular_velocities_only():
+    """At θ = ψ = 0 the rates give (θ̇, 0, φ̇ + ψ̇)"""
+    problem = Problem(top(), {"theta": 1}, TOP)
+    rates = problem.rates(np.zeros((2, 3)), np.array([[1.0, 0.0, 9.0], [0.0, 1.0, 9.0]]))
+    assert rates[0] == pytest.approx([4.5, 1.0, 4.5])
+    assert np.isnan(rates[1]).all()
+
+
 def test_a_trajectory_through_a_pole_agrees_with_one_in_quaternions():
     """From the pole back in time, and from there on through it: the motion is reversible"""
     values = {"A": 1.0, "B": 1.3, "C": 0.5, "m": 1.0, "g": 9.81, "a": 0.1, "b": 0.05, "l": 0.2}
