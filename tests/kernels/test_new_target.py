@@ -1,9 +1,8 @@
-"""A new target is one new file: here a toy language from a temporary folder prints ZXZ."""
+"""A new target is one file and a line of the table: here a toy language prints ZXZ."""
 
 from __future__ import annotations
 
 import sys
-from pathlib import Path
 
 import pytest
 
@@ -12,12 +11,10 @@ from rigidsym.commands.list import inventory
 from rigidsym.errors import KernelError
 from rigidsym.kernels import targets
 
-TARGET = 'TARGET = Target(about="NAME.toy: a list of assignments", ending=".toy")'
 PRINTER = """
 from types import ModuleType
 
 from rigidsym.kernels.ir import FUNCTIONS
-from rigidsym.kernels.targets import Target
 from rigidsym.kernels.targets.infix import infix
 
 RESERVED = frozenset({"theta"})
@@ -51,45 +48,20 @@ FUNCTION angular_velocity_body(phi, theta_, psi, phi_dot, theta_dot, psi_dot)
 """
 
 
-def file_of_a_target(folder: Path, described: str = TARGET) -> Path:
-    file = folder / "toy.py"
-    file.write_text(PRINTER + described, encoding="utf-8")
-    return file
-
-
-@pytest.fixture
-def toy(tmp_path):
-    targets.register(file_of_a_target(tmp_path))
-    yield
-    del targets._KNOWN["toy"]
-    del sys.modules[f"{targets.__name__}.toy"]
-
-
-@pytest.mark.usefixtures("toy")
-def test_a_registered_file_prints_and_loads():
+def test_a_file_and_its_line_print_and_load(tmp_path, monkeypatch):
+    (tmp_path / "toy.py").write_text(PRINTER, encoding="utf-8")
+    monkeypatch.setattr(targets, "__path__", [*targets.__path__, str(tmp_path)])
+    monkeypatch.setitem(targets.TARGETS, "toy", targets.Target(about="NAME.toy", ending=".toy"))
     motion = rs.derive("ZXZ", only=["angular_velocity_body"])
     kernels = motion.kernels("toy")
+    del sys.modules[f"{targets.__name__}.toy"]
     assert kernels.source.splitlines() == ZXZ.splitlines()
     assert kernels.load().text == kernels.source
-
-
-@pytest.mark.usefixtures("toy")
-def test_its_name_is_listed_and_not_taken_twice(tmp_path):
-    assert list(targets.TARGETS)[-1] == "toy"
-    with pytest.raises(KernelError, match="a target named toy exists already"):
-        targets.register(tmp_path / "toy.py")
     with pytest.raises(KernelError, match=r"no target 'toi'; there is numpy, .*toy"):
-        targets.check_target("toi")
+        motion.kernels("toi")
 
 
-def test_a_file_that_is_no_target_is_refused(tmp_path):
-    with pytest.raises(KernelError, match=r"nothing\.py is not a Python file"):
-        targets.register(tmp_path / "nothing.py")
-    with pytest.raises(KernelError, match="defines no TARGET"):
-        targets.register(file_of_a_target(tmp_path, ""))
-
-
-def test_every_shipped_target_is_a_file_of_the_same_form():
+def test_every_target_is_a_file_of_the_same_form():
     for name, target in targets.TARGETS.items():
         printer = targets.printer(name)
         assert {"RESERVED", "render", "load"} <= vars(printer).keys()

@@ -10,8 +10,8 @@ from collections import Counter
 from collections.abc import Hashable, Iterable, Mapping
 from fractions import Fraction
 from functools import lru_cache
-from itertools import combinations
-from math import nan
+from itertools import chain, combinations
+from math import nan, prod
 from types import MappingProxyType
 from typing import TypeVar
 
@@ -281,7 +281,9 @@ class Reader:
             value = float(expression)
             return Fraction(-1 if value < 0 else 1), (self.graph.irrational(abs(value)),)
         if expression.is_Mul:
-            return self._times(self._monomial(factor) for factor in expression.args)
+            parts = list(map(self._monomial, expression.args))
+            coefficient = prod((number for number, _ in parts), start=Fraction(1))
+            return coefficient, tuple(chain.from_iterable(factors for _, factors in parts))
         if expression.is_Add:
             return self._factored(self.graph.sum(map(self.weighted, expression.args)))
         if expression.is_Pow and (2 * expression.exp).is_Integer:
@@ -315,25 +317,14 @@ class Reader:
         )
 
     def _power(self, base: sp.Expr, exponent: sp.Rational) -> Monomial:
-        if not exponent.is_Integer:
-            root = self.graph.call("sqrt", self.weighted(base))
-            coefficient, factors = Fraction(1), _factors(root)
-        else:
-            coefficient, factors = self._monomial(base)
+        coefficient, factors = self._monomial(base) if exponent.is_Integer else self._root(base)
         times = int(exponent) if exponent.is_Integer else int(2 * exponent)
         factors = factors if times > 0 else tuple(~factor for factor in factors)
         return coefficient**times, factors * abs(times)
 
-    def _times(self, monomials: Iterable[Monomial]) -> Monomial:
-        coefficient, factors = Fraction(1), _factors()
-        for number, more in monomials:
-            coefficient, factors = coefficient * number, factors + more
-        return coefficient, factors
+    def _root(self, base: sp.Expr) -> Monomial:
+        return Fraction(1), (self.graph.call("sqrt", self.weighted(base)),)
 
     def _factored(self, weighted: Weighted) -> Monomial:
         coefficient, node = weighted
         return coefficient, self.graph.factors(node)
-
-
-def _factors(*nodes: int) -> Factors:
-    return nodes

@@ -243,7 +243,6 @@ def _split(expression: Expression) -> tuple[tuple[Expression, ...], tuple[Expres
     return tuple(f for f in expression.factors if f != _ONE), expression.divisors
 
 
-_BETWEEN = len(" = ")
 _MANY_TERMS = 6  # of a sum that is written in several
 
 
@@ -256,59 +255,40 @@ def narrowed(
     and an output at most `output`. The widest part of a wide line is named first, of a sum of many
     terms the first of them; an assignment of long names alone stays as wide as it is.
     """
-    narrower = _Narrower(kernel, show, line)
-    for assignment in kernel.assignments:
-        narrower.assign(assignment.name, assignment.value)
-    outputs = tuple(narrower.output(value, output) for value in kernel.outputs)
-    assignments = tuple(narrower.assignments)
-    if (assignments, outputs) == (kernel.assignments, kernel.outputs):
-        return kernel
-    return replace(kernel, assignments=assignments, outputs=outputs)
+    names = Names([*kernel.components, *(a.name for a in kernel.assignments)])
+    assignments: list[Assignment] = []
 
-
-class _Narrower:
-    def __init__(self, kernel: Kernel, show: Callable[[Expression], str], line: int) -> None:
-        self.assignments: list[Assignment] = []
-        self._names = Names([*kernel.components, *(a.name for a in kernel.assignments)])
-        self._show = show
-        self._line = line
-
-    def assign(self, name: str, value: Expression) -> None:
-        room = self._line - len(name) - _BETWEEN
-        self.assignments.append(Assignment(name, self.shortened(value, room)))
-
-    def output(self, value: Expression, room: int) -> Expression:
-        """An output in at most `room` characters, as a name where it must be."""
-        short = self.shortened(value, room)
-        if isinstance(short, Name) or len(self._show(short)) <= room:
-            return short
-        name = self._names.numbered("x")
-        self.assign(name, short)
+    def assign(name: str, value: Expression) -> Name:
+        assignments.append(Assignment(name, shortened(value, line - len(f"{name} = "))))
         return Name(name)
 
-    def shortened(self, expression: Expression, room: int) -> Expression:
-        """The expression in at most `room` characters, after assignments for its widest parts."""
-        while len(self._show(expression)) > room:
+    def shortened(expression: Expression, room: int) -> Expression:
+        while len(show(expression)) > room:
             if isinstance(expression, Sum) and len(expression.terms) > _MANY_TERMS:
-                expression = self._begun(expression)
+                name = names.numbered("x")
+                terms, count = expression.terms, len(expression.terms) - 1
+                while count > 2 and len(show(Sum(terms[:count]))) > line - len(f"{name} = "):
+                    count -= 1
+                expression = Sum((assign(name, Sum(terms[:count])), *terms[count:]))
                 continue
             wide = [part for part in _operands(expression) if isinstance(part, Sum | Product)]
             if not wide:
                 break
-            widest = max(wide, key=lambda part: len(self._show(part)))
-            name = self._names.numbered("x")
-            self.assign(name, widest)
-            expression = _replaced(expression, widest, Name(name))
+            widest = max(wide, key=lambda part: len(show(part)))
+            expression = _replaced(expression, widest, assign(names.numbered("x"), widest))
         return expression
 
-    def _begun(self, total: Sum) -> Sum:
-        """A sum of many terms after an assignment for as many of its first terms as fit in one."""
-        name = self._names.numbered("x")
-        room, count = self._line - len(name) - _BETWEEN, len(total.terms) - 1
-        while count > 2 and len(self._show(Sum(total.terms[:count]))) > room:
-            count -= 1
-        self.assign(name, Sum(total.terms[:count]))
-        return Sum((Name(name), *total.terms[count:]))
+    for assignment in kernel.assignments:
+        assign(*assignment)
+    outputs = []
+    for value in kernel.outputs:
+        short = shortened(value, output)
+        if not isinstance(short, Name) and len(show(short)) > output:
+            short = assign(names.numbered("x"), short)
+        outputs.append(short)
+    if (tuple(assignments), tuple(outputs)) == (kernel.assignments, kernel.outputs):
+        return kernel
+    return replace(kernel, assignments=tuple(assignments), outputs=tuple(outputs))
 
 
 def _operands(expression: Expression) -> tuple[Expression, ...]:

@@ -3,20 +3,17 @@
 It holds `RESERVED`, the names that no variable may have; `render(program)`, which gives the texts
 of the files by name, the main one first, and takes the `options` of its `Target` by name; and
 `load(name, files)`, which makes a Python module of them. It is imported when the target is asked
-for. `TARGETS` describes the shipped ones, whose templates are in templates/LANGUAGE/; `register`
-adds a file from anywhere, which holds its `TARGET` too.
+for. `TARGETS` describes all languages; their templates are in templates/LANGUAGE/.
 """
 
 from __future__ import annotations
 
 import shutil
-import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from importlib import import_module
-from importlib.util import find_spec, module_from_spec, spec_from_file_location
-from pathlib import Path
-from types import MappingProxyType, ModuleType
+from importlib.util import find_spec
+from types import ModuleType
 from typing import TYPE_CHECKING, Protocol, cast
 
 from rigidsym.errors import KernelError, MissingExtra, offer
@@ -59,7 +56,7 @@ class Printer(Protocol):
     def load(self, name: str, files: Mapping[str, str]) -> ModuleType: ...
 
 
-_KNOWN: dict[str, Target] = {
+TARGETS: dict[str, Target] = {  # the default first
     "numpy": Target(about="NAME.py: a Python module that depends only on NumPy", ending=".py"),
     "c": Target(
         about="NAME.h, NAME.c: C99; rigidsym build compiles the Python module NAME_c.py",
@@ -89,26 +86,6 @@ _KNOWN: dict[str, Target] = {
         package="numba",
     ),
 }
-TARGETS: Mapping[str, Target] = MappingProxyType(_KNOWN)  # the default first
-
-
-def register(file: Path) -> None:
-    """Add the language of a file such as /home/me/fortran.py, under the file's name.
-
-    Raises KernelError if there is a target of this name or if the file describes none.
-    """
-    name = file.stem
-    if name in TARGETS:
-        raise KernelError(f"a target named {name} exists already")
-    spec = spec_from_file_location(f"{__name__}.{name}", file)
-    if not file.is_file() or spec is None or spec.loader is None:
-        raise KernelError(f"{file} is not a Python file")
-    module = module_from_spec(spec)
-    spec.loader.exec_module(module)
-    if not isinstance(getattr(module, "TARGET", None), Target):
-        raise KernelError(f"{file} defines no TARGET of the class Target")
-    sys.modules[spec.name] = module
-    _KNOWN[name] = module.TARGET
 
 
 def check_target(target: str) -> None:
