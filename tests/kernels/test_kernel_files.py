@@ -141,3 +141,23 @@ def test_a_function_that_is_not_there_is_refused_with_what_gives_it(name, remedy
     with pytest.raises(AttributeError) as caught:
         getattr(module(), name)
     assert str(caught.value) == f"euler_zxz_intrinsic.py has no function {name}; {remedy}"
+
+
+WORDY = {
+    "rotation_vector": "inverse_rate_matrix_body",
+    "quaternion": "rates_from_angular_velocity_body",
+    "modified_rodrigues": "rotation_matrix",
+    "z(2*phi-psi) x(theta)": "rotation_matrix",
+    "z(phi) x(theta) z(psi) y(delta)": "rates_from_angular_velocity_body",
+    "[1,1,0](a) z(b) x(c)": "inverse_rate_matrix_body",
+    "unit_quaternion": "angular_velocity_body",
+}
+
+
+def test_what_modules_say_of_angles_series_poles_and_trajectories(golden):
+    heads = []
+    for rotation, quantity in WORDY.items():
+        motion = rs.derive(rotation, only=[quantity])
+        source = motion.kernels(conversions=rotation == "modified_rodrigues").source
+        heads.append(source.split('"""')[1].replace(f"rigidsym {__version__};", "rigidsym *;"))
+    golden("kernels/words.txt", "\n".join(heads))
