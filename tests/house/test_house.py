@@ -94,8 +94,8 @@ def test_kernels_import_their_representation_and_not_the_reverse():
 
 BUDGETS = {  # what was reached; who makes the house smaller lowers them
     "files": 223,
-    "lines of code": 33_030,
-    "lines of tests": 27_600,
+    "lines of code": 32_970,
+    "lines of tests": 27_480,
     "lines of benchmarks": 2_700,
 }
 
