@@ -379,8 +379,11 @@ def steps_of_body(
     wanted = only or {name for name, q in OF_BODY.items() if not (is_fixed and q.of_centre)}
     values = (NamedRotation if chain else BodyValues)(model, whole, has_fixed_point=is_fixed)
     steps = [step for n, q in OF_BODY.items() if n in wanted and (step := values.step(q))]
-    if BODY_ALONE not in only:
-        _check_absent({step.quantity.name for step in steps}, only, whole)
+    names = {step.quantity.name for step in steps}
+    absent = [q for n, q in INERTIA_QUANTITIES.items() if n in only and n not in names]
+    if absent and BODY_ALONE not in only:
+        reasons = (f"no quantity {quantity.name}: {quantity.without}" for quantity in absent)
+        raise QuantityError(f"{whole.name} has {'; '.join(reasons)}")
     if isinstance(values, NamedRotation) and chain:
         steps = [values.renamed(step, chain) for step in steps]
     if forces is None:
@@ -399,11 +402,3 @@ def steps_of_body(
         first_integrals=motion.first_integrals,
         consequences=tuple(motion.consequences()) if follows else (),
     )
-
-
-def _check_absent(found: Collection[str], only: Collection[str], body: RigidBody) -> None:
-    """Raises QuantityError for quantities that were asked for by name and that the body lacks."""
-    absent = [q for n, q in INERTIA_QUANTITIES.items() if n in only and n not in found]
-    if absent:
-        reasons = (f"no quantity {quantity.name}: {quantity.without}" for quantity in absent)
-        raise QuantityError(f"{body.name} has {'; '.join(reasons)}")

@@ -21,7 +21,6 @@ from rigidsym.algebra.matrix import RingMatrix, hat, unhat
 from rigidsym.algebra.present import presenter_for
 from rigidsym.errors import ModelError
 from rigidsym.formula.reader import formula, sentence
-from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Derivation, Proof, Statement, Step
 from rigidsym.mechanics.particles import IN_BODY, MASS, ParticleSums
 from rigidsym.mechanics.prove import Conditions, Prover
@@ -123,12 +122,12 @@ class _Theory:
 
     def proofs(self, statement: Statement) -> tuple[Proof, ...]:
         """Each claim of a statement, put to the ring."""
-        return tuple(self._proof(name, claim) for name, claim in statement.claims)
-
-    def _proof(self, name: str, claim: Formula) -> Proof:
-        left = _CLAIMS[name](self)
-        matrix = left if isinstance(left, RingMatrix) else RingMatrix.column(self.ring, [left])
-        return self.prover.vanishes(matrix, claim)
+        proofs = []
+        for name, claim in statement.claims:
+            left = _CLAIMS[name](self)
+            matrix = left if isinstance(left, RingMatrix) else RingMatrix.column(self.ring, [left])
+            proofs.append(self.prover.vanishes(matrix, claim))
+        return tuple(proofs)
 
     def summands(self, statement: Statement) -> sp.ImmutableMatrix | None:
         """The matrix of the generic particle, where the statement shows one."""

@@ -33,8 +33,9 @@ class ParticleSums:
         self._own = [self.ring.index[expression] for expression in own]
         self._mass = self.ring.index[MASS]
         self._known = {
-            self._part(summand): codec.encode(value)
-            for summand, value in ((_monomial(codec, s), v) for s, v in known.items())
+            self._part(monomial): codec.encode(value)
+            for summand, value in known.items()
+            for monomial in codec.encode(summand)
         }
 
     def _part(self, monomial: Monomial) -> Monomial:
@@ -60,11 +61,6 @@ class ParticleSums:
     def of_matrix(self, summands: RingMatrix) -> RingMatrix:
         """The sums of the entries."""
         return summands.map(self.of)
-
-
-def _monomial(codec: Codec, summand: sp.Expr) -> Monomial:
-    (monomial,) = codec.encode(summand)
-    return monomial
 
 
 def sums_of_body(codec: Codec, mass: sp.Expr, inertia: sp.ImmutableMatrix) -> ParticleSums:

@@ -109,8 +109,11 @@ class Prover:
     ) -> sp.ImmutableMatrix | None:
         """What is left of a residual that the ring does not reduce to zero; None if it is zero."""
         left = self.codec.decoded(residual)
-        if self.subject.pullback is not None and self._pulled_back(left).is_zero():
-            return None
+        if self.subject.pullback is not None:
+            # in the ring of the functions that the coordinates are pulled back to
+            codec, values = self._pullback
+            if codec.matrix(left.xreplace(values)).is_zero():
+                return None
         if any(map(self.witness.is_nonzero, residual.entries)):
             fails = f"{claim.text} is false"
             if error is NotARotation:
@@ -146,11 +149,6 @@ class Prover:
         if proof.is_exact and sign_within(value, bounds) != 1:
             return Proof(claim=claim, status="unproved", residual=sp.ImmutableMatrix([[value]]))
         return proof
-
-    def _pulled_back(self, left: sp.ImmutableMatrix) -> RingMatrix:
-        """The residual in the ring of the functions that the coordinates are pulled back to."""
-        codec, values = self._pullback
-        return codec.matrix(left.xreplace(values))
 
     @cached_property
     def _pullback(self) -> tuple[Codec, dict[sp.Expr, sp.Expr]]:

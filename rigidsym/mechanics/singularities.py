@@ -75,7 +75,11 @@ class _Study:
     def singularities(self) -> Singularities:
         found, rows, columns = self.falling, len(self.whole.rows), len(self.whole.rows[0])
         rank, minors = found.rank - found.bound_rank, found.minors
-        measure = _measure(rows, columns, found.rank)
+        measure: Measure = "det Wᵀ W" if columns == found.rank and rows == 3 else "minors"
+        if rows == found.rank == 3:
+            measure = "det W" if columns == 3 else "det W Wᵀ"
+        elif rows == columns == found.rank:
+            measure = "det [W, J]"
         points = list(map(self._point, found.strata))
         if rank < min(3, len(self.coordinates) - found.bound_rank):
             points.insert(0, self._point(Stratum((), self.whole, found.rank)))
@@ -132,14 +136,6 @@ class _Study:
             null_rates=self.present.matrix(there.kernel(full)),
             reachable_axis=in_space if rank == 1 else None,
         )
-
-
-def _measure(rows: int, columns: int, rank: int) -> Measure:
-    if rows == columns == rank:
-        return "det W" if rows == 3 else "det [W, J]"
-    if rows == rank == 3:
-        return "det W Wᵀ"
-    return "det Wᵀ W" if columns == rank and rows == 3 else "minors"
 
 
 # Long chains of turns

@@ -222,6 +222,21 @@ Back = Callable[[NamedValues, Vector], Vector]  # the coordinates of a scaled qu
 Parts = tuple[Vector, tuple[Claim, ...], Back]  # the unit quaternion, what is claimed, and back
 
 
+Build = Callable[..., RotationModel]
+PartsOf = Callable[[Vector], Parts]
+_FORMS: dict[str, tuple[Build, int, PartsOf]] = {}  # by rule
+
+
+def _form_of(build: Build, count: int) -> Callable[[PartsOf], PartsOf]:
+    """Registers the form of a parametrisation with so many coordinates, by its name."""
+
+    def register(parts_of: PartsOf) -> PartsOf:
+        _FORMS[parts_of.__name__] = build, count, parts_of
+        return parts_of
+
+    return register
+
+
 @dataclass(frozen=True, kw_only=True)
 class ClosedForm(InverseRule):
     """One parametrisation in given coordinates."""
@@ -286,17 +301,20 @@ def _length_of_vector(values: NamedValues, vector: Vector) -> tuple[sp.Basic, sp
     return none, values.let("length", sp.sqrt(Where(none, sp.S.One, size)))
 
 
-def _quaternion(q: Vector) -> Parts:
+@_form_of(parametrisations.Quaternion, 4)
+def quaternion(q: Vector) -> Parts:
     length = sp.sqrt(square(q))
     parts = _along(1 / length, q)
     return parts, (_equal(_along(length, parts), q, r"|\q|\,\p = \q"),), unit
 
 
-def _unit(q: Vector) -> Parts:
+@_form_of(parametrisations.UnitQuaternion, 4)
+def unit_quaternion(q: Vector) -> Parts:
     return q, (_equal([square(q)], [sp.S.One], r"\q\cdot\q = 1"),), unit
 
 
-def _cayley_klein(q: Vector) -> Parts:
+@_form_of(parametrisations.CayleyKlein, 4)
+def cayley_klein(q: Vector) -> Parts:
     a, b, c, d = q
 
     def back(values: NamedValues, quaternion: Vector) -> Vector:
@@ -307,7 +325,8 @@ def _cayley_klein(q: Vector) -> Parts:
     return (a, d, c, b), (is_unit,), back
 
 
-def _axis_angle(q: Vector) -> Parts:
+@_form_of(parametrisations.AxisAngle, 4)
+def axis_angle(q: Vector) -> Parts:
     *axis, angle = q
     half = sp.sin(angle / 2)
     vector = _along(half, axis)
@@ -325,7 +344,8 @@ def _axis_angle(q: Vector) -> Parts:
     return (sp.cos(angle / 2), *vector), claims, back
 
 
-def _rotation_vector(q: Vector) -> Parts:
+@_form_of(parametrisations.RotationVector, 3)
+def rotation_vector(q: Vector) -> Parts:
     angle = sp.sqrt(square(q))
     half = sp.sin(angle / 2)
     vector = _along(half / angle, q)
@@ -344,7 +364,8 @@ def _rotation_vector(q: Vector) -> Parts:
     return (sp.cos(angle / 2), *vector), claims, back
 
 
-def _gibbs(q: Vector) -> Parts:
+@_form_of(parametrisations.GibbsVector, 3)
+def gibbs_vector(q: Vector) -> Parts:
     length = sp.sqrt(1 + square(q))
     parts = _along(1 / length, (sp.S.One, *q))
 
@@ -357,7 +378,8 @@ def _gibbs(q: Vector) -> Parts:
     return parts, (_equal(_along(parts[0], q), parts[1:], r"p_0\,\g = \p_v"),), back
 
 
-def _modified(q: Vector) -> Parts:
+@_form_of(parametrisations.ModifiedRodrigues, 3)
+def modified_rodrigues(q: Vector) -> Parts:
     size = square(q)
     scalar, vector = (1 - size) / (1 + size), _along(2 / (1 + size), q)
 
@@ -370,21 +392,10 @@ def _modified(q: Vector) -> Parts:
     return (scalar, *vector), claims, back
 
 
-def _cosines(_: Vector) -> Parts:
+@_form_of(parametrisations.DirectionCosines, 9)
+def direction_cosines(_: Vector) -> Parts:
     def back(values: NamedValues, quaternion: Vector) -> Vector:
         size = values.let("square", square(quaternion))
         return tuple(sp.expand(entry) / size for entry in rotation_of(quaternion))
 
     return (), (), back
-
-
-_FORMS: dict[str, tuple[Callable[..., RotationModel], int, Callable[[Vector], Parts]]] = {
-    "quaternion": (parametrisations.Quaternion, 4, _quaternion),
-    "unit_quaternion": (parametrisations.UnitQuaternion, 4, _unit),
-    "cayley_klein": (parametrisations.CayleyKlein, 4, _cayley_klein),
-    "axis_angle": (parametrisations.AxisAngle, 4, _axis_angle),
-    "rotation_vector": (parametrisations.RotationVector, 3, _rotation_vector),
-    "gibbs_vector": (parametrisations.GibbsVector, 3, _gibbs),
-    "modified_rodrigues": (parametrisations.ModifiedRodrigues, 3, _modified),
-    "direction_cosines": (parametrisations.DirectionCosines, 9, _cosines),
-}

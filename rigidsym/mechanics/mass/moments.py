@@ -134,7 +134,10 @@ def about_centre(part: Part) -> tuple[sp.Expr, sp.Matrix, sp.Matrix]:
 @lru_cache(maxsize=64)
 def _(solid: Solid) -> Moments:
     """Integrals over the coordinates, innermost the last one."""
-    density = sp.S.One if solid.density is None else _in_coordinates(solid.density, solid)
+    # the density as a function of the coordinates: the position is put in for x, y and z
+    axes = dict(zip(sp.symbols("x y z"), solid.place, strict=True))
+    axes = {s: e for s, e in axes.items() if s not in solid.coordinates}
+    density = sp.S.One if solid.density is None else solid.density.xreplace(axes)
     held = [*solid.place, density, solid.element or sp.S.One]
     held += [] if solid.mass is None else [solid.mass]
     codec = integration_codec(held, solid.coordinates, solid.bounds)
@@ -173,12 +176,6 @@ def _weighed(
         density = Quotient(ring, codec.encode(body.mass), volume)
     mass, *others = (Quotient.whole(ring, integral) * density for integral in integrals)
     return _presented(Rationals.over(codec), mass, others[:3], others[3:], **more)
-
-
-def _in_coordinates(density: sp.Expr, solid: Solid) -> sp.Expr:
-    """The density with the place in the place of x, y and z."""
-    axes = dict(zip(sp.symbols("x y z"), solid.place, strict=True))
-    return density.xreplace({s: e for s, e in axes.items() if s not in solid.coordinates})
 
 
 class _Integrals:
