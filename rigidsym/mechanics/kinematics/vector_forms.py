@@ -24,24 +24,24 @@ from rigidsym.models.rotation import TIME
 
 LENGTH = sp.Symbol("n", positive=True)  # |v|
 
-V = formula(r"\mathbf{v}")
-V_DOT = formula(r"\dot{\mathbf{v}}")
-CROSS = formula(r"\mathbf{v}\times\dot{\mathbf{v}}")
-TWICE = formula(r"\mathbf{v}\times(\mathbf{v}\times\dot{\mathbf{v}})")
-ALONG = formula(r"(\mathbf{v}\cdot\dot{\mathbf{v}})\,\mathbf{v}")
+V = formula(r"\v")
+V_DOT = formula(r"\dot\v")
+CROSS = formula(r"\v\times\dot\v")
+TWICE = formula(r"\v\times(\v\times\dot\v)")
+ALONG = formula(r"(\v\cdot\dot\v)\,\v")
 
-_ONE = formula(r"\mathbf{1}")
-_SKEW = formula(r"\mathbf{C}(\mathbf{v})")
-_SQUARE = formula(r"\mathbf{C}(\mathbf{v})^{2}")
-_OUTER = formula(r"\mathbf{v}\,\mathbf{v}^{\mathsf T}")
+_ONE = formula(r"\1")
+_SKEW = formula(r"\C(\v)")
+_SQUARE = formula(r"\C(\v)^{2}")
+_OUTER = formula(r"\v\,\v^T")
 _APPLIED = {  # to a vector w
     _ONE: "#1",
-    _SKEW: r"\mathbf{v}\times #1",
-    _SQUARE: r"\mathbf{v}\times(\mathbf{v}\times #1)",
-    _OUTER: r"(\mathbf{v}\cdot #1)\,\mathbf{v}",
+    _SKEW: r"\v\times #1",
+    _SQUARE: r"\v\times(\v\times #1)",
+    _OUTER: r"(\v\cdot #1)\,\v",
 }
-_ROW = formula(r"\mathbf{v}^{\mathsf T}")
-_TERMS_OF = r"#1\text{ in terms of }\mathbf{v}"
+_ROW = formula(r"\v^T")
+_TERMS_OF = r"#1\text{ in terms of }\v"
 
 Weighted = list[tuple[PolyElement, Formula, RingMatrix]]  # coefficient, its vector, over the ring
 
@@ -50,10 +50,8 @@ def vector_form(
     prove: Prover, vector: Sequence[sp.Expr], omega: RingMatrix, symbol: Formula
 ) -> VectorForm | None:
     """Ω or Ω′ in terms of v, v̇, v × v̇ and v × (v × v̇); None if there is no such form."""
-    if not vector:
-        return None
     work = Vectors(vector, prove)
-    claim = formula(_TERMS_OF + r", \dot{\mathbf{v}}", symbol)
+    claim = formula(_TERMS_OF + r", \dot\v", symbol)
     return work.shortest(work.forms(omega), omega, prove.codec.ring.one, claim)
 
 
@@ -71,9 +69,9 @@ def matrix_form(
     Applied `to` a vector w, (3, 1), it is a w + b v × w + ... Of a unit vector, there may be a
     fourth row, f vᵀ.
     """
-    work = Vectors(vector, prove) if vector else None
-    rows = 4 if work is not None and work.is_unit and len(matrix.rows) == 4 else 3
-    if work is None or matrix.shape != (rows, 3):
+    work = Vectors(vector, prove)
+    rows = 4 if work.is_unit and len(matrix.rows) == 4 else 3
+    if matrix.shape != (rows, 3):
         return None
     name, w = to or (NOTHING, RingMatrix.identity(work.ring, 3))
     claim = formula(_TERMS_OF + (", #2" if to else ""), symbol, name)
@@ -85,7 +83,7 @@ def matrix_form(
     if rows == 3:
         return work.shortest(forms, whole @ w, below, claim)
     row = RingMatrix(work.ring, matrix.rows[3:])
-    last = work.row_form(row, formula(r"\mathbf{v}\cdot #1", name) if to else _ROW)
+    last = work.row_form(row, formula(r"\v\cdot #1", name) if to else _ROW)
     if not last:
         return None
     (term,) = work.terms(last, below)
