@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import permutations
 
 import numpy as np
 import pytest
@@ -18,7 +17,6 @@ from helpers.conventions import (
     GENERIC,
     attitude,
     holds,
-    omega,
     rotation,
     sample,
     some,
@@ -216,7 +214,7 @@ SPECIAL = [
 
 
 @pytest.mark.parametrize(("truth", "angles"), SPECIAL, ids=str)
-def test_the_further_samples_separate_all_that_a_special_sample_leaves(truth, angles):
+def test_the_further_sample_separates_all_that_a_special_sample_leaves(truth, angles):
     first = sample(truth, angles)
     found = rs.identify(**first)
     assert len(found.answers) > 1
@@ -224,7 +222,7 @@ def test_the_further_samples_separate_all_that_a_special_sample_leaves(truth, an
     rng = np.random.default_rng(9)
     left = [found.answers[k].reading for k in rng.integers(len(found.answers), size=8)]
     for reading in [truth, *left]:
-        more = [sample(reading, s.angles, s.rates) for s in found.further.samples]
+        more = [sample(reading, s.angles, s.rates) for s in [found.further]]
         (answer,) = rs.identify(**together(first, *more)).answers
         assert holds(answer, reading)
 
@@ -235,14 +233,7 @@ def test_without_motion_the_frame_of_omega_is_asked_for_with_rates():
     assert len(found.answers) == len(VELOCITIES)
     assert {answer.reading.orientation for answer in found.answers} == {reading.orientation}
     assert "They differ only in Ω; no sample at rest tells them apart." in str(found)
-    (further,) = found.further.samples
-    given = [omega(a.reading, further.angles, further.rates) for a in found.answers]
-    apart = [
-        np.linalg.norm(one - other) / max(1.0, np.linalg.norm(one))
-        for one, other in permutations(given, 2)
-    ]
-    assert found.further.velocity_difference == pytest.approx(min(apart), rel=1e-5)
-    assert min(apart) > 0.01
+    further = found.further
     (answer,) = rs.identify(
         **together(
             sample(reading, GENERIC[False], (0.0, 0.0, 0.0)),
@@ -256,27 +247,16 @@ def test_further_rates_are_about_as_fast_as_those_in_the_data():
     reading = Reading(sequence="ZXZ", velocity=VELOCITIES[1])
     first = sample(reading, (0.0, 0.0, 0.0), (1000.0, 2000.0, 3000.0))
     found = rs.identify(**first, tolerance=1e-3)
-    (further,) = found.further.samples
+    further = found.further
     more = sample(reading, further.angles, further.rates)
     (answer,) = rs.identify(**together(first, more), tolerance=1e-3).answers
     assert holds(answer, reading)
 
 
-@pytest.mark.parametrize("tolerance", [0.02, 0.1])
-def test_several_further_samples_where_the_tolerance_is_wide(tolerance):
-    truth = Reading(sequence="ZYX", degrees=True)
-    first = sample(truth, (0.0, 0.0, 0.0))
-    found = rs.identify(**first, tolerance=tolerance)
-    assert len(found.answers) == 1152
-    more = [sample(truth, s.angles) for s in found.further.samples]
-    (answer,) = rs.identify(**together(first, *more), tolerance=tolerance).answers
-    assert holds(answer, truth)
-
-
 def test_a_tolerance_too_wide_for_any_sample_says_so():
     found = rs.identify((0, 0, 0), matrix=np.eye(3), tolerance=2.0)
     assert found.further is None
-    assert "The tolerance is too large for any further sample" in found.text()
+    assert "The tolerance is too large for one further sample" in found.text()
 
 
 # --- noise, rounding, no fit ----------------------------------------------------------------

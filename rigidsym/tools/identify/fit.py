@@ -6,7 +6,6 @@ from collections import deque
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
-from itertools import permutations
 from math import ceil, log10, pi, sqrt
 
 import numpy as np
@@ -228,118 +227,39 @@ def _misaligned(
         yield _plainest([replace(table.readings[place].active(), frames=frames)])
 
 
-Triple = tuple[float, float, float]
-
-_DEGREES = (15, 20, 25, 35, 40, 50, 60, 65, 70, 80)
-_RADIANS = (0.2, 0.3, 0.4, 0.5, 0.7, 0.8, 1.0, 1.2, 1.3)
-_RATES = (1.0, 2.0, 3.0)
 _CLEAR = 3.0  # tolerances; two readings less than two apart might fit one sample
-_PAIRS = 8_000_000  # compared in the search at most
-_FEWEST = 6  # candidates, even if that means more pairs
-_MOST_SAMPLES = 5
+# At these angles the closest two of all readings are 0.05 rad or more apart: of some hundred
+# triples of round numbers, the best for matrices and for quaternions.
+_TELLING = {"degrees": (15.0, 20.0, 50.0), "radians": (0.3, 0.4, 0.9)}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class FurtherSample:
     """Values for the angle columns and, if Ω is given, for their rates."""
 
-    angles: Triple
-    rates: Triple | None = None
+    angles: tuple[float, float, float]
+    rates: tuple[float, float, float] | None = None
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Separation:
-    """Samples at one of which any two of the readings differ clearly."""
-
-    samples: tuple[FurtherSample, ...]
-    difference: float  # radians; the least angle between two orientations
-    velocity_difference: float | None  # the least |difference of Ω|, over the largest |Ω|
-
-
-def separation(
+def further_sample(
     readings: Sequence[Reading], tolerance: Tolerance, scale: float
-) -> Separation | None:
-    """The fewest further samples that tell these readings apart.
+) -> FurtherSample | None:
+    """A sample that tells these readings apart.
 
-    None if there is only one, and if the tolerance is too wide for any sample.
+    None if there is only one, and if the tolerance is too wide. `scale` is the largest |Ω|.
     """
-    if len(readings) < 2:
-        return None
     orientations = list(dict.fromkeys(reading.orientation for reading in readings))
-    angles, difference = _angles(orientations, _CLEAR * tolerance.orientation)
-    if difference <= _CLEAR * tolerance.orientation:
+    in_degrees = any(reading.degrees for reading in orientations)
+    angles = _TELLING["degrees" if in_degrees else "radians"]
+    (values,) = ReadingTable(orientations).as_given(np.array([angles]))
+    closeness = np.abs(values @ values.T) - np.eye(len(orientations))  # |cos| of half the angle
+    least = 2 * np.arccos(min(1.0, float(closeness.max())))
+    if len(readings) < 2 or least <= _CLEAR * tolerance.orientation:
         return None
-    rates, apart = _rates(readings, angles[0], scale)
-    if apart is not None and apart <= _CLEAR * tolerance.velocity:
-        return None
-    return Separation(
-        samples=tuple(FurtherSample(angles=triple, rates=rates) for triple in angles),
-        difference=difference,
-        velocity_difference=apart,
-    )
-
-
-def _angles(orientations: Sequence[Reading], clear: float) -> tuple[list[Triple], float]:
-    """Angles at which the closest two readings are far apart; several samples if needed.
-
-    They are round numbers between the special angles, in the unit of the readings, in an order
-    that is random but always the same, so that the first few are a fair choice.
-    """
-    in_radians = not any(reading.degrees for reading in orientations)
-    triples = np.array(list(permutations(_RADIANS if in_radians else _DEGREES, 3)), float)
-    count = len(orientations)
-    candidates = np.random.default_rng(17).permutation(triples)[: max(_FEWEST, _PAIRS // count**2)]
-    chosen: list[int] = []
-    difference = pi if count == 1 else 0.0
-    quaternions = ReadingTable(orientations).as_given(candidates)
-    closeness = 1 - np.eye(count)  # |cos| of half the angle between each two, over all samples
-
-    def joint(k: int) -> Array:
-        return np.minimum(closeness, np.abs(quaternions[k] @ quaternions[k].T))
-
-    while not chosen or (difference <= clear and len(chosen) < _MOST_SAMPLES):
-        chosen.append(min(range(len(candidates)), key=lambda k: float(joint(k).max())))
-        closeness = joint(chosen[-1])
-        if count > 1:
-            first, second = divmod(int(closeness.argmax()), count)
-            pairs = quaternions[chosen]
-            difference = float(angle_between(pairs[:, first], pairs[:, second]).max())
-    return [(a, b, c) for a, b, c in candidates[chosen].tolist()], difference
-
-
-def _rates(
-    readings: Sequence[Reading], angles: Triple, scale: float
-) -> tuple[Triple | None, float | None]:
-    """Rates at which the readings of Ω differ, about as fast as those in the data."""
     if readings[0].velocity is None:
-        return None, None
-    size = 10.0 ** max(0, ceil(log10(scale)))  # differences are judged by the largest |Ω|
-    first, second, third = _RATES
-    rates = (first * size, second * size, third * size)
-    return rates, _apart(_velocities(readings, angles) * size, scale)
-
-
-def _velocities(readings: Sequence[Reading], angles: Triple) -> Array:
-    """Ω as each reading has it in the data, at _RATES; NaN for a reading that is excluded.
-
-    (readings of the orientation, readings of Ω, 3)
-    """
-    orientations = list(dict.fromkeys(reading.orientation for reading in readings))
-    velocities = list(dict.fromkeys(r.velocity for r in readings if r.velocity))
-    omega = angular_velocities(orientations, np.array([angles]), np.array([_RATES]))
-    given = as_given(omega[0], velocities)
-    fitting = set(readings)
-    fits = [[replace(o, velocity=v) in fitting for v in velocities] for o in orientations]
-    return np.where(np.array(fits)[..., None], given, np.nan)
-
-
-def _apart(given: Array, scale: float) -> float:
-    """The least |difference of Ω| of two readings of one orientation, over the largest |Ω|."""
-    differences = np.linalg.norm(given[:, :, None] - given[:, None], axis=-1)
-    largest = np.maximum(np.linalg.norm(given, axis=-1), scale)
-    shares = differences / largest[:, :, None]
-    first, second = np.nonzero(~np.eye(shares.shape[1], dtype=bool))
-    return float(np.nanmin(shares[:, first, second], initial=np.inf))
+        return FurtherSample(angles=angles)
+    speed = 10.0 ** max(0, ceil(log10(scale)))  # about as fast as the data
+    return FurtherSample(angles=angles, rates=(speed, 2 * speed, 3 * speed))
 
 
 _AT_ONCE = 1 << 17  # rows times readings

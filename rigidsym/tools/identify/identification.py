@@ -16,10 +16,9 @@ from rigidsym.system.processes import Progress
 from rigidsym.tools.identify.fit import (
     Answer,
     FurtherSample,
-    Separation,
     Tolerance,
     fit,
-    separation,
+    further_sample,
 )
 from rigidsym.tools.identify.readings import ANGLE_NAMES, VELOCITIES, Reading, distinct
 from rigidsym.tools.identify.samples import SampleSource, from_arrays, from_file
@@ -43,7 +42,7 @@ class Identification:
     converted: tuple[str, ...]  # columns whose unit was converted
     unused: str  # columns of a velocity that say nothing alone, in words
     has_velocity: bool  # rates and Ω were given
-    further: Separation | None  # None if one reading is left, and if nothing separates them
+    further: FurtherSample | None  # that tells the answers apart, if there is one
 
     @property
     def fits(self) -> bool:
@@ -80,12 +79,7 @@ class Identification:
             },
             "answers": [_answer(answer, names) for answer in self.answers],
             "nearest": self.nearest and _answer(self.nearest, names),
-            "further": further
-            and {
-                "samples": [asdict(sample) for sample in further.samples],
-                "difference_rad": further.difference,
-                "velocity_difference": further.velocity_difference,
-            },
+            "further": further and asdict(further),
         }
 
     def __str__(self) -> str:
@@ -153,37 +147,16 @@ def _common(readings: Sequence[Reading]) -> str:
     return ", ".join(word for column in columns if len(column) == 1 for word in column if word)
 
 
-def _further(result: Identification, further: Separation | None) -> Iterator[str]:
+def _further(result: Identification, further: FurtherSample | None) -> Iterator[str]:
     if further is None:
-        yield "The tolerance is too large for any further sample to tell all of them apart."
+        yield "The tolerance is too large for one further sample to tell all of them apart."
         return
-    if not _differ_in_orientation(result):
+    if len({answer.reading.orientation for answer in result.answers}) == 1:
         yield "They differ only in Ω; no sample at rest tells them apart."
-    count = "a sample" if len(further.samples) == 1 else counted(len(further.samples), "sample")
-    yield f"To tell them apart, add {count} with these values in the columns:"
-    for sample in further.samples:
-        yield f"  {_sample(result.names, sample)}"
-    yield f"For these, {_apart(result, further)}."
-
-
-def _sample(names: Sequence[str], sample: FurtherSample) -> str:
-    said = ", ".join(f"{n} = {a:g}" for n, a in zip(names, sample.angles, strict=True))
-    if sample.rates:
-        said += "; rates " + ", ".join(f"{rate:g}" for rate in sample.rates)
-    return said
-
-
-def _apart(result: Identification, further: Separation) -> str:
-    parts = []
-    if _differ_in_orientation(result):
-        parts.append(f"any two orientations are {degrees(further.difference):.2g}° or more apart")
-    if further.velocity_difference is not None:
-        parts.append(f"any two Ω differ by {further.velocity_difference:.2g} of |Ω| or more")
-    return " and ".join(parts)
-
-
-def _differ_in_orientation(result: Identification) -> bool:
-    return len({answer.reading.orientation for answer in result.answers}) > 1
+    yield "To tell them apart, add a sample with these values in the columns:"
+    values = ", ".join(f"{n} = {a:g}" for n, a in zip(result.names, further.angles, strict=True))
+    rates = ", ".join(f"{rate:g}" for rate in further.rates or ())
+    yield f"  {values}" + (f"; rates {rates}" if rates else "")
 
 
 def _no_fit(result: Identification, nearest: Answer) -> Iterator[str]:
@@ -352,5 +325,5 @@ def identify_source(
         converted=source.columns.converted,
         unused=source.columns.unused,
         has_velocity=has_velocity,
-        further=separation([answer.reading for answer in answers], chosen, scale),
+        further=further_sample([answer.reading for answer in answers], chosen, scale),
     )
