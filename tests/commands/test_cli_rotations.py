@@ -39,23 +39,6 @@ coordinates = ["c", "s"]
 constraints = ["c**2 + s**2 - 1"]
 example = { c = "3/5", s = "4/5" }
 """
-ALL = f"""\
-[rotation]
-sequence = {json.dumps([*PARAMETRISATIONS, *PRESETS, "z(phi) x(theta) z(psi) y(delta)"])}
-[output]
-quantities = ["angular_velocity_space", "angular_velocity_body"]
-note = ["tex"]
-"""
-
-
-def test_every_named_rotation_runs_from_a_file(tmp_path):
-    (tmp_path / "named.toml").write_text(ALL)
-    shown = call("run", "named.toml", cwd=tmp_path).stdout.splitlines()
-    assert len(shown) == len(PARAMETRISATIONS) + len(PRESETS) + 1
-    for line in shown:
-        done, of = line.split()[1], line.split()[3]
-        assert done == of, line
-    call("check", "out", cwd=tmp_path)
 
 
 @pytest.mark.campaign
@@ -77,6 +60,8 @@ def test_every_named_rotation_runs_from_derive(name, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "part", "folder"),
     [
+        (("ZYX", "--passive"), "A = Rᵀ", "euler_zyx_intrinsic_passive"),
+        (("zxz", "--angles", "alpha,beta,gamma"), "about the fixed z-axis", "euler_zxz_extrinsic"),
         (("unit_quaternion",), "scalar first", "unit_quaternion"),
         (("quaternion", "--scalar-last"), "scalar last", "quaternion_xyzw"),
         (("rotation-vector",), "its length n is the angle", "rotation_vector"),

@@ -7,18 +7,15 @@ import re
 import subprocess
 import sys
 
-import numpy as np
 import pytest
 from click.testing import CliRunner
-from scipy.spatial.transform import Rotation
 
 import rigidsym as rs
 from rigidsym.commands.cli import commands
 from rigidsym.errors import SpecError
-from rigidsym.kernels.targets import TARGETS
 from rigidsym.models.library import PARAMETRISATIONS, rotation_from
 from rigidsym.notes.document.document import Paragraph
-from rigidsym.pipeline import motion_of, output_of, read_record, read_spec
+from rigidsym.pipeline import output_of, read_record, read_spec
 
 FILE = """
 [rotation]
@@ -54,29 +51,6 @@ def test_a_file_asks_for_them():
         found["quaternion_from_matrix"],
     ]
     assert {proof["status"] for proof in proofs} == {"exact"}
-
-
-def test_without_a_word_there_are_none():
-    spec = read_spec(FILE.format("ZXZ", ""), source="a.toml", name="a")
-    assert not spec.conversions
-    assert "conversions" not in spec.to_data()
-    files = output_of(spec).files
-    assert "conversions" not in json.loads(files["a.json"])
-    assert "from_quaternion" not in files["a.py"]
-
-
-@pytest.mark.parametrize("target", ["numpy", "javascript"])
-def test_parameters_of_a_body_stand_beside_those_of_the_rotation(target):
-    """All functions of a file take the same argument "parameters"."""
-    if TARGETS[target].missing:
-        pytest.skip(TARGETS[target].missing)
-    text = BODY + FILE.format("z(phi) x(alpha0) z(psi)", "conversions = true")
-    motion = motion_of(read_spec(text, source="a.toml", name="a"))
-    functions = motion.kernels(target, conversions=True).load()
-    parameters, q = [0.4, 1.0, 2.0, 3.0], [0.3, -1.2]
-    turns = functions.quaternion(q, parameters)
-    expected = Rotation.from_matrix(functions.rotation_matrix(q, parameters))
-    np.testing.assert_allclose(turns, expected.as_quat(scalar_first=True), atol=1e-14)
 
 
 def test_what_is_not_offered_stands_in_the_record():
@@ -168,11 +142,3 @@ def test_formulas_in_its_sentences_are_formulas(text):
     ]
     for sentence in words:
         assert not re.search(r"[₀-₉₊₋α-ορ-ω|×=]|\b(sin|cos|tan|atan2)\b", sentence), sentence
-
-
-@pytest.mark.parametrize("text", ["davenport", "gibbs_vector", "modified_rodrigues"])
-def test_all_vectors_of_a_note_are_in_one_manner(text):
-    """Bold are the matrices and the coordinates alone, where vectors have arrows."""
-    motion = rs.derive(rotation_from(text), ["rotation_matrix"]).with_notation(vectors="arrow")
-    bold = set(re.findall(r"\\mathbf\{(\w+)\}", motion.note(conversions=True).latex()))
-    assert not {letter for letter in bold if letter.islower()} - {"q"}

@@ -11,7 +11,6 @@ import rigidsym as rs
 from helpers.command import call
 from rigidsym.commands.cli import commands
 from rigidsym.errors import EditedFiles
-from rigidsym.kernels.targets import TARGETS
 
 NAME = "euler_zxz_intrinsic"
 
@@ -69,12 +68,6 @@ def test_files_of_another_derivation_are_named(tmp_path):
     assert said == f"{kept}\n"
 
 
-@pytest.mark.parametrize("target", TARGETS)
-def test_the_ending_of_a_target_is_that_of_its_file(target):
-    motion = rs.derive("ZXZ", only=("angular_velocity_body",))
-    assert motion.name + TARGETS[target].ending in motion.kernels(target).files
-
-
 def test_what_is_refused_writes_over_nothing_and_does_not_say_so(tmp_path):
     out = "--out", str(tmp_path)
     _run("derive", "ZXZ", *out)
@@ -115,14 +108,6 @@ def test_a_damaged_record_is_named_by_every_command(tmp_path, content, why):
     for words in (["run"], ["page"], ["simulate"], ["eval", "half.json", "--out", "r.csv"]):
         done = call(words[0], "half.json", *words[1:], cwd=tmp_path, status=3)
         assert "half.json: 1 fault, nothing written\n  expected a derivation file" in done.stderr
-
-
-@pytest.mark.parametrize("command", ["derive", "page"])
-def test_a_quiet_command_prints_only_the_names_of_its_files(command, tmp_path):
-    words = [command, "ZXZ", "--only", "rotation_matrix", "--quiet", "--out", str(tmp_path)]
-    done = CliRunner().invoke(commands, words)
-    assert done.exit_code == 0
-    assert all(Path(line).is_file() for line in done.output.splitlines())
 
 
 @pytest.mark.parametrize("command", [("derive", "ZXZ"), ("problems", "euler", "--number", "1")])

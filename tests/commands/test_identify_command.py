@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
-import pty
 import re
 import shlex
 import subprocess
@@ -14,7 +12,7 @@ import numpy as np
 import pytest
 
 import rigidsym as rs
-from helpers.command import RIGIDSYM, ROOT, call
+from helpers.command import ROOT, call
 from helpers.conventions import GENERIC, attitude, sample, some
 from rigidsym.tools.identify.readings import VELOCITIES, Reading
 
@@ -156,32 +154,3 @@ def test_orientations_alone_need_no_sympy():
         [sys.executable, "-c", probe], cwd=ROOT, capture_output=True, text=True, check=True
     )
     assert done.stdout.splitlines()[-1] == "False"
-
-
-def test_progress_is_drawn_in_a_terminal_alone(tmp_path):
-    given = sample(Reading(sequence="ZYX"), GENERIC[False])
-    table = np.tile(np.hstack([np.ravel(part) for part in given.values()]), (50_000, 1))
-    np.save(tmp_path / "log.npy", table)
-    assert call("identify", "log.npy", cwd=tmp_path).stderr == ""
-    controller, terminal = pty.openpty()
-    with subprocess.Popen(
-        [*RIGIDSYM, "identify", "log.npy"],
-        cwd=tmp_path,
-        env={**os.environ, "PYTHONPATH": str(ROOT), "TERM": "xterm"},
-        stdout=subprocess.DEVNULL,
-        stderr=terminal,
-    ) as process:
-        os.close(terminal)
-        drawn = b""
-        while True:
-            try:
-                piece = os.read(controller, 65536)
-            except OSError:  # the terminal was closed at the other end
-                break
-            if not piece:
-                break
-            drawn += piece
-        assert process.wait() == 0
-    os.close(controller)
-    assert b"log.npy" in drawn
-    assert b"%" in drawn

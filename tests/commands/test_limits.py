@@ -9,7 +9,6 @@ import signal
 import subprocess
 import sys
 import threading
-from pathlib import Path
 from time import monotonic, sleep
 
 import pytest
@@ -18,7 +17,7 @@ from click.testing import CliRunner
 import rigidsym as rs
 from helpers.command import RIGIDSYM, ROOT, call
 from rigidsym.commands.cli import commands
-from rigidsym.errors import LimitReached, RequestError, RigidsymError
+from rigidsym.errors import LimitReached, RequestError
 from rigidsym.notes.formats.record import SCHEMA, SCHEMA_VERSION
 from rigidsym.system.processes import time_limit
 
@@ -143,18 +142,6 @@ def test_a_check_is_stopped_too(tmp_path, rotations):
     assert isinstance(done.exception, LimitReached), done.output
 
 
-def test_other_errors_of_finalizers_are_told_as_ever(monkeypatch):
-    class Lost:
-        def __del__(self) -> None:
-            raise ValueError("lost")
-
-    told = []
-    monkeypatch.setattr(sys, "unraisablehook", told.append)
-    with time_limit(9):
-        Lost()
-    assert [each.exc_type for each in told] == [ValueError]
-
-
 def test_memory_is_bounded():
     program = (
         "from rigidsym.system.processes import memory_limit\n"
@@ -226,8 +213,3 @@ def test_no_message_commands_a_terminal(tmp_path, arguments):
     done = call(*arguments, cwd=tmp_path, status=status)
     assert "\x1b" not in done.stdout + done.stderr
     assert "\\x1b" in done.stderr or "\\u001b" in done.stderr
-
-
-def test_the_text_of_an_error_is_printable():
-    assert str(RigidsymError("a\x1b[2J\u202eb\nφ̇")) == "a\\x1b[2J\\u202eb\nφ̇"
-    assert Path(__file__).is_file()

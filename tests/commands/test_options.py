@@ -14,7 +14,6 @@ from rigidsym.commands.cli import commands
 from rigidsym.commands.list import inventory
 from rigidsym.commands.options import MOST_LINES
 from rigidsym.errors import KernelError
-from rigidsym.models.library import rotation_from
 from rigidsym.motion import QUANTITIES
 
 NAMES = commands.list_commands(None)
@@ -93,23 +92,6 @@ def test_kernels_without_a_note_are_possible(tmp_path):
     assert run("check", str(tmp_path / "out")).exit_code == 0
 
 
-@pytest.mark.parametrize(
-    ("alias", "name"),
-    [("mrp", "modified_rodrigues"), ("quat", "quaternion"), ("rotvec", "rotation_vector")],
-)
-def test_short_names_stand_for_the_long_ones(alias, name):
-    assert rotation_from(alias) == rotation_from(name)
-
-
-def test_derivatives_may_be_separated_by_commas(tmp_path):
-    both = f"{BODY}:q,{BODY}:q_dot"
-    done = run("derive", "ZXZ", "--derivative", both, "--out", str(tmp_path), "--only", BODY)
-    assert done.exit_code == 0, done.exception
-    module = (tmp_path / "euler_zxz_intrinsic/euler_zxz_intrinsic.py").read_text("utf-8")
-    assert f"def {BODY}_jacobian_q(" in module
-    assert f"def {BODY}_jacobian_q_dot(" in module
-
-
 def test_the_faults_of_all_files_are_reported(tmp_path):
     files = [tmp_path / name for name in ("a.toml", "b.toml")]
     for file in files:
@@ -136,22 +118,9 @@ def test_a_module_needs_c_with_arrays(tmp_path):
     assert "a Python module needs C with arrays and both precisions" in str(done.exception)
 
 
-def test_a_problem_sheet_is_written_for_moodle(tmp_path):
-    done = run("problems", "euler", "--number", "1", "--moodle", "--quiet", "--out", str(tmp_path))
-    assert done.exit_code == 0, done.exception
-    (questions,) = tmp_path.rglob("*.xml")
-    assert str(questions) in done.stdout
-    assert questions.read_text(encoding="utf-8").startswith("<?xml")
-
-
 def test_without_colour_no_terminal_codes_are_written(monkeypatch):
     monkeypatch.setenv("NO_COLOR", "1")
     assert "\x1b" not in CliRunner().invoke(commands, ["list"], color=True).stdout
-
-
-def test_an_axis_may_hold_roots(tmp_path):
-    done = run("derive", "z(a) [0,sqrt(3),1](b)", "--out", str(tmp_path))
-    assert done.exit_code == 0, done.exception
 
 
 def test_completion_offers_names_of_users():
@@ -164,10 +133,6 @@ def test_kernels_are_one_step():
     functions = rs.kernels("ZYX", only=BODY)
     assert functions.angular_velocity_body([0.0, 0.0, 0.0], [1.0, 2.0, 3.0]).tolist() == [3, 2, 1]
     assert rs.kernels("ZYX", only=BODY).__name__ == functions.__name__  # not the room of this name
-
-
-def test_one_quantity_may_be_named_by_itself():
-    assert [step.quantity.name for step in rs.derive("ZXZ", only=BODY).steps] == [BODY]
 
 
 def test_the_list_has_every_quantity_and_straight_columns():

@@ -10,7 +10,6 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from helpers.command import RIGIDSYM
 from rigidsym.commands.cli import commands
 from rigidsym.errors import Fault, SpecError
 from rigidsym.system import processes
@@ -110,23 +109,3 @@ def upper(item: str) -> str:
 def test_the_work_of_a_process_that_was_killed_is_done_again(monkeypatch):
     monkeypatch.setattr(processes, "cores", lambda: 2)
     assert "".join(in_processes(upper, "abcdef")) == "ABCDEF"
-
-
-def test_files_do_not_depend_on_the_encoding_of_the_terminal(tmp_path: Path):
-    """SymPy writes ħ and λ₁ only where standard output has these letters"""
-    words = (
-        "derive",
-        "z(hbar) x(lambda_1) z(psi)",
-        "--only",
-        "rotation_matrix",
-        "--quiet",
-        "--out",
-    )
-    found = []
-    for encoding in ("ascii", "utf-8"):
-        environment = {**os.environ, "PYTHONIOENCODING": encoding}
-        subprocess.run([*RIGIDSYM, *words, tmp_path / encoding], env=environment, check=True)
-        files = sorted((tmp_path / encoding).rglob("*.*"))
-        found.append({path.name: path.read_bytes() for path in files})
-    assert found[0] == found[1]
-    assert any("λ" in text.decode() for text in found[0].values())

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
 import pytest
@@ -27,13 +26,6 @@ def html_with(folder: Path, template: str) -> str:
 def test_an_own_template_stands_in_for_the_shipped_one(tmp_path: Path):
     assert html_with(tmp_path, "<h1>{{ title }}</h1>") == "<h1>Euler angles ZXZ, intrinsic</h1>"
     assert derived("ZXZ").note().html().startswith("<!DOCTYPE html>")
-
-
-def test_templates_that_are_not_overridden_stay(tmp_path: Path):
-    (tmp_path / "note.html.jinja").write_text("x", encoding="utf-8")
-    before = derived("ZXZ").note().latex()
-    with resources.overridden_by(tmp_path):
-        assert derived("ZXZ").note().latex() == before
 
 
 def test_an_own_template_that_was_changed_is_read_again(tmp_path: Path):
@@ -82,12 +74,6 @@ def test_a_template_without_end_is_stopped_by_the_time_limit(tmp_path: Path):
         html_with(tmp_path, loop * 2 + "{% endfor %}" * 2)
 
 
-def test_a_fault_in_an_included_template_is_named_there(tmp_path: Path):
-    (tmp_path / "head.jinja").write_text("\n\n{{ nothing }}", encoding="utf-8")
-    with pytest.raises(TemplateFault, match=r"head\.jinja, line 3: 'nothing' is undefined"):
-        html_with(tmp_path, "\n{% include 'head.jinja' %}")
-
-
 def test_a_template_that_is_no_text_is_named(tmp_path: Path):
     (tmp_path / "note.html.jinja").write_bytes(b"\xff")
     with (
@@ -100,11 +86,6 @@ def test_a_template_that_is_no_text_is_named(tmp_path: Path):
 def test_a_folder_without_templates_is_an_error(tmp_path: Path):
     with pytest.raises(TemplateFault, match=r"contains none of the templates: .*note\.tex\.jinja"):
         resources.overridden_by(tmp_path).__enter__()
-
-
-def test_the_shipped_templates_are_short():
-    for name in resources.names(resources.NOTES, ".jinja"):
-        assert len(resources.text(resources.NOTES, f"{name}.jinja").splitlines()) < 200
 
 
 # --- sentences ---
@@ -202,23 +183,6 @@ def test_a_handout_is_a_style_with_its_own_heading_sentences_and_sections(tmp_pa
     assert said in note.markdown()
     assert "E. Noether" in note.html()
     assert "E. Noether" in note.latex()
-
-
-def test_sections_change_places_in_one_file(tmp_path: Path):
-    shipped = resources.text(resources.NOTES, "en/lecture.md.jinja")
-    head, rates, singular, rest = re.split(
-        r"(?=\{% block (?:rates|singular|acceleration) %)", shipped
-    )
-    own(
-        tmp_path,
-        "en/lecture.md.jinja",
-        head + singular + rates.replace("The rates", "Rates") + rest,
-    )
-    before = [section.title for section in derived("ZXZ").note().document.sections]
-    with resources.overridden_by(tmp_path):
-        after = [section.title for section in derived("ZXZ").note().document.sections]
-    k = before.index("The rates of the coordinates")
-    assert after == [*before[:k], before[k + 1], "Rates of the coordinates", *before[k + 2 :]]
 
 
 def test_a_second_language_is_a_folder_of_templates(tmp_path: Path):

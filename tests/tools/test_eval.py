@@ -7,7 +7,6 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-import polars as pl
 import pytest
 from numpy.testing import assert_array_equal
 
@@ -57,13 +56,6 @@ def test_columns_are_found_by_names_with_units_in_any_order(tmp_path):
     assert np.allclose([float(x) for x in line.split(",")], [10, 0, 0])
 
 
-def test_rates_are_named_after_the_coordinates(motion, table, tmp_path):
-    np.save(tmp_path / "given.npy", table)
-    name = "rates_from_angular_velocity_body"
-    made = evaluate(motion, (name,), tmp_path / "given.npy", tmp_path / "r.csv", degrees=True)
-    assert made.columns == ("phi_dot [deg/s]", "theta_dot [deg/s]", "psi_dot [deg/s]")
-
-
 @pytest.mark.parametrize("frame", ["space", "body"])
 def test_an_angular_velocity_that_was_written_is_read_again(motion, table, tmp_path, frame):
     velocity, log = f"angular_velocity_{frame}", tmp_path / "log.csv"
@@ -73,29 +65,6 @@ def test_an_angular_velocity_that_was_written_is_read_again(motion, table, tmp_p
     name = f"rates_from_{velocity}"
     evaluate(motion, (name,), tmp_path / "o.csv", tmp_path / "rates.npy")
     np.testing.assert_allclose(np.load(tmp_path / "rates.npy"), table[:, 3:], atol=1e-10)
-
-
-def test_other_names_of_coordinates_are_said_to_be_given_by_angles(motion, tmp_path):
-    (tmp_path / "log.csv").write_text("yaw,pitch,roll\n1,2,3\n", encoding="utf-8")
-    work = ("rotation_matrix",), tmp_path / "log.csv", tmp_path / "result.npy"
-    with pytest.raises(DataError, match=r"no column phi.* `--angles yaw,pitch,roll`"):
-        evaluate(motion, *work)
-
-
-def test_the_name_of_an_input_offers_the_quantity(tmp_path):
-    (tmp_path / "log.csv").write_text("1,2,3\n", encoding="utf-8")
-    done = run("ZXZ", tmp_path / "log.csv", "--only", "omega_body", "--out", "-")
-    assert done.returncode == 2
-    assert "did you mean angular_velocity_body?" in done.stderr
-
-
-def test_constants_are_given_as_numbers(table, tmp_path):
-    motion = rs.derive("z(phi) x(alpha0)", only=VELOCITY)
-    np.save(tmp_path / "given.npy", table[:, :2])
-    result = tmp_path / "result.npy"
-    evaluate(motion, VELOCITY, tmp_path / "given.npy", result, given={"alpha0": 0.3})
-    kernel = motion.kernels().load().angular_velocity_body
-    assert_array_equal(np.load(result), kernel(table[:, :1], table[:, 1:2], [0.3]))
 
 
 @pytest.mark.parametrize(
@@ -114,14 +83,6 @@ def test_what_is_wrong_with_a_text_is_said(motion, tmp_path, text, message):
     with pytest.raises(DataError, match=message):
         evaluate(motion, VELOCITY, tmp_path / "log.csv", tmp_path / "result.npy")
     assert [path.name for path in tmp_path.iterdir()] == ["log.csv"]
-
-
-def test_a_given_that_is_no_number_is_exit_code_2(tmp_path):
-    (tmp_path / "log.csv").write_text("1,2,3\n", encoding="utf-8")
-    files = tmp_path / "log.csv", "--out", tmp_path / "result.npy"
-    done = run("ZXZ", *files, "--given", "phi=x")
-    assert done.returncode == 2
-    assert "--given phi=x: expected NAME=NUMBER" in done.stderr
 
 
 def test_a_fault_of_the_file_is_exit_code_3_and_leaves_nothing(tmp_path):
@@ -244,13 +205,6 @@ def test_columns_that_an_npy_file_cannot_hold_are_refused(motion, tmp_path):
         else:
             work(keep=("run",))
             assert np.load(result)[0, 0] == 12
-
-
-def test_a_table_without_rows_is_a_result_without_rows(motion, tmp_path):
-    (tmp_path / "log.csv").write_text("phi,theta,psi\n", encoding="utf-8")
-    done = evaluate(motion, ("rotation_matrix",), tmp_path / "log.csv", tmp_path / "r.parquet")
-    assert done.rows == 0
-    assert pl.read_parquet(tmp_path / "r.parquet").width == 9
 
 
 def test_a_rotation_without_an_inverse_names_what_to_use():

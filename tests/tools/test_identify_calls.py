@@ -55,13 +55,3 @@ def test_arrays_of_samples(library):
     exec(compile(calls(reading)[library], "<printed>", "exec"), names)
     expected = sample(reading, GENERIC[True])["matrix"]
     np.testing.assert_allclose(names["matrix"], [expected] * 4, atol=1e-13)
-
-
-@pytest.mark.parametrize("columns", [(0, 1, 2), (2, 1, 0)])
-@pytest.mark.parametrize("signs", [(1, 1, 1), (1, -1, 1)])
-def test_no_call_has_a_factor_that_changes_nothing(columns, signs):
-    reading = Reading(sequence="ZYX", columns=columns, signs=signs)
-    for statements in calls(reading).values():
-        assert "[1, 1, 1]" not in statements
-        assert "[0, 1, 2]" not in statements
-    check("SciPy", reading)

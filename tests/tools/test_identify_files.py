@@ -17,7 +17,7 @@ from rigidsym.tools.identify import samples
 from rigidsym.tools.identify.fit import rounding_of
 from rigidsym.tools.identify.identification import identify_file
 from rigidsym.tools.identify.readings import VELOCITIES, Reading
-from rigidsym.tools.identify.samples import BLOCK, SampleError, by_name, by_width, from_file
+from rigidsym.tools.identify.samples import BLOCK, SampleError, by_name, by_width
 
 AEROSPACE = Reading(sequence="ZYX", passive=True, degrees=True, velocity=VELOCITIES[1])
 MATRIX = [f"r{row}{column}" for row in (1, 2, 3) for column in (1, 2, 3)]
@@ -60,15 +60,6 @@ def test_columns_by_name(tmp_path, header, separator):
     path = written(tmp_path / "log.csv", rows(30), header.replace(",", separator), separator)
     (answer,) = identify_file(path).answers
     assert holds(answer, AEROSPACE)
-
-
-def test_columns_of_several_units_are_converted_and_named(tmp_path):
-    header = HEADERS["units"].replace("[deg]", "[cdeg]", 1)
-    table = rows(30)
-    table[:, 0] *= 100
-    found = identify_file(written(tmp_path / "log.csv", table, header, ","))
-    assert holds(found.answers[0], AEROSPACE)
-    assert "converted to degrees: " in found.text()
 
 
 def test_columns_without_a_header_by_their_number_or_by_given_names(tmp_path):
@@ -129,15 +120,6 @@ def test_npy_by_width(tmp_path, width):
     assert (answer.reading.velocity is not None) == (width in (13, 18))
 
 
-def test_npy_by_given_names(tmp_path):
-    np.save(tmp_path / "log.npy", np.hstack([np.ones((9, 1)), rows(9)[:, :12]]).astype("f4"))
-    columns = ["-", "yaw", "pitch", "roll", *MATRIX]
-    found = identify_file(tmp_path / "log.npy", columns=columns)
-    assert found.text().startswith("ZYX intrinsic, passive, degrees, columns (yaw, pitch, roll)")
-    with pytest.raises(SampleError, match="13 columns, but 12 names"):
-        identify_file(tmp_path / "log.npy", columns=columns[1:])
-
-
 # --- large files ----------------------------------------------------------------------------
 
 
@@ -176,17 +158,6 @@ def test_text_is_read_in_pieces_and_its_last_line_counts(tmp_path):
     written(path, table, "a1,a2,a3," + ",".join(MATRIX), form="%.8f")
     found = identify_file(path)
     assert (found.fits, found.nearest.worst) == (False, f"line {count + 1}")
-
-
-def test_the_lines_looked_at_first_are_whole_and_from_all_over_the_file(tmp_path):
-    table = rows(1009)
-    path = written(tmp_path / "log.csv", table, HEADERS["named"])
-    found = from_file(path).spread().angles
-    known = {tuple(row): place for place, row in enumerate(table[:, :3].round(9).tolist())}
-    places = [known[tuple(row)] for row in found.round(9).tolist()]
-    assert places[0] == 0
-    assert max(np.diff(places)) < 40
-    assert max(places) > 1009 - 40
 
 
 def test_many_candidates_are_verified_on_every_row():
