@@ -156,11 +156,8 @@ def exceptions() -> str:
         for value in vars(errors).values()
         if inspect.isclass(value) and issubclass(value, errors.RigidsymError)
     ]
-    rows = [
-        (literal(e.__name__), str(e.exit_code), _plain(inspect.getdoc(e) or ""), _plain(e.remedy))
-        for e in found
-    ]
-    return table(("exception", "exit code", "raised for", "remedy"), rows)
+    rows = [(literal(e.__name__), str(e.exit_code), _plain(inspect.getdoc(e) or "")) for e in found]
+    return table(("exception", "exit code", "raised for"), rows)
 
 
 # Python

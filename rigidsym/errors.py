@@ -40,7 +40,6 @@ class RigidsymError(Exception):
     """Base of all errors that rigidsym raises on purpose."""
 
     exit_code: ClassVar[int] = 1
-    remedy: ClassVar[str] = ""  # what a user can do
 
     def __str__(self) -> str:
         return printable(super().__str__())
@@ -53,26 +52,19 @@ class RigidsymError(Exception):
 class LimitReached(RigidsymError):
     """Work that was stopped because it took more time or memory than allowed."""
 
-    remedy: ClassVar[str] = "Raise --timeout or --memory, or ask for fewer quantities."
-
 
 class AlgebraError(RigidsymError):
     """An expression that exact algebra cannot represent, or a derivative of too high an order."""
-
-    remedy: ClassVar[str] = "Use sines, cosines, roots and quotients of polynomials."
 
 
 class ModelError(RigidsymError):
     """An invalid rotation model: unknown sequence, repeated coordinate, wrong shape."""
 
     exit_code: ClassVar[int] = 2
-    remedy: ClassVar[str] = "See `rigidsym list` for rotations, and rs.given for your own."
 
 
 class NotARotation(RigidsymError):
     """A 3x3 matrix with R Rᵀ ≠ 1 or det R ≠ 1; the message shows the residual."""
-
-    remedy: ClassVar[str] = "Correct the entries, or add conditions on the coordinates."
 
 
 class BodyError(RigidsymError):
@@ -82,7 +74,6 @@ class BodyError(RigidsymError):
     """
 
     exit_code: ClassVar[int] = 3
-    remedy: ClassVar[str] = "Correct the body, or set allow = true if it is intended."
 
     def __init__(self, message: str, *, place: tuple[str | int, ...] = ()) -> None:
         super().__init__(message)
@@ -92,27 +83,21 @@ class BodyError(RigidsymError):
 class DerivationError(RigidsymError):
     """A false claim of a derivation; the message shows the residual."""
 
-    remedy: ClassVar[str] = "Correct what was claimed."
-
 
 class Defect(RigidsymError):
     """A proved claim that is false at a point: a mistake in rigidsym, not in its use."""
-
-    remedy: ClassVar[str] = "Report it with the input; do not use the result."
 
 
 class QuantityError(RigidsymError):
     """An unknown quantity, or one that the derivation does not contain."""
 
     exit_code: ClassVar[int] = 2
-    remedy: ClassVar[str] = "Choose a name that `rigidsym list` shows."
 
 
 class ExpressionError(RigidsymError):
     """A text that is not a valid expression in the declared names; `column` counts from 1."""
 
     exit_code: ClassVar[int] = 2
-    remedy: ClassVar[str] = "Correct the text at the column that the message names."
 
     def __init__(self, message: str, *, column: int = 1) -> None:
         super().__init__(message)
@@ -139,7 +124,6 @@ class SpecError(RigidsymError):
     """A bad derivation file: all its faults at once."""
 
     exit_code: ClassVar[int] = 3
-    remedy: ClassVar[str] = "Correct the keys that the message names."
 
     def __init__(self, source: str, faults: Sequence[Fault]) -> None:
         self.source = source
@@ -153,14 +137,12 @@ class MissingTool(RigidsymError):
     """A program outside Python that is not installed; the message names the Debian packages."""
 
     exit_code: ClassVar[int] = 4
-    remedy: ClassVar[str] = "Install the program that the message names."
 
 
 class MissingExtra(RigidsymError):
     """A Python package that an extra brings; the message says how to install it."""
 
     exit_code: ClassVar[int] = 4
-    remedy: ClassVar[str] = "Install the extra that the message names."
 
     def __init__(self, what: str, extra: str) -> None:
         super().__init__(
@@ -172,46 +154,35 @@ class TemplateFault(RigidsymError):
     """A template that cannot be filled; the message names the template, the line and the fault."""
 
     exit_code: ClassVar[int] = 3
-    remedy: ClassVar[str] = "Correct the template at the line that the message names."
 
 
 class ToolFailed(RigidsymError):
     """A program outside Python that failed; the message contains the end of its log."""
-
-    remedy: ClassVar[str] = "Read the end of the log in the message."
 
 
 class DataError(RigidsymError):
     """A file of numbers with missing or wrong content; the message says where."""
 
     exit_code: ClassVar[int] = 3
-    remedy: ClassVar[str] = "Correct the line that the message names, or name the columns."
 
 
 class RequestError(DataError):
     """A request that cannot be satisfied, whatever the file contains."""
 
     exit_code: ClassVar[int] = 2
-    remedy: ClassVar[str] = "Change the request as the message says."
 
 
 class KernelError(RigidsymError):
     """A kernel that cannot be made: unknown target, or a function that no target can print."""
 
     exit_code: ClassVar[int] = 2
-    remedy: ClassVar[str] = "Choose a target that `rigidsym list` shows, or other arguments."
 
 
 class EditedFiles(RigidsymError):
     """Generated files that were edited and that a command would overwrite."""
-
-    remedy: ClassVar[str] = (
-        "Write to another folder with --out, or overwrite the files with --force."
-    )
 
 
 class CheckError(RigidsymError):
     """A path without the record of a derivation that `rigidsym check` needs."""
 
     exit_code: ClassVar[int] = 2
-    remedy: ClassVar[str] = "Name a folder or file that `derive` or `run` wrote."
