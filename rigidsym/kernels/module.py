@@ -9,12 +9,7 @@ from types import ModuleType
 from typing import Any
 
 from rigidsym.errors import KernelError, offer
-from rigidsym.kernels.lowering.derivatives import (
-    Asked,
-    Derivative,
-    derivatives_of,
-    read_requests,
-)
+from rigidsym.kernels.lowering.derivatives import Asked, derivatives_of, read_requests
 from rigidsym.kernels.lowering.lower import NO_CONVERSIONS, lower
 from rigidsym.kernels.targets import TARGETS, check_options, load, printer
 from rigidsym.mechanics.derivation import Derivation
@@ -104,9 +99,7 @@ def generate(
     """
     check_options(target, options)
     language = printer(target)
-    asked: tuple[Derivative, ...] = ()
-    if derivatives != ():
-        asked = derivatives_of(derivation, read_requests(derivatives))
+    asked = tuple(derivatives_of(derivation, read_requests(derivatives)))
     added = NO_CONVERSIONS
     if conversions:
         from rigidsym.mechanics.conversions.conversions import converted
@@ -114,14 +107,10 @@ def generate(
         added = converted(derivation)
     program = lower(derivation, language.RESERVED, asked, added)
     if not program.kernels:
-        raise _nothing_to_write(derivation)
+        derived = ", ".join(step.quantity.name for step in derivation.steps)
+        raise KernelError(
+            f"{derivation.name}: no function to write, since no quantity depends on an input: "
+            f"{derived}; expected kernels = [], or another quantity"
+        )
     files = language.render(program, **options)
     return KernelModule(name=program.name, target=target, files=files)
-
-
-def _nothing_to_write(derivation: Derivation) -> KernelError:
-    derived = ", ".join(step.quantity.name for step in derivation.steps)
-    return KernelError(
-        f"{derivation.name}: no function to write, since no quantity depends on an input: "
-        f"{derived}; expected kernels = [], or another quantity"
-    )

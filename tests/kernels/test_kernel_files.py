@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import re
 import subprocess
 import sys
 
@@ -12,9 +13,10 @@ from numpy.testing import assert_array_equal
 
 import rigidsym as rs
 from helpers.motions import derived
-from helpers.printed_lines import of_rotations
+from helpers.printed_lines import LEAN, of_rotations
 from helpers.target_modules import inputs, module, turned_by
 from rigidsym import __version__
+from rigidsym.errors import KernelError
 from rigidsym.kernels.lowering.lower import MARGIN
 from rigidsym.kernels.module import generate
 from rigidsym.kernels.targets import TARGETS
@@ -30,6 +32,26 @@ def test_the_files_of_the_lecture(target, golden):
     for name, text in generate(motion, target).files.items():
         text = text.replace(f"rigidsym {__version__};", "rigidsym *;")
         golden(f"kernels/{name}.txt", text)
+
+
+def test_the_lean_files_of_the_lecture(golden):
+    for name, text in derive("ZXZ", only=FEW).kernels("c", **LEAN).files.items():
+        if not name.endswith(".h"):
+            golden(f"kernels/lean_{name}.txt", text)
+
+
+@pytest.mark.parametrize(
+    ("target", "options", "named"),
+    [
+        ("c", {"precison": "double"}, "no option precison; did you mean precision?"),
+        ("c", {"precision": "half"}, "'both', 'double', 'float', got 'half'"),
+        ("c", {"arrays": 0}, "expected one of True, False, got 0"),
+        ("numpy", {"libm": True}, "numpy has no option libm"),
+    ],
+)
+def test_other_options_are_refused_by_name(target, options, named):
+    with pytest.raises(KernelError, match=re.escape(named)):
+        rs.derive("ZXZ", only="rotation_matrix").kernels(target, **options)
 
 
 @pytest.mark.parametrize("target", TARGETS)

@@ -14,7 +14,6 @@ import pytest
 import rigidsym as rs
 from helpers.command import call
 from helpers.target_modules import STRICT
-from rigidsym.errors import KernelError
 
 pytestmark = pytest.mark.campaign
 
@@ -118,20 +117,6 @@ def test_options_may_be_chosen_one_by_one(folder):
             assert run("./alone", cwd=folder) == ""
 
 
-@pytest.mark.parametrize(
-    ("target", "options", "named"),
-    [
-        ("c", {"precison": "double"}, "no option precison; did you mean precision?"),
-        ("c", {"precision": "half"}, "'both', 'double', 'float', got 'half'"),
-        ("c", {"arrays": 0}, "expected one of True, False, got 0"),
-        ("numpy", {"libm": True}, "numpy has no option libm"),
-    ],
-)
-def test_other_options_are_refused_by_name(target, options, named):
-    with pytest.raises(KernelError, match=re.escape(named)):
-        rs.derive("ZXZ", only="rotation_matrix").kernels(target, **options)
-
-
 FILE = """\
 [rotation]
 sequence = "ZYX"
@@ -158,11 +143,3 @@ def test_a_file_and_the_command_line_ask_for_it(tmp_path):
     refused = call("build", "euler_zyx_intrinsic.toml", "--out", "c", cwd=tmp_path, status=2)
     assert "with arrays and both precisions" in refused.stderr
     assert not (tmp_path / "c").exists()  # nothing is written first
-
-
-def test_the_files_of_the_lecture(golden):
-    few = ("rotation_matrix", "angular_velocity_body", "rates_from_angular_velocity_body")
-    files = rs.derive("ZXZ", only=few).kernels("c", **LEAN).files
-    for name, text in files.items():
-        if not name.endswith(".h"):
-            golden(f"kernels/lean_{name}.txt", text)

@@ -20,14 +20,6 @@ def kernel(program: ir.Program, name: str) -> ir.Kernel:
     return next(kernel for kernel in program.kernels if kernel.name == name)
 
 
-def units(program: ir.Program) -> dict[str, str]:
-    return {
-        name: unit
-        for argument in program.arguments
-        for name, unit in zip(argument.components, argument.units, strict=True)
-    }
-
-
 def test_quantities_come_in_the_order_of_their_equations_and_the_margin_last():
     program = lower(derived("ZXZ"))
     assert program.name == "euler_zxz_intrinsic"

@@ -7,7 +7,7 @@ the value first, then the derivative, from one pass of common subexpressions.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from itertools import product
 from typing import NamedTuple
@@ -106,29 +106,26 @@ class Derivative(NamedTuple):
 
 def derivatives_of(
     derivation: Derivation, requests: Iterable[DerivativeRequest]
-) -> tuple[Derivative, ...]:
+) -> Iterator[Derivative]:
     """The derivatives that are asked for, ready to be lowered.
 
     Raises QuantityError for a quantity that is not in the derivation, and KernelError for a
     vector that it does not take.
     """
-    return tuple(_derivative(derivation, request) for request in requests)
-
-
-def _derivative(derivation: Derivation, request: DerivativeRequest) -> Derivative:
-    step = derivation.step(request.quantity)
-    step = replace(step, expression=derivation.spelled(step.expression))
-    inputs = step.quantity.inputs
-    if request.vector not in inputs:
-        raise KernelError(f"{request}: {request.quantity} depends only on {' and '.join(inputs)}")
-    by = derivation.argument(request.vector)
-    return Derivative(
-        request=request,
-        step=step,
-        vectors=tuple(map(derivation.argument, inputs)),
-        by=by,
-        is_bound=_is_bound(derivation.model, by),
-    )
+    for request in requests:
+        step = derivation.step(request.quantity)
+        inputs = step.quantity.inputs
+        if request.vector not in inputs:
+            only = " and ".join(inputs)
+            raise KernelError(f"{request}: {request.quantity} depends only on {only}")
+        by = derivation.argument(request.vector)
+        yield Derivative(
+            request=request,
+            step=replace(step, expression=derivation.spelled(step.expression)),
+            vectors=tuple(map(derivation.argument, inputs)),
+            by=by,
+            is_bound=_is_bound(derivation.model, by),
+        )
 
 
 def _is_bound(model: RotationModel, by: Argument) -> bool:

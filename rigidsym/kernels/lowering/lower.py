@@ -131,30 +131,21 @@ class _Lowering:
 
     def of_steps(self, steps: Sequence[Step]) -> tuple[ir.Kernel, ...]:
         """The kernels of quantities."""
-        if not steps:
-            return ()
-        shapes = [step.shape for step in steps]
-        texts = [(s.quantity.symbol.text, s.quantity.definition.text) for s in steps]
         forms = self._stable(map(self._over_squares, step.expression.flat()) for step in steps)
-        found = []
-        for step, shape, entries, (symbol, definition) in zip(
-            steps, shapes, forms, texts, strict=True
-        ):
-            quantity = step.quantity
-            found.append(
-                self._kernel(
-                    quantity.name,
-                    [self._vectors[name] for name in quantity.inputs],
-                    entries,
-                    shape=shape,
-                    equation=step.number or None,
-                    symbol=symbol,
-                    definition=definition,
-                    about=quantity.about,
-                    unit=quantity.unit,
-                )
+        return tuple(
+            self._kernel(
+                step.quantity.name,
+                [self._vectors[name] for name in step.quantity.inputs],
+                entries,
+                shape=step.shape,
+                equation=step.number or None,
+                symbol=step.quantity.symbol.text,
+                definition=step.quantity.definition.text,
+                about=step.quantity.about,
+                unit=step.quantity.unit,
             )
-        return tuple(found)
+            for step, entries in zip(steps, forms, strict=True)
+        )
 
     def of_derivative(self, derivative: Derivative) -> ir.Kernel:
         """The kernel of a value and its derivative, one after the other."""
@@ -174,13 +165,12 @@ class _Lowering:
     def of_function(self, function: ConversionFunction) -> ir.Kernel:
         """The kernel of a conversion: its values one by one, as they are written."""
         arguments = tuple(
-            self._argument(
-                given.argument,
-                matrix=(3, 3) if given.is_matrix else (),
-            )
+            self._argument(given.argument, matrix=(3, 3) if given.is_matrix else ())
             for given in function.inputs
         )
-        reader = self._reader(function.name, [given.argument for given in function.inputs])
+        symbols = [symbol for given in function.inputs for symbol in given.argument.symbols]
+        inputs = {symbol: self._known[symbol] for symbol in symbols}
+        reader = Reader(function.name, inputs, self._definitions)
         reader.graph.share([reader.define(symbol, value) for symbol, value in function.shared])
         for symbol, value in function.values:
             reader.hold(symbol, value)
@@ -197,10 +187,6 @@ class _Lowering:
             remarks=function.remarks,
             unit=function.unit,
         )
-
-    def _reader(self, name: str, vectors: Iterable[Vector]) -> Reader:
-        inputs = {symbol: self._known[symbol] for vector in vectors for symbol in vector.symbols}
-        return Reader(name, inputs, self._definitions)
 
     def margin(self) -> Iterator[ir.Kernel]:
         """How far the coordinates are from a singular orientation, where rates are asked for."""

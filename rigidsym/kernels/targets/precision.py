@@ -13,7 +13,7 @@ from rigidsym.algebra.stable_forms import FIRST_SERIES, series_of, taylor
 from rigidsym.kernels.lowering.trigonometry import arctangent, reduction
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
+@dataclass(frozen=True, slots=True)
 class Precision:
     """A type of C, the unsigned type of its size, and its numbers."""
 
@@ -88,26 +88,11 @@ class Precision:
         }
 
 
-DOUBLE, SINGLE = PRECISIONS = (
-    Precision(
-        real="double",
-        word="uint64_t",
-        suffix="",
-        bits=64,
-        digits=53,
-        packed=("d", "Q"),
-        tiny=2.0**-1022,
-    ),
-    Precision(
-        real="float",
-        word="uint32_t",
-        suffix="f",
-        bits=32,
-        digits=24,
-        packed=("f", "I"),
-        tiny=2.0**-126,
-    ),
+PRECISIONS = (
+    Precision("double", "uint64_t", "", 64, 53, ("d", "Q"), 2.0**-1022),
+    Precision("float", "uint32_t", "f", 32, 24, ("f", "I"), 2.0**-126),
 )
+DOUBLE, SINGLE = PRECISIONS
 
 
 class _EitherPrecision(Precision):
@@ -127,6 +112,4 @@ class _EitherPrecision(Precision):
         return "LEAST"
 
 
-EITHER = _EitherPrecision(
-    real="REAL", word="WORD", suffix="", bits=0, digits=0, packed=("", ""), tiny=0.0
-)
+EITHER = _EitherPrecision("REAL", "WORD", "", 0, 0, ("", ""), 0.0)
