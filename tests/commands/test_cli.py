@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import pty
 import re
 import shlex
 import signal
@@ -16,7 +15,7 @@ import pytest
 import sympy as sp
 
 import rigidsym as rs
-from helpers.command import RIGIDSYM, ROOT, call, run
+from helpers.command import RIGIDSYM, ROOT, call, on_terminal, run
 from rigidsym.motion import derive
 from rigidsym.notes.formats.record import SCHEMA_VERSION
 from rigidsym.text.expression import parse_expression
@@ -146,32 +145,6 @@ def test_a_closed_pipe_is_no_error():
     assert (done.returncode, done.stderr) == (0, "")
 
 
-def test_progress_is_drawn_in_a_terminal(tmp_path):
-    controller, terminal = pty.openpty()
-    text = '[rotation]\nsequence = ["ZXZ", "ZYX"]\n[output]\nquantities = ["rotation_matrix"]\n'
-    (tmp_path / "two.toml").write_text(text)
-    with subprocess.Popen(
-        [*RIGIDSYM, "run", "two.toml"],
-        cwd=tmp_path,
-        env={**os.environ, "PYTHONPATH": str(ROOT), "TERM": "xterm"},
-        stdout=subprocess.DEVNULL,
-        stderr=terminal,
-    ) as process:
-        os.close(terminal)
-        drawn = b""
-        while True:
-            try:
-                piece = os.read(controller, 65536)
-            except OSError:  # the terminal was closed at the other end
-                break
-            if not piece:
-                break
-            drawn += piece
-        assert process.wait() == 0
-    os.close(controller)
-    assert b"/2" in drawn
-
-
 def test_an_interrupt_leaves_whole_files_and_says_so(tmp_path):
     with subprocess.Popen(
         [*RIGIDSYM, "run", "euler_all"],
@@ -194,15 +167,6 @@ def test_targets_given_one_by_one_are_all_written(tmp_path):
     call("derive", "ZXZ", "--target", "numpy", "--target", "javascript", "--out", ".", cwd=tmp_path)
     kernels = {path.suffix for path in (tmp_path / "euler_zxz_intrinsic").iterdir()}
     assert {".py", ".mjs"} <= kernels
-
-
-@pytest.mark.parametrize("command", ["run", "page", "simulate", "build", "check", "inertia"])
-def test_an_input_that_is_no_regular_file_is_refused(command, tmp_path):
-    """A FIFO to which nobody writes would be read for ever."""
-    name = {"check": "fifo.json", "inertia": "fifo.npy"}.get(command, "fifo.toml")
-    os.mkfifo(tmp_path / name)
-    done = call(command, name, cwd=tmp_path, status=1 if command == "check" else 3)
-    assert "not a regular file" in done.stdout + done.stderr
 
 
 @pytest.mark.parametrize("closed", ["2>&-", "2>/dev/full"])
@@ -239,3 +203,30 @@ def test_heavy_packages_are_imported_only_where_they_are_used(tmp_path, words, h
 def test_a_null_character_in_an_option_is_refused(tmp_path):
     done = call("derive", "ZXZ", "--templates", "no\0ne", cwd=tmp_path, status=2)
     assert "'no\\x00ne': expected text without null characters" in done.stderr
+
+
+def test_progress_is_drawn_in_a_terminal(tmp_path):
+    text = '[rotation]\nsequence = ["ZXZ", "ZYX"]\n[output]\nquantities = ["rotation_matrix"]\n'
+    (tmp_path / "two.toml").write_text(text)
+    status, drawn = on_terminal("run", "two.toml", cwd=tmp_path)
+    assert status == 0
+    assert b"/2" in drawn
+
+
+FIFOS = {  # a command with a FIFO to which nobody writes, which would be read for ever: exit code
+    **{f"{command} fifo.toml": 3 for command in ("run", "page", "simulate", "build")},
+    "check fifo.json": 1,
+    "inertia fifo.npy": 3,
+    "eval ZXZ fifo.csv --out r.csv": 3,
+    "eval fifo.toml log.csv --out r.csv": 3,
+    "identify fifo.csv": 3,
+}
+
+
+@pytest.mark.parametrize("words", FIFOS)
+def test_an_input_that_is_no_regular_file_is_refused(words, tmp_path):
+    (name,) = (word for word in words.split() if word.startswith("fifo"))
+    os.mkfifo(tmp_path / name)
+    (tmp_path / "log.csv").write_text("1,2,3\n")
+    done = call(*words.split(), cwd=tmp_path, status=FIFOS[words])
+    assert "not a regular file" in done.stdout + done.stderr

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
-import pty
 import signal
 import subprocess
 import sys
@@ -15,7 +13,7 @@ import pytest
 from click.testing import CliRunner
 
 import rigidsym as rs
-from helpers.command import RIGIDSYM, ROOT, call
+from helpers.command import ROOT, call, on_terminal
 from rigidsym.commands.cli import commands
 from rigidsym.errors import LimitReached, RequestError
 from rigidsym.notes.formats.record import SCHEMA, SCHEMA_VERSION
@@ -151,47 +149,6 @@ def test_memory_is_bounded():
     assert "LimitReached: stopped at 0.5 GB of memory" in done.stderr
 
 
-def test_an_interrupt_ends_a_derivation(tmp_path):
-    (tmp_path / "own.toml").write_text(ENDLESS)
-    with subprocess.Popen(
-        [*RIGIDSYM, "run", "own.toml"],
-        cwd=tmp_path,
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-        stderr=subprocess.PIPE,
-        text=True,
-    ) as process:
-        sleep(3)
-        process.send_signal(signal.SIGINT)
-        _, errors = process.communicate()
-    assert (process.returncode, errors.strip()) == (130, "rigidsym: interrupted")
-
-
-def test_a_terminal_shows_that_work_goes_on(tmp_path):
-    (tmp_path / "own.toml").write_text(ENDLESS)
-    controller, terminal = pty.openpty()
-    command = [*RIGIDSYM, "run", "own.toml", "--timeout", "2.5"]
-    with subprocess.Popen(
-        command, cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(ROOT)}, stderr=terminal
-    ) as process:
-        os.close(terminal)
-        shown = b""
-        while piece := _read(controller):
-            shown += piece
-        assert process.wait() == 1
-    os.close(controller)
-    assert b"rigidsym run: 1 s" in shown
-    assert shown.endswith(
-        b"\r\x1b[Krigidsym: stopped after 2.5 s; raise the time limit if it needs longer\r\n"
-    )
-
-
-def _read(controller: int) -> bytes:
-    try:
-        return os.read(controller, 65536)
-    except OSError:  # the terminal was closed at the other end
-        return b""
-
-
 @pytest.mark.parametrize(
     "arguments",
     [
@@ -209,3 +166,13 @@ def test_no_message_commands_a_terminal(tmp_path, arguments):
     done = call(*arguments, cwd=tmp_path, status=status)
     assert "\x1b" not in done.stdout + done.stderr
     assert "\\x1b" in done.stderr or "\\u001b" in done.stderr
+
+
+def test_a_terminal_shows_that_work_goes_on(tmp_path):
+    (tmp_path / "own.toml").write_text(ENDLESS)
+    status, shown = on_terminal("run", "own.toml", "--timeout", "2.5", cwd=tmp_path)
+    assert status == 1
+    assert b"rigidsym run: 1 s" in shown
+    assert shown.endswith(
+        b"\r\x1b[Krigidsym: stopped after 2.5 s; raise the time limit if it needs longer\r\n"
+    )
