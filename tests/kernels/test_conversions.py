@@ -179,14 +179,20 @@ def test_other_turns_name_what_to_use(text):
         "z(phi) x(pi/4)",  # the half of π/4 has a root of a root
         "z(phi) x(pi/3) z(psi) y(2*delta)",
         "z(a) x(b) z(c) x(d) y(e)",  # too long to be written out
+        "davenport",  # with constants
+        "z(a) x(alpha0) z(b) x(c) y(d)",
     ],
 )
 def test_every_chain_has_a_quaternion(text):
     model = rotation_from(text)
     functions = rs.derive(model, ["rotation_matrix"]).kernels(conversions=True).load()
     q = np.random.default_rng(4).uniform(-3, 3, (30, len(model.coordinates)))
-    expected = Rotation.from_matrix(functions.rotation_matrix(q))
-    assert_same_turn(functions.quaternion(q), quaternions(expected), atol=16 * EPS)
+    numbers = [0.6, 0.8][: len(model.constants)]
+    constants = [numbers] if numbers else []
+    expected = Rotation.from_matrix(functions.rotation_matrix(q, *constants))
+    found = functions.quaternion(q, *constants)
+    assert_same_turn(found, quaternions(expected), atol=16 * EPS)
+    assert_allclose(functions.quaternion_scalar(*q[0], *numbers), found[0], atol=16 * EPS)
 
 
 def test_a_matrix_of_ones_own_converts_by_what_it_is():
@@ -243,16 +249,3 @@ def test_conversions_of_scalar_last_quaternions_are_scalar_last(text):
     found = functions.from_rotation_matrix(ANY.as_matrix())
     assert_allclose(np.abs((found * quaternion).sum(axis=-1)), 1.0, atol=8 * EPS)
     assert_allclose(functions.rotation_matrix(found), ANY.as_matrix(), atol=8 * EPS)
-
-
-@pytest.mark.parametrize("text", ["davenport", "z(a) x(alpha0) z(b) x(c) y(d)"])
-def test_constants_are_an_argument(text):
-    model = rotation_from(text)
-    functions = rs.derive(model, ["rotation_matrix"]).kernels(conversions=True).load()
-    rng = np.random.default_rng(6)
-    q, constants = rng.uniform(-3, 3, (30, len(model.coordinates))), [0.6, 0.8]
-    constants = constants[: len(model.constants)]
-    expected = Rotation.from_matrix(functions.rotation_matrix(q, constants))
-    found = functions.quaternion(q, constants)
-    assert_same_turn(found, quaternions(expected), atol=16 * EPS)
-    assert_allclose(functions.quaternion_scalar(*q[0], *constants), found[0], atol=16 * EPS)
