@@ -13,6 +13,7 @@ import tomllib
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from scipy.spatial.transform import Rotation
 
 import rigidsym as rs
 from helpers.command import ROOT, call
@@ -462,7 +463,7 @@ CHANGED = {  # statements of a function of phi and psi: what its matrix is
     f"{SINES}\n    try: g()\n    except OSError: s = -s\n    return {TURN}": "",
     f"{SINES}; return np.array([c, -s, 0, s, c, 0, 0, 0, 1]).reshape((3, 3), order='F')": "",
     f"phi = psi % 1.4; {SINES}; return {TURN}": "",
-    f"q = psi % 1.4; {SINES.replace('phi', 'q')}; return {TURN}": "the value of q in line 3 is not",
+    f"q = psi % 1.4; {SINES.replace('phi', 'q')}; return {TURN}": "; not read: q in line 3",
     f"turn = lambda phi: {TURN.replace('c', 'np.cos(phi)').replace('s,', 'np.sin(phi),')}; "
     f"{SINES}; return {TURN}": "equal to",
 }  # fmt: skip
@@ -601,3 +602,110 @@ def test_rates_in_arrays_are_read_in_c(tmp_path):
         "angular_velocity_body of unit_quaternion",
         *["angular_velocity_body of ZYX"] * 2,
     ]
+
+
+# Euler angles from a matrix or a quaternion
+
+AXES = ["XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX", "XYX", "XZX", "YXY", "YZY", "ZXZ", "ZYZ"]
+
+
+def angle_formulas(axes):
+    """Python of three angles, from a matrix and from a quaternion, by the entries of R."""
+    i, j, k = map("XYZ".index, axes)
+    other, e = 3 - i - j, "" if (j - i) % 3 == 1 else "-"
+    minus = "-" if not e else ""
+    if i == k:
+        parts = (
+            f"np.arctan2(R[{j}, {i}], {minus}R[{other}, {i}])",
+            f"np.arccos(np.clip(R[{i}, {i}], -1, 1))",
+            f"np.arctan2(R[{i}, {j}], {e}R[{i}, {other}])",
+        )
+    else:
+        parts = (
+            f"np.arctan2({minus}R[{j}, {k}], R[{k}, {k}])",
+            f"np.arcsin({e}R[{i}, {k}])",
+            f"np.arctan2({minus}R[{i}, {j}], R[{i}, {i}])",
+        )
+    return ", ".join(parts)
+
+
+QUATERNION_MATRIX = """
+    R = np.array([[1 - 2*(y*y + z*z), 2*(x*y - w*z), 2*(x*z + w*y)],
+                  [2*(x*y + w*z), 1 - 2*(x*x + z*z), 2*(y*z - w*x)],
+                  [2*(x*z - w*y), 2*(y*z + w*x), 1 - 2*(x*x + y*y)]])"""
+
+
+@pytest.mark.parametrize("axes", AXES)
+def test_angles_are_known_in_every_convention_as_scipy_gives_them(tmp_path, axes):
+    formula = angle_formulas(axes)
+    turn = Rotation.random(random_state=7)
+    values = eval(f"[{formula}]", {"np": np, "R": turn.as_matrix()})
+    assert values == pytest.approx(turn.as_euler(axes))
+    text = (
+        f"import numpy as np\ndef f(R):\n    return np.array([{formula}])\n"
+        f"def g(w, x, y, z):{QUATERNION_MATRIX}\n    return {formula}\n"
+        f"def h(R):\n    R = R.T\n    return {formula}\n"
+    )
+    found = [str(each.comparison.found) for each in found_in(tmp_path, "a.py", text)]
+    assert f"from_rotation_matrix of {axes}" in found
+    assert f"from_quaternion of {axes}" in found
+
+
+ROLL = "atan2(2*(w*x + y*z), 1 - 2*(x*x + y*y))"
+PITCH, YAW = "asin(2*(w*y - z*x))", "atan2(2*(w*z + x*y), 1 - 2*(y*y + z*z))"
+OF_ANGLES = {  # three entries: the finding
+    (ROLL, PITCH, YAW): "agrees with from_quaternion of xyz (to nine digits at 20 points",
+    (YAW, PITCH, ROLL): "agrees with from_quaternion of ZYX (",
+    (PITCH, ROLL, YAW): "of ZYX, the angles in the order 2, 3, 1 (",
+    (ROLL, f"-{PITCH}", YAW): "of xyz, with the opposite sense of angle 2 (",
+    (ROLL.replace("2*(w*x + y*z)", "w*x + y*z"), PITCH, YAW): "angle 1: atan2(w*x + y*z, -2*x**2",
+    (
+        ROLL.replace("x*x + y*y", "x*x - y*y"),
+        PITCH,
+        YAW,
+    ): "close to from_quaternion of xyz: angle 1",
+    (ROLL, PITCH, YAW.replace("1 - 2*(y*y", "1 - 2*(x*x")): "angle 3",
+    (ROLL, PITCH, f"atan2({YAW[6:-1].split(', ')[1]}, {YAW[6:-1].split(', ')[0]})"): "angle 3",
+    (ROLL.replace("atan2(", "atan((").replace(", ", ")/(") + ")", PITCH, YAW): "should be atan2(2*",
+    (
+        ROLL,
+        PITCH.replace("w*y - z*x", "w*y + z*x"),
+        YAW,
+    ): "close to from_quaternion of xyz: angle 2",
+    ("atan2(m12, m22)", "-asin(m02)", "atan2(m01, m00)"): "of xyz, transposed (passive) (",
+    ("atan2(m32, m33)", "-asin(m31)", "atan2(m21, m11)"): "from_rotation_matrix of xyz (",
+    ("atan2(q[6], q[10])", "-asin(q[2])", "atan2(q[1], q[0])"): "from_rotation_matrix of xyz (",
+    ("atan2(c.y, c.z)", "-asin(c.x)", "atan2(b.x, a.x)"): "from_rotation_matrix of xyz (",
+    ("atan2(a, b)", "asin(c)", "atan2(d, e)"): "not a known quantity",
+    ("atan2(m10, m11)", "asin(m00)", "atan2(m01, m22)"): "not a known quantity",
+}
+
+
+@pytest.mark.parametrize(("entries", "finding"), OF_ANGLES.items(), ids=range(len(OF_ANGLES)))
+def test_three_angles_are_right_close_or_unknown(entries, finding):
+    assert finding in rs.compare(f"[{', '.join(entries)}]").text()
+
+
+def test_branches_and_bounds_of_angles_are_read(tmp_path):
+    branches = """
+void f(double w, double x, double y, double z) {
+  double s = 2*(w*y - z*x);
+  if (std::abs(s) >= 1) pitch = std::copysign(M_PI/2, s); else pitch = asin(s);
+  roll = atan2(2*(w*x + y*z), 1 - 2*(x*x + y*y));
+  yaw = atan2(2*(w*z + x*y), 1 - 2*(y*y + z*z));
+}
+void g(const Matrix& m, double *roll, double *pitch, double *yaw) {
+  if (pitch != nullptr) *pitch = -asin(clamp(m(2, 0), -1.0f, 1.0f));
+  if (fabs(m(2, 0)) < 0.999) { *roll = atan2(m(2, 1), m(2, 2)); *yaw = atan2(m(1, 0), m(0, 0)); }
+  else { *roll = 0; *yaw = atan2(-m(0, 1), m(1, 1)); }
+}
+void h(int order) {
+  switch (order) {
+    case 0: phi = atan2(-m12, m22); theta = asin(m02); psi = atan2(-m01, m00); break;
+    case 1: phi = atan2(m21, m11); theta = asin(-m01); psi = atan2(m02, m00); break;
+  }
+}
+"""
+    found = [str(each.comparison.found) for each in found_in(tmp_path, "a.cpp", branches)]
+    kinds = ("quaternion of xyz", *(f"rotation_matrix of {axes}" for axes in ("xyz", "XYZ", "XZY")))
+    assert found == [f"from_{kind}" for kind in kinds]

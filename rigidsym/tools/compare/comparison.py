@@ -13,6 +13,7 @@ from sympy.core.function import AppliedUndef
 
 from rigidsym.errors import ExpressionError
 from rigidsym.motion import Motion
+from rigidsym.tools.compare.angles import angles_identified, are_angles
 from rigidsym.tools.compare.language import spelled_out
 from rigidsym.tools.compare.matching import (
     Comparison,
@@ -46,7 +47,7 @@ def compare(
     if matrix.rows == 1:
         matrix = matrix.T
     if rotation is None and quantity is None:
-        return identified(_checked(matrix))
+        return (angles_identified if are_angles(matrix) else identified)(_checked(matrix))
     goal = _goal(rotation, quantity)
     found = against(matrix, goal)
     if isinstance(formula, str) and not found.found:

@@ -112,8 +112,9 @@ OF_MATRICES: dict[str, Callable[..., Any]] = {
     "trace": lambda matrix: matrix.trace(),
 }
 WRAPPERS = {"array", "asarray", "matrix", "Matrix", "ImmutableMatrix", "mat", "sym", "Array"}
-SPELLINGS = {f + end: f for f in FUNCTIONS for end in "fF"} | {  # of functions in programs
+SPELLINGS = {f + end: f for f in FUNCTIONS for end in "fFl"} | {  # of functions in programs
     **{"power": "pow", "powf": "pow", "square": "sq", "SQ": "sq", "fabs": "abs"},
+    **{"safe_asin": "asin", "safe_acos": "acos", "safe_sqrt": "sqrt"},  # ArduPilot
     **{"arctan2": "atan2", "arcsin": "asin", "arccos": "acos", "arctan": "atan"},
     **{"Sqrt": "sqrt", "Sin": "sin", "Cos": "cos", "Tan": "tan"},
 }

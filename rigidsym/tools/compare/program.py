@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from importlib import import_module
+from itertools import product
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
@@ -85,6 +86,14 @@ _ZEROS, _UNITS = {"zeros", "Zero"}, {"eye", "identity", "Identity"}
 _ENTRIES = {"at", "coeff", "coeffRef", "get", "operator()", "element"}  # of a matrix: at(0, 1)
 _AXES = {"x": 0, "y": 1, "z": 2, "X": 0, "Y": 1, "Z": 2}
 _BOOLEANS = {"0": False, "false": False, "False": False, "1": True, "true": True, "True": True}
+_BEYOND_ONE = re.compile(r"(?:\w+(?:\.|::))?f?absf?\([\w.>-]+\)>=?1(?:\.0*)?f?")
+_NOT_NULL = re.compile(r"\w+(?:!=|isnot)(?:nullptr|NULL|null|None)")
+_CLAMPS = re.compile(r"clip|clamp|constrain|math_constrain|clampf", re.IGNORECASE)
+_TRIPLES = (
+    *(("roll", "pitch", "yaw"), ("phi", "theta", "psi"), ("alpha", "beta", "gamma")),
+    *(("x", "y", "z"), ("rx", "ry", "rz")),
+)
+_INVERSE = (sp.atan2, sp.asin, sp.acos, sp.atan)
 _OPERATORS = ("+", "-", "*", "/", "**", "@")
 _ELEMENTWISE = {".*": "%", "./": "/", ".^": "**", "^": "**"}  # MATLAB
 _FLAT = {9: (3, 3), 12: (4, 3), 16: (4, 4)}
@@ -399,6 +408,18 @@ def _callee(node: Node) -> str:
     return re.sub(r"<.*>", "", _text(function)).replace("::", ".")
 
 
+def _truth(condition: Node | None) -> bool | None:
+    """Whether a condition always holds, or never does; None if that depends.
+
+    A sine is never 1 outside of the poles, and what a null pointer points to is not written.
+    """
+    text = re.sub(r"\s", "", _text(condition))
+    text = text[1:-1] if text.startswith("(") and text.endswith(")") else text
+    if _BEYOND_ONE.fullmatch(text):
+        return False
+    return True if _NOT_NULL.fullmatch(text) else _BOOLEANS.get(text)
+
+
 class _Interpreter:
     """One function, or the code of a file outside of all functions."""
 
@@ -411,6 +432,7 @@ class _Interpreter:
         self.paths: dict[str, str] = {}  # name: its path in the program
         self.inputs: set[str] = set()  # names that were read before anything was assigned
         self.cut: dict[str, sp.Expr | None] = {}  # names that stand for values, if these are read
+        self.components: set[str] = set()  # names for components of a value
         self.lines: dict[str, int] = {}  # where a name was first assigned
         self.untracked: set[str] = set()
         self.scalars: list[tuple[str, sp.Expr, int]] = []  # the last ones assigned in a row
@@ -445,6 +467,7 @@ class _Interpreter:
                 self._return(last[0])
         if not self.state.is_over:
             self._emit(self.state.values)
+            self._add_angles()
         self._add_runs()
         self._add_elements()
         return self.formulas
@@ -509,6 +532,7 @@ class _Interpreter:
                 self._store(target, entry)
         except ExpressionError as error:
             self._drop(left, error)
+            self.components |= set() if left in targets else set(map(self.written, targets))
             self.scalars = []
 
     def _store(self, left: Node, value: sp.Expr | _Grid) -> None:
@@ -662,7 +686,7 @@ class _Interpreter:
             branches.append((None, other))
         possible, is_sure = [], False
         for condition, block in branches:
-            constant = _BOOLEANS.get(_text(condition).strip("()"))
+            constant = _truth(condition)
             if constant is not False:
                 possible.append(block)
             if condition is None or constant:
@@ -715,6 +739,7 @@ class _Interpreter:
                     self.run(child)
             values = self.state.values
             self._emit([k for k, v in values.items() if k not in start.values])
+            self._add_angles()
             self.state.is_over &= not ends_at_break  # a break ends only the loop or the choice
             paths.append(self.state)
         self.scalars = []
@@ -749,6 +774,7 @@ class _Interpreter:
                 if _MAY_BE_MATRIX.search(_text(node)):
                     self.formulas.append(Formula(_line(node), "returned", None, str(error)))
         self._emit(self.state.values)
+        self._add_angles()
         self.state.is_over = True
 
     def _call_statement(self, node: Node) -> None:
@@ -819,6 +845,28 @@ class _Interpreter:
             if isinstance(grid, _Grid) and grid.name:  # not the result of a helper
                 self._add(grid.line, grid.name, grid.matrix())
 
+    def _add_angles(self) -> None:
+        """roll, pitch and yaw by inverse functions are one vector."""
+        angles: dict[tuple[str, str], str] = {}
+        for name in self.state.values:
+            value = self._full(name)
+            if value is not None and value.has(*_INVERSE):
+                base, _, last = self.paths.get(name, name).rpartition(".")
+                angles[base, re.sub(r"^_+|_?(val|rad|angle)?_*$", "", last.lower())] = name
+        for base, triple in product({base for base, _ in angles}, _TRIPLES):
+            names = [angles[base, each] for each in triple if (base, each) in angles]
+            if len(names) == 3:
+                line = self.lines.get(names[0], 1)
+                column = sp.ImmutableMatrix([self._full(name) for name in names])
+                self._add(line, ", ".join(names), column)
+
+    def _full(self, name: str) -> sp.Expr | None:
+        """The value of a name, also if the name stands for it."""
+        value = self.state.values[name]
+        if value == sp.Symbol(name, real=True):
+            value = self.cut.get(name, value)
+        return value if isinstance(value, sp.Expr) else None
+
     def _add_runs(self) -> None:
         """Scalars that were assigned in a row and are one vector."""
         long = {sp.Symbol(k, real=True): v for k, v in self.cut.items() if v is not None}
@@ -834,10 +882,10 @@ class _Interpreter:
     def _add_elements(self) -> None:
         """m00 to m22, m11 to m33, and a.x to c.z: nine names that are one matrix."""
         grids: dict[str, _Grid] = {}
-        for name, last in self.state.values.items():
-            value = self.cut.get(name) if name in self.cut else last
+        for name in self.state.values:
+            value = self._full(name)
             match = _ROW.fullmatch(self.paths.get(name, name)) or _ELEMENT.fullmatch(name)
-            if match and isinstance(value, sp.Expr):
+            if match and value is not None:
                 place = (int(match["row"], 36) % 10, int(match["column"], 36))
                 if match["column"] in _AXES:
                     place = ("abc".index(match["row"]), _AXES[match["column"]])
@@ -863,7 +911,7 @@ class _Interpreter:
         unread = tuple(
             (symbol.name, self.lines.get(symbol.name, line))
             for symbol in sorted((whole or matrix).free_symbols & computed, key=str)
-            if self.cut[symbol.name] is None
+            if self.cut[symbol.name] is None and symbol.name not in self.components
         )
         whole = spelled_out(whole, computed) if whole is not None and whole != matrix else None
         self.formulas.append(
@@ -951,7 +999,7 @@ class _Interpreter:
         else:
             parts = (_part(node, f) for f in ("consequence", "condition", "alternative"))
             first, condition, other = (part or node for part in parts)
-        constant = _BOOLEANS.get(_text(condition).strip("()"))
+        constant = _truth(condition)
         if constant is None:
             raise self.unreadable(condition, "is a condition that decides on it")
         return self.read(first if constant else other)
@@ -1073,6 +1121,8 @@ class _Interpreter:
         is_value = owner is not None and (base == "?" or isinstance(held, _Grid))
         if owner is not None and (is_value or (name in _OF_NUMBERS and len(nodes) < _arity(name))):
             return self._method(node, name, [owner, *nodes], options)
+        if name in ("asin", "acos") and nodes:
+            nodes = [_unclamped(nodes[0])]
         if name in _OF_NUMBERS and nodes:
             return called(_OF_NUMBERS[name], [self.read(each) for each in nodes])
         is_letter = name in [*"cstCST"] and len(nodes) == 1
@@ -1151,6 +1201,14 @@ class _Interpreter:
         if inner.results != 1 or result is None or inner.inputs - set(names) or inner.cut:
             raise self.unreadable(node)
         return sized(result)
+
+
+def _unclamped(node: Node) -> Node:
+    """x of clamp(x, -1, 1): the arc sine of any other number does not exist."""
+    arguments = _arguments(node) if node.type in _CALLS else []
+    bounds = [re.sub(r"\.0*|[\sfF]|T\(|\)|static_cast<\w+>\(", "", _text(a)) for a in arguments[1:]]
+    is_clamp = bounds == ["-1", "1"] and _CLAMPS.search(_callee(node))
+    return arguments[0] if is_clamp else node
 
 
 _DECLARED = {

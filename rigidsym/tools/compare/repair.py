@@ -204,15 +204,15 @@ def _entry(reading: Meaning, place: tuple[int, int]) -> Repair:
     formula, goal = reading.formula, reading.goal
     wanted = goal.values[:, [place[0]], [place[1]]][:, None]
     groups, row = _groups(reading), formula[place[0], :]
-    variants = [
+    changes = [
         (kind, after, column)
         for column in (range(formula.cols) if goal.rates else [place[1]])
         if row[column].count_ops() <= _MOST_OPERATIONS
-        for kind, after in set(_variants(row[column], groups))
+        for kind, after in set(variants(row[column], groups))
     ]
     back = {meant: symbol for symbol, meant in reading.names.items()}
     kind, after, column = "entry", goal.matrix[place].xreplace(back), place[1]
-    for variant in sorted(variants, key=_cost):
+    for variant in sorted(changes, key=_cost):
         _, entry, j = variant
         tried = row[:, :j].row_join(sp.Matrix([[entry]])).row_join(row[:, j + 1 :])
         if agreement(reading.numbers(tried if goal.rates else sp.Matrix([[entry]])), wanted).all():
@@ -224,7 +224,7 @@ def _entry(reading: Meaning, place: tuple[int, int]) -> Repair:
     changed[place] = after
     words = f"entry {_from1(place)}: {before} should be {after}"
     if kind != "entry":
-        words += f" ({_KINDS[kind]})"
+        words += f" ({_WORDS[kind]})"
     return Repair(
         kind=kind,
         words=words,
@@ -236,7 +236,7 @@ def _entry(reading: Meaning, place: tuple[int, int]) -> Repair:
     )
 
 
-_KINDS = {
+_WORDS = {
     "sign": "a sign",
     "sine and cosine": "sine and cosine exchanged",
     "index": "another name",
@@ -246,10 +246,11 @@ _KINDS = {
     "product": "a factor missing or too many",
     "term": "a term too many",
 }
+KINDS = list(_WORDS)  # the likeliest first
 
 
 def _cost(variant: tuple[str, sp.Expr, int]) -> tuple[int, int, str]:
-    return list(_KINDS).index(variant[0]), variant[1].count_ops(), str(variant[1])
+    return KINDS.index(variant[0]), variant[1].count_ops(), str(variant[1])
 
 
 def _groups(reading: Meaning) -> list[list[sp.Symbol]]:
@@ -263,7 +264,7 @@ def _groups(reading: Meaning) -> list[list[sp.Symbol]]:
 _SWAPPED = {sp.sin: sp.cos, sp.cos: sp.sin}
 
 
-def _variants(
+def variants(
     expression: sp.Expr, groups: Sequence[Sequence[sp.Symbol]], *, inside: bool = False
 ) -> Iterator[tuple[str, sp.Expr]]:
     """(kind, changed expression) for each single change."""
@@ -272,7 +273,7 @@ def _variants(
     for place, part in enumerate(expression.args):
         if expression.is_Pow and place == 1:
             continue
-        for kind, changed in _variants(part, groups, inside=inside or is_function):
+        for kind, changed in variants(part, groups, inside=inside or is_function):
             parts = [*expression.args[:place], changed, *expression.args[place + 1 :]]
             yield kind, expression.func(*parts)
 
@@ -291,15 +292,15 @@ def _here(
     if expression.is_Mul:
         if expression.args[0].is_even:  # two equal terms that have become one
             half = expression / 2
-            variants = _variants(half, groups, inside=inside)
-            yield from (("index", half + each) for kind, each in variants if kind == "index")
+            for kind, changed in variants(half, groups, inside=inside):
+                yield from [("index", half + changed)] if kind == "index" else []
         for factor in expression.args:
             yield numbers if factor.is_number else "product", expression / factor
     if expression.is_Add:
         yield from (("term", expression - term) for term in expression.args)
     if expression.is_Pow and expression.exp == 2:
         yield "square", expression.base
-        for kind, changed in _variants(expression.base, groups, inside=inside):
+        for kind, changed in variants(expression.base, groups, inside=inside):
             yield kind, expression.base * changed
     if inside:
         return

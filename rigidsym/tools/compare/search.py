@@ -11,6 +11,7 @@ import sympy as sp
 
 from rigidsym.errors import ExpressionError, RequestError
 from rigidsym.models.rotation import RotationModel
+from rigidsym.tools.compare.angles import angles_identified, are_angles
 from rigidsym.tools.compare.matching import Comparison, identified
 from rigidsym.tools.compare.program import GRAMMARS, Formula, program_formulas
 from rigidsym.tools.compare.targets import KnownQuantity
@@ -36,8 +37,9 @@ class FormulaInFile:
     def __str__(self) -> str:
         name = f"{self.name}: " if self.name else ""
         text = self.comparison.text() if self.comparison else f"not read, since {self.reason}"
-        for computed, line in self.unread:
-            text += f"; the value of {computed} in line {line} is not read"
+        if self.unread:
+            places = (f"{computed} in line {line}" for computed, line in self.unread)
+            text += f"; not read: {', '.join(places)}"
         return f"{self.path}:{self.line}: {name}{text}"
 
     def record(self) -> dict[str, Any]:
@@ -86,6 +88,11 @@ def search(path: Path, also: Sequence[KnownQuantity] = ()) -> Iterator[FormulaIn
             yield FormulaInFile(path, line, name, None, formula.reason)
             continue
         try:
+            if are_angles(formula.whole or formula.matrix):
+                comparison = angles_identified(formula.whole or formula.matrix)
+                if comparison.found is not None:
+                    yield FormulaInFile(path, line, name, comparison, unread=formula.unread)
+                continue
             comparison = identified(formula.whole or formula.matrix, also=also, is_in_program=True)
             if comparison.found is None and formula.whole:  # a long value may be an angle
                 comparison = identified(formula.matrix, also=also, is_in_program=True)
@@ -138,6 +145,8 @@ def _may_be_known(matrix: sp.ImmutableMatrix) -> bool:
     """Whether it is worth comparing: sines and cosines, or products of four or more names."""
     if not 0 < len(matrix.free_symbols) <= _MOST_SYMBOLS:
         return False
+    if are_angles(matrix):
+        return True
     if matrix.shape not in ((3, 3), (3, 1), (4, 1), (4, 3), (3, 4), (4, 4)):
         return False
     count = sum(entry.has(*_TRIGONOMETRIC) for entry in matrix)

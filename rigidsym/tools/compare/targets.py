@@ -14,6 +14,7 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
+from rigidsym.algebra.evaluate import Floats, Unknown, evaluate
 from rigidsym.errors import ExpressionError
 from rigidsym.motion import Motion, derive
 
@@ -44,12 +45,7 @@ def _points() -> Array:
 
 _TABLE = _points()
 _ROWS = {"q": 0, "q_dot": 1, "q_ddot": 2, "omega_space": 3, "omega_body": 3}
-_NUMPY: dict[Any, Any] = {
-    **{sp.sin: np.sin, sp.cos: np.cos, sp.tan: np.tan, sp.cot: lambda x: 1 / np.tan(x)},
-    **{sp.exp: np.exp, sp.log: np.log, sp.Abs: np.abs, sp.atan2: np.arctan2},
-    **{sp.asin: np.arcsin, sp.acos: np.arccos, sp.atan: np.arctan},
-    **{sp.sinh: np.sinh, sp.cosh: np.cosh, sp.tanh: np.tanh},
-}
+_FLOATS = Floats(np)
 
 _AXES = [a + b + c for a, b, c in product("XYZ", repeat=3) if a != b != c]
 _THREE = (*_AXES, *(axes.lower() for axes in _AXES))
@@ -234,30 +230,13 @@ def _rotations(matrix: sp.MatrixBase, quantity: str) -> tuple[str, ...]:
 
 def evaluated(matrix: sp.MatrixBase, values: Values) -> Array:
     """A matrix at all points, (points, rows, columns); `values` remembers all parts."""
-    with np.errstate(all="ignore"):
-        entries = [np.broadcast_to(_value(entry, values), (POINTS,)) for entry in matrix]
+    try:
+        with np.errstate(all="ignore"):
+            parts = [evaluate(entry, _FLOATS, values) for entry in matrix]
+    except Unknown as error:
+        raise ExpressionError(f"{error.part} has no value here") from None
+    entries = [np.broadcast_to(part, (POINTS,)) for part in parts]
     return np.stack(entries, axis=-1).reshape(POINTS, *matrix.shape)
-
-
-def _value(expression: sp.Expr, values: Values) -> Any:
-    if expression not in values:
-        values[expression] = _computed(expression, values)
-    return values[expression]
-
-
-def _computed(expression: sp.Expr, values: Values) -> Any:
-    if expression.is_number:
-        return float(expression)
-    parts = [_value(part, values) for part in expression.args]
-    if expression.is_Add:
-        return sum(parts)
-    if expression.is_Mul:
-        return np.prod(np.broadcast_arrays(*parts), axis=0)
-    if expression.is_Pow:
-        return np.asarray(parts[0], float) ** parts[1]
-    if expression.func in _NUMPY:
-        return _NUMPY[expression.func](*parts)
-    raise ExpressionError(f"{expression} has no value here")
 
 
 def agreement(one: Array, other: Array) -> NDArray[np.bool_]:
