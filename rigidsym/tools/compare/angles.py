@@ -22,6 +22,7 @@ import numpy as np
 import sympy as sp
 
 from rigidsym.tools.compare.matching import Comparison
+from rigidsym.tools.compare.program import ELEMENT
 from rigidsym.tools.compare.repair import KINDS, Repair, variants
 from rigidsym.tools.compare.targets import (
     POINTS,
@@ -36,7 +37,6 @@ _INVERSE = (sp.atan2, sp.asin, sp.acos, sp.atan)
 _CLOSE = 1e-9  # of points of the unit circle
 _ENOUGH = 4  # points at which a formula for some rotations only must agree
 _FLAT = {9: ([*range(9)], False), 16: ([0, 1, 2, 4, 5, 6, 8, 9, 10], True)}  # places, by columns
-_ENTRY = re.compile(r"(?P<stem>.*?)_?(?P<row>[0-3])_?(?P<column>[0-3])")
 _ROW = re.compile(r"(?P<stem>.*?)_?(?P<row>[abc])_(?P<column>[xyz])")  # Matrix3 of ArduPilot
 
 
@@ -215,7 +215,7 @@ def _readings(symbols: list[sp.Symbol]) -> Iterator[tuple[str, Values]]:
 
 def _entries(names: list[str]) -> Iterator[list[tuple[int, int]]]:
     """The row and column of each name, counted from 0: m00, m_1_1, a_x, or m_8 of a flat array."""
-    for pattern in (_ROW, _ENTRY):
+    for pattern in (_ROW, ELEMENT):
         matches = [match for name in names if (match := pattern.fullmatch(name))]
         if len(matches) < len(names) or len({match["stem"] for match in matches}) != 1:
             continue

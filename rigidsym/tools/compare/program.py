@@ -3,18 +3,20 @@
 It runs each function with symbols in place of numbers, and keeps the value of each name: an
 expression, a matrix, or the reason why the value is unreadable. A condition or a loop makes every
 name unreadable that it may change. A new name for an unreadable or a long value becomes an input of
-the formulas after it. A formula is therefore only read if the program computes the same. Two
-tables give the meaning of each type of node in every language. Programs are parsed, never run.
+the formulas after it. A formula is therefore only read if the program computes the same.
+`nodes.toml` gives the meaning of each type of node. Programs are parsed, never run.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+import tomllib
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from importlib import import_module
 from itertools import product
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
@@ -74,16 +76,8 @@ _BY_COLUMNS = re.compile(r"from_?col|^f?mat3x?3?$|column_stack|hstack|^c_$", re.
 _HARMLESS = re.compile(
     r"print|disp|log|assert|plot|show|append|push|test|check|expect", re.IGNORECASE
 )
-_ELEMENT = re.compile(r"(?P<stem>.*?)_?(?P<row>[0-3])_?(?P<column>[0-3])")
+ELEMENT = re.compile(r"(?P<stem>.*?)_?(?P<row>[0-3])_?(?P<column>[0-3])")
 _ROW = re.compile(r"(?P<stem>(?:.*\.)?)(?P<row>[abc])\.(?P<column>[xyz])")  # Matrix3 of ArduPilot
-_CASTS = {
-    *("T", "Scalar", "float", "double", "Real", "real", "real_t", "float32", "float64", "f32"),
-    *("f64", "Float", "Double", "btScalar", "static_cast", "Type", "Number", "number", "S"),
-}
-_SAME = {"copy", "clone", "astype", "to", "reshape", "view", "eval", "noalias", "finished", "into"}
-_STACKS = {"stack", "vstack", "row_stack", "block", "concatenate"}
-_ZEROS, _UNITS = {"zeros", "Zero"}, {"eye", "identity", "Identity"}
-_ENTRIES = {"at", "coeff", "coeffRef", "get", "operator()", "element"}  # of a matrix: at(0, 1)
 _AXES = {"x": 0, "y": 1, "z": 2, "X": 0, "Y": 1, "Z": 2}
 _BOOLEANS = {"0": False, "false": False, "False": False, "1": True, "true": True, "True": True}
 _BEYOND_ONE = re.compile(r"(?:\w+(?:\.|::))?f?absf?\([\w.>-]+\)>=?1(?:\.0*)?f?")
@@ -98,60 +92,15 @@ _OPERATORS = ("+", "-", "*", "/", "**", "@")
 _ELEMENTWISE = {".*": "%", "./": "/", ".^": "**", "^": "**"}  # MATLAB
 _FLAT = {9: (3, 3), 12: (4, 3), 16: (4, 4)}
 
-# Types of nodes
-
-_FUNCTIONS = {
-    *("function_definition", "function_declaration", "method_definition", "arrow_function"),
-    *("function_expression", "function_item", "method_declaration", "constructor_declaration"),
-    *("local_function_statement", "lambda", "lambda_expression", "closure_expression"),
+_NODES: dict[str, dict[str, set[str]]] = {
+    title: {name: set(words.split()) for name, words in table.items()}
+    for title, table in tomllib.loads(
+        Path(__file__).with_name("nodes.toml").read_text(encoding="utf-8")
+    ).items()
 }
-_NAMES = {
-    *("identifier", "namespace_identifier", "field_identifier", "property_identifier"),
-    *("this", "self", "super"),
-}
-_MEMBERS = {
-    *("attribute", "field_expression", "member_expression", "member_access_expression"),
-    *("field_access", "qualified_identifier", "scoped_identifier"),
-}
-_SUBSCRIPTS = {
-    *("subscript", "subscript_expression", "index_expression", "array_access"),
-    "element_access_expression",
-}
-_CALLS = {
-    *("call", "call_expression", "function_call", "invocation_expression", "method_invocation"),
-    *("object_creation_expression", "new_expression", "compound_literal_expression"),
-}
-_LISTS = {
-    *("list", "tuple", "expression_list", "initializer_list", "array", "array_expression"),
-    *("tuple_expression", "array_initializer", "initializer_expression", "argument_list"),
-}
-_WRAPPED = {  # nodes whose only meaning is their child
-    *("parenthesized_expression", "parenthesis", "condition_clause", "as_expression", "argument"),
-    *("non_null_expression", "reference_expression", "array_creation_expression", "else_clause"),
-    *("cast_expression", "type_cast_expression", "static_cast_expression"),
-}
-_ASSIGNMENTS = {
-    *("assignment", "assignment_expression", "let_declaration"),
-    *("init_declarator", "variable_declarator"),
-}
-_UPDATES = {
-    *("augmented_assignment", "augmented_assignment_expression", "compound_assignment_expr"),
-    "update_expression",
-}
-_TUPLES = {
-    *("pattern_list", "tuple_pattern", "array_pattern", "multioutput_variable", "tuple"),
-    *("list_pattern", "structured_binding_declarator"),
-}
-_LOOPS = {
-    *("for_statement", "while_statement", "do_statement", "for_in_statement", "for_range_loop"),
-    *("for_expression", "while_expression", "loop_expression", "foreach_statement"),
-    "enhanced_for_statement",
-}
-_ELIFS = {"elif_clause", "elseif_clause"}
-_CASES = {
-    *("case_statement", "switch_case", "switch_default", "case_clause", "match_arm"),
-    *("switch_section", "switch_block_statement_group", "switch_rule", "otherwise_clause"),
-}
+_STATEMENTS, _EXPRESSIONS = _NODES["statements"], _NODES["expressions"]
+_PARTS, _WORDS = _NODES["parts"], _NODES["words"]
+_CALLS, _ASSIGNMENTS = _EXPRESSIONS["call"], _STATEMENTS["assignment"]
 _LEFT = ("left", "declarator", "name", "pattern", "argument")
 _INNER = ("argument", "value", "object", "expression", "array", "scope", "path")
 
@@ -172,6 +121,12 @@ class Formula:
     unread: tuple[tuple[str, int], ...] = ()  # names in it whose values are not read, and lines
 
 
+def _unflattened(matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
+    """Nine, twelve or sixteen numbers in a row are a matrix."""
+    is_flat = 1 in matrix.shape and len(matrix) in _FLAT
+    return matrix.reshape(*_FLAT[len(matrix)]) if is_flat else matrix
+
+
 @dataclass
 class _Grid:
     """A matrix that may still change, or that is filled entry by entry."""
@@ -183,9 +138,7 @@ class _Grid:
 
     @classmethod
     def of(cls, line: int, matrix: sp.MatrixBase, name: str = "") -> _Grid:
-        """Nine, twelve or sixteen numbers in a row are a matrix."""
-        if 1 in matrix.shape and len(matrix) in _FLAT:
-            matrix = matrix.reshape(*_FLAT[len(matrix)])
+        matrix = _unflattened(matrix)
         places = ((i, j) for i in range(matrix.rows) for j in range(matrix.cols))
         return cls(line, name, {place: matrix[place] for place in places}, is_whole=True)
 
@@ -202,9 +155,8 @@ class _Grid:
         width = len({index[-1] for index in grid}) if widths == {2} else 1
         if height * width != len(grid):
             return None
-        matrix = sp.ImmutableMatrix(height, width, [self.entries[index] for index in grid])
-        is_flat = 1 in matrix.shape and len(matrix) in _FLAT
-        return matrix.reshape(*_FLAT[len(matrix)]) if is_flat else matrix
+        entries = [self.entries[index] for index in grid]
+        return _unflattened(sp.ImmutableMatrix(height, width, entries))
 
 
 @dataclass
@@ -234,7 +186,7 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
     root = _parser(GRAMMARS[suffix]).parse(text.encode()).root_node
     if root.descendant_count > _MOST_NODES:
         return []
-    functions = [node for node in _below([root]) if node.type in _FUNCTIONS]
+    functions = [node for node in _below([root]) if node.type in _PARTS["function"]]
     by_name = {name: node for node in functions if (name := _function_name(node))}
     is_numpy = suffix == ".py" and bool(_NUMPY.search(text)) and not _MATRICES.search(text)
     program = _Program(suffix, by_name, is_numpy)
@@ -262,8 +214,7 @@ def formula_matrix(text: str) -> sp.ImmutableMatrix:
         if value is not None:
             program = _Program(suffix, is_numpy=is_numpy, is_formula=True)
             matrix = as_matrix(_Interpreter(program).read(value))
-            is_array = "{" in text and 1 in matrix.shape and len(matrix) in _FLAT  # float R[9] =
-            return matrix.reshape(*_FLAT[len(matrix)]) if is_array else matrix
+            return _unflattened(matrix) if "{" in text else matrix  # float R[9] = {...}
     text = text if len(text) < 200 else f"{text[:200]}..."
     raise ExpressionError(f"not a formula in Python, C, MATLAB or LaTeX: {text}")
 
@@ -349,7 +300,7 @@ def _operator(node: Node) -> str:
 
 def _targets(left: Node) -> list[Node]:
     """The parts of a tuple on the left, or the only one."""
-    return _children(left) if left.type in _TUPLES else [left]
+    return _children(left) if left.type in _PARTS["tuple"] else [left]
 
 
 def _left(node: Node) -> Node | None:
@@ -374,22 +325,24 @@ def _path(node: Node | None, depth: int = 0) -> str | None:
     """self.phi, p->x, q.w() and ns::name with dots, or None for other expressions."""
     if node is None or depth > _LONGEST_PATH:
         return None
-    if node.type in _NAMES:
+    if node.type in _PARTS["name"]:
         return _text(node)
     inner, member, children = None, "", _children(node)
-    if node.type in _WRAPPED and len(children) == 1:
+    if node.type in _EXPRESSIONS["wrapped"] and len(children) == 1:
         return _path(children[0], depth + 1)
     if node.type == "pointer_expression" and _operator(node) == "*":
         return _path(children[-1], depth + 1)
-    if node.type in _MEMBERS:
+    if node.type in _EXPRESSIONS["member_of"]:
         inner, member = _member(node)
         member = "" if member == "T" else member
     elif node.type == "call_expression" and not _arguments(node):
         function = _part(node, "function")
-        if function is not None and function.type in _MEMBERS:
+        if function is not None and function.type in _EXPRESSIONS["member_of"]:
             inner, member = _member(function)
             member = member if member in "wxyz" or ANGLE.fullmatch(member) else ""
-    elif node.type in _SUBSCRIPTS and (key := re.search(r"""\[["'](\w+)["']\]$""", _text(node))):
+    elif node.type in _EXPRESSIONS["subscript"] and (
+        key := re.search(r"""\[["'](\w+)["']\]$""", _text(node))
+    ):
         inner, member = node.named_children[0], key[1]  # state["phi"]
     base = _path(inner, depth + 1)
     return f"{base}.{member}" if base and re.fullmatch(r"\w+", member) else None
@@ -402,7 +355,7 @@ def _callee(node: Node) -> str:
     if node.type == "method_invocation":
         inner, name = _part(node, "object"), _text(_part(node, "name"))
         return f"{_path(inner) or '?'}.{name}" if inner is not None else name
-    if function is not None and function.type in _MEMBERS:
+    if function is not None and function.type in _EXPRESSIONS["member_of"]:
         inner, name = _member(function)
         return f"{_path(inner) or '?'}.{name}"
     return re.sub(r"<.*>", "", _text(function)).replace("::", ".")
@@ -452,7 +405,7 @@ class _Interpreter:
     def formulas_of(self, scope: Node) -> list[Formula]:
         """Run a function, or the whole file; the formulas in it."""
         self.untracked = {n for n, is_late in self._writes(scope.named_children) if is_late}
-        is_function = scope.type in _FUNCTIONS
+        is_function = scope.type in _PARTS["function"]
         body = (_part(scope, "body") or _child(scope, "block")) if is_function else scope
         if is_function:
             self.inputs |= set(self.parameters(scope))
@@ -480,16 +433,21 @@ class _Interpreter:
         names = []
         for child in _children(outer) if outer is not None else ():
             part: Node | None = child
-            while part is not None and part.type not in _NAMES:
+            while part is not None and part.type not in _PARTS["name"]:
                 part = _part(part, "declarator", "pattern", "name") or next(
-                    (c for c in part.named_children if c.type in _NAMES or "declar" in c.type), None
+                    (
+                        c
+                        for c in part.named_children
+                        if c.type in _PARTS["name"] or "declar" in c.type
+                    ),
+                    None,
                 )
             names += [self.name_of_path(_text(part))] if part is not None else []
         return names
 
     def run(self, node: Node) -> None:
         """One statement, or all statements in a block."""
-        if self.state.is_over or node.type in _FUNCTIONS:
+        if self.state.is_over or node.type in _PARTS["function"]:
             return
         self.depth += 1
         if self.depth > _DEEPEST_BLOCK:
@@ -649,14 +607,16 @@ class _Interpreter:
         stack = [(node, False) for node in nodes]
         while stack:
             node, is_inner = stack.pop()
-            is_inner |= node.type in _FUNCTIONS
+            is_inner |= node.type in _PARTS["function"]
             names: set[str] = set()
-            is_late = is_inner and self.program.suffix != ".py" and node.type not in _DECLARED
+            is_late = (
+                is_inner and self.program.suffix != ".py" and node.type not in _PARTS["declaration"]
+            )
             if node.type == "named_expression":
                 names, is_late = {self.written(node)}, True
             elif node.type in ("nonlocal_statement", "global_statement"):
                 names, is_late = {_text(child) for child in node.named_children}, True
-            elif node.type in _ASSIGNMENTS or node.type in _UPDATES:
+            elif node.type in _ASSIGNMENTS or node.type in _STATEMENTS["update"]:
                 left = _left(node)
                 names = set(map(self.written, _targets(left))) if left is not None else set()
             elif node.type in _CALLS or node.type == "binary_expression":
@@ -680,9 +640,11 @@ class _Interpreter:
         branches: list[tuple[Node | None, Node]] = []
         if first is not None:
             branches.append((_part(node, "condition"), first))
-        branches += [(_part(c, "condition"), c) for c in node.named_children if c.type in _ELIFS]
+        branches += [
+            (_part(c, "condition"), c) for c in node.named_children if c.type in _PARTS["elif"]
+        ]
         other = _child(node, "else_clause") or _part(node, "alternative")
-        if other is not None and other.type not in _ELIFS:
+        if other is not None and other.type not in _PARTS["elif"]:
             branches.append((None, other))
         possible, is_sure = [], False
         for condition, block in branches:
@@ -696,7 +658,7 @@ class _Interpreter:
 
     def _choice(self, node: Node) -> None:
         """switch, match."""
-        cases = [each for each in _below(_children(node)) if each.type in _CASES]
+        cases = [each for each in _below(_children(node)) if each.type in _PARTS["case"]]
         known = self.state.values.keys() | self.inputs
         self._either(cases, node, ends_at_break=True)
         for name, _ in self._writes([node]):  # a break inside of a case ends it early
@@ -732,7 +694,7 @@ class _Interpreter:
         paths = [] if is_sure else [before]
         for block in blocks:
             self.state, self.scalars = start.copy(), []
-            condition = _part(block, "condition") if block.type in _ELIFS else None
+            condition = _part(block, "condition") if block.type in _PARTS["elif"] else None
             is_simple = block.type in STATEMENTS and block != node
             for child in [block] if is_simple else _children(block):
                 if child != condition:
@@ -811,14 +773,9 @@ class _Interpreter:
 
     def _comma(self, node: Node) -> None:
         """a = b, c = d; or R << a, b, c."""
-        parts, rest = [], node
-        while rest.type == "comma_expression":
-            left, right = _part(rest, "left"), _part(rest, "right")
-            if left is None or right is None:
-                return
-            parts.append(left)
-            rest = right
-        parts.append(rest)
+        parts = [node]
+        while parts[-1].type == "comma_expression":
+            parts[-1:] = _children(parts[-1])
         if parts[0].type == "binary_expression":
             self._stream(parts[0], parts[1:])
         else:
@@ -884,7 +841,7 @@ class _Interpreter:
         grids: dict[str, _Grid] = {}
         for name in self.state.values:
             value = self._full(name)
-            match = _ROW.fullmatch(self.paths.get(name, name)) or _ELEMENT.fullmatch(name)
+            match = _ROW.fullmatch(self.paths.get(name, name)) or ELEMENT.fullmatch(name)
             if match and value is not None:
                 place = (int(match["row"], 36) % 10, int(match["column"], 36))
                 if match["column"] in _AXES:
@@ -948,7 +905,7 @@ class _Interpreter:
         finally:
             self.depth -= 1
 
-    def _inner(self, node: Node) -> Any:
+    def _wrapped(self, node: Node) -> Any:
         children = _children(node)
         if not children:
             raise self.unreadable(node)
@@ -1012,7 +969,7 @@ class _Interpreter:
         """The matrix and the indices, from 0, of m[0][1], m(0, 1), m.at(0, 1)."""
         places: list[int | None] = []
         inner, path = node, None
-        while inner.type in _SUBSCRIPTS:
+        while inner.type in _EXPRESSIONS["subscript"]:
             base = _part(inner, *_INNER) or inner.named_children[0]
             indices = [c for c in _children(inner) if c != base]
             if len(indices) == 1 and indices[0].type.endswith("argument_list"):
@@ -1026,10 +983,10 @@ class _Interpreter:
             base_path, method = path.rpartition(".")[::2]
             places = [self._whole_number(each) for each in _arguments(inner)]
             is_function = path in self.program.functions and not self.is_matlab
-            words = (*FUNCTION_NAMES, *OF_MATRICES, *_CASTS)
+            words = (*FUNCTION_NAMES, *OF_MATRICES, *_WORDS["cast"])
             if is_function or len(places) > 2 or (method and name_of(method) in words):
                 return None
-            path = base_path if method in _ENTRIES else path
+            path = base_path if method in _WORDS["entry"] else path
         from0 = tuple(place - self.is_matlab for place in places if place is not None)
         if not path or not from0 or len(from0) < len(places) or min(from0) < 0:
             return None
@@ -1115,7 +1072,7 @@ class _Interpreter:
         nodes = [each for each in _arguments(node) if each.type != "keyword_argument"]
         options = [_text(each) for each in _arguments(node) if each.type == "keyword_argument"]
         function = _part(node, "function")
-        is_member = function is not None and function.type in _MEMBERS
+        is_member = function is not None and function.type in _EXPRESSIONS["member_of"]
         owner = _member(function)[0] if function and is_member else _part(node, "object")
         held = self.state.values.get(self.name_of_path(base)) if base else None
         is_value = owner is not None and (base == "?" or isinstance(held, _Grid))
@@ -1128,8 +1085,8 @@ class _Interpreter:
         is_letter = name in [*"cstCST"] and len(nodes) == 1
         if self.program.is_formula and (name in OF_MATRICES or is_letter):
             return called(name, [self.read(each) for each in nodes])
-        is_listed = len(nodes) == 1 or (nodes and nodes[0].type in _LISTS)
-        if (last in _CASTS and len(nodes) == 1) or (
+        is_listed = len(nodes) == 1 or (nodes and nodes[0].type in _EXPRESSIONS["list"])
+        if (last in _WORDS["cast"] and len(nodes) == 1) or (
             (name in WRAPPERS or last in ("tensor", "array")) and is_listed
         ):
             return self.read(nodes[0])
@@ -1137,9 +1094,9 @@ class _Interpreter:
             return called("dot", [self.read(each) for each in nodes])
         if last == "transpose" and len(nodes) == 1:
             return as_matrix(self.read(nodes[0])).T
-        if last in _ZEROS | _UNITS:
+        if last in _WORDS["zeros"] | _WORDS["unit"]:
             return self._filled(node, last, nodes)
-        if last in _STACKS or _BY_COLUMNS.search(last):
+        if last in _WORDS["stack"] or _BY_COLUMNS.search(last):
             return self._stacked(node, last, nodes, options)
         if last in self.program.functions and base in ("", "self", "this"):
             return self._inline(node, last, nodes)
@@ -1149,7 +1106,7 @@ class _Interpreter:
         """A method of a matrix or a number; its object is the first of `nodes`."""
         if name in ("transpose", "transposed", "t", "T"):
             return as_matrix(self.read(nodes[0])).T
-        if name in _SAME and not any(option.startswith("order") for option in options):
+        if name in _WORDS["same"] and not any(option.startswith("order") for option in options):
             return self.read(nodes[0])
         if name in ("dot", "matmul", "mul", "multiply") and len(nodes) == 2:
             return called("dot", [self.read(each) for each in nodes])
@@ -1161,11 +1118,13 @@ class _Interpreter:
 
     def _filled(self, node: Node, name: str, nodes: Sequence[Node]) -> Any:
         sizes = [int(digits) for digits in re.findall(r"\d+", " ".join(map(_text, nodes)))] or [3]
-        is_column = len(sizes) == 1 and bool(nodes) and name in _ZEROS and not self.is_matlab
+        is_column = (
+            len(sizes) == 1 and bool(nodes) and name in _WORDS["zeros"] and not self.is_matlab
+        )
         height, width = sizes[0], 1 if is_column else sizes[-1]
         if not {height, width} <= {3, 4} or _VECTOR_NAME.search(_callee(node)):
             raise self.unreadable(node)
-        filled = sp.zeros(height, width) if name in _ZEROS else sp.eye(height, width)
+        filled = sp.zeros(height, width) if name in _WORDS["zeros"] else sp.eye(height, width)
         return sp.ImmutableMatrix(filled)
 
     def _stacked(self, node: Node, name: str, nodes: Sequence[Node], options: Sequence[str]) -> Any:
@@ -1173,7 +1132,7 @@ class _Interpreter:
         if axis and not re.fullmatch(r"(axis|dim)=(0|1|-1|-2)", axis):
             raise self.unreadable(node)
         by_columns = bool(_BY_COLUMNS.search(name)) ^ axis.endswith(("=1", "=-1"))
-        is_listed = len(nodes) == 1 and nodes[0].type in _LISTS
+        is_listed = len(nodes) == 1 and nodes[0].type in _EXPRESSIONS["list"]
         matrix = self.read(nodes[0]) if is_listed else rows([self.read(each) for each in nodes])
         return as_matrix(matrix).T if by_columns and 1 not in as_matrix(matrix).shape else matrix
 
@@ -1211,12 +1170,6 @@ def _unclamped(node: Node) -> Node:
     return arguments[0] if is_clamp else node
 
 
-_DECLARED = {
-    "let_declaration",
-    "init_declarator",
-    "variable_declarator",
-    "assignment",
-}  # names of their own
 _OF_NUMBERS = {
     **{name: name for name in FUNCTIONS},
     **{"pow": "pow", "powi": "pow", "powf": "pow", "sq": "sq"},
@@ -1227,36 +1180,10 @@ def _arity(name: str) -> int:
     return 2 if _OF_NUMBERS[name] in ("pow", "atan2") else 1
 
 
-STATEMENTS: dict[str, Callable[[_Interpreter, Node], None]] = {
-    **dict.fromkeys(_ASSIGNMENTS, _Interpreter._assignment),
-    **dict.fromkeys(_UPDATES, _Interpreter._update),
-    **dict.fromkeys(("if_statement", "if_expression"), _Interpreter._branches),
-    **dict.fromkeys(_LOOPS, _Interpreter._loop),
-    **dict.fromkeys(("switch_statement", "switch_expression"), _Interpreter._choice),
-    **dict.fromkeys(("match_statement", "match_expression"), _Interpreter._choice),
-    **dict.fromkeys(("except_clause", "catch_clause"), _Interpreter._maybe),
-    **dict.fromkeys(("raise_statement", "throw_statement"), _Interpreter._end),
-    **dict.fromkeys(("break_statement", "continue_statement"), _Interpreter._end),
-    **dict.fromkeys(("return_statement", "return_expression"), _Interpreter._end),
-    "goto_statement": _Interpreter._end,
-    **dict.fromkeys(_CALLS, _Interpreter._call_statement),
-    "binary_expression": _Interpreter._stream,
-    "comma_expression": _Interpreter._comma,
-}
-EXPRESSIONS: dict[str, Callable[[_Interpreter, Node], Any]] = {
-    **dict.fromkeys(_WRAPPED, _Interpreter._inner),
-    **dict.fromkeys(_LISTS, _Interpreter._list),
-    **dict.fromkeys(_SUBSCRIPTS, _Interpreter._subscript),
-    **dict.fromkeys(_CALLS, _Interpreter._call),
-    **dict.fromkeys(_MEMBERS, _Interpreter._member_of),
-    **dict.fromkeys(("unary_operator", "unary_expression"), _Interpreter._unary),
-    "prefix_unary_expression": _Interpreter._unary,
-    **dict.fromkeys(("binary_operator", "binary_expression"), _Interpreter._binary),
-    **dict.fromkeys(("conditional_expression", "ternary_expression"), _Interpreter._conditional),
-    "pointer_expression": _Interpreter._pointer,
-    "matrix": _Interpreter._matlab_matrix,
-    "postfix_operator": _Interpreter._transposed,
-}
+STATEMENTS, EXPRESSIONS = (
+    {kind: getattr(_Interpreter, f"_{name}") for name, kinds in table.items() for kind in kinds}
+    for table in (_STATEMENTS, _EXPRESSIONS)
+)
 
 
 def _same(one: Any, other: Any) -> bool:

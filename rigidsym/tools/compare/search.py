@@ -28,24 +28,30 @@ class FormulaInFile:
     """A formula, where it begins, and what it is or why it cannot be read."""
 
     path: Path
-    line: int
-    name: str
-    comparison: Comparison | None
+    formula: Formula
+    comparison: Comparison | None = None
     reason: str = ""
-    unread: tuple[tuple[str, int], ...] = ()  # names in it whose values are not read, and lines
+
+    @property
+    def line(self) -> int:
+        return self.formula.line
+
+    @property
+    def name(self) -> str:
+        return self.formula.name
 
     def __str__(self) -> str:
         name = f"{self.name}: " if self.name else ""
         text = self.comparison.text() if self.comparison else f"not read, since {self.reason}"
-        if self.unread:
-            places = (f"{computed} in line {line}" for computed, line in self.unread)
+        if self.formula.unread:
+            places = (f"{computed} in line {line}" for computed, line in self.formula.unread)
             text += f"; not read: {', '.join(places)}"
         return f"{self.path}:{self.line}: {name}{text}"
 
     def record(self) -> dict[str, Any]:
         """For JSON."""
         place = {"path": str(self.path), "line": self.line, "name": self.name}
-        place |= {"unread": dict(self.unread)}
+        place |= {"unread": dict(self.formula.unread)}
         return place | (self.comparison.record() if self.comparison else {})
 
 
@@ -83,24 +89,22 @@ def search(path: Path, also: Sequence[KnownQuantity] = ()) -> Iterator[FormulaIn
     """The formulas of a file that are a known quantity or close to one, and unreadable ones."""
     text = path.read_text(encoding="utf-8", errors="replace")
     for formula in formulas(text, path.suffix):
-        line, name = formula.line, formula.name
         if formula.matrix is None:
-            yield FormulaInFile(path, line, name, None, formula.reason)
+            yield FormulaInFile(path, formula, reason=formula.reason)
             continue
+        whole = formula.whole or formula.matrix
         try:
-            if are_angles(formula.whole or formula.matrix):
-                comparison = angles_identified(formula.whole or formula.matrix)
-                if comparison.found is not None:
-                    yield FormulaInFile(path, line, name, comparison, unread=formula.unread)
-                continue
-            comparison = identified(formula.whole or formula.matrix, also=also, is_in_program=True)
+            if are_angles(whole):
+                comparison = angles_identified(whole)
+            else:
+                comparison = identified(whole, also=also, is_in_program=True)
             if comparison.found is None and formula.whole:  # a long value may be an angle
                 comparison = identified(formula.matrix, also=also, is_in_program=True)
         except ExpressionError as error:  # a function without values
-            yield FormulaInFile(path, line, name, None, str(error))
+            yield FormulaInFile(path, formula, reason=str(error))
             continue
         if comparison.found is not None or comparison.is_reflection:
-            yield FormulaInFile(path, line, name, comparison, unread=formula.unread)
+            yield FormulaInFile(path, formula, comparison)
 
 
 def formulas(text: str, suffix: str) -> Iterator[Formula]:
