@@ -170,7 +170,8 @@ def rot(roll, pitch):  # R = [[1, 2]]
     return B @ A
 """
     found = [
-        (f.line, f.name, f.comparison.found.rotation) for f in found_in(tmp_path, "a.py", text)
+        (f.formula.line, f.formula.name, f.comparison.found.rotation)
+        for f in found_in(tmp_path, "a.py", text)
     ]
     assert found == [
         (4, "A", "x(angle)"),
@@ -246,7 +247,7 @@ def test_a_wrong_entry_of_a_matrix_filled_entry_by_entry_is_named(tmp_path):
     text = "\n".join(f"  m[{place}] = {entry};" for place, entry in entries.items())
     (found,) = found_in(tmp_path, "a.cpp", text)
     (repair,) = found.comparison.repairs
-    assert (repair.place, repair.kind, found.line) == ((2, 3), "sign", 1)
+    assert (repair.place, repair.kind, found.formula.line) == ((2, 3), "sign", 1)
 
 
 PUBLIC = {  # formula: (rotation, quantity, kind and entry of the error)
@@ -473,7 +474,7 @@ CHANGED = {  # statements of a function of phi and psi: what its matrix is
 def test_all_that_happens_to_a_name_before_its_use_is_followed(tmp_path, text, said):
     file = tmp_path / "a.py"
     file.write_text(f"import numpy as np\ndef f(phi, psi, flip, n, self):\n    {text}\n")
-    said_of_all = [str(each) for each in search(file) if each.line > 2 and each.comparison]
+    said_of_all = [str(each) for each in search(file) if each.formula.line > 2 and each.comparison]
     whole = [each for each in said_of_all if "of z(" in each]
     assert bool(whole) == bool(said), whole
     assert all(said in each for each in whole)

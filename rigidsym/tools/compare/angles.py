@@ -35,7 +35,6 @@ from rigidsym.tools.compare.targets import (
 
 _INVERSE = (sp.atan2, sp.asin, sp.acos, sp.atan)
 _CLOSE = 1e-9  # of points of the unit circle
-_ENOUGH = 4  # points at which a formula for some rotations only must agree
 _FLAT = {9: ([*range(9)], False), 16: ([0, 1, 2, 4, 5, 6, 8, 9, 10], True)}  # places, by columns
 _ROW = re.compile(r"(?P<stem>.*?)_?(?P<row>[abc])_(?P<column>[xyz])")  # Matrix3 of ArduPilot
 
@@ -130,12 +129,6 @@ def angles_identified(formula: sp.ImmutableMatrix) -> Comparison:
         repair = _repair(formula, each, int(wrong[0])) if len(wrong) == 1 else None
         if repair is not None:
             return Comparison(formula=formula, asked=None, found=repair.goal, repairs=(repair,))
-    for each in candidates:
-        together = each.agrees.all(axis=1)
-        if together.sum() >= _ENOUGH and each.agrees.all(axis=0).sum() == 2:
-            point = int(together.argmin())
-            place = ", ".join(f"{s} = {each.values[s][point]:.4g}" for s in _symbols(formula))
-            return Comparison(formula=formula, asked=None, found=each.known(), counterexample=place)
     return Comparison(formula=formula, asked=None)
 
 
@@ -175,7 +168,7 @@ def _symbols(formula: sp.MatrixBase) -> list[sp.Symbol]:
 
 
 def _candidates(formula: sp.ImmutableMatrix) -> Iterator[_Candidate]:
-    """Conventions of which at least two angles agree at all points, or three at some."""
+    """Conventions of which at least two angles agree."""
     for quantity, values in _readings(_symbols(formula)):
         with np.errstate(all="ignore"):
             numbers = np.exp(1j * evaluated(formula, values)[..., 0])

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from itertools import chain, islice
 from typing import Any
 
 import sympy as sp
 
 from rigidsym.errors import AlgebraError, DerivationError, ModelError
+from rigidsym.system.resources import environment
 from rigidsym.tools.compare.language import spelled_out
 from rigidsym.tools.compare.repair import (
     Meaning,
@@ -86,38 +87,18 @@ class Comparison:
 
     def text(self) -> str:
         """The findings in sentences."""
-        proof = "proved" if self.is_proved else f"to nine digits at {POINTS} points, not proved"
-        if self.is_reflection:
-            head = f"not {self.asked}: " if self.asked else ""
-            return f"{head}a reflection, since det = −1; a rotation has det = 1"
-        if self.found is None:
-            head = f"not {self.asked}" if self.asked else "not a known quantity"
-            return f"{head}, and no single change makes it one ({self._read()})"
-        what = f"{self.found}{self._in_names()}"
-        if self.arrangement:
-            what += f", {self.arrangement}"
-        if self.counterexample:
-            return f"not {what} for all angles: wrong at {self.counterexample}"
-        if not self.repairs:
-            return f"{'equal to' if self.is_proved else 'agrees with'} {what} ({proof})"
-        changes = "; ".join(repair.words for repair in self.repairs)
-        corrected = f"{proof} with {'this change' if len(self.repairs) == 1 else 'these changes'}"
-        if self.asked is None:
-            return f"close to {what}: {changes}; {corrected}"
-        if self.as_it_stands:
-            changes += f"; as it stands this is {self.as_it_stands.described}"
-        is_changed = self.asked.quantity == self.found.quantity
-        is_changed &= self.asked.rotation == self.found.rotation
-        ending = f"; {corrected}" if is_changed else f"{self._in_names()} ({proof})"
-        return f"not {self.asked}: {changes}{ending}"
-
-    def _read(self) -> str:
-        """What was read, and what was expected if that has another shape."""
-        wanted = self.asked.matrix.shape if self.asked else self.formula.shape
-        expected = f"; expected {in_words(wanted)}" if wanted != self.formula.shape else ""
-        names = sorted(str(s) for s in self.formula.free_symbols if not isinstance(s, sp.Dummy))
-        where = f" in {', '.join(names)}" if names else ""
-        return f"read as {in_words(self.formula.shape)}{where}{expected}"
+        asked, found = self.asked, self.found
+        symbols = self.formula.free_symbols
+        facts: dict[str, Any] = {each.name: getattr(self, each.name) for each in fields(self)}
+        facts |= {
+            "calls": self._in_names(),
+            "points": POINTS,
+            "is_as_asked": found and asked and str(asked) == str(found),
+            "shape": in_words(self.formula.shape),
+            "expected": in_words(asked.matrix.shape if asked else self.formula.shape),
+            "names": sorted(str(s) for s in symbols if not isinstance(s, sp.Dummy)),
+        }
+        return str(environment().get_template("compare/comparison.txt.jinja").render(facts))
 
     def _in_names(self) -> str:
         """The coordinates as the user calls them, in the order of the rotation."""

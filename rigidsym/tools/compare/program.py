@@ -917,9 +917,8 @@ class _Interpreter:
         return rows([self.read(child) for child in _children(node)])
 
     def _matlab_matrix(self, node: Node) -> Any:
-        read = [[self.read(c) for c in _children(r)] for r in _children(node) if r.type == "row"]
-        lines = [rows(cells) for cells in read]
-        return rows([line.T if line.cols == 1 else line for line in lines])
+        lines = [row for row in _children(node) if row.type == "row"]
+        return rows([rows([self.read(cell) for cell in _children(row)]) for row in lines])
 
     def _transposed(self, node: Node) -> Any:
         return as_matrix(self.read(_children(node)[0])).T
@@ -930,13 +929,10 @@ class _Interpreter:
         return self.read(_children(node)[-1])
 
     def _unary(self, node: Node) -> Any:
+        if _operator(node) not in ("+", "-"):
+            raise self.unreadable(node)
         value = self.read(_children(node)[-1])
-        match _operator(node):
-            case "+":
-                return value
-            case "-":
-                return combined("*", MINUS, value)
-        raise self.unreadable(node)
+        return value if _operator(node) == "+" else combined("*", MINUS, value)
 
     def _binary(self, node: Node) -> Any:
         left, right = _children(node)[0], _children(node)[-1]
@@ -1043,11 +1039,9 @@ class _Interpreter:
 
     def _member_of(self, node: Node) -> Any:
         inner, member = _member(node)
-        return (
-            as_matrix(self.read(inner)).T
-            if inner is not None and member == "T"
-            else self._named_node(node)
-        )
+        if inner is None or member != "T":
+            return self._named_node(node)
+        return as_matrix(self.read(inner)).T
 
     def name_of_path(self, path: str) -> str:
         """The name of a path, short if no other path of the function has it."""

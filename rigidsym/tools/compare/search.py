@@ -32,25 +32,17 @@ class FormulaInFile:
     comparison: Comparison | None = None
     reason: str = ""
 
-    @property
-    def line(self) -> int:
-        return self.formula.line
-
-    @property
-    def name(self) -> str:
-        return self.formula.name
-
     def __str__(self) -> str:
-        name = f"{self.name}: " if self.name else ""
+        name = f"{self.formula.name}: " if self.formula.name else ""
         text = self.comparison.text() if self.comparison else f"not read, since {self.reason}"
         if self.formula.unread:
             places = (f"{computed} in line {line}" for computed, line in self.formula.unread)
             text += f"; not read: {', '.join(places)}"
-        return f"{self.path}:{self.line}: {name}{text}"
+        return f"{self.path}:{self.formula.line}: {name}{text}"
 
     def record(self) -> dict[str, Any]:
         """For JSON."""
-        place = {"path": str(self.path), "line": self.line, "name": self.name}
+        place = {"path": str(self.path), "line": self.formula.line, "name": self.formula.name}
         place |= {"unread": dict(self.formula.unread)}
         return place | (self.comparison.record() if self.comparison else {})
 
