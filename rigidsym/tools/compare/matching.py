@@ -200,7 +200,10 @@ def identified(
     return Comparison(formula=formula, asked=None)
 
 
-_SIGNS = {"+": "-", "-": "+", "sin": "cos", "cos": "sin"}
+_IN_TEXT = {  # the text after a change, and its kind
+    **{"+": ("-", "sign"), "-": ("+", "sign"), "**2": ("", "square"), "^2": ("", "square")},
+    **{"sin": ("cos", "sine and cosine"), "cos": ("sin", "sine and cosine")},
+}
 
 
 def in_text(
@@ -209,24 +212,16 @@ def in_text(
     """The comparison after one change in the text, such as a sign between matrices."""
     goal = unknown.asked
     assert goal is not None
-    for match in re.finditer(r"[+-]|\b(?:sin|cos)\b|(?:\*\*|\^)2\b", text):
-        changed = text[: match.start()] + _SIGNS.get(match[0], "") + text[match.end() :]
-        formula = spelled_out(read(changed))
+    for match in re.finditer(r"[+-](?!>)|\b(?:sin|cos)\b|(?:\*\*|\^)2\b", text):
+        after, kind = _IN_TEXT[match[0]]
+        start, end = text[: match.start()], text[match.end() :]
+        formula = spelled_out(read(start + after + end))
         for names in readings(formula, goal):
             reading = Meaning.of(formula, goal, names)
             if reading.agrees(formula, goal):
-                before = text[max(0, match.start() - 15) : match.end() + 15]
-                after = changed[max(0, match.start() - 15) : match.end() + 15]
-                words = f"...{before}... should be ...{after}..."
-                kind = {
-                    "s": "sine and cosine",
-                    "c": "sine and cosine",
-                    "*": "square",
-                    "^": "square",
-                }
-                change = Repair(
-                    kind=kind.get(match[0][0], "sign"), words=words, formula=formula, goal=goal
-                )
+                parts = (f"...{start[-15:]}{each}{end[:15]}..." for each in (match[0], after))
+                words = " should be ".join(parts)
+                change = Repair(kind=kind, words=words, formula=formula, goal=goal)
                 return replace(_made(reading, (change,), goal), formula=unknown.formula)
     return unknown
 
