@@ -15,6 +15,7 @@ import rigidsym as rs
 from rigidsym.algebra.codec import codec_for
 from rigidsym.algebra.integrate import Integrator, integration_codec
 from rigidsym.errors import AlgebraError, BodyError, QuantityError
+from rigidsym.mechanics import particles as particle_sums
 from rigidsym.mechanics.mass.bodies import body_of, solid
 from rigidsym.mechanics.mass.moments import moments_of
 from rigidsym.mechanics.mass.principal import principal_of
@@ -417,6 +418,15 @@ def test_axes_too_long_for_use_are_left_out_and_the_moments_proved():
     assert rs.derive("ZXZ", ["principal_moments"], body=whole).is_proved
     expected = np.linalg.eigvalsh(numbers(whole.inertia, values))
     assert np.allclose(sorted(numbers(found.moments, values).ravel()), expected)
+
+
+def test_a_summand_without_the_mass_of_the_particle_has_no_sum():
+    codec = codec_for([*particle_sums.SYMBOLS, M, A, C, sp.Rational(1, 2)])
+    sums = particle_sums.sums_of_body(codec, M, sp.ImmutableMatrix(sp.diag(A, A, C)))
+    mass, (x, y, z) = particle_sums.MASS, particle_sums.IN_BODY
+    assert sums.of(codec.encode(mass * (x**2 + y**2 + 3 * z))) == codec.encode(C)
+    with pytest.raises(AlgebraError, match="without the mass of the particle"):
+        sums.of(codec.encode(x**2))
 
 
 # Refusals
