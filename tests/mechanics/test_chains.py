@@ -211,3 +211,9 @@ def test_a_chain_whose_neighbours_may_share_an_axis_says_that_its_singularities_
     found = rs.derive(model, ["rate_matrix_space"]).singularities
     assert not found.is_solved
     assert found.points == ()
+
+
+def test_a_long_chain_is_shown_in_vector_form():
+    motion = rs.derive(chain(12), ["rotation_matrix", "rate_matrix_space"])
+    assert "R = P₁₂, Pₖ = Pₖ₋₁ Tₖ" in motion.step("rotation_matrix").text()
+    assert "W = (n₁, P₁ n₂, …, P₁₁ n₁₂)" in motion.step("rate_matrix_space").text()
