@@ -48,6 +48,7 @@ class CompareOptions(RotationOptions):
         "--require", metavar="N", default=0, help="In programs: fail if fewer formulas are known."
     )
     why: bool = option("--why", help="In programs: list what could not be read, with the reason.")
+    github: bool = option("--github", help="In programs: print faults as GitHub annotations.")
     as_json: bool = option("--json", help="Print the results as JSON.")
 
     def motion(self) -> Motion | str | None:
@@ -85,9 +86,9 @@ def command(context: click.Context, paths: tuple[Path, ...], options: CompareOpt
     angle or frame, the order of turns, a missing square. Answers are proved wherever possible.
 
     PATHS are files or folders. In Python, C, C++, JavaScript, TypeScript, MATLAB, Rust, Java and
-    C#, `compare` finds rotation matrices, rate matrices, quaternion kinematics, and the mass and
-    Coriolis matrices of quadcopters. Source code is parsed, never run. The exit code is 1 if a
-    formula is wrong or not as expected.
+    C#, `compare` finds rotation matrices, rate matrices, quaternion kinematics, Euler angles, and
+    the mass and Coriolis matrices of quadcopters. Source code is parsed, never run. The exit code
+    is 1 if a formula is wrong or not as expected.
     """
     if (options.formula is None) == (not paths):
         raise click.UsageError("expected --formula TEXT, or paths")
@@ -118,10 +119,15 @@ def _searched(paths: Sequence[Path], options: CompareOptions) -> bool:
                         message(str(formula))
                     continue
                 fault = disappointment(comparison, axes, is_active=options.expect_active)
-                is_wrong |= bool(fault) or not (comparison.is_equal or comparison.is_reflection)
+                is_fault = bool(fault) or not (comparison.is_equal or comparison.is_reflection)
+                is_wrong |= is_fault
                 records.append(formula.record() | {"unexpected": fault or None})
-                if not options.as_json:
-                    click.echo(f"{formula}; {fault}" if fault else str(formula))
+                text = f"{formula}; {fault}" if fault else str(formula)
+                if options.github and is_fault:
+                    where = f"file={formula.path},line={formula.formula.line}"
+                    click.echo(f"::error {where}::{text.replace('%', '%25')}")
+                elif not options.as_json:
+                    click.echo(text)
             if progress is not None:
                 progress((place + 1) / len(files))
     if options.as_json:

@@ -454,6 +454,8 @@ CHANGED = {  # statements of a function of phi and psi: what its matrix is
     f"{SINES}\n    if flip: return None\n    return {TURN}": "equal to",
     f"{SINES}\n    if 0: s = -s\n    return {TURN}": "equal to",
     f"{SINES}\n    for k in range(n): s = -s\n    return {TURN}": "",
+    f"{SINES}\n    for k in range(n):\n        s = -s\n        break\n    return {TURN}": "",
+    f"{SINES}; M = {TURN}\n    if flip: M[0, 1] = s\n    return M": "",
     f"{SINES}\n    s += 0.1\n    return {TURN}": "(a term too many)",
     f"(phi := -phi); {SINES}; return {TURN}": "",
     f"{SINES}; M = {TURN}; M *= -1; M[0] = [0, 0, 1]; return M": "",
@@ -565,6 +567,8 @@ def test_another_convention_than_the_expected_one_is_a_fault(tmp_path):
     assert other.exit_code == 1
     assert "expected the axes z x z in the product of rotations, not z y x" in other.stdout
     assert run(b, "--expect-active").exit_code == 1
+    annotation = run(b, "--expect-active", "--github").stdout
+    assert annotation.startswith(f"::error file={b},line=2::{b}:2: returned: equal to")
 
 
 def test_what_cannot_be_read_is_listed_with_its_reason(tmp_path):
