@@ -96,16 +96,11 @@ def _then_about(axis: int, turn: Array, cosine: Array, sine: Array) -> Array:
 
 
 def times(p: Array, q: Array) -> Array:
-    """The product of quaternions (4, ...), scalar first."""
-    (a, b, c, d), (w, x, y, z) = p, q
-    return np.stack(
-        np.broadcast_arrays(
-            a * w - b * x - c * y - d * z,
-            a * x + b * w + c * z - d * y,
-            a * y - b * z + c * w + d * x,
-            a * z + b * y - c * x + d * w,
-        )
-    )
+    """The product of quaternions (4, ...), scalar first: v·w is taken off the scalar, v×w added."""
+    a, v, b, w = p[0], p[1:], q[0], q[1:]
+    scalar = a * b - np.sum(v * w, axis=0)
+    vector = a * w + b * v + np.cross(v, w, axis=0)
+    return np.concatenate([scalar[None], vector])
 
 
 def conjugate(q: Array) -> Array:
@@ -131,36 +126,25 @@ def angle_between(p: Array, q: Array, axis: int = -1) -> Array:
 
 
 def quaternion_of(matrix: Array) -> Array:
-    """The quaternion of the rotation nearest to each matrix: (..., 3, 3) to (..., 4).
+    """The quaternion of the rotation nearest to each matrix M: (..., 3, 3) to (..., 4).
 
-    For a rotation, K + 1 is 4 q qᵀ; for numbers with rounding or noise, the eigenvector of K to
-    its largest eigenvalue is that of the nearest rotation (Horn 1987). The longest column of
-    K + 1 is close to it; multiplying by K + 1 twice more leaves an error of third order.
+    Horn (1987): K has the blocks tr M, the vector of M - Mᵀ, and M + Mᵀ - tr M. For a rotation,
+    K + 1 is 4 q qᵀ; for numbers with rounding or noise, the eigenvector of K to its largest
+    eigenvalue is that of the nearest rotation. The longest column of K + 1 is close to it;
+    multiplying by K + 1 twice more leaves an error of third order.
     """
-    projector = _horn(matrix) + np.eye(4)
+    transpose = matrix.swapaxes(-1, -2)
+    trace = np.trace(matrix, axis1=-2, axis2=-1)
+    k = np.empty((*matrix.shape[:-2], 4, 4))
+    k[..., 0, 0] = trace
+    k[..., 0, 1:] = k[..., 1:, 0] = (matrix - transpose)[..., [2, 0, 1], [1, 2, 0]]
+    k[..., 1:, 1:] = matrix + transpose - trace[..., None, None] * np.eye(3)
+    projector = k + np.eye(4)
     longest = np.argmax(np.diagonal(projector, axis1=-2, axis2=-1), axis=-1)
     q = np.take_along_axis(projector, longest[..., None, None], axis=-1)
     for _ in range(2):
         q = projector @ q
     return np.asarray(q[..., 0] / np.linalg.norm(q[..., 0], axis=-1, keepdims=True))
-
-
-def _horn(m: Array) -> Array:
-    """Horn's symmetric matrix K of a 3x3 matrix; its trace is zero."""
-    k = np.empty((*m.shape[:-2], 4, 4))
-    xx, yy, zz = m[..., 0, 0], m[..., 1, 1], m[..., 2, 2]
-    k[..., 0, 0] = xx + yy + zz
-    k[..., 1, 1], k[..., 2, 2], k[..., 3, 3] = xx - yy - zz, yy - xx - zz, zz - xx - yy
-    for (row, column), entry in {
-        (0, 1): m[..., 2, 1] - m[..., 1, 2],
-        (0, 2): m[..., 0, 2] - m[..., 2, 0],
-        (0, 3): m[..., 1, 0] - m[..., 0, 1],
-        (1, 2): m[..., 0, 1] + m[..., 1, 0],
-        (1, 3): m[..., 0, 2] + m[..., 2, 0],
-        (2, 3): m[..., 1, 2] + m[..., 2, 1],
-    }.items():
-        k[..., row, column] = k[..., column, row] = entry
-    return k
 
 
 _FRAMES = ("space", "body")
