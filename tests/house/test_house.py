@@ -151,8 +151,8 @@ def test_kernels_import_their_representation_and_not_the_reverse():
 
 BUDGETS = {  # what was reached; who makes the house smaller lowers them
     "files": 223,
-    "lines of code": 32_870,
-    "lines of tests": 26_500,
+    "lines of code": 32_920,
+    "lines of tests": 26_580,
     "lines of benchmarks": 2_700,
 }
 
