@@ -456,6 +456,7 @@ CHANGED = {  # statements of a function of phi and psi: what its matrix is
     f"{SINES}\n    for k in range(n): s = -s\n    return {TURN}": "",
     f"{SINES}\n    for k in range(n):\n        s = -s\n        break\n    return {TURN}": "",
     f"{SINES}; M = {TURN}\n    if flip: M[0, 1] = s\n    return M": "",
+    f"{SINES}\n    for k in range(n):\n        M = {TURN}\n        s = -s\n    return c": "",
     f"{SINES}\n    s += 0.1\n    return {TURN}": "(a term too many)",
     f"(phi := -phi); {SINES}; return {TURN}": "",
     f"{SINES}; M = {TURN}; M *= -1; M[0] = [0, 0, 1]; return M": "",
@@ -480,6 +481,15 @@ def test_all_that_happens_to_a_name_before_its_use_is_followed(tmp_path, text, s
     whole = [each for each in said_of_all if "of z(" in each]
     assert bool(whole) == bool(said), whole
     assert all(said in each for each in whole)
+
+
+def test_an_inner_function_may_change_a_name_at_any_time(tmp_path):
+    for middle, count in (("", 1), ("const flip = () => { s = -s; }; flip();", 0)):
+        text = (
+            f"function f(a) {{ let c = Math.cos(a), s = Math.sin(a); {middle}"
+            " return [[c, -s, 0], [s, c, 0], [0, 0, 1]]; }"
+        )
+        assert len(found_in(tmp_path, "a.js", text)) == count
 
 
 def test_a_choice_may_end_at_any_break(tmp_path):
