@@ -107,7 +107,8 @@ def _what_is_wrong(text: str) -> str:
         return "expected three axes such as ZXZ (intrinsic), zxz (extrinsic) or 313 (intrinsic)"
     place = 1 if letters[0] == letters[1] else 2
     here = [sequence for sequence in EULER_SEQUENCES if sequence.isupper() == letters.isupper()]
-    return f"{text[place]} follows {text[place - 1]}; {offer(letters, here)}"
+    follows = f"{text[place]} follows {text[place - 1]}"
+    return f"consecutive axes must differ: {follows}; {offer(letters, here)}"
 
 
 def _order_in_words(manner: str, turns: Sequence[Turn]) -> str:

@@ -223,7 +223,7 @@ def test_wrong_data_has_every_fault_at_once():
         "name: missing; expected a text in quotes",
         'note: expected a list of names such as ["tex"], got the number 1',
         "rotations[0].sequence: 'ZZX' is not an Euler sequence: consecutive axes must differ: Z "
-        "follows Z",
+        "follows Z; did you mean ZYZ or ZYX?",
         "rotations[1].seqence: unknown key; did you mean sequence?",
         'rotations[1].sequence: missing; expected a sequence such as "ZXZ", or a list of sequences',
     ]
