@@ -40,7 +40,7 @@ _NAMES = (
     "angle_off SIZE_MAX PTRDIFF_MAX size_t ptrdiff_t uint32_t uint64_t TILE MOST SHUFFLED SHUFFLE "
     "INLINED STREAMED STREAM STREAMf END_STREAM HELPER CLONES CLONE "
     "CLONED expected apart REAL WORD FN LIT EPS LEAST EVALUATE SIN_COS TILED GIVEN "
-    "PARAMETERS ORDERS in given count"
+    "PARAMETERS ORDERS AHEAD prefetch in given count"
 )
 RESERVED = numpy.RESERVED | {*_NAMES.split()}  # the Python module's, too
 _WIDTH = 92
