@@ -41,8 +41,9 @@ CHAINS = (
 
 
 def turned(axis: list[Any], angle: Any) -> Any:
-    """The turn about a unit axis, as the exponential of its matrix."""
-    return mp.expm(angle * hat(axis))
+    """The turn about a unit axis, by Rodrigues' formula."""
+    skew = hat(axis)
+    return mp.eye(3) + mp.sin(angle) * skew + (1 - mp.cos(angle)) * skew * skew
 
 
 def by_quaternion(w: Any, x: Any, y: Any, z: Any) -> Any:
@@ -106,7 +107,10 @@ WITNESSES: dict[str, tuple[Curve, Build]] = {
         lambda t: normalised(nearly_straight(4)(t), 4),
         lambda q: by_quaternion(*q),
     ),
-    "axis_angle": (lambda t: normalised(nearly_straight(4)(t), 3), lambda q: turned(q[:3], q[3])),
+    "axis_angle": (
+        lambda t: normalised(nearly_straight(4)(t), 3),
+        lambda q: mp.expm(q[3] * hat(q[:3])),
+    ),
     "rotation_vector": (nearly_straight(3), lambda q: mp.expm(hat(q))),
     "gibbs_vector": (nearly_straight(3), by_cayley),
     "modified_rodrigues": (nearly_straight(3), lambda q: by_cayley(q) ** 2),
@@ -129,7 +133,7 @@ def constants_of(motion: Motion) -> dict[sp.Expr, Any]:
 
 
 def chain_witness(motion: Motion) -> Build:
-    """R of a chain: a product of exponentials of its axes."""
+    """R of a chain: a product of turns about its axes."""
 
     def build(q: list[Any]) -> Any:
         values = dict(zip(motion.model.coordinates, q, strict=True))
@@ -143,12 +147,32 @@ def chain_witness(motion: Motion) -> Build:
     return build
 
 
+@cache
+def way_of(text: str) -> tuple[Curve, Build]:
+    """A path q(t), and R(q) by other means than those of the package."""
+    size = len(motion_of(text).model.coordinates)
+    if text in EULER_SEQUENCES:
+        return paths(1, size=size)[0].at, lambda q: rotation(text, q)
+    return WITNESSES.get(text) or (nearly_straight(size), chain_witness(motion_of(text)))
+
+
+@cache
+def turning(text: str) -> tuple[Any, Any, Any]:
+    """R and its first two derivatives at t = 0, from body to space components."""
+    curve, build = way_of(text)
+
+    def at(t: Any) -> Any:
+        return build(list(curve(t)))
+
+    return at(mp.mpf(0)), derivative(at), derivative(at, order=2)
+
+
 @dataclass(frozen=True, eq=False)
 class Moving:
     """A rotation on its way along a path q(t), seen at t = 0.
 
     Its attributes are the quantities of the derivation by their names, with the numbers of this
-    moment put into the printed expressions. `turned(t)` is the same rotation, built by other means.
+    moment put into the printed expressions. `turned` is the same rotation, built by other means.
     """
 
     text: str
@@ -161,37 +185,29 @@ class Moving:
     def motion(self) -> Motion:
         return motion_of(self.text, passive=self.passive)
 
-    @cached_property
-    def _way(self) -> tuple[Curve, Build]:
-        size = len(self.motion.model.coordinates)
-        if self.text in EULER_SEQUENCES:
-            curve = paths(1, size=size)[0].at
-            return curve, lambda q: rotation(self.text, q)
-        return WITNESSES.get(self.text) or (nearly_straight(size), chain_witness(self.motion))
+    @property
+    def turned(self) -> Any:
+        """R, from body to space components."""
+        return turning(self.text)[0]
 
-    def turned(self, t: Any) -> Any:
-        """R at a time, from body to space components."""
-        curve, build = self._way
-        return build(list(curve(t)))
-
-    @cached_property
+    @property
     def turned_rate(self) -> Any:
-        return derivative(self.turned)
+        return turning(self.text)[1]
 
-    @cached_property
+    @property
     def turned_velocity(self) -> Any:
         """Ω in space components, from the numerical derivative of R."""
-        return unhat(self.turned_rate * self.turned(0).T)
+        return unhat(self.turned_rate * self.turned.T)
 
-    @cached_property
+    @property
     def turned_acceleration(self) -> Any:
-        second = derivative(self.turned, order=2)
-        return unhat(second * self.turned(0).T + self.turned_rate * self.turned_rate.T)
+        second = turning(self.text)[2]
+        return unhat(second * self.turned.T + self.turned_rate * self.turned_rate.T)
 
     @cached_property
     def values(self) -> dict[sp.Expr, Any]:
         """The constants, and the coordinates with their rates and second derivatives."""
-        return values_on(self.motion, self._way[0])
+        return values_on(self.motion, way_of(self.text)[0])
 
     def argument(self, name: str) -> Any:
         return mp.matrix([self.values[symbol] for symbol in self.motion.argument(name).symbols])

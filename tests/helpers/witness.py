@@ -107,13 +107,16 @@ def paths(count: int, size: int = 3, seed: int = 1) -> tuple[Path, ...]:
 
 
 def derivative(function: Callable[[Any], Matrix], order: int = 1) -> Matrix:
-    """Numerical derivative at t = 0 of a function with matrix values, entry by entry."""
-    shape = function(mp.mpf(0))
-    result = mp.matrix(shape.rows, shape.cols)
-    for i in range(shape.rows):
-        for j in range(shape.cols):
-            result[i, j] = mp.diff(lambda t, i=i, j=j: function(t)[i, j], 0, order)
-    return result
+    """The first or second derivative at t = 0 of a function with matrix values.
+
+    By central differences: with steps of 10⁻²⁵ at 110 digits, 50 digits are left.
+    """
+    with mp.workdps(110):
+        step = mp.mpf(10) ** -25
+        before, after = function(-step), function(step)
+        if order == 1:
+            return (after - before) / (2 * step)
+        return (after - 2 * function(mp.mpf(0)) + before) / step**2
 
 
 def values_along(coordinates: Iterable[sp.Expr], path: Path, t: Any = 0) -> dict[sp.Expr, Any]:

@@ -51,7 +51,7 @@ def test_the_matrix_does_not_mirror(m: Moving):
 @every_rotation
 def test_the_matrix_is_the_rotation_of_its_name(m: Moving):
     """R = R_z(φ) R_x(θ) R_z(ψ) for ZXZ, R x = q x q* for a quaternion q, ..."""
-    assert agree(m.R, m.turned(0))
+    assert agree(m.R, m.turned)
 
 
 @every_rotation
