@@ -8,7 +8,8 @@ import pytest
 import sympy as sp
 
 import rigidsym as rs
-from helpers.witness import mp
+from helpers.parametrisations import turned as about
+from helpers.witness import evaluate, mp, number
 from rigidsym.algebra.codec import codec_for
 from rigidsym.mechanics.derive import derive
 from rigidsym.mechanics.kinematics import chain as chain_of_turns
@@ -118,68 +119,14 @@ def test_what_grows_exponentially_if_it_is_multiplied_out_is_not(text):
     assert len(motion.kernels().source) < 200_000
 
 
-# At 50 digits
-
-
-def value_of(expression, known):
-    """A number of 50 digits for sums, products, powers, sines and cosines of what is known."""
-    if expression in known:
-        return known[expression]
-    if expression.is_Rational:
-        return mp.mpf(int(expression.p)) / int(expression.q)
-    parts = [value_of(argument, known) for argument in expression.args]
-    operations = {sp.Add: lambda *p: mp.fsum(p), sp.Mul: lambda *p: mp.fprod(p), sp.Pow: mp.power}
-    return {**operations, sp.sin: mp.sin, sp.cos: mp.cos}[expression.func](*parts)
-
-
-def matrix_of(expression, known):
-    return mp.matrix([[value_of(entry, known) for entry in row] for row in expression.tolist()])
-
-
-def hat(v):
-    return mp.matrix([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
-
-
-def turned_by(model, known):
-    """R, W, Ω and dΩ/dt, turn by turn, by Rodrigues' formula."""
+def rates_of(model, known):
+    """R, and W whose columns are the axes in space, at 50 digits."""
     turned, rates = mp.eye(3), mp.matrix(3, len(model.turns))
-    velocity, acceleration = mp.matrix(3, 1), mp.matrix(3, 1)
     for place, turn in enumerate(model.turns):
-        direction = matrix_of(sp.Matrix(turn.direction), known)
-        axis, angle = turned * direction, known[turn.angle]
-        rates[:, place] = axis
-        rate, second = (known.get(turn.angle.diff("t", k), 0) for k in (1, 2))
-        acceleration += second * axis + rate * hat(velocity) * axis
-        velocity += rate * axis
-        skew = hat(direction)
-        turned = turned * (mp.eye(3) + mp.sin(angle) * skew + (1 - mp.cos(angle)) * skew * skew)
-    return turned, rates, velocity, acceleration
-
-
-@pytest.mark.campaign
-@pytest.mark.parametrize(("count", "oblique"), [(5, 0), (6, 3), (9, 4), (20, 0), (20, 5)])
-def test_all_quantities_are_true_at_fifty_digits(count, oblique):
-    model = chain(count, oblique=oblique)
-    derivation, generator = derive(model), random.Random(7)
-    assert derivation.is_proved
-    known = {}
-    for argument in derivation.arguments:
-        known |= {symbol: mp.mpf(generator.randint(-900, 900)) / 300 for symbol in argument.symbols}
-    for definition in derivation.definitions:
-        known[definition.symbol] = value_of(definition.expression, known)
-    turned, rates, velocity, acceleration = turned_by(model, known)
-    for name, expected in (
-        ("rotation_matrix", turned),
-        ("angular_velocity_space", velocity),
-        ("angular_velocity_body", turned.T * velocity),
-        ("rate_matrix_space", rates),
-        ("rate_matrix_body", turned.T * rates),
-        ("inverse_rate_matrix_space", rates.T * mp.inverse(rates * rates.T)),
-        ("angular_acceleration_space", acceleration),
-        ("angular_acceleration_body", turned.T * acceleration),
-    ):
-        found = matrix_of(derivation.step(name).expression, known)
-        assert mp.norm(found - expected) < TOLERANCE, name
+        direction = evaluate(sp.Matrix(turn.direction), known)
+        rates[:, place] = turned * direction
+        turned = turned * about(direction, known[turn.angle])
+    return turned, rates
 
 
 @pytest.mark.parametrize(
@@ -193,17 +140,16 @@ def test_a_long_chain_is_singular_where_all_axes_lie_in_one_plane_and_not_nearby
     for shifted in (None, *point.places):
         known = {q: mp.mpf(generator.randint(-300, 300)) / 100 for q in coordinates}
         for p in point.places:
-            half_turns = generator.choice((0, 1)) + p.value / sp.pi
-            known[p.coordinate] = value_of(half_turns, {}) * mp.pi
+            known[p.coordinate] = number(p.value + generator.choice((0, 1)) * sp.pi, {})
         if shifted is not None:
             known[shifted.coordinate] += mp.mpf("0.3")
-        turned, rates, *_ = turned_by(motion.model, known)
+        turned, rates = rates_of(motion.model, known)
         if shifted is not None:
             assert mp.det(rates * rates.T) > 1e-9
             continue
-        assert mp.norm(matrix_of(point.lost_axis_space, known).T * rates) < TOLERANCE
-        assert mp.norm(matrix_of(point.lost_axis_body, known).T * turned.T * rates) < TOLERANCE
-        assert mp.norm(rates * matrix_of(point.null_rates, known)) < TOLERANCE
+        assert mp.norm(evaluate(point.lost_axis_space, known).T * rates) < TOLERANCE
+        assert mp.norm(evaluate(point.lost_axis_body, known).T * turned.T * rates) < TOLERANCE
+        assert mp.norm(rates * evaluate(point.null_rates, known)) < TOLERANCE
 
 
 def test_a_chain_whose_neighbours_may_share_an_axis_says_that_its_singularities_are_open():
