@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 import subprocess
 import sys
 
@@ -14,7 +13,6 @@ import rigidsym as rs
 from rigidsym.commands.cli import commands
 from rigidsym.errors import SpecError
 from rigidsym.models.library import PARAMETRISATIONS, rotation_from
-from rigidsym.notes.document.document import Paragraph
 from rigidsym.pipeline import output_of, read_record, read_spec
 
 FILE = """
@@ -120,25 +118,3 @@ def test_a_note_shows_them_before_the_proofs(text):
     assert (r"from\_\allowbreak quaternion" in latex) is is_offered
     without = [section.title for section in motion.note().document.sections]
     assert "Conversions" not in without
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        *("ZXZ", *PARAMETRISATIONS, "davenport"),
-    ],
-)
-def test_formulas_in_its_sentences_are_formulas(text):
-    """No letter of a formula is left between words: no index, no Greek, no operator."""
-    motion = rs.derive(rotation_from(text), ["rotation_matrix"])
-    document = motion.note(conversions=True).document
-    (section,) = (section for section in document.sections if section.title == "Conversions")
-    words = [
-        span
-        for block in section.blocks
-        if isinstance(block, Paragraph)
-        for span in block.text
-        if isinstance(span, str)
-    ]
-    for sentence in words:
-        assert not re.search(r"[₀-₉₊₋α-ορ-ω|×=]|\b(sin|cos|tan|atan2)\b", sentence), sentence

@@ -64,20 +64,6 @@ def test_scipy_has_the_same_rotation(convention):
         assert np.abs(ours - theirs).max() <= DOUBLE
 
 
-@every_convention
-def test_scipy_turns_as_our_velocity_says(convention):
-    """A small step along the path is the rotation vector Ω h, to the first order in h."""
-    step = 1e-6
-    for path in PATHS:
-        before, after = (
-            Rotation.from_euler(convention, [float(angle) for angle in path.at(sign * step / 2)])
-            for sign in (-1, 1)
-        )
-        theirs = (after * before.inv()).as_rotvec() / step
-        ours = [float(entry) for entry in printed(convention, "angular_velocity_space", path)]
-        assert np.abs(ours - theirs).max() < 1e-8
-
-
 def turned_frames(convention: str) -> tuple[ReferenceFrame, ReferenceFrame]:
     """A space frame, and a body frame turned by sympy.physics.vector."""
     space = ReferenceFrame("N")

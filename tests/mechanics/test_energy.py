@@ -8,7 +8,6 @@ import random
 from functools import cache
 from typing import Any
 
-import numpy as np
 import pytest
 import sympy as sp
 from sympy import Rational, cos, sin
@@ -19,7 +18,9 @@ import rigidsym as rs
 from helpers.witness import (
     Path,
     agree,
+    cross,
     derivative,
+    dot,
     evaluate,
     mp,
     paths,
@@ -86,16 +87,6 @@ class Cloud:
             return lambda t: mp.matrix(path.at(t)[3:]) + rotation(convention, path.at(t)[:3]) * x
 
         return [place(x)(0) for x in self.places], [derivative(place(x)) for x in self.places]
-
-
-def dot(u: Any, v: Any) -> Any:
-    return (u.T * v)[0]
-
-
-def cross(u: Any, v: Any) -> Any:
-    return mp.matrix(
-        [u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3] for k in range(3)]
-    )
 
 
 @pytest.mark.parametrize("convention", ["ZXZ", "zyx"])
@@ -187,22 +178,6 @@ def test_never_longer_than_sympy_after_simplify(convention, body):
         expression = derived(convention, body).step(name).expression
         count = sum(int(sp.count_ops(entry)) for entry in expression)
         assert count <= shortest, name
-
-
-def test_kernels_against_fifty_digits():
-    motion = derived("ZXZ")
-    module = motion.kernels().load()
-    cloud = Cloud()
-    values = values_along((*motion.argument("q").symbols, *CENTRE), PATH) | cloud.values
-    given = {
-        argument.name: np.array([float(values.get(s, 0)) for s in argument.symbols])
-        for argument in motion.arguments
-    }
-    for step in motion.steps:
-        function = getattr(module, step.quantity.name)
-        found = function(*(given[name] for name in step.quantity.inputs))
-        exact = np.array(evaluate(step.expression, values).tolist(), float).reshape(step.shape)
-        np.testing.assert_allclose(found, exact, rtol=1e-13)
 
 
 def test_the_note_prints_scalars_and_their_proofs():

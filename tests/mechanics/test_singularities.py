@@ -15,7 +15,7 @@ import pytest
 import sympy as sp
 from scipy.spatial.transform import Rotation
 
-from helpers.parametrisations import CHAINS, CONSTANTS, IN_A_PLANE, WITNESSES, motion_of
+from helpers.parametrisations import CHAINS, WITNESSES, constants_of, motion_of
 from helpers.witness import evaluate, mp, number
 from rigidsym.models.library import PARAMETRISATIONS
 from rigidsym.notes.formats.record import record
@@ -36,15 +36,11 @@ EVERY = (*PARAMETRISATIONS, *TURNS)
 UNDECIDED = "z(phi) [a,b,c](beta) [1,2,2](psi)"  # a cosine and a sine by any constants
 
 
-def constants_of(text: str) -> dict[sp.Symbol, Any]:
-    chosen = IN_A_PLANE if text == "davenport" else CONSTANTS
-    return {sp.Symbol(name): mp.mpf(p) / q for name, (p, q) in chosen.items()}
-
-
 @cache
 def turns_of(text: str) -> tuple[tuple[Array, Array, float], ...]:
     """Axis, the multiples of the coordinates in its angle, and what is added, of each turn."""
-    model, constants = motion_of(text).model, constants_of(text)
+    motion = motion_of(text)
+    model, constants = motion.model, constants_of(motion)
     found = []
     for turn in model.turns:
         axis = np.array([float(number(sp.sympify(e), dict(constants))) for e in turn.direction])
@@ -115,7 +111,7 @@ def at(text: str, point: Any, k: int = 0, seed: int = 1) -> Array:
     """Coordinates at a singular point, k periods on, and otherwise anywhere."""
     q, coordinates = somewhere(text, seed), motion_of(text).model.coordinates
     for place in point.places:
-        value = float(number(place.value + k * place.period, dict(constants_of(text))))
+        value = float(number(place.value + k * place.period, constants_of(motion_of(text))))
         if place.is_length:
             q *= value / np.linalg.norm(q)
         else:
@@ -125,7 +121,7 @@ def at(text: str, point: Any, k: int = 0, seed: int = 1) -> Array:
 
 def numbers(matrix: sp.ImmutableMatrix, text: str, q: Array) -> Array:
     values = dict(zip(motion_of(text).model.coordinates, map(mp.mpf, q.tolist()), strict=True))
-    return np.array(evaluate(matrix, values | constants_of(text)).tolist(), float)
+    return np.array(evaluate(matrix, values | constants_of(motion_of(text))).tolist(), float)
 
 
 @pytest.mark.parametrize("text", EVERY)
@@ -248,7 +244,7 @@ def kernels(text: str) -> Any:
 
 def arguments(text: str, name: str, q: Array, dtype: Any) -> list[Array]:
     """Coordinates, constants and a given angular velocity, as far as the function takes them."""
-    constants = [float(constants_of(text)[s]) for s in motion_of(text).model.constants]
+    constants = [float(constants_of(motion_of(text))[s]) for s in motion_of(text).model.constants]
     omega = {key: [0.7, -1.1, 0.4] for key in ("omega_space", "omega_body")}
     inputs = {"q": q, "parameters": constants, **omega}
     code = getattr(kernels(text), name).__code__

@@ -16,7 +16,18 @@ from sympy.physics.vector import dynamicsymbols
 
 import rigidsym as rs
 from helpers.typesetting import numbered_by_tex
-from helpers.witness import derivative, evaluate, hat, mp, paths, rotation, unhat, values_along
+from helpers.witness import (
+    cross,
+    derivative,
+    dot,
+    evaluate,
+    hat,
+    mp,
+    paths,
+    rotation,
+    unhat,
+    values_along,
+)
 from rigidsym.errors import DerivationError, ModelError, SpecError
 from rigidsym.mechanics import lecture as theory_of
 from rigidsym.mechanics.derivation import Statement
@@ -38,14 +49,6 @@ def lecture() -> rs.Motion:
 
 def vector(*parts: Any) -> Any:
     return mp.matrix(parts)
-
-
-def dot(u: Any, v: Any) -> Any:
-    return (u.T * v)[0]
-
-
-def cross(u: Any, v: Any) -> Any:
-    return hat(u) * v
 
 
 def near(first: Any, second: Any) -> bool:

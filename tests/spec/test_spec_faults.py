@@ -140,7 +140,7 @@ lines = st.one_of(
 )
 
 
-@settings(max_examples=300, deadline=timedelta(seconds=10))
+@settings(max_examples=100, deadline=timedelta(seconds=10))
 @given(st.lists(lines, max_size=8).map("\n".join) | st.text(max_size=80))
 @example("x = 0x" + "f" * 900)
 @example("[rotation]\nsequence = 1e999")
@@ -155,7 +155,7 @@ json_values = st.recursive(
 )
 
 
-@settings(max_examples=200, deadline=timedelta(seconds=10))
+@settings(max_examples=100, deadline=timedelta(seconds=10))
 @given(
     st.fixed_dictionaries(
         {},
