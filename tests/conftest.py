@@ -6,10 +6,11 @@ import gc
 import os
 import shutil
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from difflib import unified_diff
 from functools import _lru_cache_wrapper
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 from hypothesis import settings
@@ -26,7 +27,7 @@ settings.load_profile("same")
 # Derivations that are kept fill the memory; looking through them often finds no garbage.
 gc.set_threshold(100_000)
 
-MOST_MEMORY = 350e6  # bytes that a process may keep from one file of tests to the next
+MOST_MEMORY = 600e6  # bytes that a process may keep from one file of tests to the next
 
 GOLDEN = Path(__file__).parent / "golden"
 
@@ -55,19 +56,25 @@ def needed(is_there: bool, name: str) -> None:
         (pytest.fail if required else pytest.skip)(f"{name} is not installed")
 
 
+def forget(modules: Iterable[ModuleType]) -> None:
+    """Empty what functions of these modules keep."""
+    for module in modules:
+        for each in [*vars(module).values()]:
+            if isinstance(each, _lru_cache_wrapper):
+                each.cache_clear()
+
+
 @pytest.fixture(scope="module", autouse=True)
-def memory() -> Iterator[None]:
+def memory(request: pytest.FixtureRequest) -> Iterator[None]:
     """Two processes need less than 2 GB, although derivations and compiled functions are kept."""
     yield
+    forget([request.module])  # no other file asks for these
     statm = Path("/proc/self/statm")
     if statm.is_file() and int(statm.read_text().split()[1]) * os.sysconf("SC_PAGESIZE") > (
         MOST_MEMORY
     ):
-        for name, module in [*sys.modules.items()]:
-            if name.partition(".")[0] in ("rigidsym", "helpers"):
-                for each in [*vars(module).values()]:
-                    if isinstance(each, _lru_cache_wrapper):
-                        each.cache_clear()
+        every = [*sys.modules.items()]
+        forget(m for name, m in every if name.partition(".")[0] in ("rigidsym", "helpers"))
         clear_cache()  # SymPy's
         if "jax" in sys.modules:
             sys.modules["jax"].clear_caches()
