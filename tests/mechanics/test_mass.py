@@ -372,9 +372,9 @@ def test_kernels_evaluate_the_body():
 
 
 TENSORS = {  # with words of the sentence
-    "diagonal": (sp.diag(a, b, c), "axes of the description are principal axes."),
+    "diagonal": (sp.diag(a, b, c), "body axes are principal axes."),
     "sphere": (sp.diag(a, a, a), "every axis through the centre"),
-    "two equal": (sp.diag(a, c, a), "every axis across y"),
+    "two equal": (sp.diag(a, c, a), "every axis perpendicular to y"),
     "one axis apart": (sp.Matrix([[a, d, 0], [d, b, 0], [0, 0, c]]), "The z-axis is principal"),
     "another axis apart": (sp.Matrix([[a, 0, d], [0, b, 0], [d, 0, c]]), "The y-axis"),
     "corner of a cube": (sp.Matrix([[a, -d, -d], [-d, a, -d], [-d, -d, a]]), "moments are equal"),

@@ -13,6 +13,7 @@ from rigidsym.models.rotation import TIME
 from rigidsym.notes.facts.rotation import axes_of_turns
 from rigidsym.notes.formula.derivation_letters import letters_of
 from rigidsym.notes.prose.vector_words import sum_of_vectors
+from rigidsym.pipeline import motion_of, read_file
 
 COEFFICIENTS = {  # of v × x′ and v × (v × x′), for the length n of the vector
     "rotation_vector": lambda n: (np.sin(n) / n, (1 - np.cos(n)) / n**2),
@@ -114,3 +115,35 @@ def test_a_chain_adds_its_axes_as_the_factors_before_carry_them_along():
 def test_letters_of_yaw_and_roll_that_aerospace_texts_exchange_are_named(rotation, says):
     note = rs.derive(rotation, "rotation_matrix").note().markdown()
     assert (r"Aerospace texts write $\psi$ for the yaw and $\phi$ for the roll." in note) is says
+
+
+READ_AND_MENDED = {  # by file or rotation: what its note says, and what it must not say
+    "z(a) x(b) z(c) x(d) y(e) z(f)": (
+        (r"first $a$ about $z$", r"Each factor $\mathbf{T} _k$ is the rotation by $\theta _k$"),
+        ("Rotation k", "where they are not determined", r"\dot{q}_1"),
+    ),
+    "lecture": (
+        (
+            r"I' _{11}\thinspace {\Omega' _1}^2",
+            r"L' _{R,1} = I' _{11}\thinspace \Omega' _1",
+            "only through its second moments",
+            "entries (3,2), (1,3) and (2,1)",
+            "# Kinetic energy, inertia tensor and angular momentum of a rigid body",
+        ),
+        ("might have mattered", "below the diagonal", "The motion of a rigid body"),
+    ),
+    "heavy_symmetric_top": (
+        (r"If $A \cos\theta$ is 0, there is one rate only:", "every axis perpendicular to $z$"),
+        ("every axis across",),
+    ),
+    "rolling_disc": ((), ("stays between the circles",)),
+}
+
+
+@pytest.mark.parametrize("name", READ_AND_MENDED)
+def test_sentences_that_readers_found_wrong_are_right(name):
+    motion = rs.derive(name) if "(" in name else motion_of(read_file(name).singles()[0])
+    said = motion.note().markdown()
+    right, wrong = READ_AND_MENDED[name]
+    assert [words for words in right if words not in said] == []
+    assert [words for words in wrong if words in said] == []

@@ -54,7 +54,8 @@ _OF_TURNS = tuple(
     map(formula, (r"\mathbf{T}_k", r"\mathbf{n}_k", r"\theta_k", r"\mathbf{P}_0 = \mathbf{1}"))
 )
 _SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
-_ALSO_WORDS = ("a", "A", "I")  # words of a sentence, unless a sign follows: a + i b
+# Words of a sentence, unless a sign follows (a + i b) or an axis (a about z).
+_ALSO_WORDS = ("a", "A", "I")
 
 
 def symbols_of(derivation: Derivation) -> dict[str, Formula]:
@@ -86,7 +87,7 @@ def with_symbols(words: str, symbols: Mapping[str, Formula]) -> Text:
 @lru_cache(maxsize=64)
 def _any_of(texts: tuple[str, ...]) -> re.Pattern[str]:
     longest_first = sorted(texts, key=len, reverse=True)
-    known = (rf"{t}(?= [+=])" if t in _ALSO_WORDS else re.escape(t) for t in longest_first)
+    known = (rf"{t}(?= [+=]| about)" if t in _ALSO_WORDS else re.escape(t) for t in longest_first)
     return re.compile(r"(?<!\w)(" + "|".join(known) + r")(?!\w)")
 
 
