@@ -264,12 +264,10 @@ def test_every_line_between_the_numbers_has_a_proof_of_its_own():
     assert all(s.proofs and all(p.is_exact for p in s.proofs) for s in between)
 
 
-CLAIMS = [(s, name) for s in theory() for name, _ in s.claims]
-
-
-@pytest.mark.parametrize(("statement", "name"), CLAIMS, ids=[name for _, name in CLAIMS])
-def test_what_is_claimed_can_fail(statement: Statement, name: str, monkeypatch):
+@pytest.mark.parametrize("name", theory_of._CLAIMS)
+def test_what_is_claimed_can_fail(name: str, monkeypatch):
     """The same claim with something left over is refuted: no proof passes by being empty."""
+    (statement,) = (s for s in theory() if name in dict(s.claims))
     true = theory_of._CLAIMS[name]
 
     def false(work: Any) -> Any:
