@@ -77,11 +77,7 @@ def test_a_wrong_file_tells_all_faults_and_writes_nothing(tmp_path):
     )
     done = call("run", "euler_zxz", "bad.toml", cwd=tmp_path, status=3)
     assert "bad.toml: 3 faults, nothing written" in done.stderr
-    for place in (
-        "rotation.sequence",
-        "output.kernels[0]",
-        "output.note[0]",
-    ):
+    for place in ("rotation.sequence", "output.kernels[0]", "output.note[0]"):
         assert place in done.stderr
     assert not (tmp_path / "out").exists()
 

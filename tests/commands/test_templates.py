@@ -40,11 +40,7 @@ def test_an_own_template_may_include_others(tmp_path: Path):
 @pytest.mark.parametrize(
     ("template", "line", "said"),
     [
-        (
-            "a\n{{ titel }}",
-            2,
-            "'titel' is undefined; names here: byline, language, sections,",
-        ),
+        ("a\n{{ titel }}", 2, "'titel' is undefined; names here: byline, language, sections,"),
         ("{% for s in sections %}\n\n{{ s.name }}{% endfor %}", 3, "has no attribute 'name'"),
         ("{% if x %}", 1, "Unexpected end of template"),
         ("\n{{ title.__class__.__mro__ }}", 2, "access to attribute '__class__'"),
@@ -76,10 +72,7 @@ def test_a_template_without_end_is_stopped_by_the_time_limit(tmp_path: Path):
 
 def test_a_template_that_is_no_text_is_named(tmp_path: Path):
     (tmp_path / "note.html.jinja").write_bytes(b"\xff")
-    with (
-        resources.overridden_by(tmp_path),
-        pytest.raises(TemplateFault, match="UTF-8"),
-    ):
+    with resources.overridden_by(tmp_path), pytest.raises(TemplateFault, match="UTF-8"):
         derived("ZXZ").note().html()
 
 

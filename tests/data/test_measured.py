@@ -91,8 +91,7 @@ def test_columns_by_name_in_every_format(tmp_path):
     mixed, names = table[:, [3, 0, 2, 1]], ["z", "mass", "y", "x"]
     np.save(tmp_path / "plain.npy", mixed)
     np.save(
-        tmp_path / "named.npy",
-        np.rec.fromarrays(mixed.T, names=",".join(names)).view(np.ndarray),
+        tmp_path / "named.npy", np.rec.fromarrays(mixed.T, names=",".join(names)).view(np.ndarray)
     )
     np.savetxt(tmp_path / "cloud.csv", mixed, delimiter=",", header=",".join(names), fmt="%.17g")
     np.savetxt(tmp_path / "blanks.txt", mixed, header=" ".join(names), fmt="%.17g", comments="")
@@ -163,10 +162,7 @@ def with_entry(row: int, column: int, value: float) -> np.ndarray:
             r"particle 7, counted from 0: expected finite numbers, got mass",
         ),
         (with_entry(7, 0, np.inf), r"particle 7, counted from 0"),
-        (
-            with_entry(7, 0, -1.0),
-            "particle 7, counted from 0: expected a mass that is not neg",
-        ),
+        (with_entry(7, 0, -1.0), "particle 7, counted from 0: expected a mass that is not neg"),
         (rows(20) * (-1, 1, 1, 1), r"expected a mass that is not negative, got mass -"),
         (rows(20) * (0, 1, 1, 1), r"the total mass is 0 kg; expected a positive mass"),
         (np.tile([1e308, 0, 0, 0], (3, 1)), r"the total mass is inf kg; expected a positive mass"),
@@ -177,10 +173,7 @@ def with_entry(row: int, column: int, value: float) -> np.ndarray:
             np.array([("lead",)], dtype=[("material", "U4")]),
             r"no field of the structured array holds numbers",
         ),
-        (
-            rows(20).ravel(),
-            r"expected numbers of shape \(rows, columns\), got float64 of",
-        ),
+        (rows(20).ravel(), r"expected numbers of shape \(rows, columns\), got float64 of"),
     ],
 )
 def test_what_is_no_cloud_is_refused(table, fault):
@@ -287,8 +280,7 @@ def mesh_of(name: str) -> Mesh:
 def test_open_torn_and_inverted_meshes_are_refused():
     box = mesh_of("box")
     with pytest.raises(
-        BodyError,
-        match=r"open: 3 edges have one face; the first begins at \(-0.5, -1",
+        BodyError, match=r"open: 3 edges have one face; the first begins at \(-0.5, -1"
     ):
         mesh_inertia(Mesh(vertices=box.vertices, faces=box.faces[1:]), mass=1.0)
     torn = box.faces.copy()

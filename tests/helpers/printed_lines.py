@@ -25,10 +25,7 @@ A, C = sp.symbols("A C", positive=True)
 TOP = {"body": rs.principal_moments(A, A, C), "potential": "m*g*l*cos(theta)"}
 BOTH = "rotation_matrix", "angular_velocity_body"
 RATES = "rotation_matrix", "rates_from_angular_velocity_body"
-JACOBIANS = (
-    "rotation_matrix by q",
-    "angular_velocity_body by q_dot",
-)
+JACOBIANS = ("rotation_matrix by q", "angular_velocity_body by q_dot")
 ROTATIONS: dict[str, tuple[str, tuple[str, ...], dict[str, Any]]] = {  # what acts on them
     "turn": ("z(a)", BOTH, {}),
     "turns": ("y(a) x(b)", BOTH, {}),

@@ -35,8 +35,7 @@ ROTATIONS = {  # and some quantities of each
 EPS = {np.float64: 2.0**-52, np.float32: 2.0**-23}
 EVERY = [
     pytest.param(
-        name,
-        marks=pytest.mark.skipif(bool(TARGETS[name].missing), reason=TARGETS[name].missing),
+        name, marks=pytest.mark.skipif(bool(TARGETS[name].missing), reason=TARGETS[name].missing)
     )
     for name in TARGETS
 ]

@@ -7,15 +7,7 @@ import json
 import numpy as np
 import pytest
 
-from benchmarks import (
-    accuracy,
-    cold_start,
-    derivation,
-    form,
-    kernels,
-    run,
-    sympy_forms,
-)
+from benchmarks import accuracy, cold_start, derivation, form, kernels, run, sympy_forms
 from benchmarks.measure import Settings, interleaved, run_process
 
 pytestmark = pytest.mark.campaign

@@ -57,8 +57,7 @@ def test_a_second_door_would_be_seen(source):
 
 
 @pytest.mark.parametrize(
-    "quantity",
-    ["angular_velocity_space", "rotation_matrix", "rates_from_angular_velocity_body"],
+    "quantity", ["angular_velocity_space", "rotation_matrix", "rates_from_angular_velocity_body"]
 )
 def test_a_wrong_coefficient_of_a_vector_form_is_refused(monkeypatch, quantity):
     right = Vectors.terms

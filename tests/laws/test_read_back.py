@@ -14,12 +14,7 @@ import pytest
 import sympy as sp
 
 import rigidsym as rs
-from helpers.reading import (
-    Values,
-    define,
-    equations,
-    latex_of,
-)
+from helpers.reading import Values, define, equations, latex_of
 from helpers.witness import TOLERANCE, evaluate, mp
 from rigidsym.models.library import rotation_from
 

@@ -162,10 +162,7 @@ def flowing() -> rs.Motion:
 
 @pytest.mark.parametrize(
     ("rotation", "potential"),
-    [
-        ("unit_quaternion", "k*(w**2 - x**2 - y**2 + z**2)"),
-        ("ZYX", "k*sin(theta)*cos(phi)"),
-    ],
+    [("unit_quaternion", "k*(w**2 - x**2 - y**2 + z**2)"), ("ZYX", "k*sin(theta)*cos(phi)")],
 )
 def test_small_errors_of_orientation_and_angular_velocity_grow_by_the_error_state_jacobian(
     rotation, potential

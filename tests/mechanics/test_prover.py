@@ -21,14 +21,7 @@ from rigidsym.formula.reader import formula
 from rigidsym.mechanics.derive import derive
 from rigidsym.mechanics.prove import Conditions, Prover, consequence, identity
 from rigidsym.models.parametrisations import chain
-from rigidsym.models.rotation import (
-    TIME,
-    Pullback,
-    RotationModel,
-    Turn,
-    elementary,
-    time_function,
-)
+from rigidsym.models.rotation import TIME, Pullback, RotationModel, Turn, elementary, time_function
 
 a, b, x, y, z = map(time_function, "abxyz")
 phi, psi, theta = map(time_function, ("phi", "psi", "theta"))

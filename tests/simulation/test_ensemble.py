@@ -118,9 +118,7 @@ def test_what_was_computed_before_an_integrator_fails_is_kept():
 def test_dry_friction_ends_the_motion_where_the_body_stops():
     """C dω/dt = −k sign ω: at rest its direction changes at once, and no step is short enough"""
     dry = rs.derive(
-        "z(phi)",
-        body=rs.principal_moments(A, A, C),
-        forces={"phi": "-k*phi_dot/abs(phi_dot)"},
+        "z(phi)", body=rs.principal_moments(A, A, C), forces={"phi": "-k*phi_dot/abs(phi_dot)"}
     )
     found = dry.simulate({"phi_dot": 1}, {"A": 1, "C": 1, "k": 1}, 3.0, samples=31)
     assert "t = 1 s: the accelerations change faster than steps can follow" in found.ended

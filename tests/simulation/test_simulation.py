@@ -54,11 +54,7 @@ def test_steady_precession_goes_on_for_a_hundred_turns(choose):
     theta, spin = 0.6, 60.0
     a, c, weight = TOP["A"], TOP["C"], TOP["m"] * TOP["g"] * TOP["l"]
     rate = choose(np.roots([a * np.cos(theta), -c * spin, weight]).real)
-    start = REST | {
-        "theta": theta,
-        "phi_dot": rate,
-        "psi_dot": spin - rate * np.cos(theta),
-    }
+    start = REST | {"theta": theta, "phi_dot": rate, "psi_dot": spin - rate * np.cos(theta)}
     found = top().simulate(start, TOP, 16.0, samples=21)
     assert found.q[-1, 0 if choose is max else 2] > 2 * np.pi * 98
     assert np.abs(found.q[:, 1] - theta).max() < 1e-6

@@ -188,8 +188,7 @@ def test_parts_in_numbers_become_numbers():
 
 
 @pytest.mark.parametrize(
-    "turned",
-    ['"z(pi/2)"', '{ rotation = "ZXZ", values = ["pi/2", 0, 0] }', '"[0,0,1](pi/2)"'],
+    "turned", ['"z(pi/2)"', '{ rotation = "ZXZ", values = ["pi/2", 0, 0] }', '"[0,0,1](pi/2)"']
 )
 def test_a_part_is_turned_by_any_rotation(turned):
     part = f'{{ shape = "box", sides = [1, 2, 3], mass = 12, turned = {turned} }}'

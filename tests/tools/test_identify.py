@@ -12,21 +12,9 @@ from sympy import symbols
 from sympy.physics.vector import ReferenceFrame
 
 import rigidsym as rs
-from helpers.conventions import (
-    EVERY,
-    GENERIC,
-    attitude,
-    holds,
-    rotation,
-    sample,
-    some,
-    together,
-)
+from helpers.conventions import EVERY, GENERIC, attitude, holds, rotation, sample, some, together
 from rigidsym.tools.identify.readings import VELOCITIES, Reading, Velocity, distinct
-from rigidsym.tools.identify.turns import (
-    angle_between,
-    quaternion_of,
-)
+from rigidsym.tools.identify.turns import angle_between, quaternion_of
 
 BOTH = pytest.mark.parametrize("passive", [False, True], ids=["active", "passive"])
 UNITS = pytest.mark.parametrize("degrees", [False, True], ids=["radians", "degrees"])

@@ -283,10 +283,7 @@ def test_missing_columns_are_named_with_the_nearest_that_are_there():
             ["line 4: field 2: 'z' is", "line 4: field 12: 'y' is", "line 5: 3 fields"],
         ),
         ("HEADER\n0,,0,1,0,0,0,1,0,0,0,1\n", ["line 2: angles: a number that is missing"]),
-        (
-            "HEADER\n0,0,0,1,0,0,0,1,0,0,0,nan\n",
-            ["line 2: matrix: a number that is miss"],
-        ),
+        ("HEADER\n0,0,0,1,0,0,0,1,0,0,0,nan\n", ["line 2: matrix: a number that is miss"]),
         ("HEADER\n0,0,1_0,1,0,0,0,1,0,0,0,1\n", ["line 2: field 3: '1_0' is not a number"]),
         ("HEADER\n0,0,1°,1,0,0,0,1,0,0,0,1\n", ["'1°' is not a number; write degrees without °"]),
         ("a1;a2;a3;w;x;y;z\n0;0,5;0;1.0;0;0;0\n", ["line 2: decimal commas and decimal points"]),

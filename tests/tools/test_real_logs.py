@@ -160,10 +160,7 @@ def test_units_are_converted_column_by_column_whatever_degrees_says(motion, tmp_
     ("header", "message"),
     [
         ("yaw [grad],pitch,roll", r"column yaw \[grad\]: unknown unit 'grad'"),
-        (
-            "yaw [deg/s],pitch,roll",
-            r"column yaw \[deg/s\]: expected a unit such as (rad|deg), got",
-        ),
+        ("yaw [deg/s],pitch,roll", r"column yaw \[deg/s\]: expected a unit such as (rad|deg), got"),
         ("yaw,pitch,roll,yaw", "two columns are named yaw: yaw, yaw"),
         ("yaw,pitch,roll,Yaw [deg]", r"two columns are named yaw: yaw, Yaw \[deg\]"),
     ],
