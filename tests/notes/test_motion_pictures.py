@@ -11,11 +11,11 @@ import sympy as sp
 
 import rigidsym as rs
 from rigidsym.errors import ModelError, SpecError
-from rigidsym.formula.reader import decimal, text_of
+from rigidsym.formula.reader import decimal
 from rigidsym.models.forces import OMEGA, OMEGA_COMPONENTS, initial_values
 from rigidsym.notes.figure.chart import Range
 from rigidsym.notes.figure.motion_picture import ExampleMotion
-from rigidsym.pipeline import motion_of, output_of, read, read_spec
+from rigidsym.pipeline import motion_of, read, read_spec
 from rigidsym.system import resources
 
 SYSTEMS = [
@@ -176,24 +176,3 @@ def test_a_file_tells_the_place_of_a_wrong_example():
 def test_without_the_equations_of_motion_there_is_no_picture():
     spec = replace(read("heavy_symmetric_top"), quantities=("energy",))
     assert "energy" in motion_of(spec).note(with_kernels=False).latex()
-
-
-@pytest.mark.parametrize(
-    ("system", "bounded"), [("heavy_symmetric_top", True), ("kovalevskaya_top", False)]
-)
-def test_only_the_axis_of_a_symmetric_top_stays_between_its_circles(system, bounded):
-    figures = motion_of(read(system)).note().document.figures
-    said = " ".join(text_of(figure.description) for figure in figures)
-    assert ("stays between the circles" in said) is bounded
-    assert ("in the time shown" in said) is not bounded
-
-
-def test_what_is_known_of_further_integrals_is_said_with_its_sources():
-    note = output_of(read("kovalevskaya_top")).files["kovalevskaya_top.html"]
-    assert "E. Husson, Recherche des intégrales algébriques" in note
-    assert "S. L. Ziglin, Branching of solutions" in note
-
-
-def test_the_amplitudes_of_an_asymmetric_body_have_their_signs():
-    note = motion_of(read("free_body")).note().markdown()
-    assert "where $a$, $b$ and $c$ are positive, or two of them are negative," in note

@@ -25,9 +25,3 @@ def test_every_generated_file_says_whose_it_is(files):
         if OWNERSHIP not in " ".join(text.replace("*", " ").split())
     ]
     assert unsaid == []
-
-
-def test_the_note_says_it_in_its_head(files):
-    for name, text in files.items():
-        if name.endswith((".tex", ".html", ".md")):
-            assert OWNERSHIP in text[:200]

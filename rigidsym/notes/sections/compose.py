@@ -59,10 +59,15 @@ from rigidsym.notes.template import blocks_of, sections_of
 if TYPE_CHECKING:
     from rigidsym.mechanics.conversions.conversions import Conversions
 
+_OF_STEPS = {  # parts of a note that have only the steps of a section
+    "angular_acceleration": ACCELERATION,
+    "energy": ENERGY,
+    "momentum": MOMENTUM,
+}
 PARTS = (  # of a note, which its template places
     *("convention", "rotation", "rotation_of_the_lecture", "angular_velocity", "rates", "singular"),
-    *("angular_acceleration", "body", "energy", "momentum", "motion", "conversions"),
-    *("identities", "symbols", "functions", "summary"),
+    *("body", "motion", "conversions", "identities", "symbols", "functions", "summary"),
+    *_OF_STEPS,
 )
 
 
@@ -147,7 +152,8 @@ class Composer:
         """
         if part not in PARTS:
             raise TemplateRuntimeError(f"no part {part!r} of a note; {offer(part, PARTS)}")
-        blocks = list(getattr(self, f"_{part}")())
+        section = _OF_STEPS.get(part)
+        blocks = list(self._steps(section) if section else getattr(self, f"_{part}")())
         self.printed |= {b.label: b for b in blocks if isinstance(b, Equation) and b.number}
         return blocks
 
@@ -171,15 +177,6 @@ class Composer:
 
     def _symbols(self) -> Iterator[NoteTable]:
         yield symbols(self.derivation, self.letters)
-
-    def _angular_acceleration(self) -> Iterator[NoteBlock]:
-        yield from self._steps(ACCELERATION)
-
-    def _energy(self) -> Iterator[NoteBlock]:
-        yield from self._steps(ENERGY)
-
-    def _momentum(self) -> Iterator[NoteBlock]:
-        yield from self._steps(MOMENTUM)
 
     def _conversions(self) -> Iterator[NoteBlock]:
         """The section on the unit quaternion and the matrix, with its equation."""

@@ -6,22 +6,27 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import chain, groupby
 
+from rigidsym.formula.reader import formula
 from rigidsym.mechanics.derivation import Statement, Step
 from rigidsym.mechanics.quantities.kinematics import ANGULAR_VELOCITY, ROTATION
 from rigidsym.notes.document.document import (
     Equation,
+    EquationReference,
+    EquationRow,
     NoteBlock,
     NoteTable,
     Paragraph,
     Section,
+    Span,
     Text,
+    listed,
 )
 from rigidsym.notes.formula.summands import sums
 from rigidsym.notes.prose.words import with_symbols
 from rigidsym.notes.sections.body_note import BodyComposer
 from rigidsym.notes.sections.compose import claims_of
-from rigidsym.notes.sections.end_tables import Claim
-from rigidsym.notes.sections.lecture_end import summary_of_the_lecture, symbols_of_the_lecture
+from rigidsym.notes.sections.end_tables import Claim, symbols
+from rigidsym.notes.sections.summary import SHEET, row_height, summary
 
 _WHERE_SHOWN = {  # what has no equation of its own, and the one that it belongs to
     "rotation_rate": "velocity_by_the_rotation",
@@ -36,6 +41,29 @@ _WHERE_SHOWN = {  # what has no equation of its own, and the one that it belongs
     "moment_about_a_line": "inertia_of_particles",
 }
 _NUMBER_OF_ROTATION = 17
+_LEAD = 2.0  # lines that the words before a row of equations take
+# symbol | meaning | unit | equation
+_OF_THE_THEORY = r"""
+m_i | mass of a particle | kg |
+M | mass of the body | kg |
+\mathbf{r}_i | position of a particle | m |
+\mathbf{r}_C | position of the centre of mass | m | centre_of_mass
+\mathbf{x}_i | position of a particle relative to the centre of mass | m |
+\mathbf{x}'_i | the same, body components | m |
+\mathbf{e}_j | vectors of an orthonormal basis | 1 |
+\mathbf{e}'_j | the same, turned | 1 | components_in_another_basis
+\mathbf{I} | inertia tensor about the centre, space components | kg m² | inertia_of_particles
+d^{\perp}_i | distance of a particle from a line | m |
+"""
+_OF_A_BODY = r"""
+\mathbf{I}' | the inertia tensor, body components | kg m² | inertia_turns
+E_C | kinetic energy of the centre-of-mass motion | J | energy_splits
+E_R | kinetic energy of the rotation about the centre of mass | J | energy_splits
+E_K | kinetic energy | J | energy_splits
+\mathbf{L}_C | angular momentum of the centre-of-mass motion | kg m²/s | parts_of_the_momentum
+\mathbf{L}_R | angular momentum of the rotation | kg m²/s | parts_of_the_momentum
+\mathbf{L} | angular momentum about the origin | kg m²/s | momentum_splits
+"""
 
 
 class LectureComposer(BodyComposer):
@@ -50,10 +78,27 @@ class LectureComposer(BodyComposer):
         return sections
 
     def _summary(self) -> Iterator[NoteBlock]:
-        yield from summary_of_the_lecture(self.derivation, self.printed, self.letters)
+        """The results of the theory, and under them the summary of the rotation and its body."""
+        room = SHEET
+        results = (s for s in self.derivation.theory if s.number and s.is_result)
+        for title, group in groupby(results, key=lambda s: s.section):
+            statements = list(group)
+            numbers = listed([(EquationReference(s.name),) for s in statements])
+            row = tuple(Equation(sides=s.sides) for s in statements)
+            room -= _LEAD + row_height(row, self.letters)
+            yield from (Paragraph((f"{title} ", *numbers, ":")), EquationRow(row))
+        yield from summary(self.derivation, self.printed, self.letters, room)
 
     def _symbols(self) -> Iterator[NoteTable]:
-        yield symbols_of_the_lecture(self.derivation, self.letters, _WHERE_SHOWN)
+        """Symbols of the theory before those of the rotation and the body, each once."""
+        table = symbols(self.derivation, self.letters)
+        theory = list(_rows(_OF_THE_THEORY))
+        names = {row[0] for row in theory}
+        others = [row for row in table.rows if row[0] not in names]
+        names_of_others = {span for row in others for span in row[0]}
+        theory += [row for row in _rows(_OF_A_BODY) if row[0][0] not in names_of_others]
+        rows = (tuple(tuple(map(_where_shown, cell)) for cell in row) for row in others)
+        yield table._replace(rows=(*theory, *rows))
 
     def _statement(self, statement: Statement) -> Iterator[NoteBlock]:
         yield Paragraph(statement.because)
@@ -99,21 +144,27 @@ class LectureComposer(BodyComposer):
         """How the quantity follows; what the theory has derived needs no other source."""
         return with_symbols(step.because, self.symbols)
 
-    def _label(self, step: Step) -> str:
-        return _WHERE_SHOWN.get(step.quantity.name, step.quantity.name)
-
     def _identities(self) -> Iterator[NoteBlock]:
-        claims = [
-            (_WHERE_SHOWN.get(s.name, s.name), p) for s in self.derivation.theory for p in s.proofs
-        ]
-        claims += [(self._label(step), p) for step in self.derivation.steps for p in step.proofs]
+        """Each claim once, in the order of the equations."""
+        numbers = {s.name: s.number for s in self.derivation.theory if s.number}
+        numbers |= {step.quantity.name: step.number for step in self.derivation.steps}
+        proofs = [(s.name, p) for s in self.derivation.theory for p in s.proofs]
+        proofs += [(step.quantity.name, p) for step in self.derivation.steps for p in step.proofs]
+        claims = [(_WHERE_SHOWN.get(name, name), proof) for name, proof in proofs]
         once: dict[object, Claim] = {}
-        for label, proof in sorted(claims, key=lambda claim: self._number(claim[0])):
+        for label, proof in sorted(claims, key=lambda claim: numbers[claim[0]]):
             once.setdefault((label, proof.claim), (label, proof))
         yield from self._claims([*once.values()])
 
-    def _number(self, label: str) -> int:
-        """Of the equation with a label: claims stand in the order of the equations."""
-        numbers = {s.name: s.number for s in self.derivation.theory if s.number}
-        numbers |= {step.quantity.name: step.number for step in self.derivation.steps}
-        return numbers[label]
+
+def _rows(table: str) -> Iterator[tuple[Text, ...]]:
+    for line in table.strip().splitlines():
+        typed, about, unit, label = (part.strip() for part in line.split("|"))
+        yield (formula(typed),), (about,), (unit,), (EquationReference(label),) if label else ()
+
+
+def _where_shown(span: Span) -> Span:
+    """A reference to the equation that shows what has none of its own; any other span as it is."""
+    if isinstance(span, EquationReference):
+        return EquationReference(_WHERE_SHOWN.get(span.label, span.label))
+    return span
