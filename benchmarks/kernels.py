@@ -3,7 +3,7 @@
 All sides compute the same values in float64 on one core, by turns. Ours take one orientation a
 row, or a column. A user without us writes np.stack of lambdify's functions (cse) of the columns;
 heyoka's compiled function takes one component a row, its own layout. A plain copy of as many bytes
-is the limit that memory sets. `sizes --size 10000000` goes up to ten million.
+is the limit that memory sets. `sizes --size 2000000` goes up to two million.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from importlib import import_module
 from importlib.util import find_spec
 from time import perf_counter
 from types import ModuleType
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import sympy as sp
@@ -23,26 +23,31 @@ from numpy.typing import NDArray
 from benchmarks.measure import Settings, Spread, interleaved, on_one_core, progress, ratios, timed
 from benchmarks.report import Cell, Column, Figure, Report, Table, machine, spread_columns
 from rigidsym.kernels.targets import TARGETS
+from rigidsym.models.body import principal_moments
 from rigidsym.motion import Motion, derive
 
-QUANTITIES = {
-    "angular_velocity_body": "Ω′",
-    "rotation_matrix": "R",
-    "rates_from_angular_velocity_body": "inverse rates",
+QUANTITIES = ("angular_velocity_body", "rotation_matrix", "rates_from_angular_velocity_body")
+SYMBOLS = {
+    **dict(zip(QUANTITIES, ("Ω′", "R", "inverse rates"), strict=True)),
+    "from_quaternion": "angles from quaternion",
+    "state_derivative": "right-hand side of a top",
 }
+TOP = {"A": 1.3, "C": 0.7, "g": 9.81, "l": 0.4, "m": 2.0}
 OURS = ("numpy", "c", "numba", "jax")
 PEER, HEYOKA, SCIPY = "lambdify, cse, stacked", "heyoka cfunc", "SciPy from_euler"
 COPY = "a plain copy of as many bytes"
-SIZES = (*(m * 10**k for k in range(7) for m in (1, 3)), 10**7)
-LAYOUTS: Mapping[str, Any] = {"rows": np.ascontiguousarray, "columns": np.asfortranarray}
-FILLED = "rows, out given"
+SIZES = tuple(map(int, (1, 10, 100, 1e3, 1e4, 3e4, 1e5, 2e5, 3e5, 5e5, 1e6, 2e6, 1e7)))
+PLACES: Mapping[str, tuple[str, Mapping[str, bool]]] = {
+    "rows": ("rows", {}),
+    "columns": ("columns", {}),
+    "rows, 8 bytes off": ("rows", {"is_aligned": False}),
+    "columns, 8 bytes off": ("columns", {"is_aligned": False}),
+    "rows, out given": ("rows", {"is_filled": True}),
+}
 DOCUMENTED = (1, 100, 10**4, 10**6)  # of the table in the README, and with `out`
 MOST = {"numpy": 12e-6, "c": 1.5e-6}  # seconds of the smallest call
-LIMITS = (  # of the time of a peer, from which size up
-    ("numpy", PEER, 1, 1.0),
-    ("c", HEYOKA, 1, 1.0),
-    ("c", HEYOKA, 10**4, 0.8),
-)
+LIMITS = (("numpy", PEER, 1.0), ("c", HEYOKA, 0.9), ("numba", "numpy", 1.0))  # of a peer's time
+FLAT, FROM = 1.35, 10**4  # slowest over fastest size, from this size on
 LARGE = (("numpy", PEER, 3.0), ("c", HEYOKA, 1.0))  # times as fast, at large batches
 _TURN = 1e-3  # seconds of a turn: a short call is repeated until it lasts as long
 
@@ -51,81 +56,133 @@ Call = Callable[[], Any]
 Turns = Mapping[str, Sequence[float]]  # seconds of a call of each side, turn by turn
 
 
-@cache
-def motion() -> Motion:
-    return derive("ZXZ", list(QUANTITIES))
+class Case(NamedTuple):
+    """A function whose arguments are rows of numbers in some widths, beside constants."""
+
+    symbol: str
+    motion: Motion
+    widths: tuple[int, ...]
+    entries: tuple[sp.Expr, ...]  # what it computes, for the peers, in the columns
+    columns: tuple[sp.Symbol, ...]
+    shape: tuple[int, ...]
+    before: tuple[Any, ...] = ()  # arguments that are the same for all orientations
+    after: tuple[Any, ...] = ()
+
+    @property
+    def bytes(self) -> int:
+        """Of the arguments and results of one orientation."""
+        return 8 * (sum(self.widths) + len(self.entries))
 
 
 @cache
-def modules() -> Mapping[str, ModuleType]:
-    return {t: motion().kernels(t).load() for t in OURS if not TARGETS[t].missing}
-
-
-def in_plain_symbols(motion: Motion, name: str) -> tuple[list[sp.Symbol], list[sp.Expr]]:
-    """The inputs of a quantity as symbols, and its entries in them, written out.
-
-    The peers know nothing of functions of time and of named intermediate quantities.
-    """
+def case(name: str) -> Case:
+    """Quantities of ZXZ, its angles from a quaternion, or the equations of a heavy top."""
+    symbol = SYMBOLS[name]
+    if name == "state_derivative":
+        return _top(symbol)
+    motion = derive("ZXZ", QUANTITIES)
+    if name == "from_quaternion":  # as textbooks give them; ours keeps them between -pi and pi
+        w, x, y, z = columns = sp.symbols("w x y z")
+        half, other = sp.atan2(z, w), sp.atan2(y, x)
+        theta = 2 * sp.atan2(sp.sqrt(x**2 + y**2), sp.sqrt(w**2 + z**2))
+        return Case(symbol, motion, (4,), (half + other, theta, half - other), columns, (3,))
     step = motion.step(name)
-    entries = list(step.expression)
-    for known in reversed(motion.definitions):
-        entries = [entry.xreplace({known.symbol: known.expression}) for entry in entries]
-    arguments = [motion.argument(vector) for vector in step.quantity.inputs]
-    plain = {s: sp.Symbol(n) for a in arguments for s, n in zip(a.symbols, a.names, strict=True)}
-    return list(plain.values()), [entry.xreplace(plain) for entry in entries]
+    vectors = [motion.argument(vector) for vector in step.quantity.inputs]
+    plain = {s: sp.Symbol(n) for a in vectors for s, n in zip(a.symbols, a.names, strict=True)}
+    entries = motion.spelled(step.expression).xreplace(plain)
+    shape = tuple(n for n in step.expression.shape if n > 1)
+    widths = tuple(len(a.symbols) for a in vectors)
+    return Case(symbol, motion, widths, (*entries,), (*plain.values(),), shape)
+
+
+def _top(symbol: str) -> Case:
+    a, c = sp.symbols("A C")
+    body = principal_moments(a, a, c)
+    motion = derive("ZXZ", ["state_derivative"], body=body, potential="m*g*l*cos(theta)")
+    constants, columns = motion.argument("parameters"), sp.symbols("y0:6")
+    values = [TOP.get(name, 1.0) for name in constants.names]
+    plain = dict(zip(constants.symbols, map(sp.Float, values), strict=True))
+    plain |= dict(zip(reversed(motion.argument("y").symbols), reversed(columns), strict=True))
+    entries = (*motion.state_derivative.xreplace(plain),)
+    return Case(symbol, motion, (6,), entries, columns, (6,), (0.0,), (np.array(values),))
+
+
+@cache
+def modules(name: str) -> Mapping[str, ModuleType]:
+    motion, is_conversion = case(name).motion, name == "from_quaternion"
+    return {
+        t: motion.kernels(t, conversions=is_conversion).load()
+        for t in OURS
+        if not TARGETS[t].missing
+    }
 
 
 @cache
 def _lambdified(name: str) -> Callable[..., Any]:
-    function: Callable[..., Any] = sp.lambdify(*in_plain_symbols(motion(), name), "numpy", cse=True)
+    entries, columns = case(name).entries, case(name).columns
+    function: Callable[..., Any] = sp.lambdify(columns, entries, "numpy", cse=True)
     return function
 
 
 @cache
 def _compiled(name: str) -> Callable[..., Array]:
     heyoka: Any = import_module("heyoka")
-    symbols, entries = in_plain_symbols(motion(), name)
-    without = [e.replace(sp.cot, lambda angle: sp.cos(angle) / sp.sin(angle)) for e in entries]
+    without = [e.replace(sp.cot, lambda a: sp.cos(a) / sp.sin(a)) for e in case(name).entries]
     function: Callable[..., Array] = heyoka.cfunc(
-        list(map(heyoka.from_sympy, without)), heyoka.make_vars(*map(str, symbols))
+        list(map(heyoka.from_sympy, without)), heyoka.make_vars(*map(str, case(name).columns))
     )
     return function
 
 
-def sides(name: str, size: int, layout: str, *, is_filled: bool) -> dict[str, Call]:
+def placed(values: Array, layout: str, *, is_aligned: bool) -> Array:
+    """The values by rows or by columns, from the start of a line of the cache or 8 bytes behind."""
+    room = np.empty(values.size + 9)
+    start = -room.ctypes.data % 64 // 8 + (not is_aligned)
+    flat = room[start : start + values.size]
+    result = flat.reshape(values.shape) if layout == "rows" else flat.reshape(values.T.shape).T
+    result[...] = values
+    return result
+
+
+def sides(
+    name: str, size: int, layout: str, *, is_filled: bool = False, is_aligned: bool = True
+) -> dict[str, Call]:
     """A call of each side on the same orientations; raises where one differs in value."""
-    random, step = np.random.default_rng(1), motion().step(name)
-    arrays = [LAYOUTS[layout](random.uniform(-3, 3, (size, 3))) for _ in step.quantity.inputs]
+    of, random, count = case(name), np.random.default_rng(1), len(case(name).entries)
+    arrays = [
+        placed(random.uniform(0.3, 3, (size, n)), layout, is_aligned=is_aligned) for n in of.widths
+    ]
+    arguments = (*of.before, *arrays, *of.after)
     columns = [column for a in arrays for column in a.T]
-    shape = (size, *(n for n in step.expression.shape if n > 1))
-    count = len(step.expression)
 
     def stacked(out: Array | None = None) -> Array:
         return np.stack(np.broadcast_arrays(*_lambdified(name)(*columns)), -1, out)
 
-    found: dict[str, Call] = {
+    calls: dict[str, Call] = {
         PEER: partial(stacked, np.empty((size, count)) if is_filled else None)
     }
     if find_spec("heyoka"):
         room: dict[str, Array] = {"outputs": np.empty((count, size))} if is_filled else {}
-        found[HEYOKA] = partial(_compiled(name), np.array(columns), **room)
-    for target, module in modules().items():
-        out = {"out": np.empty(shape)} if is_filled and target != "jax" else {}
+        calls[HEYOKA] = partial(_compiled(name), np.array(columns), **room)
+    for target, module in modules(name).items():
+        out = {"out": np.empty((size, *of.shape))} if is_filled and target != "jax" else {}
         function = getattr(module, name)
-        found[target] = partial(function, *arrays, **out)
+        calls[target] = partial(function, *arguments, **out)
         if target == "jax":
-            found[target] = _jitted(function, arrays)
+            calls[target] = _jitted(function, arguments)
     if name == "rotation_matrix" and find_spec("scipy"):
         rotations: Any = import_module("scipy.spatial.transform").Rotation
-        found[SCIPY] = lambda: rotations.from_euler("ZXZ", arrays[0]).as_matrix()
+        calls[SCIPY] = lambda: rotations.from_euler("ZXZ", arrays[0]).as_matrix()
     expected = stacked()
-    for side, call in found.items():
+    for side, call in calls.items():
         values = np.asarray(call())
-        values = values.T if side == HEYOKA else values.reshape(size, count)
-        if not np.allclose(values, expected, rtol=1e-9, atol=1e-9):
+        difference = (values.T if side == HEYOKA else values.reshape(size, count)) - expected
+        if name == "from_quaternion":
+            difference = np.angle(np.exp(1j * difference))
+        if not np.all(np.abs(difference) <= 1e-9 * (1 + np.abs(expected))):
             raise ArithmeticError(f"{name}: {side} differs from lambdify")
-    moved = np.ones(size * (len(columns) + count) // 2)
-    return {**found, COPY: partial(np.copyto, np.empty_like(moved), moved)}
+    moved = np.ones(size * of.bytes // 16)
+    return {**calls, COPY: partial(np.copyto, np.empty_like(moved), moved)}
 
 
 def _jitted(function: Callable[..., Any], arrays: Sequence[Array]) -> Call:
@@ -166,7 +223,7 @@ def run(settings: Settings) -> Report:
 
 
 def report(cases: Mapping[tuple[int, str], Turns]) -> Report:
-    heads = {key: f"{QUANTITIES[key[1]]} at {key[0]:.0e}".replace("e+0", "e") for key in cases}
+    heads = {key: f"{SYMBOLS[key[1]]} at {key[0]:.0e}".replace("e+0", "e") for key in cases}
     order = (*OURS, PEER, HEYOKA, SCIPY, COPY)
     there = [side for side in order if any(side in turns for turns in cases.values())]
     medians = Table(
@@ -215,26 +272,23 @@ def report(cases: Mapping[tuple[int, str], Turns]) -> Report:
 
 
 def sizes(settings: Settings) -> Report:
-    """Every size up to that of the settings, in both layouts, and with `out` given."""
-    tables, cases = [], []
+    """Every size up to that of the settings, by rows and by columns, aligned and not."""
+    cases: dict[str, dict[int, Turns]] = {}
     with on_one_core():
-        for name, symbol in QUANTITIES.items():
-            for layout, is_filled in (("rows", False), ("columns", False), ("rows", True)):
-                chosen = DOCUMENTED if is_filled else SIZES
-                found = {
-                    size: measured(name, size, settings.repeats or 11, layout, is_filled=is_filled)
-                    for size in chosen
+        for name, symbol in SYMBOLS.items():
+            for place, (layout, options) in PLACES.items():
+                cases[f"{symbol}, {place}"] = {
+                    size: measured(name, size, settings.repeats or 11, layout, **options)
+                    for size in SIZES
                     if size <= settings.size
                 }
-                tables.append(_table(f"{symbol}, {FILLED if is_filled else layout}", found))
-                cases.append(found)
     progress()
     return Report(
         title="Sizes: time of one call on one core, and as a part of its peers'",
-        tables=tuple(tables),
-        figures=(*_smallest(cases), *_limits(cases)),
+        tables=tuple(_table(title, turns) for title, turns in cases.items()),
+        figures=(*_smallest([*cases.values()]), *_limits(cases), *_flat(cases)),
         notes=(f"Ratios are turn by turn. Processor: {machine()['processor']}.",),
-        documented=documented("Ω′, rows", cases[0]),
+        documented=documented("Ω′, rows", cases["Ω′, rows"]),
     )
 
 
@@ -276,17 +330,26 @@ def _smallest(cases: Sequence[Mapping[int, Turns]]) -> Iterator[Figure]:
         yield Figure(name, goal, f"{found * 1e6:.2f} µs", found <= most)
 
 
-def _limits(cases: Sequence[Mapping[int, Turns]]) -> Iterator[Figure]:
-    """The largest middle ratio from a size up, where both sides were measured."""
-    for target, peer, least, most in LIMITS:
-        found = [
-            (ratios(turns[target], turns[peer]).middle, size)
-            for case in cases
-            for size, turns in case.items()
-            if size >= least and target in turns and peer in turns
+def _limits(cases: Mapping[str, Mapping[int, Turns]]) -> Iterator[Figure]:
+    """The largest middle ratio of all sizes and places."""
+    for target, peer, most in LIMITS:
+        middles = [
+            (ratios(turns[target], turns[peer]).middle, f"{title}, {size:,}")
+            for title, sized in cases.items()
+            for size, turns in sized.items()
+            if target in turns and peer in turns
         ]
-        if found:
-            ratio, size = max(found)
-            name = f"{target} at every size" + (f" from {least:,} up" if least > 1 else "")
+        if middles:
+            ratio, where = max(middles)
             goal = f"at most {most:g} of the time of {peer}"
-            yield Figure(name, goal, f"{ratio:.2f} at {size:,}", ratio <= most)
+            yield Figure(f"{target} at every size", goal, f"{ratio:.2f}: {where}", ratio <= most)
+
+
+def _flat(cases: Mapping[str, Mapping[int, Turns]]) -> Iterator[Figure]:
+    """The slowest size over the fastest, by the shortest times of an orientation."""
+    for title, sized in cases.items():
+        times = [min(turns["c"]) / n for n, turns in sized.items() if n >= FROM and "c" in turns]
+        if times:
+            ratio = max(times) / min(times)
+            name, goal = f"c from {FROM:,} on: {title}", f"at most {FLAT:g} from size to size"
+            yield Figure(name, goal, f"{ratio:.2f}", ratio <= FLAT)

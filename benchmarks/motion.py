@@ -1,12 +1,11 @@
-"""Equations of motion: their derivation, exact solutions, and the cost of a right-hand side.
+"""Equations of motion: their derivation beside SymPy's `LagrangesMethod`, and exact solutions.
 
-Beside SymPy's `LagrangesMethod`, `lambdify`, JAX and heyoka; what is not installed is left out.
+The cost of a right-hand side is in `benchmarks/kernels.py`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from importlib.util import find_spec
+from collections.abc import Iterator, Sequence
 from statistics import median
 from time import perf_counter
 from typing import Any
@@ -16,7 +15,7 @@ import sympy as sp
 from sympy.physics.mechanics import LagrangesMethod, ReferenceFrame, dynamicsymbols, inertia
 
 import rigidsym as rs
-from benchmarks.measure import Settings, interleaved, progress
+from benchmarks.measure import Settings, progress
 from benchmarks.report import Cell, Column, Figure, Report, Table
 
 A, B, C = sp.symbols("A B C")
@@ -34,7 +33,6 @@ NESC = {
     "SIM 05": (12.618423766019587, -17.397444101295715, 31.11960300607054),
     "SIM 06": (12.620844062702608, -17.394550197091117, 31.12073831148526),
 }
-BODIES = 100_000
 
 
 def run(settings: Settings) -> Report:
@@ -65,11 +63,6 @@ def run(settings: Settings) -> Report:
             ),
             tuple(tumbling()),
         ),
-        Table(
-            f"One right-hand side of {BODIES:,} symmetric tops, nanoseconds a body",
-            (Column("by"), Column("ns", ".0f")),
-            tuple(right_hand_sides(repeats)),
-        ),
     ]
     figures = [
         Figure(
@@ -80,9 +73,7 @@ def run(settings: Settings) -> Report:
         )
         for name, row in derived.items()
     ]
-    return Report(
-        title="Motion", tables=tuple(tables), figures=tuple(figures), documented=tables[-1]
-    )
+    return Report(title="Motion", tables=tuple(tables), figures=tuple(figures))
 
 
 # derivation
@@ -189,84 +180,3 @@ def _nodding(periods: int = 1000) -> tuple[Cell, ...]:
     sn, *_ = ellipj(ellipk(m) + rate * found.t, m)  # from the upper circle on
     error = np.abs(np.cos(found.q[:, 1]) - one - (two - one) * sn**2).max()
     return "heavy top, 1,000 nutations", "DOP853", float(error), max(found.drift.values())
-
-
-# right-hand sides
-
-
-def right_hand_sides(repeats: int) -> Iterator[tuple[Cell, ...]]:
-    moments, potential = SYMMETRIC
-    motion = rs.derive(
-        "ZXZ", ["state_derivative"], body=rs.principal_moments(*moments), potential=potential
-    )
-    names = motion.argument("parameters").names
-    parameters = np.array([TOP.get(name, 1.0) for name in names])
-    y = np.random.default_rng(1).uniform(0.3, 2.0, (BODIES, 6))
-    actions = {name: each for name, each in _actions(motion, y, parameters).items() if each}
-    expected = actions["rigidsym, NumPy"]()
-    for name, action in actions.items():
-        if not np.allclose(action(), expected, rtol=1e-9):
-            raise ArithmeticError(f"{name}: the right-hand sides differ")
-    times = interleaved({n: _timed(a) for n, a in actions.items()}, repeats)
-    for name in sorted(times, key=lambda name: min(times[name])):
-        yield name, 1e9 * min(times[name]) / BODIES
-    progress()
-
-
-def _timed(action: Callable[[], Any]) -> Callable[[], float]:
-    def timed() -> float:
-        start = perf_counter()
-        action()
-        return perf_counter() - start
-
-    return timed
-
-
-def _actions(motion: rs.Motion, y: Any, parameters: Any) -> Mapping[str, Callable[[], Any] | None]:
-    found: dict[str, Callable[[], Any] | None] = {}
-    for target, shown in (("numpy", "NumPy"), ("c", "C"), ("numba", "Numba")):
-        kernels = motion.kernels(target).load()
-        found[f"rigidsym, {shown}"] = _kernel(kernels.state_derivative, y, parameters)
-    found["lambdify(cse=True)"] = _lambdified(motion, y, parameters)
-    found["JAX, jit of rigidsym's"] = _jax(motion, y, parameters) if find_spec("jax") else None
-    found["heyoka, cfunc"] = _heyoka(motion, y, parameters) if find_spec("heyoka") else None
-    return found
-
-
-def _kernel(function: Any, y: Any, parameters: Any) -> Callable[[], Any]:
-    return lambda: function(0.0, y, parameters)
-
-
-def _plain(motion: rs.Motion) -> tuple[list[sp.Symbol], list[sp.Expr]]:
-    """The state as symbols, and its derivative in them."""
-    symbols = list(sp.symbols("y0:6"))
-    known = dict(zip(reversed(motion.argument("y").symbols), reversed(symbols), strict=True))
-    return symbols, [entry.xreplace(known) for entry in motion.state_derivative]
-
-
-def _lambdified(motion: rs.Motion, y: Any, parameters: Any) -> Callable[[], Any]:
-    symbols, slopes = _plain(motion)
-    constants = motion.argument("parameters").symbols
-    function = sp.lambdify([*symbols, *constants], slopes, "numpy", cse=True)
-    return lambda: np.stack(np.broadcast_arrays(*function(*y.T, *parameters)), axis=-1)
-
-
-def _jax(motion: rs.Motion, y: Any, parameters: Any) -> Callable[[], Any]:
-    import jax
-
-    jax.config.update("jax_enable_x64", True)  # type: ignore[no-untyped-call]
-    function = jax.jit(motion.kernels("jax").load().state_derivative)
-    function(0.0, y, parameters).block_until_ready()
-    return lambda: np.asarray(function(0.0, y, parameters).block_until_ready())
-
-
-def _heyoka(motion: rs.Motion, y: Any, parameters: Any) -> Callable[[], Any]:
-    import heyoka as hy
-
-    symbols, slopes = _plain(motion)
-    constants = motion.argument("parameters").symbols
-    values = dict(zip(constants, map(sp.Float, parameters), strict=True))
-    expressions = [hy.from_sympy(slope.xreplace(values)) for slope in slopes]
-    function = hy.cfunc(expressions, vars=[hy.expression(s.name) for s in symbols])
-    columns = np.ascontiguousarray(y.T)
-    return lambda: function(columns).T

@@ -100,15 +100,20 @@ def machine() -> dict[str, str]:
 
 
 def _processor() -> str:
-    try:
-        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
-    except OSError:
-        lines = []
-    names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
-    flags = {flag for line in lines if line.startswith("flags") for flag in line.split()}
+    """Make, family, vectors and caches, for the same name stands for several generations."""
+    facts: dict[str, str] = {}
+    if Path("/proc/cpuinfo").is_file():
+        for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
+            key, _, value = line.partition(":")
+            facts.setdefault(key.strip(), value.strip())
+    if "model name" not in facts:
+        return platform.processor() or platform.machine()
+    parts = [f"{facts['model name']} {facts.get('cpu family', '')}/{facts.get('model', '')}"]
     widths = {"avx512f": "AVX-512", "avx2": "AVX2"}
-    vectors = [f", {name}" for flag, name in widths.items() if flag in flags][:1]
-    return (names[0] if names else platform.processor() or platform.machine()) + "".join(vectors)
+    parts += [name for flag, name in widths.items() if flag in facts.get("flags", "").split()][:1]
+    caches = Path("/sys/devices/system/cpu/cpu0/cache").glob("index*/size")
+    sizes = sorted({int(path.read_text().strip().rstrip("K")) for path in caches})
+    return ", ".join([*parts, *([f"caches {'/'.join(map(str, sizes))} kB"] if sizes else [])])
 
 
 def spread_columns(unit: str, digits: int = 3) -> tuple[Column, ...]:

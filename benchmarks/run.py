@@ -26,7 +26,6 @@ DOCS = ROOT / "docs" / "reference"
 PAGES = {  # what --docs writes into
     "rosetta": DOCS / "rosetta.md",
     "kernels": DOCS / "measured.md",
-    "motion": DOCS / "measured.md",
     "sizes": ROOT / "README.md",
 }
 NAMES = (

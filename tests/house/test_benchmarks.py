@@ -88,14 +88,16 @@ def test_kernels_are_compared_on_equal_values():
     assert [table.title for table in report.tables] == ["Medians, one core", "Ratios, turn by turn"]
     assert f"R at 4e2: numpy against {kernels.PEER}" in [figure.name for figure in report.figures]
     several = kernels.sizes(Settings(repeats=1, size=3))
-    assert len(several.tables) == 3 * len(kernels.QUANTITIES)
+    assert len(several.tables) == len(kernels.SYMBOLS) * len(kernels.PLACES)
     assert several.documented.rows
     assert all(list(table.lines()) for table in several.tables)
 
 
 @pytest.mark.usefixtures("two_targets")
 def test_a_side_that_differs_is_refused(monkeypatch):
-    monkeypatch.setattr(kernels.modules()["numpy"], "rotation_matrix", lambda *_, **__: np.eye(3))
+    monkeypatch.setattr(
+        kernels.modules("rotation_matrix")["numpy"], "rotation_matrix", lambda *_, **__: np.eye(3)
+    )
     with pytest.raises((ArithmeticError, ValueError), match=r"rotation_matrix|reshape"):
         kernels.sides("rotation_matrix", 20, "rows", is_filled=True)
 
