@@ -145,12 +145,11 @@ class Graph:
     def _take_factors(self, used: Mapping[int, Factors], a: int, b: int) -> None:
         common = self.product((a, b))
         for node, whole in used.items():
-            factors = list(whole)
-            while node != common and _holds(factors, a, b):
-                factors.remove(a)
-                factors.remove(b)
-                factors.append(common)
-            self._redefine(self.products, node, tuple(sorted(factors)))
+            factors = Counter(whole)
+            times = 0 if node == common else _factor_pairs(whole)[a, b]
+            factors.subtract({a: 2 * times} if a == b else {a: times, b: times})
+            factors[common] += times
+            self._redefine(self.products, node, tuple(sorted(factors.elements())))
 
     def _take_terms(self, used: Mapping[int, Terms], a: int, b: int, ratio: Fraction) -> None:
         _, common = self.sum(((Fraction(1), a), (ratio, b)))
@@ -214,10 +213,6 @@ def _most_common(found: Iterable[Counter[Pair]]) -> Pair | None:
             wholes.update(pairs)
     several = [pair for pair, count in times.items() if count > 1]
     return max(several, key=lambda pair: (times[pair], pair in wholes), default=None)
-
-
-def _holds(factors: list[int], a: int, b: int) -> bool:
-    return factors.count(a) > 1 if a == b else a in factors and b in factors
 
 
 Monomial = tuple[Fraction, Factors]  # a number times nodes of the graph, ~node dividing
@@ -317,13 +312,13 @@ class Reader:
         )
 
     def _power(self, base: sp.Expr, exponent: sp.Rational) -> Monomial:
-        coefficient, factors = self._monomial(base) if exponent.is_Integer else self._root(base)
-        times = int(exponent) if exponent.is_Integer else int(2 * exponent)
+        if exponent.is_Integer:
+            times, (coefficient, factors) = int(exponent), self._monomial(base)
+        else:
+            root = self.graph.call("sqrt", self.weighted(base))
+            times, coefficient, factors = int(2 * exponent), Fraction(1), (root,)
         factors = factors if times > 0 else tuple(~factor for factor in factors)
         return coefficient**times, factors * abs(times)
-
-    def _root(self, base: sp.Expr) -> Monomial:
-        return Fraction(1), (self.graph.call("sqrt", self.weighted(base)),)
 
     def _factored(self, weighted: Weighted) -> Monomial:
         coefficient, node = weighted

@@ -23,7 +23,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache, reduce
 from math import ceil, factorial, frexp
-from typing import NamedTuple
+from typing import NamedTuple, TypeGuard
 
 from rigidsym.algebra.stable_forms import FIRST_SERIES, series_of
 from rigidsym.kernels.ir import (
@@ -115,8 +115,12 @@ def numbers_and_angles(kernel: Kernel) -> tuple[set[str], set[str]]:
     """
     halves = _halves(kernel)
     others = [a.value for a in kernel.assignments if a.name not in halves]
-    values = [v for v in (*others, *kernel.outputs) if not (_is_sine(v) or isinstance(v, Guarded))]
-    plain = {name for value in values for name in names_in(value)}
+    plain = {
+        name
+        for value in (*others, *kernel.outputs)
+        if not (isinstance(value, Guarded) or _is_sine(value))
+        for name in names_in(value)
+    }
     for name, source in reversed(halves.items()):
         if name in plain:
             plain.add(source)
@@ -145,7 +149,7 @@ def _is_power_of_two(value: Fraction | float) -> bool:
     return frexp(float(value))[0] in (0.5, -0.5)
 
 
-def _is_sine(value: Expression) -> bool:
+def _is_sine(value: Expression) -> TypeGuard[Call]:
     return isinstance(value, Call) and value.function in ("sin", "cos")
 
 
@@ -162,7 +166,8 @@ def _bounded(expression: Expression, values: Mapping[str, Bounded]) -> Bounded:
         case Negative(operand):
             return _bounded(operand, values)
         case Sum(terms):
-            return reduce(_sum, (_bounded(term, values) for term in terms))
+            bounds = (_bounded(term, values) for term in terms)
+            return reduce(lambda a, b: Bounded.rounded(a.size + b.size, a.error + b.error), bounds)
         case Product(factors, divisors) if all(isinstance(d, Number) for d in divisors):
             above, below = (
                 reduce(_product, (_bounded(part, values) for part in side), _ONE)
@@ -176,12 +181,10 @@ def _bounded(expression: Expression, values: Mapping[str, Bounded]) -> Bounded:
         case Call("abs", argument):
             return values[argument.text]
         case Call(_, argument) if expression.order is not None:
-            return _entire(expression.order, values[argument.text])
+            size, slope, own = entire_bounds(expression.order)
+            square = values[argument.text]
+            return Bounded(size, own * size + slope * (square.error + square.size))
     raise NoBoundError
-
-
-def _sum(a: Bounded, b: Bounded) -> Bounded:
-    return Bounded.rounded(a.size + b.size, a.error + b.error)
 
 
 def _product(a: Bounded, b: Bounded) -> Bounded:
@@ -192,11 +195,6 @@ def _product(a: Bounded, b: Bounded) -> Bounded:
 
 
 _ONE = Bounded(1.0, 0.0, is_scale=True)
-
-
-def _entire(order: int, square: Bounded) -> Bounded:
-    size, slope, own = entire_bounds(order)
-    return Bounded(size, own * size + slope * (square.error + square.size))
 
 
 def entire_bounds(order: int) -> tuple[float, float, float]:
@@ -280,21 +278,14 @@ class _Guard:
         if is_positive and any(isinstance(part, Number) for part in parts):
             return divisor
         name = self._named(divisor)
-        if is_positive and not all(map(self._is_given, parts)):
-            return self._or_nan(name, self._reach(), power=2)
+        factors = (factor for part in parts for factor in self._factors(part))
+        if is_positive and any(isinstance(f, Name) and f.text in self._values for f in factors):
+            return self._or_nan(name, self._reach(), power=2)  # squares of inputs hold no rounding
         return self._or_nan(name, None if is_positive else self._sizes(total))
-
-    def _is_given(self, part: Expression) -> bool:
-        """Whether a product is one of inputs alone, which hold no rounding."""
-        names = (factor for factor in self._factors(part) if isinstance(factor, Name))
-        return not any(name.text in self._values for name in names)
 
     def _reach(self) -> Name:
         """The square of how far rounding reaches where sines and cosines are squared, over eps²."""
-        values = self._values.values()
-        called = {
-            v.argument: None for v in values if isinstance(v, Call) and v.function in ("sin", "cos")
-        }
+        called = {v.argument: None for v in self._values.values() if _is_sine(v)}
         sizes = [self._new(Call("abs", angle)) for angle in called]
         reach = self._new(Product((_ROUNDINGS, Sum((Number(Fraction(1)), *sizes)))))
         return self._new(Product((reach, reach)))

@@ -106,7 +106,9 @@ class _Writer:
                 return self._sum([self._negated(term) for term in terms])
             case Product(factors, divisors):
                 for place, factor in enumerate(factors):
-                    if _has_both_signs(factor):
+                    if isinstance(factor, Sum) and any(
+                        isinstance(term, Negative) for term in factor.terms
+                    ):
                         turned = self._negated(factor)
                         return Product((*factors[:place], turned, *factors[place + 1 :]), divisors)
         return Negative(expression)
@@ -127,20 +129,20 @@ class _Writer:
         if wish:
             name = self.names.wished(wish)
             self._ranks[name] = (_VALUE, len(self._ranks))
-        elif isinstance(value, Call):
-            name = self._name_of(value)
+        elif isinstance(value, Call):  # sin_phi for sin(phi); a number for a long argument
+            is_long = len(value.argument.text) > _LONGEST_ARGUMENT or value.second
+            prefix = f"{value.function}_"
+            name = (
+                self.names.numbered(prefix)
+                if is_long
+                else self.names.fresh(prefix + value.argument.text)
+            )
             self._ranks[name] = (_CALL, len(self._ranks))
         else:
             name = self.names.numbered("x")
             self._ranks[name] = (_VALUE, len(self._ranks))
         self.assignments.append(Assignment(name, value))
         return Name(name)
-
-    def _name_of(self, call: Call) -> str:
-        """sin_phi for sin(phi); a number for a long argument."""
-        if len(call.argument.text) > _LONGEST_ARGUMENT or call.second:
-            return self.names.numbered(f"{call.function}_")
-        return self.names.fresh(f"{call.function}_{call.argument.text}")
 
     def _argument(self, weighted: Weighted) -> Name:
         """The name of what functions are called with: half an angle has one for all of them."""
@@ -153,7 +155,10 @@ class _Writer:
         if node in self.graph.calls:
             function, arguments = self.graph.calls[node]
             if not _is_function(function):
-                return self._choice(function, *(self.weighted(*each) for each in arguments))
+                values = [self.weighted(*each) for each in arguments]
+                if function == HELD:
+                    return values[0]
+                return Choice(*values) if function == CHOICE else Compare(function, *values)
             names = [self._argument(argument) for argument in arguments]
             if function == "cos" and arguments[0] in self._sines:
                 self._node(self._sines[arguments[0]])  # first: both can be taken in one call
@@ -163,14 +168,6 @@ class _Writer:
         if node in self.graph.sums:
             return self._sum(self._terms(node, Fraction(1)))
         raise KernelError(f"node {node} of a kernel has no value")
-
-    def _choice(self, function: str, *values: Expression) -> Expression:
-        """A value as it is, a comparison, or a choice."""
-        if function == HELD:
-            return values[0]
-        if function == CHOICE:
-            return Choice(*values)
-        return Compare(function, *values)
 
     def _product(self, node: int) -> Expression:
         factors: list[Expression] = []
@@ -219,10 +216,6 @@ class _Writer:
 
 def _is_function(called: str) -> bool:
     return called.isidentifier() and called not in (HELD, CHOICE)
-
-
-def _has_both_signs(expression: Expression) -> bool:
-    return isinstance(expression, Sum) and any(isinstance(t, Negative) for t in expression.terms)
 
 
 def _scaled(size: Fraction, expression: Expression) -> Expression:
