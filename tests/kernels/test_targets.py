@@ -194,7 +194,7 @@ def test_any_layout_broadcasts_as_in_numpy_and_gives_the_same(target, first):
     body = module("ZXZ", target).angular_velocity_body
     names = [*LAYOUTS]
     for second in ("rows", names[names.index(first) - 1], "three axes"):
-        q, q_dot = inputs("ZXZ", "angular_velocity_body", (7,))
+        q, q_dot = inputs("ZXZ", "angular_velocity_body", (70,))  # more than a tile in C
         given = LAYOUTS[first](q), LAYOUTS[second](q_dot)
         numbers = [np.asarray(array, float) for array in given]
         before = [np.array(array) for array in given]
