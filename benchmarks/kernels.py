@@ -145,7 +145,13 @@ def placed(values: Array, layout: str, *, is_aligned: bool) -> Array:
 
 
 def sides(
-    name: str, size: int, layout: str, *, is_filled: bool = False, is_aligned: bool = True
+    name: str,
+    size: int,
+    layout: str,
+    *,
+    is_filled: bool = False,
+    is_aligned: bool = True,
+    is_large: bool = False,
 ) -> dict[str, Call]:
     """A call of each side on the same orientations; raises where one differs in value."""
     of, random, count = case(name), np.random.default_rng(1), len(case(name).entries)
@@ -165,6 +171,8 @@ def sides(
         room: dict[str, Array] = {"outputs": np.empty((count, size))} if is_filled else {}
         calls[HEYOKA] = partial(_compiled(name), np.array(columns), **room)
     for target, module in modules(name).items():
+        if target == "jax" and not is_large:
+            continue  # it compiles anew for every size
         out = {"out": np.empty((size, *of.shape))} if is_filled and target != "jax" else {}
         function = getattr(module, name)
         calls[target] = partial(function, *arguments, **out)
@@ -215,7 +223,7 @@ def run(settings: Settings) -> Report:
     repeats = settings.repeats or 15
     with on_one_core():
         cases = {
-            (size, name): measured(name, size, repeats, is_filled=True)
+            (size, name): measured(name, size, repeats, is_filled=True, is_large=True)
             for size in (settings.size, settings.size // 10)
             for name in ("angular_velocity_body", "rotation_matrix")
         }

@@ -24,9 +24,12 @@ from functools import lru_cache, reduce
 from itertools import combinations
 from math import gcd, lcm
 from operator import add, sub
+from random import Random
 from typing import Any, NamedTuple
 
 import sympy as sp
+from sympy.polys.domains import ZZ
+from sympy.polys.galoistools import gf_gcd, gf_trunc
 from sympy.polys.orderings import lex
 from sympy.polys.rings import PolyElement
 
@@ -37,6 +40,7 @@ from rigidsym.algebra.ring import Monomial, Quotient, shortest
 from rigidsym.errors import AlgebraError
 
 _SHORT_SUM = 12  # terms of a divisor that is factored, since that is done once for many entries
+_PRIME = 2**61 - 1  # modulo which images of polynomials are compared
 _MORE_TERMS = 2  # that a sum over one denominator may have; with more it is hardly ever shorter
 
 
@@ -120,7 +124,8 @@ class Presenter:
     def _cancelled(self, above: PolyElement, below: PolyElement) -> tuple[PolyElement, PolyElement]:
         """Both without their common factors; many entries are divided by one short sum."""
         if len(below) > _SHORT_SUM:
-            _, above, below = above.cofactors(below)
+            if not _are_coprime(above, below):
+                _, above, below = above.cofactors(below)
             return above, below
         factors = self._factors.get(below)
         if factors is None:
@@ -194,6 +199,36 @@ class Presenter:
                 powers[above] -= times
                 powers[cosine if above == sine else sine] += times
         return found
+
+
+def _are_coprime(one: PolyElement, other: PolyElement) -> bool:
+    """Whether images in each generator, at numbers for the others, have no factor in common.
+
+    The image of a common factor divides both images. So coprime images spare the greatest common
+    divisor of hundreds of terms, which takes seconds for the accelerations of a gimbal and is
+    nearly always one. If the numbers are unlucky, a common factor stays, and the value is the same.
+    """
+    random, sides = Random(1), (one, other)
+    point = [random.randrange(1, _PRIME) for _ in one.ring.gens]
+    powers = [
+        [pow(number, k, _PRIME) for k in range(1 + max(m[place] for side in sides for m in side))]
+        for place, number in enumerate(point)
+    ]
+    used = [place for place in range(len(point)) if all(side.degree(place) for side in sides)]
+    for place in used:
+        images = []
+        for side in sides:
+            image = [0] * (side.degree(place) + 1)  # the highest power first
+            for monomial, coefficient in side.items():
+                value = int(coefficient.numerator) * pow(int(coefficient.denominator), -1, _PRIME)
+                for k, exponent in enumerate(monomial):
+                    if exponent and k != place:
+                        value = value * powers[k][exponent] % _PRIME
+                image[-1 - monomial[place]] += value
+            images.append(gf_trunc(image, _PRIME))
+        if len(gf_gcd(*images, _PRIME, ZZ)) > 1:
+            return False
+    return True
 
 
 class Rationals:
