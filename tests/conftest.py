@@ -57,10 +57,10 @@ def needed(is_there: bool, name: str) -> None:
 
 
 def forget(modules: Iterable[ModuleType]) -> None:
-    """Empty what functions of these modules keep."""
+    """Empty what the functions of these modules keep, and not those that they import."""
     for module in modules:
         for each in [*vars(module).values()]:
-            if isinstance(each, _lru_cache_wrapper):
+            if isinstance(each, _lru_cache_wrapper) and each.__module__ == module.__name__:
                 each.cache_clear()
 
 

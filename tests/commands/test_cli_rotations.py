@@ -62,11 +62,9 @@ def test_every_named_rotation_runs_from_derive(name, tmp_path):
     [
         (("ZYX", "--passive"), "A = Rᵀ", "euler_zyx_intrinsic_passive"),
         (("zxz", "--angles", "alpha,beta,gamma"), "about the fixed z-axis", "euler_zxz_extrinsic"),
-        (("unit_quaternion",), "scalar first", "unit_quaternion"),
         (("quaternion", "--scalar-last"), "scalar last", "quaternion_xyzw"),
         (("rotation-vector",), "its length n is the angle", "rotation_vector"),
         (("goldstein",), "A = Rᵀ", "goldstein"),
-        (("z(pan) y(tilt)",), "pan about z", "chain_zy"),
         (("z(phi) [1,1,0](psi)",), "[1,1,0]", "chain_zu"),
         (("z(phi) x(incline)", "--constants", "incline"), "incline", "chain_zx"),
     ],

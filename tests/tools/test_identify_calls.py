@@ -18,7 +18,15 @@ def results_of(statements: str, reading: Reading) -> dict[str, np.ndarray]:
     return {name: np.array(names[name], float) for name in wanted if name in names}
 
 
-def check(library: str, reading: Reading) -> None:
+READINGS = [
+    *some(12, seed=20, layouts=(None, None, False, True), velocities=(None,)),
+    *some(10, seed=21, layouts=(None, False, True), velocities=VELOCITIES),
+]
+
+
+@pytest.mark.parametrize("library", ["SciPy", "rigidsym"])
+@pytest.mark.parametrize("reading", READINGS, ids=str)
+def test_any_order_signs_units_layout_and_velocity(reading, library):
     expected = sample(reading, GENERIC[reading.degrees])
     statements = calls(reading)[library]
     assert "from rigidsym" not in statements  # public names only
@@ -30,22 +38,6 @@ def check(library: str, reading: Reading) -> None:
         np.testing.assert_allclose(sign * found["quaternion"], expected["quaternion"], atol=1e-13)
     if reading.velocity and library != "SciPy":
         np.testing.assert_allclose(found["omega"].ravel(), expected["omega"], atol=1e-6, rtol=1e-6)
-
-
-READINGS = some(12, seed=20, layouts=(None, None, False, True), velocities=(None,))
-MOVING = some(10, seed=21, layouts=(None, False, True), velocities=VELOCITIES)
-
-
-@pytest.mark.parametrize("library", ["SciPy", "rigidsym"])
-@pytest.mark.parametrize("reading", READINGS, ids=str)
-def test_any_order_signs_units_and_layout(reading, library):
-    check(library, reading)
-
-
-@pytest.mark.parametrize("library", ["SciPy", "rigidsym"])
-@pytest.mark.parametrize("reading", MOVING, ids=str)
-def test_angular_velocities(reading, library):
-    check(library, reading)
 
 
 @pytest.mark.parametrize("library", ["SciPy", "rigidsym"])
