@@ -158,7 +158,7 @@ BUDGETS = {  # what was reached; who makes the house smaller lowers them
     "files": 222,
     "lines of code": 32_890,
     "lines of tests": 26_370,
-    "lines of benchmarks": 2_700,
+    "lines of benchmarks": 2_660,
 }
 
 
