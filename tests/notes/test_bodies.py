@@ -73,6 +73,11 @@ def test_what_is_shown_in_names_has_the_value_that_was_derived(motion):
     assert replaced > 8
 
 
+def test_a_hole_takes_its_mass_away():
+    (row,) = (line for line in drilled().note().markdown().splitlines() if "(hole)" in line)
+    assert row.split("|")[2].startswith(" −")
+
+
 def test_the_note_gives_each_moment_once_and_the_energy_by_the_moments():
     equations = [
         block

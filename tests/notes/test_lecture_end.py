@@ -63,6 +63,16 @@ def test_the_symbols_name_equations_that_are_there(place):
     assert named <= labels
 
 
+def test_claims_are_in_the_order_of_their_equations():
+    document = documents()[0]
+    blocks = section(document, "Identities verified").blocks
+    (table,) = [block for block in blocks if isinstance(block, NoteTable)]
+    references = [s for row in table.rows for s in row[0] if isinstance(s, EquationReference)]
+    numbers = [document.number(reference.label) for reference in references]
+    assert numbers == sorted(numbers)
+    assert len(numbers) == len(table.rows)
+
+
 def test_the_sheet_holds_the_boxed_results_of_the_theory():
     document = documents()[0]
     sheet = section(document, "Summary")

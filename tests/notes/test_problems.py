@@ -159,8 +159,9 @@ def test_the_convention_is_the_only_one_that_fits(seed):
         assert np.allclose(found, shown, atol=6e-4) is (place == 0)
 
 
-def test_the_determinant_near_gimbal_lock_is_the_volume_of_the_three_axes():
-    problem = euler.gimbal_lock(Random(5))
+@pytest.mark.parametrize("seed", range(5))
+def test_the_determinant_near_gimbal_lock_is_the_volume_of_the_three_axes(seed):
+    problem = euler.gimbal_lock(Random(seed))
     sequence = re.search(r"rates of the ([XYZ]{3})", asked(problem))[1]
     theta = numbers(asked(problem))[-1]
     unit = dict(zip("XYZ", np.eye(3), strict=True))
@@ -169,6 +170,18 @@ def test_the_determinant_near_gimbal_lock_is_the_volume_of_the_three_axes():
     determinant, growth = (answer.value for answer in problem.answers)
     assert abs(determinant - abs(np.linalg.det(axes))) < 1e-12
     assert abs(growth * determinant - 1) < 1e-12
+    assert determinant < np.sin(np.radians(16))
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_the_moment_beside_the_centre_is_that_of_the_textbooks(seed):
+    problem = bodies.parallel_axis(Random(seed))
+    radius, *_, mass, distance = numbers(asked(problem))
+    factors = {"cylinder": 1 / 2, "cone": 3 / 10, "sphere": 2 / 5}  # of a hemisphere too
+    factor = next(factor for name, factor in factors.items() if name in asked(problem))
+    own = factor * mass * radius**2
+    moments = [answer.value for answer in problem.answers]
+    np.testing.assert_allclose(moments, [own, own + mass * distance**2], rtol=1e-12)
 
 
 def test_the_block_with_a_hole_has_the_moments_of_many_points():

@@ -141,8 +141,8 @@ READ_AND_MENDED = {  # by file or rotation: what its note says, and what it must
     ),
     "free_body": (("where $a$, $b$ and $c$ are positive, or two of them are negative,",), ()),
     "ZYX": ((EXCHANGED,), ()),
-    "aerospace": ((), (EXCHANGED,)),
-    "XYZ": ((), (EXCHANGED,)),
+    "aerospace": ((), ("Aerospace texts write",)),
+    "XYZ": ((), ("Aerospace texts write",)),
     "rolling_disc": ((), ("stays between the circles",)),
 }
 
