@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
-from itertools import chain, islice
+from itertools import chain, islice, product
 from typing import Any
 
 import sympy as sp
@@ -13,6 +13,7 @@ import sympy as sp
 from rigidsym.errors import AlgebraError, DerivationError, ModelError
 from rigidsym.system.resources import environment
 from rigidsym.tools.compare.language import spelled_out
+from rigidsym.tools.compare.laws import laws
 from rigidsym.tools.compare.repair import (
     Meaning,
     Repair,
@@ -24,12 +25,12 @@ from rigidsym.tools.compare.repair import (
 from rigidsym.tools.compare.targets import (
     NEAR_POINTS,
     POINTS,
+    QUATERNION,
     KnownQuantity,
     Names,
     agreeing_points,
     catalogue,
     is_reflection,
-    readings,
 )
 
 _MOST_REPAIRS = 2  # of a formula that nobody has named
@@ -123,7 +124,7 @@ def in_words(shape: tuple[int, int]) -> str:
 
 def against(formula: sp.ImmutableMatrix, goal: KnownQuantity) -> Comparison:
     """Compare with one quantity."""
-    meant = [Meaning.of(formula, goal, names) for names in readings(formula, goal)]
+    meant = [Meaning.of(formula, goal, names) for names in goal.readings(formula)]
     if is_reflection(formula) and not any(reading.is_whole for reading in meant):
         return Comparison(formula=formula, asked=goal, is_reflection=True)
     found = next(likely(meant, goal), None)
@@ -174,9 +175,13 @@ def identified(
     near: list[tuple[float, Meaning]] = []
     whole: Meaning | None = None
     some: Meaning | None = None
-    known = (goal for goal in (*catalogue(formula), *also) if goal.matrix.shape == formula.shape)
+    known = (
+        goal
+        for goal in (*catalogue(formula), *laws(formula.shape), *also)
+        if goal.matrix.shape == formula.shape
+    )
     for goal in chain.from_iterable(goal.arrangements for goal in known):
-        for names in readings(formula, goal):
+        for names in goal.readings(formula):
             reading = Meaning.of(formula, goal, names)
             right = reading.right
             if right.all():
@@ -186,6 +191,8 @@ def identified(
             near.append((float(right.mean()), reading))
     if only_equal:
         return Comparison(formula=formula, asked=None)
+    if (turned := _in_other_senses(formula)) is not None:
+        return turned
     if not whole and is_reflection(formula):
         return Comparison(formula=formula, asked=None, is_reflection=True)
     if some:
@@ -198,6 +205,26 @@ def identified(
         if 0 < len(repairs) <= _MOST_REPAIRS and all(r.kind != "entry" for r in repairs):
             return _made(reading, repairs, None)
     return Comparison(formula=formula, asked=None)
+
+
+def _in_other_senses(formula: sp.ImmutableMatrix) -> Comparison | None:
+    """A quaternion of angles of which some count in the other sense: a convention, no fault.
+
+    In a rotation matrix more entries would differ than a repair may change.
+    """
+    angles = sorted(formula.free_symbols, key=str)
+    if formula.shape != (4, 1) or not formula.has(sp.sin) or len(angles) > 3:
+        return None
+    for senses in islice(product((1, -1), repeat=len(angles)), 1, None):
+        turned = {s: sense * s for s, sense in zip(angles, senses, strict=True)}
+        comparison = identified(formula.xreplace(turned), only_equal=True)
+        if comparison.found is not None and comparison.found.quantity == QUATERNION:
+            opposite = " and ".join(str(s) for s in angles if turned[s] != s)
+            words = f"with the opposite sense of {opposite}"
+            arrangement = ", ".join(filter(None, (comparison.arrangement, words)))
+            found = replace(comparison.found, arrangement=arrangement)
+            return replace(comparison, formula=formula, found=found)
+    return None
 
 
 _IN_TEXT = {  # the text after a change, and its kind
@@ -216,7 +243,7 @@ def in_text(
         after, kind = _IN_TEXT[match[0]]
         start, end = text[: match.start()], text[match.end() :]
         formula = spelled_out(read(start + after + end))
-        for names in readings(formula, goal):
+        for names in goal.readings(formula):
             reading = Meaning.of(formula, goal, names)
             if reading.agrees(formula, goal):
                 parts = (f"...{start[-15:]}{each}{end[:15]}..." for each in (match[0], after))

@@ -256,8 +256,8 @@ def _cost(variant: tuple[str, sp.Expr, int]) -> tuple[int, int, str]:
 def _groups(reading: Meaning) -> list[list[sp.Symbol]]:
     """Names that may be taken for one another: those of one argument."""
     return [
-        [symbol for symbol, meant in reading.names.items() if meant in argument.symbols]
-        for argument in reading.goal.motion.arguments
+        [symbol for symbol, meant in reading.names.items() if meant in symbols]
+        for symbols in reading.goal.inputs.values()
     ]
 
 

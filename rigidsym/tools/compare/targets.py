@@ -6,7 +6,7 @@ import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, reduce
 from itertools import permutations, product
 from typing import Any
 
@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from rigidsym.algebra.evaluate import Floats, Unknown, evaluate
 from rigidsym.errors import ExpressionError
+from rigidsym.models.rotation import Turn
 from rigidsym.motion import Motion, derive
 
 Array = NDArray[np.float64]
@@ -43,7 +44,7 @@ def _points() -> Array:
     return np.concatenate([near, far], axis=-1)
 
 
-_TABLE = _points()
+TABLE = _points()
 _ROWS = {"q": 0, "q_dot": 1, "q_ddot": 2, "omega_space": 3, "omega_body": 3}
 _FLOATS = Floats(np)
 
@@ -66,10 +67,11 @@ _OF_RATES = tuple(
     for frame in _FRAMES
 )
 OPERATOR = "quaternion_rate_operator"  # A(Ω) with q̇ = A q
+QUATERNION = "quaternion"  # of a product of turns
 SHAPES: dict[tuple[int, int], tuple[str, ...]] = {  # of formulas, and what each may be
     (3, 3): ("rotation_matrix", *_OF_RATES[:4]),
     (3, 1): _OF_RATES[4:],
-    (4, 1): _OF_RATES[6:],
+    (4, 1): (*_OF_RATES[6:], QUATERNION),
     (4, 3): _OF_RATES[2:4],
     (3, 4): _OF_RATES[:2],
     (4, 4): tuple(f"{OPERATOR}_{frame}" for frame in _FRAMES),
@@ -89,12 +91,16 @@ class KnownQuantity:
     @cached_property
     def matrix(self) -> sp.ImmutableMatrix:
         matrix = self._derived
+        if "conjugated" in self.arrangement:
+            matrix = sp.diag(1, -1, -1, -1) * matrix
         if "transposed" in self.arrangement:
             matrix = matrix.T
         if "scalar last" in self.arrangement:
             order = ([1, 2, 3, 0] if count == 4 else [*range(count)] for count in matrix.shape)
             matrix = matrix.extract(*order)
-        factor = {"twice": 2, "half": sp.Rational(1, 2)}.get(self.arrangement.rpartition(" ")[2])
+        factor = {"negative": -1, "twice": 2, "half": sp.Rational(1, 2)}.get(
+            self.arrangement.rpartition(" ")[2]
+        )
         return sp.ImmutableMatrix(matrix * (factor or 1))
 
     @cached_property
@@ -105,12 +111,16 @@ class KnownQuantity:
             words.append("transposed (passive, the direction cosine matrix)")
         if 4 in self.matrix.shape:
             factors = ("", "twice", "half")[: 3 if self.matrix.rows == 3 else 2]
+            if self.quantity == QUATERNION:
+                factors = ("", "conjugated (passive)", "negative")
             parts = product(("", "scalar last"), factors)
             words = [", ".join(filter(None, each)) for each in parts]
         return tuple(replace(self, arrangement=each) if each else self for each in words)
 
     @cached_property
     def _derived(self) -> sp.ImmutableMatrix:
+        if self.quantity == QUATERNION:
+            return sp.ImmutableMatrix(reduce(quaternion, map(_half_turn, self.motion.model.turns)))
         if self.quantity.startswith(OPERATOR):
             frame = self.quantity.removeprefix(OPERATOR)
             rates = getattr(self.motion, f"rates_from_angular_velocity{frame}")
@@ -123,9 +133,9 @@ class KnownQuantity:
         found: Values = {}
         count = Counter[int]()
         for name, symbols in self.inputs.items():
-            row = _ROWS.get(name, len(_TABLE) - 1)
+            row = _ROWS.get(name, len(TABLE) - 1)
             for symbol in symbols:
-                found[symbol] = _TABLE[row, count[row]]
+                found[symbol] = TABLE[row, count[row]]
                 count[row] += 1
         for condition in self.motion.model.constraints:
             self._satisfy(condition, found)
@@ -170,11 +180,15 @@ class KnownQuantity:
         names = {name: s for a in arguments for name, s in zip(a.names, a.symbols, strict=True)}
         return names | {s.name: s for s in self.inputs["constants"]}
 
-    @cached_property
+    @property
     def coordinates(self) -> dict[str, sp.Expr]:
         """The coordinates by plain name."""
         q = self.inputs.get("q", ())
         return {name: symbol for name, symbol in self.names.items() if symbol in q}
+
+    def readings(self, matrix: sp.MatrixBase) -> Iterator[Names]:
+        """The possible meanings of the names in a formula."""
+        return readings(matrix, self)
 
     def sibling(self, quantity: str) -> KnownQuantity:
         """Another quantity of the same rotation."""
@@ -197,6 +211,7 @@ def target(rotation: str, quantity: str) -> KnownQuantity:
     """A quantity of a rotation by name; raises ModelError or QuantityError for unknown names."""
     of_rates = rotation in _THREE and quantity in _OF_RATES
     derived = quantity.replace(OPERATOR, "rates_from_angular_velocity")
+    derived = "rotation_matrix" if quantity == QUATERNION else derived
     motion = _kinematics(rotation, _OF_RATES if of_rates else (derived,))
     return KnownQuantity(motion=motion, rotation=rotation, quantity=quantity, is_named=True)
 
@@ -204,6 +219,18 @@ def target(rotation: str, quantity: str) -> KnownQuantity:
 @lru_cache(maxsize=256)
 def _kinematics(rotation: str, quantities: tuple[str, ...]) -> Motion:
     return derive(rotation, quantities)
+
+
+def quaternion(a: sp.MatrixBase, b: sp.MatrixBase) -> sp.Matrix:
+    """The product a b of two quaternions, each a column with the scalar first."""
+    scalar = a[0] * b[0] - a[1:, :].dot(b[1:, :])
+    return sp.Matrix([scalar, *(a[0] * b[1:, :] + b[0] * a[1:, :] + a[1:, :].cross(b[1:, :]))])
+
+
+def _half_turn(turn: Turn) -> sp.Matrix:
+    return sp.Matrix(
+        [sp.cos(turn.angle / 2), *(sp.sin(turn.angle / 2) * d for d in turn.direction)]
+    )
 
 
 def catalogue(matrix: sp.MatrixBase) -> Iterator[KnownQuantity]:
@@ -215,6 +242,8 @@ def catalogue(matrix: sp.MatrixBase) -> Iterator[KnownQuantity]:
 def _rotations(matrix: sp.MatrixBase, quantity: str) -> tuple[str, ...]:
     """The rotations whose quantity has as many names, and sines and cosines if this has."""
     turns, count = matrix.has(sp.sin, sp.cos, sp.tan), len(matrix.free_symbols)
+    if quantity == QUATERNION:
+        return {1: _ONE, 2: _TWO, 3: _THREE}.get(count, ()) if turns else ()
     if 4 in matrix.shape:
         return _QUATERNIONS
     if quantity == "rotation_matrix":
@@ -259,7 +288,7 @@ def is_reflection(matrix: sp.MatrixBase) -> bool:
     if matrix.shape != (3, 3):
         return False
     symbols = sorted(matrix.free_symbols, key=str)
-    values = evaluated(matrix, dict(zip(symbols, _TABLE[0], strict=False)))
+    values = evaluated(matrix, dict(zip(symbols, TABLE[0], strict=False)))
     with np.errstate(all="ignore"):
         products = values @ values.transpose(0, 2, 1)
         is_orthogonal = bool((np.abs(products - np.eye(3)) <= _TOLERANCE).all())
@@ -334,6 +363,8 @@ def _of_arrays(others: Sequence[sp.Symbol], angles: set[sp.Symbol]) -> dict[sp.S
 
 
 def _inputs(goal: KnownQuantity) -> set[str]:
+    if goal.quantity == QUATERNION:
+        return {"q"}
     if goal.quantity.startswith(OPERATOR):
         return {"q", "omega" + goal.quantity.removeprefix(OPERATOR)}
     return set(goal.motion.step(goal.quantity).quantity.inputs)
