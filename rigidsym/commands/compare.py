@@ -13,14 +13,14 @@ import click
 from rigidsym.commands.command import command as make, message, option, with_options
 from rigidsym.commands.options import RotationOptions
 from rigidsym.data.columns import counted
+from rigidsym.errors import DataError
 from rigidsym.motion import Motion, derive
 from rigidsym.pipeline import motion_of, read
+from rigidsym.system.files import read_bytes
 from rigidsym.system.processes import bar
+from rigidsym.system.resources import environment
 from rigidsym.tools.compare.comparison import compare
 from rigidsym.tools.compare.search import disappointment, search, source_files
-from rigidsym.tools.compare.targets import KnownQuantity
-
-_OF_BODY = ("mass_matrix", "coriolis_matrix")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,26 +48,28 @@ class CompareOptions(RotationOptions):
         "--require", metavar="N", default=0, help="In programs: fail if fewer formulas are known."
     )
     why: bool = option("--why", help="In programs: list what could not be read, with the reason.")
-    github: bool = option("--github", help="In programs: print faults as GitHub annotations.")
-    as_json: bool = option("--json", help="Print the results as JSON.")
+    form: str = option(
+        "--format",
+        type=click.Choice(["text", "json", "sarif", "github"]),
+        default="text",
+        help="Print text, JSON, a SARIF log, or faults as GitHub annotations.",
+    )
+    baseline: str | None = option(
+        "--baseline",
+        metavar="FILE",
+        help="In programs: ignore the faults that FILE lists, an earlier result of --format json.",
+    )
 
     def motion(self) -> Motion | str | None:
         """The rotation to compare with, with the quantity derived."""
         given = self.of_rotation()
         if self.rotation is None or self.quantity is None:
-            if self.rotation:
+            if self.rotation or self.quantity or given:
                 raise click.UsageError(
-                    f"--rotation {self.rotation} needs a quantity to compare with, such as "
-                    "--quantity rotation_matrix; without both, all known quantities are tried"
+                    "a formula is compared with --quantity NAME of --rotation ROTATION, such as "
+                    "--rotation ZYX --quantity rotation_matrix; without both, all known "
+                    "quantities are tried"
                 )
-            if self.quantity:
-                raise click.UsageError(
-                    f"--quantity {self.quantity} needs the rotation that it belongs to, such as "
-                    "--rotation ZYX; without both, all known quantities are tried"
-                )
-            if given:
-                flag = "--" + next(iter(given)).replace("_", "-")
-                raise click.UsageError(f"{flag} needs --rotation and --quantity")
             return None
         spec = read(self.rotation, **given)
         is_name = not given and spec.body is None and not self.rotation.endswith(".toml")
@@ -86,16 +88,16 @@ def command(context: click.Context, paths: tuple[Path, ...], options: CompareOpt
     angle or frame, the order of turns, a missing square. Answers are proved wherever possible.
 
     PATHS are files or folders. In Python, C, C++, JavaScript, TypeScript, MATLAB, Rust, Java and
-    C#, `compare` finds rotation matrices, rate matrices, quaternion kinematics, Euler angles, and
-    the mass and Coriolis matrices of quadcopters. Source code is parsed, never run. The exit code
-    is 1 if a formula is wrong or not as expected.
+    C#, `compare` finds rotation matrices, rate matrices, quaternions and their products and
+    rates, Euler angles, Euler's equations and the parallel-axis theorem. Source code is parsed,
+    never run. The exit code is 1 if a formula is wrong or not as expected.
     """
     if (options.formula is None) == (not paths):
         raise click.UsageError("expected --formula TEXT, or paths")
     motion = options.motion()
     if options.formula is not None:
         result = compare(options.formula, motion, options.quantity)
-        click.echo(_json(result.record()) if options.as_json else result.text())
+        click.echo(result.text() if options.form == "text" else _json(result.record()))
         context.exit(not result.is_equal)
     if motion is not None:
         raise click.UsageError("--rotation and --quantity need --formula")
@@ -104,47 +106,56 @@ def command(context: click.Context, paths: tuple[Path, ...], options: CompareOpt
 
 def _searched(paths: Sequence[Path], options: CompareOptions) -> bool:
     """Print the formulas in source files; whether one is wrong, or too few were recognised."""
-    body = _quadcopter()
-    also = [KnownQuantity(motion=body, rotation=body.name, quantity=name) for name in _OF_BODY]
     axes = derive(options.expect, "rotation_matrix").model if options.expect else None
+    accepted = _accepted(Path(options.baseline)) if options.baseline else ()
     files = list(source_files(paths))
-    is_wrong, records, unreadable = False, [], 0
+    records: list[dict[str, Any]] = []
+    unreadable = 0
     with bar("files") as progress:
         for place, file in enumerate(files):
-            for formula in search(file, also):
+            for formula in search(file):
                 comparison = formula.comparison
                 if comparison is None:
                     unreadable += 1
                     if options.why:
                         message(str(formula))
                     continue
-                fault = disappointment(comparison, axes, is_active=options.expect_active)
-                is_fault = bool(fault) or not (comparison.is_equal or comparison.is_reflection)
-                is_wrong |= is_fault
-                records.append(formula.record() | {"unexpected": fault or None})
-                text = f"{formula}; {fault}" if fault else str(formula)
-                if options.github and is_fault:
-                    where = f"file={formula.path},line={formula.formula.line}"
-                    click.echo(f"::error {where}::{text.replace('%', '%25')}")
-                elif not options.as_json:
-                    click.echo(text)
+                other = disappointment(comparison, axes, is_active=options.expect_active)
+                record = formula.record() | {"unexpected": other or None}
+                record["text"] = f"{formula}; {other}" if other else str(formula)
+                is_right = comparison.is_equal or comparison.is_reflection
+                record["fault"] = (bool(other) or not is_right) and _key(record) not in accepted
+                records.append(record)
+                if options.form == "text":
+                    click.echo(record["text"])
             if progress is not None:
                 progress((place + 1) / len(files))
-    if options.as_json:
+    faults = [record for record in records if record["fault"]]
+    if options.form == "json":
         click.echo(_json(records))
+    elif options.form != "text":
+        template = environment().get_template(f"compare/{options.form}.jinja")
+        click.echo(template.render(faults=faults), nl=False)
     count = counted(len(records), "formula") if records else "no known formula"
     hint = "" if options.why or not unreadable else "; --why lists them"
     message(f"{count} in {counted(len(files), 'file')}, {unreadable} not readable{hint}")
     if len(records) < options.require:
         message(f"expected at least {options.require} (--require)")
-    return is_wrong or len(records) < options.require
+    return bool(faults) or len(records) < options.require
 
 
-def _quadcopter() -> Motion:
-    """The equations of motion of a body, in roll, pitch and yaw."""
-    spec = read("quadcopter_attitude")
-    model = derive("xyz", "rotation_matrix").model
-    return motion_of(replace(spec, models=(model,), quantities=_OF_BODY))
+def _key(record: dict[str, Any]) -> str:
+    """What a fault keeps if lines are added above it."""
+    return str(record["path"] + record["text"].partition(f":{record['line']}:")[2])
+
+
+def _accepted(baseline: Path) -> set[str]:
+    """The faults in an earlier result; raises DataError for another file."""
+    try:
+        return {_key(record) for record in json.loads(read_bytes(baseline)) if record["fault"]}
+    except (ValueError, KeyError, TypeError) as error:
+        expected = "expected a result of `rigidsym compare --format json`"
+        raise DataError(f"{baseline}: {expected}") from error
 
 
 def _json(data: Any) -> str:

@@ -20,7 +20,6 @@ from rigidsym.tools.compare.matching import (
     against,
     for_some_angles,
     identified,
-    in_text,
     in_words,
     is_right_at_some,
     likely,
@@ -49,10 +48,7 @@ def compare(
     if rotation is None and quantity is None:
         return (angles_identified if are_angles(matrix) else identified)(_checked(matrix))
     goal = _goal(rotation, quantity)
-    found = against(matrix, goal)
-    if isinstance(formula, str) and not found.found:
-        return in_text(found, formula, formula_matrix)
-    return found
+    return against(matrix, goal)
 
 
 def _checked(formula: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
@@ -95,6 +91,8 @@ def _goal(rotation: str | Motion | None, quantity: str | None) -> KnownQuantity:
         raise ExpressionError(
             "expected a rotation and a quantity, such as 'ZYX', 'rotation_matrix'"
         )
+    if quantity == "coriolis_matrix":
+        raise ExpressionError("a Coriolis matrix is not unique; compare the bias vector C(q, q̇) q̇")
     if isinstance(rotation, Motion):
         return KnownQuantity(motion=rotation, rotation=rotation.name, quantity=quantity)
     return target(rotation, quantity)

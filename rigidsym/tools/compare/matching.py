@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 from itertools import chain, islice, product
 from typing import Any
@@ -12,14 +11,12 @@ import sympy as sp
 
 from rigidsym.errors import AlgebraError, DerivationError, ModelError
 from rigidsym.system.resources import environment
-from rigidsym.tools.compare.language import spelled_out
 from rigidsym.tools.compare.laws import laws
 from rigidsym.tools.compare.repair import (
     Meaning,
     Repair,
     entry_repairs,
     renamings,
-    twofold_repairs,
     whole_repairs,
 )
 from rigidsym.tools.compare.targets import (
@@ -139,8 +136,6 @@ def against(formula: sp.ImmutableMatrix, goal: KnownQuantity) -> Comparison:
         words = f"this is {other.found.described}"
         repair = Repair(kind="convention", words=words, formula=formula, goal=other.found)
         return replace(other, asked=goal, repairs=(repair, *other.repairs))
-    if found := next(((m, (r,)) for m in meant for r in twofold_repairs(m)), None):
-        return _made(*found, goal)
     return Comparison(formula=formula, asked=goal)
 
 
@@ -166,20 +161,16 @@ def identified(
     *,
     only_equal: bool = False,
     is_in_program: bool = False,
-    also: Sequence[KnownQuantity] = (),
 ) -> Comparison:
-    """Compare with all quantities of the catalogue, and `also`; the nearest if none is equal.
+    """Compare with all quantities of the catalogue; the nearest if none is equal.
 
     In a program, a transpose, a sign or a factor of the whole formula may be meant.
     """
     near: list[tuple[float, Meaning]] = []
     whole: Meaning | None = None
     some: Meaning | None = None
-    known = (
-        goal
-        for goal in (*catalogue(formula), *laws(formula.shape), *also)
-        if goal.matrix.shape == formula.shape
-    )
+    goals = chain(catalogue(formula), laws(formula.shape))
+    known = (goal for goal in goals if goal.matrix.shape == formula.shape)
     for goal in chain.from_iterable(goal.arrangements for goal in known):
         for names in goal.readings(formula):
             reading = Meaning.of(formula, goal, names)
@@ -227,32 +218,6 @@ def _in_other_senses(formula: sp.ImmutableMatrix) -> Comparison | None:
     return None
 
 
-_IN_TEXT = {  # the text after a change, and its kind
-    **{"+": ("-", "sign"), "-": ("+", "sign"), "**2": ("", "square"), "^2": ("", "square")},
-    **{"sin": ("cos", "sine and cosine"), "cos": ("sin", "sine and cosine")},
-}
-
-
-def in_text(
-    unknown: Comparison, text: str, read: Callable[[str], sp.ImmutableMatrix]
-) -> Comparison:
-    """The comparison after one change in the text, such as a sign between matrices."""
-    goal = unknown.asked
-    assert goal is not None
-    for match in re.finditer(r"[+-](?!>)|\b(?:sin|cos)\b|(?:\*\*|\^)2\b", text):
-        after, kind = _IN_TEXT[match[0]]
-        start, end = text[: match.start()], text[match.end() :]
-        formula = spelled_out(read(start + after + end))
-        for names in goal.readings(formula):
-            reading = Meaning.of(formula, goal, names)
-            if reading.agrees(formula, goal):
-                parts = (f"...{start[-15:]}{each}{end[:15]}..." for each in (match[0], after))
-                words = " should be ".join(parts)
-                change = Repair(kind=kind, words=words, formula=formula, goal=goal)
-                return replace(_made(reading, (change,), goal), formula=unknown.formula)
-    return unknown
-
-
 def is_right_at_some(reading: Meaning) -> bool:
     """Whether a formula agrees at all points of the first quadrant, but not at others."""
     if reading.formula.shape != reading.goal.matrix.shape:
@@ -287,9 +252,9 @@ def _made(reading: Meaning, repairs: Sequence[Repair], asked: KnownQuantity | No
     """The comparison, with the proof that the repaired formula is what was found."""
     found = repairs[0].goal if repairs else reading.goal
     changed = _together(reading.formula, repairs)
-    ours, theirs = map(found.applied, (found.matrix, changed.xreplace(dict(reading.names))))
+    theirs = changed.xreplace(dict(reading.names))
     try:
-        is_proved = found.motion.equality(theirs, ours).is_exact
+        is_proved = found.motion.equality(theirs, found.matrix).is_exact
     except DerivationError:  # it is false, although the numbers agree
         return Comparison(formula=reading.formula, asked=asked)
     except (AlgebraError, ModelError):  # the ring cannot hold it

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import chain, islice, permutations, product
-from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -57,12 +56,7 @@ class Meaning:
         return cls(formula=formula, goal=goal, names=names, values=values)
 
     def numbers(self, matrix: sp.MatrixBase) -> Array:
-        found = evaluated(matrix, self.values)
-        if self.goal.rates:
-            found = (
-                found @ np.stack([self.goal.points[rate] for rate in self.goal.rates], 1)[..., None]
-            )
-        return found
+        return evaluated(matrix, self.values)
 
     def agrees(self, matrix: sp.MatrixBase, goal: KnownQuantity) -> bool:
         return matrix.shape == goal.matrix.shape and bool(
@@ -94,14 +88,8 @@ def whole_repairs(reading: Meaning) -> Iterator[Repair]:
 
 
 def renamings(reading: Meaning) -> Iterator[Repair]:
-    """Another order or sign of the coordinates, or of rows and columns, that fits."""
+    """Another order or sign of the coordinates that fits."""
     yield from _fitting(reading, _other_orders(reading), [("", reading.goal)])
-
-
-def twofold_repairs(reading: Meaning) -> Iterator[Repair]:
-    """Another quantity of the rotation that fits after a change."""
-    changes = [*_changes(reading), *_other_orders(reading)]
-    yield from _fitting(reading, changes, list(_relatives(reading.goal)))
 
 
 def _fitting(
@@ -147,23 +135,10 @@ def _other_orders(reading: Meaning) -> Iterator[Change]:
     names = [s for s, meant in reading.names.items() if meant in coordinates and formula.has(s)]
     for s in names:
         yield "angle", f"{s} has the other sign", formula.xreplace({s: -s})
-    for order in _orders(names):
+    for order in islice(permutations(names), 1, None):
         moved = {a: b for a, b in zip(names, order, strict=True) if a != b}
         words = ", ".join(f"{a} should be {b}" for a, b in moved.items())
         yield "index", words, formula.xreplace(moved)
-    for columns in _orders(range(formula.cols)):
-        yield "columns", _in_order("columns", columns), formula[:, list(columns)]
-    for rows in _orders(range(formula.rows)):
-        yield "rows", _in_order("rows", rows), formula[list(rows), :]
-
-
-def _orders(parts: Sequence[Any]) -> Iterator[tuple[Any, ...]]:
-    """All orders but the given one, of at most four parts."""
-    yield from islice(permutations(parts), 1, None) if len(parts) <= 4 else ()
-
-
-def _in_order(what: str, places: Sequence[int]) -> str:
-    return f"the {what} belong in the order {', '.join(str(place + 1) for place in places)}"
 
 
 # Single entries
@@ -197,30 +172,17 @@ def _from1(place: tuple[int, int]) -> tuple[int, int]:
 
 
 def _entry(reading: Meaning, place: tuple[int, int]) -> Repair:
-    """The smallest change of an entry; the entry of the target if no small one is enough.
-
-    If the matrix acts on the rates, any entry of the row may be the wrong one.
-    """
-    formula, goal = reading.formula, reading.goal
+    """The smallest change of an entry; the entry of the target if no small one is enough."""
+    formula, goal, before = reading.formula, reading.goal, reading.formula[place]
     wanted = goal.values[:, [place[0]], [place[1]]][:, None]
-    groups, row = _groups(reading), formula[place[0], :]
-    changes = [
-        (kind, after, column)
-        for column in (range(formula.cols) if goal.rates else [place[1]])
-        if row[column].count_ops() <= _MOST_OPERATIONS
-        for kind, after in set(variants(row[column], groups))
-    ]
+    changes = variants(before, _groups(reading)) if before.count_ops() <= _MOST_OPERATIONS else ()
     back = {meant: symbol for symbol, meant in reading.names.items()}
-    kind, after, column = "entry", goal.matrix[place].xreplace(back), place[1]
-    for variant in sorted(changes, key=_cost):
-        _, entry, j = variant
-        tried = row[:, :j].row_join(sp.Matrix([[entry]])).row_join(row[:, j + 1 :])
-        if agreement(reading.numbers(tried if goal.rates else sp.Matrix([[entry]])), wanted).all():
-            kind, after, column = variant
+    kind, after = "entry", goal.matrix[place].xreplace(back)
+    for variant in sorted(set(changes), key=_cost):
+        if agreement(reading.numbers(sp.Matrix([[variant[1]]])), wanted).all():
+            kind, after = variant
             break
-    place = place[0], column
-    before = formula[place]
-    changed = reading.formula.as_mutable()
+    changed = formula.as_mutable()
     changed[place] = after
     words = f"entry {_from1(place)}: {before} should be {after}"
     if kind != "entry":
@@ -249,7 +211,7 @@ _WORDS = {
 KINDS = list(_WORDS)  # the likeliest first
 
 
-def _cost(variant: tuple[str, sp.Expr, int]) -> tuple[int, int, str]:
+def _cost(variant: tuple[str, sp.Expr]) -> tuple[int, int, str]:
     return KINDS.index(variant[0]), variant[1].count_ops(), str(variant[1])
 
 

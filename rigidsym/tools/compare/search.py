@@ -14,11 +14,9 @@ from rigidsym.models.rotation import RotationModel
 from rigidsym.tools.compare.angles import angles_identified, are_angles
 from rigidsym.tools.compare.matching import Comparison, identified
 from rigidsym.tools.compare.program import GRAMMARS, Formula, program_formulas
-from rigidsym.tools.compare.targets import KnownQuantity
 
 SUFFIXES = tuple(GRAMMARS)
 _MOST_BYTES = 300_000  # of a file
-_MOST_FILES = 5_000
 _MOST_SYMBOLS = 12
 _TRIGONOMETRIC = (sp.sin, sp.cos, sp.tan)
 
@@ -50,11 +48,11 @@ class FormulaInFile:
 def source_files(paths: Sequence[Path]) -> Iterator[Path]:
     """The source files among the paths and below them, in order, without hidden folders.
 
-    Raises RequestError for a file in another language or of more than 300 kB and if there are no
-    source files, and ExpressionError if there are more than can be searched.
+    Raises RequestError for a file in another language or of more than 300 kB, and if there are no
+    source files.
     """
     for path in paths:
-        if path.is_file() and path.suffix not in SUFFIXES:
+        if not path.is_dir() and not (path.is_file() and path.suffix in SUFFIXES):
             raise RequestError(f"{path}: expected a folder, or a file {', '.join(SUFFIXES)}")
         if path.is_file() and path.stat().st_size > _MOST_BYTES:
             raise RequestError(
@@ -72,12 +70,10 @@ def source_files(paths: Sequence[Path]) -> Iterator[Path]:
     if not files:
         where = ", ".join(map(str, paths))
         raise RequestError(f"{where}: no source files; looked for {', '.join(SUFFIXES)}")
-    if len(files) > _MOST_FILES:
-        raise ExpressionError(f"{len(files)} source files; expected at most {_MOST_FILES}")
     yield from dict.fromkeys(files)
 
 
-def search(path: Path, also: Sequence[KnownQuantity] = ()) -> Iterator[FormulaInFile]:
+def search(path: Path) -> Iterator[FormulaInFile]:
     """The formulas of a file that are a known quantity or close to one, and unreadable ones."""
     text = path.read_text(encoding="utf-8", errors="replace")
     for formula in formulas(text, path.suffix):
@@ -89,9 +85,9 @@ def search(path: Path, also: Sequence[KnownQuantity] = ()) -> Iterator[FormulaIn
             if are_angles(whole):
                 comparison = angles_identified(whole)
             else:
-                comparison = identified(whole, also=also, is_in_program=True)
+                comparison = identified(whole, is_in_program=True)
             if comparison.found is None and formula.whole:  # a long value may be an angle
-                comparison = identified(formula.matrix, also=also, is_in_program=True)
+                comparison = identified(formula.matrix, is_in_program=True)
         except ExpressionError as error:  # a function without values
             yield FormulaInFile(path, formula, reason=str(error))
             continue

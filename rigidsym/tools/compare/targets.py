@@ -152,18 +152,9 @@ class KnownQuantity:
             found.update({r: found[r] - along * found[s] for s, r in zip(q, rates, strict=True)})
 
     @cached_property
-    def rates(self) -> tuple[sp.Expr, ...]:
-        """What the matrix acts on, if only the product is unique: C(q, q̇) q̇."""
-        return self.inputs["q_dot"] if self.quantity == "coriolis_matrix" else ()
-
-    def applied(self, matrix: sp.MatrixBase) -> sp.MatrixBase:
-        """What is compared: the matrix, or its product with the rates."""
-        return matrix * sp.Matrix(self.rates) if self.rates else matrix
-
-    @cached_property
     def values(self) -> Array:
         """Of what is compared; (points, rows, columns)."""
-        return evaluated(self.applied(self.matrix), dict(self.points))
+        return evaluated(self.matrix, dict(self.points))
 
     @cached_property
     def inputs(self) -> dict[str, tuple[sp.Expr, ...]]:
@@ -336,22 +327,15 @@ def readings(matrix: sp.MatrixBase, goal: KnownQuantity) -> Iterator[Names]:
     rates = {s: stem for s in left if (stem := stem_of(s.name)) and s not in angles}
     rates = rates or _of_arrays([s for s in left if s not in angles], angles)
     rates = rates if "q_dot" in inputs else {}
-    others = [s for s in left if s not in rates and angles and s not in angles]
-    others = others if goal.motion.body else []
-    stems = sorted({s.name for s in left if s not in rates and s not in others} | {*rates.values()})
+    stems = sorted({s.name for s in left if s not in rates} | {*rates.values()})
     if len(stems) > len(q) or len(omega) > 3:
         return
     velocity = next((arguments[a] for a in ("omega_body", "omega_space") if a in inputs), ())
-    constants = (s for name, found in arguments.items() if name not in _ROWS for s in found)
-    moments = [symbol for symbol in constants if goal.matrix.has(symbol)]
-    if len(others) > len(moments):
-        return
-    fixed = dict(zip(others, moments, strict=False))
     for order in permutations(q, len(stems)):
         of_stem = dict(zip(stems, order, strict=True))
         found: dict[sp.Symbol, sp.Expr] = {s: of_stem[s.name] for s in left if s.name in of_stem}
         found |= {s: sp.diff(of_stem[stem], *of_stem[stem].args) for s, stem in rates.items()}
-        yield found | dict(zip(omega, velocity, strict=False)) | fixed
+        yield found | dict(zip(omega, velocity, strict=False))
 
 
 def _of_arrays(others: Sequence[sp.Symbol], angles: set[sp.Symbol]) -> dict[sp.Symbol, str]:
