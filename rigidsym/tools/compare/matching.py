@@ -16,7 +16,6 @@ from rigidsym.tools.compare.repair import (
     Meaning,
     Repair,
     entry_repairs,
-    renamings,
     whole_repairs,
 )
 from rigidsym.tools.compare.targets import (
@@ -149,9 +148,6 @@ def likely(
     yield from ((m, (r,)) for m in meant for r in whole_repairs(m))
     nearest = max(meant, key=_count_right, default=None)
     entries = entry_repairs(nearest) if nearest else ()
-    if nearest and len(entries) == 1 and entries[0].kind != "entry":
-        yield nearest, entries
-    yield from ((m, (r,)) for m in meant for r in renamings(m))
     if nearest and entries:
         yield nearest, entries
 

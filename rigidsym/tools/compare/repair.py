@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import chain, islice, permutations, product
+from itertools import chain, product
 
 import numpy as np
 import sympy as sp
@@ -87,11 +87,6 @@ def whole_repairs(reading: Meaning) -> Iterator[Repair]:
     yield from _fitting(reading, [("", "", reading.formula)], _relatives(reading.goal))
 
 
-def renamings(reading: Meaning) -> Iterator[Repair]:
-    """Another order or sign of the coordinates that fits."""
-    yield from _fitting(reading, _other_orders(reading), [("", reading.goal)])
-
-
 def _fitting(
     reading: Meaning, changes: Iterable[Change], goals: Iterable[tuple[str, KnownQuantity]]
 ) -> Iterator[Repair]:
@@ -127,18 +122,6 @@ def _changes(reading: Meaning) -> Iterator[Change]:
     yield "sign", "all signs are the other way round", -formula
     for factor in (_TWO, _HALF):
         yield "factor", f"a factor {factor} is missing", factor * formula
-
-
-def _other_orders(reading: Meaning) -> Iterator[Change]:
-    formula = reading.formula
-    coordinates = reading.goal.coordinates.values()
-    names = [s for s, meant in reading.names.items() if meant in coordinates and formula.has(s)]
-    for s in names:
-        yield "angle", f"{s} has the other sign", formula.xreplace({s: -s})
-    for order in islice(permutations(names), 1, None):
-        moved = {a: b for a, b in zip(names, order, strict=True) if a != b}
-        words = ", ".join(f"{a} should be {b}" for a, b in moved.items())
-        yield "index", words, formula.xreplace(moved)
 
 
 # Single entries
