@@ -109,4 +109,3 @@ def test_laws_hold_in_numbers():
     rate = value("euler_equations_acceleration", w, moments, torque)
     assert moments * rate + np.cross(w, moments * w) == pytest.approx(torque)
     assert value("euler_equations_torque", w, moments, rate) == pytest.approx(torque)
-    assert value("gyroscopic_torque", w, moments) == pytest.approx(np.cross(w, moments * w))

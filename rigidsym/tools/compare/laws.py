@@ -123,11 +123,6 @@ def _torques(w: sp.Matrix, i: sp.Matrix, acceleration: sp.Matrix) -> dict[str, s
     return {"": sp.diag(*i) * acceleration + w.cross(sp.diag(*i) * w)}
 
 
-def _gyroscopic(w: sp.Matrix, i: sp.Matrix) -> dict[str, sp.Matrix]:
-    value = w.cross(sp.diag(*i) * w)
-    return {"": value, "with the sign of a torque on the right": -value}
-
-
 def _parallel_axes(mass: sp.Matrix, d: sp.Matrix, *tensor: sp.Matrix) -> dict[str, sp.Matrix]:
     added = mass[0] * (d.dot(d) * sp.eye(3) - d * d.T)
     if not tensor:
@@ -143,7 +138,6 @@ _LAWS: tuple[tuple[str, tuple[int, ...], Callable[..., dict[str, sp.Matrix]]], .
     ("turned_vector", (4, 3), _turned_vectors),
     ("euler_equations_acceleration", (3, 3, 3), _accelerations),
     ("euler_equations_torque", (3, 3, 3), _torques),
-    ("gyroscopic_torque", (3, 3), _gyroscopic),
     ("parallel_axis_term", (1, 3), _parallel_axes),
     ("parallel_axis_theorem", (1, 3, 6), _parallel_axes),
 )  # name, entries of each vector, the value for each way of writing it

@@ -158,10 +158,16 @@ def _entry(reading: Meaning, place: tuple[int, int]) -> Repair:
     """The smallest change of an entry; the entry of the target if no small one is enough."""
     formula, goal, before = reading.formula, reading.goal, reading.formula[place]
     wanted = goal.values[:, [place[0]], [place[1]]][:, None]
-    changes = variants(before, _groups(reading)) if before.count_ops() <= _MOST_OPERATIONS else ()
+    groups = [  # names that may be taken for one another: those of one argument
+        [symbol for symbol, meant in reading.names.items() if meant in symbols]
+        for symbols in goal.inputs.values()
+    ]
+    changes = variants(before, groups) if before.count_ops() <= _MOST_OPERATIONS else ()
     back = {meant: symbol for symbol, meant in reading.names.items()}
     kind, after = "entry", goal.matrix[place].xreplace(back)
-    for variant in sorted(set(changes), key=_cost):
+    for variant in sorted(
+        set(changes), key=lambda v: (KINDS.index(v[0]), v[1].count_ops(), str(v[1]))
+    ):
         if agreement(reading.numbers(sp.Matrix([[variant[1]]])), wanted).all():
             kind, after = variant
             break
@@ -192,18 +198,6 @@ _WORDS = {
     "term": "a term too many",
 }
 KINDS = list(_WORDS)  # the likeliest first
-
-
-def _cost(variant: tuple[str, sp.Expr]) -> tuple[int, int, str]:
-    return KINDS.index(variant[0]), variant[1].count_ops(), str(variant[1])
-
-
-def _groups(reading: Meaning) -> list[list[sp.Symbol]]:
-    """Names that may be taken for one another: those of one argument."""
-    return [
-        [symbol for symbol, meant in reading.names.items() if meant in symbols]
-        for symbols in reading.goal.inputs.values()
-    ]
 
 
 _SWAPPED = {sp.sin: sp.cos, sp.cos: sp.sin}

@@ -118,13 +118,8 @@ def disappointment(
     model = known.motion.model
     if expected is None or len(model.turns) != len(expected.turns):
         return ""
-    if _axes(model) == _axes(expected):
-        return ""
-    return f"expected the axes {_axes(expected)} in the product of rotations, not {_axes(model)}"
-
-
-def _axes(model: RotationModel) -> str:
-    return " ".join(str(turn.axis) for turn in model.turns)
+    wanted, axes = (" ".join(turn.axis for turn in each.turns) for each in (expected, model))
+    return f"expected the axes {wanted} in the product of rotations, not {axes}" * (wanted != axes)
 
 
 def _block(matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
