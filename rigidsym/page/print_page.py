@@ -63,14 +63,6 @@ _IMPORT = re.compile(r"^import [^;]*;\n", re.MULTILINE)
 _EXPORT = re.compile(r"^export (?=\w)", re.MULTILINE)
 
 
-def _first_example(derivation: Derivation) -> tuple[Mapping[str, float], float]:
-    """Its values by name, and its time in seconds."""
-    if derivation.forces is None or not derivation.forces.examples:
-        return {}, 0.0
-    example = derivation.forces.examples[0]
-    return {**example.parameters, **example.initial}, example.time
-
-
 def print_page(
     derivation: Derivation, document: Document, start: Mapping[str, float] = MappingProxyType({})
 ) -> str:
@@ -82,8 +74,10 @@ def print_page(
     Raises ModelError for a motion that the figure cannot show.
     """
     check_shown(derivation)
-    example, seconds = _first_example(derivation)
-    start = start or example
+    examples = derivation.forces.examples if derivation.forces else ()
+    seconds = examples[0].time if examples else 0.0
+    if examples and not start:
+        start = {**examples[0].parameters, **examples[0].initial}
     functions = functions_of(derivation)
     starts = starts_of(derivation.body)
     starts |= {symbol: start[symbol.name] for symbol in starts if symbol.name in start}
@@ -142,7 +136,7 @@ def print_page(
             (printer.span(integral.symbol), escape(_unit_of(integral.name)))
             for integral in functions.integrals
         ],
-        pole=_pole(functions),
+        pole=next((escape(k.symbol) for k in functions.kernels if k.name == MARGIN), ""),
         stage=stage,
         bodies=[
             (name, escape(_NAMES.get(name, name.capitalize())), name == body) for name in shapes
@@ -242,10 +236,11 @@ class PagePrinter(HtmlPrinter):
 def _script(functions: Functions, data: object) -> str:
     """The script of the page; nothing in it can end its element."""
     names = ", ".join(functions.arguments)
+    literal = json.dumps(data, ensure_ascii=False, separators=(",", ":"))
     parts = [
         "// --- the functions of the derivation: every number of this page comes from them\n",
         functions.source,
-        f"\nconst kernels = {{ {names} }};\nconst page = {_json(data)};\n",
+        f"\nconst kernels = {{ {names} }};\nconst page = {literal};\n",
         _modules(),
     ]
     return "\n".join(parts).replace("</", "<\\/").replace("<!--", "<\\!--")
@@ -256,10 +251,6 @@ def _modules() -> str:
     """The modules as one script, in which nothing is imported."""
     texts = (resources.text("templates", f"page/{name}.mjs") for name in MODULES)
     return "\n".join(_EXPORT.sub("", _IMPORT.sub("", text)) for text in texts)
-
-
-def _json(data: object) -> str:
-    return json.dumps(data, ensure_ascii=False, separators=(",", ":"))
 
 
 def _body(model: RotationModel) -> str:
@@ -342,12 +333,6 @@ def _poles(derivation: Derivation, printer: PagePrinter) -> Iterator[dict[str, A
         facts = PointFacts(point, coordinates)
         (words,) = texts_of("en/singular_point", printer.document.letters, point=facts)
         yield {"places": places, "words": printer.sentence(words)}
-
-
-def _pole(functions: Functions) -> str:
-    """The symbol of the margin, if there is one."""
-    kernel = next((k for k in functions.kernels if k.name == MARGIN), None)
-    return "" if kernel is None else escape(kernel.symbol)
 
 
 def _shown(control: Control, printer: PagePrinter) -> dict[str, str]:
