@@ -32,7 +32,8 @@ class Namer:
     def __init__(self, letters: Letters) -> None:
         self.letters = letters
         self.pen = LatexPen(letters.notation)
-        self._letter = _free_letter(letters)
+        taken = {str(name.expr if name.is_Derivative else name)[0] for name in letters.names}
+        self._letter = next(letter for letter in _LETTERS if letter not in taken)
         self._known: dict[sp.Expr, sp.Symbol] = {}
         self._known_before = 0
         self._given = 0  # names that are not of this letter
@@ -84,7 +85,10 @@ class Namer:
         times = Counter(node for node in sp.preorder_traversal(written_down) if node.is_Symbol)
         for symbol, value in found:
             whole = value.xreplace(written)
-            if self._is_worth_it(whole, times[symbol]):
+            width = self._width(whole)
+            is_bound = whole.is_Add or whole.is_Pow or any(p.is_Pow for p in whole.args)
+            saved = (times[symbol] - 1) * (width - _NAME) - _OVERHEAD
+            if width >= _LEAST[bool(is_bound)] and saved > 0:
                 sign = -1 if whole.as_coeff_Mul()[0].is_negative or -whole in self._known else 1
                 name = self._name_of(sign * whole)
                 written[symbol] = sign * name
@@ -92,12 +96,6 @@ class Namer:
             else:
                 written[symbol] = whole
         return parts, [entry.xreplace(written) for entry in entries]
-
-    def _is_worth_it(self, part: sp.Expr, times: int) -> bool:
-        width = self._width(part)
-        is_bound = part.is_Add or part.is_Pow or any(p.is_Pow for p in part.args)
-        saved = (times - 1) * (width - _NAME) - _OVERHEAD
-        return width >= _LEAST[bool(is_bound)] and saved > 0
 
     def _breakable(
         self, parts: Sequence[Part], entries: Sequence[sp.Expr], room: float
@@ -138,28 +136,13 @@ class Namer:
         return self.pen.write(formula_of(part, self.letters)).width
 
 
-def _free_letter(letters: Letters) -> str:
-    taken = {_label(symbol)[0] for symbol in letters.names}
-    return next(letter for letter in _LETTERS if letter not in taken)
-
-
-def _label(symbol: sp.Expr) -> str:
-    base = symbol.expr if symbol.is_Derivative else symbol
-    return base.func.__name__ if isinstance(base, AppliedUndef) else str(base)
-
-
 def _unbreakable(expression: sp.Expr) -> Iterator[sp.Expr]:
     """The sums that stand where no line can end: above or below a fraction line, under a root."""
     for node in sp.preorder_traversal(expression):
         if node.is_Pow and node.base.is_Add and not (node.exp.is_Integer and node.exp > 0):
             yield node.base
         elif node.is_Mul and any(a.is_Pow and a.exp.is_negative for a in node.args):
-            yield from _above(node)
+            # what stands above the line of a fraction
+            yield from (factor for factor in node.args if factor.is_Add)
         elif node.is_Function and node.args[0].is_Add:
             yield node.args[0]
-
-
-def _above(product: sp.Mul) -> Iterator[sp.Expr]:
-    """What stands above the line of a fraction, without the number before it."""
-    above = [a for a in product.args if not (a.is_Pow and a.exp.is_negative) and not a.is_Number]
-    yield from (factor for factor in above if factor.is_Add)

@@ -179,27 +179,18 @@ def grid(prefix: str, rows: Sequence[Sequence[str]], *, tight: bool = False) -> 
     """
     gap, margin = ("  ", "") if tight else ("   ", " ")
     widths = [max(map(columns, column)) for column in zip(*rows, strict=True)]
-    place = _left if len(widths) == 1 else _centred
-    inside = [margin + gap.join(map(place, row, widths)) + margin for row in rows]
-    brackets = _brackets(len(rows))
+    inside: list[str] = []
+    for row in rows:
+        rooms = [width - columns(text) for text, width in zip(row, widths, strict=True)]
+        before = [room // 2 if len(widths) > 1 else 0 for room in rooms]
+        cells = zip(row, before, rooms, strict=True)
+        set_out = (" " * left + text + " " * (room - left) for text, left, room in cells)
+        inside.append(margin + gap.join(set_out) + margin)
+    brackets = [("⎡", "⎤"), *[("⎢", "⎥")] * (len(rows) - 2), ("⎣", "⎦")]
+    brackets = brackets if len(rows) > 1 else [("[", "]")]
     middle = (len(rows) - 1) // 2
     blank = " " * columns(prefix)
     return [
         f"{prefix if place == middle else blank}{left}{line}{right}"
         for place, (line, (left, right)) in enumerate(zip(inside, brackets, strict=True))
     ]
-
-
-def _brackets(height: int) -> list[tuple[str, str]]:
-    if height == 1:
-        return [("[", "]")]
-    return [("⎡", "⎤"), *[("⎢", "⎥")] * (height - 2), ("⎣", "⎦")]
-
-
-def _left(text: str, width: int) -> str:
-    return text + " " * (width - columns(text))
-
-
-def _centred(text: str, width: int) -> str:
-    before = (width - columns(text)) // 2
-    return _left(" " * before + text, width)

@@ -201,7 +201,9 @@ class _Setter:
         rows = matrix_of(equation.matrix, self.letters)
         if not sides:
             return self._definitions(equation.entries, [value for (value,) in rows], width)
-        full = self._whole(equation.matrix)
+        factor, rest = factored(equation.matrix)  # a fraction that all entries hold
+        full: Formula = Matrix(tuple(map(tuple, matrix_of(rest, self.letters))))
+        full = full if factor == 1 else row(formula_of(factor, self.letters), full)
         for form in self._forms(sides, full, self.pen):
             if form.width <= width:
                 return form
@@ -213,12 +215,6 @@ class _Setter:
         values = [formula_of(value, self.letters) for _, value in listed]
         lines, needed = self._listing([name for name, _ in listed], values, width)
         return self._below(Rows(tuple(lines)), needed, "listed")
-
-    def _whole(self, matrix: sp.ImmutableMatrix) -> Formula:
-        """The matrix, behind a fraction that all its entries hold."""
-        factor, rest = factored(matrix)
-        whole = Matrix(tuple(map(tuple, matrix_of(rest, self.letters))))
-        return whole if factor == 1 else row(formula_of(factor, self.letters), whole)
 
     def _below(self, rows: Rows, width: float, done: Done = "") -> Display:
         return Display(rows.written(self.pen), width, done, rows)
@@ -297,17 +293,13 @@ class _Setter:
         lines: list[Aligned] = []
         needed = 0.0
         for formula in formulas:
-            first, *others = hung = self._hung(formula, room)
+            for indents in range(1, _MOST_INDENTS):  # its lines are to fit with their indents
+                hung = broken(formula, room - indents * QUAD, self.pen)
+                if widest(hung) <= room:
+                    break
+            first, *others = hung
             tall = self.pen.write(formula).height
             lines.append(Aligned("", first.text, "=", height=tall))
             lines += [Aligned("", line.text, indent=1 + line.level, height=tall) for line in others]
             needed = max(needed, widest(hung))
         return lines, needed
-
-    def _hung(self, formula: Formula, room: float) -> list[Segment]:
-        """The lines of a formula that fit with their indents, as far as they can be broken."""
-        for indents in range(1, _MOST_INDENTS):
-            lines = broken(formula, room - indents * QUAD, self.pen)
-            if widest(lines) <= room:
-                break
-        return lines

@@ -7,13 +7,12 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import ClassVar
 
-from rigidsym.formula.pen import Height, Piece
+from rigidsym.formula.pen import BREAKS, Height, Piece
 from rigidsym.formula.reader import FUNCTIONS, LETTERS, SIGNS
 from rigidsym.formula.sheet_pen import Aligned, SheetPen, Size
 from rigidsym.formula.tree import Big, Formula, FunctionCall, Numeral, Radical, Rate, Symbol
 
 _SIGNS = {"−": "-"} | {sign: f"{macro} " for macro, sign in SIGNS.items()}
-_LETTERS = {letter: macro for macro, letter in LETTERS.items()} | {"∗": "*"}
 
 
 def _macro(letter: str) -> str:
@@ -24,6 +23,7 @@ def _macro(letter: str) -> str:
 
 # without omicron and the capitals that look like Latin letters, which have no macro
 GREEK = {letter: _macro(letter) for letter in "αβγδεζηθικλμνξπρστυφχψωΓΔΘΛΞΠΣΥΦΨΩ"}
+_LETTERS = GREEK | {letter: macro for macro, letter in LETTERS.items()} | {"∗": "*"}
 _DOTS = ("", r"\dot", r"\ddot")
 _LEFT = {"flat": ("", ""), "large": (r"\Bigl", r"\Bigr"), "stretched": (r"\left", r"\right")}
 _BIG = {"∑": r"\sum", "∫": r"\int"}
@@ -45,7 +45,7 @@ class LatexPen(SheetPen):
         return digits.replace(",", "{,}")
 
     def spelt_symbol(self, symbol: Symbol, index: str | None) -> str:
-        text = symbol.macro or _letters(symbol.letter)
+        text = symbol.macro or _LETTERS.get(symbol.letter, symbol.letter)
         if symbol.face == "bold":
             bold = r"\boldsymbol" if text.startswith("\\") else r"\mathbf"
             text = rf"{bold}{{{text}}}"
@@ -72,8 +72,7 @@ class LatexPen(SheetPen):
             return f" {text}" if text.startswith("\\") and is_binary else text
         if character in ",;":
             return f"{text} "
-        is_start = character in "+−±=≤<⇔"  # a line may start with it
-        return f"{text.rstrip()} " if is_start else f" {text.rstrip()} "
+        return f"{text.rstrip()} " if character in BREAKS else f" {text.rstrip()} "
 
     def spelt_gap(self, before: Formula, after: Formula, is_thin: bool) -> str:
         if is_thin:
@@ -99,7 +98,9 @@ class LatexPen(SheetPen):
         return _LEFT[size][not is_open] + bracket
 
     def spelt_matrix(self, rows: Sequence[Sequence[Piece]]) -> str:
-        lines = [" & ".join(map(_tall, row)) for row in rows]
+        # fractions in their full height, but for those within others
+        high = {True: r"\displaystyle ", False: ""}
+        lines = [" & ".join(high[e.height >= Height.TALL] + e.text for e in row) for row in rows]
         text = lines[0]
         for (above, below), line in zip(pairwise(rows), lines[1:], strict=True):
             text += self.row_end.format(_distance(above, below)) + line
@@ -141,15 +142,6 @@ class MarkdownPen(LatexPen):
 
 def _braced(script: str) -> str:
     return script if len(script) == 1 else f"{{{script}}}"
-
-
-def _letters(letters: str) -> str:
-    return _LETTERS.get(letters) or GREEK.get(letters) or letters
-
-
-def _tall(entry: Piece) -> str:
-    """The entry with its fractions in their full height, but for those within others."""
-    return rf"\displaystyle {entry.text}" if entry.height >= Height.TALL else entry.text
 
 
 def _distance(above: Sequence[Piece], below: Sequence[Piece]) -> int:

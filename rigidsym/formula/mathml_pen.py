@@ -107,7 +107,11 @@ class MathmlPen(SheetPen):
         return f"<mrow>{written}" if is_open else f"{written}</mrow>"
 
     def spelt_matrix(self, rows: Sequence[Sequence[Piece]]) -> str:
-        inside = "".join(_table_row([_tall(entry) for entry in line]) for line in rows)
+        high = '<mrow class="tall">{}</mrow>'.format
+        inside = "".join(
+            _table_row([high(e.text) if e.height >= Height.TALL else e.text for e in line])
+            for line in rows
+        )
         return f"<mrow><mo>(</mo><mtable>{inside}</mtable><mo>)</mo></mrow>"
 
     def spelt_big(self, sign: str, below: str, above: str) -> str:
@@ -191,10 +195,6 @@ def _styled(character: str, style: str) -> str:
 def _one(text: str) -> str:
     """One element, for the parents that take a fixed number of them."""
     return text if text.count("<") == 2 else f"<mrow>{text}</mrow>"
-
-
-def _tall(entry: Piece) -> str:
-    return f'<mrow class="tall">{entry.text}</mrow>' if entry.height >= Height.TALL else entry.text
 
 
 def _table_row(cells: Sequence[str]) -> str:

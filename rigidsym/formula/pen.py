@@ -18,7 +18,7 @@ from rigidsym.formula.notation import DEFAULT, Notation
 
 DIVISOR = 50  # a divisor's brackets are as deep as so many others: 1/(1 + n²) is broken last
 RELATIONS = "=≤<⇔"
-_BREAKS = f"+−±{RELATIONS}"
+BREAKS = f"+−±{RELATIONS}"
 
 
 class Binding(IntEnum):
@@ -136,7 +136,7 @@ class Pen:
             if isinstance(part, tree.Sign):
                 is_binary = before is not None and not isinstance(before, tree.Sign)
                 sign = self.sign(part, is_binary=is_binary and not is_tight)
-                if is_binary and part.character in _BREAKS:
+                if is_binary and part.character in BREAKS:
                     sign = sign._replace(chunks=(_EMPTY, *sign.chunks))
                 pieces.append(sign)
             else:
@@ -146,7 +146,11 @@ class Pen:
                     and not is_tight
                 ):
                     pieces.append(self.between(before, part))
-                is_alone = _is_alone(node.parts, place)
+                beside = (
+                    *node.parts[max(place - 1, 0) : place],
+                    *node.parts[place + 1 : place + 2],
+                )
+                is_alone = all(isinstance(p, _NO_FACTORS) and p != _TIMES for p in beside)
                 pieces.append(self.node(part) if is_alone else self.factor(part))
             before = part
         return self.glued(pieces, _binding(node.parts))
@@ -216,16 +220,6 @@ def _on_a_line(index: tree.Formula) -> tree.Formula:
         case tree.Row(parts):
             return tree.row(*map(_on_a_line, parts))
     return index
-
-
-def _is_alone(parts: Sequence[tree.Formula], place: int) -> bool:
-    """Whether a part stands between signs, with no other factor beside it."""
-    beside = (*parts[max(place - 1, 0) : place], *parts[place + 1 : place + 2])
-    return all(map(_is_no_factor, beside))
-
-
-def _is_no_factor(part: tree.Formula) -> bool:
-    return isinstance(part, _NO_FACTORS) and part != _TIMES
 
 
 def _binding(parts: Sequence[tree.Formula]) -> Binding:

@@ -7,7 +7,7 @@ from functools import cache
 from typing import ClassVar
 
 from rigidsym.formula import tree
-from rigidsym.formula.pen import DIVISOR, Binding, Pen, Piece, atom
+from rigidsym.formula.pen import BREAKS, DIVISOR, Binding, Pen, Piece, atom
 
 _DOTS = ("", "\u0307", "\u0308")
 _FRACTIONS: dict[tree.Formula, str] = {
@@ -64,8 +64,7 @@ class UnicodePen(Pen):
             return _atom(f"{character} " if is_binary else character)
         if character not in _SPACED or not is_binary:
             return _atom(character)
-        starts_a_line = character in "+−±=≤<⇔"
-        return _atom(f"{character} " if starts_a_line else f" {character} ")
+        return _atom(f"{character} " if character in BREAKS else f" {character} ")
 
     def between(self, before: tree.Formula, after: tree.Formula) -> Piece:
         return _atom(_space(before, after))

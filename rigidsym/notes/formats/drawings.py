@@ -13,7 +13,7 @@ from unicodedata import normalize
 
 from rigidsym.formula.tree import Formula
 from rigidsym.notes.figure.camera import Point
-from rigidsym.notes.figure.drawing import TYPE_SIZE, Drawing, Ellipse, Facet, Stroke
+from rigidsym.notes.figure.drawing import TYPE_SIZE, Drawing, Ellipse, Stroke
 from rigidsym.notes.formats.escape import cleaned
 
 _UNIT = 0.3865 / TYPE_SIZE  # cm: an em at 11 points
@@ -36,10 +36,22 @@ def tikz(drawing: Drawing) -> str:
     return "\n".join(
         [
             rf"\begin{{tikzpicture}}[{options}, {_STYLES}]",
-            *_coordinates(lines, ends),
+            r"\coordinate (O) at (0,0);",
+            *(
+                rf"\coordinate {ends[x.name]} at {_point(x.points[-1])};"
+                for x in lines
+                if x.name is not None
+            ),
             *_lines(drawing.behind, ends),
-            *_facets(drawing.facets),
-            *_sectors(drawing.sectors),
+            *(
+                rf"\filldraw[line width=.4pt, color={{rgb,255:red,{red};green,{green};"
+                rf"blue,{blue}}}] {' -- '.join(map(_point, outline))} -- cycle;"
+                for outline, (red, green, blue) in ((x.points, x.color) for x in drawing.facets)
+            ),
+            *(
+                rf"\fill[turn, opacity=.1, {_plane(arc)}] (0,0) -- {_turned(arc)} -- cycle;"
+                for arc in drawing.sectors
+            ),
             *_lines(drawing.strokes, ends),
             *(
                 rf"\node[{x.kind}, inner sep=0pt] at {_point(x.place)} "
@@ -51,44 +63,27 @@ def tikz(drawing: Drawing) -> str:
     )
 
 
-def _coordinates(strokes: Iterable[Stroke], ends: Mapping[Formula, str]) -> Iterator[str]:
-    yield r"\coordinate (O) at (0,0);"
-    for stroke in strokes:
-        if stroke.name is not None:
-            yield rf"\coordinate {ends[stroke.name]} at {_point(stroke.points[-1])};"
-
-
 def _end(names: str) -> str:
     """The end of an axis by the first of its names: (z') for z′ = z″, (N1) for N₁."""
     first = normalize("NFKD", names.split(" = ")[0]).replace("′", "'")
     return "(" + re.sub(r"[^A-Za-z0-9']", "", first) + ")"
 
 
-def _sectors(arcs: Iterable[Ellipse]) -> Iterator[str]:
-    for arc in arcs:
-        yield rf"\fill[turn, opacity=.1, {_plane(arc)}] (0,0) -- {_turned(arc)} -- cycle;"
-
-
-def _facets(facets: Iterable[Facet]) -> Iterator[str]:
-    for facet in facets:
-        red, green, blue = facet.color
-        color = f"{{rgb,255:red,{red};green,{green};blue,{blue}}}"
-        outline = " -- ".join(map(_point, facet.points))
-        yield rf"\filldraw[line width=.4pt, color={color}] {outline} -- cycle;"
-
-
 def _lines(strokes: Iterable[Stroke], ends: Mapping[Formula, str]) -> Iterator[str]:
     for stroke in strokes:
-        options: list[str] = [stroke.kind]
-        options += ["thin"] if stroke.is_thin else []
-        options += ["hidden"] if stroke.is_hidden else []
-        options += ["->"] if stroke.has_arrow else []
+        options = [*_kinds(stroke), *(["->"] if stroke.has_arrow else [])]
         if stroke.arc is not None:
             yield rf"\draw[{', '.join([*options, _plane(stroke.arc)])}] {_turned(stroke.arc)};"
         else:
             *line, end = map(_point, stroke.points)
             tip = end if stroke.name is None else ends[stroke.name]
             yield rf"\draw[{', '.join(options)}] {' -- '.join([*line, tip])};"
+
+
+def _kinds(stroke: Stroke) -> list[str]:
+    """The styles of a stroke, which TikZ and the style sheet of the page call alike."""
+    thin, hidden = ("thin",) * stroke.is_thin, ("hidden",) * stroke.is_hidden
+    return [stroke.kind, *thin, *hidden]
 
 
 def _plane(arc: Ellipse) -> str:
@@ -146,23 +141,17 @@ def _elements(drawing: Drawing) -> Iterator[str]:
     for arc in drawing.sectors:
         yield f'<polygon class="area turn" points="{_points((arc.centre, *arc.points))}"/>'
     yield from _strokes(drawing.strokes)
-    symbols = [label.symbol.text for label in drawing.labels]
-    for label, symbol in zip(drawing.labels, symbols, strict=True):
+    for label in drawing.labels:
         x, y = label.place
         yield (
             f'<text class="{label.kind}" x="{_number(x * _SCALE)}" y="{_number(-y * _SCALE)}" '
-            f'dy=".32em">{escape(as_in_formulas(symbol))}</text>'
+            f'dy=".32em">{escape(as_in_formulas(label.symbol.text))}</text>'
         )
 
 
 def _strokes(strokes: Iterable[Stroke]) -> Iterator[str]:
     for stroke in strokes:
-        names = [
-            stroke.kind,
-            *(["thin"] if stroke.is_thin else []),
-            *(["hidden"] if stroke.is_hidden else []),
-        ]
-        yield f'<polyline class="{" ".join(names)}" points="{_points(stroke.points)}"/>'
+        yield f'<polyline class="{" ".join(_kinds(stroke))}" points="{_points(stroke.points)}"/>'
         if stroke.has_arrow:
             yield f'<polygon class="head {stroke.kind}" points="{_points(_head(stroke))}"/>'
 

@@ -99,17 +99,16 @@ class _Screen:
             yield ""
             yield from self._theory()
             yield from self._convention()
-        yield from self._steps(self.derivation.steps)
-        yield from self._first_integrals()
+        for step in self.derivation.steps:
+            yield ""
+            yield from _blocks_of(step, self.derivation.arguments, self.letters)
+        if integrals := self.derivation.first_integrals:
+            yield from _under("Constant along every motion (first integrals)")
+            yield from (Equation(sides=(i.symbol,), scalar=i.expression) for i in integrals)
         yield from self._singularities()
         yield from self._numbers()
         yield from self._conversions()
         yield from self._proofs()
-
-    def _steps(self, steps: Sequence[Step]) -> Iterator[Block]:
-        for step in steps:
-            yield ""
-            yield from _blocks_of(step, self.derivation.arguments, self.letters)
 
     def _theory(self) -> Iterator[Block]:
         """The equations for every body and rotation, under their headings."""
@@ -146,12 +145,6 @@ class _Screen:
         lines = list(lines_of_body(self.derivation, self.letters))
         yield from _under("In numbers") if lines else ()
         yield from (INDENT + line for line in lines)
-
-    def _first_integrals(self) -> Iterator[Block]:
-        """What is constant along every motion, if equations of motion were asked for."""
-        found = self.derivation.first_integrals
-        yield from _under("Constant along every motion (first integrals)") if found else ()
-        yield from (Equation(sides=(i.symbol,), scalar=i.expression) for i in found)
 
     def _singularities(self) -> Iterator[Block]:
         facts = singular_facts(self.derivation)

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Formula
-from rigidsym.mechanics.derivation import Argument, Derivation, Proof, Step
+from rigidsym.mechanics.derivation import Argument, Derivation, Proof
 from rigidsym.mechanics.quantities.kinematics import RATES
 from rigidsym.notes.document.document import (
     Equation,
@@ -57,7 +57,7 @@ def symbols(derivation: Derivation, letters: Letters) -> NoteTable:
         about = "rates of the coordinates" if quantity.symbol == RATES else quantity.about
         meaning = with_symbols(about, found_symbols)
         row = ((quantity.symbol,), meaning, (unit_in_words(quantity.unit),))
-        known.setdefault(row[0], (*row, _reference(step)))
+        known.setdefault(row[0], (*row, (EquationReference(quantity.name),)))
     return NoteTable(
         caption="The symbols and their SI units",
         head=(("Symbol",), ("Meaning",), ("Unit",), ("Equation",)),
@@ -168,10 +168,6 @@ def _given(argument: Argument) -> str:
     line = f"{argument.name} = [{numbers}]"
     explained = f"{line}  # {', '.join(argument.names)}"
     return explained if len(explained) <= _CODE_WIDTH else line
-
-
-def _reference(step: Step) -> Text:
-    return (EquationReference(step.quantity.name),)
 
 
 Claim = tuple[str, Proof]  # the label of an equation, and what was claimed there

@@ -87,7 +87,9 @@ class Fitter:
 
     def fitted(self, equation: Equation, shown: Display, step: Step) -> Iterator[NoteBlock]:
         """An equation; where it would be long, in short, or its parts with their names first."""
-        is_vector = bool(self.derivation.model.vector) and _is_of_motion(step)
+        # quantities of the rotation are said best by vectors, where there are any
+        is_of_body = step.quantity.name in {*INERTIA_QUANTITIES, *ENERGY_QUANTITIES}
+        is_vector = bool(self.derivation.model.vector) and not is_of_body
         is_long = shown.is_broken or (is_vector and bool(shown.done))
         short = in_short(step, self.derivation, self.letters) if is_long else None
         if short is not None and is_vector:
@@ -106,7 +108,8 @@ class Fitter:
             is_rotation = step.quantity.name == "rotation_matrix"
             if lines > (_MOST_OF_ROTATION if is_rotation else _MOST_LINES):
                 self._namer.forget()
-                yield from _said(equation, short, lines)
+                yield _without_entries(equation, short)  # the function evaluates it all the same
+                yield said(f"The explicit components would fill {lines} lines and are left out.")
                 return
         yield from self._blocks(form)
         if equation.number:  # it can be referred to
@@ -203,17 +206,6 @@ def _again(names: Mapping[str, Sequence[Text]]) -> Text:
     return ("Here ", *listed(again))
 
 
-def _is_of_motion(step: Step) -> bool:
-    """Whether a quantity is one of the rotation, which vectors say best where there are any."""
-    return step.quantity.name not in {*INERTIA_QUANTITIES, *ENERGY_QUANTITIES}
-
-
-def _said(equation: Equation, short: Sequence[Formula], lines: int) -> Iterator[NoteBlock]:
-    """What it is, and how long it would be; the function evaluates it all the same."""
-    yield _without_entries(equation, short)
-    yield said(f"The explicit components would fill {lines} lines and are left out.")
-
-
 def as_vectors(equation: Equation, step: Step, letters: Letters) -> Equation:
     """With its vector form; where there is one, the entries are shown only if they fit.
 
@@ -274,8 +266,10 @@ def in_short(step: Step, derivation: Derivation, letters: Letters) -> tuple[Form
         return (row(ROTATION, MOMENTUM_BODY),)
     if step.quantity.name in _DEFINED or kind == "rates_from_angular_velocity":
         return ()
-    if kind == "inverse_rate_matrix" and _is_least(derivation):
-        return (_least(_FRAMES[frame]),)
+    is_free = len(derivation.model.coordinates) > 3 and not derivation.model.constraints
+    if kind == "inverse_rate_matrix" and is_free:  # the right inverse of least norm
+        matrix = _FRAMES[frame].matrix
+        return (formula(r"#2\,(#1#2)^{-1}", matrix, transpose_of(matrix)),)
     if kind == "angular_acceleration":
         return (_acceleration(derivation, _FRAMES[frame], letters),)
     return None
@@ -298,16 +292,6 @@ def by_the_chain_rule(rate: Formula, letters: Letters) -> Formula:
         for q in coordinates
     ]
     return joined(terms, PLUS)
-
-
-def _is_least(derivation: Derivation) -> bool:
-    """Whether the right inverse is that of least norm: nothing binds the rates."""
-    return len(derivation.model.coordinates) > 3 and not derivation.model.constraints
-
-
-def _least(frame: Frame) -> Formula:
-    """Wᵀ (W Wᵀ)⁻¹."""
-    return formula(r"#2\,(#1#2)^{-1}", frame.matrix, transpose_of(frame.matrix))
 
 
 def _acceleration(derivation: Derivation, frame: Frame, letters: Letters) -> Formula:
