@@ -50,6 +50,7 @@ EULER_SEQUENCES = tuple(s.upper() for s in AXIS_SEQUENCES) + AXIS_SEQUENCES
 DEFAULT_ANGLES = ("phi", "theta", "psi")
 
 DIGITS = str.maketrans("123", "XYZ")  # of a sequence, which are letters in upper case
+_TO_DIGITS = str.maketrans("XYZ", "123")
 
 
 def EulerAngles(
@@ -107,6 +108,8 @@ def _what_is_wrong(text: str) -> str:
         return "expected three axes such as ZXZ (intrinsic), zxz (extrinsic) or 313 (intrinsic)"
     place = 1 if letters[0] == letters[1] else 2
     here = [sequence for sequence in EULER_SEQUENCES if sequence.isupper() == letters.isupper()]
+    if text.isdigit():  # digits are answered in digits
+        letters, here = text, [sequence.translate(_TO_DIGITS) for sequence in here]
     follows = f"{text[place]} follows {text[place - 1]}"
     return f"consecutive axes must differ: {follows}; {offer(letters, here)}"
 

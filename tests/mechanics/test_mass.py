@@ -284,6 +284,14 @@ def test_parts_move_turn_and_add_up_and_a_hole_takes_away():
     assert (moved.centre - turn * cone.centre - at).applyfunc(sp.expand) == sp.zeros(3, 1)
 
 
+@pytest.mark.parametrize("shape", ["sphere", "cylinder", "tetrahedron"])
+def test_lengths_mass_and_density_are_positive_and_coordinates_have_any_sign(shape):
+    parameters = rs.solid(shape, density=rho).parameters
+    signs = {p.symbol.name: p.positive for p in parameters}
+    assert signs == {name: "_" not in name for name in signs}
+    assert {"rho"} < set(signs)
+
+
 def test_a_description_in_numbers_keeps_them_as_parameters_with_a_value():
     rows = (
         ("5/4", "1/2", 0, "1/3"),

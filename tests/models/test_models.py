@@ -52,7 +52,7 @@ class TestCatalogue:
         [
             ("ZZX", "consecutive axes must differ"),
             ("zxx", "consecutive axes must differ"),
-            ("133", "consecutive axes must differ"),
+            ("133", "consecutive axes must differ: 3 follows 3; did you mean 323 or 313?"),
             ("ZxZ", "do not mix"),
             ("3x3", "'3x3'"),
             ("ZX", "expected three axes"),

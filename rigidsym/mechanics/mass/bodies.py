@@ -139,4 +139,7 @@ def solid(
     total = sp.Symbol("M") if mass is None and density is None else mass
     exact = [None if e is None else symbolic(e, "mass or density") for e in (total, density)]
     made = shaped(shape, values, mass=exact[0], density=exact[1])
-    return body_of(made, name=name or shape, allow=allow)
+    # lengths, masses and densities are positive; coordinates of corners have any sign
+    amounts = [*exact, *(() if chosen.has_corners else values)]
+    parameters = [Parameter(symbol=e) for e in dict.fromkeys(amounts) if isinstance(e, sp.Symbol)]
+    return body_of(made, name=name or shape, parameters=parameters, allow=allow)
