@@ -152,7 +152,7 @@ def _with_inputs(constants: Collection[sp.Symbol], is_driven: bool, step: Step) 
     inputs = step.quantity.inputs
     if is_driven and "t" not in inputs and depends_on_time(step.expression):
         inputs += ("t",)
-    if not step.expression.free_symbols.isdisjoint(constants):
+    if constants and not step.expression.free_symbols.isdisjoint(constants):
         inputs += ("parameters",)
     if inputs == step.quantity.inputs:
         return step

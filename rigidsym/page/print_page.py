@@ -301,7 +301,7 @@ def _value(step: Step, printer: PagePrinter, *, in_degrees: bool) -> dict[str, A
     """A table of numbers, as the template places it."""
     quantity = step.quantity
     rows, columns = step.expression.shape
-    unit = "°/s" if in_degrees and quantity.unit else unit_in_words(quantity.unit or "")
+    unit = "°/s" if in_degrees and quantity.unit == "rad/s" else unit_in_words(quantity.unit or "")
     return {
         "id": f"{quantity.name}-value",
         "symbol": printer.span(quantity.symbol),

@@ -156,8 +156,8 @@ def test_kernels_import_their_representation_and_not_the_reverse():
 
 BUDGETS = {  # what was reached; who makes the house smaller lowers them
     "files": 222,
-    "lines of code": 32_890,
-    "lines of tests": 26_370,
+    "lines of code": 32_870,
+    "lines of tests": 26_400,
     "lines of benchmarks": 2_660,
 }
 
@@ -170,7 +170,7 @@ def test_the_house_keeps_within_its_budgets():
     sizes = {
         "files": len(PATHS),
         "lines of code": sum(map(lines_of_code, TEXTS.values())),
-        "lines of tests": 26_370,
+        "lines of tests": lines["tests"],
         "lines of benchmarks": lines["benchmarks"],
     }
     assert {name: size for name, size in sizes.items() if size > BUDGETS[name]} == {}
