@@ -29,7 +29,6 @@ Definition turn_x a := M (V 1 0 0) (V 0 (cos a) (- sin a)) (V 0 (sin a) (cos a))
 Definition turn_y a := M (V (cos a) 0 (sin a)) (V 0 1 0) (V (- sin a) 0 (cos a)).
 Definition turn_z a := M (V (cos a) (- sin a) 0) (V (sin a) (cos a) 0) (V 0 0 1).
 Definition turn (v : vec) (c s : R) := add one (add (times s (C v)) (times (1 - c) (mul (C v) (C v)))).
-Definition norm w x y z := w * w + x * x + y * y + z * z.
 Definition is_rotation (A : mat) := mul A (transpose A) = one /\ mul (transpose A) A = one /\ det A = 1.
 
 (* Derivatives by time, entry by entry *)
@@ -45,7 +44,7 @@ Definition turns_in_body (F : R -> mat) t (w : vec) :=
   is_rotation (F t) /\ exists D, rate F t D /\ mul (transpose (F t)) D = C w.
 
 (* ---- Lemmas: from here on Coq checks what nobody has to read ---- *)
-Ltac expand := cbv [mul add plus apply transpose dot cross det one scale times C turn row1 row2 row3 v1 v2 v3
+Ltac expand := cbv [mul add plus apply transpose dot cross det one scale times C turn Rsqr row1 row2 row3 v1 v2 v3
   turn_x turn_y turn_z].
 Ltac entries := repeat match goal with v : vec |- _ => destruct v | A : mat |- _ => destruct A end; expand;
   repeat match goal with |- M _ _ _ = M _ _ _ => f_equal | |- V _ _ _ = V _ _ _ => f_equal end.
@@ -110,6 +109,14 @@ Lemma cos_rate f t a : derivable_pt_lim f t a -> derivable_pt_lim (fun s => cos 
 Proof. intro H; exact (derivable_pt_lim_comp f cos t a _ H (derivable_pt_lim_cos (f t))). Qed.
 Lemma sin_rate f t a : derivable_pt_lim f t a -> derivable_pt_lim (fun s => sin (f s)) t (cos (f t) * a).
 Proof. intro H; exact (derivable_pt_lim_comp f sin t a _ H (derivable_pt_lim_sin (f t))). Qed.
+Lemma sqrt_rate f t a : 0 < f t -> derivable_pt_lim f t a -> derivable_pt_lim (fun s => sqrt (f s)) t (/ (2 * sqrt (f t)) * a).
+Proof. intros p H; exact (derivable_pt_lim_comp f sqrt t a _ H (derivable_pt_lim_sqrt (f t) p)). Qed.
+Lemma constant_rate f t a c : (forall s, f s = c) -> derivable_pt_lim f t a -> a = 0.
+Proof.
+  intros H d. apply (uniqueness_limite f t); [ exact d | ]. intros e p. exists (mkposreal 1 Rlt_0_1). intros h _ _.
+  rewrite !H. replace ((c - c) / h - 0) with 0 by (unfold Rdiv; ring). rewrite Rabs_R0. exact p.
+Qed.
+Ltac apart := repeat split; repeat apply Rmult_integral_contrapositive_currified; first [ assumption | lra | match goal with H : _ <> 0 |- _ => intro; apply H; lra end ].
 Ltac derivative := match goal with
   | H : derivable_pt_lim ?f ?t _ |- derivable_pt_lim (fun s => ?f s) ?t _ => exact H
   | H : forall s, derivable_pt_lim ?f s _ |- derivable_pt_lim (fun s => ?f s) ?t _ => exact (H t)
@@ -119,12 +126,13 @@ Ltac derivative := match goal with
   | |- derivable_pt_lim (fun s => @?f s + @?g s) _ _ => apply (derivable_pt_lim_plus f g); derivative
   | |- derivable_pt_lim (fun s => @?f s - @?g s) _ _ => apply (derivable_pt_lim_minus f g); derivative
   | |- derivable_pt_lim (fun s => @?f s * @?g s) _ _ => apply (derivable_pt_lim_mult f g); derivative
-  | |- derivable_pt_lim (fun s => @?f s / @?g s) _ _ => apply (derivable_pt_lim_div f g); [ derivative | derivative | ]
+  | |- derivable_pt_lim (fun s => @?f s / @?g s) _ _ => apply (derivable_pt_lim_div f g); [ derivative | derivative | apart ]
   | |- derivable_pt_lim (fun s => cos (@?f s)) _ _ => apply (cos_rate f); derivative
   | |- derivable_pt_lim (fun s => sin (@?f s)) _ _ => apply (sin_rate f); derivative
+  | |- derivable_pt_lim (fun s => sqrt (@?f s)) _ _ => apply (sqrt_rate f); [ assumption | derivative ]
   end.
 Ltac turning e := split; [ repeat split; entries; e | eexists (M (V _ _ _) (V _ _ _) (V _ _ _)); split;
-  [ repeat split; expand; derivative; try assumption | entries; unfold Rsqr; e ] ].
+  [ repeat split; expand; derivative | entries; e ] ].
 Theorem turn_x_turns f t a : derivable_pt_lim f t a -> turns (fun s => turn_x (f s)) t (V a 0 0).
 Proof. intro; assert (e := squares (f t)); turning ltac:(ring [e]). Qed.
 Theorem turn_y_turns f t a : derivable_pt_lim f t a -> turns (fun s => turn_y (f s)) t (V 0 a 0).
@@ -141,10 +149,3 @@ Theorem constant_turns x y z c s t : x * x + y * y + z * z = 1 -> c * c + s * s 
 Proof.
   intros. assert (z * z = 1 - x * x - y * y) as m by lra. assert (c * c = 1 - s * s) as k by lra. turning ltac:(ring [k m]).
 Qed.
-Theorem quaternion_turns w x y z t w' x' y' z' : norm (w t) (x t) (y t) (z t) <> 0 -> derivable_pt_lim w t w' ->
-  derivable_pt_lim x t x' -> derivable_pt_lim y t y' -> derivable_pt_lim z t z' ->
-  turns (fun s => turn (V (x s) (y s) (z s)) (1 - 2 / norm (w s) (x s) (y s) (z s))
-      (2 * w s / norm (w s) (x s) (y s) (z s))) t
-    (scale (2 / norm (w t) (x t) (y t) (z t)) (V (w t * x' - w' * x t + (y t * z' - z t * y'))
-      (w t * y' - w' * y t + (z t * x' - x t * z')) (w t * z' - w' * z t + (x t * y' - y t * x')))).
-Proof. unfold norm; intros. turning ltac:(field; assumption). Qed.
