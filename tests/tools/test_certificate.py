@@ -22,7 +22,7 @@ from rigidsym.models.body import given_inertia
 from rigidsym.notes.formats.record import record
 from rigidsym.tools.certificate import checker
 from rigidsym.tools.certificate.certificate import certificate_of
-from rigidsym.tools.certificate.formal import coq
+from rigidsym.tools.certificate.formal import coq, theorems
 
 NAME = "euler_zxz_intrinsic"
 CHECKER = Path(checker.__file__)
@@ -455,6 +455,44 @@ def test_coq_accepts_all_kinematics_and_refuses_a_wrong_one(tmp_path):
     wrong = text.replace("((phi_dot t) * (cos (theta t)))", "((phi_dot t) * (sin (theta t)))")
     assert wrong != text
     assert run_coq(tmp_path, wrong) != 0
+
+
+@pytest.mark.usefixtures("coq")
+def test_coq_accepts_a_heavy_symmetric_top_and_nothing_false_about_it(tmp_path):
+    """Energies, L, p, M, h, q, Hamilton's function, Euler's equations and first integrals."""
+    moments = sp.symbols("A C", positive=True)
+    body = rs.principal_moments(moments[0], *moments)
+    motion = rs.derive("ZXZ", body=body, potential="m*g*l*cos(theta)")
+    found = plain(record(motion, {}))
+    claims = json.loads(certificate_of(found).json)["claims"]
+    assert {*claims} - {*theorems(found, claims)[1]} == {"coriolis_matrix"}
+    assert run_coq(tmp_path, coq(found, claims)) == 0
+    wrong = copy.deepcopy(found)
+    spoil(wrong, "constant momentum_psi", "cos", "sin")
+    assert "constant momentum_psi" in theorems(wrong, claims)[1]
+    assert run_coq(tmp_path, coq(wrong, claims)) != 0
+
+
+@pytest.mark.usefixtures("coq")
+def test_coq_accepts_a_quaternion_and_its_theorems_rest_on_the_real_numbers_alone(tmp_path):
+    found = record_of("unit_quaternion")
+    claims = json.loads(certified("unit_quaternion"))["claims"]
+    text = coq(found, claims)
+    assert "Without a theorem here: nothing." in text
+    assert run_coq(tmp_path, text) == 0
+    question = "Require Import claims. Print Assumptions angular_velocity_body."
+    (tmp_path / "question.v").write_text(question, encoding="utf-8")
+    answer = subprocess.run(
+        ["coqc", "question.v"], cwd=tmp_path, check=True, capture_output=True, encoding="utf-8"
+    )
+    axioms = {line.split(" ")[0] for line in answer.stdout.splitlines() if line[0].isalpha()}
+    of_the_reals = {
+        "Axioms:",
+        "ClassicalDedekindReals.sig_not_dec",
+        "ClassicalDedekindReals.sig_forall_dec",
+        "FunctionalExtensionality.functional_extensionality_dep",
+    }
+    assert {"Axioms:"} < axioms <= of_the_reals
 
 
 @pytest.mark.usefixtures("coq")

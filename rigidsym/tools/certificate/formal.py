@@ -32,13 +32,13 @@ from rigidsym.tools.certificate.checker import (
 
 DEFINITIONS = "Rotation.v"
 # A coordinate with a name that Coq, its real numbers or Rotation.v use gets an underscore
-_TAKEN = frozenset(
-    "as at cofix else end exists fix for forall fun if in let match mod Prop return Set then Type "
-    "using where with R cos sin sqrt tan PI V M C I v1 v2 v3 row1 row2 row3 vec mat dot plus scale "
-    "cross apply transpose mul add times det one turn turn_x turn_y turn_z is_rotation rate "
-    "vector_rate turns turns_in_body product squares F shown t s u w a b c inertia value derivative "
-    "entries expand".split()
-)
+_WORDS = """
+as at cofix else end exists fix for forall fun if in let match mod Prop return Set then Type using
+where with R cos sin sqrt tan PI V M C I v1 v2 v3 row1 row2 row3 vec mat dot plus scale cross apply
+transpose mul add times det one turn turn_x turn_y turn_z is_rotation rate vector_rate turns
+turns_in_body product squares F shown t s u w a b c inertia value derivative entries expand
+"""
+_TAKEN = frozenset(_WORDS.split())
 _VALUE = "eapply value; [ derivative | try ring; field ]"
 _TURNS = {"space": "turns", "body": "turns_in_body"}
 _ABOUT_POINT = (
@@ -223,8 +223,8 @@ class _Section:
             if kind == "constant_turn" and is_fixed:
                 yield _Factor(text, "(V 0 0 0)", "apply constant_turns; CALCULATION", trees)
             elif kind == "axis_angle" and is_fixed:
-                angle = self.real(trees[3][1], "s")
-                proof = f"apply (axis_turns {' '.join(axis)} (fun s => {angle}));"
+                function = self.real(trees[3][1], "s")
+                proof = f"apply (axis_turns {' '.join(axis)} (fun s => {function}));"
                 velocity = f"(scale {self._rate(trees[3][1])} (V {' '.join(axis)}))"
                 yield _Factor(text, velocity, f"{proof} [ CALCULATION | {_VALUE} ]", trees)
             elif len(turns) == 1:
@@ -264,7 +264,8 @@ class _Section:
         yield f"Variables {' '.join(q)} : R -> R. (* coordinates, functions of time *)"
         yield f"Variables {' '.join(rates)} : R -> R. (* their derivatives *)"
         for one, two in zip(q, rates, strict=True):
-            yield f"Hypothesis {one}_is_differentiable : forall t, derivable_pt_lim {one} t ({two} t)."
+            slope = f"derivable_pt_lim {one} t ({two} t)"
+            yield f"Hypothesis {one}_is_differentiable : forall t, {slope}."
         for k, condition in enumerate(self.record["rotation"]["conditions"]):
             yield from self._sphere(k, condition)
         yield from self._roots_and_divisors()
@@ -287,7 +288,8 @@ class _Section:
         first, *rest = (self.name(name) for name in sphere)
         at_s = " + ".join(f"{name} * {name}" for name in (self.name(n, "s") for n in sphere))
         yield f"Hypothesis sphere_{k} : forall s, {at_s} = 1."
-        yield f"Lemma square_{k} (t : R) : {first} * {first} = 1{''.join(f' - {n} * {n}' for n in rest)}."
+        others = "".join(f" - {name} * {name}" for name in rest)
+        yield f"Lemma square_{k} (t : R) : {first} * {first} = 1{others}."
         yield f"Proof. generalize (sphere_{k} t); lra. Qed."
         if {*sphere} <= {*self.names.q}:
             dot, *dots = (self.name(f"{name}_dot") for name in sphere)
@@ -305,7 +307,7 @@ class _Section:
         self.facts.append(f"(square_{k} t)")
 
     def _roots_and_divisors(self) -> Iterator[str]:
-        """Squares of cosines and roots; in F no divisor is zero, and roots are of what is positive."""
+        """Squares of cosines and roots; divisors in F are not 0, and its roots not of 0."""
         of_rotation = [tree for factor in self.factors for tree in factor.trees]
         trees = [*of_rotation, *self.trees(*self.claims)]
         angles = _arguments(trees, "cos", "sin", "tan", "cot")
@@ -410,11 +412,12 @@ class _Section:
 
     def of_rotation_rate(self, name: str) -> _Statement:
         claim = f"{self.divisors(name)}rate {self.shown} t {self.text(self.printed[name])}"
-        H = "rate_of_turns _ _ _ (total t)"
-        H = f"transposed_rate F t _ ({H})" if self.is_passive else H
+        rate = "rate_of_turns _ _ _ (total t)"
+        rate = f"transposed_rate F t _ ({rate})" if self.is_passive else rate
         proof = (
-            f"assert (total_t := {H}). match type of total_t with rate _ _ ?D => match goal with "
-            f"|- rate _ _ ?E => replace E with D; [ exact total_t | {self.calculation()} ] end end"
+            f"assert (total_t := {rate}). match type of total_t with rate _ _ ?D => match goal "
+            "with |- rate _ _ ?E => replace E with D; "
+            f"[ exact total_t | {self.calculation()} ] end end"
         )
         return "", claim, proof
 
@@ -526,7 +529,7 @@ class _Section:
         proof = f"exists {w}; split; [ apply {velocity}; assumption | {self.calculation()} ]"
         return f"{premises}exists w, turns_in_body F t w /\\ {claim}", proof
 
-    def of_principal_axes(self, name: str) -> _Statement:
+    def of_principal_axes(self, _: str) -> _Statement:
         """The columns e of a rotation, and I' e = m e for the moments m."""
         if not {*PRINCIPAL} <= {*self.claims} or "body" not in self.record:
             raise Unstated
@@ -571,10 +574,11 @@ class _Section:
 
     def of_mass_matrix(self, name: str) -> _Statement:
         """A symmetric M with 2 T = q̇ · M q̇, for all rates."""
-        M, rates = self.printed[name], [self.name(rate) for rate in self.names.rates]
+        masses, rates = self.printed[name], [self.name(rate) for rate in self.names.rates]
         n = range(len(rates))
-        square = " + ".join(f"{self.text(M[j][k])} * {rates[j]} * {rates[k]}" for j in n for k in n)
-        symmetry = (f"{self.text(M[j][k])} = {self.text(M[k][j])}" for j in n for k in range(j))
+        entry = [[self.text(each) for each in row] for row in masses]
+        square = " + ".join(f"{entry[j][k]} * {rates[j]} * {rates[k]}" for j in n for k in n)
+        symmetry = (f"{entry[j][k]} = {entry[k][j]}" for j in n for k in range(j))
         twice = f"dot w (apply inertia w) = {square}"
         claim, proof = self.for_velocity(" /\\ ".join((twice, *symmetry)), name)
         return "", claim, proof.replace("; assumption | ", "; assumption | repeat split; ")
@@ -626,7 +630,7 @@ class _Section:
         equations = "".join(f"{second} = {self.text(text)} -> " for second, text in pairs)
         return letters, self.divisors("accelerations", "lagrangian") + premises + equations
 
-    def of_accelerations(self, name: str) -> _Statement:
+    def of_accelerations(self, _: str) -> _Statement:
         """dp/dt - ∂L/∂q = Q."""
         motion = self.record.get("motion")
         if motion is None or {*motion["torque"]} != {"0"}:
