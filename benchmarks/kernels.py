@@ -280,7 +280,7 @@ def report(cases: Mapping[tuple[int, str], Turns]) -> Report:
 
 
 def sizes(settings: Settings) -> Report:
-    """Every size up to that of the settings, by rows and by columns, aligned and not."""
+    """Every size up to the largest asked for, by rows and by columns, aligned and not."""
     cases: dict[str, dict[int, Turns]] = {}
     with on_one_core():
         for name, symbol in SYMBOLS.items():

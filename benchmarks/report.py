@@ -100,7 +100,7 @@ def machine() -> dict[str, str]:
 
 
 def _processor() -> str:
-    """Make, family, vectors and caches, for the same name stands for several generations."""
+    """Make, family, vectors and caches: several generations of processors share a name."""
     facts: dict[str, str] = {}
     if Path("/proc/cpuinfo").is_file():
         for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():

@@ -127,7 +127,7 @@ class _Factor:
 
 
 class _Section:
-    """The theorems of one record; `stated` has those that later ones may use."""
+    """The theorems of one record; later ones may use those in `stated`."""
 
     def __init__(
         self, record: Mapping[str, Any], claims: Sequence[str], stated: Mapping[str, Any]
@@ -395,7 +395,7 @@ class _Section:
             raise Unstated
 
     def divisors(self, *names: str) -> str:
-        """Hypotheses that what is divided by is not zero, apart from divisors of F."""
+        """Hypotheses that divisors are not zero, apart from those of F."""
         divisors = _divisors(self.trees(*names))
         texts = [self.real(each) for each in divisors if self.summands(each) not in self.apart]
         return "".join(f"{text} <> 0 -> " for text in dict.fromkeys(texts))
@@ -664,7 +664,7 @@ def _arguments(trees: Iterable[Tree], *functions: str) -> list[Tree]:
 
 
 def _divisors(trees: Iterable[Tree]) -> list[Tree]:
-    """What is divided by, factor by factor, each once; whole numbers are not zero anyway."""
+    """The factors of all divisors, each once, without numbers, which are not zero."""
     divisors: dict[Tree, None] = {}
     stack = [*trees]
     while stack:
