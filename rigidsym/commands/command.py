@@ -26,6 +26,7 @@ _REMOVED = {  # options that left: what to use instead
     "--language": "a language is a folder of templates, chosen by --style LANGUAGE/NAME",
     "--scheduler": "use dask.array.apply_gufunc with a kernel, as in docs/howto/cluster.md",
     "--fragment": "write a template with the sections that you need, chosen by --style NAME",
+    "--moodle": "enter the answers of the sheet with solutions into a quiz of your course",
     "--method": "an integrator is chosen by `rigidsym simulate --method`",
     "--frames": "write the names into a template, chosen by --style NAME",
 }

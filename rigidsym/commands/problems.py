@@ -11,8 +11,7 @@ from rigidsym.commands.command import command as make
 from rigidsym.commands.output_folder import report_old_pdf
 from rigidsym.notes.formats import FORMATS
 from rigidsym.notes.formats.pdf import typeset
-from rigidsym.notes.problems.exercise import sheet_of
-from rigidsym.notes.problems.subjects import SUBJECTS
+from rigidsym.notes.problems import SUBJECTS, sheets_of
 from rigidsym.system.files import write_bytes, write_text
 
 _ENDINGS = ("tex", "html")
@@ -37,7 +36,6 @@ _ENDINGS = ("tex", "html")
 @click.option("--author", default="", help="Author, printed below the title.")
 @click.option("--course", default="", help="Course, printed below the title.")
 @click.option("--pdf", is_flag=True, help="Also typeset the sheet and solutions; needs TeX.")
-@click.option("--moodle", is_flag=True, help="Also write a question bank in Moodle XML.")
 @click.option("--quiet", is_flag=True, help="Print only the names of the files written.")
 @click.option(
     "--out",
@@ -53,7 +51,6 @@ def command(
     author: str,
     course: str,
     pdf: bool,
-    moodle: bool,
     quiet: bool,
     out: Path,
 ) -> None:
@@ -62,23 +59,21 @@ def command(
     The subject is euler (Euler angles), bodies (moments of inertia) or all. Every answer is
     derived. The files are LaTeX and HTML.
     """
-    sheet = sheet_of(subject, SUBJECTS, count=number, variant=variant)
     byline = tuple(filter(None, (author, course)))
     documents = [
-        replace(sheet.document(solved=solved), author=author, byline=byline)
-        for solved in (False, True)
+        replace(document, author=author, byline=byline)
+        for document in sheets_of(subject, count=number, variant=variant)
     ]
+    folder = out / documents[0].name
     for place, section in enumerate(() if quiet else documents[0].sections, start=1):
         click.echo(f"{place}  {section.title}")
     for document in documents:
         for ending in _ENDINGS:
-            path = out / sheet.name / f"{document.name}.{ending}"
+            path = folder / f"{document.name}.{ending}"
             text = FORMATS[ending].render(document)
             if ending == "tex" and not pdf:
                 report_old_pdf(path, text)
             click.echo(write_text(path, text))
-    if moodle:
-        click.echo(write_text(out / sheet.name / f"{sheet.name}.xml", sheet.moodle))
     for document in documents if pdf else ():
         paper = typeset(FORMATS["tex"].render(document))
-        click.echo(write_bytes(out / sheet.name / f"{document.name}.pdf", paper.pdf))
+        click.echo(write_bytes(folder / f"{document.name}.pdf", paper.pdf))

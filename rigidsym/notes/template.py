@@ -71,7 +71,7 @@ def _printed(_: Context, value: Any) -> Markup:
     if isinstance(value, int | str) and not _MARKUP.search(str(value)):
         return Markup(str(value))
     marks = _MARKS.get()
-    if isinstance(value, sp.Basic):
+    if isinstance(value, sp.Basic) and not isinstance(value, sp.MatrixBase):
         value = formula_of(value, marks.letters)
     elif type(value) is tuple and value and isinstance(value[0], _BLOCKS):
         value = [*value]  # blocks; other tuples are texts
@@ -138,7 +138,14 @@ def _marked(chunk: str, things: list[Any]) -> Iterator[Any]:
 
 
 def _equation(typed: str, things: list[Any]) -> Equation:
-    return Equation(sides=tuple(_formula(side, things) for side in re.split(r"\s=\s", typed)))
+    """Sides that are equal; a matrix as the last of them may be listed where it is too wide."""
+    *sides, last = re.split(r"\s=\s", typed.strip())
+    thing = things[ord(last) - _FIRST] if re.fullmatch(_MARK, last) else None
+    if isinstance(thing, sp.MatrixBase):
+        return Equation(
+            sides=tuple(_formula(s, things) for s in sides), matrix=thing.as_immutable()
+        )
+    return Equation(sides=tuple(_formula(side, things) for side in (*sides, last)))
 
 
 def _formula(typed: str, things: list[Any]) -> Formula:

@@ -14,7 +14,7 @@ from rigidsym.models.body import Parameter, Polyhedron, RigidBody
 from rigidsym.models.forces import no_rotation
 from rigidsym.models.library import rotation_given, turned_by
 from rigidsym.notes.formats import register
-from rigidsym.notes.problems.exercise import sheet_of
+from rigidsym.notes.problems import sheets_of
 
 a, b = sp.symbols("a b")
 MASKED = np.ma.masked_array([1.0, 2.0, 3.0], mask=[0, 0, 1])
@@ -79,7 +79,7 @@ def dynamics(rotation: str = "z(theta)", **acting: object) -> rs.Motion:
         (lambda: rs.Particle(mass=1, position=[1, 2]), "three components, got 2"),
         (lambda: rs.derive("ZXZ", only="weight"), "no quantity 'weight'"),
         (lambda: rs.derive("ZXZ", only="mass"), "no quantity mass; it needs a body"),
-        (lambda: sheet_of("tops", {}, count=1, variant=1), "no problems on 'tops'"),
+        (lambda: sheets_of("tops", count=1, variant=1), "no problems on 'tops'"),
         (lambda: register(Path("/none/format.txt")), "/none/format.txt cannot be imported"),
         (lambda: rs.chain([]), "a chain needs at least one turn, such as z(phi)"),
         (

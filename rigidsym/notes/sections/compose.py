@@ -16,7 +16,6 @@ from rigidsym.errors import offer
 from rigidsym.formula.display import PAGE, Display, display
 from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.formula.reader import text_of
-from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import NOTHING, Formula
 from rigidsym.mechanics.derivation import OF_RATES, Argument, Derivation, Proof, Step
 from rigidsym.mechanics.quantities.dynamics import MOTION
@@ -238,8 +237,6 @@ class Composer:
             return
         if facts.has_determinant:
             yield from blocks_of("en/singular_measure", self.letters, singular=facts)
-            value = formula_of(facts.found.determinant, self.letters)
-            yield Equation(sides=(*facts.measured, value))
         yield from blocks_of("en/singular", self.letters, singular=facts)
 
     @cached_property

@@ -6,7 +6,6 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from rigidsym.formula.display import PAGE, display, height
 from rigidsym.formula.letters import Letters
-from rigidsym.formula.scalars import formula_of
 from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
 from rigidsym.mechanics.quantities.kinematics import KINEMATICS
@@ -105,9 +104,8 @@ def _where_it_fails(derivation: Derivation, letters: Letters) -> Iterator[NoteBl
     if facts is None:
         return
     if facts.has_determinant:
-        value = formula_of(facts.found.determinant, letters)
-        determinant = Equation(sides=(*facts.measured, value))
+        lead, determinant = blocks_of("en/singular_measure", letters, singular=facts)
+        assert isinstance(determinant, Equation)
         if display(determinant, letters, PAGE).lines == 1:
-            yield from blocks_of("en/singular_measure", letters, singular=facts)
-            yield determinant
+            yield from (lead, determinant)
     yield from blocks_of("en/singular", letters, singular=facts)[:1]
