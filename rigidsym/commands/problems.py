@@ -9,7 +9,7 @@ import click
 
 from rigidsym.commands.command import command as make
 from rigidsym.commands.output_folder import report_old_pdf
-from rigidsym.notes.formats import FORMATS
+from rigidsym.notes.formats import render
 from rigidsym.notes.formats.pdf import typeset
 from rigidsym.notes.problems import SUBJECTS, sheets_of
 from rigidsym.system.files import write_bytes, write_text
@@ -70,10 +70,10 @@ def command(
     for document in documents:
         for ending in _ENDINGS:
             path = folder / f"{document.name}.{ending}"
-            text = FORMATS[ending].render(document)
+            text = render(document, ending)
             if ending == "tex" and not pdf:
                 report_old_pdf(path, text)
             click.echo(write_text(path, text))
     for document in documents if pdf else ():
-        paper = typeset(FORMATS["tex"].render(document))
+        paper = typeset(render(document, "tex"))
         click.echo(write_bytes(folder / f"{document.name}.pdf", paper.pdf))

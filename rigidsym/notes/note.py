@@ -14,13 +14,13 @@ from rigidsym.formula.display import PAGE, display
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.mechanics.derivation import Derivation
+from rigidsym.notes import formats
 from rigidsym.notes.document.document import (
     Document,
     Equation,
     NoteBlock,
     Section,
 )
-from rigidsym.notes.formats import FORMATS
 from rigidsym.notes.sections.compose import Composer, template_of
 from rigidsym.notes.sections.fitting import by_the_chain_rule
 from rigidsym.system import resources
@@ -44,7 +44,7 @@ class Note(NamedTuple):
 
     def render(self, ending: str) -> str:
         """The text of a file in one of FORMATS; the same derivation gives the same bytes."""
-        return FORMATS[ending].render(self.document)
+        return formats.render(self.document, ending)
 
     def latex(self) -> str:
         """A complete LaTeX file."""

@@ -16,7 +16,7 @@ from rigidsym.commands.cli import commands
 from rigidsym.formula.reader import formula, text_of
 from rigidsym.notes import problems
 from rigidsym.notes.document.document import Equation, Paragraph
-from rigidsym.notes.formats import FORMATS
+from rigidsym.notes.formats import render
 from rigidsym.notes.formats.pdf import Typeset
 from rigidsym.notes.problems import SUBJECTS, Answer, Problem, numeral, problems_of, sheets_of
 
@@ -34,9 +34,7 @@ def values(problem: Problem) -> list[float]:
 
 
 def test_a_variant_is_the_same_sheet_every_time_and_another_has_other_numbers():
-    first, again, other = (
-        FORMATS["md"].render(sheets_of("all", count=6, variant=k)[1]) for k in (3, 3, 4)
-    )
+    first, again, other = (render(sheets_of("all", count=6, variant=k)[1], "md") for k in (3, 3, 4))
     assert first == again != other
 
 
@@ -76,8 +74,8 @@ def test_the_command_lists_the_problems_and_typesets_sheet_and_solutions(monkeyp
 def test_only_the_solutions_hold_answers():
     sheet, solutions = sheets_of("all", count=6, variant=1)
     for ending in ("tex", "html", "md"):
-        assert "Answer" not in FORMATS[ending].render(sheet)
-        assert FORMATS[ending].render(solutions).count("Answer") == 6
+        assert "Answer" not in render(sheet, ending)
+        assert render(solutions, ending).count("Answer") == 6
 
 
 def test_an_answer_has_its_unit_behind_it():

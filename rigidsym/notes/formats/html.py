@@ -31,7 +31,6 @@ from rigidsym.notes.formats.escape import cleaned
 from rigidsym.notes.formats.printer import NotePrinter
 from rigidsym.system import resources
 
-ENDING = "html"
 TEMPLATE = "note.html.jinja"
 _PAGE = 39.5  # ems of a display on a page, some less than there are: browsers differ in fonts
 _IN_WORDS = 0.75  # of a display's ems: what a formula among words may take

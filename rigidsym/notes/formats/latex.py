@@ -25,7 +25,6 @@ from rigidsym.notes.formats.printer import NotePrinter
 from rigidsym.system import resources
 from rigidsym.version import __version__
 
-ENDING = "tex"
 TEMPLATE = "note.tex.jinja"
 _DELIMITERS = {
     "block_start_string": "((*",

@@ -28,7 +28,6 @@ from rigidsym.notes.formats.escape import cleaned
 from rigidsym.notes.formats.printer import NotePrinter
 from rigidsym.version import OWNERSHIP
 
-ENDING = "md"
 _WIDTH = 40.0  # ems
 _SPECIAL = re.compile(r"([\\`*_{}\[\]<>#&~|!@])")
 _DOLLARS = re.compile(r"\$+")
