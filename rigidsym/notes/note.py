@@ -15,14 +15,14 @@ from rigidsym.formula.letters import Letters
 from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.notes import formats
-from rigidsym.notes.document.document import (
+from rigidsym.notes.compose import Composer, template_of
+from rigidsym.notes.document import (
     Document,
     Equation,
     NoteBlock,
     Section,
 )
-from rigidsym.notes.sections.compose import Composer, template_of
-from rigidsym.notes.sections.fitting import by_the_chain_rule
+from rigidsym.notes.fitting import by_the_chain_rule
 from rigidsym.system import resources
 
 if TYPE_CHECKING:
@@ -91,11 +91,11 @@ def note(
 def _composer_of(derivation: Derivation) -> type[Composer]:
     """What composes the note of a derivation, with its theory, its body, or without."""
     if derivation.theory:
-        from rigidsym.notes.sections.lecture_note import LectureComposer
+        from rigidsym.notes.lecture_note import LectureComposer
 
         return LectureComposer
     if derivation.body is not None:
-        from rigidsym.notes.sections.body_note import BodyComposer
+        from rigidsym.notes.body_note import BodyComposer
 
         return BodyComposer
     return Composer

@@ -22,7 +22,7 @@ from rigidsym.mechanics.quantities.kinematics import BODY, SPACE
 from rigidsym.models.body import Composite, Part
 from rigidsym.models.parametrisations import EulerAngles
 from rigidsym.models.solids import shaped
-from rigidsym.notes.document.document import (
+from rigidsym.notes.document import (
     Document,
     NoteBlock,
     Paragraph,
@@ -33,7 +33,7 @@ from rigidsym.notes.document.document import (
 )
 from rigidsym.notes.facts.rotation import turn
 from rigidsym.notes.facts.singular import singular_facts
-from rigidsym.notes.formula.derivation_letters import letters_of
+from rigidsym.notes.letters import letters_of
 from rigidsym.notes.template import sections_of
 
 SEQUENCES = ("ZXZ", "XYX", "YZY", "ZYZ", "XZX", "YXY", "ZYX", "XYZ", "YZX", "ZXY", "XZY", "YXZ")

@@ -24,7 +24,7 @@ from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import formula, text_of
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import Formula
-from rigidsym.notes.document.document import (
+from rigidsym.notes.document import (
     Code,
     CodeBlock,
     Equation,

@@ -17,7 +17,7 @@ from rigidsym.models.body import RigidBody
 from rigidsym.models.forces import OMEGA_COMPONENTS
 from rigidsym.models.rotation import RotationModel
 from rigidsym.notes.figure.body_mesh import lengths_of
-from rigidsym.notes.prose.words import unit_in_words
+from rigidsym.notes.words import unit_in_words
 
 _DEGREE = pi / 180
 _SECTIONS = {

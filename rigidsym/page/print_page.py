@@ -26,14 +26,14 @@ from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.quantities.kinematics import SPACE
 from rigidsym.models.forces import OMEGA_COMPONENTS, initial_values
 from rigidsym.models.rotation import RotationModel
-from rigidsym.notes.document.document import Document, Equation, Paragraph, Text
+from rigidsym.notes.document import Document, Equation, Paragraph, Text
 from rigidsym.notes.facts.rotation import sum_of_turns
 from rigidsym.notes.facts.singular import PointFacts
 from rigidsym.notes.figure.body_mesh import Shape, own_shape
 from rigidsym.notes.figure.scene import scene_of
 from rigidsym.notes.formats.html import HtmlPrinter, escape, rendered
-from rigidsym.notes.prose.words import unit_in_words
 from rigidsym.notes.template import texts_of
+from rigidsym.notes.words import unit_in_words
 from rigidsym.page.controls import Control, groups_of, starts_of
 from rigidsym.page.functions import Functions, functions_of, moments_of
 from rigidsym.page.shapes import SHAPES, as_data, on_its_tip

@@ -15,11 +15,11 @@ from rigidsym.mechanics.quantities.mass import OF_BODY_ALONE
 from rigidsym.mechanics.quantities.table import POINT
 from rigidsym.models.body import given_inertia
 from rigidsym.motion import Motion
-from rigidsym.notes.document.document import Equation, Figure
+from rigidsym.notes.document import Equation, Figure
 from rigidsym.notes.figure.body_drawing import body_drawing
 from rigidsym.notes.figure.body_mesh import HOLE
 from rigidsym.notes.formats.terminal import show
-from rigidsym.notes.sections.named_body import in_names
+from rigidsym.notes.named_body import in_names
 from rigidsym.pipeline import motion_of, read_spec
 
 DRILLED = """

@@ -40,7 +40,7 @@ from rigidsym.notes.figure.drawing import (
 )
 from rigidsym.notes.figure.scene import MOST_TURNS, scene_of
 from rigidsym.notes.formats.drawings import svg, tikz
-from rigidsym.notes.formula.derivation_letters import letters_of
+from rigidsym.notes.letters import letters_of
 
 LETTERS = "zxyzxy"
 ANGLES = ("heading", "elevation", "bank")

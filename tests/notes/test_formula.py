@@ -22,7 +22,7 @@ from rigidsym.formula.tree import Big, Symbol
 from rigidsym.formula.unicode_pen import UnicodePen, columns
 from rigidsym.mechanics.quantities.table import arguments_of
 from rigidsym.models.parametrisations import EulerAngles
-from rigidsym.notes.formula.derivation_letters import letters_of
+from rigidsym.notes.letters import letters_of
 
 phi, theta, psi = dynamicsymbols("phi theta psi")
 phi_dot, theta_dot, psi_dot = dynamicsymbols("phi theta psi", 1)

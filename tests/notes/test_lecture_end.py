@@ -12,7 +12,7 @@ import pytest
 
 import rigidsym as rs
 from helpers.typesetting import bound_together, pages_of, sheet_of
-from rigidsym.notes.document.document import Document, EquationReference, EquationRow, NoteTable
+from rigidsym.notes.document import Document, EquationReference, EquationRow, NoteTable
 from rigidsym.pipeline import output_of, read_file
 
 OTHERS = ("unit_quaternion", "rotation_vector", "z(a) x(b) z(c) y(d)")

@@ -14,22 +14,22 @@ from rigidsym.formula.scalars import factored, listed_entries
 from rigidsym.mechanics.kinematics.vector_forms import LENGTH
 from rigidsym.models.library import PARAMETRISATIONS, PRESETS, rotation_from
 from rigidsym.models.rotation import hat
-from rigidsym.notes.document.document import (
+from rigidsym.notes.compose import equation_of
+from rigidsym.notes.document import (
     Document,
     Equation,
     EquationReference,
     EquationRow,
     Paragraph,
 )
-from rigidsym.notes.formula.derivation_letters import length_of, letters_of
-from rigidsym.notes.formula.vector_rates import rates_of_form
-from rigidsym.notes.prose.vector_words import (
+from rigidsym.notes.letters import length_of, letters_of
+from rigidsym.notes.vectors import (
     by_half_angle,
     in_notation,
+    rates_of_form,
     sign_outside,
     sum_of_vectors,
 )
-from rigidsym.notes.sections.compose import equation_of
 
 TURNS = (
     "z(phi)",

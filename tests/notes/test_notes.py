@@ -24,7 +24,8 @@ from rigidsym.models.rotation import (
     elementary,
     time_function,
 )
-from rigidsym.notes.document.document import (
+from rigidsym.notes.compose import equation_of
+from rigidsym.notes.document import (
     Cited,
     Document,
     NoteTable,
@@ -34,8 +35,7 @@ from rigidsym.notes.facts.singular import PointFacts
 from rigidsym.notes.formats.escape import escape
 from rigidsym.notes.formats.terminal import show
 from rigidsym.notes.note import Note, note
-from rigidsym.notes.prose.words import unit_in_words, with_symbols
-from rigidsym.notes.sections.compose import equation_of
+from rigidsym.notes.words import unit_in_words, with_symbols
 
 ZXZ = "euler_zxz_intrinsic"
 

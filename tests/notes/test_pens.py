@@ -36,7 +36,7 @@ from rigidsym.formula.tree import (
 from rigidsym.formula.unicode_pen import UnicodePen
 from rigidsym.mechanics.quantities.table import arguments_of
 from rigidsym.models.parametrisations import EulerAngles
-from rigidsym.notes.formula.derivation_letters import letters_of
+from rigidsym.notes.letters import letters_of
 
 ANGLES = dynamicsymbols("phi theta psi")
 RATES = [sp.diff(angle, "t", order) for order in (1, 2) for angle in ANGLES]

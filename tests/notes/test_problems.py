@@ -15,7 +15,7 @@ from rigidsym.commands import problems as command
 from rigidsym.commands.cli import commands
 from rigidsym.formula.reader import formula, text_of
 from rigidsym.notes import problems
-from rigidsym.notes.document.document import Equation, Paragraph
+from rigidsym.notes.document import Equation, Paragraph
 from rigidsym.notes.formats import render
 from rigidsym.notes.formats.pdf import Typeset
 from rigidsym.notes.problems import SUBJECTS, Answer, Problem, numeral, problems_of, sheets_of

@@ -11,8 +11,8 @@ import sympy as sp
 import rigidsym as rs
 from rigidsym.models.rotation import TIME
 from rigidsym.notes.facts.rotation import axes_of_turns
-from rigidsym.notes.formula.derivation_letters import letters_of
-from rigidsym.notes.prose.vector_words import sum_of_vectors
+from rigidsym.notes.letters import letters_of
+from rigidsym.notes.vectors import sum_of_vectors
 from rigidsym.pipeline import motion_of, read, read_file
 from rigidsym.system import resources
 

@@ -11,7 +11,7 @@ from helpers.typesetting import pages_of
 from rigidsym.errors import ModelError
 from rigidsym.formula.reader import text_of
 from rigidsym.formula.tree import equal
-from rigidsym.notes.document.document import Equation, NoteTable, Paragraph
+from rigidsym.notes.document import Equation, NoteTable, Paragraph
 from rigidsym.notes.note import STYLES, plain
 from rigidsym.pipeline import motion_of, output_of, read_file, read_spec
 

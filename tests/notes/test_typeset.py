@@ -26,7 +26,7 @@ from rigidsym.models.parametrisations import (
 from rigidsym.models.rotation import Citation, RotationModel, Turn, elementary, time_function
 from rigidsym.notes.formats import pdf as typesetting
 from rigidsym.notes.formats.pdf import typeset
-from rigidsym.notes.formula.derivation_letters import letters_of
+from rigidsym.notes.letters import letters_of
 from rigidsym.notes.note import note
 
 pytestmark = pytest.mark.campaign

@@ -15,9 +15,9 @@ from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.quantities.energy import CENTRE
 from rigidsym.mechanics.quantities.mass import MASS
 from rigidsym.mechanics.quantities.table import is_quaternion
-from rigidsym.notes.document.document import Text
-from rigidsym.notes.formula.derivation_letters import VECTOR
-from rigidsym.notes.prose.words import symbols_of, unit_in_words, with_symbols
+from rigidsym.notes.document import Text
+from rigidsym.notes.letters import VECTOR
+from rigidsym.notes.words import symbols_of, unit_in_words, with_symbols
 
 COORDINATES = formula(r"\mathbf{q}")
 

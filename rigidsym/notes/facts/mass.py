@@ -29,8 +29,8 @@ from rigidsym.models.body import (
     RigidBody,
     Solid,
 )
-from rigidsym.notes.document.document import Equation
-from rigidsym.notes.prose.words import unit_in_words
+from rigidsym.notes.document import Equation
+from rigidsym.notes.words import unit_in_words
 
 _DIGITS = 6
 _KINDS = {

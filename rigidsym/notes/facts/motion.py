@@ -17,7 +17,7 @@ from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.quantities.dynamics import LETTERS
 from rigidsym.models.forces import OMEGA_BODY, OMEGA_COMPONENTS, Example, MovingPart, initial_values
 from rigidsym.models.rotation import TIME
-from rigidsym.notes.document.document import Equation, EquationRow, Figure, NoteBlock
+from rigidsym.notes.document import Equation, EquationRow, Figure, NoteBlock
 from rigidsym.notes.figure.motion_picture import MotionPicture, motion_picture
 from rigidsym.notes.figure.phase_portrait import phase_portrait
 from rigidsym.notes.template import texts_of

@@ -35,10 +35,10 @@ from rigidsym.mechanics.quantities.kinematics import (
     SPIN_OF_COSINES,
 )
 from rigidsym.models.rotation import SOURCES, RotationModel, Turn, by_axis, carried_axes, hat
-from rigidsym.notes.document.document import Cited, Equation, EquationRow, Figure, NoteBlock
+from rigidsym.notes.document import Cited, Equation, EquationRow, Figure, NoteBlock
 from rigidsym.notes.figure.drawing import drawn
 from rigidsym.notes.figure.scene import Posed, scene_of
-from rigidsym.notes.formula.derivation_letters import VECTOR
+from rigidsym.notes.letters import VECTOR
 from rigidsym.notes.template import texts_of
 
 PROPER = ("precession", "nutation", "spin")

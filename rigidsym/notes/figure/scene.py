@@ -36,7 +36,7 @@ from rigidsym.notes.figure.camera import (
     scaled,
     unit,
 )
-from rigidsym.notes.formula.derivation_letters import VECTOR, length_of
+from rigidsym.notes.letters import VECTOR, length_of
 
 Kind = Literal["space", "body", "node", "vector", "turn", "guide"]
 

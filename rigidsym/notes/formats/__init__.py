@@ -7,7 +7,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from rigidsym.notes.document.document import Document
+    from rigidsym.notes.document import Document
 
 # the ending of the files, and the module whose `render(document)` gives their text
 FORMATS = MappingProxyType({"tex": "latex", "html": "html", "md": "markdown"})

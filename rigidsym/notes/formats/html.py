@@ -15,7 +15,7 @@ from rigidsym.formula.mathml_pen import MathmlPen, math
 from rigidsym.formula.reader import text_of
 from rigidsym.formula.sheet_pen import Inline
 from rigidsym.formula.tree import Formula
-from rigidsym.notes.document.document import (
+from rigidsym.notes.document import (
     CodeBlock,
     Document,
     Equation,

@@ -13,10 +13,10 @@ from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.notation import Notation
 from rigidsym.mechanics.derivation import Argument, Derivation, Step
 from rigidsym.models.rotation import RotationModel
+from rigidsym.notes.compose import equation_of
+from rigidsym.notes.fitting import as_vectors
 from rigidsym.notes.formats.terminal import show, show_step
-from rigidsym.notes.formula.derivation_letters import letters_of
-from rigidsym.notes.sections.compose import equation_of
-from rigidsym.notes.sections.fitting import as_vectors
+from rigidsym.notes.letters import letters_of
 
 _WIDTH = 44.0  # ems
 

@@ -6,7 +6,7 @@ from rigidsym.formula.display import PAGE, Rows, pack
 from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.sheet_pen import Inline
 from rigidsym.formula.tree import Formula
-from rigidsym.notes.document.document import (
+from rigidsym.notes.document import (
     CodeBlock,
     Document,
     Equation,

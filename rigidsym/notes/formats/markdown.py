@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from rigidsym.formula.display import pack
 from rigidsym.formula.latex_pen import MarkdownPen
 from rigidsym.formula.sheet_pen import Inline
-from rigidsym.notes.document.document import (
+from rigidsym.notes.document import (
     CodeBlock,
     Document,
     Equation,

@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 from rigidsym.formula.display import Done, display
 from rigidsym.formula.sheet_pen import Inline, SheetPen
 from rigidsym.formula.tree import Formula
-from rigidsym.notes.document.document import (
+from rigidsym.notes.document import (
     Cited,
     Code,
     Document,
@@ -25,7 +25,7 @@ from rigidsym.notes.document.document import (
     Strong,
     Text,
 )
-from rigidsym.notes.prose.words import announcement
+from rigidsym.notes.words import announcement
 
 
 class NotePrinter:

@@ -14,19 +14,19 @@ from rigidsym.formula.tree import equal, row
 from rigidsym.mechanics.derivation import Argument, Derivation, Proof, Step
 from rigidsym.mechanics.quantities.kinematics import BODY, ROTATION, SPACE
 from rigidsym.models.rotation import RotationModel
-from rigidsym.notes.document.document import Equation
+from rigidsym.notes.compose import equation_of
+from rigidsym.notes.document import Equation
 from rigidsym.notes.facts.convention import convention_facts
 from rigidsym.notes.facts.rotation import turn
 from rigidsym.notes.facts.singular import singular_facts
-from rigidsym.notes.formula.derivation_letters import RESIDUAL, letters_of
-from rigidsym.notes.prose.vector_words import sum_of_vectors
-from rigidsym.notes.prose.words import (
+from rigidsym.notes.letters import RESIDUAL, letters_of
+from rigidsym.notes.template import texts_of
+from rigidsym.notes.vectors import sum_of_vectors
+from rigidsym.notes.words import (
     is_body_alone,
     unit_in_words,
     with_symbols,
 )
-from rigidsym.notes.sections.compose import equation_of
-from rigidsym.notes.template import texts_of
 
 if TYPE_CHECKING:
     from rigidsym.mechanics.conversions.conversions import Conversions
@@ -114,7 +114,7 @@ class _Screen:
         """The equations for every body and rotation, under their headings."""
         if not self.derivation.theory:
             return
-        from rigidsym.notes.formula.summands import sums
+        from rigidsym.notes.summands import sums
 
         section = ""
         for statement in self.derivation.theory:
@@ -166,7 +166,7 @@ class _Screen:
         yield from _under("Conversions")
         for step in self.steps[len(self.derivation.steps) :]:
             yield from _blocks_of(step, self.derivation.arguments, self.letters)
-        from rigidsym.notes.sections.conversion_section import COLUMNS, columns_of_matrix
+        from rigidsym.notes.conversion_section import COLUMNS, columns_of_matrix
 
         yield sentence("Each column of {} is a multiple of the quaternion.", COLUMNS)
         yield Equation(sides=(COLUMNS,), matrix=columns_of_matrix())

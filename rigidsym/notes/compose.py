@@ -27,7 +27,7 @@ from rigidsym.mechanics.quantities.kinematics import (
 )
 from rigidsym.models.parametrisations import GIVEN
 from rigidsym.models.rotation import Citation, lecture
-from rigidsym.notes.document.document import (
+from rigidsym.notes.document import (
     Cited,
     CodeBlock,
     Document,
@@ -40,20 +40,20 @@ from rigidsym.notes.document.document import (
     Section,
     Text,
 )
+from rigidsym.notes.end_tables import Claim, ClaimFacts, example_of, symbols
 from rigidsym.notes.facts.convention import convention_facts
 from rigidsym.notes.facts.motion import MotionFacts
 from rigidsym.notes.facts.rotation import RotationFacts, angle_facts
 from rigidsym.notes.facts.singular import singular_facts
-from rigidsym.notes.formula.derivation_letters import entries_of, letters_of
-from rigidsym.notes.prose.words import (
+from rigidsym.notes.fitting import Fitter, as_vectors
+from rigidsym.notes.letters import entries_of, letters_of
+from rigidsym.notes.summary import summary
+from rigidsym.notes.template import blocks_of, sections_of
+from rigidsym.notes.words import (
     symbols_of,
     with_source,
     with_symbols,
 )
-from rigidsym.notes.sections.end_tables import Claim, ClaimFacts, example_of, symbols
-from rigidsym.notes.sections.fitting import Fitter, as_vectors
-from rigidsym.notes.sections.summary import summary
-from rigidsym.notes.template import blocks_of, sections_of
 
 if TYPE_CHECKING:
     from rigidsym.mechanics.conversions.conversions import Conversions
@@ -181,7 +181,7 @@ class Composer:
         """The section on the unit quaternion and the matrix, with its equation."""
         if self.conversions is None:
             return
-        from rigidsym.notes.sections.conversion_section import conversion_facts
+        from rigidsym.notes.conversion_section import conversion_facts
 
         facts = conversion_facts(self.conversions)
         step = self.conversions.quaternion

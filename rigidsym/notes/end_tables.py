@@ -12,7 +12,7 @@ from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Argument, Derivation, Proof
 from rigidsym.mechanics.quantities.kinematics import RATES
-from rigidsym.notes.document.document import (
+from rigidsym.notes.document import (
     Equation,
     EquationReference,
     NoteTable,
@@ -21,8 +21,8 @@ from rigidsym.notes.document.document import (
 )
 from rigidsym.notes.facts.rotation import OPERATOR
 from rigidsym.notes.facts.singular import WITH_CONDITIONS
-from rigidsym.notes.formula.derivation_letters import RESIDUAL, VECTOR
-from rigidsym.notes.prose.words import (
+from rigidsym.notes.letters import RESIDUAL, VECTOR
+from rigidsym.notes.words import (
     BODY_POSITION,
     POSITION,
     is_body_alone,

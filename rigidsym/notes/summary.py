@@ -9,7 +9,7 @@ from rigidsym.formula.letters import Letters
 from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
 from rigidsym.mechanics.quantities.kinematics import KINEMATICS
-from rigidsym.notes.document.document import (
+from rigidsym.notes.document import (
     Equation,
     EquationReference,
     EquationRow,

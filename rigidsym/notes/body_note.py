@@ -15,7 +15,8 @@ from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import COMMA, Bracket, Formula, equal, joined
 from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.quantities.mass import OF_BODY, OF_INERTIA
-from rigidsym.notes.document.document import (
+from rigidsym.notes.compose import Composer
+from rigidsym.notes.document import (
     Equation,
     Figure,
     NoteBlock,
@@ -25,11 +26,10 @@ from rigidsym.notes.document.document import (
 from rigidsym.notes.facts.mass import MassFacts
 from rigidsym.notes.figure.body_drawing import body_drawing
 from rigidsym.notes.figure.body_mesh import lengths_of
-from rigidsym.notes.prose.words import is_body_alone
-from rigidsym.notes.sections.compose import Composer
-from rigidsym.notes.sections.fitting import definitions
-from rigidsym.notes.sections.named_body import OFFSET, OFFSET_IS, in_names, textbook_form
+from rigidsym.notes.fitting import definitions
+from rigidsym.notes.named_body import OFFSET, OFFSET_IS, in_names, textbook_form
 from rigidsym.notes.template import blocks_of, texts_of
+from rigidsym.notes.words import is_body_alone
 
 _DIAGONAL = formula("(I'_{11}, I'_{22}, I'_{33})")
 _IN_A_ROW = ("radii_of_gyration", "inertia_ellipsoid")

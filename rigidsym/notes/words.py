@@ -29,13 +29,13 @@ from rigidsym.mechanics.quantities.kinematics import (
 )
 from rigidsym.mechanics.quantities.mass import DIRECTION, OF_BODY_ALONE, POINT
 from rigidsym.models.rotation import AXES, Citation
-from rigidsym.notes.document.document import (
+from rigidsym.notes.document import (
     Cited,
     Equation,
     Text,
     listed,
 )
-from rigidsym.notes.formula.derivation_letters import VECTOR, length_of
+from rigidsym.notes.letters import VECTOR, length_of
 
 POSITION = formula(r"\mathbf{x}")
 BODY_POSITION = formula(r"\mathbf{x}'")

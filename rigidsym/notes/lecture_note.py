@@ -9,7 +9,9 @@ from itertools import chain, groupby
 from rigidsym.formula.reader import formula
 from rigidsym.mechanics.derivation import Statement, Step
 from rigidsym.mechanics.quantities.kinematics import ANGULAR_VELOCITY, ROTATION
-from rigidsym.notes.document.document import (
+from rigidsym.notes.body_note import BodyComposer
+from rigidsym.notes.compose import claims_of
+from rigidsym.notes.document import (
     Equation,
     EquationReference,
     EquationRow,
@@ -21,12 +23,10 @@ from rigidsym.notes.document.document import (
     Text,
     listed,
 )
-from rigidsym.notes.formula.summands import sums
-from rigidsym.notes.prose.words import with_symbols
-from rigidsym.notes.sections.body_note import BodyComposer
-from rigidsym.notes.sections.compose import claims_of
-from rigidsym.notes.sections.end_tables import Claim, symbols
-from rigidsym.notes.sections.summary import SHEET, row_height, summary
+from rigidsym.notes.end_tables import Claim, symbols
+from rigidsym.notes.summands import sums
+from rigidsym.notes.summary import SHEET, row_height, summary
+from rigidsym.notes.words import with_symbols
 
 _WHERE_SHOWN = {  # what has no equation of its own, and the one that it belongs to
     "rotation_rate": "velocity_by_the_rotation",

@@ -9,7 +9,7 @@ import sympy as sp
 from rigidsym.formula.reader import formula
 from rigidsym.mechanics.conversions.conversions import Conversions
 from rigidsym.mechanics.conversions.function import SHEPPERD, outer_product
-from rigidsym.notes.document.document import (
+from rigidsym.notes.document import (
     Cited,
     Equation,
     EquationRow,

@@ -40,7 +40,7 @@ from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES, MOMENTUM_BOD
 from rigidsym.mechanics.quantities.kinematics import BODY, RATES, ROTATION, SPACE
 from rigidsym.mechanics.quantities.mass import INERTIA_QUANTITIES
 from rigidsym.models.rotation import RotationModel
-from rigidsym.notes.document.document import (
+from rigidsym.notes.document import (
     Equation,
     EquationReference,
     NoteBlock,
@@ -50,8 +50,7 @@ from rigidsym.notes.document.document import (
     said,
 )
 from rigidsym.notes.facts.rotation import turn
-from rigidsym.notes.formula.vector_rates import rates_of_form
-from rigidsym.notes.prose.vector_words import in_notation, sum_of_vectors
+from rigidsym.notes.vectors import in_notation, rates_of_form, sum_of_vectors
 
 _MOST_LINES = 24  # of one quantity, where there is a short way to say it
 _MOST_OF_ROTATION = 48  # a page of R itself, which the others are for
