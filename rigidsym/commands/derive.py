@@ -4,15 +4,20 @@ from __future__ import annotations
 
 import json
 import shutil
-import sys
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
 from pathlib import Path
+from typing import Any
 
 import click
 
-from rigidsym.commands.command import command as make, message, option, with_options
-from rigidsym.commands.options import MOST_LINES, PrintingOptions, RotationOptions
+from rigidsym.commands.command import Options, command as make, message
+from rigidsym.commands.options import (
+    MOST_LINES,
+    PRINTING,
+    ROTATION,
+    applied,
+    of_rotation,
+)
 from rigidsym.commands.output_folder import CERTIFICATE, printed, with_existing_files, write
 from rigidsym.errors import RigidsymError
 from rigidsym.motion import Motion
@@ -22,48 +27,47 @@ from rigidsym.notes.formats.terminal import show
 from rigidsym.pipeline import PDF, Output, integrated, motion_of
 from rigidsym.spec.derivation_spec import DerivationSpec, spec_for
 from rigidsym.system.files import write_bytes
-from rigidsym.system.processes import counter, in_processes
+from rigidsym.system.processes import in_processes
 
 Made = tuple[Output, bytes | RigidsymError | None]  # with the PDF, or why there is none
 
 
-@dataclass(frozen=True, kw_only=True)
-class DeriveOptions(PrintingOptions, RotationOptions):
-    """All options of `derive`."""
-
-    equations: str | None = option(
+@make(
+    'rigidsym derive "z(yaw) y(pitch) x(roll)" --target numpy,c --pdf',
+    *PRINTING,
+    *ROTATION,
+    click.option(
         "--format",
+        "equations",
         type=click.Choice(["latex", "text", "json"]),
         help="Print the equations in this format, and write no files; see --only.",
-    )
-
-
-@make('rigidsym derive "z(yaw) y(pitch) x(roll)" --target numpy,c --pdf')
+    ),
+)
 @click.argument("rotation")
-@with_options(DeriveOptions)
-def command(rotation: str, options: DeriveOptions) -> None:
+def command(rotation: str, equations: str | None, **options: Any) -> None:
     """Derive one rotation, show the result, and write its kernels and note.
 
     ROTATION is ZXZ or 313 (intrinsic: about the current body axes), zxz (extrinsic: about the
     fixed axes), turns such as "z(phi) x(theta) [1,1,0](psi)", or a name such as quaternion;
     `rigidsym list` shows all of them.
     """
-    spec = options.applied_to(spec_for(rotation, **options.of_rotation()))
-    if options.equations is None:
+    spec = applied(options, spec_for(rotation, **of_rotation(options)))
+    if equations is None:
         produce([spec], options)
     else:
-        click.echo(_equations(motion_of(spec), options.equations))
+        click.echo(_equations(motion_of(spec), equations))
 
 
-def produce(specs: Iterable[DerivationSpec], options: PrintingOptions) -> None:
+def produce(specs: Iterable[DerivationSpec], options: Options) -> None:
     """Derive, print, write and show each rotation of some specifications."""
     singles = [single for spec in specs for single in integrated(spec).singles()]
     _check_folders(singles)
+    wanted = [with_existing_files(single, options["out"]) for single in singles]
     missing: list[RigidsymError] = []
     count = 0
     try:
-        for output, paper in _outputs([with_existing_files(s, options.out) for s in singles]):
-            written = write(output, options.out, force=options.force)
+        for output, paper in in_processes(_made, wanted):
+            written = write(output, options["out"], force=options["force"])
             if isinstance(paper, bytes):
                 written.append(write_bytes(written[0].parent / f"{output.name}.pdf", paper))
             elif paper is not None:
@@ -73,7 +77,8 @@ def produce(specs: Iterable[DerivationSpec], options: PrintingOptions) -> None:
             count += 1
     finally:
         if 0 < count < len(singles):
-            message(f"{count} of {len(singles)} derivations are finished and kept in {options.out}")
+            finished = f"{count} of {len(singles)} derivations are finished"
+            message(f"{finished} and kept in {options['out']}")
     if missing:
         raise missing[0]
 
@@ -96,18 +101,6 @@ def _check_folders(singles: Iterable[DerivationSpec]) -> None:
             )
 
 
-def _outputs(singles: Sequence[DerivationSpec]) -> Iterator[Made]:
-    """The output of each rotation, with a bar if there are several and a terminal shows it."""
-    found = in_processes(_made, singles)
-    if len(singles) == 1 or not sys.stderr.isatty():
-        yield from found
-        return
-    with counter(len(singles)) as begin:
-        for single in singles:
-            begin(single.name)
-            yield next(found)
-
-
 def _made(single: DerivationSpec) -> Made:
     """The output of a rotation; a missing TeX is reported after all other files are written."""
     output = printed(single)
@@ -127,15 +120,13 @@ def _report_uncovered(output: Output) -> None:
             message(f"{output.name}: the certificate does not cover {', '.join(uncovered)}")
 
 
-def _show(
-    output: Output, written: Sequence[Path], options: PrintingOptions, *, is_only: bool
-) -> None:
-    if options.quiet:
+def _show(output: Output, written: Sequence[Path], options: Options, *, is_only: bool) -> None:
+    if options["quiet"]:
         click.echo("\n".join(map(str, written)))
-    elif options.as_json:
+    elif options["as_json"]:
         click.echo(output.record_text, nl=False)
     elif is_only:
-        click.echo(_shown(output, full=options.full))
+        click.echo(_shown(output, full=options["full"]))
         click.echo("\nWritten: " + "\n         ".join(map(str, written)))
     else:
         click.echo(f"{output.name:<28} {_proved(output)}  {written[0].parent}")

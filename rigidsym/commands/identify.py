@@ -1,12 +1,9 @@
 """`rigidsym identify`: the convention that given numbers follow."""
 
-# ruff: noqa: RUF009 -- `option` makes a field, as `dataclasses.field` does
-
 from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +11,7 @@ import click
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rigidsym.commands.command import EXISTING_FILE, command as make, option, with_options
+from rigidsym.commands.command import EXISTING_FILE, JSON, Options, command as make, flag, names
 from rigidsym.system.processes import bar
 from rigidsym.tools.identify.identification import Identification, identify_file, identify_source
 from rigidsym.tools.identify.readings import ANGLE_NAMES
@@ -25,47 +22,37 @@ _BRACKETS = str.maketrans("[](){};", "      ,")
 
 
 def _samples(name: str, form: str, about: str) -> Any:
-    return option(f"--{name}", metavar=form, help=about)
+    return click.option(f"--{name}", multiple=True, metavar=form, help=about)
 
 
-@dataclass(frozen=True, kw_only=True)
-class IdentifyOptions:
-    """All options of `identify`."""
-
-    angles: tuple[str, ...] = _samples(
-        "angles", "A,B,C", "Three angles; roll=A,pitch=B,yaw=C names them."
-    )
-    matrix: tuple[str, ...] = _samples("matrix", "R11,R12,...", "Nine numbers, row by row.")
-    quaternion: tuple[str, ...] = _samples(
-        "quaternion", "A,B,C,D", "Four numbers, scalar first or last."
-    )
-    rates: tuple[str, ...] = _samples("rates", "A,B,C", "Rates of the angles; needs --omega.")
-    omega: tuple[str, ...] = _samples("omega", "X,Y,Z", "Components of the angular velocity.")
-    columns: list[str] | None = option(
-        "--columns", help="Names of the columns of FILE; - skips one."
-    )
-    tolerance: float | None = option(
+@make(
+    "rigidsym identify --angles roll=10,pitch=20,yaw=30 --quaternion 0.95,0.04,0.19,0.24",
+    _samples("angles", "A,B,C", "Three angles; roll=A,pitch=B,yaw=C names them."),
+    _samples("matrix", "R11,R12,...", "Nine numbers, row by row."),
+    _samples("quaternion", "A,B,C,D", "Four numbers, scalar first or last."),
+    _samples("rates", "A,B,C", "Rates of the angles; needs --omega."),
+    _samples("omega", "X,Y,Z", "Components of the angular velocity."),
+    names("--columns", help="Names of the columns of FILE; - skips one."),
+    click.option(
         "--tolerance",
         type=float,
         metavar="RADIANS",
         help="Largest angle between the data and a convention that fits.  [default: from the "
         "digits given]",
-    )
-    missing: str = option(
+    ),
+    click.option(
         "--missing",
         type=click.Choice(["error", "drop"]),
         default="error",
+        show_default=True,
         help="If a sample lacks a number: stop, or leave it out.",
-    )
-    everything: bool = option("--all", help="Show every convention that fits, with all calls.")
-    as_json: bool = option("--json", help="Print the results as JSON.")
-
-
-@make("rigidsym identify --angles roll=10,pitch=20,yaw=30 --quaternion 0.95,0.04,0.19,0.24")
+    ),
+    flag("--all", "everything", help="Show every convention that fits, with all calls."),
+    JSON,
+)
 @click.argument("file", required=False, metavar="[FILE]", type=EXISTING_FILE)
-@with_options(IdentifyOptions)
 @click.pass_context
-def command(context: click.Context, file: Path | None, options: IdentifyOptions) -> None:
+def command(context: click.Context, /, file: Path | None, **options: Any) -> None:
     """Name the convention that angles and a matrix or quaternion follow.
 
     Give samples as options, each option once per sample, or in FILE. FILE is NPY, Parquet or text.
@@ -75,20 +62,20 @@ def command(context: click.Context, file: Path | None, options: IdentifyOptions)
     of the angular velocity. Units in names, such as "yaw [mrad]", are converted. The exit code is 1
     if no convention fits.
     """
-    texts = {name: getattr(options, name) for name in _COUNTS}
+    texts = {name: options[name] for name in _COUNTS}
     if (file is None) == (not any(texts.values())):
         raise OptionError(["expected a file, or --angles with --matrix or --quaternion"])
     result = _from_texts(texts, options) if file is None else _from_file(file, options)
-    if options.as_json:
+    if options["as_json"]:
         click.echo(json.dumps(result.record(), indent=1, ensure_ascii=False))
     else:
-        head, _, rest = result.text(everything=options.everything).partition("\n")
+        head, _, rest = result.text(everything=options["everything"]).partition("\n")
         click.echo(f"{click.style(head, bold=True)}\n{rest}")
     if not result.fits:
         context.exit(1)
 
 
-def _from_texts(texts: Mapping[str, Sequence[str]], options: IdentifyOptions) -> Identification:
+def _from_texts(texts: Mapping[str, Sequence[str]], options: Options) -> Identification:
     """The samples in options; raises OptionError with all faults in them."""
     faults: list[str] = []
     names: Sequence[str] = ANGLE_NAMES
@@ -102,7 +89,7 @@ def _from_texts(texts: Mapping[str, Sequence[str]], options: IdentifyOptions) ->
     if faults:
         raise OptionError([*faults, *parts_missing({name for name in texts if texts[name]})])
     try:
-        return identify_source(from_arrays(given, names), tolerance=options.tolerance)
+        return identify_source(from_arrays(given, names), tolerance=options["tolerance"])
     except SampleError as error:
         raise OptionError(error.faults, count=error.count) from None
 
@@ -123,15 +110,15 @@ def _numbers(name: str, text: str, faults: list[str]) -> tuple[list[str], list[f
     return [label for label, _, _ in pairs if label], numbers
 
 
-def _from_file(path: Path, options: IdentifyOptions) -> Identification:
+def _from_file(path: Path, options: Options) -> Identification:
     """Samples from a file, with a bar if standard error is a terminal."""
     with bar(path.name) as progress:
         try:
             return identify_file(
                 path,
-                columns=options.columns,
-                tolerance=options.tolerance,
-                drops_missing=options.missing == "drop",
+                columns=options["columns"] or None,
+                tolerance=options["tolerance"],
+                drops_missing=options["missing"] == "drop",
                 progress=progress,
             )
         except SampleError as error:

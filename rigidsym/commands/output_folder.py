@@ -3,24 +3,13 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from rigidsym.commands.command import message
 from rigidsym.errors import EditedFiles, SpecError
-from rigidsym.kernels.targets import TARGETS
-from rigidsym.pipeline import (
-    PAGE,
-    PDF,
-    Output,
-    digest,
-    note_formats,
-    output_of,
-    page_name,
-    read_record,
-)
+from rigidsym.pipeline import PDF, Output, digest, output_of, read_record
 from rigidsym.spec.derivation_spec import DerivationSpec
 from rigidsym.system.files import locked, read_bytes, write_text
 
@@ -48,78 +37,52 @@ def with_existing_files(spec: DerivationSpec, out: Path) -> DerivationSpec:
     Other targets and notes of an earlier run are printed again with the rest, so that one record
     describes all of them and `rigidsym check` sees them.
     """
-    folder = out / spec.name
-    before = _spec_there(folder)
+    before = _spec_in(out / spec.name)
     if before is None or not _is_same(before, spec):
         return spec
-    kept = set(_kept(_outputs(before), spec, folder))
+    notes = [name for name in before.note if name != PDF]  # it is typeset when it is asked for
     return replace(
         spec,
-        kernels=(*spec.kernels, *(name for name in before.kernels if name in kept)),
-        note=(*spec.note, *(name for name in before.note if name in kept)),
-        certificates=spec.certificates or CERTIFICATE in kept,
+        kernels=tuple(dict.fromkeys([*spec.kernels, *before.kernels])),
+        note=tuple(dict.fromkeys([*spec.note, *notes])),
+        certificates=spec.certificates or before.certificates,
     )
 
 
 def write(output: Output, out: Path, *, force: bool) -> list[Path]:
     """Write the files of a derivation to out/NAME/, the record last.
 
-    Each file is whole or as it was before; another process that writes there is waited for.
-    Raises EditedFiles, before anything is written, for files that were edited since, unless
+    Each file is whole or as it was before; another process that writes there is waited for. What
+    an earlier run printed there and this one does not is removed, unless it was edited. Raises
+    EditedFiles, before anything is written, for edited files that would be overwritten, unless
     `force` is set.
     """
     folder = out / output.spec.name
     with locked(folder):
-        if not force and (edited := _edited(output, folder)):
+        known = content_of(folder / f"{folder.name}.json").get("files")
+        known = known if isinstance(known, dict) else {}
+        own = [folder / name for name in known if Path(name).name == name]  # none elsewhere
+        contents = {path: path.read_bytes() for path in own if path.is_file()}
+        edited = {path for path, text in contents.items() if digest(text) != known[path.name]}
+        lost = sorted(
+            path
+            for path in edited
+            if path.name in output.files and contents[path] != output.files[path.name].encode()
+        )
+        if lost and not force:
             raise EditedFiles(
-                f"{', '.join(map(str, edited))} changed since it was generated; use --force to "
+                f"{', '.join(map(str, lost))} changed since it was generated; use --force to "
                 "overwrite it, or --out for another folder"
             )
-        _report_other_files(output, folder)
+        before = _spec_in(folder)
+        if before is not None and before.models != output.spec.models:
+            message(f"replacing {folder}, which held another rotation (use --out to keep both)")
+        for path in contents.keys() - edited:
+            if path.name not in output.files:
+                path.unlink()
         if PDF not in output.spec.note:
             report_old_pdf(folder / f"{folder.name}.tex", output.files.get(f"{folder.name}.tex"))
         return [write_text(folder / name, text) for name, text in output.files.items()]
-
-
-def _edited(output: Output, folder: Path) -> list[Path]:
-    """The files that are neither as the record there describes them nor as they will be."""
-    known = content_of(folder / f"{folder.name}.json").get("files")
-    found = []
-    for name, text in output.files.items():
-        path = folder / name
-        if isinstance(known, dict) and name in known and path.is_file():
-            content = path.read_bytes()
-            if digest(content) != known[name] and content != text.encode():
-                found.append(path)
-    return found
-
-
-def _report_other_files(output: Output, folder: Path) -> None:
-    """A message on standard error if the folder holds another derivation."""
-    before, now = _spec_there(folder), output.spec
-    if before is None or _is_same(before, now):
-        return
-    if before.models != now.models:
-        (one,), (other,) = before.models, now.models
-        what = "a different rotation"
-        if len(one.coordinates) == len(other.coordinates):
-            renamed = dict(zip(one.coordinates, other.coordinates, strict=True))
-            if one.matrix.xreplace(renamed) == other.matrix:
-                names = ", ".join(q.func.__name__ for q in one.coordinates)
-                what = f"the same rotation with the coordinates {names}"
-        message(f"overwriting {folder}, which held {what} (use --out to keep both)")
-    left = list(_kept(_outputs(before), now, folder))
-    if CERTIFICATE in left:
-        left.remove(CERTIFICATE)
-        message(
-            f"{folder} keeps certificates of another derivation, which `check` refuses; delete "
-            "them, or derive with --certificates"
-        )
-    if left:
-        message(
-            f"{folder} still contains {', '.join(left)} from an earlier run, which `check` will "
-            "ignore"
-        )
 
 
 def report_old_pdf(source: Path, text: str | None) -> None:
@@ -137,7 +100,7 @@ def _is_same(before: DerivationSpec, now: DerivationSpec) -> bool:
     return replace(before, **as_now) == now
 
 
-def _spec_there(folder: Path) -> DerivationSpec | None:
+def _spec_in(folder: Path) -> DerivationSpec | None:
     """The specification in the record of a folder; None without a record that can be read."""
     request = content_of(folder / f"{folder.name}.json").get("request")
     try:
@@ -153,27 +116,3 @@ def content_of(record: Path) -> dict[str, Any]:
     except (OSError, ValueError, RecursionError):
         return {}
     return content if isinstance(content, dict) else {}
-
-
-def _kept(outputs: Iterable[str], now: DerivationSpec, folder: Path) -> Iterator[str]:
-    """Outputs that are there and not asked for; a PDF is never compared."""
-    written = {_file(output, folder) for output in _outputs(now)}
-    for output in outputs:
-        file = _file(output, folder)
-        if output != PDF and file not in written and file.is_file():
-            yield output
-
-
-def _outputs(spec: DerivationSpec) -> tuple[str, ...]:
-    return (*spec.kernels, *spec.note, *(CERTIFICATE,) * spec.certificates)
-
-
-def _file(output: str, folder: Path) -> Path:
-    """The main file of a target, a format or the certificates."""
-    name = folder.name
-    if output == CERTIFICATE:
-        return folder / f"{name}.{CERTIFICATE}"
-    if output in TARGETS:
-        return folder / f"{name}{TARGETS[output].ending}"
-    assert output in note_formats()
-    return folder / (page_name(name) if output == PAGE else f"{name}.{output}")

@@ -2,38 +2,28 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import Any
 
 import click
 
-from rigidsym.commands.command import command as make, with_options
-from rigidsym.commands.options import (
-    FolderOptions,
-    NotationOptions,
-    RotationOptions,
-    SelectionOptions,
-)
+from rigidsym.commands.command import command as make
+from rigidsym.commands.options import FOLDER, NOTATION, ROTATION, SELECTION, applied, of_rotation
 from rigidsym.commands.output_folder import printed, with_existing_files, write
 from rigidsym.pipeline import PAGE, integrated, page_name, read
 
 
-@dataclass(frozen=True, kw_only=True)
-class PageOptions(FolderOptions, NotationOptions, SelectionOptions, RotationOptions):
-    """All options of `page`."""
-
-
-@make("rigidsym page ZXZ")
+@make("rigidsym page ZXZ", *FOLDER, *NOTATION, *SELECTION, *ROTATION)
 @click.argument("source", metavar="ROTATION|FILE")
-@with_options(PageOptions)
-def command(source: str, options: PageOptions) -> None:
+def command(source: str, **options: Any) -> None:
     """Write an interactive page for a browser: the note, and a figure with sliders.
 
     ROTATION is as for `derive`, FILE as for `run`. The page DIR/NAME/NAME_page.html is one file
     that needs no network; NAME.json beside it is the record that `check` reads.
     """
-    spec = integrated(read(source, **options.of_rotation()))
-    for single in options.applied_to(spec).singles():
+    out = options["out"]
+    spec = applied(options, integrated(read(source, **of_rotation(options))))
+    for single in spec.singles():
         asked = replace(single, kernels=(), note=(PAGE,))
-        output = printed(with_existing_files(asked, options.out))
-        write(output, options.out, force=options.force)
-        click.echo(options.out / single.name / page_name(single.name))
+        write(printed(with_existing_files(asked, out)), out, force=options["force"])
+        click.echo(out / single.name / page_name(single.name))

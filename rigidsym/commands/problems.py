@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
+from typing import Any
 
 import click
 
-from rigidsym.commands.command import command as make
+from rigidsym.commands.command import command as make, flag
+from rigidsym.commands.options import OUT, QUIET
 from rigidsym.commands.output_folder import report_old_pdf
 from rigidsym.notes.formats import render
 from rigidsym.notes.formats.pdf import typeset
@@ -17,42 +18,31 @@ from rigidsym.system.files import write_bytes, write_text
 _ENDINGS = ("tex", "html")
 
 
-@make("rigidsym problems euler --number 8 --variant 3")
+@make(
+    "rigidsym problems euler --number 8 --variant 3",
+    click.option(
+        "--number",
+        type=click.IntRange(1, 100),
+        default=4,
+        show_default=True,
+        help="Number of problems.",
+    ),
+    click.option(
+        "--variant",
+        type=click.IntRange(0),
+        default=1,
+        show_default=True,
+        help="Each variant has its own numbers; the same variant gives the same sheet.",
+    ),
+    click.option("--author", default="", help="Author, printed below the title."),
+    click.option("--course", default="", help="Course, printed below the title."),
+    flag("--pdf", help="Also typeset the sheet and solutions; needs TeX."),
+    QUIET,
+    OUT,
+)
 @click.argument("subject", type=click.Choice(list(SUBJECTS)))
-@click.option(
-    "--number",
-    type=click.IntRange(1, 100),
-    default=4,
-    show_default=True,
-    help="Number of problems.",
-)
-@click.option(
-    "--variant",
-    type=click.IntRange(0),
-    default=1,
-    show_default=True,
-    help="Each variant has its own numbers; the same variant gives the same sheet.",
-)
-@click.option("--author", default="", help="Author, printed below the title.")
-@click.option("--course", default="", help="Course, printed below the title.")
-@click.option("--pdf", is_flag=True, help="Also typeset the sheet and solutions; needs TeX.")
-@click.option("--quiet", is_flag=True, help="Print only the names of the files written.")
-@click.option(
-    "--out",
-    type=click.Path(file_okay=False, path_type=Path),
-    default=Path("out"),
-    show_default=True,
-    help="Write to DIR/NAME/.",
-)
 def command(
-    subject: str,
-    number: int,
-    variant: int,
-    author: str,
-    course: str,
-    pdf: bool,
-    quiet: bool,
-    out: Path,
+    subject: str, number: int, variant: int, author: str, course: str, pdf: bool, **options: Any
 ) -> None:
     """Write a problem sheet and its worked solutions.
 
@@ -64,8 +54,8 @@ def command(
         replace(document, author=author, byline=byline)
         for document in sheets_of(subject, count=number, variant=variant)
     ]
-    folder = out / documents[0].name
-    for place, section in enumerate(() if quiet else documents[0].sections, start=1):
+    folder = options["out"] / documents[0].name
+    for place, section in enumerate(() if options["quiet"] else documents[0].sections, start=1):
         click.echo(f"{place}  {section.title}")
     for document in documents:
         for ending in _ENDINGS:

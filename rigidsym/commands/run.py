@@ -2,36 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from typing import Any
 
 import click
 
-from rigidsym.commands.command import command as make, message, with_options
+from rigidsym.commands.command import command as make, message
 from rigidsym.commands.derive import produce
-from rigidsym.commands.options import PrintingOptions
+from rigidsym.commands.options import PRINTING, applied
 from rigidsym.errors import SpecError
 from rigidsym.pipeline import read_file
 from rigidsym.spec.derivation_spec import DerivationSpec
 
 
-@make("rigidsym run lecture my_top.toml")
+@make("rigidsym run lecture my_top.toml", *PRINTING)
 @click.argument("files", nargs=-1, required=True, metavar="FILE...")
-@with_options(PrintingOptions)
-def command(files: tuple[str, ...], options: PrintingOptions) -> None:
+def command(files: tuple[str, ...], **options: Any) -> None:
     """Run derivation files, given by path or by the name of a shipped one.
 
     All files are checked before the first is run; if one has a fault, nothing is written.
     """
-    produce(map(options.applied_to, _read_all(files)), options)
-
-
-def _read_all(files: Iterable[str]) -> list[DerivationSpec]:
-    """Read every file; the faults of all files are reported."""
     specs: list[DerivationSpec] = []
     wrong: list[SpecError] = []
     for file in files:
         try:
-            specs.append(read_file(file))
+            specs.append(applied(options, read_file(file)))
         except SpecError as error:
             wrong.append(error)
     if wrong:
@@ -39,4 +33,4 @@ def _read_all(files: Iterable[str]) -> list[DerivationSpec]:
         for other in others:
             message(str(other))
         raise last
-    return specs
+    produce(specs, options)

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import click
 
-from rigidsym.commands.command import Command, command as make
+from rigidsym.commands.command import command as make
 from rigidsym.system import resources
 from rigidsym.system.files import write_text
 
 
-@make("rigidsym templates mine && rigidsym derive ZXZ --templates mine", kind=Command)
+@make("rigidsym templates mine && rigidsym derive ZXZ --templates mine")
 @click.argument("folder", metavar="DIR", type=click.Path(file_okay=False, path_type=Path))
 def command(folder: Path) -> None:
     """Copy the shipped templates of notes into DIR, where you can change them.

@@ -1,4 +1,4 @@
-"""What this process may use (time, memory, cores), and its progress on a terminal.
+"""What this process may use (time, cores), and its progress on a terminal.
 
 `in_processes` does the same work on many items, by copies of this process on the other cores.
 """
@@ -11,17 +11,16 @@ import sys
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from contextvars import ContextVar
 from functools import partial
 from math import isfinite
-from time import monotonic
 from types import FrameType
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from rigidsym.errors import LimitReached, RequestError, printable
 
 T = TypeVar("T")
 R = TypeVar("R")
+_TICK = 1.0  # seconds from a stop that was lost to the next
 _PATIENCE = 5.0  # seconds for a copy to end what it started
 
 
@@ -87,12 +86,6 @@ def _end_once(_signal: int, _frame: FrameType | None) -> None:
 
 
 Progress = Callable[[float], None]  # receives the share done, from 0 to 1
-_DRAWING = ContextVar("a bar is drawn", default=False)
-
-
-def is_drawing() -> bool:
-    """Whether a bar is on the terminal now."""
-    return _DRAWING.get()
 
 
 @contextmanager
@@ -101,39 +94,20 @@ def bar(label: str) -> Iterator[Progress | None]:
     if not sys.stderr.isatty():
         yield None
         return
-    from rich.progress import BarColumn, TaskProgressColumn, TextColumn, TimeRemainingColumn
+    from rich.console import Console
+    from rich.progress import (
+        BarColumn,
+        Progress as Bar,
+        TaskProgressColumn,
+        TextColumn,
+        TimeRemainingColumn,
+    )
 
     text = TextColumn("{task.description}", markup=False)
-    with _drawn(text, BarColumn(), TaskProgressColumn(), TimeRemainingColumn()) as shown:
-        task = shown.add_task(printable(label), total=1.0)
-        yield lambda share: shown.update(task, completed=share)
-
-
-@contextmanager
-def counter(total: int) -> Iterator[Callable[[str], None]]:
-    """A bar that counts tasks; the function it gives is called with the name of each task."""
-    from rich.progress import BarColumn, MofNCompleteColumn, TextColumn
-
-    text = TextColumn("{task.description:<28}", markup=False)
-    with _drawn(text, BarColumn(), MofNCompleteColumn()) as shown:
-        task = shown.add_task("", total=total, completed=-1)
-        yield lambda name: shown.update(task, description=name, advance=1)
-
-
-@contextmanager
-def _drawn(*columns: Any) -> Iterator[Any]:
-    from rich.console import Console
-    from rich.progress import Progress as Bar
-
-    token = _DRAWING.set(True)
-    try:
-        with Bar(*columns, console=Console(stderr=True), transient=True) as shown:
-            yield shown
-    finally:
-        _DRAWING.reset(token)
-
-
-_TICK = 1.0  # seconds between two looks at the clock
+    columns = text, BarColumn(), TaskProgressColumn(), TimeRemainingColumn()
+    with Bar(*columns, console=Console(stderr=True), transient=True) as drawn:
+        task = drawn.add_task(printable(label), total=1.0)
+        yield lambda share: drawn.update(task, completed=share)
 
 
 class _TimeIsUp(BaseException):
@@ -141,10 +115,9 @@ class _TimeIsUp(BaseException):
 
 
 @contextmanager
-def time_limit(seconds: float, *, label: str = "") -> Iterator[None]:
-    """Stop what runs inside after some seconds; with a label, count the seconds on a terminal.
+def time_limit(seconds: float) -> Iterator[None]:
+    """Stop what runs inside after some seconds; without timers in the system there is no limit.
 
-    Without timers in the system (Windows) there is no limit.
     Raises LimitReached when the time is up, and RequestError for a time that is not positive or
     outside the main thread, since only that receives signals.
     """
@@ -152,30 +125,16 @@ def time_limit(seconds: float, *, label: str = "") -> Iterator[None]:
         raise RequestError(f"timeout: expected a positive number of seconds, got {seconds!r}")
     if threading.current_thread() is not threading.main_thread():
         raise RequestError("timeout works only in the main thread")
-    if not hasattr(signal, "setitimer"):  # Windows: no limit
+    if not hasattr(signal, "setitimer") or not isfinite(seconds):
         yield
         return
-    start = monotonic()
-    is_shown = bool(label) and sys.stderr.isatty()
 
-    def tick(_signal: int, _frame: FrameType | None) -> None:
-        passed = monotonic() - start
-        if passed >= seconds:
-            raise _TimeIsUp
-        if is_shown and not is_drawing():
-            os.write(2, f"\r{label}: {passed:.0f} s".encode())
+    def stop(_signal: int, _frame: FrameType | None) -> None:
+        raise _TimeIsUp
 
-    lost = sys.unraisablehook
-
-    def ignored(unraisable: sys.UnraisableHookArgs) -> None:
-        """Say nothing of a stop that a finalizer lost; the next tick stops the work."""
-        if unraisable.exc_type is not _TimeIsUp:
-            lost(unraisable)
-
-    first = min(_TICK, seconds)
-    sys.unraisablehook = ignored
-    handler = signal.signal(signal.SIGALRM, tick)
-    before = signal.setitimer(signal.ITIMER_REAL, first, first if isfinite(first) else _TICK)
+    handler = signal.signal(signal.SIGALRM, stop)
+    # Python drops what is raised inside a finalizer: the next tick stops the work then.
+    before = signal.setitimer(signal.ITIMER_REAL, seconds, _TICK)
     try:
         yield
     except _TimeIsUp:
@@ -185,29 +144,3 @@ def time_limit(seconds: float, *, label: str = "") -> Iterator[None]:
     finally:
         signal.setitimer(signal.ITIMER_REAL, *before)
         signal.signal(signal.SIGALRM, handler)
-        sys.unraisablehook = lost
-        if is_shown and monotonic() - start > _TICK:
-            os.write(2, b"\r\x1b[K")
-
-
-@contextmanager
-def memory_limit(gigabytes: float) -> Iterator[None]:
-    """Stop what runs inside when this process needs more memory, if the system can limit it.
-
-    Raises LimitReached.
-    """
-    if sys.platform == "win32" or not isfinite(gigabytes):
-        yield
-        return
-    import resource
-
-    soft, hard = resource.getrlimit(resource.RLIMIT_DATA)
-    most = int(gigabytes * (1 << 30))
-    resource.setrlimit(resource.RLIMIT_DATA, (most if hard < 0 else min(most, hard), hard))
-    try:
-        yield
-    except MemoryError:
-        message = f"stopped at {gigabytes:g} GB of memory; raise the memory limit if it needs more"
-        raise LimitReached(message) from None
-    finally:
-        resource.setrlimit(resource.RLIMIT_DATA, (soft, hard))

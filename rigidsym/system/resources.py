@@ -73,11 +73,11 @@ def names(kind: str, suffix: str) -> tuple[str, ...]:
 def overridden_by(own: Path) -> Iterator[None]:
     """Inside, the templates in a folder of the user replace those of the same name.
 
-    Raises TemplateFault, with the names of the shipped ones, if the folder holds no template.
+    Raises TemplateFault if the folder holds no template.
     """
     if not any(own.rglob("*.jinja")):
-        listed = ", ".join(f"{name}.jinja" for name in names(NOTES, ".jinja"))
-        raise TemplateFault(f"{own} contains none of the templates: {listed}")
+        copies = f"`rigidsym templates {own}` copies the shipped ones there"
+        raise TemplateFault(f"{own} contains no template; {copies}")
     token = _OWN.set(own)
     try:
         yield

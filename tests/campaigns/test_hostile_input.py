@@ -220,7 +220,7 @@ def test_chains_are_the_rotations_of_scipy(chain: list[tuple[str, tuple[str, int
 COMMANDS = {
     "derive": ("derive", "ZXZ", "--target", "numpy,c", "--only", "rotation_matrix"),
     "page": ("page", "ZXZ"),
-    "eval": ("eval", "ZXZ", "log.npy", "--out", "out/log.npy", "--only", "rotation_matrix"),
+    "eval": ("eval", "ZXZ", "log.npy", "--out", "out/log.npy", "--quantity", "rotation_matrix"),
 }
 
 

@@ -15,7 +15,7 @@ import pytest
 import sympy as sp
 
 import rigidsym as rs
-from helpers.command import RIGIDSYM, ROOT, call, on_terminal, run
+from helpers.command import RIGIDSYM, ROOT, call, run
 from rigidsym.motion import derive
 from rigidsym.notes.formats.record import SCHEMA_VERSION
 from rigidsym.text.expression import parse_expression
@@ -184,21 +184,8 @@ def test_heavy_packages_are_imported_only_where_they_are_used(tmp_path, words, h
     assert done.stdout.splitlines()[-1] == "[]"
 
 
-def test_a_null_character_in_an_option_is_refused(tmp_path):
-    done = call("derive", "ZXZ", "--templates", "no\0ne", cwd=tmp_path, status=2)
-    assert "'no\\x00ne': expected text without null characters" in done.stderr
-
-
-def test_progress_is_drawn_in_a_terminal(tmp_path):
-    text = '[rotation]\nsequence = ["ZXZ", "ZYX"]\n[output]\nquantities = ["rotation_matrix"]\n'
-    (tmp_path / "two.toml").write_text(text)
-    status, drawn = on_terminal("run", "two.toml", cwd=tmp_path)
-    assert status == 0
-    assert b"/2" in drawn
-
-
 FIFOS = {  # a command with a FIFO to which nobody writes, which would be read for ever: exit code
-    **{f"{command} fifo.toml": 3 for command in ("run", "page", "simulate", "build")},
+    **{f"{command} fifo.toml": 3 for command in ("run", "page", "simulate")},
     "check fifo.json": 1,
     "inertia fifo.npy": 3,
     "eval ZXZ fifo.csv --out r.csv": 3,

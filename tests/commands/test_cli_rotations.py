@@ -98,13 +98,3 @@ def test_a_matrix_that_is_no_rotation_is_refused_with_what_is_left(tmp_path):
     done = call("run", "own.toml", cwd=tmp_path, status=1)
     assert "own: not a rotation, since R Rᵀ = 1 fails; left over:" in done.stderr
     assert not Path(tmp_path, "out").exists()
-
-
-def test_one_folder_is_not_written_over_in_silence(tmp_path):
-    call("derive", "ZXZ", cwd=tmp_path)
-    assert call("derive", "ZXZ", "--conversions", cwd=tmp_path).stderr == ""
-    done = call("derive", "ZXZ", "--angles", "a,b,c", cwd=tmp_path)
-    assert (
-        "which held the same rotation with the coordinates phi, theta, psi (use --out to keep both)"
-        in done.stderr
-    )

@@ -98,7 +98,7 @@ def bad_file(_: pytest.MonkeyPatch) -> None:
 
 def bad_data(_: pytest.MonkeyPatch) -> None:
     Path("a.csv").write_text("phi,theta,psi\n1,2,three\n")
-    said("eval", "ZXZ", "a.csv", "--only", "rotation_matrix", "--out", "r.csv")
+    said("eval", "ZXZ", "a.csv", "--quantity", "rotation_matrix", "--out", "r.csv")
 
 
 def no_record(_: pytest.MonkeyPatch) -> None:

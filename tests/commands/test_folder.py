@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+from hashlib import sha256
 from pathlib import Path
 
 import pytest
@@ -39,34 +41,33 @@ def test_another_target_or_page_joins_what_is_there(tmp_path):
     assert {f"{NAME}.py", f"{NAME}.c", f"{NAME}_page.html"} < _files(tmp_path)
 
 
-def test_what_was_taken_away_is_not_missed(tmp_path):
-    each = "--target", "numpy", "--target", "javascript"  # as "numpy,javascript"
-    _run("derive", "ZXZ", *each, "--out", str(tmp_path))
-    for ending in ("mjs", "d.mts"):
-        (tmp_path / NAME / f"{NAME}.{ending}").unlink()
-    _run("derive", "ZXZ", "--out", str(tmp_path))
-    assert _checked(tmp_path) == _files(tmp_path) == {f"{NAME}.{e}" for e in TEXTS}
-
-
-TEXTS = ("py", "tex", "html", "json")
-
-
-def test_files_of_another_derivation_are_named(tmp_path):
+def test_another_rotation_replaces_what_was_printed_but_not_what_was_edited(tmp_path):
     out = "--out", str(tmp_path)
-    _run("derive", "ZXZ", "--target", "numpy,javascript", *out)
-    said = _run("derive", "ZXZ", "--angles", "a,b,c", *out).splitlines()
-    kept = (
-        f"rigidsym: {tmp_path / NAME} still contains javascript from an earlier run, which "
-        "`check` will ignore"
+    each = "--target", "numpy", "--target", "javascript"  # as "numpy,javascript"
+    _run("derive", "ZXZ", *each, "--certificates", *out)
+    edited = tmp_path / NAME / f"{NAME}.d.mts"
+    edited.write_text(edited.read_text() + "// mine")
+    said = _run("derive", "ZXZ", "--angles", "a,b,c", *out)
+    assert said == (
+        f"rigidsym: replacing {tmp_path / NAME}, which held another rotation (use --out to keep "
+        "both)\n"
     )
-    assert said == [
-        f"rigidsym: overwriting {tmp_path / NAME}, which held the same rotation with the "
-        "coordinates phi, theta, psi (use --out to keep both)",
-        kept,
-    ]
-    _run("derive", "ZXZ", "--target", "numpy,javascript", *out)
-    said = _run("derive", "ZXZ", "--conversions", *out)
-    assert said == f"{kept}\n"
+    assert _checked(tmp_path) == {f"{NAME}.{e}" for e in ("py", "tex", "html", "json")}
+    assert _files(tmp_path) == _checked(tmp_path) | {edited.name}
+    assert _run("derive", "ZXZ", "--angles", "a,b,c", "--conversions", *out) == ""
+
+
+def test_a_record_of_a_stranger_removes_nothing_elsewhere(tmp_path):
+    outside = tmp_path / "precious.txt"
+    outside.write_text("mine")
+    _run("derive", "ZXZ", "--out", str(tmp_path / "out"))
+    record = tmp_path / "out" / NAME / f"{NAME}.json"
+    content = json.loads(record.read_text())
+    for name in ("../../precious.txt", str(outside)):
+        content["files"][name] = sha256(b"mine").hexdigest()
+    record.write_text(json.dumps(content))
+    _run("derive", "ZXZ", "--angles", "a,b,c", "--out", str(tmp_path / "out"))
+    assert outside.read_text() == "mine"
 
 
 def test_what_is_refused_writes_over_nothing_and_does_not_say_so(tmp_path):
@@ -99,13 +100,11 @@ def test_an_edited_file_is_named_and_kept_unless_forced(tmp_path):
     assert _checked(tmp_path) == _files(tmp_path)
 
 
-@pytest.mark.parametrize(
-    ("content", "why"), [('{"schema":\n', "not valid JSON, at line 2"), ("", "empty")]
-)
-def test_a_damaged_record_is_named_by_every_command(tmp_path, content, why):
+@pytest.mark.parametrize(("content", "line"), [('{"schema":\n', 2), ("", 1)])
+def test_a_damaged_record_is_named_by_every_command(tmp_path, content, line):
     (tmp_path / "half.json").write_text(content)
     said = call("check", "half.json", cwd=tmp_path, status=1).stdout
-    assert said.startswith(f"half.json: cannot be read: it is {why}")
+    assert said.startswith(f"half.json: cannot be read: not valid JSON, at line {line}")
     for words in (["run"], ["page"], ["simulate"], ["eval", "half.json", "--out", "r.csv"]):
         done = call(words[0], "half.json", *words[1:], cwd=tmp_path, status=3)
         assert "half.json: 1 fault, nothing written\n  expected a derivation file" in done.stderr

@@ -35,29 +35,6 @@ def test_the_summaries_are_not_cut_off():
     assert "..." not in shown.split("Commands:")[1]
 
 
-@pytest.mark.parametrize(
-    ("name", "options"),
-    [
-        ("derive", "--lean --derivative --only --quantity --angles --conversions --full --format"),
-        ("run", "--only --conversions --quiet --full --timeout --memory"),
-        ("page", "--only --angles --conversions --timeout --memory"),
-        ("build", "--only --quantity --angles --conversions --derivative --timeout --memory"),
-        ("eval", "--quantity --angles --timeout --memory"),
-        ("check", "--timeout --memory"),
-    ],
-)
-def test_options_are_where_they_make_sense(name, options):
-    shown = run(name, "--help").stdout
-    assert [option for option in options.split() if option not in shown] == []
-
-
-@pytest.mark.parametrize("flag", ["--only", "--quantity"])
-def test_chosen_quantities_alone_are_derived(tmp_path, flag):
-    done = run("derive", "ZXZ", flag, f"{BODY},rotation_matrix", "--json", "--out", str(tmp_path))
-    names = [quantity["name"] for quantity in json.loads(done.stdout)["quantities"]]
-    assert names == ["rotation_matrix", BODY]
-
-
 def test_one_equation_is_printed_and_nothing_written(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     motion = rs.derive("ZXZ", BODY)
@@ -109,13 +86,6 @@ def test_two_derivations_of_one_name_are_refused(tmp_path):
     done = run("run", *map(str, files), "--out", str(tmp_path / "out"))
     assert done.exit_code == 2
     assert "two different derivations are named own and would write one folder" in done.stderr
-
-
-def test_a_module_needs_c_with_arrays(tmp_path):
-    file = tmp_path / "own.toml"
-    file.write_text('[rotation]\nsequence = "ZXZ"\n[output.c]\narrays = false\n')
-    done = run("build", str(file), "--out", str(tmp_path / "out"))
-    assert "a Python module needs C with arrays and both precisions" in str(done.exception)
 
 
 def test_without_colour_no_terminal_codes_are_written(monkeypatch):

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import os
-import pty
 import sys
-from contextlib import chdir, redirect_stderr, redirect_stdout, suppress
+from contextlib import chdir, redirect_stderr, redirect_stdout
 from io import BytesIO, TextIOWrapper
 from pathlib import Path
-from subprocess import DEVNULL, CompletedProcess, Popen
+from subprocess import CompletedProcess
 
 import pytest
 
@@ -50,19 +48,3 @@ def call(*arguments: str, cwd: Path, status: int = 0, **environment: str) -> Com
         done = run(*arguments, **environment)
     assert done.returncode == status, done.stdout + done.stderr
     return done
-
-
-def on_terminal(*arguments: str, cwd: Path) -> tuple[int, bytes]:
-    """The exit code of a command, and what it draws on a terminal."""
-    controller, terminal = pty.openpty()
-    environment = {**os.environ, "PYTHONPATH": str(ROOT), "TERM": "xterm"}
-    with Popen(
-        [*RIGIDSYM, *arguments], cwd=cwd, env=environment, stdout=DEVNULL, stderr=terminal
-    ) as process:
-        os.close(terminal)
-        drawn = b""
-        with suppress(OSError):  # the terminal was closed at the other end
-            while piece := os.read(controller, 65536):
-                drawn += piece
-    os.close(controller)
-    return process.returncode, drawn

@@ -95,17 +95,6 @@ def test_arrays_of_different_lengths_are_refused(top):
         top.simulate_many(start, TOP, 1.0)
 
 
-def test_the_command_simulates_an_ensemble(tmp_path):
-    sets = [f"--set={name}={value}" for name, value in TOP.items()]
-    options = ["--ensemble=20", "--spread=theta=0.05", "--time=0.5", "--out=top.csv"]
-    start = ["--initial=theta=0.6", "--initial=psi_dot=15"]
-    done = call("simulate", "heavy_symmetric_top", *sets, *start, *options, cwd=tmp_path)
-    assert "20 motions from 0 to 0.5 s" in done.stdout
-    table = np.genfromtxt(tmp_path / "top.csv", delimiter=",", names=True)
-    assert table.shape == (20,)
-    assert 0.02 < table["theta_start"].std() < 0.1
-
-
 def test_what_was_computed_before_an_integrator_fails_is_kept():
     pushed = rs.derive("z(phi)", body=rs.principal_moments(A, A, C), forces={"phi": "k*phi_dot**2"})
     found = pushed.simulate({"phi": 0, "phi_dot": 1}, {"A": 1, "C": 1, "k": 1}, 3.0, samples=301)

@@ -372,7 +372,7 @@ time = 3
     [
         ((), "the integration stopped at t = 0.2"),
         (
-            ("--ensemble=2", "--spread=theta=0.01"),
+            ("--grid=theta=0.5:0.6:2",),
             "2 of 2 motions reached a pole of the coordinates or overflowed: 1, 2",
         ),
     ],
