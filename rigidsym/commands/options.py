@@ -48,7 +48,8 @@ OUT = click.option(
     help="Write to DIR/NAME/.",
 )
 QUIET = flag("--quiet", help="Print only the names of the files written.")
-FOLDER = (TEMPLATES, OUT, flag("--force", help="Overwrite files even if they were edited."))
+FORCE = flag("--force", help="Overwrite files even if they were edited.")
+FOLDER = (TEMPLATES, OUT, FORCE, QUIET)
 ROTATION = (  # how the text of a rotation is read
     names("--angles", metavar="A,B,C", help="Names of the coordinates, in order."),
     names("--constants", metavar="A,B", help="Names in ROTATION that are constants."),
@@ -72,7 +73,6 @@ SELECTION = (
 )
 PRINTING = (
     *FOLDER,
-    QUIET,
     *NOTATION,
     names(
         "--target",
