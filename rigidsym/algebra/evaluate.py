@@ -3,17 +3,15 @@
 An arithmetic gives numbers, rational powers and functions. `Intervals` are proved to enclose the
 true values: roots of negative numbers, quotients by zero and logarithms of numbers that are not
 positive have no real value there, and a value is returned only if it exists at every point of the
-intervals. `Floats` are NumPy arrays or plain numbers; `function_of` walks the expression once, and
-makes it a function of floats to be called thousands of times.
+intervals. `Floats` are NumPy arrays or plain numbers. For a function of floats that is called
+thousands of times there is `sympy.lambdify`.
 """
 
 from __future__ import annotations
 
-import math
-import operator
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from functools import cache
-from typing import Any, NamedTuple, Protocol
+from typing import Any, Protocol
 
 import mpmath
 import sympy as sp
@@ -111,11 +109,7 @@ class Intervals:
     functions = _MONOTONE | {"exp", "sin", "cos", "log", "Abs", "atan2"}
 
     def __init__(self, digits: int) -> None:
-        self.context, self.numbers = context(digits, of_intervals=True), context(digits)
-
-    def around(self, middle: Any, radius: Any) -> Any:
-        """The interval of a radius about a number."""
-        return middle + self.context.mpf(radius) * self.context.mpf([-1, 1])
+        self.context = context(digits, of_intervals=True)
 
     def number(self, numerator: int, denominator: int) -> Any:
         return self.context.mpf(numerator) / self.context.mpf(denominator)
@@ -184,32 +178,19 @@ def context(digits: int, *, of_intervals: bool = False) -> Any:
 
 
 class RealValues:
-    """Bounds on the values of expressions at one point, each worked out once.
+    """Bounds on the values of expressions at one point, each worked out once."""
 
-    `radii` bound the distances of the true values from those of the point.
-    """
-
-    def __init__(
-        self,
-        point: Mapping[sp.Expr, Any],
-        digits: int,
-        radii: Mapping[sp.Expr, Any] | None = None,
-    ) -> None:
+    def __init__(self, point: Mapping[sp.Expr, Any], digits: int) -> None:
         self.intervals = Intervals(digits)
-        self.context, self.numbers = self.intervals.context, self.intervals.numbers
+        self.context = self.intervals.context
         self._values: dict[sp.Expr, Any] = {}
         for atom, value in point.items():
-            middle = self(value) if isinstance(value, sp.Expr) else self.context.mpf(value)
-            radius = (radii or {}).get(atom, 0)
-            self._values[atom] = self.intervals.around(middle, radius) if radius else middle
+            is_exact = isinstance(value, sp.Expr)
+            self._values[atom] = self(value) if is_exact else self.context.mpf(value)
 
     def set(self, atom: sp.Expr, value: Any) -> None:
         """Give an atom its value, before anything that holds it is asked for."""
         self._values[atom] = value
-
-    def middle(self, expression: sp.Expr) -> Any:
-        """The number in the middle of the bounds."""
-        return self.numbers.mpf(self(expression).mid)
 
     def __call__(self, expression: sp.Expr) -> Any:
         """The bounds; raises NotReal if there is no value, Unknown if none is known."""
@@ -248,65 +229,6 @@ class Floats:
 
     def apply(self, name: str, whole: sp.Expr, *values: Any) -> Any:  # noqa: ARG002
         return self._functions[name](*values)
-
-
-class _Deferred(NamedTuple):
-    """A float that is computed when it is called with the values of the symbols."""
-
-    call: Callable[[Sequence[float]], float]
-    value: float | None = None  # if it is the same for all of them
-
-    @classmethod
-    def of(cls, function: Callable[..., float], *parts: _Deferred) -> _Deferred:
-        if all(part.value is not None for part in parts):
-            value = function(*(part.value for part in parts))
-            return cls(lambda _: value, value)
-        calls = [part.call for part in parts]
-        if len(calls) == 1:
-            (one,) = calls
-            return cls(lambda values: function(one(values)))
-        one, two = calls
-        return cls(lambda values: function(one(values), two(values)))
-
-    def __add__(self, other: Any) -> _Deferred:
-        one, two = self.call, other.call
-        if self.value is None or other.value is None:
-            return _Deferred(lambda values: one(values) + two(values))
-        return self.of(operator.add, self, other)
-
-    def __mul__(self, other: Any) -> _Deferred:
-        one, two = self.call, other.call
-        if self.value is None or other.value is None:
-            return _Deferred(lambda values: one(values) * two(values))
-        return self.of(operator.mul, self, other)
-
-
-class _DeferredFloats(Floats):
-    def number(self, numerator: int, denominator: int) -> Any:
-        number = super().number(numerator, denominator)
-        return _Deferred(lambda _: number, number)
-
-    def constant(self, name: str) -> Any:
-        number = super().constant(name)
-        return _Deferred(lambda _: number, number)
-
-    def power(self, base: Any, exponent: sp.Rational, whole: sp.Expr) -> Any:  # noqa: ARG002
-        number = int(exponent) if exponent.is_Integer else float(exponent)
-        return _Deferred.of(lambda value: value**number, base)
-
-    def apply(self, name: str, whole: sp.Expr, *values: Any) -> Any:  # noqa: ARG002
-        return _Deferred.of(self._functions[name], *values)
-
-
-_DEFERRED = _DeferredFloats(math)
-
-
-def function_of(
-    expression: sp.Expr, symbols: Sequence[sp.Expr]
-) -> Callable[[Sequence[float]], float]:
-    """The value of an expression in floats, for values of the symbols in their order."""
-    places = {s: _Deferred(operator.itemgetter(k)) for k, s in enumerate(symbols)}
-    return evaluate(expression, _DEFERRED, places).call
 
 
 # Signs of expressions whose variables stay within bounds, told by their form

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from itertools import combinations
-from operator import add
+from operator import add, mul, sub
 from typing import Any
 
 from sympy.polys.rings import PolyElement
@@ -13,14 +14,16 @@ from sympy.polys.rings import PolyElement
 from rigidsym.algebra.ring import Ring, shortest
 
 Row = tuple[PolyElement, ...]
-Origin = tuple[str, tuple[Any, ...]]  # "@", "+", "-", "T" or "*", and what it was applied to
+Values = Sequence[Sequence[Any]]  # of the entries at a point, row by row
+Origin = tuple[Callable[..., Values], tuple["RingMatrix", ...]]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RingMatrix:
     """Rows of ring elements in normal form.
 
-    `origin` tells how the matrix was made of others, so that values can be worked out anew.
+    `origin` is an operation on values, and the matrices that this one was made of by it in the
+    ring, so that values can be worked out again without the ring's reduction.
     """
 
     ring: Ring
@@ -50,7 +53,7 @@ class RingMatrix:
 
     @property
     def T(self) -> RingMatrix:
-        return RingMatrix(self.ring, tuple(zip(*self.rows, strict=True)), ("T", (self,)))
+        return RingMatrix(self.ring, tuple(zip(*self.rows, strict=True)), (_transposed, (self,)))
 
     @property
     def entries(self) -> Row:
@@ -65,7 +68,7 @@ class RingMatrix:
         rows = [
             tuple([dot(zip(row, column, strict=True)) for column in columns]) for row in self.rows
         ]
-        return RingMatrix(self.ring, tuple(rows), ("@", (self, other)))
+        return RingMatrix(self.ring, tuple(rows), (_multiplied, (self, other)))
 
     def gram(self) -> RingMatrix:
         """M Mᵀ, the products of every two rows, each worked out once."""
@@ -77,25 +80,25 @@ class RingMatrix:
         return RingMatrix(
             self.ring,
             tuple(tuple(half[max(i, j)][min(i, j)] for j in places) for i in places),
-            ("@", (self, self.T)),
+            (_multiplied, (self, self.T)),
         )
 
     def __add__(self, other: RingMatrix) -> RingMatrix:
-        return self._entrywise(add, other, "+")
+        return self._entrywise(add, add, other)
 
     def __sub__(self, other: RingMatrix) -> RingMatrix:
-        return self._entrywise(self.ring.difference, other, "-")
+        return self._entrywise(self.ring.difference, sub, other)
 
     def _entrywise(
         self,
         operation: Callable[[PolyElement, PolyElement], PolyElement],
+        of_values: Callable[[Any, Any], Any],
         other: RingMatrix,
-        sign: str,
     ) -> RingMatrix:
         """Sums and differences of normal forms are normal forms."""
         pairs = zip(self.rows, other.rows, strict=True)
         rows = tuple(tuple(map(operation, *entries)) for entries in pairs)
-        return RingMatrix(self.ring, rows, (sign, (self, other)))
+        return RingMatrix(self.ring, rows, (partial(_entrywise, of_values), (self, other)))
 
     def map(self, function: Callable[[PolyElement], PolyElement]) -> RingMatrix:
         return RingMatrix.of(self.ring, [[function(entry) for entry in row] for row in self.rows])
@@ -104,11 +107,8 @@ class RingMatrix:
         if self.ring.is_one(factor):
             return self
         dot = self.ring.dot
-        return RingMatrix(
-            self.ring,
-            tuple(tuple(dot(((entry, factor),)) for entry in row) for row in self.rows),
-            ("*", (self, factor)),
-        )
+        rows = tuple(tuple(dot(((entry, factor),)) for entry in row) for row in self.rows)
+        return RingMatrix(self.ring, rows, (_scaled, (self, RingMatrix(self.ring, ((factor,),)))))
 
     def dt(self) -> RingMatrix:
         """The time derivative, entry by entry."""
@@ -123,6 +123,18 @@ class RingMatrix:
     def cross(self, other: RingMatrix) -> RingMatrix:
         """The vector product of two columns, (3, 1)."""
         return RingMatrix.column(self.ring, cross(self.ring, self.entries, other.entries))
+
+    def values(
+        self, value: Callable[[PolyElement], Any], known: dict[RingMatrix, Values]
+    ) -> Values:
+        """The values of the entries from those of the matrices that this one was made of."""
+        if self not in known:
+            if self.origin is None:
+                known[self] = [list(map(value, row)) for row in self.rows]
+            else:
+                operation, parts = self.origin
+                known[self] = operation(*(part.values(value, known) for part in parts))
+        return known[self]
 
     def is_zero(self) -> bool:
         """Whether each entry reduces to zero."""
@@ -242,6 +254,23 @@ class RingMatrix:
         """The matrix without one row and one column."""
         kept = [entries for place, entries in enumerate(self.rows) if place != row]
         return RingMatrix(self.ring, tuple(e[:column] + e[column + 1 :] for e in kept))
+
+
+def _transposed(rows: Values) -> Values:
+    return list(zip(*rows, strict=True))
+
+
+def _multiplied(rows: Values, others: Values) -> Values:
+    columns = list(zip(*others, strict=True))
+    return [[sum(map(mul, row, column)) for column in columns] for row in rows]
+
+
+def _scaled(rows: Values, factor: Values) -> Values:
+    return [[entry * factor[0][0] for entry in row] for row in rows]
+
+
+def _entrywise(operation: Callable[[Any, Any], Any], rows: Values, others: Values) -> Values:
+    return [list(map(operation, *pair)) for pair in zip(rows, others, strict=True)]
 
 
 Inverse = tuple[RingMatrix, PolyElement]  # G and d, for G/d

@@ -14,12 +14,10 @@ zero.
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property, lru_cache, partial
 from itertools import islice
-from operator import add, mul, sub
-from typing import Any
+from typing import Any, NamedTuple
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
@@ -28,8 +26,7 @@ from sympy.polys.rings import PolyElement
 from rigidsym.algebra.codec import Codec
 from rigidsym.algebra.evaluate import NotReal, RealValues, Unknown, context
 from rigidsym.algebra.generators import TIME, in_names, is_identically_zero
-from rigidsym.algebra.matrix import RingMatrix
-from rigidsym.algebra.ring import Monomial
+from rigidsym.algebra.matrix import RingMatrix, Values
 from rigidsym.errors import ModelError
 
 DIGITS = 50
@@ -37,36 +34,23 @@ MORE_DIGITS = 400  # if fewer do not tell a divisor from zero: 10**120 times a h
 _GUARD = 20  # digits that evaluations may lose
 _SCALES = ("1", "1", "1", "-1", "-1", "1/10", "10", "-10", "1/100", "100")  # of random points
 _ATOMS = (sp.Symbol, sp.Derivative, AppliedUndef)
-_FASTEST = 10**6  # a rate that is larger comes from constraints that touch
-_DAMPING = 1e-40  # of the normal equations: dependent rows then do no harm
-_STEPS = 20  # of the linear equations of rates, each of which gains 30 digits
-_BITS = 240  # behind the point of the numbers of a check
-_SMALL = 1 << (_BITS - 166)  # a number below 2^−166, some 10^−50, is zero
+_SMALL = 1e-45  # a value of a residual below it is zero
 _POINTS = 3  # at which a claim may be refuted
-Rows = Sequence[Sequence[Any]]
 Example = tuple[tuple[sp.Expr, sp.Expr], ...]
-Numbers = dict[sp.Expr, Any]
+Numbers = dict[sp.Expr, sp.Expr]
 
 
-@dataclass(frozen=True, eq=False)
-class Configuration:
-    """Real values of coordinates, rates and constants; unbound ones follow from the seed."""
+class Configuration(NamedTuple):
+    """Exact real values of coordinates, rates and constants; unbound ones follow from the seed."""
 
-    values: Mapping[sp.Expr, Any]  # of what the conditions hold: exact, or with many digits
-    radii: Mapping[sp.Expr, Any]  # bounds on the distance of the true values, if not exact
+    values: Mapping[sp.Expr, sp.Expr]  # of what the conditions hold
     digits: int
     seed: int
 
-    def numbers(self, expressions: Sequence[sp.Expr]) -> RealValues:
-        """The values of expressions to so many digits."""
-        return RealValues(self._point(expressions), self.digits + _GUARD)
-
     def intervals(self, expressions: Sequence[sp.Expr]) -> RealValues:
         """Proved bounds on the values of expressions."""
-        return RealValues(self._point(expressions), self.digits + _GUARD, self.radii)
-
-    def _point(self, expressions: Sequence[sp.Expr]) -> Numbers:
-        return {**_random_point(_atoms_of(expressions), self.seed), **self.values}
+        point = {**_random_point(_atoms_of(expressions), self.seed), **self.values}
+        return RealValues(point, self.digits + _GUARD)
 
 
 @lru_cache(maxsize=128)
@@ -102,11 +86,9 @@ def configurations(
 
 def _check(name: str, constraints: Sequence[sp.Expr], example: Mapping[sp.Expr, sp.Expr]) -> None:
     """Raises ModelError unless the example satisfies the constraints, as real numbers, exactly."""
-    if not constraints:
-        return
-    written = ", ".join(f"{in_names(c)} = 0" for c in constraints)
     missing = [str(in_names(atom)) for atom in _atoms_of(constraints) if atom not in example]
     if missing:
+        written = ", ".join(f"{in_names(c)} = 0" for c in constraints)
         raise ModelError(
             f"{name}: {written} needs an `example`: give exact values of {', '.join(missing)} that "
             "satisfy it, in a file as [rotation.example]; for c**2 + s**2 - 1 = 0, these are "
@@ -138,8 +120,7 @@ def _points(
 ) -> Iterator[Configuration]:
     """Points at which the parts are real; why they were not at others, as `reasons`."""
     for seed in range(len(_SCALES) * 2):
-        values, radii = _with_rates(constraints, example, seed, digits)
-        configuration = Configuration(values, radii, digits, seed)
+        configuration = Configuration(_with_rates(constraints, example, seed), digits, seed)
         try:
             values_of_parts(configuration.intervals(parts), parts)
         except NotReal as error:
@@ -149,47 +130,30 @@ def _points(
 
 
 def _with_rates(
-    constraints: Sequence[sp.Expr], example: Mapping[sp.Expr, sp.Expr], seed: int, digits: int
-) -> tuple[Numbers, Numbers]:
-    """The example with rates and accelerations that keep to the constraints, and their radii.
+    constraints: Sequence[sp.Expr], example: Mapping[sp.Expr, sp.Expr], seed: int
+) -> Numbers:
+    """The example with rates and accelerations that keep to the constraints.
 
-    They solve linear equations, from random values on by steps of least length. At rest all of
-    them do; so it is where constraints touch, as (u − 1)² = 0 does.
+    They solve linear equations. The rates that these leave free are random. All are zero, which
+    is right as well, if there is no solution, as where constraints touch: (u − 1)² = 0.
     """
+    derivatives = [[sp.diff(c, TIME, order) for c in constraints] for order in (1, 2)]
     values: Numbers = dict(example)
-    radii: Numbers = {}
-    equations = list(constraints)
-    for _ in range(2 if constraints else 0):
-        equations = [sp.diff(c, TIME) for c in equations]
-        rates = [atom for atom in _atoms_of(equations) if atom not in values]
-        solved = _solved(equations, rates, values | _random_point(rates, seed), digits)
-        if solved is None or any(abs(solved[rate]) > _FASTEST for rate in rates):
-            every = _atoms_of([sp.diff(c, TIME, order) for c in constraints for order in (1, 2)])
-            return {**dict.fromkeys(every, sp.S.Zero), **example}, {}
-        values |= solved
-        radii |= dict.fromkeys(rates, context(digits).mpf(10) ** (-(digits // 2)))
-    return values, radii
-
-
-def _solved(
-    equations: Sequence[sp.Expr], unknowns: Sequence[sp.Expr], start: Numbers, digits: int
-) -> Numbers | None:
-    """The unknowns of linear equations, near their values at the start; None if there are none."""
-    point, slopes = dict(start), [[sp.diff(e, u) for u in unknowns] for e in equations]
-    for _ in range(_STEPS):
-        work = RealValues(point, digits + _GUARD)
-        values = [work.middle(e) for e in equations]
-        if max(map(abs, values)) < work.numbers.mpf(10) ** (-digits):
-            return {unknown: work.middle(unknown) for unknown in unknowns}
-        jacobian = work.numbers.matrix([[work.middle(e) for e in row] for row in slopes])
-        gram = jacobian * jacobian.T if unknowns else work.numbers.zeros(len(equations))
-        largest = max(gram[k, k] for k in range(gram.rows))
-        if not largest > 0:
-            return None
-        gram += largest * _DAMPING * work.numbers.eye(gram.rows)
-        steps = jacobian.T * work.numbers.lu_solve(gram, work.numbers.matrix(values))
-        point |= {u: work.middle(u) - step for u, step in zip(unknowns, steps, strict=True)}
-    return None
+    for equations in derivatives:
+        rates = {rate: sp.Dummy() for rate in _atoms_of(equations) if rate not in values}
+        linear = [e.xreplace({**values, **rates}) for e in equations]
+        for solution in sp.linsolve(linear, *rates.values()) if rates else ():
+            numbers = _random_point(list(rates), seed)
+            numbers = {rates[rate]: number for rate, number in numbers.items() if rate in rates}
+            values |= {r: part.xreplace(numbers) for r, part in zip(rates, solution, strict=True)}
+    try:  # pivots may have been zero in disguise, and accelerations may not exist
+        work = RealValues(values, DIGITS)
+        if all(0 in work(e) for equations in derivatives for e in equations):
+            return values
+    except (NotReal, Unknown):
+        pass
+    rates = _atoms_of([equation for equations in derivatives for equation in equations])
+    return {**dict.fromkeys(rates, sp.S.Zero), **example}
 
 
 def _atoms_of(expressions: Sequence[sp.Expr]) -> list[sp.Expr]:
@@ -251,8 +215,7 @@ class Witness:
         self._generators = tuple(gen.expression for gen in codec.ring.generators)
         self._search = name, constraints, example
         self._decides = codec.ring.complete and not constraints
-        self._monomials: dict[Monomial, int] = {}
-        self._first = Configuration({}, {}, DIGITS, 0)
+        self._first = Configuration({}, DIGITS, 0)
         if not self._decides:
             (self._first,) = self._configurations(DIGITS, 1)
 
@@ -270,92 +233,38 @@ class Witness:
         if self._decides or element.is_ground:
             return bool(element)
         return any(
-            0 not in _bounds_of(element, self._bounds(at), digits)
+            0 not in _value(self._bounds(at), context(digits, of_intervals=True).mpf, element)
             for digits, count in ((DIGITS, 1), (DIGITS, _POINTS), (MORE_DIGITS, 1))
             for at in self._configurations(digits, count)
         )
 
-    def disagrees(self, residual: RingMatrix, known: dict[RingMatrix, Rows]) -> bool:
+    def disagrees(self, residual: RingMatrix, known: dict[RingMatrix, Values]) -> bool:
         """Whether a matrix that the ring takes for zero is certainly not zero at the first point.
 
         It is evaluated product by product, without the ring's reduction; `known` remembers the
-        values of matrices from one claim to the next. Numbers are whole multiples of 2^−240, which
-        is fast; a disagreement is put to intervals.
+        values of matrices from one claim to the next. A disagreement is put to intervals.
         """
-        rows = _values(residual, known, self._number, lambda product: product >> _BITS)
-        if all(-_SMALL < entry < _SMALL for row in rows for entry in row):
+        rows = residual.values(partial(_value, self._numbers, context(DIGITS + _GUARD).mpf), known)
+        if all(abs(entry) < _SMALL for row in rows for entry in row):
             return False
-        bounds = self._bounds(self._first)
-        found = _values(residual, {}, lambda e: _bounds_of(e, bounds, DIGITS), lambda entry: entry)
-        return any(0 not in entry for row in found for entry in row)
+        number = context(DIGITS, of_intervals=True).mpf
+        rows = residual.values(partial(_value, self._bounds(self._first), number), {})
+        return any(0 not in entry for row in rows for entry in row)
 
     @cached_property
-    def _numbers(self) -> list[int]:
+    def _numbers(self) -> list[Any]:
         """The values of the generators at the first point."""
-        work = self._first.numbers(self._generators)
-        values_of_parts(work, self._generators)
-        ldexp = work.numbers.ldexp
-        return [int(ldexp(work.middle(generator), _BITS)) for generator in self._generators]
-
-    def _number(self, element: PolyElement) -> int:
-        total = 0
-        for monomial, coefficient in element.items():
-            value = self._monomials.get(monomial)
-            if value is None:
-                value = self._monomials[monomial] = self._monomial(monomial)
-            total += value * int(coefficient.numerator) // int(coefficient.denominator)
-        return total
-
-    def _monomial(self, monomial: Monomial) -> int:
-        value = 1 << _BITS
-        for place, power in enumerate(monomial):
-            for _ in range(power):
-                value = (value * self._numbers[place]) >> _BITS
-        return value
+        number = context(DIGITS + _GUARD).mpf
+        return [number(bounds.mid) for bounds in self._bounds(self._first)]
 
 
-def _values(
-    matrix: RingMatrix,
-    known: dict[RingMatrix, Rows],
-    element: Callable[[PolyElement], Any],
-    settled: Callable[[Any], Any],
-) -> Rows:
-    """The values of a matrix from those it was made of; `settled` takes sums of products."""
-    if matrix in known:
-        return known[matrix]
-    found: Rows
-    if matrix.origin is None:
-        found = [list(map(element, row)) for row in matrix.rows]
-    else:
-        sign, (first, *others) = matrix.origin
-        rows = _values(first, known, element, settled)
-        if sign == "T":
-            found = list(zip(*rows, strict=True))
-        elif sign == "*":
-            factor = element(others[0])
-            found = [[settled(entry * factor) for entry in row] for row in rows]
-        else:
-            second = _values(others[0], known, element, settled)
-            if sign == "@":
-                columns = list(zip(*second, strict=True))
-                found = [
-                    [settled(sum(map(mul, row, column))) for column in columns] for row in rows
-                ]
-            else:
-                change = add if sign == "+" else sub
-                found = [list(map(change, *pair)) for pair in zip(rows, second, strict=True)]
-    known[matrix] = found
-    return found
-
-
-def _bounds_of(element: PolyElement, bounds: Sequence[Any], digits: int) -> Any:
-    """Bounds on an element from those on its generators."""
-    number = context(digits, of_intervals=True).mpf
+def _value(values: Sequence[Any], number: Any, element: PolyElement) -> Any:
+    """The value of an element, a number or an interval, from those of its generators."""
     total = number(0)
     for monomial, coefficient in element.items():
-        term = number(int(coefficient.numerator)) / number(int(coefficient.denominator))
-        for value, power in zip(bounds, monomial, strict=True):
+        term = number(int(coefficient.numerator)) / int(coefficient.denominator)
+        for place, power in enumerate(monomial):
             if power:
-                term = term * value**power
+                term = term * values[place] ** power
         total = total + term
     return total

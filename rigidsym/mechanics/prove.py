@@ -16,10 +16,10 @@ from sympy.polys.rings import PolyElement
 from rigidsym.algebra.codec import Codec, codec_for
 from rigidsym.algebra.evaluate import Bounds, sign_within
 from rigidsym.algebra.generators import in_names
-from rigidsym.algebra.matrix import RingMatrix
+from rigidsym.algebra.matrix import RingMatrix, Values
 from rigidsym.algebra.present import Rationals
 from rigidsym.algebra.ring import Quotient
-from rigidsym.algebra.witness import Example, Rows, witness_for
+from rigidsym.algebra.witness import Example, witness_for
 from rigidsym.errors import Defect, DerivationError, NotARotation, RigidsymError
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Proof, Status
@@ -73,7 +73,7 @@ class Prover:
         self.subject = subject
         self.codec = codec
         self.witness = witness_for(codec, subject.name, subject.constraints, subject.example)
-        self._values: dict[RingMatrix, Rows] = {}  # at a real point, of the factors of residuals
+        self._values: dict[RingMatrix, Values] = {}  # at a real point, of the factors of residuals
 
     def vanish(
         self, claimed: Iterable[Claimed], *, error: type[RigidsymError] = DerivationError

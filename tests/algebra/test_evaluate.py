@@ -7,10 +7,10 @@ import math
 import numpy as np
 import pytest
 import sympy as sp
-from hypothesis import given, settings, strategies as st
+from hypothesis import assume, given, settings, strategies as st
 
 from helpers.witness import mp
-from rigidsym.algebra.evaluate import Floats, NotReal, RealValues, Unknown, evaluate, function_of
+from rigidsym.algebra.evaluate import Floats, NotReal, RealValues, Unknown, context, evaluate
 
 X, Y = sp.symbols("x y")
 LEAVES = st.sampled_from([X, Y, sp.pi, sp.E, sp.Integer(2), sp.Rational(-3, 7), sp.sqrt(2)])
@@ -33,6 +33,7 @@ TREES = st.recursive(
 @settings(max_examples=150, derandomize=True, deadline=None)
 @given(TREES)
 def test_all_arithmetics_agree_with_fifty_digits(expression):
+    assume(not expression.has(sp.zoo, sp.nan))
     at = {X: sp.Rational(3, 11), Y: sp.Rational(-17, 13)}
     work = RealValues(at, 50)
     try:
@@ -40,12 +41,11 @@ def test_all_arithmetics_agree_with_fifty_digits(expression):
     except NotReal:  # a cotangent of zero
         return
     exact = mp.mpf(str(sp.N(expression.xreplace(at), 45)))
-    middle, width = (mp.mpf(str(work.numbers.mpf(part.mid))) for part in (bounds, bounds.delta))
+    middle, width = (mp.mpf(str(context(50).mpf(part.mid))) for part in (bounds, bounds.delta))
     assert abs(middle - exact) <= width + mp.mpf(10) ** -40 * (1 + abs(exact))
     assert width <= mp.mpf(10) ** -25 * (1 + abs(exact))
     floats = [float(at[X]), float(at[Y])]
     limit = 1e-9 * (1 + abs(float(exact)))
-    assert abs(function_of(expression, (X, Y))(floats) - float(exact)) <= limit
     columns = {s: np.full(3, value) for s, value in zip((X, Y), floats, strict=True)}
     assert np.all(np.abs(evaluate(expression, Floats(np), columns) - float(exact)) <= limit)
 
