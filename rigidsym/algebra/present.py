@@ -10,8 +10,7 @@ A normal form is for deciding, not for reading. The shortest of the equivalent p
    monomials (a negative power divides); the result is a sum of products, each of which may hold a
    sum in turn.
 3. Quadratic forms keep their squares: ½ vᵀ M v is written ½A(v₁² + v₂²) + ½C v₃², a sum of squares
-   of one weight in the shortest of the forms that are tried: the squares as they come, multiplied
-   out, or with a square completed.
+   of one weight in the shorter of two forms: the squares as they come, or multiplied out.
 
 What was chosen is read back into the ring, and its difference from the value must reduce to zero.
 """
@@ -34,7 +33,7 @@ from sympy.polys.orderings import lex
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import Codec, codec_for
-from rigidsym.algebra.generators import is_sum_of, is_time_function
+from rigidsym.algebra.generators import is_sum_of
 from rigidsym.algebra.matrix import RingMatrix, Row
 from rigidsym.algebra.ring import Monomial, Quotient, shortest
 from rigidsym.errors import AlgebraError
@@ -497,10 +496,10 @@ def half_of_squares(
     """½ times a weight times the sum of the squares of some elements, in the shortest form."""
     kept = squares_kept([present.element(element) for element in elements])
     total = present.ring.dot((element, element) for element in elements)
-    number, squares = min(
-        [kept, *_multiplied_out(present, total)],
-        key=lambda scaled: _length(scaled[1]) + (scaled[0] != 1),
-    )
+    forms = [kept]
+    if len(total) <= _MOST_TERMS:
+        forms.append((sp.S.One, present.element(total)))
+    number, squares = min(forms, key=lambda scaled: _length(scaled[1]) + (scaled[0] != 1))
     return sp.Mul(_HALF * number, present.element(weight), squares)
 
 
@@ -519,60 +518,6 @@ def squares_kept(roots: Iterable[sp.Expr]) -> Scaled:
     ]
     shared = sp.Mul(*(base ** (2 * exponent) for base, exponent in common.items()))
     return number**2, sp.Mul(shared, sp.Add(*(rest**2 for rest in rests)))
-
-
-def _multiplied_out(present: Presenter, total: PolyElement) -> Iterator[Scaled]:
-    """A sum of monomials, and the same with a square completed, if they are not too long."""
-    if not total:
-        yield sp.S.One, sp.S.Zero
-        return
-    short = shortest(present.ring, total) if len(total) <= _MOST_TERMS else total
-    if len(short) > _MOST_TERMS:
-        return
-    yield _monomials(present, short)
-    for place, generator in enumerate(present.ring.generators):
-        if generator.expression.is_Derivative and is_time_function(generator.expression):
-            yield from _completed(present, total, place)
-
-
-def _monomials(present: Presenter, element: PolyElement) -> Scaled:
-    """The terms as they are, but for the factor that all of them share."""
-    terms = [present.codec.decode(element.ring.term_new(m, c)) for m, c in element.items()]
-    number = reduce(sp.gcd, (abs(term.as_coeff_Mul()[0]) for term in terms))
-    powers = reduce(lambda one, other: tuple(map(min, one, other)), element)
-    shared = present.codec.decode(element.ring.term_new(powers, 1))
-    return number, sp.Mul(shared, sp.Add(*(term / shared / number for term in terms)))
-
-
-def _completed(present: Presenter, total: PolyElement, place: int) -> Iterator[Scaled]:
-    """n (r + b)² and the rest, for a rate r whose square has a number n before it."""
-    ring = present.ring
-    rate = ring.generator(place)
-    if max(monomial[place] for monomial in total) != 2:
-        return
-    number = total.diff(place).diff(place)
-    if not number.is_ground or not number:
-        return
-    twice = total.diff(place) - number * rate  # 2 n b
-    if not twice:
-        return
-    n = sp.Rational(*map(int, _ratio(number))) / 2
-    slope = present.quotient(Quotient(ring, ring.reduce(twice), ring.reduce(number)))
-    # n (r + b)² = n r² + 2 n b r + (2 n b)²/(4 n)
-    square = Quotient(ring, ring.dot([(twice, twice)]), 2 * number)
-    others = total.ring.from_dict({m: c for m, c in total.items() if not m[place]})
-    rest = Quotient.whole(ring, ring.reduce(others)) - square
-    head = n * (ring.generators[place].expression + slope) ** 2
-    if rest.denominator.is_ground:
-        number_below = sp.Rational(*map(int, _ratio(rest.denominator)))
-        left = ring.reduce(rest.numerator)
-        for scale, tail in _multiplied_out(present, left):
-            yield sp.S.One, head + scale / number_below * tail
-
-
-def _ratio(ground: PolyElement) -> tuple[int, int]:
-    number = ground.LC
-    return number.numerator, number.denominator
 
 
 def shortest_of(forms: Iterable[Sequence[sp.Expr]]) -> sp.ImmutableMatrix:

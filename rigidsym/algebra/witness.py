@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from functools import cached_property, lru_cache, partial
 from itertools import islice
 from typing import Any, NamedTuple
@@ -146,12 +147,10 @@ def _with_rates(
             numbers = _random_point(list(rates), seed)
             numbers = {rates[rate]: number for rate, number in numbers.items() if rate in rates}
             values |= {r: part.xreplace(numbers) for r, part in zip(rates, solution, strict=True)}
-    try:  # pivots may have been zero in disguise, and accelerations may not exist
+    with suppress(NotReal, Unknown):  # a pivot in disguise was zero, or there is no solution
         work = RealValues(values, DIGITS)
         if all(0 in work(e) for equations in derivatives for e in equations):
             return values
-    except (NotReal, Unknown):
-        pass
     rates = _atoms_of([equation for equations in derivatives for equation in equations])
     return {**dict.fromkeys(rates, sp.S.Zero), **example}
 
