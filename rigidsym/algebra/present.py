@@ -27,8 +27,6 @@ from random import Random
 from typing import Any, NamedTuple
 
 import sympy as sp
-from sympy.polys.domains import ZZ
-from sympy.polys.galoistools import gf_gcd, gf_trunc
 from sympy.polys.orderings import lex
 from sympy.polys.rings import PolyElement
 
@@ -207,26 +205,15 @@ def _are_coprime(one: PolyElement, other: PolyElement) -> bool:
     divisor of hundreds of terms, which takes seconds for the accelerations of a gimbal and is
     nearly always one. If the numbers are unlucky, a common factor stays, and the value is the same.
     """
-    random, sides = Random(1), (one, other)
-    point = [random.randrange(1, _PRIME) for _ in one.ring.gens]
-    powers = [
-        [pow(number, k, _PRIME) for k in range(1 + max(m[place] for side in sides for m in side))]
-        for place, number in enumerate(point)
-    ]
-    used = [place for place in range(len(point)) if all(side.degree(place) for side in sides)]
-    for place in used:
-        images = []
-        for side in sides:
-            image = [0] * (side.degree(place) + 1)  # the highest power first
-            for monomial, coefficient in side.items():
-                value = int(coefficient.numerator) * pow(int(coefficient.denominator), -1, _PRIME)
-                for k, exponent in enumerate(monomial):
-                    if exponent and k != place:
-                        value = value * powers[k][exponent] % _PRIME
-                image[-1 - monomial[place]] += value
-            images.append(gf_trunc(image, _PRIME))
-        if len(gf_gcd(*images, _PRIME, ZZ)) > 1:
-            return False
+    numbers, modular = Random(1), one.ring.clone(domain=sp.GF(_PRIME))
+    sides = [side.clear_denoms()[1].set_ring(modular) for side in (one, other)]
+    point = [(gen, numbers.randrange(1, _PRIME)) for gen in modular.gens]
+    for place in range(len(point)):
+        if all(side.degree(place) > 0 for side in sides):
+            others = point[:place] + point[place + 1 :]
+            image, other_image = (side.evaluate(others) for side in sides)
+            if image.gcd(other_image).degree() > 0:
+                return False
     return True
 
 
@@ -237,19 +224,14 @@ class Rationals:
     and denominator are seen and cancel.
     """
 
-    def __init__(self, expressions: Iterable[sp.Expr], constraints: Iterable[sp.Expr] = ()) -> None:
-        parts = (part for e in expressions for part in sp.sympify(e, strict=True).as_numer_denom())
-        self._take(codec_for(parts, constraints=constraints))
+    def __init__(self, codec: Codec) -> None:
+        self.codec, self.ring = codec, codec.ring
 
     @classmethod
-    def over(cls, codec: Codec) -> Rationals:
-        """The quotients over a ring that is there already."""
-        made = cls.__new__(cls)
-        made._take(codec)
-        return made
-
-    def _take(self, codec: Codec) -> None:
-        self.codec, self.ring = codec, codec.ring
+    def of(cls, expressions: Iterable[sp.Expr], constraints: Iterable[sp.Expr] = ()) -> Rationals:
+        """The quotients over a ring that holds some expressions."""
+        parts = (part for e in expressions for part in sp.sympify(e, strict=True).as_numer_denom())
+        return cls(codec_for(parts, constraints=constraints))
 
     def read(self, expression: sp.Expr) -> Quotient:
         """Raises AlgebraError for an expression that the ring was not built for."""
@@ -494,30 +476,11 @@ def half_of_squares(
     present: Presenter, weight: PolyElement, elements: Sequence[PolyElement]
 ) -> sp.Expr:
     """½ times a weight times the sum of the squares of some elements, in the shortest form."""
-    kept = squares_kept([present.element(element) for element in elements])
+    forms = [sp.Add(*(present.element(element) ** 2 for element in elements))]
     total = present.ring.dot((element, element) for element in elements)
-    forms = [kept]
     if len(total) <= _MOST_TERMS:
-        forms.append((sp.S.One, present.element(total)))
-    number, squares = min(forms, key=lambda scaled: _length(scaled[1]) + (scaled[0] != 1))
-    return sp.Mul(_HALF * number, present.element(weight), squares)
-
-
-def squares_kept(roots: Iterable[sp.Expr]) -> Scaled:
-    """The sum of squares of expressions, what all of them share taken out."""
-    found = [root.as_content_primitive() for root in roots if root != 0]
-    if not found:
-        return sp.S.One, sp.S.Zero
-    number = reduce(sp.gcd, (abs(content) for content, _ in found))
-    powers = [rest.as_powers_dict() for _, rest in found]
-    shares = [set(each.items()) for each in powers]
-    common = dict(pair for pair in powers[0].items() if all(pair in share for share in shares))
-    rests = [
-        sp.Mul(content / number, *(b ** (e - common.get(b, 0)) for b, e in each.items()))
-        for (content, _), each in zip(found, powers, strict=True)
-    ]
-    shared = sp.Mul(*(base ** (2 * exponent) for base, exponent in common.items()))
-    return number**2, sp.Mul(shared, sp.Add(*(rest**2 for rest in rests)))
+        forms.append(present.element(total))
+    return sp.Mul(_HALF, present.element(weight), min(map(sp.factor_terms, forms), key=_length))
 
 
 def shortest_of(forms: Iterable[Sequence[sp.Expr]]) -> sp.ImmutableMatrix:
@@ -530,11 +493,7 @@ def proved(
     present: Presenter, form: sp.Expr, value: PolyElement, number: sp.Rational = sp.S.One
 ) -> sp.Expr:
     """The form, if it equals number · value in the ring; raises AlgebraError if it does not."""
-    ring = present.ring
-    scaled = Quotient.product(
-        ring, [present.codec.encode_quotient(number), Quotient.whole(ring, ring.reduce(value))]
-    )
-    if not present.codec.encode_quotient(form).equals(scaled):
+    if not agrees(present, form / number, value):
         raise AlgebraError(f"the form {form} differs from its normal form")
     return form
 

@@ -145,7 +145,7 @@ class BodyValues(Values):
     @cached_property
     def radii(self) -> sp.ImmutableMatrix:
         """√(I_jj/M)."""
-        field = Rationals([*self.diagonal, self.body.mass])
+        field = Rationals.of([*self.diagonal, self.body.mass])
         inverse = field.read(self.body.mass).inverse()
         squares = [field.write(field.read(moment) * inverse) for moment in self.diagonal]
         return sp.ImmutableMatrix([self._root(square) for square in squares])

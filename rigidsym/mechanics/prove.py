@@ -47,7 +47,7 @@ def identity(
 
     `example` gives exact values of the symbols in the conditions that satisfy them.
     """
-    field = Rationals(left, conditions)
+    field = Rationals.of(left, conditions)
     quotients = [field.read(entry) for entry in left]
     subject = Conditions(name, tuple(conditions), example=example)
     return Prover(subject, field.codec).cancel(quotients, claim)

@@ -93,7 +93,7 @@ def body_of(
 
 def _central(moments: Moments) -> tuple[sp.ImmutableMatrix, sp.ImmutableMatrix]:
     """The centre c = S/M, (3, 1), and the inertia tensor tr(J) 1 − J about it, from J − S Sᵀ/M."""
-    field = Rationals(moments.expressions)
+    field = Rationals.of(moments.expressions)
     inverse = field.read(moments.mass).inverse()
     first = [field.read(entry) for entry in moments.first]
     second = field.read_matrix(moments.second)

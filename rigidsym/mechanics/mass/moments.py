@@ -63,7 +63,7 @@ def moments_of(distribution: Distribution) -> Moments:
 @moments_of.register
 def _(given: Particles) -> Moments:
     """Sums over the particles."""
-    field = Rationals(e for p in given.particles for e in (p.mass, *p.position))
+    field = Rationals.of(e for p in given.particles for e in (p.mass, *p.position))
     masses = [field.read(p.mass) for p in given.particles]
     places = [[field.read(e) for e in p.position] for p in given.particles]
     pairs = list(zip(masses, places, strict=True))
@@ -94,7 +94,7 @@ def _(given: Composite) -> Moments:
     found = [_of_part(part, place) for place, part in enumerate(given.parts)]
     held = [e for m in found for e in m.expressions]
     held += [e for part in given.parts for e in (*part.at, *part.turned)]
-    field = Rationals(held, given.conditions)
+    field = Rationals.of(held, given.conditions)
     masses, firsts, seconds = [], [], []
     for part, m in zip(given.parts, found, strict=True):
         sign = -1 if part.hole else 1
@@ -175,7 +175,7 @@ def _weighed(
     if body.mass is not None:
         density = Quotient(ring, codec.encode(body.mass), volume)
     mass, *others = (Quotient.whole(ring, integral) * density for integral in integrals)
-    return _presented(Rationals.over(codec), mass, others[:3], others[3:], **more)
+    return _presented(Rationals(codec), mass, others[:3], others[3:], **more)
 
 
 class _Integrals:

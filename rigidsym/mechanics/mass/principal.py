@@ -87,7 +87,7 @@ def _one_axis_apart(inertia: sp.ImmutableMatrix, alone: int) -> Principal | None
     root = sp.sqrt(square) if all(e.is_Symbol for e in (p, q, r)) else _square_root(square)
     if not _has_root(root):
         return None
-    field = Rationals([p, q])
+    field = Rationals.of([p, q])
     half = field.write(field.read((p + q) / 2))
     apart = field.write(field.read(p - q))
     basis = sp.eye(3)
