@@ -151,8 +151,8 @@ def _with_rates(
         work = RealValues(values, DIGITS)
         if all(0 in work(e) for equations in derivatives for e in equations):
             return values
-    rates = _atoms_of([equation for equations in derivatives for equation in equations])
-    return {**dict.fromkeys(rates, sp.S.Zero), **example}
+    at_rest = _atoms_of([equation for equations in derivatives for equation in equations])
+    return {**dict.fromkeys(at_rest, sp.S.Zero), **example}
 
 
 def _atoms_of(expressions: Sequence[sp.Expr]) -> list[sp.Expr]:
