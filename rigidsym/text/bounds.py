@@ -7,7 +7,6 @@ instead; each takes the column in the text, for its message.
 
 from __future__ import annotations
 
-import ast
 import operator
 from collections.abc import Callable, Sequence
 from math import ceil, comb
@@ -17,11 +16,11 @@ import sympy as sp
 
 from rigidsym.errors import ExpressionError
 
-_OPERATIONS: dict[type[ast.operator], Callable[[sp.Expr, sp.Expr], sp.Expr]] = {
-    ast.Add: operator.add,
-    ast.Sub: operator.sub,
-    ast.Mult: operator.mul,
-    ast.Div: operator.truediv,
+_OPERATIONS: dict[str, Callable[[sp.Expr, sp.Expr], sp.Expr]] = {
+    "+": operator.add,
+    "-": operator.sub,
+    "*": operator.mul,
+    "/": operator.truediv,
 }
 
 _LIMITS = {"degree": 64, "number of terms": 2000, "number of binary digits": 4096}
@@ -68,22 +67,21 @@ class Sized(NamedTuple):
         return cls(expression, 1, 1, bits)
 
 
-def operate(operation: ast.operator, left: Sized, right: Sized, column: int) -> Sized:
+def operate(operation: str, left: Sized, right: Sized, column: int) -> Sized:
     """left + right, -, *, / or **; raises ExpressionError for others and if it is too large."""
-    if isinstance(operation, ast.Pow):
+    if operation == "**":
         return _power(left, right, column)
-    compute = _OPERATIONS.get(type(operation))
-    if compute is None:
-        raise ExpressionError(f"{type(operation).__name__} is not allowed", column=column)
-    if isinstance(operation, ast.Div) and right.expression == 0:
+    if operation not in _OPERATIONS:
+        raise ExpressionError(f"{operation} is not allowed", column=column)
+    if operation == "/" and right.expression == 0:
         raise ExpressionError("division by zero", column=column)
     bits = left.bits + right.bits + 1
-    if isinstance(operation, ast.Add | ast.Sub):
+    if operation in "+-":
         degree, terms = max(left.degree, right.degree), left.terms + right.terms
     else:
         degree, terms = left.degree + right.degree, left.terms * right.terms
     _check_size(degree, terms, bits, column)
-    return Sized(compute(left.expression, right.expression), degree, terms, bits)
+    return Sized(_OPERATIONS[operation](left.expression, right.expression), degree, terms, bits)
 
 
 def _power(base: Sized, exponent: Sized, column: int) -> Sized:

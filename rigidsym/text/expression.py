@@ -1,17 +1,18 @@
-"""Text to SymPy, by a whitelist walk over Python's ast. The text is never run.
+"""Text to SymPy, by descent over a short grammar. The text is never run.
 
-The text is read in three passes. `_tokens` cuts it into numbers, names and operators, and refuses
-every other character. `_check_order` checks that values and operators alternate and that brackets
-close. The rest goes to Python's ast with each name and number masked, since Python would take
-`lambda` for a keyword, normalise letters (NFKC) and round 0.1; the walk finds the original text of
-a name or number by its column. `rigidsym.text.bounds` does the arithmetic.
+    sum      product (("+" | "-") product)*
+    product  signed (("*" | "/") signed)*
+    signed   ("+" | "-") signed | value ["**" signed]
+    value    number | name | name "(" sum ("," sum)* ")" | "(" sum ")"
+
+Python's own reader would take `lambda` for a keyword, normalise letters (NFKC) and round 0.1.
+`rigidsym.text.bounds` does the arithmetic.
 """
 
 from __future__ import annotations
 
-import ast
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 from typing import NamedTuple
 
@@ -61,11 +62,8 @@ def parse_expression(text: str, names: Mapping[str, sp.Expr]) -> sp.Expr:
     Raises ExpressionError, with the column, for any other text and for one that is too large.
     """
     _check_length(text)
-    tokens = _tokens(text)
-    _check_order(tokens, text)
-    walk = _Walk({token.start + 1: token for token in tokens}, names)
     try:
-        return walk.value(ast.parse(_masked(tokens), mode="eval").body).expression
+        return _Reader(text, names).whole().expression
     except (RecursionError, MemoryError):
         raise ExpressionError(
             "operations are nested too deeply; expected a shorter expression"
@@ -139,62 +137,6 @@ def _unknown_character(text: str, place: int) -> ExpressionError:
     return ExpressionError(f"unexpected {character!r}; {hint}", column=place + 1)
 
 
-def _check_order(tokens: list[_Token], text: str) -> None:
-    """Values and operators alternate, brackets close, commas separate arguments."""
-    open_: list[tuple[_Token, bool]] = []  # a bracket, and whether it opens a function's arguments
-    before: _Token | None = None
-    for token in tokens:
-        if _ends_value(before):
-            _check_after_value(before, token, in_call=bool(open_) and open_[-1][1])
-        elif token.text not in ("+", "-", "(") and token.kind == "operator":
-            raise _expected("a number, a name or (", text, token.start)
-        if token.text == "(":
-            open_.append((token, before is not None and before.kind == "name"))
-            if len(open_) > _DEEPEST:
-                raise ExpressionError(
-                    f"more than {_DEEPEST} nested brackets", column=token.start + 1
-                )
-        elif token.text == ")":
-            if not open_:
-                raise ExpressionError("unmatched )", column=token.start + 1)
-            open_.pop()
-        before = token
-    if not _ends_value(before):
-        raise _expected("a number, a name or (", text, len(text))
-    if open_:
-        raise ExpressionError("unclosed (", column=open_[-1][0].start + 1)
-
-
-def _ends_value(token: _Token | None) -> bool:
-    return token is not None and (token.kind != "operator" or token.text == ")")
-
-
-def _check_after_value(before: _Token | None, token: _Token, *, in_call: bool) -> None:
-    is_call = token.text == "(" and before is not None and before.kind == "name"
-    if token.kind != "operator" or (token.text == "(" and not is_call):
-        raise ExpressionError(
-            f"expected an operator before {token.text!r}, such as *", column=token.start + 1
-        )
-    if token.text == "," and not in_call:
-        raise ExpressionError(
-            "a comma only separates arguments of a function; write decimals with a point",
-            column=token.start + 1,
-        )
-
-
-def _masked(tokens: list[_Token]) -> str:
-    """The text for Python's ast, in brackets: names as underscores, numbers as ones.
-
-    A token that starts at character k is at column k + 1, counted from 0.
-    """
-    masks = {"name": "_", "number": "1"}
-    result = "("
-    for token in tokens:
-        mask = masks.get(token.kind)
-        result = result.ljust(token.start + 1) + (mask * len(token.text) if mask else token.text)
-    return result + ")"
-
-
 def _expected(what: str, text: str, place: int) -> ExpressionError:
     rest = text[place:].lstrip()
     found = repr(rest[0]) if rest else "the end"
@@ -211,70 +153,119 @@ def _closing(text: str, place: int) -> int:
     raise ExpressionError("unclosed (", column=place)
 
 
-class _Walk:
-    """Values of the nodes of one expression."""
+class _Reader:
+    """The values of one expression, from left to right."""
 
-    def __init__(self, tokens: Mapping[int, _Token], names: Mapping[str, sp.Expr]) -> None:
-        self._tokens = tokens  # by their column in the masked text, which counts from 1 here
-        self._names = names
+    def __init__(self, text: str, names: Mapping[str, sp.Expr]) -> None:
+        self._text, self._names = text, names
+        self._tokens = _tokens(text)[::-1]  # the next one is the last
+        self._depth = 0  # open brackets
 
-    def value(self, node: ast.expr) -> Sized:
-        if isinstance(node, ast.BinOp):
-            return self._chain(node)
-        if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.UAdd | ast.USub):
-            operand = self.value(node.operand)
-            is_minus = isinstance(node.op, ast.USub)
-            return operand._replace(expression=-operand.expression) if is_minus else operand
-        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and not node.keywords:
-            return self._call(node)
-        if isinstance(node, ast.Constant):
-            return _number(self._tokens[node.col_offset])
-        if isinstance(node, ast.Name):
-            return self._name(self._tokens[node.col_offset])
-        raise ExpressionError(f"{type(node).__name__} is not allowed", column=node.col_offset)
-
-    def _chain(self, node: ast.expr) -> Sized:
-        """Operations in a row, a + b - c + ...: a loop, so that a long sum is not deep."""
-        operations: list[ast.BinOp] = []
-        while isinstance(node, ast.BinOp):
-            operations.append(node)
-            node = node.left
-        value = self.value(node)
-        for operation in reversed(operations):
-            column = operation.right.col_offset
-            value = operate(operation.op, value, self.value(operation.right), column)
+    def whole(self) -> Sized:
+        value = self._sum()
+        if self._tokens:
+            raise self._misplaced()
         return value
 
+    @property
+    def _next(self) -> str:
+        return self._tokens[-1].text if self._tokens else ""
+
+    def _misplaced(self) -> ExpressionError:
+        """The error for a bracket or a comma behind a value."""
+        hint = "a comma only separates arguments of a function; write decimals with a point"
+        message = "unmatched )" if self._next == ")" else hint
+        return ExpressionError(message, column=self._tokens[-1].start + 1)
+
+    def _sum(self) -> Sized:
+        return self._chain(("+", "-"), self._product)
+
+    def _product(self) -> Sized:
+        return self._chain(("*", "/"), self._signed)
+
+    def _chain(self, operators: tuple[str, ...], operand: Callable[[], Sized]) -> Sized:
+        value = operand()
+        while self._next in operators:
+            value = self._operate(self._tokens.pop().text, value, operand)
+        return value
+
+    def _operate(self, operator: str, value: Sized, operand: Callable[[], Sized]) -> Sized:
+        inside = (token.start + 1 for token in reversed(self._tokens) if token.text != "(")
+        column = next(inside, 1)
+        return operate(operator, value, operand(), column)
+
+    def _signed(self) -> Sized:
+        if self._next in ("+", "-"):
+            is_minus = self._tokens.pop().text == "-"
+            value = self._signed()
+            return value._replace(expression=-value.expression) if is_minus else value
+        value = self._value()
+        if self._next == "**":
+            return self._operate(self._tokens.pop().text, value, self._signed)
+        return value
+
+    def _value(self) -> Sized:
+        if not self._tokens or (self._tokens[-1].kind == "operator" and self._next != "("):
+            place = self._tokens[-1].start if self._tokens else len(self._text)
+            raise _expected("a number, a name or (", self._text, place)
+        token = self._tokens.pop()
+        if token.text == "(":
+            (value,) = self._in_brackets(token, ())
+        elif token.kind == "number":
+            value = _number(token)
+        else:
+            value = self._call(token) if self._next == "(" else self._name(token)
+        if self._next == "(" or (self._tokens and self._tokens[-1].kind != "operator"):
+            raise ExpressionError(
+                f"expected an operator before {self._next!r}, such as *",
+                column=self._tokens[-1].start + 1,
+            )
+        return value
+
+    def _in_brackets(self, bracket: _Token, separators: tuple[str, ...]) -> list[Sized]:
+        """The values up to the bracket that closes one."""
+        self._depth += 1
+        column = bracket.start + 1
+        if self._depth > _DEEPEST:
+            raise ExpressionError(f"more than {_DEEPEST} nested brackets", column=column)
+        values = [self._sum()]
+        while self._next in separators:
+            self._tokens.pop()
+            values.append(self._sum())
+        if not self._tokens:
+            raise ExpressionError("unclosed (", column=column)
+        if self._next != ")":
+            raise self._misplaced()
+        self._tokens.pop()
+        self._depth -= 1
+        return values
+
     def _name(self, token: _Token) -> Sized:
-        name = spelled(token.text)
+        name, column = spelled(token.text), token.start + 1
         if name in self._names:
             return Sized.atom(sp.sympify(self._names[name], strict=True))
         if name == "pi":
             return Sized(sp.pi, 0, 1, 1)
         if name in FUNCTIONS:
-            raise ExpressionError(
-                f"{name} is a function; expected {name}(...)", column=token.start + 1
-            )
+            raise ExpressionError(f"{name} is a function; expected {name}(...)", column=column)
         raise ExpressionError(
-            f"unknown name {token.text!r}; {offer(name, self._names)}", column=token.start + 1
+            f"unknown name {token.text!r}; {offer(name, self._names)}", column=column
         )
 
-    def _call(self, node: ast.Call) -> Sized:
-        token = self._tokens[node.col_offset]
-        if token.text not in FUNCTIONS:
-            is_name = spelled(token.text) in self._names
-            hint = f"write {token.text}*(...)" if is_name else offer(token.text, FUNCTIONS)
+    def _call(self, token: _Token) -> Sized:
+        name, column = token.text, token.start + 1
+        if name not in FUNCTIONS:
+            is_name = spelled(name) in self._names
+            hint = f"write {name}*(...)" if is_name else offer(name, FUNCTIONS)
+            raise ExpressionError(f"{name!r} is not a function; {hint}", column=column)
+        arguments = self._in_brackets(self._tokens.pop(), (",",))
+        wanted = 2 if name == "atan2" else 1
+        if len(arguments) != wanted:
             raise ExpressionError(
-                f"{token.text!r} is not a function; {hint}", column=token.start + 1
+                f"{name} takes {wanted} argument{'s' * (wanted > 1)}, got {len(arguments)}",
+                column=column,
             )
-        wanted = 2 if token.text == "atan2" else 1
-        if len(node.args) != wanted:
-            raise ExpressionError(
-                f"{token.text} takes {wanted} argument{'s' * (wanted > 1)}, got {len(node.args)}",
-                column=token.start + 1,
-            )
-        arguments = [self.value(argument) for argument in node.args]
-        return apply(token.text, arguments, token.start + 1)
+        return apply(name, arguments, column)
 
 
 def _number(token: _Token) -> Sized:

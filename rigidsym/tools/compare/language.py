@@ -194,9 +194,8 @@ def _of_fitting_sizes(function: Callable[..., Any]) -> Callable[..., Any]:
 @_of_fitting_sizes
 def combined(operator: str, left: Any, right: Any, column: int = 1) -> Any:
     """left + right, and so on, of expressions and matrices."""
-    op = _OPERATORS[operator]() if operator in _OPERATORS else ast.BitXor()
     if isinstance(left, Sized) and isinstance(right, Sized):
-        return operate(ast.Mult() if operator in "@%" else op, left, right, column)
+        return operate("*" if operator in "@%" else operator, left, right, column)
     one, other = _plain(left), _plain(right)
     match operator:
         case "%" if Sized not in (type(left), type(right)):
