@@ -3,14 +3,16 @@
 An arithmetic gives numbers, rational powers and functions. `Intervals` are proved to enclose the
 true values: roots of negative numbers, quotients by zero and logarithms of numbers that are not
 positive have no real value there, and a value is returned only if it exists at every point of the
-intervals. `Floats` are NumPy arrays or plain numbers. For a function of floats that is called
-thousands of times there is `sympy.lambdify`.
+intervals. `Floats` are NumPy arrays or plain numbers; `function_of` walks the expression once, and
+makes it a function of floats to be called thousands of times.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import math
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache
+from operator import itemgetter
 from typing import Any, Protocol
 
 import mpmath
@@ -229,6 +231,41 @@ class Floats:
 
     def apply(self, name: str, whole: sp.Expr, *values: Any) -> Any:  # noqa: ARG002
         return self._functions[name](*values)
+
+
+_IN_FLOATS: dict[type[sp.Basic], Callable[..., float]] = {
+    sp.Add: lambda *parts: sum(parts),
+    sp.Mul: lambda *parts: math.prod(parts),
+    sp.Pow: pow,
+    sp.Abs: abs,
+    **{getattr(sp, name): getattr(math, name) for name in ("sin", "cos", "tan", "exp", "log")},
+    **{getattr(sp, f"{name}h"): getattr(math, f"{name}h") for name in ("sin", "cos", "tan")},
+    **{
+        getattr(sp, f"a{name}"): getattr(math, f"a{name}") for name in ("sin", "cos", "tan", "tan2")
+    },
+}
+
+
+def function_of(
+    expression: sp.Expr, symbols: Sequence[sp.Expr]
+) -> Callable[[Sequence[float]], float]:
+    """The value of an expression in floats, for values of the symbols in their order."""
+    if expression in symbols:
+        return itemgetter(symbols.index(expression))
+    if expression.is_number:
+        number = float(expression)
+        return lambda _: number
+    name = expression.func.__name__
+    if name in _REWRITTEN and expression.func not in _IN_FLOATS:
+        return function_of(_REWRITTEN[name](*expression.args), symbols)
+    if expression.func not in _IN_FLOATS:
+        raise Unknown(expression)
+    function = _IN_FLOATS[expression.func]
+    parts = [function_of(part, symbols) for part in expression.args]
+    if len(parts) > 1:
+        return lambda values: function(*[part(values) for part in parts])
+    (part,) = parts
+    return lambda values: function(part(values))
 
 
 # Signs of expressions whose variables stay within bounds, told by their form

@@ -10,7 +10,15 @@ import sympy as sp
 from hypothesis import assume, given, settings, strategies as st
 
 from helpers.witness import mp
-from rigidsym.algebra.evaluate import Floats, NotReal, RealValues, Unknown, context, evaluate
+from rigidsym.algebra.evaluate import (
+    Floats,
+    NotReal,
+    RealValues,
+    Unknown,
+    context,
+    evaluate,
+    function_of,
+)
 
 X, Y = sp.symbols("x y")
 LEAVES = st.sampled_from([X, Y, sp.pi, sp.E, sp.Integer(2), sp.Rational(-3, 7), sp.sqrt(2)])
@@ -46,6 +54,7 @@ def test_all_arithmetics_agree_with_fifty_digits(expression):
     assert width <= mp.mpf(10) ** -25 * (1 + abs(exact))
     floats = [float(at[X]), float(at[Y])]
     limit = 1e-9 * (1 + abs(float(exact)))
+    assert abs(function_of(expression, (X, Y))(floats) - float(exact)) <= limit
     columns = {s: np.full(3, value) for s, value in zip((X, Y), floats, strict=True)}
     assert np.all(np.abs(evaluate(expression, Floats(np), columns) - float(exact)) <= limit)
 

@@ -10,6 +10,7 @@ import sympy as sp
 
 import rigidsym as rs
 from helpers.command import call
+from rigidsym.algebra.evaluate import function_of
 from rigidsym.mechanics.quantities.mass import OF_BODY_ALONE
 from rigidsym.mechanics.quantities.table import POINT
 from rigidsym.models.body import given_inertia
@@ -171,6 +172,11 @@ def test_an_axis_that_is_no_coordinate_axis_is_named_after_its_moment():
     drawing, is_principal = found
     assert not is_principal
     assert [label.symbol.text for label in drawing.labels] == ["I₁", "I₂", "I₃"]
+
+
+def test_expressions_of_a_drawing_may_hold_a_cotangent():
+    x = sp.Symbol("x")
+    assert function_of(sp.cot(x) * sp.Abs(x), [x])([-0.3]) == pytest.approx(-0.3 / np.tan(0.3))
 
 
 def _area(points: tuple[tuple[float, float], ...]) -> float:

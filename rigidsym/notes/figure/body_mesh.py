@@ -14,6 +14,7 @@ from typing import Any
 
 import sympy as sp
 
+from rigidsym.algebra.evaluate import function_of
 from rigidsym.models.body import (
     Composite,
     Distribution,
@@ -154,20 +155,18 @@ def _solids(what: Distribution) -> Iterator[Solid]:
 def _map(solid: Solid, scale: Scale) -> Map:
     """The point of a solid for coordinates that run from 0 to 1."""
     numbers = scale.numbers
-    place = sp.lambdify(
-        [solid.coordinates], [*(solid.place / scale.unit).xreplace(numbers)], "math"
-    )
+    places = [function_of(part.xreplace(numbers), solid.coordinates) for part in solid.place]
     bounds = [
-        sp.lambdify([solid.coordinates[:k]], sp.Tuple(*pair).xreplace(numbers), "math")
-        for k, pair in enumerate(solid.bounds)
+        [function_of(sp.S(bound).xreplace(numbers), solid.coordinates) for bound in pair]
+        for pair in solid.bounds
     ]
 
     def point(*shares: float) -> Vector:
         values: list[float] = []
-        for share, bound in zip(shares, bounds, strict=True):
-            low, high = bound(values)
+        for share, pair in zip(shares, bounds, strict=True):
+            low, high = (bound(values) for bound in pair)
             values.append(low + share * (high - low))
-        x, y, z = place(values)
+        x, y, z = (place(values) / scale.unit for place in places)
         return (x, y, z)
 
     return point

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import sympy as sp
 
+from rigidsym.algebra.evaluate import function_of
 from rigidsym.errors import ModelError
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import formula
@@ -81,7 +82,9 @@ class ExampleMotion:
         self.path = slice(len(self.y), len(self.y) + 3)
         start = self._start([q.func.__name__ for q in q])
         start += [0.0] * (3 * bool(particles))
-        found = _integrated(self.function([*slopes, *chain(*particles[:1])]), start, example.time)
+        found = _integrated(
+            self.function([*slopes, *chain(*particles[:1])], len(start)), start, example.time
+        )
         if found is None:
             raise ModelError(
                 f"{derivation.name}: an example cannot be drawn; expected a motion that is slower, "
@@ -122,7 +125,9 @@ class ExampleMotion:
             )
         return [float(given.get(name, 0.0)) for name in (*coordinates, *wanted)]
 
-    def function(self, values: Sequence[sp.Expr]) -> Callable[[float, Numbers], Numbers]:
+    def function(
+        self, values: Sequence[sp.Expr], count: int = 0
+    ) -> Callable[[float, Numbers], Numbers]:
         """Expressions in the time, the state and constants, as a function of the first two.
 
         Raises ModelError for constants without a value, all at once.
@@ -136,20 +141,25 @@ class ExampleMotion:
             raise ModelError(
                 f"{self.derivation.name}: an example lacks values of {', '.join(missing)}"
             )
-        arguments = [TIME, *self.known.values(), *constants]
-        function = sp.lambdify([arguments], plain, "math", cse=True)
-        fixed = [float(numbers[symbol.name]) for symbol in constants]
-        count = len(self.known)  # a state may go on behind them
+        spare = [sp.Dummy() for _ in range(count - len(self.known))]
+        arguments = [TIME, *self.known.values(), *spare, *constants]
+        shared, results = sp.cse(plain, sp.numbered_symbols(cls=sp.Dummy))
+        arguments += [symbol for symbol, _ in shared]
+        parts = [function_of(value, arguments) for _, value in shared]
+        ends = [function_of(value, arguments) for value in results]
+        given = [float(numbers[symbol.name]) for symbol in constants]
 
         def evaluated(t: float, state: Numbers) -> Numbers:
-            values: Numbers = function([t, *state[:count], *fixed])
-            return values
+            held = [t, *state, *given]
+            for part in parts:
+                held.append(part(held))
+            return [end(held) for end in ends]
 
         return evaluated
 
     def over_time(self, values: Sequence[sp.Expr]) -> list[Numbers]:
         """The values at all times."""
-        function = self.function(values)
+        function = self.function(values, len(self.states[0]))
         return [function(t, state) for t, state in zip(self.t, self.states, strict=True)]
 
     @property
@@ -238,7 +248,7 @@ def _traces(motions: Sequence[ExampleMotion], letters: Letters) -> Iterator[tupl
 def _polhodes(motions: Sequence[ExampleMotion], letters: Letters) -> Drawing:
     """Each on the ellipsoid of its own energy, scaled to one size."""
     first = motions[0]
-    moments = first.function([*first.inertia.diagonal()])
+    moments = first.function([*first.inertia.diagonal()], len(first.states[0]))
     a, b, c = (moment**0.5 for moment in moments(0.0, first.states[0]))
     least = min(a, b, c)
     paths = [

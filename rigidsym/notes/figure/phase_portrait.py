@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import sympy as sp
 
+from rigidsym.algebra.evaluate import function_of
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Formula
@@ -84,8 +85,8 @@ def _numbers(expression: sp.Expr, coordinate: sp.Expr) -> Callable[[float], floa
     angle = sp.Symbol("angle")
     held = expression.xreplace({coordinate: angle})
     held = held.xreplace(dict.fromkeys(held.free_symbols - {angle}, sp.S.One))
-    function: Callable[[float], float] = sp.lambdify(angle, held, "math")
-    return function
+    evaluated = function_of(held, [angle])
+    return lambda value: evaluated([value])
 
 
 def _curve(
