@@ -48,12 +48,9 @@ FILES = (
     "heavy_symmetric_top",
     "heavy_asymmetric_body",
     "free_body",
-    "gyroscope",
     "dual_spin_satellite",
-    "gravity_gradient_satellite",
     "kovalevskaya_top",
     "quadcopter_attitude",
-    "rolling_disc",
 )
 KEYS = {  # the formula of an entry, if it is not that of its kind
     "lecture": "rotational_energy",
@@ -62,12 +59,9 @@ KEYS = {  # the formula of an entry, if it is not that of its kind
     "heavy_symmetric_top": "lagrangian",
     "heavy_asymmetric_body": "lagrangian",
     "free_body": "energy",
-    "gyroscope": "energy",
     "dual_spin_satellite": "energy",
-    "gravity_gradient_satellite": "energy",
     "kovalevskaya_top": "energy",
     "quadcopter_attitude": "mass_matrix",
-    "rolling_disc": "energy",
 }
 _FORMULA = re.compile(r"<math.*?</math>", re.DOTALL)
 _FIGURE = re.compile(r"<svg.*?</svg>", re.DOTALL)
@@ -95,7 +89,7 @@ class Item:
         else:
             spec = read(self.name)
         motion = spec.dynamics or {}
-        is_shown = not (motion.get("parts") or motion.get("frame_rate"))  # by a page's figure
+        is_shown = not motion.get("parts")  # by a page's figure
         note = ("tex", "html", "page") if is_shown else ("tex", "html")
         return replace(spec, kernels=KERNELS, note=note)
 

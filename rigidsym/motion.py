@@ -206,7 +206,6 @@ def derive(
     torque: Sequence[sp.Expr | str] | None = None,
     first_integrals: Mapping[str, sp.Expr | str] | None = None,
     parts: Sequence[Mapping[str, Any]] | None = None,
-    frame_rate: Sequence[sp.Expr | str] | None = None,
     method: str | None = None,
     examples: Sequence[Mapping[str, Any]] | None = None,
     theory: bool = False,
@@ -224,9 +223,8 @@ def derive(
     that point. `method` is "lagrange", with the state (q, q̇) and constraint forces that do no
     work, or "euler", with the state (q, Ω′). `first_integrals` are claims by name, to be proved.
     `parts` are other moving parts, {"rotation", "principal_moments"} or {"velocity", "mass"}.
-    `frame_rate` is the angular velocity of the frame of reference. `examples` are motions that the
-    note draws, {"parameters", "initial", "time"}; values that an example does not name are those
-    of the first.
+    `examples` are motions that the note draws, {"parameters", "initial", "time"}; values that an
+    example does not name are those of the first.
 
     `theory` adds equations 1 to 16 of the lecture, which hold for every body and rotation.
     `timeout` limits the time, in seconds.
@@ -255,8 +253,7 @@ def derive(
         acting = None
         given: dict[str, Any] = {
             **{"potential": potential, "forces": forces, "torque": torque, "method": method},
-            **{"first_integrals": first_integrals, "parts": parts, "frame_rate": frame_rate},
-            "examples": examples,
+            **{"first_integrals": first_integrals, "parts": parts, "examples": examples},
         }
         moving = {key: value for key, value in given.items() if value is not None}
         if moving:

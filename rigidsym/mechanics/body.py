@@ -388,8 +388,13 @@ def steps_of_body(
         steps = [values.renamed(step, chain) for step in steps]
     if forces is None:
         return OfBody(values.arguments, steps, whole)
-    motion = equations_of_motion(model, whole, forces)
-    steps += motion.steps(tuple(only))
+    motion = equations_of_motion(model, whole, forces, chain)
+    moving = list(motion.steps(tuple(only)))
+    names = {step.quantity.name for step in moving}
+    for name, quantity in motion.table.items():
+        if name in only and name not in names:
+            raise QuantityError(f"{model.name} has no quantity {name}: {quantity.without}")
+    steps += moving
     asks = not only or not {*only}.isdisjoint(FLOW_QUANTITIES)
     functions = motion.functions() if asks else {}
     follows = not only or "effective_potential" in only
@@ -401,4 +406,5 @@ def steps_of_body(
         functions={n: f for n, f in functions.items() if not only or n in only},
         first_integrals=motion.first_integrals,
         consequences=tuple(motion.consequences()) if follows else (),
+        names=motion.names,
     )

@@ -215,6 +215,7 @@ class OfBody:
     functions: Mapping[str, Callable[[], Step]] = field(default_factory=dict)  # of the state
     first_integrals: tuple[FirstIntegral, ...] = ()
     consequences: tuple[Consequence, ...] = ()
+    names: Any = None  # the names of a chain, if the equations of motion are written with them
 
 
 class Definition(NamedTuple):

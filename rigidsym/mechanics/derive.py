@@ -85,9 +85,13 @@ def derive(
     arguments = of_body.arguments
     has_rates = not only or any(KINEMATICS[name].section == OF_RATES for name in turning)
     singularities = _singularities(values, chain) if has_rates else None
-    named = [step.expression for step in steps]
+    names = of_body.names or chain
+    named: list[sp.Basic] = [step.expression for step in steps]
     named += singularities.minors if singularities else ()
-    definitions = chain.definitions_of(named) if chain else ()
+    if of_body.names is not None:
+        named += [integral.expression for integral in of_body.first_integrals]
+        named += [make().expression for make in of_body.functions.values()]
+    definitions = names.definitions_of(named) if names else ()
     constants = {*arguments["parameters"].symbols} if "parameters" in arguments else set()
     for symbol, expression in definitions:
         if not expression.free_symbols.isdisjoint(constants):

@@ -130,17 +130,16 @@ class Forces:
     first_integrals: Mapping[str, sp.Expr] = field(default_factory=lambda: _NONE)  # claimed
     method: str = ""  # one of METHODS; "": Lagrange's where the coordinates are free
     parts: tuple[MovingPart, ...] = ()
-    frame_rate: tuple[sp.Expr, ...] = ()  # rad/s, of the frame of R, constant in it; three or none
     examples: tuple[Example, ...] = ()  # motions with numbers
 
     @property
     def fix_a_point(self) -> bool:
         """Whether the body and its parts turn about a point at rest."""
-        return not self.frame_rate and all(part.rotation is not None for part in self.parts)
+        return all(part.rotation is not None for part in self.parts)
 
     def leave_free(self, model: RotationModel) -> bool:
         """Whether nothing acts on a body that can turn in every way, and nothing moves with it."""
-        acting = [*self.generalised.values(), *self.torque, *self.frame_rate, *self.parts]
+        acting = [*self.generalised.values(), *self.torque, *self.parts]
         acting += [sp.diff(self.potential, q) for q in model.coordinates]
         return not any(acting) and len(model.coordinates) >= len(OMEGA_BODY)
 
@@ -166,7 +165,6 @@ class Forces:
             generalised={q: force.xreplace(same) for q, force in self.generalised.items()},
             torque=named(self.torque),
             first_integrals={n: e.xreplace(same) for n, e in self.first_integrals.items()},
-            frame_rate=named(self.frame_rate),
             parts=tuple(
                 part._replace(velocity=named(part.velocity), inertia=named(part.inertia))
                 for part in self.parts
@@ -177,7 +175,7 @@ class Forces:
         """The body with the constants of the forces among its parameters.
 
         Raises ModelError for a potential that depends on the rates or on no coordinate, for parts
-        and a frame that depend on the time, and for an example with a value of another constant.
+        that depend on the time, and for an example with a value of another constant.
         """
         if self.potential.has(sp.Derivative, *OMEGA_BODY):
             shown = as_typed(self.potential)
@@ -191,12 +189,11 @@ class Forces:
                 + "".join(f"; {n} is a constant in it, expected a text or {n}(t)" for n in same[:1])
             )
         moving = (e for part in self.parts for e in (*part.velocity, *part.inertia))
-        for expression in (*self.frame_rate, *moving):
+        for expression in moving:
             what = "t" if depends_on_time(expression) else "Ω′"
             if what == "t" or expression.has(*OMEGA_BODY):
                 raise ModelError(
-                    f"{as_typed(expression)} depends on {what}; expected a part, or a rate of the "
-                    "frame, that does not"
+                    f"{as_typed(expression)} depends on {what}; expected a part that does not"
                 )
         known = {p.symbol for p in body.parameters} | {*model.constants, *OMEGA_BODY, TIME}
         symbols = set().union(*(expression.free_symbols for expression in self.expressions)) - known
@@ -222,7 +219,7 @@ class Forces:
     @property
     def acting(self) -> Iterator[sp.Expr]:
         """All that acts, and all that is claimed to be constant."""
-        yield from (self.potential, *self.generalised.values(), *self.torque, *self.frame_rate)
+        yield from (self.potential, *self.generalised.values(), *self.torque)
         yield from self.first_integrals.values()
 
     @property
@@ -240,7 +237,6 @@ def forces_on(
     torque: Sequence[sp.Expr | str] = (),
     first_integrals: Mapping[str, sp.Expr | str] = MappingProxyType({}),
     parts: Sequence[Mapping[str, Any]] = (),
-    frame_rate: Sequence[sp.Expr | str] = (),
     method: str = "",
     examples: Sequence[Mapping[str, Any]] = (),
 ) -> Forces:
@@ -261,9 +257,8 @@ def forces_on(
             raise ModelError(
                 f"a force on {name}, which is not a coordinate; expected {', '.join(known)}"
             )
-    for what, given in (("torque", torque), ("frame_rate", frame_rate)):
-        if len(given) not in (0, 3):
-            raise ModelError(f"{what}: expected three components, got {len(given)}")
+    if len(torque) not in (0, 3):
+        raise ModelError(f"torque: expected three components, got {len(torque)}")
     if method not in ("", *METHODS):
         raise ModelError(f"no method {method!r}; {offer(method, METHODS)}")
     return Forces(
@@ -271,7 +266,6 @@ def forces_on(
         generalised={known[name]: _read(force, names) for name, force in forces.items()},
         torque=tuple(_read(component, names) for component in torque),
         first_integrals={n: _read(value, names) for n, value in first_integrals.items()},
-        frame_rate=tuple(_read(component, names) for component in frame_rate),
         method=method,
         parts=tuple(_part(part, names) for part in parts),
         examples=tuple(examples_of(model, examples)),

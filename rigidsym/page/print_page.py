@@ -175,8 +175,6 @@ def check_shown(derivation: Derivation) -> None:
     forces, why = derivation.forces, ""
     if forces is not None and forces.parts:
         why = "its figure is one body about a fixed point, and other parts move with this body"
-    elif forces is not None and forces.frame_rate:
-        why = "its figure is at rest, and the frame of reference of this motion turns"
     if why:
         raise ModelError(
             f"{derivation.name}: there is no live page of this motion, since {why}; expected a "

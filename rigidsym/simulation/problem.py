@@ -24,13 +24,12 @@ from rigidsym.kernels.module import generate
 from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.derive import derive
 from rigidsym.mechanics.dynamics.euler import EulerEquations
-from rigidsym.mechanics.dynamics.lagrange import LagrangeEquations, equations_of_motion, is_bound
+from rigidsym.mechanics.dynamics.lagrange import is_bound
 from rigidsym.mechanics.quantities.dynamics import EULER_QUANTITIES, FLOW_QUANTITIES
 from rigidsym.models.forces import OMEGA, OMEGA_COMPONENTS, Forces, initial_values
 from rigidsym.models.rotation import RotationModel, as_typed
 from rigidsym.simulation.trajectory import Array, Trajectory
 
-EQUATIONS = "equations_of_motion"  # (M, Q − h), for elimination in numbers
 # from which a motion is computed
 NEEDED = ("rotation_matrix", "angular_velocity_body", "state_derivative", "first_integrals")
 _UNIT = 1e-9  # by which the entries of R Rᵀ − 1 may be off at the start
@@ -70,7 +69,7 @@ class Problem:
         self.count = len(self.coordinates)
         self.is_euler = self.names["y"][self.count :] == self.names["omega_body"]
         # so that a quaternion can take the place of the coordinates
-        self.is_alone = not (self.forces.parts or self.forces.frame_rate)
+        self.is_alone = not self.forces.parts
         # three coordinates of a vector have a pole wherever they are, and long equations of motion
         self.is_quaternion = bool(self.model.vector) and self.is_alone and not is_bound(self.model)
         self.parameters = self._parameters(parameters)
@@ -102,20 +101,9 @@ class Problem:
             functions["first_integrals"] = self.derivation.step("first_integrals")
         return replace(whole.select(names), functions=functions)
 
-    @cached_property
+    @property
     def slopes_step(self) -> Step:
-        """The derivative of the state; of parts that move, M and Q − h.
-
-        The inverse of a mass matrix of several bodies has thousands of terms, and so have its
-        products: elimination in numbers takes some microseconds.
-        """
-        forces = self.derivation.forces
-        is_long = bool(forces and forces.parts) or self.count > 3
-        if is_long and not self.is_euler:
-            assert self.derivation.body is not None
-            flow = equations_of_motion(self.model, self.derivation.body, self.forces)
-            assert isinstance(flow, LagrangeEquations)
-            return self._step(EQUATIONS, flow.mass_and_forces, ("t", "y"), shape="matrix")
+        """The derivative of the state."""
         return self.derivation.step("state_derivative")
 
     def _step(
@@ -158,7 +146,7 @@ class Problem:
             self.model.constants, *(e.free_symbols for e in self.forces.acting)
         )
         if self.forces.parts:
-            used |= self.slopes_step.expression.free_symbols
+            used |= self.derivation.spelled(self.slopes_step.expression).free_symbols
         names = {str(symbol) for symbol in used}
         missing = [name for name in constants if name in names and name not in parameters]
         if missing:
@@ -261,9 +249,6 @@ class Problem:
     def slopes(self, t: float, y: Array) -> Array:
         """The derivative of one state."""
         inputs = (t, *y.tolist(), *(self.parameters if self._takes_parameters else ()))
-        if self.slopes_step.quantity.name == EQUATIONS:
-            rows = np.array(self.kernels.equations_of_motion_scalar(*inputs))
-            return np.concatenate([y[self.count :], eliminated(rows)])
         return np.array(self.kernels.state_derivative_scalar(*inputs))
 
     @cached_property
@@ -275,9 +260,6 @@ class Problem:
     def slopes_of_many(self, t: float, y: Array, constants: Array) -> Array:
         """The derivative of states (m, k), with parameters of all (p,) or of each (m, p)."""
         inputs = (t, y, constants) if self._takes_parameters else (t, y)
-        if self.slopes_step.quantity.name == EQUATIONS:
-            rows = self._slopes_of_many.equations_of_motion(*inputs)
-            return np.concatenate([y[:, self.count :], eliminated(rows)], axis=1)
         return np.asarray(self._slopes_of_many.state_derivative(*inputs))
 
     @property
@@ -329,7 +311,7 @@ class Problem:
     def no_quaternion(self) -> str:
         """Why a quaternion cannot take the place of the coordinates; empty if it can."""
         if not self.is_alone:
-            return "several bodies, or a body in a turning frame, move in these coordinates only"
+            return "several bodies move in these coordinates only"
         if not hasattr(self.kernels, "from_quaternion"):
             return "the coordinates do not follow from the rotation"
         if not _has_limits(self.torque, self._euler.divisor, self.model):
@@ -423,15 +405,6 @@ class Problem:
         inputs = self.derivation.step("first_integrals").quantity.inputs
         values = np.asarray(self.kernels.first_integrals(*map(known.get, inputs)))
         return {name: values[..., k] for k, name in enumerate(names)}
-
-
-def eliminated(rows: Array) -> Array:
-    """M⁻¹ (Q − h) from (M, Q − h), (..., n, n + 1); NaN where M has no inverse."""
-    mass = rows[..., :-1]
-    singular = np.linalg.det(mass) == 0
-    if np.any(singular):
-        mass = np.where(singular[..., None, None], np.nan, mass)
-    return np.asarray(np.linalg.solve(mass, rows[..., -1:])[..., 0])
 
 
 def _has_limits(torque: sp.ImmutableMatrix, divisor: sp.Expr, model: RotationModel) -> bool:

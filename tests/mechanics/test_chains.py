@@ -54,7 +54,7 @@ def test_the_recursion_is_the_expanded_form_in_the_ring(count, oblique):
 def test_a_wrong_definition_is_not_proved():
     work = Chain(chain(5))
     (symbol,) = [s for s in work.partial[3].free_symbols if s.name == "P3_11"]
-    work._groups["P3"][symbol] += symbol
+    work._meanings[symbol] += symbol
     with pytest.raises(rs.RigidsymError, match="is false"):
         work.step(KINEMATICS["rotation_matrix"])
 

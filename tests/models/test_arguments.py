@@ -117,7 +117,6 @@ def dynamics(rotation: str = "z(theta)", **acting: object) -> rs.Motion:
         (lambda: dynamics(torque=[1]), "torque: expected three components, got 1"),
         (lambda: dynamics(method="newton"), "no method 'newton'"),
         (lambda: dynamics(potential="k"), "depends on none of the coordinates theta"),
-        (lambda: dynamics(frame_rate=["t", 0, 0]), "t depends on t; expected a part, or a rate"),
         (lambda: dynamics(parts=[{"mass": 1}]), "a part with mass; expected rotation and"),
         (lambda: dynamics(parts=[{"mass": 1, "velocity": [1]}]), "or three components of velocity"),
         (lambda: dynamics(parts=[TURNED]), "a part turns by psi, which is not a coordinate"),

@@ -41,13 +41,11 @@ def figure_of(motion: rs.Motion):
 
 
 def test_every_shipped_system_has_an_example():
-    assert len(SYSTEMS) >= 10
+    assert len(SYSTEMS) >= 7
     assert [spec.name for spec in SYSTEMS if not spec.dynamics.get("examples")] == []
 
 
-@pytest.mark.parametrize(
-    "name", ["heavy_symmetric_top", "heavy_asymmetric_body", "free_body", "rolling_disc"]
-)
+@pytest.mark.parametrize("name", ["heavy_symmetric_top", "heavy_asymmetric_body", "free_body"])
 def test_the_motion_drawn_is_the_motion_simulated(name):
     motion = shipped(name)
     example = motion.forces.examples[0]
@@ -60,14 +58,6 @@ def test_the_motion_drawn_is_the_motion_simulated(name):
     states = np.array(drawn.states)
     count = simulated.q.shape[1]
     assert np.abs(states[:, :count] - simulated.q).max() < 3e-3 * np.ptp(simulated.q)
-
-
-def test_the_path_of_the_disc_has_the_velocity_of_its_centre():
-    motion = shipped("rolling_disc")
-    drawn = ExampleMotion(motion, motion.forces, motion.forces.examples[0])
-    path = np.array(drawn.states)[:, drawn.path]
-    height = path[:, 2] + np.sin(drawn.states[0][1])  # a sin θ
-    assert height == pytest.approx(np.sin(np.array(drawn.states)[:, 1]), abs=1e-4)
 
 
 def test_the_caption_tells_parameters_and_initial_values():

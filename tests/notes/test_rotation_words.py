@@ -143,7 +143,6 @@ READ_AND_MENDED = {  # by file or rotation: what its note says, and what it must
     "ZYX": ((EXCHANGED,), ()),
     "aerospace": ((), ("Aerospace texts write",)),
     "XYZ": ((), ("Aerospace texts write",)),
-    "rolling_disc": ((), ("stays between the circles",)),
 }
 
 

@@ -35,7 +35,7 @@ SOME_EULER = ("euler_zxz_intrinsic", "euler_zyx_intrinsic", "euler_xyz_extrinsic
 SOME = ("unit_quaternion", "rotation_vector", "davenport", "x(alpha0) z(phi) y(pi/4) x(theta)")
 
 # parts move with the body, or the frame of reference turns
-WITHOUT_A_PAGE = ("dual_spin_satellite", "gravity_gradient_satellite", "gyroscope", "rolling_disc")
+WITHOUT_A_PAGE = ("dual_spin_satellite",)
 
 # --- the file
 

@@ -33,13 +33,14 @@ class EulerEquations(Flow):
 
     table = claims.EULER_QUANTITIES
     second = "omega_body"
+    lacking = ()
 
     def __init__(self, model: RotationModel, body: RigidBody, forces: Forces) -> None:
-        """Raises ModelError for parts, for a frame that turns, and if there is no q̇ = U Ω′."""
-        if forces.parts or forces.frame_rate:
+        """Raises ModelError for parts, and if there is no q̇ = U Ω′."""
+        if forces.parts:
             raise ModelError(
-                f"{model.name}: Euler's equations hold for one body in an inertial frame; expected "
-                'independent coordinates, such as Euler angles, and method = "lagrange"'
+                f"{model.name}: Euler's equations hold for one body; expected independent "
+                'coordinates, such as Euler angles, and method = "lagrange"'
             )
         rotation = Values(model)
         solved = rotation.inverse("body")

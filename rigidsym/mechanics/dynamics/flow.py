@@ -26,6 +26,7 @@ from rigidsym.mechanics.derivation import (
     Step,
 )
 from rigidsym.mechanics.dynamics.consequences import FreeBody
+from rigidsym.mechanics.kinematics.chain import Chain
 from rigidsym.mechanics.kinematics.workspace import Workspace
 from rigidsym.mechanics.quantities import dynamics as claims
 from rigidsym.mechanics.quantities.table import (
@@ -55,6 +56,8 @@ class Flow(Workspace):
 
     table: Mapping[str, Quantity]
     second: str  # the argument beside q in the state
+    lacking: tuple[str, ...] = ("error_state_jacobian",)  # functions of the state
+    names: Chain | None = None  # for parts of the expressions, if they have names
 
     def __init__(self, model: RotationModel, body: RigidBody, forces: Forces, codec: Codec) -> None:
         self.model, self.forces, self.codec = model, forces, codec
@@ -143,8 +146,7 @@ class Flow(Workspace):
 
     def functions(self) -> Mapping[str, Callable[[], Step]]:
         """The derivative of the state, its Jacobians and the first integrals, each when needed."""
-        lacking = set() if "euler" in self.traits else {"error_state_jacobian"}
-        lacking |= set() if self.first_integrals else {"first_integrals"}
+        lacking = {*self.lacking} | (set() if self.first_integrals else {"first_integrals"})
         entries = claims.FLOW_QUANTITIES.items()
         return {n: partial(self._function, entry) for n, entry in entries if n not in lacking}
 

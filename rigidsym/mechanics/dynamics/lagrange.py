@@ -1,23 +1,19 @@
-"""Equations of motion of a body that turns about a fixed point: Lagrange's, over one ring.
+r"""Equations of motion of one body about a fixed point: Lagrange's, over one ring.
 
-Each moving part has a velocity v = J q̇ + j and an inertia I: of a body v is its angular velocity
-Ω′ and J its rate matrix W′, of a particle its velocity in space. With T = ½ Σ vᵀ I v,
+With the rate matrix W′ of the body, Ω′ = W′ q̇ and T = ½ Ω′ᵀ I′ Ω′,
 
-    d/dt ∂T/∂q̇ − ∂T/∂q = Σ Jᵀ (I dv/dt + v × I v)      the cross product for bodies only,
-    M q̈ + h = Q,  M = Σ Jᵀ I J,
-    h = Σ Jᵀ (I (dJ/dt q̇ + dj/dt) + v × I v) + ∂V/∂q
+    d/dt ∂T/∂q̇ − ∂T/∂q = W′ᵀ (I′ dΩ′/dt + Ω′ × I′ Ω′)
+    M q̈ + h = Q,  M = W′ᵀ I′ W′,
+    h = W′ᵀ (I′ dW′/dt q̇ + Ω′ × I′ Ω′) + ∂V/∂q
 
-The first line is proved in the ring; the others follow from it. It fails for velocities that no
-coordinates have (rolling); the other lines are then those of d'Alembert's principle. j is what a
-turning frame of reference adds. What does not depend on a coordinate, or on time, is conserved.
+The first line is proved in the ring; the others follow from it. What does not depend on a
+coordinate, or on time, is conserved. Several bodies are in `dynamics.tree`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from functools import cached_property, reduce
-from operator import add
-from typing import NamedTuple
+from functools import cached_property
 
 import sympy as sp
 from sympy.polys.rings import PolyElement
@@ -30,17 +26,32 @@ from rigidsym.mechanics.derivation import Consequence, FirstIntegral
 from rigidsym.mechanics.dynamics.consequences import Reduced
 from rigidsym.mechanics.dynamics.euler import EulerEquations
 from rigidsym.mechanics.dynamics.flow import Flow, StateBlock, turned
+from rigidsym.mechanics.dynamics.tree import TreeEquations
+from rigidsym.mechanics.kinematics.chain import Chain
 from rigidsym.mechanics.kinematics.workspace import Values
 from rigidsym.mechanics.quantities import dynamics as claims
 from rigidsym.models.body import RigidBody
-from rigidsym.models.forces import OMEGA_BODY, Forces, MovingPart
-from rigidsym.models.rotation import TIME, RotationModel, as_typed
+from rigidsym.models.forces import OMEGA_BODY, Forces
+from rigidsym.models.rotation import TIME, RotationModel
 
 
-def equations_of_motion(model: RotationModel, body: RigidBody, forces: Forces) -> Flow:
-    """Lagrange's equations for free coordinates, else Euler's, unless one is asked for."""
-    if (forces.method or ("euler" if is_bound(model) else "lagrange")) == "euler":
+def equations_of_motion(
+    model: RotationModel, body: RigidBody, forces: Forces, chain: Chain | None = None
+) -> Flow:
+    """Lagrange's equations for free coordinates, else Euler's, unless one is asked for.
+
+    Those of a `chain`, or of a body that other parts move with, are in names.
+    """
+    is_dependent = is_bound(model)
+    if (forces.method or ("euler" if is_dependent else "lagrange")) == "euler":
         return EulerEquations(model, body, forces)
+    if is_dependent:
+        raise ModelError(
+            f"{model.name}: Lagrange's equations need independent coordinates, such as Euler "
+            'angles; expected such a rotation, or method = "euler"'
+        )
+    if chain is not None or forces.parts:
+        return TreeEquations(model, body, forces, chain or Chain(model))
     return LagrangeEquations(model, body, forces)
 
 
@@ -50,85 +61,34 @@ def is_bound(model: RotationModel) -> bool:
     return bool(model.constraints) or model.pullback is not None or is_spare
 
 
-class Moving(NamedTuple):
-    """One moving part: v = J q̇ + j, and its inertia."""
-
-    jacobian: sp.ImmutableMatrix  # J, (3, n)
-    shift: sp.ImmutableMatrix  # j, (3, 1)
-    inertia: sp.ImmutableMatrix  # (3, 3)
-    turns: bool  # a body, else a particle
-
-
 class LagrangeEquations(Flow):
-    """The steps of a rotation, a body, what moves with it and the forces, in Lagrange's form."""
+    """The steps of a rotation, a body and the forces on it, in Lagrange's form."""
 
     table = claims.DYNAMICS_QUANTITIES
     second = "q_dot"
 
     def __init__(self, model: RotationModel, body: RigidBody, forces: Forces) -> None:
-        """Raises ModelError for coordinates that depend on one another."""
-        if is_bound(model):
-            raise ModelError(
-                f"{model.name}: Lagrange's equations need independent coordinates, such as Euler "
-                'angles; expected such a rotation, or method = "euler"'
-            )
-        self.model, self.body, self.forces = model, body, forces
         self.potential = forces.potential
         self.rates = [sp.diff(q, TIME) for q in model.coordinates]
         self.accelerations = [sp.diff(q, TIME, 2) for q in model.coordinates]
-        self.moving = tuple(self._moving())
-        main = self.moving[0]
-        omega = main.jacobian * sp.Matrix(self.rates) + main.shift
+        values = Values(model)
+        self._jacobian = values.codec.decoded(values.rate_matrix("body"))
+        omega = self._jacobian * sp.Matrix(self.rates)
         torque = sp.Matrix(forces.torque or [0, 0, 0])
         in_rates = dict(zip(OMEGA_BODY, omega, strict=True))
-        acting = main.jacobian.T * torque.xreplace(in_rates)
+        acting = self._jacobian.T * torque.xreplace(in_rates)
         self.generalised = [
             forces.generalised.get(q, sp.S.Zero).xreplace(in_rates) + part
             for q, part in zip(model.coordinates, acting, strict=True)
         ]
         self.gradient = [sp.diff(self.potential, q) for q in model.coordinates]
-        entries = [e for part in self.moving for m in part[:3] for e in m]
-        entries += [*omega, sp.Rational(1, 2), self.potential]
+        entries = [*self._jacobian, *body.inertia, *omega, sp.Rational(1, 2), self.potential]
         entries += [*self.gradient, *self.generalised, *self.rates]
         entries += [*forces.first_integrals.values()]
         entries += self.accelerations
         codec = codec_for([e for e in entries if e != 0], order=2)
         super().__init__(model, body, forces, codec)
         self.ring = codec.ring
-
-    def _moving(self) -> Iterator[Moving]:
-        """The body itself first."""
-        yield self._turning(self.model, self.body.inertia)
-        for part in self.forces.parts:
-            if part.rotation is not None:
-                yield self._turning(part.rotation, sp.ImmutableMatrix(sp.diag(*part.inertia)))
-            else:
-                yield self._particle(part)
-
-    def _turning(self, model: RotationModel, inertia: sp.ImmutableMatrix) -> Moving:
-        """A body that turns so; its rate matrix has a column for each coordinate of all."""
-        values = Values(model)
-        entries = values.codec.decoded(values.rate_matrix("body"))
-        columns = [
-            entries.col(model.coordinates.index(q)) if q in model.coordinates else sp.zeros(3, 1)
-            for q in self.model.coordinates
-        ]
-        frame = sp.Matrix(self.forces.frame_rate or [0, 0, 0])
-        shift = sp.ImmutableMatrix(model.matrix.T * frame)
-        return Moving(sp.ImmutableMatrix.hstack(*columns), shift, inertia, turns=True)
-
-    def _particle(self, part: MovingPart) -> Moving:
-        velocity = sp.ImmutableMatrix(part.velocity)
-        jacobian = sp.ImmutableMatrix(
-            [[sp.diff(entry, rate) for rate in self.rates] for entry in velocity]
-        )
-        at_rest = velocity.xreplace(dict.fromkeys(self.rates, sp.S.Zero))
-        if jacobian.has(*self.rates) or any(at_rest):
-            raise ModelError(
-                f"the velocity ({', '.join(map(as_typed, velocity))}) is not linear in the rates"
-            )
-        zero = sp.ImmutableMatrix.zeros(3, 1)
-        return Moving(jacobian, zero, sp.ImmutableMatrix(sp.diag(*part.inertia)), turns=False)
 
     def slopes(self, element: PolyElement) -> RingMatrix:
         """The derivatives by q, a column, by the chain rule over the generators of the ring."""
@@ -145,12 +105,13 @@ class LagrangeEquations(Flow):
         )
 
     @cached_property
-    def terms(self) -> tuple[tuple[RingMatrix, RingMatrix, RingMatrix, bool], ...]:
-        """J, j, I of each moving part over the ring, and whether it turns."""
-        return tuple(
-            (*map(self.codec.matrix, part[:3]), part.turns)  # type: ignore[misc]
-            for part in self.moving
-        )
+    def jacobian(self) -> RingMatrix:
+        """W′."""
+        return self.codec.matrix(self._jacobian)
+
+    @cached_property
+    def inertia(self) -> RingMatrix:
+        return self.codec.matrix(self.body.inertia)
 
     @cached_property
     def q_dot(self) -> RingMatrix:
@@ -159,26 +120,22 @@ class LagrangeEquations(Flow):
     @cached_property
     def omega(self) -> RingMatrix:
         """Ω′ of the body."""
-        jacobian, shift, _, _ = self.terms[0]
-        return jacobian @ self.q_dot + shift
+        return self.jacobian @ self.q_dot
 
     @cached_property
     def momenta(self) -> RingMatrix:
-        """p = ∂T/∂q̇ = Σ Jᵀ I v."""
-        return reduce(add, (j.T @ (i @ (j @ self.q_dot + s)) for j, s, i, _ in self.terms))
+        """p = ∂T/∂q̇ = W′ᵀ I′ Ω′."""
+        return self.jacobian.T @ (self.inertia @ self.omega)
 
     @cached_property
     def mass_matrix(self) -> RingMatrix:
-        return reduce(add, (j.T @ i @ j for j, _, i, _ in self.terms))
+        return self.jacobian.T @ self.inertia @ self.jacobian
 
     @cached_property
     def gyroscopic(self) -> RingMatrix:
-        """Σ Jᵀ (I (dJ/dt q̇ + dj/dt) + v × I v)"""
-        parts = []
-        for j, s, i, turns in self.terms:
-            inner = i @ (j.dt() @ self.q_dot + s.dt())
-            parts.append(j.T @ (inner + turned(i, j @ self.q_dot + s) if turns else inner))
-        return reduce(add, parts)
+        """W′ᵀ (I′ dW′/dt q̇ + Ω′ × I′ Ω′)."""
+        inner = self.inertia @ (self.jacobian.dt() @ self.q_dot)
+        return self.jacobian.T @ (inner + turned(self.inertia, self.omega))
 
     @cached_property
     def bias(self) -> RingMatrix:
@@ -195,7 +152,7 @@ class LagrangeEquations(Flow):
 
         Raises ModelError if the mass matrix has no inverse.
         """
-        if len(self.terms) == 1 and len(self.rates) == 3:
+        if len(self.rates) == 3:
             above, below = self._solved_by_euler()
         else:
             above = self.mass_matrix.adjugate() @ (self.codec.column(self.generalised) - self.bias)
@@ -208,10 +165,10 @@ class LagrangeEquations(Flow):
         return above, below
 
     def _solved_by_euler(self) -> Inverse:
-        """The same for one body and three coordinates: J q̈ = dΩ′/dt − dJ/dt q̇ − dj/dt."""
-        ((jacobian, shift, tensor, _),) = self.terms
+        """The same for three coordinates: W′ q̈ = dΩ′/dt − dW′/dt q̇."""
+        jacobian, tensor = self.jacobian, self.inertia
         back, below, size = jacobian.adjugate(), jacobian.det(), tensor.det()
-        slopes = jacobian.dt() @ self.q_dot + shift.dt()
+        slopes = jacobian.dt() @ self.q_dot
         inner = tensor.adjugate() @ turned(tensor, self.omega) + slopes.scale(size)
         if self.applied.is_zero():
             return back @ inner.scale(-self.ring.one), self.ring.reduce(size * below)
@@ -225,33 +182,22 @@ class LagrangeEquations(Flow):
             StateBlock(self.rates, *self.solved),
         )
 
-    def _half(self, *, shifted: bool = True, moved: bool = True) -> sp.Expr:
-        """½ Σ vᵀ I v, or its part in J q̇ or in j only, the squares kept."""
-        halves = []
-        for jacobian, shift, inertia, _ in self.terms:
-            moving = jacobian @ self.q_dot
-            velocity = (moving + shift if shifted else moving) if moved else shift
-            halves.append(half_form(self.present, inertia, velocity))
-        return sp.Add(*halves)
-
     @cached_property
     def kinetic(self) -> sp.Expr:
-        """T = ½ Σ vᵀ I v."""
-        return self._half()
+        """T = ½ Ω′ᵀ I′ Ω′, the squares kept."""
+        return half_form(self.present, self.inertia, self.omega)
 
     @cached_property
     def whole(self) -> sp.Expr:
-        """E = T + V; in a turning frame Jacobi's integral, T₂ − T₀ + V."""
-        if not self.forces.frame_rate:
-            return self.kinetic + self.potential
-        return self._half(shifted=False) - self._half(moved=False) + self.potential
+        """E = T + V."""
+        return self.kinetic + self.potential
 
     def _scalar(self, expression: sp.Expr) -> RingMatrix:
         return self.codec.column([expression])
 
     @cached_property
     def of_lagrange(self) -> RingMatrix:
-        """d/dt ∂T/∂q̇ − ∂T/∂q − (M q̈ + h − ∂V/∂q); not zero if the body rolls."""
+        """d/dt ∂T/∂q̇ − ∂T/∂q − (M q̈ + h − ∂V/∂q)."""
         turning = self.mass_matrix @ self.codec.column(self.accelerations)
         return self.momenta.dt() - self._slopes - turning - self.gyroscopic
 
@@ -261,18 +207,8 @@ class LagrangeEquations(Flow):
         return self.slopes(self.codec.encode(self.kinetic))
 
     @cached_property
-    def is_holonomic(self) -> bool:
-        return all(part.turns for part in self.moving) or self.of_lagrange.is_zero()
-
-    @cached_property
     def traits(self) -> frozenset[str]:
-        turns_frame = bool(self.forces.frame_rate)
-        traits = {
-            "parts": len(self.moving) > 1 or turns_frame,  # T is not E_R
-            "turning_frame": turns_frame,
-            "rolling": not self.is_holonomic,
-        }
-        return frozenset(self._shared_traits) | {t for t, holds in traits.items() if holds}
+        return frozenset(self._shared_traits)
 
     def energy_rate(self, value: sp.Expr) -> RingMatrix:
         """dE/dt − q̇·(M q̈ + h) − ∂V/∂t."""
@@ -290,14 +226,12 @@ class LagrangeEquations(Flow):
 
     @property
     def twice_quadratic(self) -> RingMatrix:
-        """Twice the part of T that is quadratic in the rates, as it is written."""
-        return self._scalar(2 * self._half(shifted=False))
+        """2T as it is written."""
+        return self._scalar(2 * self.kinetic)
 
     @cached_property
-    def coriolis(self) -> RingMatrix | None:
+    def coriolis(self) -> RingMatrix:
         """C q̇ = h − ∂V/∂q with the skew Ṁ − 2C, by Christoffel's symbols of M."""
-        if not self.is_holonomic or self.forces.frame_rate:
-            return None
         places = range(len(self.rates))
         half = self.ring.one / 2
         slope = {(i, j): self.slopes(self.mass_matrix[i, j]) for i in places for j in places}
@@ -326,17 +260,8 @@ class LagrangeEquations(Flow):
         return self.mass_matrix @ above + bias.scale(below)
 
     @property
-    def mass_and_forces(self) -> sp.ImmutableMatrix:
-        """(M, Q − h), from which q̈ follows by elimination."""
-        forces = self.codec.column(self.generalised) - self.bias
-        mass = self.present.matrix(self.mass_matrix)
-        return sp.ImmutableMatrix.hstack(mass, self.present.matrix(forces))
-
-    @property
-    def hamiltonian(self) -> sp.Expr | None:
+    def hamiltonian(self) -> sp.Expr:
         """H(q, p), with the momenta as inputs in a ring of their own."""
-        if not self.is_holonomic or self.forces.frame_rate:
-            return None
         return self._in_momenta(self.arguments["momenta"].symbols)
 
     @property
@@ -347,18 +272,10 @@ class LagrangeEquations(Flow):
 
     def _in_momenta(self, momenta: Sequence[sp.Expr]) -> sp.Expr:
         """½ pᵀ M⁻¹ p + V."""
-        entries = [e for part in self.moving for m in (part.jacobian, part.inertia) for e in m]
-        entries += [sp.Rational(1, 2), self.potential, *momenta]
+        entries = [*self._jacobian, *self.body.inertia, sp.Rational(1, 2), self.potential, *momenta]
         codec = codec_for([entry for entry in entries if entry != 0], order=0)
-        own = reduce(
-            add,
-            (
-                codec.matrix(part.jacobian).T
-                @ codec.matrix(part.inertia)
-                @ codec.matrix(part.jacobian)
-                for part in self.moving
-            ),
-        )
+        jacobian = codec.matrix(self._jacobian)
+        own = jacobian.T @ codec.matrix(self.body.inertia) @ jacobian
         p = codec.column(momenta)
         twice = p.T @ own.adjugate() @ p
         half = presenter_for(codec).matrix(twice, codec.encode(sp.Integer(2)) * own.det())
@@ -370,7 +287,7 @@ class LagrangeEquations(Flow):
         constant = {integral.name for integral in self.own_integrals()}
         names = [q.func.__name__ for q in self.model.coordinates]
         moving = [k for k, name in enumerate(names) if f"momentum_{name}" not in constant]
-        if not self.is_holonomic or len(moving) != 1 or self.forces.frame_rate:
+        if len(moving) != 1:
             return None
         (k,) = moving
         others = [q for j, q in enumerate(self.model.coordinates) if j != k]
@@ -421,8 +338,6 @@ class LagrangeEquations(Flow):
                 expression=self.whole,
                 proof=self.prove.vanishes(residual, claims.is_constant(claims.ENERGY)),
             )
-        if not self.is_holonomic:
-            return
         momenta = self.present.matrix(self.momenta)
         for k, q in enumerate(self.model.coordinates):
             applied = RingMatrix.of(self.ring, [self.applied.rows[k]])

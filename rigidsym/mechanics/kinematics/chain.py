@@ -34,7 +34,6 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from rigidsym.algebra.codec import Codec, codec_for
-from rigidsym.algebra.evaluate import RealValues
 from rigidsym.algebra.matrix import RingMatrix, hat as operator
 from rigidsym.algebra.witness import configurations
 from rigidsym.formula.reader import formula
@@ -50,7 +49,7 @@ Vector: TypeAlias = sp.ImmutableMatrix  # (3, 1)
 Matrix: TypeAlias = sp.ImmutableMatrix  # (3, 3)
 _CLOSED_FORM = 3  # turns whose inverse rates and singular places textbooks write out
 _ZERO, _ONE = sp.ImmutableMatrix(sp.zeros(3, 1)), sp.ImmutableMatrix(sp.eye(3))
-_ANGLE = time_function("angle_of_the_turn")
+ANGLE = time_function("angle_of_the_turn")
 
 
 def is_shorter(model: RotationModel) -> bool:
@@ -232,18 +231,94 @@ def _composition(
     return Composition(turn, conditions, passive=passive, comes_first=comes_first)
 
 
+def kinds_of(turns: Iterable[Turn], model: RotationModel) -> tuple[tuple[Turn, Conditions], ...]:
+    """The different axes with the conditions on them; all angles by one coordinate are alike."""
+    kinds = []
+    for turn in turns:
+        if isinstance(turn.angle, AppliedUndef):
+            turn = Turn(axis=turn.axis, components=turn.components, angle=ANGLE)
+        symbols = sp.Tuple(*turn.direction).free_symbols
+        bound = [c for c in model.constraints if not symbols.isdisjoint(c.free_symbols)]
+        conditions = Conditions("a turn", tuple(bound), example=model.example)
+        kinds.append((turn, conditions if bound else Conditions("a turn")))
+    return tuple(dict.fromkeys(kinds))
+
+
 # A chain of turns
 
 
-class Chain(Workspace):
-    """The rotation and the angular velocity of a product of turns, in names for their parts."""
+class Names:
+    """Symbols for parts of the expressions about one model, each defined by those before it."""
 
     def __init__(self, model: RotationModel) -> None:
         self.model = model
-        self._groups: dict[str, dict[sp.Symbol, sp.Expr]] = {}
+        self._meanings: dict[sp.Symbol, sp.Expr] = {}
         self._named: dict[str, tuple[sp.ImmutableMatrix, sp.MatrixBase]] = {}  # and its value
         plain = {q.func.__name__ for q in model.coordinates}
         self._taken = plain | {constant.name for constant in model.constants}
+
+    def define(self, name: str, value: sp.Expr) -> sp.Expr:
+        """A symbol for the value; a number, an input or a sine of one stays as it is."""
+        plain = value.as_coeff_Mul()[1]
+        if plain.is_Atom or plain.is_Function or plain.is_Derivative:
+            return value
+        while name in self._taken:
+            name += "_"
+        self._taken.add(name)
+        symbol = sp.Symbol(name)
+        self._meanings[symbol] = value
+        return symbol
+
+    def named(self, group: str, matrix: sp.MatrixBase) -> sp.ImmutableMatrix:
+        """The matrix with a name for each entry that is worth one, group_1 or group_12."""
+        places = product(range(1, matrix.rows + 1), range(1, matrix.cols + 1))
+        entries = [
+            self.define(f"{group}_{row}" + (str(column) if matrix.cols > 1 else ""), entry)
+            for (row, column), entry in zip(places, matrix, strict=True)
+        ]
+        names = sp.ImmutableMatrix(*matrix.shape, entries)
+        self._named[group] = names, matrix
+        return names
+
+    def opened(self, group: str) -> list[sp.Expr]:
+        """The entries of a named matrix, by their definitions as they are printed."""
+        return list(map(self.printed, *self._named[group]))
+
+    def printed(self, name: sp.Expr, value: sp.Expr) -> sp.Expr:
+        """The definition of a name as it is printed; of a value that has none, the value."""
+        return value if name == value else self._meanings[name]
+
+    def definitions_of(self, expressions: Iterable[sp.Basic]) -> tuple[Definition, ...]:
+        """The definitions that expressions rest on, each in inputs and those before it."""
+        needed = set().union(*(e.free_symbols for e in expressions)) & self._meanings.keys()
+        for symbol in reversed(self._meanings):
+            if symbol in needed:
+                needed |= self._meanings[symbol].free_symbols & self._meanings.keys()
+        return tuple(Definition(s, value) for s, value in self._meanings.items() if s in needed)
+
+    def vanish(self, entries: Sequence[sp.Expr], claim: Formula) -> Proof:
+        """The proof that expressions are zero, whatever the names in them stand for."""
+        symbols = set().union(*(entry.free_symbols for entry in entries))
+        bound = [c for c in self.model.constraints if not symbols.isdisjoint(c.free_symbols)]
+        codec = codec_for(entries, constraints=bound)
+        return Prover(self.model, codec).vanishes(codec.column(entries), claim)
+
+    def is_nonzero(self, value: sp.Expr) -> bool:
+        """Whether bounds on the value at one point do not contain zero."""
+        definitions, model = self.definitions_of([value]), self.model
+        parts = (*(d.expression for d in definitions), value)
+        points = configurations(model.name, model.constraints, parts, model.example)
+        work = points[0].intervals(parts)
+        for symbol, expression in definitions:
+            work.set(symbol, work(expression))
+        return 0 not in work(value)
+
+
+class Chain(Names, Workspace):
+    """The rotation and the angular velocity of a product of turns, in names for their parts."""
+
+    def __init__(self, model: RotationModel) -> None:
+        super().__init__(model)
         self.arguments = {argument.name: argument for argument in arguments_of(model)}
         self.angles = [turn.angle for turn in model.turns]
         self.axes = [sp.ImmutableMatrix(turn.direction) for turn in model.turns]
@@ -257,46 +332,6 @@ class Chain(Workspace):
     @cached_property
     def traits(self) -> frozenset[str]:
         return traits_of(self.model) | {"chain"}
-
-    # Names
-
-    def definitions_of(self, expressions: Iterable[sp.Basic]) -> tuple[Definition, ...]:
-        """The definitions that expressions rest on, each in inputs and those before it."""
-        groups = self._groups.values()
-        known = {symbol: value for group in groups for symbol, value in group.items()}
-        needed = {s for e in expressions for s in e.free_symbols if s in known}
-        for symbol in reversed(known):
-            if symbol in needed:
-                needed |= known[symbol].free_symbols & known.keys()
-        return tuple(Definition(s, value) for s, value in known.items() if s in needed)
-
-    def named(self, group: str, matrix: sp.MatrixBase) -> sp.ImmutableMatrix:
-        """The matrix with a name for each entry that is worth one, group_1 or group_12."""
-        places = product(range(1, matrix.rows + 1), range(1, matrix.cols + 1))
-        entries = [
-            self.define(f"{group}_{row}" + (str(column) if matrix.cols > 1 else ""), entry, group)
-            for (row, column), entry in zip(places, matrix, strict=True)
-        ]
-        found = sp.ImmutableMatrix(*matrix.shape, entries)
-        self._named[group] = found, matrix
-        return found
-
-    def define(self, name: str, value: sp.Expr, group: str = "") -> sp.Expr:
-        """A symbol for the value; a number, an input or a sine of one stays as it is."""
-        plain = value.as_coeff_Mul()[1]
-        if plain.is_Atom or plain.is_Function or plain.is_Derivative:
-            return value
-        while name in self._taken:
-            name += "_"
-        self._taken.add(name)
-        symbol = sp.Symbol(name)
-        self._groups.setdefault(group or name, {})[symbol] = value
-        return symbol
-
-    def opened(self, group: str) -> list[sp.Expr]:
-        """The entries of a named matrix, by their definitions as they are printed."""
-        own = self._groups.get(group, {})
-        return [own.get(entry, entry) for entry in self._named[group][0]]
 
     # The compositions, from the first turn to the last or the other way round
 
@@ -331,7 +366,7 @@ class Chain(Workspace):
         )
 
     @cached_property
-    def _from_body(self) -> list[Vector]:
+    def velocities_body(self) -> list[Vector]:
         """w₀ = 0, w₁, ..., wₙ."""
         return self._each(
             "w", lambda k, w: velocity(self.turns[k].T, self.axes[k] * self.speeds[k], w)
@@ -343,7 +378,7 @@ class Chain(Workspace):
 
     @cached_property
     def omega_body(self) -> Vector:
-        return self._from_body[-1]
+        return self.velocities_body[-1]
 
     @cached_property
     def alpha_space(self) -> Vector:
@@ -358,7 +393,7 @@ class Chain(Workspace):
     @cached_property
     def alpha_body(self) -> Vector:
         """ẇₙ."""
-        w = self._from_body
+        w = self.velocities_body
         return self._each(
             "dw", lambda k, dw: acceleration(self.turns[k].T, *self._gained(k, -w[k + 1]), dw)
         )[-1]
@@ -430,8 +465,8 @@ class Chain(Workspace):
 
         None if W has not rank 3 anywhere we look.
         """
+        matrix = self.rate_matrix(frame)
         if frame not in self._rows and self._is_regular:
-            matrix = self.rate_matrix(frame)
             r1, r2, r3 = (matrix.row(k) for k in range(3))
             d1 = self.define(f"d1_{frame}", r1.dot(r1))
             l21 = self.define(f"l21_{frame}", r2.dot(r1) / d1)
@@ -463,25 +498,9 @@ class Chain(Workspace):
     @cached_property
     def _is_regular(self) -> bool:
         """Whether det W Wᵀ is proved not to be zero at some point."""
-        model = self.model
-        if len(model.coordinates) < 3:
-            return False
-        parts = tuple(e for turn in model.turns for e in (turn.angle, *turn.direction))
-        found = configurations(model.name, model.constraints, parts, model.example)
-        return any(0 not in self._determinant(each.intervals(parts)) for each in found)
-
-    def _determinant(self, work: RealValues) -> Any:
-        """Bounds on det W Wᵀ at one point, from the turns themselves."""
-        matrix, before = work.context.matrix, work.context.eye(3)
-        rates = {q: matrix([0, 0, 0]) for q in self.model.coordinates}
-        for turn in self.model.turns:
-            axis = before * matrix([work(entry) for entry in turn.direction])
-            for q in turn.angle.atoms(AppliedUndef):
-                rates[q] += axis * work(sp.diff(turn.angle, q))
-            before *= matrix([[work(entry) for entry in row] for row in turn.matrix.tolist()])
-        gram = sum((column * column.T for column in rates.values()), matrix(3, 3))
-        (a, b, c), (_, d, e), (_, _, f) = gram.tolist()
-        return a * (d * f - e * e) - b * (b * f - e * c) + c * (b * e - d * c)
+        matrix = self.rate_matrix("space")
+        first, second, third = ((matrix * matrix.T).col(k) for k in range(3))
+        return matrix.cols >= 3 and self.is_nonzero(first.cross(second).dot(third))
 
     # Steps
 
@@ -507,19 +526,11 @@ class Chain(Workspace):
 
     @cached_property
     def _compositions(self) -> tuple[Composition, ...]:
-        """Each kind of turn before and behind any rotation; all angles by a coordinate are one."""
-        found = []
-        for turn in self.model.turns:
-            if isinstance(turn.angle, AppliedUndef):
-                turn = Turn(axis=turn.axis, components=turn.components, angle=_ANGLE)
-            symbols = sp.Tuple(*turn.direction).free_symbols
-            bound = [c for c in self.model.constraints if not symbols.isdisjoint(c.free_symbols)]
-            conditions = Conditions("a turn", tuple(bound), example=self.model.example)
-            found.append((turn, conditions if bound else Conditions("a turn")))
-        passive = self.model.passive
+        """Each kind of turn before and behind any rotation."""
+        kinds = kinds_of(self.model.turns, self.model)
         return tuple(
-            _composition(turn, conditions, passive, comes_first)
-            for turn, conditions in dict.fromkeys(found)
+            _composition(turn, conditions, self.model.passive, comes_first)
+            for turn, conditions in kinds
             for comes_first in (True, False)
         )
 
@@ -529,7 +540,7 @@ class Chain(Workspace):
             pairs = zip(self.opened(group), value, strict=True)
             differences = [printed - entry for printed, entry in pairs if printed != entry]
             if differences:
-                yield self._vanish(differences, claim)
+                yield self.vanish(differences, claim)
 
     def _inverts(self, frame: str, claim: Formula) -> list[Proof]:
         """W Uᵀ D⁻¹ L⁻¹ = G L⁻ᵀ D⁻¹ L⁻¹, which is 1 if G = L D Lᵀ."""
@@ -544,15 +555,9 @@ class Chain(Workspace):
                 # the rows of U; their products are those of the rows of W that G = L D Lᵀ is about
                 r1, r2, r3 = given.col(j)
                 first, second = r2 - l21 * r1, r3 - l31 * r1 - l32 * u2[j]
-                proofs.append(self._vanish([opened2[j] - first, opened3[j] - second], claim))
+                proofs.append(self.vanish([opened2[j] - first, opened3[j] - second], claim))
             self._factored[frame] = proofs
         return self._factored[frame]
-
-    def _vanish(self, entries: list[sp.Expr], claim: Formula) -> Proof:
-        symbols = {symbol for entry in entries for symbol in entry.free_symbols}
-        bound = [c for c in self.model.constraints if not symbols.isdisjoint(c.free_symbols)]
-        codec = codec_for(entries, constraints=bound)
-        return Prover(self.model, codec).vanishes(codec.column(entries), claim)
 
 
 class OrthogonalRows(NamedTuple):

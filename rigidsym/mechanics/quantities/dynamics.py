@@ -21,7 +21,7 @@ EFFECTIVE = formula(r"V_{\mathrm{eff}}")
 ENERGY = formula("E")
 MOTION = "motion"  # section of the note
 DRIVING = formula(r"\frac{\partial V}{\partial t}")
-_PARTS, _TURNING, _EULER = "parts", "turning_frame", "euler"  # traits
+_PARTS, _TREE, _EULER = "parts", "tree", "euler"  # traits
 _FREE = "no_potential"
 _ENERGY: dict[str, Any] = {"unit": "J", "shape": "scalar", "section": MOTION}
 
@@ -42,7 +42,7 @@ lagrangian = Quantity(
     inputs=("q", "q_dot"),
     definition=formula("E_R - V"),
     source=SOURCES["Goldstein 1.4"],
-    value=lambda k: k.kinetic - k.forces.potential if k.is_holonomic else None,
+    value=lambda k: k.kinetic - k.forces.potential,
     reason="fixed_point",
     is_result=True,
     variants=(
@@ -78,8 +78,6 @@ energy = Quantity(
         when(_FREE, definition=formula("E_R")),
         when(_PARTS, definition=formula("T + V")),
         when(_PARTS, _FREE, definition=formula("T")),
-        when(_TURNING, definition=formula("T_2 - T_0 + V"), reason="jacobi_integral"),
-        when(_TURNING, _FREE, definition=formula("T_2 - T_0")),
         when(
             _EULER,
             inputs=("q", "omega_body"),
@@ -105,7 +103,7 @@ generalised_momenta = Quantity(
     shape="vector",
     definition=formula(r"\W'^T\I'\Om'"),
     source=SOURCES["Goldstein 8.1"],
-    value=lambda k: k.momenta if k.is_holonomic else None,
+    value=lambda k: k.momenta,
     laws=_slopes("E_R"),
     reason="slopes_by_rates",
     section=MOTION,
@@ -132,7 +130,12 @@ mass_matrix = Quantity(
     section=MOTION,
     variants=(
         when(_PARTS, definition=formula(r"\sum \J^T\I\J"), laws=_form("T")),
-        when(_TURNING, laws=_form("T_2"), reason="quadratic_part"),
+        when(
+            _TREE,
+            reason="composite_inertia",
+            recursion=r"\left(\n_i\cdot\T_{i+1}\ldots\T_j\,\J_j\,\n_j\right)_{i\le j}, \quad "
+            r"\J_k = \I_k + \sum \T_{k+1}\,\J_{k+1}\,\T_{k+1}^T",
+        ),
     ),
 )
 
@@ -160,7 +163,12 @@ bias_vector = Quantity(
     section=MOTION,
     variants=(
         when(_PARTS, laws=_rest("T", r"\M\ddot\q + \h - \frac{\partial V}{\partial\q}")),
-        when("rolling", laws=(), reason="possible_rolling"),
+        when(
+            _TREE,
+            reason="recursion_of_torques",
+            recursion=r"\left(\n_k\cdot\N_k\right)_k + \frac{\partial V}{\partial\q}, \quad "
+            r"\N_k = \I_k\,\a_k + \w_k\times\I_k\,\w_k + \sum \T_{k+1}\,\N_{k+1}",
+        ),
     ),
 )
 
@@ -181,6 +189,7 @@ coriolis_matrix = Quantity(
             lambda k, x: k.skew_part(x) + k.skew_part(x).T,
         ),
     ),
+    without="it is written only for one body with at most four turns",
     reason="christoffel",
     section=MOTION,
 )
@@ -199,6 +208,13 @@ accelerations = Quantity(
     reason="solved",
     section=MOTION,
     is_result=True,
+    variants=(
+        when(
+            _TREE,
+            reason="factorised",
+            recursion=r"\left(\L\,\D\,\L^T\right)^{-1}\left(\Q - \h\right)",
+        ),
+    ),
 )
 
 hamiltonian = Quantity(
@@ -210,6 +226,7 @@ hamiltonian = Quantity(
     source=SOURCES["Goldstein 8.1"],
     value=lambda k: k.hamiltonian,
     laws=(law("H = E", lambda k, _: (k.energy_by_momenta, k.mass_matrix.det())),),
+    without="it is written only for one body with at most four turns",
     reason="energy_in_momenta",
 )
 
@@ -220,6 +237,7 @@ effective_potential = Quantity(
     inputs=("q", "momenta"),
     source=SOURCES["Goldstein 5.7"],
     value=lambda k: None if k.single is None else k.effective,
+    without="all generalised momenta but one have to be constant, for one body",
     reason="hamiltonian_at_rest",
 )
 

@@ -146,11 +146,6 @@ class MotionFacts:
         return [MovingFacts(part) for part in self.derivation.forces.parts]
 
     @property
-    def frame_rate(self) -> tuple[sp.Expr, ...]:
-        assert self.derivation.forces is not None
-        return tuple(self.derivation.forces.frame_rate or ())
-
-    @property
     def is_of_angular_velocity(self) -> bool:
         """Whether Ω′ takes the place of the rates: Euler's equations."""
         return "torque_body" in {step.quantity.name for step in self.derivation.steps}

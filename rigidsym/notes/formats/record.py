@@ -136,7 +136,7 @@ def _motion(derivation: Derivation) -> dict[str, Any]:
     acting, groups = derivation.forces, {argument.name for argument in derivation.arguments}
     if acting is None or "momenta" not in groups:
         return {}
-    if acting.depend_on_time or acting.parts or acting.frame_rate:
+    if acting.depend_on_time or derivation.definitions:
         return {}
     torque = acting.torque or (sp.S.Zero,) * 3
     if any(component.has(*OMEGA_BODY) for component in torque):
