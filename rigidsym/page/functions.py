@@ -1,4 +1,4 @@
-"""The functions of a live page: R, Ω, Ω′, the margin, the turns, the constraints and the motion."""
+"""The functions of a live page: live quantities, the margin, the turns, constraints, the motion."""
 
 from __future__ import annotations
 
@@ -7,122 +7,127 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
+from rigidsym.formula.tree import Symbol
 from rigidsym.kernels.ir import Kernel
 from rigidsym.kernels.lowering.lower import lower
 from rigidsym.kernels.targets import javascript
-from rigidsym.mechanics.derivation import Derivation, FirstIntegral, Step
+from rigidsym.mechanics.derivation import Derivation, FirstIntegral, Quantity, Step
 from rigidsym.mechanics.derive import derive as derivation_of
+from rigidsym.mechanics.quantities.dynamics import MOTION
 from rigidsym.models.body import RigidBody
 from rigidsym.models.rotation import RotationModel
-from rigidsym.page.stage import has_turns, step_of, turns_step
+from rigidsym.notes.figure.scene import MOST_TURNS
 
-SHOWN = ("rotation_matrix", "angular_velocity_space", "angular_velocity_body")
-FLOW = ("state_derivative", "first_integrals")
-CONDITIONS = ("conditions", "condition_slopes")
-
+OF_THE_FIGURE = ("rotation_matrix", "angular_velocity_space", "angular_velocity_body")
 _WITH_A_MARGIN = "rate_matrix_space"
+_FLOW = ("state_derivative", "first_integrals")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Functions:
-    """The kernels of a page, and their text."""
+    """The kernels of a page, and what they are made from."""
 
-    derivation: Derivation  # of the quantities shown
+    derivation: Derivation  # of all functions
+    live: tuple[Step, ...]  # the quantities whose values the page shows
     kernels: tuple[Kernel, ...]
     integrals: tuple[FirstIntegral, ...] = ()  # of the equations of motion
 
     @property
-    def steps(self) -> tuple[Step, ...]:
-        """The steps of the quantities shown."""
-        return tuple(step for step in self.derivation.steps if step.quantity.name in SHOWN)
+    def is_motion(self) -> bool:
+        """Whether the equations of motion are integrated; else the rates are constant."""
+        return any(kernel.name == _FLOW[0] for kernel in self.kernels)
 
     @property
     def second(self) -> str:
         """What is beside q in the state y: the rates, or Ω′ of a motion in Euler's form."""
-        arguments = {a.name: a for a in self.derivation.arguments}
-        if "y" not in arguments or arguments["y"].names[-3:] != arguments["omega_body"].names:
-            return "q_dot"
-        return "omega_body" if self.is_motion else "q_dot"
+        names = {argument.name: argument.names for argument in self.derivation.arguments}
+        is_euler = self.is_motion and names["y"][-3:] == names["omega_body"]
+        return "omega_body" if is_euler else "q_dot"
 
     @property
-    def is_motion(self) -> bool:
-        """Whether the equations of motion are integrated; else the rates are constant."""
-        return any(kernel.name == FLOW[0] for kernel in self.kernels)
-
-    @property
-    def constants(self) -> tuple[sp.Symbol, ...]:
+    def constants(self) -> tuple[sp.Expr, ...]:
         """The constants in the order of the functions."""
-        constants = [a.symbols for a in self.derivation.arguments if a.name == "parameters"]
-        return tuple(constants[0]) if constants else ()
-
-    @property
-    def symbols(self) -> set[sp.Basic]:
-        """What the functions depend on."""
-        steps = self.derivation.steps
-        return {symbol for step in steps for symbol in step.expression.free_symbols}
+        arguments = self.derivation.arguments
+        return next((a.symbols for a in arguments if a.name == "parameters"), ())
 
     @property
     def source(self) -> str:
         return javascript.bare(self.kernels)
 
     @property
-    def arguments(self) -> dict[str, tuple[str, ...]]:
+    def inputs(self) -> dict[str, tuple[str, ...]]:
         """The vectors that each function takes."""
         return {k.name: tuple(argument.name for argument in k.arguments) for k in self.kernels}
 
 
+def is_live(quantity: Quantity) -> bool:
+    """Whether the page shows it: a result that changes with the orientation and its rates."""
+    is_moved = {"q"} <= {*quantity.inputs} <= {"q", "q_dot", "parameters"}
+    is_shown = quantity.shape != "matrix" and quantity.section != MOTION  # the motion is played
+    return quantity.name in OF_THE_FIGURE or (quantity.is_result and is_moved and is_shown)
+
+
 def functions_of(derivation: Derivation) -> Functions:
     """All functions that the page of a derivation evaluates."""
-    names = (*SHOWN, _WITH_A_MARGIN)
-    if {step.quantity.name for step in derivation.steps}.issuperset(names):
-        shown = replace(derivation.select(names), body=None, forces=None)
-    else:
-        shown = derivation_of(derivation.model, names)
-    whole = {argument.name: argument for argument in (*shown.arguments, *derivation.arguments)}
-    flow = tuple(derivation.step(name) for name in FLOW if name in derivation.functions)
-    flow += tuple(_moments(derivation)) if flow else ()
-    steps = tuple(replace(s, number=0) for s in (*shown.steps, *_more(shown), *flow))
-    shown = replace(shown, arguments=tuple(whole.values()), steps=steps, functions={})
-    program = lower(shown, javascript.RESERVED)
+    needed = (*OF_THE_FIGURE, _WITH_A_MARGIN)
+    whole = derivation
+    if not {step.quantity.name for step in derivation.steps}.issuperset(needed):
+        whole = derivation_of(derivation.model, needed)
+    live = tuple(step for step in whole.steps if is_live(step.quantity))
+    arguments = {argument.name: argument for argument in (*whole.arguments, *derivation.arguments)}
+    flow = tuple(derivation.step(name) for name in _FLOW if name in derivation.functions)
+    steps = (*live, whole.step(_WITH_A_MARGIN), *_more(derivation), *flow)
+    merged = replace(
+        whole.select(needed),
+        body=None,
+        forces=None,
+        arguments=tuple(arguments.values()),
+        steps=tuple(replace(step, number=0) for step in steps),
+        functions={},
+    )
+    kernels = lower(merged, javascript.RESERVED).kernels
     return Functions(
-        derivation=shown,
-        kernels=tuple(k for k in program.kernels if k.name != _WITH_A_MARGIN),
+        derivation=merged,
+        live=live,
+        kernels=tuple(kernel for kernel in kernels if kernel.name != _WITH_A_MARGIN),
         integrals=derivation.first_integrals if flow else (),
     )
 
 
+def has_turns(model: RotationModel) -> bool:
+    """Whether the figure shows the turns one by one; else the single turn that R is."""
+    return 1 <= len(model.turns) <= MOST_TURNS
+
+
 def moments_of(body: RigidBody | None) -> tuple[sp.Expr, ...]:
     """The principal moments, if the axes of the body are principal axes."""
-    if body is None or not body.inertia.is_diagonal():
-        return ()
-    return tuple(body.inertia.diagonal())
+    return tuple(body.inertia.diagonal()) if body and body.inertia.is_diagonal() else ()
 
 
-def _moments(derivation: Derivation) -> Iterator[Step]:
-    """The principal moments, if they depend on constants."""
-    moments = sp.Matrix(moments_of(derivation.body))
-    if moments.free_symbols:
-        step = step_of("moments", moments, "principal moments", (), derivation.model)
-        yield replace(step, quantity=step.quantity._replace(inputs=("parameters",)))
+def _function(name: str, matrix: sp.MatrixBase, about: str, inputs: tuple[str, ...]) -> Step:
+    """A function that is evaluated like the quantities, but is in no note."""
+    quantity = Quantity(name=name, symbol=Symbol(name), about=about, inputs=inputs)
+    return Step(quantity=quantity, expression=matrix.as_immutable())
 
 
 def _more(derivation: Derivation) -> Iterator[Step]:
-    model = derivation.model
+    """The turns, the constraints on the inputs with their slopes, and moments with constants."""
+    model, moments = derivation.model, sp.Matrix(moments_of(derivation.body))
+    constants = ("parameters",) if model.constants else ()
     if has_turns(model):
-        yield turns_step(model)
-    bound = sp.Matrix(_conditions(model))
-    if bound:
-        inputs = [*model.coordinates, *model.constants]
-        yield step_of(CONDITIONS[0], bound, "constraints, which vanish", ("q",), model)
-        slopes = bound.jacobian(inputs)
-        yield step_of(
-            CONDITIONS[1], slopes, "derivatives of the constraints by all inputs", ("q",), model
+        rows = sp.Matrix([[*turn.direction, turn.angle, turn.rate] for turn in model.turns])
+        about = "axis, angle and rate of each turn, one turn a row"
+        yield _function("turns", rows, about, ("q", "q_dot", *constants))
+    conditions = sp.Matrix(model.constraints)
+    if model.pullback is not None:  # of a matrix: R Rᵀ = 1
+        excess = model.matrix * model.matrix.T - sp.eye(3)
+        conditions = sp.Matrix([excess[i, j] for i in range(3) for j in range(i, 3)])
+    if conditions:
+        slopes, inputs = (
+            conditions.jacobian([*model.coordinates, *model.constants]),
+            ("q", *constants),
         )
-
-
-def _conditions(model: RotationModel) -> tuple[sp.Expr, ...]:
-    """The constraints on the inputs; R Rᵀ = 1 if they are those of a matrix."""
-    if model.pullback is None:
-        return model.constraints
-    left_over = model.matrix * model.matrix.T - sp.eye(3)
-    return tuple(left_over[i, j] for i in range(3) for j in range(i, 3))
+        yield _function("conditions", conditions, "constraints, which vanish", inputs)
+        yield _function("condition_slopes", slopes, "their derivatives by all inputs", inputs)
+    if moments.free_symbols:
+        yield _function("moments", moments, "principal moments", ("parameters",))

@@ -1,8 +1,11 @@
-"""The scene of the live figure as data: the note's, or the single turn of any other rotation."""
+"""What the figure of a page shows, as data: the scene of the note, and the body."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
+from functools import cache
+from math import atan2, floor, pi
 from typing import Any
 
 import sympy as sp
@@ -11,19 +14,34 @@ from rigidsym.algebra import generators
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import NOTHING, Formula, Numeral, Symbol
-from rigidsym.mechanics.derivation import Quantity, Step
+from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.quantities.kinematics import SPACE
+from rigidsym.models.body import Composite, Part
 from rigidsym.models.rotation import AXES, RotationModel
+from rigidsym.models.solids import shaped
+from rigidsym.notes.figure.body_mesh import RED, Color, Face, Shape, meshed, own_shape
 from rigidsym.notes.figure.camera import STANDARD, Vector
-from rigidsym.notes.figure.scene import BODY, MOST_TURNS, RADII, Scene, scene_of, turns_of
+from rigidsym.notes.figure.scene import BODY, RADII, Scene, scene_of, turns_of
 from rigidsym.notes.formats.drawings import as_in_formulas
+from rigidsym.page.functions import Functions, has_turns, moments_of
 
-_AZIMUTH, _ELEVATION = 35, 22  # degrees, where the note has no figure
-
-
-def has_turns(model: RotationModel) -> bool:
-    """Whether the figure shows the turns one by one; else the single turn that R is."""
-    return 1 <= len(model.turns) <= MOST_TURNS
+_AZIMUTH, _ELEVATION = 35, 22  # degrees, if the note has no figure
+_SLAB = [1.25, 0.8, 1.75]  # moments of the body of a page without one: three different edges
+_WHITE = (246, 244, 238)
+_SECTORS = 8  # of a top, red and white
+_SOLIDS = {  # solids of the library with their lengths and positions
+    "top": (
+        ("frustum", (0.02, 0.46, 0.66), (0, 0, 0)),
+        ("frustum", (0.46, 0.06, 0.2), (0, 0, 0.66)),
+        ("cylinder", (0.06, 0.36), (0, 0, 1.04)),
+    ),
+    "aircraft": (
+        ("box", (0.32, 1.9, 0.04), (0.05, 0, 0)),
+        ("box", (0.2, 0.7, 0.04), (-0.8, 0, 0)),
+        ("ellipsoid", (0.95, 0.14, 0.14), (0, 0, 0)),
+        ("box", (0.22, 0.04, 0.36), (-0.8, 0, 0.2)),
+    ),
+}
 
 
 def shown_angles(model: RotationModel, letters: Letters) -> dict[sp.Expr, float]:
@@ -41,18 +59,17 @@ def stage_of(model: RotationModel, letters: Letters) -> dict[str, Any]:
     holds the positions of its components among the coordinates, and `angle` that of the angle.
     """
     scene = scene_of(model, letters)
-    view = scene.view if scene else None
-    named = letters.notation.applied
     angles = {turn.angle for turn in turns_of(model)} if model.vector else set()
     return {
-        "azimuth": view.azimuth if view else _AZIMUTH,
-        "elevation": view.elevation if view else _ELEVATION,
-        "rays": [*(_rays_of(scene) if scene else _rays(model, letters))],
+        "azimuth": scene.view.azimuth if scene else _AZIMUTH,
+        "elevation": scene.view.elevation if scene else _ELEVATION,
+        "up": -1 if model.z_down else 1,
+        "rays": [*_rays(model, scene, letters)],
         "turns": [*_turns(model, scene, letters)],
         "letters": AXES,
         "vector": [*map(model.coordinates.index, model.vector)],
         "angle": next((k for k, q in enumerate(model.coordinates) if q in angles), None),
-        "omega": label(named(SPACE.omega)),
+        "omega": label(letters.notation.applied(SPACE.omega)),
     }
 
 
@@ -61,24 +78,17 @@ def label(symbol: Formula) -> str:
     return as_in_formulas(symbol.text.replace("\u20d7", ""))
 
 
-def rate_of(angle: sp.Expr, letters: Letters) -> Formula:
-    """The rate of the angle of a turn: φ̇."""
-    return formula_of(generators.rate_of(angle), letters)
-
-
-def _rays_of(scene: Scene) -> Iterator[dict[str, Any]]:
-    for ray in scene.rays:
-        is_axis = ray.kind in ("node", "vector")
-        yield _ray(ray.kind, ray.name, ray.frame, None if is_axis else ray.direction)
-
-
-def _rays(model: RotationModel, letters: Letters) -> Iterator[dict[str, Any]]:
-    """Those of axes that are not numbers, or of the single turn that R is."""
+def _rays(model: RotationModel, scene: Scene | None, letters: Letters) -> Iterator[dict[str, Any]]:
+    """Those of the scene; or those of axes that are not numbers, or of the one turn that R is."""
+    if scene:
+        for ray in scene.rays:
+            is_axis = ray.kind in ("node", "vector")
+            yield _ray(ray.kind, ray.name, ray.frame, None if is_axis else ray.direction)
+        return
     count = len(model.turns) if has_turns(model) else 1
-    for name, direction in zip(AXES, STANDARD, strict=True):
+    for name, primed, direction in zip(AXES, BODY, STANDARD, strict=True):
         yield _ray("space", Symbol(name), 0, direction)
-    for axis, direction in zip(BODY, STANDARD, strict=True):
-        yield _ray("body", letters.notation.applied(axis), count, direction)
+        yield _ray("body", letters.notation.applied(primed), count, direction)
     for k in range(count):
         axis = Symbol("N", index=Numeral(str(k + 1))) if has_turns(model) else Symbol("e", "bold")
         yield _ray("node", axis, k, None)
@@ -93,34 +103,83 @@ def _turns(model: RotationModel, scene: Scene | None, letters: Letters) -> Itera
     turns = turns_of(model) if has_turns(model) or scene else ()
     starts = [turn.start for turn in scene.turns] if scene and model.turns else [None] * len(turns)
     for turn, start, radius in zip(turns, starts, RADII, strict=False):
-        rate = rate_of(turn.angle, letters) if model.turns else NOTHING
+        rate = formula_of(generators.rate_of(turn.angle), letters) if model.turns else NOTHING
         name = label(formula_of(turn.angle, letters))
         yield {"name": name, "rate_name": label(rate), "start": start, "radius": radius}
     if not turns:
         yield {"name": "", "rate_name": "", "start": None, "radius": RADII[0]}
 
 
-def turns_step(model: RotationModel) -> Step:
-    """The function of the axis, the angle and the rate of each turn."""
-    rows = [[*turn.direction, turn.angle, turn.rate] for turn in model.turns]
-    about = "axis, angle and rate of each turn, one turn a row"
-    return step_of("turns", sp.ImmutableMatrix(rows), about, ("q", "q_dot"), model)
+# The body
 
 
-def step_of(
-    name: str, matrix: sp.MatrixBase, about: str, inputs: tuple[str, ...], model: RotationModel
-) -> Step:
-    """A function that is evaluated like the quantities but is in no note."""
-    quantity = quantity_of(name, about, (*inputs, "parameters") if model.constants else inputs)
-    return Step(quantity=quantity, expression=matrix.as_immutable())
+def body_of(derivation: Derivation, functions: Functions) -> dict[str, Any]:
+    """`body` is the shape, `moments` are those of a cuboid that the script draws in its place.
+
+    A known shape is drawn as it is. A motion of which only the principal moments are known is that
+    of a cuboid with these moments, or of a top on its tip.
+    """
+    moments, own = moments_of(derivation.body), own_shape(derivation.body)
+    axes = [turn.axis for turn in derivation.model.turns]
+    is_about_z = len(axes) == 3 and axes[0] == axes[2] == "z"
+    if not own and is_about_z and (not functions.is_motion or _is_top(derivation)):
+        own = body_of_page("top")
+    elif not own and axes in (["z", "y", "x"], ["x", "y", "z"]) and not functions.is_motion:
+        own = body_of_page("aircraft", z_down=derivation.model.z_down)
+    if own:
+        return {"body": as_data(own)}
+    if not functions.is_motion:
+        return {"moments": _SLAB}
+    is_evaluated = any(kernel.name == "moments" for kernel in functions.kernels)
+    return {"moments": None if is_evaluated else [*map(float, moments)]} if moments else {}
 
 
-def quantity_of(name: str, about: str, inputs: tuple[str, ...]) -> Quantity:
-    return Quantity(
-        name=name,
-        symbol=Symbol(name),
-        definition=NOTHING,
-        about=about,
-        unit="",
-        inputs=inputs,
+def _is_top(derivation: Derivation) -> bool:
+    """Whether a weight is on the axis of symmetry, so that the angle about it is cyclic."""
+    moments, forces = moments_of(derivation.body), derivation.forces
+    conserved = {integral.name for integral in derivation.first_integrals}
+    is_heavy = forces is not None and forces.potential != 0
+    last = derivation.model.coordinates[-1].func.__name__
+    return is_heavy and moments[:1] == moments[1:2] and f"momentum_{last}" in conserved
+
+
+def _sector(face: Face) -> int:
+    x, y, _ = map(sum, zip(*face.corners, strict=True))
+    return floor(_SECTORS * atan2(y, x) / (2 * pi))
+
+
+@cache
+def body_of_page(name: str, *, z_down: bool = False) -> Shape:
+    """A top on its tip, about z′, or an aircraft: nose along x′, wings along y′, fin up."""
+    flip = -1 if z_down else 1
+    parts = (
+        Part(
+            what=shaped(solid, [*map(sp.Float, lengths)], density=sp.S.One),
+            at=sp.ImmutableMatrix([x, y, flip * z]),
+        )
+        for solid, lengths, (x, y, z) in _SOLIDS[name]
     )
+    shape = meshed(Composite(parts=tuple(parts)), {})
+    if name != "top":
+        return shape
+    # the sectors show the spin
+    return tuple(replace(face, color=(RED, _WHITE)[_sector(face) % 2]) for face in shape)
+
+
+def as_data(shape: Shape) -> dict[str, Any]:
+    """The shape by indices: points, colours, and faces as [colour, corner, corner, ...]."""
+    points: dict[Vector, int] = {}
+    colors: dict[Color, int] = {}
+    faces = [
+        [
+            colors.setdefault(face.color, len(colors)),
+            *(points.setdefault(_rounded(p), len(points)) for p in face.corners),
+        ]
+        for face in shape
+    ]
+    return {"points": [*points], "colors": [*colors], "faces": faces}
+
+
+def _rounded(point: Vector) -> Vector:
+    x, y, z = (round(part, 3) + 0.0 for part in point)
+    return (x, y, z)

@@ -1,15 +1,20 @@
-"""Pages in headless Chromium: each in a frame of a given width, measured and looked at by axe."""
+"""Headless Chromium by its own protocol, over a pipe: clicks, keys, sizes, requests, axe."""
 
 from __future__ import annotations
 
+import fcntl
 import json
-import re
+import os
+import select
 import subprocess
-from collections.abc import Sequence
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib.util import find_spec
 from itertools import groupby
 from pathlib import Path
+from typing import Any
 
 CHROMIUM = (
     "chromium",
@@ -19,55 +24,152 @@ CHROMIUM = (
     "--disable-dev-shm-usage",
     "--disable-background-networking",
     "--host-resolver-rules=MAP * ~NOTFOUND",
+    "--remote-debugging-pipe",  # the protocol on file descriptors 3 and 4
 )
-_TO_THE_END = ("--virtual-time-budget=1000000", "--enable-logging=stderr", "--dump-dom")
-_CONSOLE = re.compile(r".*CONSOLE.*")
-_POLICY = re.compile(r'<meta http-equiv="Content-Security-Policy"[^>]*>')  # axe is a script
-_LOOK = """
-async function look(page) {
-  const frame = document.createElement("iframe");
-  frame.style.cssText = `border: 0; width: ${page.widths[0]}px; height: 900px`;
-  const loaded = new Promise((resolve) => (frame.onload = resolve));
-  frame.srcdoc = page.html;
-  document.body.append(frame);
-  await loaded;
-  const seen = [];
-  for (const width of page.widths) {
-    frame.style.width = `${width}px`;
-    seen.push(await measured(frame.contentWindow, width, page.with_axe));
-  }
-  frame.remove();
-  return seen;
-}
-async function measured(view, width, with_axe) {
-  const root = view.document.documentElement;
+_PATIENCE = 60.0  # seconds, for an answer that never comes
+_MEASURES = """
+(() => {
+  const root = document.documentElement;
   const shown = [...root.querySelectorAll(".formula, .scroll")].filter((box) => box.offsetParent);
   const wide = shown.filter((box) => box.scrollWidth > box.clientWidth + 1);
   return {
-    width,
     page_width: root.scrollWidth,
     formulas: shown.length,
     wide: wide.map((box) => box.textContent.slice(0, 80)),
-    faults: with_axe ? await faults(view) : [],
   };
-}
-async function faults(view) {
-  const script = view.document.createElement("script");
-  script.textContent = axe_source;
-  view.document.head.append(script);
-  const found = await view.axe.run();
-  return found.violations.map(
-    (fault) => `${fault.id}: ${fault.help}: ${fault.nodes.map((n) => n.html).join(" ")}`);
-}
-(async () => {
-  const seen = [];
-  for (const page of pages) seen.push(...(await look(page)));
-  const result = document.createElement("pre");
-  result.id = "result";
-  result.textContent = JSON.stringify(seen);
-  document.body.replaceChildren(result);
-})();
+})()
 """
+_AXE = """
+axe.run().then((found) => found.violations.map((fault) =>
+  `${fault.id}: ${fault.help}: ${fault.nodes.map((n) => n.html).join(" ")}`))
+"""
+
+
+class Page:
+    """One tab, and all that it reports: messages, requests, exceptions."""
+
+    def __init__(self, send: int, receive: int) -> None:
+        self._send, self._receive = send, receive
+        self._buffer = b""
+        self._count = 0
+        self._session: dict[str, str] = {}
+        self.events: list[dict[str, Any]] = []
+        target = self.call("Target.createTarget", url="about:blank")["targetId"]
+        attached = self.call("Target.attachToTarget", targetId=target, flatten=True)
+        self._session = {"sessionId": attached["sessionId"]}
+        for domain in ("Page", "Runtime", "Log", "Network"):
+            self.call(f"{domain}.enable")
+
+    def call(self, method: str, **parameters: Any) -> dict[str, Any]:
+        self._count += 1
+        message = {"id": self._count, "method": method, "params": parameters, **self._session}
+        os.write(self._send, json.dumps(message).encode() + b"\0")
+        while True:
+            answer = self._next()
+            if answer.get("id") == self._count:
+                assert "error" not in answer, f"{method}: {answer['error']}"
+                return answer["result"]
+            self.events.append(answer)
+
+    def _next(self) -> dict[str, Any]:
+        while b"\0" not in self._buffer:
+            ready, _, _ = select.select([self._receive], [], [], _PATIENCE)
+            piece = os.read(self._receive, 1 << 16) if ready else b""
+            assert piece, "Chromium does not answer"
+            self._buffer += piece
+        text, _, self._buffer = self._buffer.partition(b"\0")
+        return json.loads(text)
+
+    def open(self, path: Path, width: int, **features: str) -> None:
+        """Load a file at a width in pixels; features such as prefers_color_scheme="dark"."""
+        self.resize(width)
+        media = [{"name": k.replace("_", "-"), "value": v} for k, v in features.items()]
+        self.call("Emulation.setEmulatedMedia", features=media)
+        self.events.clear()
+        self.call("Page.navigate", url=path.as_uri())
+        while not any(event.get("method") == "Page.loadEventFired" for event in self.events):
+            self.events.append(self._next())
+        self.call("Page.bringToFront")
+
+    def resize(self, width: int) -> None:
+        size = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": width < 600}
+        self.call("Emulation.setDeviceMetricsOverride", **size)
+
+    def run(self, script: str) -> Any:
+        """The value of an expression in the page; a promise is waited for."""
+        options = {"awaitPromise": True, "returnByValue": True, "userGesture": False}
+        done = self.call("Runtime.evaluate", expression=script, **options)
+        assert "exceptionDetails" not in done, done["exceptionDetails"]
+        return done["result"].get("value")
+
+    def faults(self) -> list[str]:
+        """What axe finds; a package for Playwright carries its script, and nothing is imported."""
+        spec = find_spec("axe_core_python")
+        assert spec is not None
+        assert spec.origin is not None
+        axe = Path(spec.origin).with_name("axe.min.js").read_text(encoding="utf-8")
+        self.run(f"{axe}; undefined")
+        return self.run(_AXE)
+
+    def press(self, key: str, code: int) -> None:
+        for kind in ("rawKeyDown", "keyUp"):
+            self.call("Input.dispatchKeyEvent", type=kind, key=key, windowsVirtualKeyCode=code)
+
+    def click(self, selector: str) -> None:
+        """A click of the mouse in the middle of what the selector finds."""
+        x, y = self.run(
+            f"(() => {{ const e = document.querySelector({json.dumps(selector)});"
+            "e.scrollIntoView({block: 'center'}); const b = e.getBoundingClientRect();"
+            "return [b.x + b.width / 2, b.y + b.height / 2]; })()"
+        )
+        for kind in ("mousePressed", "mouseReleased"):
+            self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
+
+    def wait_for(self, script: str) -> None:
+        """Until an expression is true in the page."""
+        for _ in range(200):
+            if self.run(script):
+                return
+            time.sleep(0.05)
+        raise AssertionError(f"never true: {script}")
+
+    @property
+    def requests(self) -> list[str]:
+        """What the page asked for beside itself."""
+        sent = [e for e in self.events if e.get("method") == "Network.requestWillBeSent"]
+        return [event["params"]["request"]["url"] for event in sent][1:]
+
+    @property
+    def complaints(self) -> list[str]:
+        """The messages in the console."""
+        kinds = {"Runtime.exceptionThrown", "Runtime.consoleAPICalled", "Log.entryAdded"}
+        return [str(event["params"]) for event in self.events if event.get("method") in kinds]
+
+
+@contextmanager
+def chromium(folder: Path) -> Iterator[Page]:
+    """A tab of a Chromium of its own, which ends with the block."""
+    pipes = [*os.pipe(), *os.pipe()]
+    # clear of 3 and 4, which the shell sets
+    read_there, write, read, write_there = (fcntl.fcntl(n, fcntl.F_DUPFD, 10) for n in pipes)
+    for number in pipes:
+        os.close(number)
+    shell = f'exec "$@" 3<&{read_there} 4>&{write_there}'
+    run = subprocess.Popen(
+        ["bash", "-c", shell, "bash", *CHROMIUM, f"--user-data-dir={folder / 'profile'}"],
+        pass_fds=(read_there, write_there),
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
+    os.close(read_there)
+    os.close(write_there)
+    try:
+        yield Page(write, read)
+    finally:
+        os.close(write)
+        os.close(read)
+        run.terminate()
+        run.wait(30)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -75,64 +177,26 @@ class Seen:
     """What Chromium made of one page at one width."""
 
     width: int
-    page_width: int  # more than `width` where the page has to be scrolled sideways
+    page_width: int  # more than `width` if the page has to be scrolled sideways
     formulas: int
-    wide: tuple[str, ...]  # what has to be scrolled inside its box
-    faults: tuple[str, ...]  # what axe found
+    wide: list[str]  # what has to be scrolled inside its box
+    faults: list[str]  # what axe found
 
 
 def look_at(
     pages: Sequence[tuple[str, int]], folder: Path, *, with_axe: bool = False
 ) -> list[Seen]:
-    """Each page, given as HTML, in a frame of its width in pixels. Fails on a console message."""
-    data = json.dumps(
-        [
-            {
-                "html": _POLICY.sub("", html),
-                "widths": [width for _, width in same],  # loaded once for all of them
-                "with_axe": with_axe,
-            }
-            for html, same in groupby(pages, lambda page: page[0])
-        ]
-    ).replace("</", "<\\/")
-    axe = json.dumps(axe_source()).replace("</", "<\\/")
-    harness = folder / "look.html"
-    harness.write_text(
-        f'<!DOCTYPE html><meta charset="utf-8"><body><script>const pages = {data};'
-        f"const axe_source = {axe};{_LOOK}</script>",
-        encoding="utf-8",
-    )
-    dom, log = _dump(harness, folder)
-    assert not _CONSOLE.findall(log), log
-    match = re.search(r'<pre id="result">(.*?)</pre>', dom, re.DOTALL)
-    assert match, log
-    seen = json.loads(
-        match.group(1).replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&")
-    )
-    return [Seen(**one | {k: tuple(one[k]) for k in ("wide", "faults")}) for one in seen]
-
-
-def open_page(html: str, folder: Path) -> tuple[str, str]:
-    """(DOM after loading, log) of a page with all its own policy."""
-    page = folder / "page.html"
-    page.write_text(html, encoding="utf-8")
-    return _dump(page, folder)
-
-
-def _dump(page: Path, folder: Path) -> tuple[str, str]:
-    done = subprocess.run(
-        [*CHROMIUM, *_TO_THE_END, f"--user-data-dir={folder / 'profile'}", page.as_uri()],
-        capture_output=True,
-        text=True,
-        check=True,
-        timeout=300,
-    )
-    return done.stdout, done.stderr
-
-
-def axe_source() -> str:
-    """The source of axe-core, which a package for Playwright carries; nothing of it is imported."""
-    spec = find_spec("axe_core_python")
-    assert spec is not None
-    assert spec.origin is not None
-    return Path(spec.origin).with_name("axe.min.js").read_text(encoding="utf-8")
+    """Each page, given as HTML, at its width in pixels. Fails on a message in the console."""
+    seen = []
+    with chromium(folder) as tab:
+        for html, same in groupby(pages, lambda page: page[0]):
+            file = folder / "page.html"
+            file.write_text(html, encoding="utf-8")
+            widths = [width for _, width in same]  # loaded once for all of them
+            tab.open(file, widths[0])
+            for width in widths:
+                tab.resize(width)
+                measures = tab.run(_MEASURES)
+                seen.append(Seen(width=width, faults=tab.faults() if with_axe else [], **measures))
+            assert tab.complaints == []
+    return seen

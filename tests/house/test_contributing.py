@@ -20,6 +20,7 @@ chain = rs.derive("z(a) y(b) z(c) x(d) z(e)", ["angular_velocity_squared"])
 assert chain.is_proved and chain.definitions
 motion = rs.derive("ZXZ")
 assert motion.is_proved and "The squares of the components are added." in motion.page()
+assert 'id="angular_velocity_squared-value"' in motion.page()
 main()
 """
 

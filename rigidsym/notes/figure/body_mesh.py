@@ -69,6 +69,12 @@ def own_shape(body: RigidBody | None) -> Shape:
     return _fitted(meshed(what, numbers, size), body, numbers, size)
 
 
+def lengths_in(body: RigidBody | None) -> set[sp.Basic]:
+    """The constants that the shape of a body is made of; none if only its moments are known."""
+    what = None if body is None else body.distribution or body.drawn
+    return {s for e in _geometry(what) for s in e.free_symbols} if what else set()
+
+
 def lengths_of(
     what: Distribution, values: Mapping[sp.Symbol, float | None]
 ) -> dict[sp.Symbol, sp.Float] | None:

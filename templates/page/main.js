@@ -1,18 +1,9 @@
 // The page: sliders, numbers, the figure, and the address that holds their state.
 
-import { kernels, page } from "./generated.mjs";
-import { STANDARD, length, minus, scaled, within } from "./vectors.mjs";
-import { posed, wholeTurn } from "./scene.mjs";
-import { cuboidOf } from "./body.mjs";
-import { cameraAt, draw } from "./drawing.mjs";
-import { bind, evaluated, settle, state } from "./state.mjs";
-import { LAST, begin, goTo } from "./flow.mjs";
-
 const { controls, scene } = page;
 const at = (id) => document.getElementById(id);
 const group = at("figure").querySelector("g");
 const count = scene.turns.length;
-const DEGREE = Math.PI / 180;
 const MOST_TRACE = 1500; // points
 const view = { shown: new Set(), done: count, trace: [], time: 0 };
 let busy = null; // the field that is being typed in
@@ -38,10 +29,12 @@ function showControls() {
   }
 }
 
-function showNumbers(name, value, factor = 1) {
+/** The values of a function in its table, in the unit that is shown. */
+function showNumbers(name, factor) {
+  const values = [evaluated(name)].flat(2);
   at(`${name}-value`).querySelectorAll("data").forEach((cell, k) => {
-    cell.value = String(value.flat()[k]);
-    cell.textContent = fixed(value.flat()[k] / factor, factor === 1 ? 4 : 2);
+    cell.value = String(values[k]);
+    cell.textContent = fixed(values[k] / factor, factor === 1 ? 4 : 2);
   });
 }
 
@@ -96,24 +89,20 @@ function leaveTrace(pose, turns) {
 function show() {
   const matrix = evaluated("rotation_matrix");
   const omega = evaluated("angular_velocity_space");
-  const factor = page.in_degrees ? DEGREE : 1;
   showControls();
-  showNumbers("rotation_matrix", matrix);
-  showNumbers("angular_velocity_space", omega, factor);
-  showNumbers("angular_velocity_body", evaluated("angular_velocity_body"), factor);
-  if (kernels.first_integrals) showNumbers("first_integrals", evaluated("first_integrals").map((value) => [value]));
+  for (const [name, factor] of Object.entries(page.values)) showNumbers(name, factor);
   const isLocked = showMargin();
   const columns = [0, 1, 2].map((k) => matrix.map((row) => row[k]));
-  const body = page.passive ? matrix : columns;
-  if (!body.flat().every(Number.isFinite)) return; // the last figure stays
-  const turns = turnsOf(kernels.turns && evaluated("turns"), scene, state.q, body);
+  const axes = page.passive ? matrix : columns; // of the body
+  if (!axes.flat().every(Number.isFinite)) return; // the last figure stays
+  const turns = turnsOf(kernels.turns && evaluated("turns"), scene, state.q, axes);
   const pose = posed(scene, turns, view.done);
   const isWhole = view.done >= count;
   if (view.shown.has("trace") && isWhole) leaveTrace(pose, turns);
-  const camera = cameraAt(at("azimuth").valueAsNumber, at("elevation").valueAsNumber);
+  const camera = cameraAt(at("azimuth").valueAsNumber, at("elevation").valueAsNumber, scene.up);
   const options = {
     shown: view.shown,
-    body: at("body").value === "cuboid" ? cuboidOf(kernels.moments ? evaluated("moments").flat() : page.moments) : page.bodies[at("body").value],
+    body: view.shown.has("body") ? page.body ?? cuboidOf(page.moments ?? evaluated("moments").flat()) : null,
     omega: isWhole ? omega : null,
     omegaName: scene.omega,
     trace: view.shown.has("trace") ? view.trace : [],
@@ -129,9 +118,9 @@ let resting = 0;
 function rest() {
   clearTimeout(resting);
   resting = setTimeout(() => {
-    const factor = page.in_degrees ? DEGREE : 1;
+    const factor = page.values.angular_velocity_body;
     const omega = evaluated("angular_velocity_body").map((part) => fixed(part / factor, 2));
-    at("said").textContent = `${page.spoken}: ${omega.join(", ")} ${page.in_degrees ? "degrees per second" : "rad/s"}`;
+    at("said").textContent = `angular velocity, body components: ${omega.join(", ")} ${factor === 1 ? "rad/s" : "degrees per second"}`;
     remember();
   }, 700);
 }
@@ -147,7 +136,6 @@ function remember() {
     words.set(kind, shown.join(" "));
   }
   words.set("view", [at("azimuth").value, at("elevation").value].join(" "));
-  words.set("body", at("body").value);
   words.set("show", [...view.shown].join(" "));
   if (view.done < count) words.set("turns", String(view.done));
   history.replaceState(null, "", `#${words}`);
@@ -166,7 +154,6 @@ function recall() {
   const [azimuth, elevation] = numbers("view");
   if (Number.isFinite(azimuth)) at("azimuth").value = azimuth;
   if (Number.isFinite(elevation)) at("elevation").value = elevation;
-  if ([...at("body").options].some(({ value }) => value === words.get("body"))) at("body").value = words.get("body");
   if (words.has("show")) setShown(words.get("show").split(" "));
   const [done] = numbers("turns");
   setDone(Number.isFinite(done) ? done : count);
@@ -211,6 +198,7 @@ for (const control of controls) {
 }
 
 const boxes = [...document.querySelectorAll("[data-show]")];
+const shownAtFirst = boxes.filter((box) => box.defaultChecked).map((box) => box.dataset.show);
 
 function setShown(names) {
   for (const box of boxes) box.checked = names.includes(box.dataset.show);
@@ -222,8 +210,8 @@ function setShown(names) {
 function setDone(done) {
   view.done = Math.min(count, Math.max(0, done));
   if (at("turns")) at("turns").value = view.done;
-  const whole = Math.min(count - 1, Math.floor(view.done));
-  if (at("turn-words")) at("turn-words").innerHTML = view.done < count ? page.turn_words[whole] : page.turn_words[count];
+  const whole = view.done < count ? Math.floor(view.done) : count;
+  [...at("turn-words").children].forEach((words, k) => (words.hidden = k !== whole));
 }
 
 function change(act) {
@@ -237,7 +225,7 @@ function change(act) {
 for (const box of boxes) {
   box.addEventListener("change", change(() => setShown(boxes.filter((b) => b.checked).map((b) => b.dataset.show))));
 }
-for (const id of ["azimuth", "elevation", "body"]) at(id).addEventListener("input", change(() => {}));
+for (const id of ["azimuth", "elevation"]) at(id).addEventListener("input", change(() => {}));
 at("turns")?.addEventListener("input", change(() => {
   stepping = null;
   setDone(at("turns").valueAsNumber);
@@ -342,9 +330,8 @@ at("reset").addEventListener("click", () => {
   for (const { kind, place, start: value, factor } of controls) state[kind][place] = value * factor;
   at("azimuth").value = scene.azimuth;
   at("elevation").value = scene.elevation;
-  at("body").value = page.body;
   at("speed").value = "1";
-  setShown(page.shown);
+  setShown(shownAtFirst);
   setDone(count);
   settle();
   restart();
@@ -386,7 +373,7 @@ for (const place of document.querySelectorAll(".copy")) {
   place.replaceChildren(button);
 }
 
-setShown(page.shown);
+setShown(shownAtFirst);
 recall();
 pause();
 clearTimeout(resting);

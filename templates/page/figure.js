@@ -1,7 +1,196 @@
-// A posed scene as SVG: a body, lines with hidden halves dashed, and labels that keep apart.
+// The figure: the scene of the note at the angles of the sliders, with the body, as SVG.
 
-import { cross, dot, length, plus, same, scaled } from "./vectors.mjs";
-import { seenFaces } from "./body.mjs";
+// --- vectors as arrays of three numbers
+
+const STANDARD = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
+
+const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+const scaled = (factor, a) => a.map((part) => factor * part);
+const plus = (a, b) => a.map((part, k) => part + b[k]);
+const minus = (a, b) => a.map((part, k) => part - b[k]);
+const length = (a) => Math.hypot(...a);
+const same = (a, b) => a.every((part, k) => Math.abs(part - b[k]) < 1e-6);
+const cross = (a, b) => [
+  a[1] * b[2] - a[2] * b[1],
+  a[2] * b[0] - a[0] * b[2],
+  a[0] * b[1] - a[1] * b[0],
+];
+
+/** The vector with these components along the axes of a frame. */
+const within = ([x, y, z], [a, b, c]) => [0, 1, 2].map((k) => x * a[k] + y * b[k] + z * c[k]);
+
+/** A vector turned right-handedly about a unit axis, by an angle in radians (Rodrigues). */
+function turned(a, axis, angle) {
+  const along = (1 - Math.cos(angle)) * dot(axis, a);
+  return within([Math.cos(angle), Math.sin(angle), along], [a, cross(axis, a), axis]);
+}
+
+/** The standard axis that makes the largest angle with a direction; the first of several. */
+function farthest(direction) {
+  const lean = (axis) => Math.abs(dot(axis, direction));
+  return STANDARD.reduce((a, b) => (lean(b) < lean(a) - 1e-9 ? b : a));
+}
+
+// --- the scene: rays, arcs and rings in space
+
+/** The single turn of a rotation: its axis and its angle, from the axes of the body. */
+function wholeTurn([x, y, z], vector, given) {
+  const twice = [y[2] - z[1], z[0] - x[2], x[1] - y[0]];
+  const trace = x[0] + y[1] + z[2];
+  if (vector) {
+    if (length(vector) < 1e-6) return null;
+    const axis = scaled(1 / length(vector), vector);
+    const angle = Math.atan2(dot(twice, axis), trace - 1);
+    return { axis, angle: given ?? (angle < 0 ? angle + 2 * Math.PI : angle) };
+  }
+  const angle = Math.atan2(length(twice), trace - 1);
+  if (angle < 1e-6) return null;
+  if (length(twice) > 1e-6) return { axis: scaled(1 / length(twice), twice), angle };
+  // half a turn: the axis is the longest column of R + 1
+  const columns = [x, y, z].map((column, k) => plus(column, STANDARD[k]));
+  const longest = columns.reduce((a, b) => (length(a) >= length(b) ? a : b));
+  return { axis: scaled(1 / length(longest), longest), angle };
+}
+
+/**
+ * The scene after `done` turns, where 1.5 is half of the second turn.
+ * Each turn has its axis in components before it, its angle and its rate in radians.
+ */
+function posed(scene, turns, done) {
+  const frames = [STANDARD];
+  const arcs = turns.map(({ axis, angle, rate }, k) => {
+    const frame = frames.at(-1);
+    const about = within(axis, frame);
+    const shown = angle * Math.min(1, Math.max(0, done - k));
+    frames.push(frame.map((a) => turned(a, about, shown)));
+    const { start, radius, name, rate_name } = scene.turns[k];
+    const before = within(start ?? farthest(axis), frame);
+    const after = turned(before, about, shown);
+    const centre = scaled(dot(before, about), about);
+    const side = cross(about, before);
+    return { axis: about, angle: shown, rate, before, after, centre, start: minus(before, centre), side, radius, name, rate_name };
+  });
+  return { frames, arcs, rays: raysOf(scene, frames, arcs), rings: ringsOf(turns, frames) };
+}
+
+/** Each named direction once; an axis that has two names bears both. */
+function raysOf(scene, frames, arcs) {
+  const rays = [];
+  for (const { kind, name, frame, direction } of scene.rays) {
+    const found = direction
+      ? within(direction, frames[Math.min(frame, frames.length - 1)])
+      : arcs[frame]?.axis;
+    if (!found) continue; // no turn, no axis
+    const known = rays.find((ray) => same(ray.direction, found));
+    if (!known) rays.push({ kind, name, direction: found });
+    else if (kind === "body") known.name += ` = ${name}`;
+  }
+  return rays;
+}
+
+/** The rings of a gimbal: each turns about a pivot on the ring outside it, and holds the next. */
+function ringsOf(turns, frames) {
+  if (turns.length < 2) return [];
+  return turns.map(({ axis }, k) => {
+    const next = turns[k + 1]?.axis ?? turns[k - 1].axis;
+    const across = minus(next, scaled(dot(next, axis), axis));
+    const side = length(across) > 1e-6 ? scaled(1 / length(across), across) : farthest(axis);
+    const [pivot, other] = [axis, side].map((v) => within(v, frames[k + 1]));
+    return { pivot, other, radius: 1.4 - 0.15 * k };
+  });
+}
+
+// --- a body as flat faces, drawn from back to front by a binary space partition made once
+
+const FLAT = 1e-4; // lengths off a plane that do not count
+const LIGHT = [-0.36, 0.48, 0.8]; // right, up and toward the viewer
+const trees = new WeakMap(); // a body -> its tree
+const THINNEST = 0.1; // of the longest edge: a plate is drawn with some thickness
+const SIDES = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]];
+const COLORS = [[201, 88, 68], [69, 114, 167], [224, 176, 64]]; // of opposite sides
+const cuboids = new Map(); // principal moments -> a body
+
+function facesOf({ points, colors, faces }) {
+  return faces.map(([color, ...corners]) => {
+    const at = corners.map((k) => points[k]);
+    const edges = at.map((p) => minus(p, at[0]));
+    const normal = edges.slice(1, -1).reduce((sum, edge, k) => plus(sum, cross(edge, edges[k + 2])), [0, 0, 0]);
+    return { points: at, color: colors[color], normal: scaled(1 / (length(normal) || 1), normal) };
+  });
+}
+
+/** The parts of a face before a plane and behind it. */
+function split(face, { normal, points }) {
+  const heights = face.points.map((p) => dot(normal, minus(p, points[0])));
+  const [front, back] = [[], []];
+  face.points.forEach((p, k) => {
+    const next = (k + 1) % face.points.length;
+    if (heights[k] >= -FLAT) front.push(p);
+    if (heights[k] <= FLAT) back.push(p);
+    if (heights[k] * heights[next] < 0 && Math.min(Math.abs(heights[k]), Math.abs(heights[next])) > FLAT) {
+      const share = heights[k] / (heights[k] - heights[next]);
+      const cut = plus(p, scaled(share, minus(face.points[next], p)));
+      front.push(cut);
+      back.push(cut);
+    }
+  });
+  const isIn = (side) => heights.some((height) => side * height > FLAT);
+  return [isIn(1) ? front : [], isIn(-1) ? back : []].map((part) => ({ ...face, points: part }));
+}
+
+function treeOf(faces) {
+  if (!faces.length) return null;
+  const plane = faces[faces.length >> 1];
+  const tree = { normal: plane.normal, here: [], front: [], back: [] };
+  for (const face of faces) {
+    // the plane's own face is on it, though rounding may have bent it a little
+    const [front, back] = face === plane ? [null, null] : split(face, plane);
+    if (front?.points.length > 2) tree.front.push(front);
+    if (back?.points.length > 2) tree.back.push(back);
+    if (!front?.points.length && !back?.points.length) tree.here.push(face);
+  }
+  return { ...tree, front: treeOf(tree.front), back: treeOf(tree.back) };
+}
+
+function* fromTheBack(tree, toward) {
+  if (!tree) return;
+  const isFacing = dot(tree.normal, toward) > 0;
+  yield* fromTheBack(isFacing ? tree.back : tree.front, toward);
+  yield* tree.here;
+  yield* fromTheBack(isFacing ? tree.front : tree.back, toward);
+}
+
+/** The homogeneous cuboid with these principal moments, which are Σ m (y² + z²) and so on. */
+function cuboidOf(moments) {
+  const key = String(moments);
+  if (!cuboids.has(key)) {
+    const half = moments.reduce((sum, moment) => sum + moment, 0) / 2;
+    const edges = moments.map((moment) => Math.sqrt(Math.max(half - moment, 0)));
+    const seen = edges.map((edge) => Math.max(edge, THINNEST * Math.max(...edges)));
+    const [x, y, z] = scaled(0.95 / length(seen), seen);
+    const points = [-x, x].flatMap((a) => [-y, y].flatMap((b) => [-z, z].map((c) => [a, b, c])));
+    cuboids.clear();
+    cuboids.set(key, { points, colors: COLORS, faces: SIDES.map((side, k) => [k >> 1, ...side]) });
+  }
+  return cuboids.get(key);
+}
+
+/** The faces that are seen, the farthest first, projected and shaded. */
+function seenFaces(body, frame, camera) {
+  if (!trees.has(body)) trees.set(body, treeOf(facesOf(body)));
+  const inBody = (v) => frame.map((axis) => dot(axis, v));
+  const [right, up, toward] = [camera.right, camera.up, camera.toward].map(inBody);
+  const light = within(LIGHT, [right, up, toward]);
+  return [...fromTheBack(trees.get(body), toward)]
+    .filter(({ normal }) => dot(normal, toward) > 0)
+    .map(({ points, color, normal }) => {
+      const bright = 0.62 + 0.38 * Math.max(0, dot(normal, light));
+      const rgb = color.map((part) => Math.round(part * bright));
+      return { points: points.map((p) => [dot(right, p), dot(up, p)]), fill: `rgb(${rgb.join(" ")})` };
+    });
+}
+
+// --- lines, with hidden halves dashed
 
 const SCALE = 120; // pixels a length
 const TYPE = 17 / SCALE; // the size of the letters, in lengths
@@ -11,16 +200,14 @@ const STEP = (7.5 * Math.PI) / 180; // between the points of an arc
 const MOST = 1.5; // lengths of the longest arrow of an angular velocity
 const OMEGA = 0.75; // lengths of 1 rad/s, if none is longer than MOST
 
-/** Parallel projection for a viewer in this direction, in degrees; z is vertical. */
-export function cameraAt(azimuth, elevation) {
+/** Parallel projection for a viewer in this direction, in degrees; z points up, or down if `sense` is −1. */
+function cameraAt(azimuth, elevation, sense) {
   const [a, e] = [(azimuth * Math.PI) / 180, (elevation * Math.PI) / 180];
-  const toward = [Math.cos(e) * Math.cos(a), Math.cos(e) * Math.sin(a), Math.sin(e)];
-  const right = [-Math.sin(a), Math.cos(a), 0];
+  const toward = [Math.cos(e) * Math.cos(a), Math.cos(e) * Math.sin(a), sense * Math.sin(e)];
+  const right = [-sense * Math.sin(a), sense * Math.cos(a), 0];
   const up = cross(toward, right);
   return { right, up, toward, project: (v) => [dot(right, v), dot(up, v)], depth: (v) => dot(toward, v) };
 }
-
-// --- lines
 
 function sampled(at, from, to) {
   const steps = Math.max(2, Math.ceil(Math.abs(to - from) / STEP - 1e-9));
@@ -238,7 +425,7 @@ function lettering({ kind, name, centre: [x, y] }) {
  * Draw a posed scene into a group of an SVG.
  * `shown` has the sets of lines that are wanted: circles, angles, sum, rings, frames, trace.
  */
-export function draw(group, pose, camera, { shown, body, omega, omegaName, trace, done, letters, isLocked }) {
+function draw(group, pose, camera, { shown, body, omega, omegaName, trace, done, letters, isLocked }) {
   const circles = shown.has("circles") ? circleLines(pose, camera) : [];
   const rings = shown.has("rings") ? ringLines(pose, camera, isLocked) : [];
   const behind = [...circles, ...rings];

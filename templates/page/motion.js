@@ -1,16 +1,14 @@
-// The state: coordinates, rates and constants in radians and SI units, bound where they have to be.
+// The motion: a state in radians and SI units, bound where it has to be, and its flow in time.
 
-import { kernels, page } from "./generated.mjs";
-
-export const state = { q: [], q_dot: [], omega_body: [], parameters: [...page.parameters], t: 0 };
+const state = { q: [], q_dot: [], omega_body: [], parameters: [...page.parameters], t: 0 };
 for (const { kind, place, start, factor } of page.controls) state[kind][place] = start * factor;
 
 /** The vectors that functions take: those of the state, and y, which is q and the rates or Ω′. */
-const given = (input) => (input === "y" ? [...state.q, ...state[page.second]] : state[input]);
-export const evaluated = (name) => kernels[name](...page.inputs[name].map(given));
+const inputOf = (input) => (input === "y" ? [...state.q, ...state[page.second]] : state[input]);
+const evaluated = (name) => kernels[name](...page.inputs[name].map(inputOf));
 
 /** In Euler's form the rates follow from Ω′. */
-export function follow() {
+function follow() {
   if (page.second === "omega_body") state.q_dot = evaluated("state_derivative").slice(0, state.q.length);
 }
 
@@ -45,7 +43,7 @@ function correction(slopes, excess, ease) {
 }
 
 /** Project coordinates, constants and rates onto their constraints; `held` is changed last. */
-export function bind(held) {
+function bind(held) {
   if (kernels.conditions) project(held);
   follow();
 }
@@ -74,9 +72,74 @@ function project(held) {
 }
 
 /** Project everything onto the constraints; a constrained velocity keeps its length. */
-export function settle() {
+function settle() {
   const speed = Math.hypot(...state.q_dot);
   bind("");
   const now = Math.hypot(...state.q_dot);
   if (kernels.conditions && page.second === "q_dot" && now > 0) state.q_dot = state.q_dot.map((rate) => (rate * speed) / now);
+}
+
+// --- states at multiples of a step, at constant rates or by the equations of motion
+
+const LAPSE = 0.02; // seconds between the states that are kept
+const [FEWEST_STEPS, MOST_STEPS] = [4, 4096]; // steps of the equations of motion in a lapse
+const TOLERANCE = 1e-8; // relative change of the state, if the steps of a lapse are halved
+const LAST = page.last; // seconds
+let path = [];
+
+const now = () => [...state.q, ...state[page.second]];
+
+/** Start from the state as it is, at t = 0. */
+function begin() {
+  path = [now()];
+}
+
+/** y at `time` + `seconds`, by `count` steps of the classical Runge-Kutta method. */
+function integrated(start, time, seconds, count) {
+  const h = seconds / count;
+  const along = (values, change, by) => values.map((value, k) => value + by * change[k]);
+  let y = start;
+  for (let step = 0; step < count; step += 1) {
+    const slope = (values, passed) =>
+      kernels.state_derivative(time + step * h + passed, values, state.parameters);
+    const k1 = slope(y, 0);
+    const k2 = slope(along(y, k1, h / 2), h / 2);
+    const k3 = slope(along(y, k2, h / 2), h / 2);
+    const k4 = slope(along(y, k3, h), h);
+    y = y.map((value, k) => value + (h / 6) * (k1[k] + 2 * k2[k] + 2 * k3[k] + k4[k]));
+  }
+  return y;
+}
+
+/** y after a lapse, in steps so short that half of them give the same; NaN if none are. */
+function after(start, time, seconds) {
+  if (!start.every(Number.isFinite)) return start;
+  if (!kernels.state_derivative) {
+    const count = state.q.length;
+    state.q = start.slice(0, count).map((value, k) => value + seconds * start[count + k]);
+    state.q_dot = start.slice(count);
+    settle();
+    return now();
+  }
+  let coarse = integrated(start, time, seconds, FEWEST_STEPS);
+  for (let count = 2 * FEWEST_STEPS; count <= MOST_STEPS; count *= 2) {
+    const fine = integrated(start, time, seconds, count);
+    const apart = fine.map((value, k) => Math.abs(value - coarse[k]) / (1 + Math.abs(value)));
+    if (Math.max(...apart) < TOLERANCE) return fine;
+    coarse = fine;
+  }
+  return start.map(() => NaN);
+}
+
+/** Put the state at a time, in seconds; false where the motion cannot be continued. */
+function goTo(time) {
+  const whole = Math.floor(time / LAPSE + 1e-9);
+  while (path.length <= whole) path.push(after(path.at(-1), (path.length - 1) * LAPSE, LAPSE));
+  const y = after(path[whole], whole * LAPSE, Math.max(0, time - whole * LAPSE));
+  if (!y.every(Number.isFinite)) return false;
+  state.t = time;
+  state.q = y.slice(0, state.q.length);
+  state[page.second] = y.slice(state.q.length);
+  follow();
+  return true;
 }
