@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import rigidsym as rs
-from helpers.browser import look_at, open_page
+from helpers.browser import chromium, look_at
 from helpers.elements import ODD, Elements, odd_model
 from helpers.motions import derived
 from rigidsym.formula.mathml_pen import MathmlPen, inline_parts
@@ -215,7 +215,7 @@ def test_axe_finds_nothing(tmp_path: Path):
     )
     pages = [(html(derived("ZXZ")), 390), (html(few), 1280)]
     for seen in look_at(pages, tmp_path, with_axe=True):
-        assert seen.faults == ()
+        assert seen.faults == []
 
 
 @pytest.mark.usefixtures("chromium")
@@ -228,7 +228,11 @@ def test_axe_finds_what_is_wrong(tmp_path: Path):
 
 @pytest.mark.usefixtures("chromium")
 def test_a_hostile_title_runs_nothing(tmp_path: Path):
-    dom, _ = open_page(odd_note(), tmp_path)
+    file = tmp_path / "note.html"
+    file.write_text(odd_note(), encoding="utf-8")
+    with chromium(tmp_path) as tab:
+        tab.open(file, 1280)
+        dom = tab.run("document.documentElement.outerHTML")
     assert "owned" not in re.sub(r"document\.title='owned'", "", dom)
     assert len(Elements(dom).named("title")) == 1
 
