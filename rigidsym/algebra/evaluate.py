@@ -268,44 +268,30 @@ def function_of(
     return lambda values: function(part(values))
 
 
-# Signs of expressions whose variables stay within bounds, told by their form
+# The sign of an expression whose variables stay within bounds
 
 
 Bounds = tuple[sp.Expr, sp.Expr]
-_HALF = sp.pi / 2
 
 
-def sign_within(expression: sp.Expr, bounds: Mapping[sp.Symbol, Bounds]) -> int | None:
-    """1 if an expression is never negative, −1 if it is never positive, None if its form is silent.
+def is_never_negative(expression: sp.Expr, bounds: Mapping[sp.Symbol, Bounds]) -> bool:
+    """Whether the form of an expression tells that it is never negative within bounds.
 
-    Symbols without bounds are constants, and positive.
+    Symbols without bounds are constants, and positive. SymPy decides by the signs of the parts;
+    the sine of a multiple of one variable has one if it stays within half a turn.
     """
-    if expression.is_number:
-        return 1 if bool(expression >= 0) else -1
-    if expression.is_Symbol:
-        low, high = bounds.get(expression, (sp.S.Zero, sp.oo))
-        if sign_within(low, bounds) == 1:
-            return 1
-        return -1 if sign_within(high, bounds) == -1 else None
-    if expression.is_Add:
-        signs = {sign_within(term, bounds) for term in expression.args}
-        return signs.pop() if len(signs) == 1 else None
-    if expression.is_Mul:
-        product = 1
-        for factor in expression.args:
-            product *= sign_within(factor, bounds) or 0
-        return product or None
-    if expression.is_Pow and expression.exp.is_Rational:
-        is_even = expression.exp.p % 2 == 0 or expression.exp.q % 2 == 0
-        return 1 if is_even else sign_within(expression.base, bounds)
-    if isinstance(expression, sp.sin | sp.cos):
-        first = sp.S.Zero if isinstance(expression, sp.sin) else -_HALF
-        return 1 if _lies_in(expression.args[0], (first, first + sp.pi), bounds) else None
-    return None
-
-
-def _lies_in(angle: sp.Expr, half: Bounds, bounds: Mapping[sp.Symbol, Bounds]) -> bool:
-    """Whether a multiple of one variable stays within half a turn, in numbers."""
-    number, variable = angle.as_coeff_Mul()
-    ends = [number * end for end in bounds.get(variable, ())]
-    return bool(ends) and all(end.is_number and half[0] <= end <= half[1] for end in ends)
+    plain: dict[sp.Expr, sp.Expr] = {}
+    for function in expression.atoms(sp.sin, sp.cos):
+        number, variable = function.args[0].as_coeff_Mul()
+        ends = [number * end for end in bounds.get(variable, ())]
+        first = sp.S.Zero if isinstance(function, sp.sin) else -sp.pi / 2
+        if ends and all(end.is_number and first <= end <= first + sp.pi for end in ends):
+            plain[function] = sp.Dummy(nonnegative=True)
+    for symbol in sorted(expression.free_symbols, key=str):
+        low, high = bounds.get(symbol, (sp.S.Zero, sp.oo))
+        is_positive = is_never_negative(low, bounds) if symbol not in low.free_symbols else False
+        is_negative = not is_positive and is_never_negative(-high, bounds)
+        plain[symbol] = sp.Dummy(
+            real=True, nonnegative=is_positive or None, nonpositive=is_negative or None
+        )
+    return bool(expression.xreplace(plain).is_nonnegative)

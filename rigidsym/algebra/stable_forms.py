@@ -3,9 +3,8 @@
 The Stumpff functions of n², on which rotation vectors rest, are c₀ = cos n, c₁ = sin n/n,
 c₂ = (1 − cos n)/n², c₃ = (n − sin n)/n³, and on by c_{k+2} = (c_k(0) − c_k)/n². Their closed
 forms are 0/0 at n = 0 and lose digits near it; from c₃ on, a Taylor polynomial in x = n² takes over
-below a switch. Its coefficients follow from SymPy's series of sine and cosine over Q, its length
-from the first term left out (the terms alternate and fall), and the switch from the rounding of the
-closed form, in rational numbers.
+below a switch. Its length follows from the first term left out (the terms alternate and fall), and
+the switch from the rounding of the closed form, in rational numbers.
 
 Quotients with removable singularities at n = 0, n = √(v·v), are written without them: an
 expression in sin n, cos n and 1/n without a singularity at n = 0 is a polynomial in the functions
@@ -17,11 +16,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import cache, lru_cache
+from math import factorial
 from typing import Any, NamedTuple
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
-from sympy.polys.ring_series import rs_cos, rs_sin
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import Codec, codec_for
@@ -35,7 +34,7 @@ _CLOSED = Fraction(4)  # eps: the largest rounding error of a closed form above 
 _ELEMENTARY = Fraction(3)  # eps: of c₁ and c₂ by t = tan(n/2) within 1 eps, see `_closed_error`
 _STEP = Fraction(1, 4)
 _FURTHEST = 16  # x = n²: switches beyond gain nothing, and Horner's rule would lose
-_DEGREE = 40  # of the Taylor polynomials of sine and cosine in n
+_TERMS = 20  # of the Taylor polynomials
 FIRST_SERIES = 3  # c₀, c₁ and c₂ need none
 
 
@@ -72,15 +71,8 @@ def series_of(order: int) -> Series:
 
 @cache
 def taylor(order: int) -> tuple[Fraction, ...]:
-    """The Taylor coefficients of c_k in x = n², exact, from those of sine and cosine."""
-    ring, n = sp.ring("n", sp.QQ)
-    whole = (rs_sin if order % 2 else rs_cos)(n, n, _DEGREE)
-    powers = range(order % 2, _DEGREE, 2)
-    terms = [whole.coeff(n**power if power else ring.one) for power in powers]
-    sign = -1 if (order // 2) % 2 else 1  # each step to c_{k+2} drops a term and turns the signs
-    return tuple(
-        sign * Fraction(int(term.numerator), int(term.denominator)) for term in terms[order // 2 :]
-    )
+    """The Taylor coefficients of c_k in x = n²: (−1)^j/(2j + k)!."""
+    return tuple(Fraction((-1) ** j, factorial(2 * j + order)) for j in range(_TERMS))
 
 
 def closed_form(order: int, angle: sp.Expr) -> sp.Expr:

@@ -245,51 +245,29 @@ class Solver:
         return list(roots)
 
     def _roots_of_factor(self, factor: PolyElement) -> list[Root] | None:
-        if self._is_reciprocal(factor) or _is_positive(factor) or self._is_constant(factor):
+        if self._is_never_zero(factor):
             return []
         used = [
             angle for angle in self._angles if any(m[angle.sine] or m[angle.cosine] for m in factor)
         ]
-        if len(used) != 1:
-            several = (self._of_sum(factor, angle) for angle in used)
-            return next((roots for roots in several if roots is not None), None)
-        (angle,) = used
-        return (
-            self._of_one(factor, angle) or self._of_sum(factor, angle) or self._never(factor, angle)
-        )
+        ways = [self._of_one, self._of_sum] if len(used) == 1 else [self._of_sum]
+        solved = (way(factor, angle) for angle in used for way in ways)
+        return next((roots for roots in solved if roots is not None), None)
 
-    def _is_reciprocal(self, factor: PolyElement) -> bool:
-        """Whether it is 1/d for a d of the ring: their product is one, so that it is never zero."""
-        for place, generator in enumerate(self._ring.generators):
-            if factor.monic() == self._ring.generator(place):
-                expression = generator.expression
-                return bool(expression.is_Pow and expression.exp.is_negative)
-        return False
+    def _is_never_zero(self, factor: PolyElement) -> bool:
+        """Whether it is 1/d for a d of the ring, holds only constants, or is a sum of squares.
 
-    def _is_constant(self, factor: PolyElement) -> bool:
-        """Whether it holds only constants of the model, which are assumed not to make it zero."""
-        return all(
-            place in self._constant or not power
-            for monomial in factor
-            for place, power in enumerate(monomial)
-        )
-
-    def _never(self, factor: PolyElement, angle: _Angle) -> list[Root] | None:
-        """No roots, if a polynomial in one sine and cosine has none by Sturm's theorem."""
-        others = {angle.sine, angle.cosine}
-        if any(power and k not in others for m in factor for k, power in enumerate(m)):
-            return None
-        if any(monomial[angle.sine] > 1 for monomial in factor):
-            factor = self._ring.reduce(factor)
-        c = sp.Symbol("c")
-        parts = [sp.S.Zero, sp.S.Zero]  # a + b sin, by powers of the cosine
-        for monomial, coefficient in factor.items():
-            if monomial[angle.sine] > 1:
-                return None
-            number = sp.Rational(int(coefficient.numerator), int(coefficient.denominator))
-            parts[monomial[angle.sine]] += number * c ** monomial[angle.cosine]
-        norm = sp.Poly(parts[0] ** 2 - (1 - c**2) * parts[1] ** 2, c)
-        return [] if norm.count_roots(-1, 1) == 0 else None
+        The constants of a model are assumed not to make it zero.
+        """
+        used = {place for m in factor for place, power in enumerate(m) if power}
+        if used <= self._constant:
+            return True
+        expressions = [self._ring.generators[place].expression for place in used]
+        if len(expressions) == len(factor) == 1:
+            return bool(expressions[0].is_Pow and expressions[0].exp.is_negative)
+        signs = {coefficient > 0 for coefficient in factor.values()}
+        is_even = all(power % 2 == 0 for monomial in factor for power in monomial)
+        return len(signs) == 1 and is_even and self._ring.polynomials.zero_monom in factor
 
     def _of_sum(self, factor: PolyElement, angle: _Angle) -> list[Root] | None:
         """Roots of A cos + B sin with N² = A² + B² a number: cos = ±B/N, sin = ∓A/N."""
@@ -387,10 +365,3 @@ class Solver:
 
 def length_of(coordinates: Sequence[sp.Expr]) -> sp.Expr:
     return sp.sqrt(sp.Add(*(coordinate**2 for coordinate in coordinates)))
-
-
-def _is_positive(factor: PolyElement) -> bool:
-    """Whether it is a number and squares, all of one sign."""
-    signs = {coefficient > 0 for coefficient in factor.values()}
-    is_even = all(power % 2 == 0 for monomial in factor for power in monomial)
-    return len(signs) == 1 and is_even and any(not any(monomial) for monomial in factor)

@@ -14,7 +14,7 @@ import sympy as sp
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import Codec, codec_for
-from rigidsym.algebra.evaluate import Bounds, sign_within
+from rigidsym.algebra.evaluate import Bounds, is_never_negative
 from rigidsym.algebra.generators import in_names
 from rigidsym.algebra.matrix import RingMatrix, Values
 from rigidsym.algebra.present import Rationals
@@ -146,7 +146,7 @@ class Prover:
         and positive constants; if it does not, the proof is *unproved* and holds the value.
         """
         proof = self.vanishes(squared, claim)
-        if proof.is_exact and sign_within(value, bounds) != 1:
+        if proof.is_exact and not is_never_negative(value, bounds):
             return Proof(claim=claim, status="unproved", residual=sp.ImmutableMatrix([[value]]))
         return proof
 

@@ -96,11 +96,6 @@ PRESETS: Mapping[str, Preset] = {
         SOURCES["Goldstein 4.4 (4.46)"],
         passive=True,
     ),
-    "landau_lifshitz": Preset(
-        "ZXZ",
-        "the Euler angles of Landau and Lifshitz",
-        SOURCES["Landau 35"],
-    ),
     "aerospace": Preset(
         "ZYX",
         "yaw, pitch, roll; from the reference frame to the axes of the aircraft",
@@ -111,31 +106,11 @@ PRESETS: Mapping[str, Preset] = {
         passive=True,
         z_down=True,
     ),
-    "wertz": Preset(
-        "ZXZ",
-        "3-1-3 of spacecraft attitude, the direction cosine matrix",
-        Citation(
-            "J. Wertz (ed.), Spacecraft Attitude Determination and Control (1978), appendix E"
-        ),
-        passive=True,
-    ),
     "rpy": Preset(
         "xyz",
         "roll, pitch, yaw about fixed axes, as in robotics",
         Citation("J. Craig, Introduction to Robotics (2005)", section="section 2.8"),
         ("roll", "pitch", "yaw"),
-    ),
-    "davenport": Preset(
-        "z(phi) x(theta) [0,b,c](psi)",
-        "Davenport's three turns, the second axis at right angles to the others",
-        Citation("P. Davenport, Rotations about nonorthogonal axes, AIAA Journal 11 (1973)"),
-    ),
-    "bunge": Preset(
-        "ZXZ",
-        "Bunge's angles of texture analysis, from the sample to the crystal",
-        Citation("H.-J. Bunge, Texture Analysis in Materials Science (1982)"),
-        ("phi_1", "Phi", "phi_2"),
-        passive=True,
     ),
 }
 

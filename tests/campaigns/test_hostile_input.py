@@ -122,7 +122,18 @@ def test_expressions(text: str):
 turns = st.tuples(st.sampled_from(("x", "y", "z", "[1,1,0]", "[a,b,c]", "[0,0,0]")), expressions)
 rotations = st.one_of(
     st.lists(turns.map(lambda turn: "{}({})".format(*turn)), min_size=1, max_size=5).map(" ".join),
-    st.sampled_from(("ZXZ", "zyx", "313", "ZZX", "zXz", "quaternion", "gibbs_vector", "davenport")),
+    st.sampled_from(
+        (
+            "ZXZ",
+            "zyx",
+            "313",
+            "ZZX",
+            "zXz",
+            "quaternion",
+            "gibbs_vector",
+            "z(phi) x(theta) [0,b,c](psi)",
+        )
+    ),
 )
 
 

@@ -71,7 +71,13 @@ def written(tmp_path_factory):
     folder = tmp_path_factory.mktemp("written")
     long = "z(the_first_angle_of_the_three) x(the_second_angle_of_the_three) z(alpha0)"
     texts = ["ZXZ", "zyx", "z(phi) x(b) [0,3,4](c)", "z(a) x(alpha0) z(b) x(c) y(d)", long]
-    texts += ["z(phi)", "[a,b,c](beta) y(w)", "davenport", "z(a) x(b) z(-a)", "z(phi) x(phi)"]
+    texts += [
+        "z(phi)",
+        "[a,b,c](beta) y(w)",
+        "z(phi) x(theta) [0,b,c](psi)",
+        "z(a) x(b) z(-a)",
+        "z(phi) x(phi)",
+    ]
     for place, text in enumerate((*texts, *PARAMETRISATIONS)):
         kernels = rs.derive(rotation_from(text)).kernels(conversions=True)
         kernels.write(folder / f"module_{place}.py")

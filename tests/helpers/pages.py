@@ -16,7 +16,12 @@ from rigidsym.pipeline import motion_of as motion_of_spec, read_file, read_spec
 from rigidsym.system import resources
 
 LONG = "x(a_1) y(a_2) z(a_3) x(a_4) y(a_5) z(a_6)"  # more turns than a figure has arcs for
-CHAINS = ("davenport", "z(phi/2) x(theta) z(psi/3)", "x(alpha0) z(phi) y(pi/4) x(theta)", LONG)
+CHAINS = (
+    "z(phi) x(theta) [0,b,c](psi)",
+    "z(phi/2) x(theta) z(psi/3)",
+    "x(alpha0) z(phi) y(pi/4) x(theta)",
+    LONG,
+)
 FILES = {
     "passive": '[rotation]\nsequence = "z(heading) y(elevation) x(bank)"\npassive = true',
     "own": """

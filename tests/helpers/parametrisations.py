@@ -128,7 +128,7 @@ def motion_of(text: str, *, passive: bool = False) -> Motion:
 
 
 def constants_of(motion: Motion) -> dict[sp.Expr, Any]:
-    chosen = IN_A_PLANE if motion.name.startswith("davenport") else CONSTANTS
+    chosen = IN_A_PLANE if motion.name.startswith("chain_zxu") else CONSTANTS
     return {sp.Symbol(name): mp.mpf(p) / q for name, (p, q) in chosen.items()}
 
 

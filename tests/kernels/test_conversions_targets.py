@@ -49,8 +49,6 @@ def given(text: str) -> dict[str, list[np.ndarray]]:
         "from_quaternion": [p],
         "from_rotation_matrix": [known.rotation_matrix(q)],
         "quaternion": [q],
-        "shadow_set": [q],
-        "shorter_set": [q],
     }
     return {name: arrays for name, arrays in arguments.items() if hasattr(known, name)}
 

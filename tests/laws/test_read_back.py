@@ -26,7 +26,15 @@ VECTORS = {  # as the notes call it, its components, and those whose length is n
 }
 UNIT = {"cayley_klein": 4, "axis_angle": 3}  # coordinates of length one
 ROTATIONS = (  # one of each kind
-    *("ZXZ", "xyz", "quaternion", "cayley_klein", "axis_angle", "rotation_vector", "davenport"),
+    *(
+        "ZXZ",
+        "xyz",
+        "quaternion",
+        "cayley_klein",
+        "axis_angle",
+        "rotation_vector",
+        "z(phi) x(theta) [0,b,c](psi)",
+    ),
     *("z(2*phi - psi) x(theta) z(psi/3)", "z(phi) [1,1,0](theta) x(pi/4)"),
 )
 PRINTED = {"w": "q_0", "x": "q_1", "y": "q_2", "z": "q_3"}  # as notes call quaternions
@@ -156,7 +164,7 @@ def _distance(one: Any, two: Any) -> Any:
 printed = cache(Printed)
 
 
-@pytest.mark.parametrize("text", ["ZXZ", "cayley_klein", "davenport"])
+@pytest.mark.parametrize("text", ["ZXZ", "cayley_klein", "z(phi) x(theta) [0,b,c](psi)"])
 def test_each_equation_in_latex(text):
     one = printed(text)
     for name in one.expected:

@@ -29,7 +29,7 @@ from rigidsym.spec.derivation_spec import DerivationSpec
 
 NAME = "euler_zxz_intrinsic"
 WORDS = ("heading", "elevation", "bank")
-KINDS = ("axis_angle", "gibbs_vector", "unit_quaternion", "davenport", "z(phi)")
+KINDS = ("axis_angle", "gibbs_vector", "unit_quaternion", "z(phi) x(theta) [0,b,c](psi)", "z(phi)")
 SHIPPED = ("lecture", "solid_cone", "yaw_pitch_roll")
 PHONES = (320, 360, 390)
 SCREENS = (*PHONES, 768, 1280)

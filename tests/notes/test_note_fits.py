@@ -90,7 +90,7 @@ def _given(document: Document, label: str) -> tuple[Equation, Equation | None]:
     ("rotation", "label", "done", "names"),
     [
         ("ZXZ", "rotation_matrix", "", 0),  # as it stands
-        ("davenport", "spin_matrix", "", 2),  # a matrix with names for its sums
+        ("z(phi) x(theta) [0,b,c](psi)", "spin_matrix", "", 2),  # a matrix with names for its sums
         ("z(yaw) y(pitch) x(roll)", "rotation_matrix", "abbreviated", 0),  # products: shorthand
         ("z(yaw) y(pitch) x(roll)", "spin_matrix", "", 4),  # entries of Ω: a matrix, not a list
         ("ZXZ", "rotation_rate", "listed", 0),  # an entry a line, and none broken

@@ -305,7 +305,9 @@ def test_markup_in_a_title_and_a_source_comes_out_as_text():
 # --- prose and symbols follow the model
 
 
-@pytest.mark.parametrize("name", ["ZYX", "zxz", "davenport", "z(a) x(b)", "quaternion"])
+@pytest.mark.parametrize(
+    "name", ["ZYX", "zxz", "z(phi) x(theta) [0,b,c](psi)", "z(a) x(b)", "quaternion"]
+)
 def test_equation_17_of_the_lecture_is_cited_for_its_own_rotation_only(name):
     places = [(s.text, s.equation) for s in _cited(rs.derive(name).note().document)]
     assert (LECTURE, "17") not in places

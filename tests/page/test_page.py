@@ -27,7 +27,12 @@ from rigidsym.page.print_page import MOST_BYTES
 from rigidsym.pipeline import output_of, read_spec
 from rigidsym.system import resources
 
-SOME = ("unit_quaternion", "rotation_vector", "davenport", "x(alpha0) z(phi) y(pi/4) x(theta)")
+SOME = (
+    "unit_quaternion",
+    "rotation_vector",
+    "z(phi) x(theta) [0,b,c](psi)",
+    "x(alpha0) z(phi) y(pi/4) x(theta)",
+)
 # parts move with the body, or the frame of reference turns
 WITHOUT_A_PAGE = ("dual_spin_satellite",)
 
@@ -77,7 +82,9 @@ def test_a_note_is_composed_once_for_its_formats_and_the_page(monkeypatch):
 
 @pytest.mark.usefixtures("node")
 def test_the_script_is_one_module_without_names_declared_twice(tmp_path: Path):
-    for number, page in enumerate((page_of("ZXZ"), page_of("davenport"), odd_page())):
+    for number, page in enumerate(
+        (page_of("ZXZ"), page_of("z(phi) x(theta) [0,b,c](psi)"), odd_page())
+    ):
         file = tmp_path / f"{number}.mjs"
         file.write_text(script_of(page), encoding="utf-8")
         subprocess.run(["node", "--check", file], capture_output=True, check=True)

@@ -41,9 +41,8 @@ from rigidsym.mechanics.conversions.function import (
     unit,
 )
 from rigidsym.mechanics.conversions.inverse import (
+    BOTH_SIGNS,
     WORDS,
-    ClosedForm,
-    EulerRule,
     InverseRule,
     claim,
     inverse_rule,
@@ -79,16 +78,12 @@ class Conversions:
         """How the coordinates follow from a quaternion of any length but zero."""
         return inverse_rule(self.model)
 
-    @property
-    def _form(self) -> ClosedForm | None:
-        return self.inverse if isinstance(self.inverse, ClosedForm) else None
-
     @cached_property
     def quaternion(self) -> Step | None:
         """The unit quaternion; None if it has no formula of its own, but is taken from R."""
-        model, form = self.model, self._form
-        if form is not None:
-            return self._step_of_form(form) if form.quaternion else None
+        model, rule = self.model, self.inverse
+        if rule is not None and rule.rule != "euler":
+            return self._step_of_form(rule) if rule.quaternion else None
         if not model.turns or len(model.turns) > LONGEST_CHAIN:
             return None
         try:
@@ -101,7 +96,8 @@ class Conversions:
     @property
     def because(self) -> Sentence:
         """How the quaternion follows."""
-        return sentence(WORDS[self._form.rule if self._form else "turns"]["forward"])
+        rule = self.inverse.rule if self.inverse else "euler"
+        return sentence(WORDS["turns" if rule == "euler" else rule]["forward"])
 
     @property
     def without(self) -> str:
@@ -122,7 +118,7 @@ class Conversions:
     def is_proved(self) -> bool:
         return all(proof.is_exact for proof in self.proofs)
 
-    def _step_of_form(self, form: ClosedForm) -> Step:
+    def _step_of_form(self, form: InverseRule) -> Step:
         """In the order of the coordinates: (x, y, z, w) if the scalar is last."""
         model = self.model
         codec = codec_for([*model.matrix, *form.quaternion], constraints=model.constraints, order=0)
@@ -182,14 +178,9 @@ def converted(derivation: Derivation) -> Converted:
     continuity = None
     if inverse is not None:
         functions += (_from_quaternion(inverse), from_matrix(derivation, inverse))
-        if inverse.rule == "modified_rodrigues":
-            functions += _shadow_sets(derivation)
         if "continuity" in inverse.words:  # the coordinates are not unique
-            kind = inverse.rule
-            if isinstance(inverse, ClosedForm) and inverse.has_both_signs:
-                kind = "quaternion"
-            quarters = inverse.quarters if isinstance(inverse, EulerRule) else 0
-            continuity = Continuity(kind, (inverse.words["continuity"],), quarters)
+            kind = "quaternion" if inverse.rule in BOTH_SIGNS else inverse.rule
+            continuity = Continuity(kind, (inverse.words["continuity"],), inverse.quarters)
     return Converted(
         steps=steps,
         functions=functions,
@@ -337,19 +328,3 @@ def _of_rotation_vector(derivation: Derivation, number: int) -> ConversionFuncti
     inputs = [ConversionInput(argument=q)]
     words = "quaternion_of_vector"
     return _function(values, "quaternion", inputs, parts, words=words, symbol="p", number=number)
-
-
-def _shadow_sets(derivation: Derivation) -> tuple[ConversionFunction, ...]:
-    """The other set of modified Rodrigues parameters, and the shorter of both."""
-    q = derivation.argument("q")
-    inputs = [ConversionInput(argument=q)]
-    shadow, shorter = NamedValues(q.symbols[0]), NamedValues(q.symbols[0])
-    size = shadow.let("square", square(q.symbols))
-    length = shorter.let("square", square(q.symbols))
-    scale = shorter.let("scale", Where(length > 1, -length, sp.S.One))
-    other = tuple(-part / size for part in q.symbols)
-    nearer = tuple(part / scale for part in q.symbols)
-    return (
-        _function(shadow, "shadow_set", inputs, other, symbol="s"),
-        _function(shorter, "shorter_set", inputs, nearer, symbol="s"),
-    )

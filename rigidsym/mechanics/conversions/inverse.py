@@ -7,8 +7,7 @@ templates/notes/en/conversions.toml.
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, reduce
 
@@ -34,6 +33,7 @@ from rigidsym.models import parametrisations
 from rigidsym.models.rotation import AXES, RotationModel, hat, rotation_of
 
 Claim = tuple[tuple[sp.Expr, ...], Formula]  # what vanishes, and how it is written
+Back = Callable[[NamedValues, Vector], Vector]  # coordinates, from a scaled quaternion or from R
 WORDS = phrases("conversions")
 
 
@@ -53,12 +53,17 @@ def vanishing(model: RotationModel, claims: Sequence[Claim]) -> tuple[Proof, ...
 
 
 @dataclass(frozen=True, kw_only=True)
-class InverseRule(ABC):
+class InverseRule:
     """How the coordinates follow from a quaternion of any length but zero, or from R."""
 
     model: RotationModel
     rule: str  # "euler", or the name of a parametrisation: "quaternion", "rotation_vector", ...
     order: tuple[int, ...]  # place, among the model's coordinates, of each that the rule gives
+    claims: tuple[Claim, ...]  # what the ring of the model has to decide
+    of_quaternion: Back  # scaled, scalar first
+    of_matrix: Back  # R, row by row
+    quaternion: Vector = ()  # in closed form, scalar first, of length one
+    quarters: int = 0  # of Euler angles: the quarter turns from the middle angle 0 to a pole
 
     @property
     def is_scalar_last(self) -> bool:
@@ -78,25 +83,27 @@ class InverseRule(ABC):
     @property
     def branch(self) -> Sentence:
         """Which of the possible coordinates are given."""
-        return sentence(self.words["choice"])
-
-    @abstractmethod
-    def claims(self) -> Sequence[Claim]:
-        """What the ring of the model has to decide."""
+        if self.rule != "euler":
+            return sentence(self.words["choice"])
+        names = [named(q.func.__name__) for q in self.model.coordinates]
+        first, middle, third = (names[place] for place in self.order)
+        interval = "[−π/2, π/2]" if self.quarters else "[0, π]"
+        typed = self.words["choice"].replace("INTERVAL", interval)
+        return sentence(typed, *(first, third, middle, first, third, names[2]))
 
     @cached_property
     def proofs(self) -> tuple[Proof, ...]:
-        return vanishing(self.model, self.claims())
+        return vanishing(self.model, self.claims)
 
-    @abstractmethod
     def from_quaternion(self, values: NamedValues, quaternion: Vector) -> Vector:
         """The coordinates of a quaternion that is scaled, scalar first."""
+        return self._in_order(self.of_quaternion(values, quaternion))
 
-    @abstractmethod
     def from_matrix(self, values: NamedValues, matrix: sp.Matrix) -> Vector:
         """The coordinates of a rotation matrix R, (3, 3)."""
+        return self._in_order(self.of_matrix(values, tuple(matrix)))
 
-    def in_order(self, values: Sequence[sp.Expr]) -> Vector:
+    def _in_order(self, values: Vector) -> Vector:
         """What the rule gives, in the order of the model's coordinates."""
         placed = dict(zip(self.order, values, strict=True))
         return tuple(placed[place] for place in range(len(values)))
@@ -114,176 +121,122 @@ def inverse_rule(model: RotationModel) -> InverseRule | None:
 # δ = (α − γ)/2. So nothing cancels where β' is near 0 or π, which are the poles.
 
 
-@dataclass(frozen=True, kw_only=True)
-class EulerRule(InverseRule):
-    """Three turns by the coordinates about coordinate axes, neighbours about different ones.
-
-    `order` has the places of α, β, γ.
-    """
-
-    frame: sp.ImmutableMatrix  # columns e₁, ±e₂, e₁ × ±e₂; (3, 3)
-    quarters: int  # ±1 if C is a quarter turn about ∓e₂, 0 if there is none
-
-    @property
-    def _sign(self) -> int:
-        """Of the middle angle: −1 where the frame holds −e₂, so that β' is in [0, π]."""
-        return -1 if self.quarters > 0 else 1
-
-    @property
-    def _lean(self) -> tuple[int, int]:
-        """Parallel to (cos λ/2, sin λ/2) for the angle λ of C."""
-        return 1, abs(self.quarters)
-
-    @property
-    def branch(self) -> Sentence:
-        names = [named(q.func.__name__) for q in self.model.coordinates]
-        first, middle, third = (names[place] for place in self.order)
-        interval = "[−π/2, π/2]" if self.quarters else "[0, π]"
-        typed = self.words["choice"].replace("INTERVAL", interval)
-        return sentence(typed, *(first, third, middle, first, third, names[2]))
-
-    def _in_frame(self, quaternion: Sequence[sp.Expr]) -> sp.Matrix:
-        """The components of p (1 + C) in the frame, (4, 1)."""
-        scalar, part = self._lean
-        whole = product(tuple(quaternion), (sp.Integer(scalar), *(part * self.frame[:, 1])))
-        return sp.diag(1, self.frame.T) * sp.Matrix(whole)
-
-    def claims(self) -> list[Claim]:
-        """The four components of p (1 + C) in the frame, for p the product of the three turns."""
-        turns = (half_turn(turn.direction, turn.angle) for turn in self.model.turns)
-        first, middle, third = (turn.angle for turn in self.model.turns)
-        half, (along, across) = self._sign * middle / 2, self._lean
-        cosine = along * sp.cos(half) - across * sp.sin(half)
-        sine = along * sp.sin(half) + across * sp.cos(half)
-        total, difference = (first + third) / 2, (first - third) / 2
-        expected = (
-            (cosine * sp.cos(total), r"\cos#\,\cos\sigma"),
-            (cosine * sp.sin(total), r"\cos#\,\sin\sigma"),
-            (sine * sp.cos(difference), r"\sin#\,\cos\delta"),
-            (sine * sp.sin(difference), r"\sin#\,\sin\delta"),
-        )
-        components = self._in_frame(reduce(product, turns))
-        return [
-            claim(rf"a_{k} = \kappa\," + text.replace("#", r"\frac{\beta'}{2}"), here - there)
-            for k, (here, (there, text)) in enumerate(zip(components, expected, strict=True))
-        ]
-
-    def from_quaternion(self, values: NamedValues, quaternion: Vector) -> Vector:
-        parts = map(sp.expand, self._in_frame(quaternion))
-        return self._angles(values, values.each(("a0", "a1", "a2", "a3"), parts))
-
-    def from_matrix(self, values: NamedValues, matrix: sp.Matrix) -> Vector:
-        """From the matrix of R C in the frame."""
-        skew = hat(self.frame[:, 1])
-        fixed = sp.eye(3) + skew + skew**2 if self.quarters else sp.eye(3)
-        turned = (self.frame.T * matrix * fixed * self.frame).applyfunc(sp.expand)
-        return self._angles(values, shepperd(values, turned))
-
-    def _angles(self, values: NamedValues, parts: Vector) -> Vector:
-        """The angles from the quaternion in the frame of the turns."""
-        far, near = values.length("far", parts[:2]), values.length("near", parts[2:])
-        total = values.let("half_sum", sp.atan2(parts[1], parts[0]))
-        difference = values.let("half_difference", sp.atan2(parts[3], parts[2]))
-        # Where a half of the quaternion vanishes, its angle is taken to be the other's, or minus
-        # it, so that the last coordinate is zero, whether it is the first turn's or the third's.
-        is_low, is_high = near <= values.tiny * far, far <= values.tiny * near
-        sign = -1 if self.order[0] == 2 else 1
-        chosen = values.let("half_difference", Where(is_low, sign * total, difference))
-        total = values.let("half_sum", Where(is_high, sign * difference, total))
-        first = values.wrapped("first", total + chosen)
-        last = values.wrapped("last", total - chosen)
-        offset = sp.Float(float(sp.pi / 2)) if self.quarters else sp.S.Zero
-        middle = self._sign * (2 * sp.atan2(near, far) - offset)
-        return self.in_order((first, middle, last))
-
-
-def _euler_rule(model: RotationModel) -> EulerRule | None:
+def _euler_rule(model: RotationModel) -> InverseRule | None:
+    """The rule of three turns by the coordinates about axes, neighbours about different ones."""
     angles = [turn.angle for turn in model.turns]
     letters = [turn.axis for turn in model.turns]
     if len(angles) != 3 or len(set(angles)) != 3 or set(angles) != set(model.coordinates):
         return None
     if not set(letters) <= set(AXES) or letters[1] in (letters[0], letters[2]):
         return None
+    order = tuple(map(model.coordinates.index, angles))
     first, second, third = (sp.Matrix(turn.direction) for turn in model.turns)
     quarters = -int(first.cross(third).dot(second))
-    second *= -1 if quarters > 0 else 1
-    return EulerRule(
+    sign = -1 if quarters > 0 else 1  # of the middle angle and of e₂, so that β' is in [0, π]
+    second *= sign
+    frame = sp.Matrix.hstack(first, second, first.cross(second))
+    along, across = 1, abs(quarters)  # parallel to (cos λ/2, sin λ/2) for the angle λ of C
+
+    def in_frame(quaternion: Sequence[sp.Expr]) -> sp.Matrix:
+        """The components of p (1 + C) in the frame, (4, 1)."""
+        whole = product(tuple(quaternion), (sp.Integer(along), *(across * second)))
+        return sp.diag(1, frame.T) * sp.Matrix(whole)
+
+    def angles_of(values: NamedValues, parts: Vector) -> Vector:
+        """The angles from the quaternion in the frame."""
+        far, near = values.length("far", parts[:2]), values.length("near", parts[2:])
+        total = values.let("half_sum", sp.atan2(parts[1], parts[0]))
+        difference = values.let("half_difference", sp.atan2(parts[3], parts[2]))
+        # Where a half of the quaternion vanishes, its angle is taken to be the other's, or minus
+        # it, so that the last coordinate is zero, whether it is the first turn's or the third's.
+        is_low, is_high = near <= values.tiny * far, far <= values.tiny * near
+        other = -1 if order[0] == 2 else 1
+        chosen = values.let("half_difference", Where(is_low, other * total, difference))
+        total = values.let("half_sum", Where(is_high, other * difference, total))
+        alpha = values.wrapped("first", total + chosen)
+        gamma = values.wrapped("last", total - chosen)
+        offset = sp.Float(float(sp.pi / 2)) if quarters else sp.S.Zero
+        return alpha, sign * (2 * sp.atan2(near, far) - offset), gamma
+
+    def of_quaternion(values: NamedValues, quaternion: Vector) -> Vector:
+        parts = map(sp.expand, in_frame(quaternion))
+        return angles_of(values, values.each(("a0", "a1", "a2", "a3"), parts))
+
+    def of_matrix(values: NamedValues, matrix: Vector) -> Vector:
+        """From the matrix of R C in the frame."""
+        skew = hat(second)
+        fixed = sp.eye(3) + skew + skew**2 if quarters else sp.eye(3)
+        turned = (frame.T * sp.Matrix(3, 3, matrix) * fixed * frame).applyfunc(sp.expand)
+        return angles_of(values, shepperd(values, turned))
+
+    half, sigma, delta = (
+        sign * angles[1] / 2,
+        (angles[0] + angles[2]) / 2,
+        (angles[0] - angles[2]) / 2,
+    )
+    cosine = along * sp.cos(half) - across * sp.sin(half)
+    sine = along * sp.sin(half) + across * sp.cos(half)
+    expected = (
+        (cosine * sp.cos(sigma), r"\cos#\,\cos\sigma"),
+        (cosine * sp.sin(sigma), r"\cos#\,\sin\sigma"),
+        (sine * sp.cos(delta), r"\sin#\,\cos\delta"),
+        (sine * sp.sin(delta), r"\sin#\,\sin\delta"),
+    )
+    components = in_frame(reduce(product, (half_turn(t.direction, t.angle) for t in model.turns)))
+    claims = (
+        claim(rf"a_{k} = \kappa\," + text.replace("#", r"\frac{\beta'}{2}"), here - there)
+        for k, (here, (there, text)) in enumerate(zip(components, expected, strict=True))
+    )
+    return InverseRule(
         model=model,
         rule="euler",
-        order=tuple(map(model.coordinates.index, angles)),
-        frame=sp.ImmutableMatrix(sp.Matrix.hstack(first, second, first.cross(second))),
+        order=order,
+        claims=tuple(claims),
+        of_quaternion=of_quaternion,
+        of_matrix=of_matrix,
         quarters=quarters,
     )
 
 
 # Parametrisations whose quaternion has a closed form. Nothing cancels on the way back.
 
-Back = Callable[[NamedValues, Vector], Vector]  # the coordinates of a scaled quaternion
-Parts = tuple[Vector, tuple[Claim, ...], Back]  # the unit quaternion, what is claimed, and back
 
-
-Build = Callable[..., RotationModel]
-PartsOf = Callable[[Vector], Parts]
-_FORMS: dict[str, tuple[Build, int, PartsOf]] = {}  # by rule
-
-
-def _form_of(build: Build, count: int) -> Callable[[PartsOf], PartsOf]:
-    """Registers the form of a parametrisation with so many coordinates, by its name."""
-
-    def register(parts_of: PartsOf) -> PartsOf:
-        _FORMS[parts_of.__name__] = build, count, parts_of
-        return parts_of
-
-    return register
-
-
-@dataclass(frozen=True, kw_only=True)
-class ClosedForm(InverseRule):
-    """One parametrisation in given coordinates."""
-
-    parts: Parts
-
-    @property
-    def quaternion(self) -> Vector:
-        """Scalar first, of length one; empty where it is read off from R."""
-        return self.parts[0]
-
-    @property
-    def has_both_signs(self) -> bool:
-        """Whether p and −p differ."""
-        return self.rule in ("quaternion", "unit_quaternion", "cayley_klein")
-
-    def claims(self) -> Sequence[Claim]:
-        return self.parts[1]
-
-    def from_quaternion(self, values: NamedValues, quaternion: Vector) -> Vector:
-        return self.in_order(self.parts[2](values, quaternion))
-
-    def from_matrix(self, values: NamedValues, matrix: sp.Matrix) -> Vector:
-        if self.rule == "direction_cosines":
-            return self.in_order(tuple(matrix))
-        quaternion = shepperd(values, matrix)
-        if self.has_both_signs:
-            quaternion = short_way(values, quaternion)
-        return self.from_quaternion(values, quaternion)
-
-
-def _closed_form(model: RotationModel) -> ClosedForm | None:
-    """The form of a model that is one of the parametrisations; None where it is none."""
-    for rule, (build, count, parts_of) in _FORMS.items():
-        for order in _orders(count) if len(model.coordinates) == count else ():
+def _closed_form(model: RotationModel) -> InverseRule | None:
+    """The rule of a model that is one of the parametrisations; None where it is none."""
+    count = len(model.coordinates)
+    orders = [tuple(range(count)), *([(3, 0, 1, 2)] if count == 4 else [])]  # w may stand last
+    for rule, (build, size, form) in _FORMS.items():
+        for order in orders if count == size else ():
             q = tuple(model.coordinates[place] for place in order)
             known = build([part.func.__name__ for part in q])
             if known.matrix == model.matrix and known.constraints == model.constraints:
-                return ClosedForm(model=model, rule=rule, order=order, parts=parts_of(q))
+                return _in_coordinates(model, rule, order, form(q))
     return None
 
 
-def _orders(count: int) -> Iterator[tuple[int, ...]]:
-    """The coordinates as they stand, and with the last of four first."""
-    yield tuple(range(count))
-    if count == 4:
-        yield (3, 0, 1, 2)
+def _in_coordinates(
+    model: RotationModel, rule: str, order: tuple[int, ...], form: Form
+) -> InverseRule:
+    quaternion, claims, back = form
+
+    def of_matrix(values: NamedValues, matrix: Vector) -> Vector:
+        if rule == "direction_cosines":
+            return matrix
+        parts = shepperd(values, sp.Matrix(3, 3, matrix))
+        return back(values, short_way(values, parts) if rule in BOTH_SIGNS else parts)
+
+    return InverseRule(
+        model=model,
+        rule=rule,
+        order=order,
+        claims=claims,
+        of_quaternion=back,
+        of_matrix=of_matrix,
+        quaternion=quaternion,
+    )
+
+
+Form = tuple[Vector, tuple[Claim, ...], Back]  # the unit quaternion, what is claimed, and back
 
 
 def _along(factor: sp.Expr, vector: Sequence[sp.Expr]) -> Vector:
@@ -301,20 +254,17 @@ def _length_of_vector(values: NamedValues, vector: Vector) -> tuple[sp.Basic, sp
     return none, values.let("length", sp.sqrt(Where(none, sp.S.One, size)))
 
 
-@_form_of(parametrisations.Quaternion, 4)
-def quaternion(q: Vector) -> Parts:
+def _quaternion(q: Vector) -> Form:
     length = sp.sqrt(square(q))
     parts = _along(1 / length, q)
     return parts, (_equal(_along(length, parts), q, r"|\q|\,\p = \q"),), unit
 
 
-@_form_of(parametrisations.UnitQuaternion, 4)
-def unit_quaternion(q: Vector) -> Parts:
+def _unit_quaternion(q: Vector) -> Form:
     return q, (_equal([square(q)], [sp.S.One], r"\q\cdot\q = 1"),), unit
 
 
-@_form_of(parametrisations.CayleyKlein, 4)
-def cayley_klein(q: Vector) -> Parts:
+def _cayley_klein(q: Vector) -> Form:
     a, b, c, d = q
 
     def back(values: NamedValues, quaternion: Vector) -> Vector:
@@ -325,8 +275,7 @@ def cayley_klein(q: Vector) -> Parts:
     return (a, d, c, b), (is_unit,), back
 
 
-@_form_of(parametrisations.AxisAngle, 4)
-def axis_angle(q: Vector) -> Parts:
+def _axis_angle(q: Vector) -> Form:
     *axis, angle = q
     half = sp.sin(angle / 2)
     vector = _along(half, axis)
@@ -344,8 +293,7 @@ def axis_angle(q: Vector) -> Parts:
     return (sp.cos(angle / 2), *vector), claims, back
 
 
-@_form_of(parametrisations.RotationVector, 3)
-def rotation_vector(q: Vector) -> Parts:
+def _rotation_vector(q: Vector) -> Form:
     angle = sp.sqrt(square(q))
     half = sp.sin(angle / 2)
     vector = _along(half / angle, q)
@@ -364,8 +312,7 @@ def rotation_vector(q: Vector) -> Parts:
     return (sp.cos(angle / 2), *vector), claims, back
 
 
-@_form_of(parametrisations.GibbsVector, 3)
-def gibbs_vector(q: Vector) -> Parts:
+def _gibbs_vector(q: Vector) -> Form:
     length = sp.sqrt(1 + square(q))
     parts = _along(1 / length, (sp.S.One, *q))
 
@@ -378,8 +325,7 @@ def gibbs_vector(q: Vector) -> Parts:
     return parts, (_equal(_along(parts[0], q), parts[1:], r"p_0\,\g = \p_v"),), back
 
 
-@_form_of(parametrisations.ModifiedRodrigues, 3)
-def modified_rodrigues(q: Vector) -> Parts:
+def _modified_rodrigues(q: Vector) -> Form:
     size = square(q)
     scalar, vector = (1 - size) / (1 + size), _along(2 / (1 + size), q)
 
@@ -392,10 +338,22 @@ def modified_rodrigues(q: Vector) -> Parts:
     return (scalar, *vector), claims, back
 
 
-@_form_of(parametrisations.DirectionCosines, 9)
-def direction_cosines(_: Vector) -> Parts:
+def _direction_cosines(_: Vector) -> Form:
     def back(values: NamedValues, quaternion: Vector) -> Vector:
         size = values.let("square", square(quaternion))
         return tuple(sp.expand(entry) / size for entry in rotation_of(quaternion))
 
     return (), (), back
+
+
+BOTH_SIGNS = ("quaternion", "unit_quaternion", "cayley_klein")  # rules in which p and −p differ
+_FORMS: dict[str, tuple[Callable[..., RotationModel], int, Callable[[Vector], Form]]] = {
+    "quaternion": (parametrisations.Quaternion, 4, _quaternion),
+    "unit_quaternion": (parametrisations.UnitQuaternion, 4, _unit_quaternion),
+    "cayley_klein": (parametrisations.CayleyKlein, 4, _cayley_klein),
+    "axis_angle": (parametrisations.AxisAngle, 4, _axis_angle),
+    "rotation_vector": (parametrisations.RotationVector, 3, _rotation_vector),
+    "gibbs_vector": (parametrisations.GibbsVector, 3, _gibbs_vector),
+    "modified_rodrigues": (parametrisations.ModifiedRodrigues, 3, _modified_rodrigues),
+    "direction_cosines": (parametrisations.DirectionCosines, 9, _direction_cosines),
+}  # by rule: the model in coordinates of given names, their number, and the form
