@@ -23,7 +23,6 @@ from rigidsym.mechanics.derivation import (
     OF_RATES,
     Derivation,
     OfBody,
-    Singularities,
     Step,
 )
 from rigidsym.mechanics.kinematics.chain import Chain, is_shorter
@@ -31,12 +30,10 @@ from rigidsym.mechanics.kinematics.workspace import Values
 from rigidsym.mechanics.quantities.catalogue import OF_BODY, OF_MOTION
 from rigidsym.mechanics.quantities.kinematics import KINEMATICS
 from rigidsym.mechanics.quantities.mass import BODY_ALONE, OF_BODY_ALONE
-from rigidsym.mechanics.singularities import margin_of, planes_of_axes, singularities_of
+from rigidsym.mechanics.singularities import margin_of, singularities_of
 from rigidsym.models.body import BodyDescription, Distribution, RigidBody
 from rigidsym.models.forces import Forces
 from rigidsym.models.rotation import RotationModel, depends_on_time
-
-_STUDIED = 5  # turns up to which the minors of W are few enough to solve for their zeros
 
 Body = RigidBody | BodyDescription | Distribution
 
@@ -84,7 +81,9 @@ def derive(
         steps += of_body.steps
     arguments = of_body.arguments
     has_rates = not only or any(KINEMATICS[name].section == OF_RATES for name in turning)
-    singularities = _singularities(values, chain) if has_rates else None
+    singularities = None
+    if has_rates:
+        singularities = margin_of(chain) if chain else singularities_of(values)
     names = of_body.names or chain
     named: list[sp.Basic] = [step.expression for step in steps]
     named += singularities.minors if singularities else ()
@@ -127,16 +126,6 @@ def _kinematics(work: Values | Chain, only: Collection[str]) -> list[Step]:
     steps = [work.step(entry) for entry in others if not only or entry.name in only]
     wanted = [first] if not only or rotation.name in only else []
     return [*wanted, *(step for step in steps if step is not None)]
-
-
-def _singularities(values: Values, chain: Chain | None) -> Singularities:
-    """Where the rates fail; of many turns as far as that is easily told."""
-    if chain is None:
-        return singularities_of(values)
-    margin = margin_of(chain)
-    found = planes_of_axes(chain, margin.minors) if margin.rank == 3 else None
-    is_easy = chain.count <= _STUDIED and not any(turn.components for turn in values.model.turns)
-    return found or (singularities_of(values) if is_easy else margin)
 
 
 def _check_names(only: Collection[str], *, has_body: bool, has_forces: bool) -> None:

@@ -1,27 +1,21 @@
 """Singular orientations: where the rate matrix loses rank, the axis lost, the null rates.
 
-Of a long chain of turns they are found in time linear in their number. The columns of the rate
-matrix are the axes of the turns; it loses rank if all of them are in one plane. The axes of
-neighbouring turns always span a plane. So all axes are in one plane if and only if every three
-neighbours are, and their triple product depends only on the angle of the middle turn.
+Of a long chain of turns only the determinant of W Wᵀ is given, in the names of the chain.
 """
 
 from __future__ import annotations
 
 import operator
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from functools import reduce
-from itertools import pairwise, product
 
 import sympy as sp
 
-from rigidsym.algebra.codec import codec_for
-from rigidsym.algebra.generators import is_identically_zero
 from rigidsym.algebra.matrix import RingMatrix, primitive
 from rigidsym.algebra.present import presenter_for
 from rigidsym.algebra.stable_forms import at_zero, rewriter_for
-from rigidsym.algebra.zeros import FallingRank, Stratum, matrix_at, solver_for
-from rigidsym.mechanics.derivation import Measure, Place, Singularities, Singularity
+from rigidsym.algebra.zeros import FallingRank, Stratum, matrix_at
+from rigidsym.mechanics.derivation import Measure, Singularities, Singularity
 from rigidsym.mechanics.kinematics.chain import Chain
 from rigidsym.mechanics.kinematics.workspace import Values
 
@@ -138,12 +132,6 @@ class _Study:
         )
 
 
-# Long chains of turns
-
-
-_MOST_POINTS = 8  # that are listed
-
-
 def margin_of(chain: Chain) -> Singularities:
     """The determinant of W Wᵀ, in the names of the chain; where it vanishes is not solved for."""
     rows = chain.orthogonal_rows("space")
@@ -156,89 +144,3 @@ def margin_of(chain: Chain) -> Singularities:
         points=(),
         is_solved=False,
     )
-
-
-def planes_of_axes(chain: Chain, minors: Sequence[sp.Expr]) -> Singularities | None:
-    """Where all axes of a chain lie in one plane; None if that was not decided.
-
-    `minors` measure how far an orientation is from a singular one.
-    """
-    if tuple(chain.angles) != chain.model.coordinates or not _all_span_planes(chain.axes):
-        return None
-    choices: list[list[Place]] = []
-    for k in range(1, chain.count - 1):
-        places = _flat(chain, k)
-        if places is None:
-            return None
-        choices.append(places)
-    points = list(product(*choices))
-    if len(points) > _MOST_POINTS:
-        return None
-    return Singularities(
-        rank=3,
-        measure="det W Wᵀ",
-        determinant=None,
-        minors=tuple(minors),
-        points=tuple(_point(chain, places) for places in points),
-        is_solved=True,
-    )
-
-
-def _all_span_planes(axes: Sequence[sp.ImmutableMatrix]) -> bool:
-    """Whether neighbours are certainly not parallel."""
-    crossed = [first.cross(second) for first, second in pairwise(axes)]
-    return all(
-        normal.is_constant() and any(not is_identically_zero(entry) for entry in normal)
-        for normal in crossed
-    )
-
-
-def _flat(chain: Chain, k: int) -> list[Place] | None:
-    """The angles of turn k at which its axis and those of its neighbours lie in one plane."""
-    before, axis, after = chain.axes[k - 1 : k + 2]
-    codec = codec_for([*chain.plain[k], *before, *axis, *after], order=0)
-    triple = codec.encode(before.dot(axis.cross(chain.plain[k] * after)))
-    zeros, is_complete = solver_for(codec, (chain.angles[k],)).common([triple])
-    return _by_half_turns([root.place for (root,) in zeros]) if is_complete else None
-
-
-def _by_half_turns(places: Sequence[Place]) -> list[Place]:
-    """Two angles half a turn apart as one, modulo π."""
-    if len(places) == 2 and abs(places[0].value - places[1].value) == sp.pi:
-        value = next(p.value for p in places if -sp.pi / 2 < p.value <= sp.pi / 2)
-        return [Place(coordinate=places[0].coordinate, value=value, period=sp.pi)]
-    return list(places)
-
-
-def _point(chain: Chain, places: tuple[Place, ...]) -> Singularity:
-    first, second = chain.axes[:2]
-    in_space = in_body = first.cross(second)
-    values = {place.coordinate: place.value for place in places}
-    for turn in chain.plain[1:-1]:
-        in_body = turn.subs(values).T * in_body
-    return Singularity(
-        places=places,
-        rank=2,
-        lost_axis_space=_short(chain.plain[0] * in_space),
-        lost_axis_body=_short(chain.plain[-1].T * in_body),
-        null_rates=sp.ImmutableMatrix(sp.Matrix.hstack(*_null_rates(chain))),
-    )
-
-
-def _null_rates(chain: Chain) -> Iterator[sp.Matrix]:
-    """Rates of three neighbours that leave the body at rest if their axes are in one plane."""
-    for k in range(chain.count - 2):
-        u, v, after = chain.axes[k : k + 3]
-        w = chain.plain[k + 1] * after
-        square = u.dot(u) * v.dot(v) - u.dot(v) ** 2
-        column = sp.zeros(chain.count, 1)
-        column[k] = (w.dot(v) * u.dot(v) - w.dot(u) * v.dot(v)) / square
-        column[k + 1] = (w.dot(u) * u.dot(v) - w.dot(v) * u.dot(u)) / square
-        column[k + 2] = 1
-        yield _short(column)
-
-
-def _short(matrix: sp.MatrixBase) -> sp.ImmutableMatrix:
-    codec = codec_for(matrix, order=0)
-    entries = [presenter_for(codec).quotient(codec.encode_quotient(entry)) for entry in matrix]
-    return sp.ImmutableMatrix(*matrix.shape, entries)
