@@ -39,6 +39,22 @@ def _three_turns(*angles: str) -> Formula:
     return formula(claims.THREE_TURNS.format(*angles))
 
 
+def _consequence(
+    subject: str,
+    name: str,
+    left: Formula | sp.Expr,
+    value: Formula | sp.Expr,
+    *proofs: tuple[Formula, Sequence[sp.Expr]],
+    where: Sequence[tuple[Formula | sp.Expr, sp.Expr]] = (),
+    **spans: Any,
+) -> Consequence:
+    """A consequence for a rotation `subject`, with its claims and their residuals."""
+    proved = (identity(sp.ImmutableMatrix([*e]), claim, subject) for claim, e in proofs)
+    return Consequence(
+        name=name, spans=spans, left=left, value=value, proofs=tuple(proved), where=tuple(where)
+    )
+
+
 # The free body
 
 
@@ -63,28 +79,14 @@ class FreeBody:
             yield self._asymmetric()
             yield self._orientation()
 
-    def _follows(
-        self,
-        name: str,
-        left: Formula,
-        value: Formula | sp.Expr,
-        *proofs: tuple[Formula, Sequence[sp.Expr]],
-        where: Sequence[tuple[Formula | sp.Expr, sp.Expr]] = (),
-        **spans: Any,
-    ) -> Consequence:
-        """A consequence, with its claims and their residuals."""
-        proved = (identity(sp.ImmutableMatrix([*e]), claim, self.name) for claim, e in proofs)
-        return Consequence(
-            name=name, spans=spans, left=left, value=value, proofs=tuple(proved), where=tuple(where)
-        )
-
     def _poinsot(self) -> Consequence:
         """L is normal to the ellipsoid of energy at Ω, whose tangent plane there is at rest."""
         omega = sp.Matrix(OMEGA_BODY)
         momentum = self.inertia * omega
         energy = omega.dot(momentum) / 2
         normal = [sp.diff(energy, w) - part for w, part in zip(omega, momentum, strict=True)]
-        return self._follows(
+        return _consequence(
+            self.name,
             "poinsot",
             formula("d"),
             2 * _ENERGY / _LENGTH,
@@ -108,7 +110,8 @@ class FreeBody:
             if one == other:
                 squared = -((spin * (own - one) / one) ** 2)
             if squared != 0:
-                yield self._follows(
+                yield _consequence(
+                    self.name,
                     ("symmetry_axis" if one == other else "principal_axis")
                     if is_first
                     else "another_axis",
@@ -127,7 +130,7 @@ class FreeBody:
         slopes = self.slopes
         residual = [slopes[0] + rate * second, slopes[1] - rate * first, slopes[2]]
         kappa = formula(r"\kappa")
-        return self._follows("symmetric_body", kappa, rate, (claims.PRECESSION, residual))
+        return _consequence(self.name, "symmetric_body", kappa, rate, (claims.PRECESSION, residual))
 
     def _symmetric_in_space(self) -> Consequence:
         """R(t) with the third axis of space along L, which is proved to stay constant."""
@@ -141,7 +144,8 @@ class FreeBody:
         skew = rotation.T * rotation.diff(TIME)
         omega = sp.Matrix([skew[2, 1], skew[0, 2], skew[1, 0]])
         momentum = rotation * self.inertia * omega
-        return self._follows(
+        return _consequence(
+            self.name,
             "symmetric_body_in_space",
             _TURNS,
             _three_turns(r"\alpha_0 + \dot{\alpha}t", r"\beta", r"\gamma_0 + \dot{\gamma}t"),
@@ -168,7 +172,8 @@ class FreeBody:
             A * a * (1 - s**2) + B * b * s**2 + C * c * (1 - modulus * s**2) - 2 * _ENERGY,
         ]
         names = map(formula, ("a^2", "b^2", "c^2", r"\tau^2", "k^2"))
-        return self._follows(
+        return _consequence(
+            self.name,
             "asymmetric_body",
             BODY.omega,
             claims.IN_ELLIPTIC_FUNCTIONS,
@@ -187,7 +192,8 @@ class FreeBody:
         twice = A * one**2 + B * two**2 + C * three**2
         # L′ = |L| (sin β sin γ, sin β cos γ, cos β)
         turning = (one * A * one + two * B * two) / _LENGTH / (1 - (C * three / _LENGTH) ** 2)
-        return self._follows(
+        return _consequence(
+            self.name,
             "asymmetric_body_in_space",
             _TURNS,
             _three_turns(r"\alpha(t)", r"\beta(t)", r"\gamma(t)"),
@@ -256,17 +262,13 @@ class Reduced:
         value: sp.Expr,
         claim: Formula,
         residual: sp.Expr,
-        where: Sequence[tuple[sp.Expr, sp.Expr]] = (),
-        **spans: Any,
+        **more: Any,
     ) -> Consequence:
         """A consequence; in a residual with θ(t), E and p_j are those of the motion, else free."""
         values = dict(zip(self.symbols, self.momenta, strict=True)) | {self.letters.E: self.energy}
         if residual.has(self.coordinate):
             residual = residual.xreplace(values)
-        proof = identity(sp.ImmutableMatrix([[residual]]), claim, self.name)
-        return Consequence(
-            name=name, spans=spans, left=left, value=value, proofs=(proof,), where=tuple(where)
-        )
+        return _consequence(self.name, name, left, value, (claim, [residual]), **more)
 
     def _one_dimension(self) -> Consequence:
         value = self.mass * self.rate**2 / 2 + self.potential
@@ -382,29 +384,20 @@ class Reduced:
                 regular += part
         return 2 * ((1 - u**2) * (self.letters.E - regular) - singular) / self.mass
 
-    @cached_property
-    def upright(self) -> sp.Expr | None:
-        """V_eff with equal momenta, if these alone make it regular at θ = 0."""
-        equal, u = dict.fromkeys(self.symbols, self.letters.p), self.letters.u
-        assert self.in_cosine is not None
-        regular = sp.cancel(self.in_cosine.xreplace(equal))
-        below = (sp.denom(sp.together(value)) for value in (self.in_cosine, regular))
-        poles = [divisor.xreplace({u: sp.S.One}) == 0 for divisor in below]
-        return regular if len(equal) == 2 and poles == [True, False] else None
-
-    @property
-    def _equal_momenta(self) -> Formula:
-        names = map(claims.momentum_of, self.ignorable)
-        return formula("#1 = #2 = #3", *names, claims.integral_symbol(self.letters.p.name))
-
     def _sleeping(self) -> Iterator[Consequence]:
-        """V_eff near θ = 0."""
-        equal, u = self.upright, self.letters.u
-        if equal is None:
+        """V_eff near θ = 0 for equal momenta, if these alone make it regular there."""
+        letters, momenta = self.letters, self.symbols
+        u, in_cosine = letters.u, self.in_cosine
+        assert in_cosine is not None
+        equal = sp.cancel(in_cosine.xreplace(dict.fromkeys(momenta, letters.p)))
+        below = (sp.denom(sp.together(value)) for value in (in_cosine, equal))
+        poles = [divisor.xreplace({u: sp.S.One}) == 0 for divisor in below]
+        if len(momenta) != 2 or poles != [True, False]:
             return
         height, slope = (e.xreplace({u: sp.S.One}) for e in (equal, sp.diff(equal, u)))
         line = height + (u - 1) * slope
         rest = sp.cancel((equal - line) / (1 - u) ** 2)  # regular at u = 1
+        names = map(claims.momentum_of, self.ignorable)
         yield self._follows(
             "upright_motion",
             formula(r"\kappa"),
@@ -413,7 +406,7 @@ class Reduced:
             equal - line - (1 - u) ** 2 * rest,
             q=self.coordinate,
             square=self.coordinate**2,
-            momenta=self._equal_momenta,
+            momenta=formula("#1 = #2 = #3", *names, claims.integral_symbol(letters.p.name)),
         )
 
     def _cosine_equation(self) -> Iterator[Consequence]:
@@ -421,6 +414,8 @@ class Reduced:
         if not sp.cancel(value).is_polynomial(u):
             return
         f = sp.Poly(sp.expand(value), u)
+        if f.degree() != 3:
+            return
         name = claims.integral_symbol(u.name)
         spans: dict[str, Any] = {
             "u": name,
@@ -428,17 +423,14 @@ class Reduced:
             "equation": formula(r"\dot{#1}^2 = f(#1)", name),
         }
         yield self._follows(
-            "cubic_for_cosine" if f.degree() == 3 else "polynomial_for_cosine",
+            "cubic_for_cosine",
             formula("f(#1)", name),
             value,
             spans["equation"],
             (sp.sin(angle) * self.rate) ** 2 - value.xreplace({u: sp.cos(angle)}),
             **spans,
         )
-        if f.degree() == 3:
-            yield self._nutation(f.LC(), spans)
-            if self.upright is not None and not f.LC().could_extract_minus_sign():
-                yield from self._rising(self.upright, f.LC(), spans)
+        yield self._nutation(f.LC(), spans)
 
     def _nutation(self, lead: sp.Expr, spans: dict[str, Any]) -> Consequence:
         """u(t) between the roots u₁ ≤ u₂ of the cubic f; its third root is u₃."""
@@ -456,41 +448,6 @@ class Reduced:
             slope_squared * rate_squared - a * (u - one) * (u - two) * (u - three),
             where=((_LAMBDA**2, rate_squared.xreplace({a: lead})), (_MODULUS**2, modulus)),
             **spans,
-        )
-
-    def _rising(
-        self, upright: sp.Expr, lead: sp.Expr, spans: dict[str, Any]
-    ) -> Iterator[Consequence]:
-        """The motion with the energy and the momenta of the upright one: f has a double root 1."""
-        u = self.letters.u
-        energy = sp.expand(upright.xreplace({u: sp.S.One}))
-        equal = dict.fromkeys(self.symbols, self.letters.p) | {self.letters.E: energy}
-        value = self.right_side.xreplace(equal)
-        simple = sp.Poly(sp.cancel(value / (1 - u) ** 2), u)
-        first = sp.expand(-simple.coeff_monomial(1) / simple.LC())
-        residual = value - lead * (1 - u) ** 2 * (u - first)
-        yield self._follows(
-            "rising_motion",
-            _FIRST,
-            first,
-            claims.DOUBLE_ROOT,
-            residual,
-            momenta=self._equal_momenta,
-            energy=energy,
-        )
-        s = sp.Dummy("s")  # 1/cosh λt, with ṡ² = λ² s² (1 − s²)
-        rate_squared = lead * (1 - _FIRST) / 4
-        rising = 1 - (1 - _FIRST) * s**2
-        residual = sp.diff(rising, s) ** 2 * rate_squared * s**2 * (1 - s**2)
-        residual -= lead * (1 - rising) ** 2 * (rising - _FIRST)
-        yield self._follows(
-            "rising_in_time",
-            sp.cos(self.coordinate),
-            rising.xreplace({s: 1 / sp.cosh(_LAMBDA * TIME)}),
-            spans["equation"],
-            residual,
-            lambda_squared=_LAMBDA**2,
-            rate_squared=rate_squared,
         )
 
 

@@ -351,7 +351,6 @@ def is_constant(symbol: Formula) -> Formula:
 
 
 PRECESSION = formula(r"\dot{\Omega}'_1 + i\dot{\Omega}'_2 = i\kappa(\Omega'_1 + i\Omega'_2)")
-DOUBLE_ROOT = formula("f(u) = a(1 - u)^2(u - u_1)")
 RATE_OF_IGNORABLE = formula(r"\dot{q} = \frac{\partial #1}{\partial p}", EFFECTIVE)
 NEAR_UPRIGHT = formula(r"#1 = #1(0) + \kappa(1 - u) + O((1 - u)^2)", EFFECTIVE)
 
