@@ -24,7 +24,7 @@ from rigidsym.formula.tree import Words
 from rigidsym.mechanics.prove import identity
 from rigidsym.models.library import rotation_from
 from rigidsym.models.rotation import TIME
-from rigidsym.tools.compare.language import read_formula
+from rigidsym.tools.compare.program import formula_matrix
 
 FOLDER = Path(__file__).parent / "literature"
 TOPICS = {
@@ -182,7 +182,7 @@ class Names:
 
 def value(text: str, names: Mapping[str, Any]) -> Any:
     """The value of an expression: a scalar, or a matrix with more than one entry."""
-    matrix = read_formula(text, names, _FUNCTIONS)
+    matrix = formula_matrix(text, names, _FUNCTIONS)
     return matrix[0] if matrix.shape == (1, 1) else matrix
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -13,20 +12,10 @@ from sympy.core.function import AppliedUndef
 
 from rigidsym.errors import ExpressionError
 from rigidsym.motion import Motion
-from rigidsym.tools.compare.angles import angles_identified, are_angles
 from rigidsym.tools.compare.language import spelled_out
-from rigidsym.tools.compare.matching import (
-    Comparison,
-    against,
-    for_some_angles,
-    identified,
-    in_words,
-    is_right_at_some,
-    likely,
-)
+from rigidsym.tools.compare.matching import Comparison, Reading, against, identified, in_words
 from rigidsym.tools.compare.program import formula_matrix
-from rigidsym.tools.compare.repair import Meaning
-from rigidsym.tools.compare.targets import SHAPES, KnownQuantity, target
+from rigidsym.tools.compare.quantities import SHAPES, KnownQuantity, of_motion, target
 
 
 def compare(
@@ -46,9 +35,8 @@ def compare(
     if matrix.rows == 1:
         matrix = matrix.T
     if rotation is None and quantity is None:
-        return (angles_identified if are_angles(matrix) else identified)(_checked(matrix))
-    goal = _goal(rotation, quantity)
-    return against(matrix, goal)
+        return identified(_checked(matrix))
+    return against(matrix, _goal(rotation, quantity))
 
 
 def _checked(formula: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
@@ -94,7 +82,7 @@ def _goal(rotation: str | Motion | None, quantity: str | None) -> KnownQuantity:
     if quantity == "coriolis_matrix":
         raise ExpressionError("a Coriolis matrix is not unique; compare the bias vector C(q, q̇) q̇")
     if isinstance(rotation, Motion):
-        return KnownQuantity(motion=rotation, rotation=rotation.name, quantity=quantity)
+        return of_motion(rotation, quantity, rotation.name)
     return target(rotation, quantity)
 
 
@@ -131,14 +119,8 @@ def _by_numbers(
     ]
     formula = sp.ImmutableMatrix(entries)
     values = {s: table[:, i, j] for i, row in enumerate(entries) for j, s in enumerate(row)}
-    reading = Meaning(formula=formula, goal=goal, names={}, values=values)
-    _, repairs = next(likely([reading], goal), (reading, None))
-    if repairs is None and is_right_at_some(reading):
-        return replace(for_some_angles(reading, goal), formula=formula)
-    if repairs is None:
-        return Comparison(formula=formula, asked=goal)
-    found = repairs[0].goal if repairs else goal
-    return Comparison(formula=formula, asked=goal, found=found, repairs=repairs)
+    reading = Reading(formula=formula, goal=goal, names={}, values=values, own=table)
+    return against(formula, goal, [reading])
 
 
 def _spread(function: Callable[..., Any], vectors: Sequence[Any]) -> list[Any]:

@@ -1,20 +1,33 @@
-r"""Formulas in LaTeX, in the words of `language`.
+r"""Formulas in LaTeX, read from left to right with the signs of multiplication put in.
 
-tex_words(r"\dot\phi \sin^2\theta")     "phi_dot*sin(theta)**2"
+tex_value(r"\dot\phi \sin^2\theta")     phi_dot*sin(theta)**2
 """
 
 from __future__ import annotations
 
 import re
+from typing import Any
+
+import sympy as sp
 
 from rigidsym.errors import ExpressionError
-from rigidsym.text.bounds import FUNCTIONS
+from rigidsym.text.bounds import FUNCTIONS, Sized
 from rigidsym.text.names import GREEK_LETTERS, spelled
-from rigidsym.tools.compare.language import SPELLINGS
+from rigidsym.tools.compare.language import (
+    CONSTANTS,
+    MINUS,
+    SPELLINGS,
+    as_matrix,
+    called,
+    combined,
+    number,
+    rows,
+)
 
 _FIRST = 0xE000  # a matrix stands in a formula as a letter of the private use area
 _MARKS = "\ue000-\uf8ff"
 _QUOTE = '"'  # around a name of several letters
+_DEEPEST = 60  # nested brackets
 _TEX_TOKEN = re.compile(
     rf"\\[A-Za-z]+|{_QUOTE}\w+{_QUOTE}|\d+(?:\.\d+)?|[A-Za-z{GREEK_LETTERS}{_MARKS}]"
     r"|[-+*/=^_(){}\[\]'|,]|(?P<other>\S)"
@@ -31,32 +44,31 @@ _MATRIX = re.compile(r"\\begin\{([pbB]?matrix|array)\}(?:\{[lcr| ]*\})?(.*?)\\en
 _COMMENT = re.compile(r"(?<!\\)%[^\n]*")
 _END = re.compile(r"(?<!\\),|\\q?quad(?![A-Za-z])|\\\\")  # of a side with a matrix
 _PUNCTUATION = re.compile(r"(?:\\[,;:! ]|[\s.,;])+$")
+_TRANSPOSED = sp.Symbol("T", real=True)
+_BRACKETS = {"(": ")", "[": "]", "{": "}"}
 _DOTS = {r"\dot": "_dot", r"\ddot": "_ddot"}
 _LETTERS = set(map(spelled, GREEK_LETTERS))
 _GREEK = {r"\varphi": "phi", r"\vartheta": "theta", r"\top": "T", r"\intercal": "T"}
-_ANGLES = {"\\" + name for name in ("phi", "varphi", "theta", "vartheta", "psi", "alpha", "beta")}
-_ANGLES.add(r"\gamma")
+_ANGLES = {r"\phi", r"\varphi", r"\theta", r"\vartheta", r"\psi", r"\alpha", r"\beta", r"\gamma"}
 _SHORT = {"c": "cos", "C": "cos", "s": "sin", "S": "sin"}  # c\theta
 
 
-def tex_words(text: str) -> str:
-    """LaTeX: the last side of an equation outside of matrices; with a matrix if one has it."""
-    if found := re.search(f"[{_MARKS}]", text):
-        raise ExpressionError(f"unexpected {found[0]!r} in LaTeX")
-    matrices: list[str] = []
+def tex_value(text: str) -> Any:
+    """The last side of an equation; if a side contains a matrix, the last such side."""
+    if mark := re.search(f"[{_MARKS}]", text):
+        raise ExpressionError(f"unexpected {mark[0]!r} in LaTeX")
+    matrices: list[sp.ImmutableMatrix] = []
 
     def kept(match: re.Match[str]) -> str:
-        rows = [row for row in re.split(r"\\\\(?:\[[^\]]*\])?", match[2]) if row.strip()]
-        cells = (", ".join(_TexWalk(cell).sum() for cell in row.split("&")) for row in rows)
-        matrices.append(f"[{', '.join(f'[{row}]' for row in cells)}]")
+        lines = [line for line in re.split(r"\\\\(?:\[[^\]]*\])?", match[2]) if line.strip()]
+        cells = [[_TexWalk(cell, matrices).sum() for cell in line.split("&")] for line in lines]
+        matrices.append(rows([rows(line) for line in cells]))
         return chr(_FIRST + len(matrices) - 1)
 
-    text = _STYLED_SCRIPT.sub("", _COMMENT.sub("", text))
-    sides = _MATRIX.sub(kept, text).split("=")
+    sides = _MATRIX.sub(kept, _STYLED_SCRIPT.sub("", _COMMENT.sub("", text))).split("=")
     side = next((s for s in reversed(sides) if re.search(f"[{_MARKS}]", s)), sides[-1])
     side = _END.split(side)[0] if matrices else side
-    formula = _TexWalk(_PUNCTUATION.sub("", side)).sum()
-    return re.sub(f"[{_MARKS}]", lambda match: matrices[ord(match[0]) - _FIRST], formula)
+    return _TexWalk(_PUNCTUATION.sub("", side), matrices).sum()
 
 
 def _styled(match: re.Match[str]) -> str:
@@ -68,94 +80,137 @@ def _styled(match: re.Match[str]) -> str:
 
 
 class _TexWalk:
-    """One entry, from left to right, with the signs of multiplication put in."""
+    """One entry of a matrix, or a formula in which letters stand for matrices."""
 
-    def __init__(self, text: str) -> None:
-        found = list(_TEX_TOKEN.finditer(_LAYOUT.sub(" ", _STYLED.sub(_styled, text))))
-        for match in found:
+    def __init__(self, text: str, matrices: list[sp.ImmutableMatrix]) -> None:
+        tokens = list(_TEX_TOKEN.finditer(_LAYOUT.sub(" ", _STYLED.sub(_styled, text))))
+        for match in tokens:
             if match["other"]:
                 raise ExpressionError(f"unexpected {match['other']!r} in LaTeX")
-        self.tokens = [match[0] for match in found][::-1]
+        self.tokens = [match[0] for match in tokens][::-1]
+        self.matrices = matrices
+        self.depth = 0
 
-    def sum(self, end: str = "") -> str:
+    def next(self) -> str:
+        return self.tokens[-1] if self.tokens else ""
+
+    def take(self, *expected: str) -> str:
+        """The next token if it is an expected one, else nothing."""
+        return self.tokens.pop() if self.next() in expected and self.tokens else ""
+
+    def sum(self, end: str = "") -> Any:
         """Up to the bracket `end`, or to the end."""
-        parts: list[str] = []
-        while self.tokens and self.tokens[-1] != end:
-            if self.tokens[-1] in ("+", "-", "/") or self.tokens[-1] == r"\cdot":
-                token = self.tokens.pop()
-                parts.append("*" if token == r"\cdot" else token)
+        self.depth += 1
+        if self.depth > _DEEPEST:
+            raise ExpressionError("operations are nested too deeply")
+        total: Any = None
+        while total is None or self.next() not in ("", end):
+            operator = self.take("+", "-")
+            if total is not None and not operator:
+                raise ExpressionError(f"unexpected {self.next()!r} in LaTeX")
+            term = self._product(end)
+            if total is None:
+                total = combined("*", MINUS, term) if operator == "-" else term
             else:
-                parts += ["*"] * (bool(parts) and parts[-1] not in "+-*/") + [self._power()]
-        if end and (not self.tokens or self.tokens.pop() != end):
+                total = combined(operator, total, term)
+        if end and not self.take(end):
             raise ExpressionError(f"expected {end} in LaTeX")
-        return "".join(parts)
+        self.depth -= 1
+        return total
 
-    def _power(self) -> str:
+    def _product(self, end: str) -> Any:
+        value = self._power()
+        while self.next() not in ("", end, "+", "-"):
+            operator = self.take(r"\cdot", "*", "/")
+            factor = self._power()
+            value = combined("/" if operator == "/" else "*", value, factor)
+        return value
+
+    def _power(self) -> Any:
         base = self._atom()
-        while self.tokens and self.tokens[-1] == "^":
-            self.tokens.pop()
+        while self.take("^"):
             power = self._argument()
-            is_transposed = power == "T" and re.search(f"[{_MARKS}]", base)
-            base = f"{base}.T" if is_transposed else f"{base}**({power})"
+            letter = as_matrix(power)[0]
+            is_transposed = isinstance(base, sp.MatrixBase) and letter == _TRANSPOSED
+            base = as_matrix(base).T if is_transposed else combined("**", base, power)
         return base
 
-    def _argument(self) -> str:
+    def _argument(self) -> Any:
         """A group in braces, or one token."""
-        if self.tokens and self.tokens[-1] == "{":
-            self.tokens.pop()
+        if self.take("{"):
             return self.sum("}")
-        if self.tokens and self.tokens[-1].isdigit():  # frac12
+        if self.next().isdigit():  # \frac12
             digits = self.tokens.pop()
             self.tokens += [digits[1:]] * (len(digits) > 1)
-            return digits[0]
+            return number(digits[0])
         return self._atom()
 
-    def _atom(self) -> str:
+    def _atom(self) -> Any:
+        token = self.next()
+        if token in _BRACKETS:
+            return self.sum(_BRACKETS[self.tokens.pop()])
+        if self.take(r"\frac", r"\tfrac", r"\dfrac"):
+            return combined("/", self._argument(), self._argument())
+        if token[:1] == "\\" and (name := SPELLINGS.get(token[1:], token[1:])) in FUNCTIONS:
+            self.tokens.pop()
+            return self._call(name)
+        if token in _SHORT and self.tokens[-2:-1] and self.tokens[-2] in _ANGLES:
+            self.tokens.pop()
+            return called(_SHORT[token], [self._atom()])
+        if token[:1].isdigit():
+            return number(self.tokens.pop())
+        if re.fullmatch(f"[{_MARKS}]", token):
+            return self.matrices[ord(self.tokens.pop()) - _FIRST]
+        name = self._name()
+        return Sized.atom(CONSTANTS.get(name, sp.Symbol(name, real=True)))
+
+    def _name(self) -> str:
+        """A letter or a word, with its dots and its index."""
         token = self.tokens.pop() if self.tokens else ""
-        if token in ("(", "[", "{"):
-            return f"({self.sum({'(': ')', '[': ']', '{': '}'}[token])})"
-        if token in (r"\frac", r"\tfrac", r"\dfrac"):
-            return f"(({self._argument()})/({self._argument()}))"
-        if token == r"\sqrt":
-            return f"sqrt({self._argument()})"
         if token in _DOTS:
-            return self._argument() + self._script() + _DOTS[token]
-        if token[:1] == "\\" and SPELLINGS.get(token[1:], token[1:]) in FUNCTIONS:
-            return self._call(SPELLINGS.get(token[1:], token[1:]))
+            is_group = bool(self.take("{"))
+            name = self._name()
+            if is_group and not self.take("}"):
+                raise ExpressionError("expected } in LaTeX")
+            return name + self._script() + _DOTS[token]
         if token[:1] == _QUOTE:
             word = spelled(token.strip(_QUOTE))
-            if self.tokens and self.tokens[-1] in ("(", "["):
+            if self.next() in ("(", "["):
                 raise ExpressionError(f"{word} is not a function that is known")
             return word + self._script()
-        if token in _SHORT and self.tokens and self.tokens[-1] in _ANGLES:
-            return f"{_SHORT[token]}({self._atom()})"
-        if token[:1].isdigit() or re.fullmatch(f"[{_MARKS}]", token):
-            return token
-        name = _GREEK.get(token, token.lstrip("\\"))
-        if not name.isalpha() or (
-            token[0] == "\\" and name not in _LETTERS and token not in _GREEK
-        ):
+        name = spelled(_GREEK.get(token, token.lstrip("\\")))
+        is_command = token[:1] == "\\"
+        if not name.isalpha() or (is_command and name not in _LETTERS and token not in _GREEK):
             raise ExpressionError(f"unexpected {token or 'end'!r} in LaTeX")
         return name + self._script()
 
     def _script(self) -> str:
         """The index of a name, as part of it."""
-        if not self.tokens or self.tokens[-1] != "_":
+        if not self.take("_"):
             return ""
-        self.tokens.pop()
-        index = self._argument().replace("*", "")
+        index = ""
+        if self.take("{"):
+            while self.next() not in ("", "}"):
+                index += spelled(self.tokens.pop().strip(_QUOTE).lstrip("\\"))
+            self.take("}")
+        elif self.tokens:
+            digits = self.tokens.pop().strip(_QUOTE).lstrip("\\")
+            index, rest = (digits[0], digits[1:]) if digits.isdigit() else (digits, "")
+            self.tokens += [rest] * bool(rest)
         if not index.isalnum():
             raise ExpressionError(f"unexpected index {index!r} in LaTeX")
         return f"_{index}"
 
-    def _call(self, function: str) -> str:
-        power = ""
-        if self.tokens and self.tokens[-1] == "^":
-            self.tokens.pop()
-            power = f"**({self._argument()})"
-            if power == "**(-1)":
-                function, power = f"a{function}", ""
-        argument = self._power()
-        while argument.isdigit() and self.tokens and self.tokens[-1][0] == "\\":  # sin 2 theta
-            argument += "*" + self._power()
-        return f"{function}({argument}){power}"
+    def _call(self, function: str) -> Any:
+        power: Any = None
+        if self.take("^"):
+            power = self._argument()
+            if as_matrix(power)[0] == -1:
+                function, power = f"a{function}", None
+        is_number = self.next().isdigit()
+        argument = self._argument() if function == "sqrt" else self._power()
+        while is_number and self.next()[:1] == "\\" and self.next() != r"\cdot":  # \sin 2\theta
+            is_number = False
+            argument = combined("*", argument, self._power())
+        value = called(function, [argument])
+        return value if power is None else combined("**", value, power)

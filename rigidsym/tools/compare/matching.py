@@ -1,36 +1,116 @@
-"""What a formula is: matched with one quantity or with all, and the repairs that make it so."""
+"""What a formula is: matched with one quantity or with all, and the small changes that make it so.
+
+A change of the whole formula (a transpose, a sign, a factor) or of the quantity (the other frame,
+the inverse, the order of turns) is tried before changes of single entries.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
 from itertools import chain, islice, product
 from typing import Any
 
+import numpy as np
 import sympy as sp
+from numpy.typing import NDArray
 
 from rigidsym.errors import AlgebraError, DerivationError, ModelError
+from rigidsym.motion import QUANTITIES
 from rigidsym.system.resources import environment
-from rigidsym.tools.compare.laws import laws
-from rigidsym.tools.compare.repair import (
-    Meaning,
-    Repair,
-    entry_repairs,
-    whole_repairs,
-)
-from rigidsym.tools.compare.targets import (
+from rigidsym.tools.compare.quantities import (
+    ANGLES,
     NEAR_POINTS,
     POINTS,
     QUATERNION,
+    Array,
     KnownQuantity,
     Names,
-    agreeing_points,
+    Values,
+    are_angles,
     catalogue,
+    evaluated,
     is_reflection,
+    near,
+    readings,
+    target,
 )
 
 _MOST_REPAIRS = 2  # of a formula that nobody has named
 _NEAR = 0.6  # share of entries that must be right for a formula to be close to another
+_NEAREST = 16  # readings of which the wrong entries are repaired
+_MOST_OPERATIONS = 200  # of an entry in which each part is changed
+_MOST_ENTRIES = 3  # that may be wrong, each by one change
+_HALF, _TWO = sp.Rational(1, 2), sp.Integer(2)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Repair:
+    """One change that makes a formula right."""
+
+    kind: str  # "sign", "square", "transpose", ...
+    words: str  # a sentence
+    formula: sp.ImmutableMatrix  # the formula after it, in the user's names
+    goal: KnownQuantity  # what that equals
+    place: tuple[int, int] | None = None  # of the entry, counted from 1
+    before: sp.Expr | None = None
+    after: sp.Expr | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Reading:
+    """A formula under one meaning of its names, beside a known quantity."""
+
+    formula: sp.ImmutableMatrix
+    goal: KnownQuantity
+    names: Names
+    values: Values  # of the names, and of all that was evaluated before
+    own: Array  # the numbers of the formula, (points, rows, columns)
+
+    @classmethod
+    def of(cls, formula: sp.ImmutableMatrix, goal: KnownQuantity, names: Names) -> Reading:
+        meant = sp.Matrix([[*names.values()]])
+        numbers = evaluated(meant, dict(goal.points))[:, 0].T if names else ()
+        values: Values = dict(zip(names, numbers, strict=True))
+        own = goal.on_circle(evaluated(formula, values))
+        return cls(formula=formula, goal=goal, names=names, values=values, own=own)
+
+    def numbers(self, matrix: sp.MatrixBase) -> Array:
+        return self.goal.on_circle(evaluated(matrix, self.values))
+
+    def agrees(self, numbers: Array, goal: KnownQuantity | None = None) -> bool:
+        """Whether numbers are those of the goal, or of another one."""
+        wanted = (goal or self.goal).values
+        return numbers.shape == wanted.shape and bool(near(numbers, wanted).all())
+
+    @cached_property
+    def agreement(self) -> NDArray[Any]:
+        """Where the formula is right: (points, rows, columns)."""
+        numbers, wanted = self.own, self.goal.values
+        return near(numbers, wanted) if numbers.shape == wanted.shape else np.zeros((1, 1, 1), bool)
+
+    @property
+    def is_equal(self) -> bool:
+        return bool(self.agreement.all())
+
+    @property
+    def share(self) -> float:
+        """The part of all entries that is right."""
+        return float(self.agreement.all(axis=0).mean())
+
+    @property
+    def is_right_for_some(self) -> bool:
+        """Whether a formula agrees at all points of the first quadrant, but not at others."""
+        is_right = np.asarray(self.agreement.all(axis=(1, 2)))
+        return bool(is_right[:NEAR_POINTS].all()) and not is_right.all()
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether a transpose, a sign or a factor of all entries makes them right."""
+        numbers = self.own
+        changes = (numbers.transpose(0, 2, 1), -numbers, 2 * numbers, numbers / 2)
+        return any(self.agrees(changed) for changed in changes)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,14 +139,13 @@ class Comparison:
 
     def record(self) -> dict[str, Any]:
         """The comparison as plain data for JSON."""
-        found = self.found
         return {
             "equal": self.is_equal,
             "proved": self.is_proved,
             "counterexample": self.counterexample or None,
             "reflection": self.is_reflection,
-            "rotation": found.rotation if found else None,
-            "quantity": found.quantity if found else None,
+            "rotation": self.found.rotation if self.found else None,
+            "quantity": self.found.quantity if self.found else None,
             "arrangement": self.arrangement,
             "as_it_stands": str(self.as_it_stands) if self.as_it_stands else None,
             "names": self._called(),
@@ -86,9 +165,11 @@ class Comparison:
         """The findings in sentences."""
         asked, found = self.asked, self.found
         symbols = self.formula.free_symbols
+        called, own = self._called(), [*found.coordinates] if found else []
+        in_order = [called.get(name, name) for name in own]
         facts: dict[str, Any] = {each.name: getattr(self, each.name) for each in fields(self)}
         facts |= {
-            "calls": self._in_names(),
+            "calls": f" in ({', '.join(in_order)})" if in_order != own else "",
             "points": POINTS,
             "is_as_asked": found and asked and str(asked) == str(found),
             "shape": in_words(self.formula.shape),
@@ -97,18 +178,11 @@ class Comparison:
         }
         return str(environment().get_template("compare/comparison.txt.jinja").render(facts))
 
-    def _in_names(self) -> str:
-        """The coordinates as the user calls them, in the order of the rotation."""
-        called = self._called()
-        own = self.found.coordinates if self.found else {}
-        names = [called.get(name, name) for name in own]
-        return f" in ({', '.join(names)})" if names != list(own) else ""
-
     def _called(self) -> dict[str, str]:
         """Names of the user by those of the quantity that was found."""
         symbols = {meant: str(name) for name, meant in (self.names or {}).items()}
-        known = self.found.names if self.found else {}
-        return {name: symbols[symbol] for name, symbol in known.items() if symbol in symbols}
+        own = self.found.names if self.found else {}
+        return {name: symbols[symbol] for name, symbol in own.items() if symbol in symbols}
 
 
 def in_words(shape: tuple[int, int]) -> str:
@@ -118,80 +192,75 @@ def in_words(shape: tuple[int, int]) -> str:
     return f"a vector of {shape[0]} entries" if shape[1] == 1 else "a {}x{} matrix".format(*shape)
 
 
-def against(formula: sp.ImmutableMatrix, goal: KnownQuantity) -> Comparison:
-    """Compare with one quantity."""
-    meant = [Meaning.of(formula, goal, names) for names in goal.readings(formula)]
-    if is_reflection(formula) and not any(reading.is_whole for reading in meant):
-        return Comparison(formula=formula, asked=goal, is_reflection=True)
-    found = next(likely(meant, goal), None)
-    if not found and (reading := next(filter(is_right_at_some, meant), None)):
-        return for_some_angles(reading, goal)
-    if found and not any(repair.place for repair in found[1]):
-        return _made(*found, goal)
-    other = identified(formula, only_equal=True)
-    if found:
-        return replace(_made(*found, goal), as_it_stands=other.found)
-    if other.found:
-        words = f"this is {other.found.described}"
-        repair = Repair(kind="convention", words=words, formula=formula, goal=other.found)
-        return replace(other, asked=goal, repairs=(repair, *other.repairs))
-    return Comparison(formula=formula, asked=goal)
-
-
-def likely(
-    meant: Sequence[Meaning], goal: KnownQuantity
-) -> Iterator[tuple[Meaning, tuple[Repair, ...]]]:
-    """Readings with the repairs that make them right, the smallest first."""
-    yield from ((m, ()) for m in meant if m.agrees(m.formula, goal))
-    if any(map(is_right_at_some, meant)):  # no change of a formula that is right for some angles
-        return
-    yield from ((m, (r,)) for m in meant for r in whole_repairs(m))
-    nearest = max(meant, key=_count_right, default=None)
-    entries = entry_repairs(nearest) if nearest else ()
-    if nearest and entries:
-        yield nearest, entries
+def against(
+    formula: sp.ImmutableMatrix, goal: KnownQuantity, meanings: Sequence[Reading] = ()
+) -> Comparison:
+    """Compare with one quantity, under these meanings or all that its names allow."""
+    unknown = Comparison(formula=formula, asked=goal)
+    meanings = meanings or [Reading.of(formula, goal, names) for names in readings(formula, goal)]
+    for reading in meanings:
+        if reading.is_equal:
+            return _proved(reading, (), goal)
+    is_by_names = not formula.atoms(sp.Dummy)
+    if is_by_names and is_reflection(formula) and not any(each.is_whole for each in meanings):
+        return replace(unknown, is_reflection=True)
+    for reading in meanings:  # before repairs: no change makes it right for all angles
+        if reading.is_right_for_some:
+            return _right_for_some(reading, goal)
+    for reading in meanings:
+        if repair := next(whole_repairs(reading), None):
+            return _proved(reading, (repair,), goal)
+    as_it_stands = identified(formula, only_equal=True) if is_by_names else unknown
+    nearest = max(meanings, key=lambda each: each.share, default=None)
+    if nearest and (repairs := entry_repairs(nearest)):
+        return replace(_proved(nearest, repairs, goal), as_it_stands=as_it_stands.found)
+    if as_it_stands.found:
+        words = f"this is {as_it_stands.found.described}"
+        repair = Repair(kind="convention", words=words, formula=formula, goal=as_it_stands.found)
+        return replace(as_it_stands, asked=goal, repairs=(repair,))
+    return unknown
 
 
 def identified(
-    formula: sp.ImmutableMatrix,
-    *,
-    only_equal: bool = False,
-    is_in_program: bool = False,
+    formula: sp.ImmutableMatrix, *, only_equal: bool = False, is_in_program: bool = False
 ) -> Comparison:
     """Compare with all quantities of the catalogue; the nearest if none is equal.
 
     In a program, a transpose, a sign or a factor of the whole formula may be meant.
     """
-    near: list[tuple[float, Meaning]] = []
-    whole: Meaning | None = None
-    some: Meaning | None = None
-    goals = chain(catalogue(formula), laws(formula.shape))
-    known = (goal for goal in goals if goal.matrix.shape == formula.shape)
-    for goal in chain.from_iterable(goal.arrangements for goal in known):
-        for names in goal.readings(formula):
-            reading = Meaning.of(formula, goal, names)
-            right = reading.right
-            if right.all():
-                return _made(reading, (), None)
-            some = some or (reading if is_right_at_some(reading) else None)
-            whole = whole or (reading if reading.is_whole else None)
-            near.append((float(right.mean()), reading))
+    unknown = Comparison(formula=formula, asked=None)
+    all_readings: list[Reading] = []
+    plain: dict[Any, list[Reading]] = {}  # Euler angles of all orders have the same inputs
+    for goal in catalogue(formula):
+        inputs = (tuple(goal.inputs.items()), goal.uses, goal.motion.model.vector)
+        if inputs not in plain:
+            names = readings(formula, goal)
+            plain[inputs] = [Reading.of(formula, goal, each) for each in names]
+        for way in goal.arrangements if plain[inputs] else ():
+            for reading in (replace(each, goal=way) for each in plain[inputs]):
+                if reading.is_equal:
+                    return _proved(reading, (), None)
+                all_readings.append(reading)
     if only_equal:
-        return Comparison(formula=formula, asked=None)
+        return unknown
     if (turned := _in_other_senses(formula)) is not None:
         return turned
-    if not whole and is_reflection(formula):
-        return Comparison(formula=formula, asked=None, is_reflection=True)
-    if some:
-        return for_some_angles(some, None)
+    is_mirror = is_reflection(formula)
+    whole = None
+    if is_mirror or (not is_in_program and not are_angles(formula)):
+        whole = next((each for each in all_readings if each.is_whole), None)
+    if is_mirror and not whole:
+        return replace(unknown, is_reflection=True)
+    some = next((each for each in all_readings if each.is_right_for_some), None)
+    if some and not are_angles(formula):
+        return _right_for_some(some, None)
     if whole and not is_in_program:
-        return _made(whole, tuple(islice(whole_repairs(whole), 1)), None)
-    near.sort(key=lambda each: -each[0])
-    for share, reading in near[:8]:
-        repairs = entry_repairs(reading) if share >= _NEAR else ()
+        return _proved(whole, tuple(islice(whole_repairs(whole), 1)), None)
+    for reading in sorted(all_readings, key=lambda each: -each.share)[:_NEAREST]:
+        repairs = entry_repairs(reading) if reading.share >= _NEAR else ()
         if 0 < len(repairs) <= _MOST_REPAIRS and all(r.kind != "entry" for r in repairs):
-            return _made(reading, repairs, None)
-    return Comparison(formula=formula, asked=None)
+            return _proved(reading, repairs, None)
+    return unknown
 
 
 def _in_other_senses(formula: sp.ImmutableMatrix) -> Comparison | None:
@@ -214,17 +283,9 @@ def _in_other_senses(formula: sp.ImmutableMatrix) -> Comparison | None:
     return None
 
 
-def is_right_at_some(reading: Meaning) -> bool:
-    """Whether a formula agrees at all points of the first quadrant, but not at others."""
-    if reading.formula.shape != reading.goal.matrix.shape:
-        return False
-    agrees = agreeing_points(reading.numbers(reading.formula), reading.goal.values)
-    return bool(agrees[:NEAR_POINTS].all()) and not agrees.all()
-
-
-def for_some_angles(reading: Meaning, asked: KnownQuantity | None) -> Comparison:
-    agrees = agreeing_points(reading.numbers(reading.formula), reading.goal.values)
-    place = int(agrees.argmin())  # the first point where it is wrong
+def _right_for_some(reading: Reading, asked: KnownQuantity | None) -> Comparison:
+    """With the first point where the formula is wrong."""
+    place = int(reading.agreement.all(axis=(1, 2)).argmin())
     called = {meant: str(name) for name, meant in reading.names.items()}
     point = ", ".join(
         f"{called.get(symbol, name)} = {reading.goal.points[symbol][place]:.4g}"
@@ -239,37 +300,199 @@ def for_some_angles(reading: Meaning, asked: KnownQuantity | None) -> Comparison
     )
 
 
-def _count_right(reading: Meaning) -> int:
-    same = reading.formula.shape == reading.goal.matrix.shape
-    return int(reading.right.sum()) if same else 0
-
-
-def _made(reading: Meaning, repairs: Sequence[Repair], asked: KnownQuantity | None) -> Comparison:
+def _proved(reading: Reading, repairs: Sequence[Repair], asked: KnownQuantity | None) -> Comparison:
     """The comparison, with the proof that the repaired formula is what was found."""
     found = repairs[0].goal if repairs else reading.goal
-    changed = _together(reading.formula, repairs)
-    theirs = changed.xreplace(dict(reading.names))
-    try:
-        is_proved = found.motion.equality(theirs, found.matrix).is_exact
-    except DerivationError:  # it is false, although the numbers agree
-        return Comparison(formula=reading.formula, asked=asked)
-    except (AlgebraError, ModelError):  # the ring cannot hold it
-        is_proved = False
-    return Comparison(
+    changed = reading.formula.as_mutable()
+    for repair in repairs:
+        if repair.after is None or repair.place is None:
+            changed = repair.formula
+            break
+        changed[repair.place[0] - 1, repair.place[1] - 1] = repair.after
+    comparison = Comparison(
         formula=reading.formula,
         asked=asked,
         found=found,
         names=reading.names,
         repairs=tuple(repairs),
-        is_proved=is_proved,
+    )
+    if found.quantity == ANGLES or changed.atoms(sp.Dummy):  # no expressions of the ring
+        return comparison
+    try:
+        theirs = sp.ImmutableMatrix(changed).xreplace(dict(reading.names))
+        return replace(comparison, is_proved=found.motion.equality(theirs, found.matrix).is_exact)
+    except DerivationError:  # it is false, although the numbers agree
+        return Comparison(formula=reading.formula, asked=asked)
+    except (AlgebraError, ModelError):  # the ring cannot hold it
+        return comparison
+
+
+# Small changes
+
+
+def whole_repairs(reading: Reading) -> Iterator[Repair]:
+    """A change of all entries together, or another quantity of the rotation, that fits."""
+    formula, goal = reading.formula, reading.goal
+    passive = " (passive)" if goal.quantity == "rotation_matrix" else ""
+    for kind, words, changed in (
+        ("transpose", f"the formula is the transpose{passive}", formula.T),
+        ("sign", "all signs are the other way round", -formula),
+        ("factor", "a factor 2 is missing", 2 * formula),
+        ("factor", "a factor 1/2 is missing", formula / 2),
+    ):
+        if reading.agrees(reading.numbers(changed)):
+            yield Repair(kind=kind, words=words, formula=changed, goal=goal)
+    for kind, other in _relatives(goal):
+        if reading.agrees(reading.numbers(formula), other):
+            yield Repair(kind=kind, words=f"this is {other}", formula=formula, goal=other)
+
+
+def _relatives(goal: KnownQuantity) -> Iterator[tuple[str, KnownQuantity]]:
+    """(kind, target): the quantity in the other frame, inverted, and with the turns reversed."""
+    name = goal.quantity
+    swap = {"_body": "_space", "_space": "_body"}
+    frame = next((name.replace(one, two) for one, two in swap.items() if one in name), "")
+    related = [("frame", frame)]
+    if "rate_matrix" in name and goal.matrix.shape == (3, 3):
+        for each in (name, frame):
+            bare = each.removeprefix("inverse_")
+            related.append(("inverse", bare if bare != each else f"inverse_{each}"))
+    for kind, quantity in related:
+        if quantity in QUANTITIES:
+            yield kind, goal.sibling(quantity)
+    if goal.rotation.isalpha() and len(goal.rotation) == 3 and goal.motion.body is None:
+        yield "order of the turns", target(goal.rotation.swapcase(), name)
+
+
+# Single entries
+
+
+def entry_repairs(reading: Reading) -> tuple[Repair, ...]:
+    """One change in each wrong entry; () if there are none, or too many."""
+    if reading.formula.shape != reading.goal.matrix.shape:
+        return ()
+    wrong = [(int(i), int(j)) for i, j in np.argwhere(~reading.agreement.all(axis=0))]
+    if len(wrong) == 2:
+        one, two = wrong
+        changed = reading.formula.as_mutable()
+        changed[one], changed[two] = changed[two], changed[one]
+        if reading.agrees(reading.numbers(changed)):
+            words = f"entries {_from1(one)} and {_from1(two)} are exchanged"
+            fixed = sp.ImmutableMatrix(changed)
+            place = _from1(one)
+            return (
+                Repair(kind="exchange", words=words, formula=fixed, goal=reading.goal, place=place),
+            )
+    if not 0 < len(wrong) <= min(_MOST_ENTRIES, max(1, len(reading.formula) // 3)):
+        return ()
+    return tuple(_entry(reading, place) for place in wrong)
+
+
+def _from1(place: tuple[int, int]) -> tuple[int, int]:
+    """A place counted from 1, as people do."""
+    return place[0] + 1, place[1] + 1
+
+
+def _entry(reading: Reading, place: tuple[int, int]) -> Repair:
+    """The smallest change of an entry; the entry of the target if no small one is enough."""
+    formula, goal, before = reading.formula, reading.goal, reading.formula[place]
+    wanted = goal.values[:, [place[0]], [place[1]]][:, None]
+    groups = [  # names that may be taken for one another: those of one argument
+        [symbol for symbol, meant in reading.names.items() if meant in symbols]
+        for symbols in goal.inputs.values()
+    ]
+    derived = [symbol for symbol, meant in reading.names.items() if meant.args and meant.is_Add]
+    changes = variants(before, [*groups, derived]) if before.count_ops() <= _MOST_OPERATIONS else ()
+    back = {meant: symbol for symbol, meant in reading.names.items()}
+    kind, after = "entry", goal.matrix[place].xreplace(back)
+    for variant in sorted(
+        set(changes), key=lambda v: (KINDS.index(v[0]), v[1].count_ops(), str(v[1]))
+    ):
+        if near(reading.numbers(sp.Matrix([[variant[1]]])), wanted).all():
+            kind, after = variant
+            break
+    changed = formula.as_mutable()
+    changed[place] = after
+    words = (
+        f"entry {_from1(place) if formula.cols > 1 else place[0] + 1}: {before} should be {after}"
+    )
+    if kind != "entry":
+        words += f" ({_WORDS[kind]})"
+    return Repair(
+        kind=kind,
+        words=words,
+        formula=sp.ImmutableMatrix(changed),
+        goal=goal,
+        place=_from1(place),
+        before=before,
+        after=after,
     )
 
 
-def _together(formula: sp.ImmutableMatrix, repairs: Iterable[Repair]) -> sp.ImmutableMatrix:
-    """The formula after all repairs: of one, or of one entry each."""
-    changed = formula.as_mutable()
-    for repair in repairs:
-        if repair.after is None or repair.place is None:
-            return repair.formula
-        changed[repair.place[0] - 1, repair.place[1] - 1] = repair.after
-    return sp.ImmutableMatrix(changed)
+_WORDS = {
+    "sign": "a sign",
+    "sine and cosine": "sine and cosine exchanged",
+    "index": "another name",
+    "arguments": "arguments exchanged",
+    "square": "a square",
+    "factor": "a number as factor",
+    "half angle": "half or twice the angle",
+    "product": "a factor missing or too many",
+    "quadrant": "atan2 in place of atan",
+    "term": "a term too many",
+}
+KINDS = list(_WORDS)  # the likeliest first
+
+
+_SWAPPED = {sp.sin: sp.cos, sp.cos: sp.sin}
+
+
+def variants(
+    expression: sp.Expr, groups: Sequence[Sequence[sp.Symbol]], *, inside: bool = False
+) -> Iterator[tuple[str, sp.Expr]]:
+    """(kind, changed expression) for each single change."""
+    yield from _here(expression, groups, inside=inside)
+    is_inside = inside or expression.func in _SWAPPED
+    for place, part in enumerate(expression.args):
+        if expression.is_Pow and place == 1:
+            continue
+        for kind, changed in variants(part, groups, inside=is_inside):
+            parts = [*expression.args[:place], changed, *expression.args[place + 1 :]]
+            yield kind, expression.func(*parts)
+
+
+def _here(
+    expression: sp.Expr, groups: Sequence[Sequence[sp.Symbol]], *, inside: bool
+) -> Iterator[tuple[str, sp.Expr]]:
+    yield "sign", -expression
+    numbers = "half angle" if inside else "factor"
+    yield from ((numbers, factor * expression) for factor in (_HALF, _TWO))
+    if expression.is_Symbol:
+        group = next((g for g in groups if expression in g), ())
+        yield from (("index", other) for other in group if other != expression)
+    if expression.func in _SWAPPED:
+        yield "sine and cosine", _SWAPPED[expression.func](*expression.args)
+    if expression.func == sp.atan2:
+        yield "arguments", sp.atan2(*expression.args[::-1])
+    if expression.func == sp.atan:
+        above, below = expression.args[0].as_numer_denom()
+        yield from (("quadrant", sp.atan2(sign * above, sign * below)) for sign in (1, -1))
+    if expression.is_Mul:
+        if expression.args[0].is_even:  # two equal terms that have become one
+            half = expression / 2
+            for kind, changed in variants(half, groups, inside=inside):
+                yield from [("index", half + changed)] if kind == "index" else []
+        for factor in expression.args:
+            yield numbers if factor.is_number else "product", expression / factor
+    if expression.is_Add:
+        yield from (("term", expression - term) for term in expression.args)
+    if expression.is_Pow and expression.exp == 2:
+        yield "square", expression.base
+        for kind, changed in variants(expression.base, groups, inside=inside):
+            yield kind, expression.base * changed
+    if inside:
+        return
+    if expression.is_Function or expression.is_Symbol:
+        yield "square", expression**2
+    if not expression.is_Add:
+        yield from (("product", expression * f(s)) for s in chain(*groups[:1]) for f in _SWAPPED)

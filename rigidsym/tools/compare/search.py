@@ -11,9 +11,10 @@ import sympy as sp
 
 from rigidsym.errors import ExpressionError, RequestError
 from rigidsym.models.rotation import RotationModel
-from rigidsym.tools.compare.angles import angles_identified, are_angles
 from rigidsym.tools.compare.matching import Comparison, identified
-from rigidsym.tools.compare.program import GRAMMARS, Formula, program_formulas
+from rigidsym.tools.compare.program import Formula, program_formulas
+from rigidsym.tools.compare.quantities import are_angles
+from rigidsym.tools.compare.syntax import GRAMMARS
 
 SUFFIXES = tuple(GRAMMARS)
 _MOST_BYTES = 300_000  # of a file
@@ -82,10 +83,7 @@ def search(path: Path) -> Iterator[FormulaInFile]:
             continue
         whole = formula.whole or formula.matrix
         try:
-            if are_angles(whole):
-                comparison = angles_identified(whole)
-            else:
-                comparison = identified(whole, is_in_program=True)
+            comparison = identified(whole, is_in_program=True)
             if comparison.found is None and formula.whole:  # a long value may be an angle
                 comparison = identified(formula.matrix, is_in_program=True)
         except ExpressionError as error:  # a function without values
