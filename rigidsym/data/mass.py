@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from difflib import get_close_matches
@@ -324,9 +323,8 @@ def _columns(table: Table, names: Sequence[str] | None) -> tuple[list[int], Arra
 
 # Meshes
 
-ENDINGS = (".stl", ".obj", ".ply", ".off", ".glb", ".gltf")
+ENDINGS = (".stl", ".obj", ".ply")
 MOST_DRAWN, _MOST_CELLS = 400, 24
-_RELATIVE = re.compile(rb"^f\b(?:[^#\n]*\s)?(-\d+|0)(?=[/\s]|$)", re.MULTILINE)  # corner in OBJ
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -350,14 +348,12 @@ def read_mesh_file(path: Path, *, scale: float = 1.0) -> Mesh:
         raise BodyError(f"{path}: no such mesh")
     if path.suffix.lower() not in ENDINGS:
         raise BodyError(f"{path}: expected a mesh, a file that ends in {', '.join(ENDINGS)}")
-    if path.suffix.lower() == ".obj" and (corner := _RELATIVE.search(path.read_bytes())):
-        line = corner.string.count(b"\n", 0, corner.start()) + 1
-        number = corner[1].decode()
-        raise BodyError(f"{path}: line {line}: the corner {number}; expected corners from 1 on")
     try:
         with np.errstate(all="ignore"), catch_warnings(action="ignore"):
             loaded = trimesh.load(path, force="mesh", process=False, skip_materials=True)
-            _check_corners(path, np.asarray(loaded.faces), len(loaded.vertices))
+            corners, count = np.asarray(loaded.faces), len(loaded.vertices)
+            if ((corners < 0) | (corners >= count)).any():  # NumPy counts -1 from the end
+                raise BodyError(f"{path}: a triangle has a corner that is none of {count} vertices")
             loaded.process()
             loaded.merge_vertices(merge_tex=True, merge_norm=True)
             vertices = np.asarray(loaded.vertices, dtype=float).reshape(-1, 3) * scale
@@ -382,18 +378,6 @@ def _trimesh() -> Any:
     except ImportError:
         raise MissingExtra("meshes", "mesh") from None
     return trimesh
-
-
-def _check_corners(path: Path, faces: NDArray[np.int64], count: int) -> None:
-    """Raises BodyError for the first triangle with a corner that is none of the vertices.
-
-    NumPy counts negative numbers from the end.
-    """
-    for triangle, corner in np.argwhere((faces < 0) | (faces >= count))[:1]:
-        raise BodyError(
-            f"{path}: triangle {triangle + 1} has the corner {faces[triangle, corner]}; expected "
-            f"0 to {count - 1}, since the file has {count} vertices"
-        )
 
 
 def mesh_inertia(

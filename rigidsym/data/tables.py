@@ -12,7 +12,7 @@ import io
 import os
 import re
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
 from itertools import chain, islice
@@ -278,13 +278,11 @@ class ParquetTable(Table):
 
 # Text
 
-_MISSING = frozenset({"", "-", "na", "n/a", "nan", "null", "none", "#n/a"})
-_CASES = (str.lower, str.upper, str.capitalize)
+_MISSING = ["", "-", "na", "n/a", "nan", "null", "none", "#n/a"]
 _LINES = 50_000  # that are read at once
 _LONGEST = 1 << 20  # bytes in a line
 _WIDEST = 10_000  # columns
 _AFTER_QUOTES = re.compile(r'((?<!")")[ \t]+(?=[,;\t]|$)')  # blanks that no dialect expects
-_DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?")
 _QUOTES = "quotes that do not end where the field does; expected one row per line"
 _KINDS = {
     b"\x1f\x8b": "data compressed by gzip (gunzip unpacks them)",
@@ -305,9 +303,8 @@ class TextTable(Table):
 
     Comments begin with # or %; the last one before the numbers names them if no other line does. A
     second line may hold the units. Quoted fields, a byte-order mark and, unless commas separate
-    the columns, decimal commas are read. polars reads the rows; if it refuses them, or they differ
-    in length, each field is read by itself, so that a fault is named with its line. Raises
-    DataError for what is not such a table.
+    the columns, decimal commas are read. Raises DataError, with the lines, for what is not such a
+    table.
     """
 
     quotes = True  # whether messages show fields that are not numbers
@@ -326,7 +323,8 @@ class TextTable(Table):
                 raise DataError(f"{path} holds {what}; expected text in UTF-8, NPY or Parquet")
             lines = iter(lambda: self._line(file), b"")
             comments, first = self._first_row(lines)
-            self.separator = _separator(first)
+            bare = re.sub(r'"[^"]*"', "", first)
+            self.separator = next((mark for mark in (";", "\t", ",") if mark in bare), None)
             fields = self._fields(first)
             if fields is None:
                 raise DataError(f"{path}, line {len(self._ahead)}: {_QUOTES}")
@@ -368,20 +366,23 @@ class TextTable(Table):
     ) -> tuple[tuple[str, ...] | None, int]:
         """The names of the columns, with the units of a second line; the lines before the rows."""
         before = len(self._ahead)
-        if any(is_number(self._with_point(field)) for field in fields):
+        if self._has_number(fields):
             named = [self._fields(comment) for comment in reversed(comments)]
             alike = (names for names in named if names and len(names) == len(fields))
-            names = next((n for n in alike if not any(map(is_number, n))), None)
+            names = next((n for n in alike if not self._has_number(n)), None)
             return tuple(names) if names else None, before - 1
         units = self._fields(_decoded(next(lines, b"")).lstrip("#% ")) or []
         units = [unit.strip("[]() ") for unit in units]
-        if len(units) != len(fields) or not any(units) or not all(map(is_unit, units)):
-            return tuple(fields), before
-        if any(map(is_number, units)):  # 1 is a unit, too
+        is_second = len(units) == len(fields) and any(units) and all(map(is_unit, units))
+        if not is_second or self._has_number(units):  # 1 is a unit, too
             return tuple(fields), before
         pairs = zip(fields, units, strict=True)
-        names = [n if u in ("", "-") or unit_in(n) else f"{n} [{u}]" for n, u in pairs]
-        return tuple(names), before + 1
+        return tuple(
+            n if u in ("", "-") or unit_in(n) else f"{n} [{u}]" for n, u in pairs
+        ), before + 1
+
+    def _has_number(self, fields: Sequence[str]) -> bool:
+        return any(self._numbers(self._polars.Series(fields).str.strip_chars()).is_not_null())
 
     def _fields(self, line: str) -> list[str] | None:
         """The fields of a line; None if quotes end within a field, or in a later line."""
@@ -391,12 +392,12 @@ class TextTable(Table):
             rows = list(csv.reader(lines, delimiter=mark, skipinitialspace=True, strict=True))
         except csv.Error:
             return None
-        return [field.strip() for row in rows for field in row]
+        return [field for row in rows for field in row]
 
-    def _with_point(self, field: str) -> str:
-        """A field with a decimal point if it has a decimal comma."""
-        has_comma = self.separator != "," and _DECIMAL_COMMA.fullmatch(field)
-        return field.replace(",", ".") if has_comma else field
+    def _numbers(self, texts: Any) -> Any:
+        """Texts as numbers, null if they are none; commas are decimal unless they separate."""
+        points = texts if self.separator == "," else texts.str.replace(",", ".", literal=True)
+        return points.cast(self._polars.Float64, strict=False)
 
     def place(self, row: int) -> str:
         """How messages name a row: by its line, or else by its number."""
@@ -421,91 +422,64 @@ class TextTable(Table):
                 if max(map(len, block)) >= _LONGEST:
                     for number, line in enumerate(block, before + 1):
                         self._check_length(line, number)
-                lines = _decoded(b"".join(block)).replace("\r\n", "\n").split("\n")
-                read = self._at_once(lines, columns, kept)
-                table, texts = read or self._by_field(lines, before, columns, kept)
+                lines = enumerate(_decoded(b"".join(block)).split("\n"), before + 1)
+                numbered = {number: line for number, line in lines if _is_row(line)}
+                table, texts = self._read(numbered, columns, kept)
                 before, done = before + len(block), done + sum(map(len, block))
                 numbers = np.arange(first, first := first + len(table))
                 share = done / self._size if self._size else 1.0
                 yield from Batch(table, numbers, share, texts).split(rows)
 
-    def _at_once(
-        self, lines: Sequence[str], columns: Sequence[int], kept: Sequence[int]
-    ) -> tuple[Numbers, tuple[NDArray[Any], ...]] | None:
-        """The numbers as polars reads them; None if it refuses them or rows differ in length."""
-        pl, mark = self._polars, self.separator or " "
-        rows = [line for line in lines if _is_row(line)]
-        if not self.separator:  # polars takes each blank for a separator
-            rows = [" ".join(row.split()) for row in rows]
-        text = "\n".join(rows)
-        has_comma = mark != "," and "," in text
-        if not rows or '"' in text or "\r" in text or (has_comma and "." in text):
-            return None
-        marks = pl.Series(rows).str.count_matches(mark, literal=True)
-        if (marks != self.width - 1).any():  # polars fills short rows and cuts long ones
-            return None
-        names = [str(k) for k in range(self.width)]
-        missing = [case(word) for word in _MISSING if word for case in _CASES]
-        try:
-            frame = pl.read_csv(
-                io.StringIO(text),
-                has_header=False,
-                separator=mark,
-                quote_char=None,
-                schema={n: pl.Float64 if int(n) in columns else pl.String for n in names},
-                null_values=missing,
-                decimal_comma=has_comma,
-            )
-        except pl.exceptions.PolarsError:
-            return None
-        numbers = np.stack([frame[names[k]].to_numpy() for k in columns], axis=1)
-        return numbers.astype(float), tuple(frame[names[k]].to_numpy() for k in kept)
-
-    def _by_field(
-        self, lines: Sequence[str], before: int, columns: Sequence[int], kept: Sequence[int]
+    def _read(
+        self, lines: Mapping[int, str], columns: Sequence[int], kept: Sequence[int]
     ) -> tuple[Numbers, tuple[NDArray[Any], ...]]:
-        """The numbers of each line, NaN for those that are missing.
+        """The numbers in the rows by their lines, NaN for those that are missing, and kept texts.
 
-        Raises DataError, with the lines, for fields that are not numbers.
+        Raises DataError, with the lines, for rows of another length and fields that are no numbers.
         """
-        faults: list[str] = []
-        table: list[list[float]] = []
-        texts: list[list[str]] = []
-        marks: set[str] = set()
-        for number, line in enumerate(lines, before + 1):
-            if not _is_row(line):
-                continue
-            fields = self._fields(line)
-            if fields is None:
-                faults.append(f"line {number}: {_QUOTES}")
-                continue
-            if len(fields) < self.width or any(fields[self.width :]):
-                faults.append(
-                    f"line {number}: {counted(len(fields), 'field')}, expected {self.width}"
-                )
-                continue
-            row: list[float] = []
-            for k in columns:
-                point = self._with_point(fields[k])
-                if point.lower() in _MISSING:
-                    row.append(np.nan)
-                elif is_number(point):
-                    row.append(float(point))
-                    marks |= {"," if point != fields[k] else "."} if "." in point else set()
-                else:
-                    shown = f": {fields[k][:40]!r}" if self.quotes else ""
-                    hint = "; write decimals with a point" if "," in fields[k] else ""
-                    hint = "; write degrees without °" if "°" in fields[k] else hint
-                    faults.append(f"line {number}: field {k + 1}{shown} is not a number{hint}")
-            if len(marks) > 1:
-                faults.append(f"line {number}: decimal commas and decimal points in one file")
-                marks.clear()
-            table.append(row)
-            texts.append([fields[k] for k in kept])
+        pl, places = self._polars, [*lines]
+        if self.separator and not any('"' in row for row in lines.values()):
+            fields = pl.Series(lines.values(), dtype=pl.String).str.split(self.separator)
+        else:
+            split = [self._fields(row.removesuffix("\r")) for row in lines.values()]
+            fields = pl.Series(split, dtype=pl.List(pl.String))
+        counts = fields.list.len()
+        # separators at the end of a row make empty fields
+        surplus = fields.list.slice(self.width).list.join("").str.strip_chars() != ""
+        is_wrong = fields.is_null() | (counts < self.width) | surplus
+        faults = [
+            (places[row], f"{counted(counts[row], 'field')}, expected {self.width}")
+            if fields[row] is not None
+            else (places[row], _QUOTES)
+            for row in is_wrong.arg_true()
+        ]
+        table = np.empty((len(lines), len(columns)))
+        marks: dict[str, int] = {}  # of decimals, and the first row that has them
+        for column, k in enumerate(columns):
+            texts = fields.list.get(k, null_on_oob=True).str.strip_chars()
+            numbers = self._numbers(texts)
+            if numbers.has_nulls():
+                is_gap = texts.str.to_lowercase().is_in(_MISSING)
+                is_text = numbers.is_null() & ~is_gap & ~is_wrong
+                faults += [(places[row], self._fault(k, texts[row])) for row in is_text.arg_true()]
+            for mark in "" if self.separator == "," else ",.":
+                for row in texts.str.contains(mark, literal=True).arg_true()[:1]:
+                    marks[mark] = min(row, marks.get(mark, row))
+            table[:, column] = numbers.to_numpy()
+        if len(marks) > 1 and not faults:
+            row = max(marks.values())
+            faults = [(places[row], "decimal commas and decimal points in one file")]
         if faults:
-            raise DataError(listed(self.path, faults))
-        numbers = np.array(table, float).reshape(-1, len(columns))
-        return numbers, tuple(np.array(column, object) for column in zip(*texts, strict=True))
+            raise DataError(
+                listed(self.path, [f"line {n}: {fault}" for n, fault in sorted(faults)])
+            )
+        return table, tuple(fields.list.get(k).str.strip_chars().to_numpy() for k in kept)
+
+    def _fault(self, column: int, text: str) -> str:
+        shown = f": {text[:40]!r}" if self.quotes else ""
+        hint = "; write decimals with a point" if "," in text else ""
+        hint = "; write degrees without °" if "°" in text else hint
+        return f"field {column + 1}{shown} is not a number{hint}"
 
 
 def listed(path: Path | str, faults: Sequence[str], count: int | None = None) -> str:
@@ -517,15 +491,6 @@ def listed(path: Path | str, faults: Sequence[str], count: int | None = None) ->
     return "\n  ".join([f"{path}: {count} faults", *faults[:MOST_SHOWN], *more])
 
 
-def is_number(field: str) -> bool:
-    """Whether polars reads it too, which takes neither 1_000 nor digits beyond ASCII."""
-    try:
-        float(field)
-    except ValueError:
-        return False
-    return field.isascii() and "_" not in field
-
-
 def _decoded(line: bytes) -> str:
     return line.decode(errors="replace").removeprefix("\ufeff")
 
@@ -533,12 +498,6 @@ def _decoded(line: bytes) -> str:
 def _is_row(line: str) -> bool:
     bare = line.lstrip()
     return bare != "" and bare[0] not in "#%"
-
-
-def _separator(line: str) -> str | None:
-    """What separates the columns; None for blanks."""
-    bare = re.sub(r'"[^"]*"', "", line)
-    return next((mark for mark in (";", "\t", ",") if mark in bare), None)
 
 
 # Writing
