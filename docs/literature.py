@@ -200,9 +200,9 @@ def _words(text: str) -> set[str]:
 
 @cache
 def _quantities() -> frozenset[str]:
-    from rigidsym.pipeline import vocabulary
+    from rigidsym.motion import QUANTITIES
 
-    return frozenset(vocabulary().quantities)
+    return frozenset(QUANTITIES)
 
 
 def _matrix(given: Any) -> sp.MatrixBase:

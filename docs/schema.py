@@ -8,14 +8,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from rigidsym.pipeline import vocabulary
 from rigidsym.spec.schema import schema_of
 
 Schema = dict[str, Any]
 
 
 def schema() -> Schema:
-    found = schema_of("file", vocabulary())
+    found = schema_of("file")
     for table in (found, *found["properties"].values()):
         table.pop("hints", None)
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **found}

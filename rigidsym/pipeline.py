@@ -16,28 +16,25 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from hashlib import sha256
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, cast
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rigidsym.errors import BodyError, ModelError, RequestError, SpecError, offer
-from rigidsym.kernels.lowering.derivatives import read_request
-from rigidsym.kernels.targets import TARGETS
 from rigidsym.mechanics.derivation import Proof
 from rigidsym.models.body import RigidBody
-from rigidsym.motion import CHOICES, DEFAULT, QUANTITIES, Motion, Notation, derive
+from rigidsym.motion import DEFAULT, Motion, derive
 from rigidsym.notes.formats import FORMATS
 from rigidsym.notes.formats.record import record
-from rigidsym.notes.note import check_style
-from rigidsym.spec import derivation_file
-from rigidsym.spec.derivation_spec import DerivationSpec, spec_for
+from rigidsym.spec.derivation_file import (
+    read_file as read_file,
+    read_record as read_record,
+    read_spec as read_spec,
+)
+from rigidsym.spec.derivation_spec import PAGE as PAGE, PDF as PDF, DerivationSpec, spec_for
 from rigidsym.spec.faults import fault_at
-from rigidsym.spec.schema import Vocabulary
 from rigidsym.system import resources
 
 if TYPE_CHECKING:
     from rigidsym.mechanics.conversions.conversions import Conversions
-
-PDF = "pdf"  # typeset from the LaTeX, which is written beside it
-PAGE = "page"  # NAME_page.html: the note with an interactive figure
 
 
 class Output(NamedTuple):
@@ -117,35 +114,6 @@ def _is_rotation(source: str) -> bool:
     return True
 
 
-def read_file(file: str) -> DerivationSpec:
-    """A derivation file, by path or shipped name. Raises SpecError with all its faults."""
-    return derivation_file.read_file(file, vocabulary())
-
-
-def read_spec(text: str, *, source: str, name: str, folder: Path | None = None) -> DerivationSpec:
-    """The text of a derivation file; see `derivation_file.read_spec`."""
-    return derivation_file.read_spec(text, vocabulary(), source=source, name=name, folder=folder)
-
-
-def read_record(request: object, *, source: str = "request") -> DerivationSpec:
-    """The specification that a record (NAME.json) was made from. Raises SpecError."""
-    return derivation_file.from_data(request, vocabulary(), source=source)
-
-
-def vocabulary() -> Vocabulary:
-    """The names that a derivation file may use."""
-    return Vocabulary(
-        quantities=QUANTITIES,
-        kernels=tuple(TARGETS),
-        target_options={name: target.options for name, target in TARGETS.items() if target.options},
-        note=note_formats(),
-        check_style=check_style,
-        notation=Notation,
-        choices=CHOICES,
-        derivative=read_request,
-    )
-
-
 # 2. derive
 
 
@@ -162,7 +130,7 @@ def motion_of(spec: DerivationSpec) -> Motion:
         theory=spec.theory,
         **(spec.dynamics or {}),
     )
-    notation = cast("Notation | None", spec.notation) or DEFAULT
+    notation = spec.notation or DEFAULT
     return replace(motion, name=spec.name, title=spec.title or motion.title, notation=notation)
 
 
@@ -217,11 +185,6 @@ def _notes(motion: Motion, spec: DerivationSpec) -> Iterator[tuple[str, str]]:
 def digest(content: bytes) -> str:
     """By which a record knows a file."""
     return sha256(content).hexdigest()
-
-
-def note_formats() -> tuple[str, ...]:
-    """All that `note` may list: the registered formats, the page and the PDF."""
-    return (*FORMATS, PAGE, PDF)
 
 
 def page_name(name: str) -> str:

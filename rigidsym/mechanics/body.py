@@ -16,7 +16,6 @@ from sympy.polys.rings import PolyElement
 from rigidsym.algebra.codec import Codec, codec_for
 from rigidsym.algebra.matrix import RingMatrix, hat
 from rigidsym.algebra.present import Rationals, agrees, half_form, half_of_squares, shortest_of
-from rigidsym.algebra.witness import Example
 from rigidsym.errors import QuantityError
 from rigidsym.mechanics import particles
 from rigidsym.mechanics.derivation import OfBody, Step
@@ -72,11 +71,6 @@ class BodyValues(Values):
     def is_distributed(self) -> bool:
         """Whether the distribution of the mass is known, and not only the tensor."""
         return self.body.distribution is not None
-
-    @property
-    def conditions(self) -> tuple[tuple[sp.Expr, ...], Example]:
-        whole = self.body.distribution
-        return (whole.conditions, whole.example) if isinstance(whole, Composite) else ((), ())
 
     @cached_property
     def moments(self) -> Moments:

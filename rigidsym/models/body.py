@@ -144,8 +144,6 @@ class Composite:
     """A body composed of parts."""
 
     parts: tuple[Part, ...]
-    conditions: tuple[sp.Expr, ...] = ()  # each vanishes: on the symbols in the turns
-    example: tuple[tuple[sp.Expr, sp.Expr], ...] = ()  # exact values that satisfy them
 
     def __post_init__(self) -> None:
         if not self.parts:

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
-from rigidsym.errors import BodyError, ExpressionError, ModelError
+from rigidsym.errors import ExpressionError, ModelError
 from rigidsym.models import parametrisations
 from rigidsym.models.parametrisations import (
     DEFAULT_ANGLES,
@@ -223,33 +223,17 @@ def faults_in(
     return faults
 
 
-def turned_by(
-    text: str, values: Sequence[sp.Expr] | None = None
-) -> tuple[sp.ImmutableMatrix, tuple[sp.Expr, ...]]:
-    """The matrix R (3, 3) of a rotation that stays as it is, and what its symbols are bound by.
+def turned_by(text: str) -> sp.ImmutableMatrix:
+    """The matrix R (3, 3) of constant turns, "z(pi/4) x(alpha)" or "[1,1,0](pi/3)".
 
-    The text is one of turns, "z(pi/4) x(alpha)", or names any rotation, whose coordinates take the
-    `values`, or are constants of their names. Raises ModelError or ExpressionError for a text that
-    names no rotation, BodyError where the number of values is wrong or they break a condition.
+    Raises ModelError or ExpressionError for another text.
     """
-    if values is None and "(" in text:
-        turns = tuple(_turn(*turn, _constant) for turn in parse_turns(text))
-        if any(part.free_symbols for turn in turns for part in turn.components):
-            raise ExpressionError(f"{text}: expected an axis with numbers as components")
-        return product_of(turns), ()
-    model = rotation_from(text)
-    if values is None:
-        values = [sp.Symbol(q.func.__name__) for q in model.coordinates]
-    if len(values) != len(model.coordinates):
-        raise BodyError(
-            f"{text} has {len(model.coordinates)} coordinates, got {len(values)} values"
-        )
-    fixed = dict(zip(model.coordinates, values, strict=True))
-    bound = [sp.expand(condition.xreplace(fixed)) for condition in model.constraints]
-    for condition in bound:
-        if condition.is_number and condition != 0:
-            raise BodyError(f"{text}: the values break its condition by {condition}")
-    return sp.ImmutableMatrix(model.matrix.xreplace(fixed)), tuple(b for b in bound if b != 0)
+    if "(" not in text:
+        raise ModelError(f'expected turns such as "z(pi/4) x(alpha)", got {text!r}')
+    turns = tuple(_turn(*turn, _constant) for turn in parse_turns(text))
+    if any(part.free_symbols for turn in turns for part in turn.components):
+        raise ExpressionError(f"{text}: expected an axis with numbers as components")
+    return product_of(turns)
 
 
 def request_of(model: RotationModel) -> Mapping[str, Any]:

@@ -8,10 +8,14 @@ from pathlib import Path
 from typing import Any
 
 from rigidsym.errors import Fault, SpecError, offer
+from rigidsym.kernels.lowering.derivatives import read_request
+from rigidsym.kernels.targets import TARGETS
 from rigidsym.models.forces import forces_on
 from rigidsym.models.library import faults_in, rotation_from, rotation_given
-from rigidsym.models.parametrisations import DEFAULT_ANGLES, DIGITS, EULER_SEQUENCES, EulerAngles
+from rigidsym.models.parametrisations import EulerAngles
 from rigidsym.models.rotation import RotationModel
+from rigidsym.motion import QUANTITIES, Notation
+from rigidsym.notes.note import check_style
 from rigidsym.spec.body_table import read_body
 from rigidsym.spec.derivation_spec import (
     DerivationSpec,
@@ -20,11 +24,10 @@ from rigidsym.spec.derivation_spec import (
     repeated,
 )
 from rigidsym.spec.faults import Place, shortened
-from rigidsym.spec.schema import Vocabulary, checked, schema_of
+from rigidsym.spec.schema import checked, schema_of
 from rigidsym.system import resources
 from rigidsym.system.files import read_bytes
 from rigidsym.text.expression import parse_expression
-from rigidsym.text.names import check_name
 
 Data = Mapping[str, Any]
 _MOST_CHARACTERS = 50_000
@@ -32,11 +35,9 @@ _MOST_BYTES = 4 * _MOST_CHARACTERS  # no character takes more than four
 _LONGEST_LINE = 1000  # tomllib's time grows with the square of the dots in a key
 _OF_SEQUENCES = ("sequence", "angles", "constants", "scalar_last")
 _OF_MATRICES = ("matrix", "coordinates", "constraints", "example")
-_NAMES = 'a list of names such as ["phi", "theta"]'
-_THREE_NAMES = 'a list of three names such as ["phi", "theta", "psi"]'
 
 
-def read_file(file: str, words: Vocabulary) -> DerivationSpec:
+def read_file(file: str) -> DerivationSpec:
     """Read a derivation file, given by its path or by the name of a shipped one.
 
     Raises SpecError with all its faults.
@@ -65,19 +66,17 @@ def read_file(file: str, words: Vocabulary) -> DerivationSpec:
     except UnicodeDecodeError as error:
         line = content.count(b"\n", 0, error.start) + 1
         raise refused(f"not UTF-8 text, at line {line}") from None
-    return read_spec(text, words, source=file, name=path.stem, folder=path.parent)
+    return read_spec(text, source=file, name=path.stem, folder=path.parent)
 
 
-def read_spec(
-    text: str, words: Vocabulary, *, source: str, name: str, folder: Path | None = None
-) -> DerivationSpec:
+def read_spec(text: str, *, source: str, name: str, folder: Path | None = None) -> DerivationSpec:
     """The specification in the text of a derivation file.
 
     `source` is the file in messages; `name` names a single derivation; paths in the text start
     from `folder`. Raises SpecError with all faults.
     """
     place = Place({})
-    data = checked(_toml(text, source), schema_of("file", words), place)
+    data = checked(_toml(text, source), schema_of("file"), place)
     if "rotation" not in data and "body" not in data:
         place.at("rotation").fault('missing; expected [rotation] with sequence = "ZXZ" or another')
     models: list[RotationModel] = [EulerAngles("ZXZ")]
@@ -91,24 +90,22 @@ def read_spec(
     if isinstance(sequence, list) and len(models) == 1:
         name = models[0].name
     output = data.get("output") or {}
-    return _spec(
-        data, output, place, place.at("output"), words, source, name, models, folder or Path()
-    )
+    return _spec(data, output, place, place.at("output"), source, name, models, folder or Path())
 
 
-def from_data(data: object, words: Vocabulary, *, source: str = "request") -> DerivationSpec:
+def read_record(data: object, *, source: str = "request") -> DerivationSpec:
     """The specification that `DerivationSpec.to_data` wrote. Raises SpecError with all faults."""
     if not isinstance(data, Mapping):
         raise SpecError(source, [Fault(message="expected an object")])
     place = Place({})
-    read = checked(data, schema_of("record", words), place)
+    read = checked(data, schema_of("record"), place)
     name = read["name"] or ""
     models = [
         model
         for k, rotation in enumerate(read["rotations"] or [])
         for model in _rotation(rotation, place.at("rotations", k), name)
     ]
-    return _spec(read, read, place, place, words, source, name, models, None)
+    return _spec(read, read, place, place, source, name, models, None)
 
 
 def _toml(text: str, source: str) -> dict[str, Any]:
@@ -136,7 +133,6 @@ def _spec(
     output: Data,
     place: Place,
     output_place: Place,
-    words: Vocabulary,
     source: str,
     name: str,
     models: Sequence[RotationModel],
@@ -165,16 +161,15 @@ def _spec(
     chosen |= {key: output[key] for key in ("conversions", "certificates") if output.get(key)}
     if style := output.get("style"):
         with output_place.at("style").noting():
-            chosen["style"] = words.check_style(style)
+            chosen["style"] = check_style(style)
     notation = data.get("notation")
     dynamics = _dynamics(data.get("dynamics") or {}, place.at("dynamics"), models)
     derivatives = _derivatives(
         output.get("derivatives") or [],
         output_place.at("derivatives"),
-        words,
-        chosen.get("quantities") or words.quantities,
+        chosen.get("quantities") or QUANTITIES,
     )
-    options = {key: output[key] for key in words.target_options if output.get(key)}
+    options = {key: output[key] for key in TARGETS if output.get(key)}
     place.raise_faults(source)
     return DerivationSpec(
         name=name,
@@ -184,7 +179,7 @@ def _spec(
         source=source,
         body=body,
         dynamics=dynamics if "dynamics" in data else None,
-        notation=None if notation is None else words.notation(**notation),
+        notation=None if notation is None else Notation(**notation),
         derivatives=derivatives,
         target_options=options,
         **chosen,
@@ -202,13 +197,13 @@ def _dynamics(data: Data, place: Place, models: Sequence[RotationModel]) -> dict
 
 
 def _derivatives(
-    texts: Sequence[str | None], place: Place, words: Vocabulary, quantities: Sequence[str]
+    texts: Sequence[str | None], place: Place, quantities: Sequence[str]
 ) -> tuple[str, ...]:
     """The derivatives of the chosen quantities, each in its one spelling."""
     spelled = []
     for k, text in enumerate(texts):
         with place.at(k).noting():
-            request = words.derivative(text or "")
+            request = read_request(text or "")
             if request.quantity not in quantities:
                 near = offer(request.quantity, quantities)
                 place.at(k).fault(f"no quantity {shortened(request.quantity)}; {near}")
@@ -224,8 +219,7 @@ def _rotation(data: Data | None, place: Place, name: str) -> list[RotationModel]
     if data is None:
         return []
     is_matrix = "matrix" in data
-    others = _OF_SEQUENCES if is_matrix else _OF_MATRICES
-    for key in data.keys() & {*others}:
+    for key in data.keys() & {*(_OF_SEQUENCES if is_matrix else _OF_MATRICES)}:
         message = "a rotation with matrix does not have this key"
         place.at(key).fault(message if is_matrix else "only a rotation with matrix has this key")
     if is_matrix:
@@ -233,40 +227,36 @@ def _rotation(data: Data | None, place: Place, name: str) -> list[RotationModel]
     if "sequence" not in data:
         place.at("sequence").mistyped(None, 'a sequence such as "ZXZ", or a list of sequences')
     sequence = data.get("sequence")
-    entries = enumerate(sequence) if isinstance(sequence, list) else []
-    texts: dict[tuple[str | int, ...], str] = {
-        ("sequence", k): text for k, text in entries if text is not None
-    }
-    if isinstance(sequence, str):
-        texts = {("sequence",): sequence}
-    angles = _names(data, "angles", place)
-    is_euler = any(text.translate(DIGITS) in EULER_SEQUENCES for text in texts.values())
-    size = len(data.get("angles") or DEFAULT_ANGLES)
-    if is_euler and size != len(DEFAULT_ANGLES):
-        place.at("angles").fault(f"expected {_THREE_NAMES}, got {size}")
-        angles = None
-    if "angles" in data and any("(" in text for text in texts.values()):
+    texts: list[tuple[Place, str | None]] = [(place.at("sequence"), sequence)]
+    if isinstance(sequence, list):
+        texts = [(place.at("sequence", k), text) for k, text in enumerate(sequence)]
+    angles, constants = (_whole(data.get(key)) for key in ("angles", "constants"))
+    if angles and any("(" in (text or "") for _, text in texts):
         place.at("angles").fault("the sequence names its angles itself; leave this key out")
-    models: dict[tuple[str | int, ...], RotationModel] = {}
-    for steps, text in texts.items():
-        with place.at(*steps).noting():
-            models[steps] = rotation_from(
-                text,
-                names=None if "(" in text else angles,
-                constants=_names(data, "constants", place) or (),
-                scalar_last=bool(data.get("scalar_last")),
-                passive=bool(data.get("passive")),
-            )
-    for k, message in repeated(models.values()).items():
-        place.at(*list(models)[k]).fault(message)
-    return list(models.values())
+    models: list[RotationModel] = []
+    places: list[Place] = []
+    for own, text in texts:
+        if text is not None:
+            with own.noting():
+                model = rotation_from(
+                    text,
+                    names=None if "(" in text else angles,
+                    constants=constants or (),
+                    scalar_last=bool(data.get("scalar_last")),
+                    passive=bool(data.get("passive")),
+                )
+                models.append(model)
+                places.append(own)
+    for k, message in repeated(models).items():
+        places[k].fault(message)
+    return models
 
 
 def _matrix(data: Data, place: Place, name: str) -> list[RotationModel]:
     if "coordinates" not in data:
-        place.at("coordinates").mistyped(None, _NAMES)
+        place.at("coordinates").mistyped(None, 'a list of names such as ["phi", "theta"]')
     rows = [[e if e is None else str(e) for e in row or [None]] for row in data["matrix"] or []]
-    coordinates = _names(data, "coordinates", place)
+    coordinates = _whole(data.get("coordinates"))
     constraints = [text for text in data.get("constraints") or [] if text is not None]
     point = data.get("example") or {}
     example = {key: str(entry) for key, entry in point.items() if entry is not None}
@@ -292,14 +282,7 @@ def _matrix(data: Data, place: Place, name: str) -> list[RotationModel]:
     return []
 
 
-def _names(data: Data, key: str, place: Place) -> list[str] | None:
-    """The names of a list; None if there are none, or a fault is noted."""
-    names: list[str] = []
-    listed = data.get(key) or []
-    for k, text in enumerate(listed):
-        if text is not None:
-            with place.at(key, k).noting():
-                if (name := check_name(text)) in names and text not in names:
-                    place.at(key, k).fault(f"{name} is named twice")
-                names.append(name)
-    return names if listed and len(set(names)) == len(listed) else None
+def _whole(names: Sequence[str | None] | None) -> list[str] | None:
+    """The names of a list; None without it, or if one of them is at fault."""
+    whole = [name for name in names or () if name is not None]
+    return whole if names is not None and len({*whole}) == len(names) else None

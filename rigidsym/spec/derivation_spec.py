@@ -7,11 +7,13 @@ import re
 import sys
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
-from typing import Any, ClassVar, Protocol
+from typing import Any
 
 from rigidsym.models.body import BodyDescription, RigidBody
 from rigidsym.models.library import request_of, rotation_from
 from rigidsym.models.rotation import RotationModel
+from rigidsym.motion import DEFAULT, Notation
+from rigidsym.notes.formats import FORMATS
 from rigidsym.spec.faults import Place, shortened
 
 _NAME = re.compile(r"[a-z][a-z0-9_]*")
@@ -20,15 +22,9 @@ _LONGEST_TITLE = 200
 
 
 Body = RigidBody | BodyDescription
-
-
-class NotationChoice(Protocol):
-    """The notation of notes and terminal, a dataclass with one field a choice."""
-
-    __dataclass_fields__: ClassVar[dict[str, Any]]
-
-    def check(self, model: RotationModel) -> None:
-        """Raise ModelError for a model whose names could be confused with this notation."""
+PDF = "pdf"  # typeset from the LaTeX, which is written beside it
+PAGE = "page"  # NAME_page.html: the note with an interactive figure
+NOTES = (*FORMATS, PAGE, PDF)  # all that `note` may list
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -54,7 +50,7 @@ class DerivationSpec:
     conversions: bool = False  # to and from quaternion and matrix
     derivatives: tuple[str, ...] = ()  # "angular_velocity_body by q"
     certificates: bool = False  # cofactors, and theorems for Coq
-    notation: NotationChoice | None = None  # of notes and terminal; None: the default
+    notation: Notation | None = None  # of notes and terminal; None: the default
     source: str = field(default="", compare=False, repr=False)  # the file, in messages
 
     def __post_init__(self) -> None:
@@ -93,10 +89,8 @@ class DerivationSpec:
 
         Raises ModelError for a rotation that was made in Python and cannot be written as text.
         """
-        notation: dict[str, Any] = {}
-        if self.notation is not None and self.notation != type(self.notation)():
-            notation = asdict(self.notation)
-            del notation["vector"]  # which is the model's
+        notation = asdict(self.notation or DEFAULT)
+        del notation["vector"]  # which is the model's
         optional: dict[str, Any] = {
             "theory": self.theory,
             "dynamics": dict(self.dynamics or {}),
@@ -104,7 +98,7 @@ class DerivationSpec:
             "conversions": self.conversions,
             "derivatives": list(self.derivatives),
             "certificates": self.certificates,
-            "notation": notation,
+            "notation": {} if self.notation in (None, DEFAULT) else notation,
         }
         return {
             "name": self.name,

@@ -8,17 +8,19 @@ from __future__ import annotations
 
 import json
 import tomllib
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
 from math import isfinite
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 from unicodedata import category
 
 from rigidsym.errors import offer
+from rigidsym.kernels.targets import TARGETS
 from rigidsym.models.solids import SHAPES
-from rigidsym.spec.derivation_spec import NotationChoice
+from rigidsym.motion import CHOICES, QUANTITIES
+from rigidsym.spec.derivation_spec import NOTES
 from rigidsym.spec.faults import Place, dotted, shortened
+from rigidsym.text.names import check_name
 
 Schema = dict[str, Any]
 
@@ -39,28 +41,7 @@ _NOUNS = {  # in singular and plural
 _LARGEST = 1e300  # sums and products of numbers in a file stay finite
 
 
-class RequestedDerivative(Protocol):
-    """A derivative of a quantity; its text is "QUANTITY by VECTOR"."""
-
-    @property
-    def quantity(self) -> str: ...
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Vocabulary:
-    """What the keys of [output] and [notation] may say, from the rooms above."""
-
-    quantities: tuple[str, ...]
-    kernels: tuple[str, ...]
-    target_options: Mapping[str, Mapping[str, tuple[str | bool, ...]]]  # of [output.TARGET]
-    note: tuple[str, ...]
-    check_style: Callable[[str], str]  # raises ModelError for a style without a template
-    notation: Callable[..., NotationChoice]
-    choices: Mapping[str, tuple[str, ...]]  # of [notation], the default first
-    derivative: Callable[[str], RequestedDerivative]  # raises KernelError
-
-
-def schema_of(kind: str, words: Vocabulary) -> Schema:
+def schema_of(kind: str) -> Schema:
     """The schema of a "file", or of the request in a "record"."""
     text = Path(__file__).with_name("keys.toml").read_text(encoding="utf-8")
     declared = tomllib.loads(text)
@@ -69,16 +50,17 @@ def schema_of(kind: str, words: Vocabulary) -> Schema:
     distribution = definitions["distribution"]["properties"]
     for key, length in lengths.items():
         distribution.setdefault(key, {"use": "lengths" if length.names[1:] else "length"})
-    for key, names in words.choices.items():
+    for key, names in CHOICES.items():
         choice = {"type": "string", "enum": [*names], "description": f"by default {names[0]}"}
         definitions["notation"]["properties"][key] = choice
-    enums = {
+    enums: dict[str, Iterable[Any]] = {
         "shapes": (*SHAPES, "polyhedron", "given"),
-        "quantities": words.quantities,
-        "kernels": words.kernels,
-        "note": words.note,
-        **{f"{t}.{key}": v for t, keys in words.target_options.items() for key, v in keys.items()},
+        "quantities": QUANTITIES,
+        "kernels": TARGETS,
+        "note": NOTES,
     }
+    for target, entry in TARGETS.items():
+        enums |= {f"{target}.{key}": values for key, values in entry.options.items()}
 
     def expanded(entry: Any) -> Any:
         """The entry with what it uses, and with the names that the code knows."""
@@ -158,10 +140,11 @@ def _checked_list(value: list[Any], schema: Schema, place: Place) -> list[Any] |
     if not least <= len(value) <= schema.get("maxItems", len(value)):
         place.mistyped(value, expected(schema, place))
         return None
-    for k, entry in enumerate(value):
-        if schema.get("uniqueItems") and isinstance(entry, str) and entry in value[:k]:
+    entries = [checked(entry, schema["items"], place.at(k)) for k, entry in enumerate(value)]
+    for k, entry in enumerate(entries):
+        if schema.get("uniqueItems") and entry is not None and entry in entries[:k]:
             place.at(k).fault(f"{entry} is named twice")
-    return [checked(entry, schema["items"], place.at(k)) for k, entry in enumerate(value)]
+    return entries
 
 
 def _checked_text(value: str, schema: Schema, place: Place) -> str | None:
@@ -174,6 +157,10 @@ def _checked_text(value: str, schema: Schema, place: Place) -> str | None:
         if category(character) in ("Cc", "Cs") and character not in allowed:
             place.fault(f"the text contains the control character U+{ord(character):04X}")
             return None
+    if schema.get("format") == "name":  # of a symbol: phi for φ
+        with place.noting():
+            return check_name(value)
+        return None
     return value
 
 

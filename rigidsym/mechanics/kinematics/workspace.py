@@ -16,7 +16,7 @@ from sympy.polys.rings import PolyElement
 from rigidsym.algebra.codec import Codec, codec_for
 from rigidsym.algebra.matrix import Inverse, RingMatrix, hat, unhat
 from rigidsym.algebra.present import Presenter, presenter_for
-from rigidsym.algebra.witness import Example, configurations
+from rigidsym.algebra.witness import configurations
 from rigidsym.errors import DerivationError, NotARotation
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Argument, Proof, Quantity, Step, VectorForm
@@ -74,11 +74,6 @@ class Workspace:
     def scalar(self, element: PolyElement) -> RingMatrix:
         return RingMatrix.column(self.codec.ring, [element])
 
-    @property
-    def conditions(self) -> tuple[tuple[sp.Expr, ...], Example]:
-        """On the constants of the body, with an example that satisfies them."""
-        return (), ()
-
     def step(self, entry: Quantity) -> Step | None:
         """The value of an entry, with the proofs of its laws; None if the model has no such value.
 
@@ -133,7 +128,7 @@ class Workspace:
                 residual, divisor = residual
             if isinstance(residual, sp.MatrixBase):  # in the constants of the body
                 assert self.body is not None
-                proofs.append(identity(residual, law.claim, self.body.name, *self.conditions))
+                proofs.append(identity(residual, law.claim, self.body.name))
             elif residual is not None:
                 divisors = () if divisor is None else (divisor,)
                 proofs += self.prove.vanish([(residual, law.claim, divisors)], error=error)

@@ -94,7 +94,7 @@ def _(given: Composite) -> Moments:
     found = [_of_part(part, place) for place, part in enumerate(given.parts)]
     held = [e for m in found for e in m.expressions]
     held += [e for part in given.parts for e in (*part.at, *part.turned)]
-    field = Rationals.of(held, given.conditions)
+    field = Rationals.of(held)
     masses, firsts, seconds = [], [], []
     for part, m in zip(given.parts, found, strict=True):
         sign = -1 if part.hole else 1

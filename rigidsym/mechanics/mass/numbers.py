@@ -37,12 +37,9 @@ def in_numbers(body: RigidBody) -> MassProperties | None:
 
 
 def parts_of(body: RigidBody) -> list[tuple[sp.Expr, sp.Matrix, sp.Matrix, sp.Matrix]]:
-    """Of each part of a composite body its mass, centre, tensor about it, and turn; of others none.
-
-    Empty for parts whose turns hold symbols that satisfy conditions.
-    """
+    """Mass, centre, tensor about it and turn of each part of a composite body; else none."""
     whole = body.distribution
-    if not isinstance(whole, Composite) or whole.conditions:
+    if not isinstance(whole, Composite):
         return []
     return [(*about_centre(part), part.turned) for part in whole.parts]
 
