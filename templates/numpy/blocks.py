@@ -4,12 +4,9 @@ def _longest(block, dtype, shape):
     return max(min(_LONGEST, _CACHE // held) // dtype.itemsize, _SHORTEST)
 
 
-def _columns(array, dtype):
-    """The components of an array, each a contiguous copy in the given type."""
-    if array.ndim < 3:
-        return np.array(array.T, dtype, order="C")
-    axes = (array.ndim - 1, *range(array.ndim - 1))
-    return np.array(array.transpose(axes), dtype, order="C")
+def _columns(array):
+    """The components of an array, each a contiguous copy."""
+    return np.array(np.moveaxis(array, -1, 0) if array.ndim > 2 else array.T, order="C")
 
 
 def _quiet():
@@ -30,19 +27,20 @@ def _compute(result, leading, block, arrays, shape, out, threads):
     """Fill the result by one call of the block, or by many."""
     count = prod(leading)
     if count <= _SHORTEST or count <= _longest(block, result.dtype, shape):
-        vectors = [_columns(array, result.dtype) for array in arrays]
-        _quietly(_evaluate, result, block, vectors, shape, False)
+        vectors = [_columns(array) for array in arrays]
+        _quietly(_evaluate, result, block, vectors, shape)
     else:
         inputs = [_unshared(array, out) for array in arrays]
         _fill(result, block, inputs, shape, threads)
 
 
-def _place(result, values, shape, is_even):
-    """Write entries to where they belong; they are arrays of one length each if all is even."""
+def _place(result, values, shape):
+    """Write entries to where they belong."""
     if len(shape) == 2 and result.flags.c_contiguous:
         result, shape = result.reshape(*result.shape[:-2], prod(shape)), shape[:1]
-    if len(shape) == 1 and is_even and float not in map(type, values):
-        result.T[...] = values
+    is_small = result.ndim == 2 and len(shape) == 1 and len(result) < _SHORTEST
+    if is_small and float not in map(type, values) and len({*map(len, values)}) == 1:
+        result.T[...] = values  # one call for all
     elif len(shape) == 1:
         for k, value in enumerate(values):
             result[..., k] = value
@@ -66,8 +64,8 @@ def _fill(result, block, arrays, shape, threads):
     def work(places):
         with np.errstate(all="ignore"):
             for place in places:
-                vectors = [_columns(array[place], result.dtype) for array in wide]
-                _evaluate(result[place], block, vectors, shape, False)
+                vectors = [_columns(array[place]) for array in wide]
+                _evaluate(result[place], block, vectors, shape)
 
     places = list(_places(leading, longest))
     if threads == 1:
@@ -76,53 +74,6 @@ def _fill(result, block, arrays, shape, threads):
         # Freed at once; from then on the GNU C library keeps what threads free.
         np.empty(1 << 23, np.uint8)
         _share(lambda place: work([place]), places, threads)
-
-
-def _share(work, pieces, threads):
-    """Do `work` on all pieces; threads, this one among them, take the next as they get free."""
-    from collections import deque
-    from concurrent.futures import wait
-    from contextlib import suppress
-
-    left = deque(pieces)
-
-    def take():
-        while left:
-            try:
-                piece = left.popleft()
-            except IndexError:  # another took the last
-                return
-            try:
-                work(piece)
-            except BaseException:  # an interrupt too: nothing more is begun
-                left.clear()
-                raise
-
-    others = []
-    with suppress(RuntimeError):  # none are to be had while the interpreter ends
-        for _ in range(min(threads, len(left)) - 1):
-            others.append(_pool().submit(take))
-    try:
-        take()
-    finally:  # nobody writes after the call is over
-        others = [other for other in others if not other.cancel()]
-        wait(others)
-    for other in others:
-        other.result()
-
-
-_POOLS: dict[int, object] = {}
-
-
-def _pool():
-    """Threads that wait for work, which costs less than new ones; a forked process starts anew."""
-    import os
-
-    if os.getpid() not in _POOLS:
-        from concurrent.futures import ThreadPoolExecutor
-
-        _POOLS.setdefault(os.getpid(), ThreadPoolExecutor(os.cpu_count()))
-    return _POOLS[os.getpid()]
 
 
 def _places(shape, longest):

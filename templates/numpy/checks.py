@@ -1,13 +1,39 @@
-def _checked(name, value):
-    """The argument as a plain array of native floats or of integers, or an error."""
+def _arrays(arguments):
+    """The arguments as arrays of one dtype and of the same leading axes or none, and both."""
+    arrays, leading, singles, is_uneven = [], (), 0, False
+    for name, array in arguments.items():
+        if type(array) is not _ARRAY or array.dtype is not _DOUBLE:
+            array = _plain_floats(name, array)
+            singles += array.dtype is _SINGLE
+        if array.shape[-1:] != _WIDTHS[name]:
+            raise ValueError(f"{name}: got shape {array.shape}; {_expected(name)}")
+        axes = array.shape[:-1]
+        if axes and axes != leading:
+            is_uneven = is_uneven or leading != ()
+            leading = axes
+        arrays.append(array)
+    if 0 < singles < len(arrays):
+        arrays = [array.astype(_DOUBLE, copy=False) for array in arrays]
+    if is_uneven:
+        try:
+            leading = np.broadcast_shapes(*(array.shape[:-1] for array in arrays))
+        except ValueError as error:
+            given = ", ".join(f"{name} {a.shape}" for name, a in zip(arguments, arrays))
+            raise ValueError(
+                f"axes before the last do not broadcast: {given}"
+            ) from error
+        arrays = [np.broadcast_to(a, leading + a.shape[-1:]) for a in arrays]
+    return arrays, leading, arrays[0].dtype
+
+
+def _plain_floats(name, value):
+    """The argument as a plain array of native floats, or an error."""
     array = _plain(name, value)
     if array.dtype.char not in "fd" and array.dtype.kind not in "iu":
         raise TypeError(
             f"{name}: got dtype {array.dtype}; expected float64, float32 or integers"
         )
-    if array.shape[-1:] != (_WIDTHS[name],):
-        raise ValueError(f"{name}: got shape {array.shape}; {_expected(name)}")
-    return array.astype(_SINGLE, copy=False) if array.dtype.char == "f" else array
+    return array.astype(_SINGLE if array.dtype.char == "f" else _DOUBLE, copy=False)
 
 
 def _plain(name, value, shape=None):
@@ -29,16 +55,6 @@ def _expected(name, shape=None):
     if shape:
         return f"expected (..., {', '.join(map(str, shape))})"
     return f"expected (..., {len(components)}), the last axis {', '.join(components)}"
-
-
-def _leading_shape(arguments):
-    """The shape that the axes before the last broadcast to."""
-    shapes = {name: _checked(name, value).shape for name, value in arguments.items()}
-    try:
-        return np.broadcast_shapes(*(shape[:-1] for shape in shapes.values()))
-    except ValueError as error:
-        given = ", ".join(f"{name} {shape}" for name, shape in shapes.items())
-        raise ValueError(f"axes before the last do not broadcast: {given}") from error
 
 
 def _checked_out(out, shape, dtype):

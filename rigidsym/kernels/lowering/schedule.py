@@ -137,7 +137,8 @@ class _Writer:
                 if is_long
                 else self.names.fresh(prefix + value.argument.text)
             )
-            self._ranks[name] = (_CALL, len(self._ranks))
+            # eps is a number: in front of arrays, NumPy multiplies it by other numbers first
+            self._ranks[name] = (_NUMBER if value.function == "eps" else _CALL, len(self._ranks))
         else:
             name = self.names.numbered("x")
             self._ranks[name] = (_VALUE, len(self._ranks))

@@ -11,7 +11,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import pi
-from textwrap import wrap
+from textwrap import indent, wrap
 from types import ModuleType
 from typing import Any
 
@@ -32,7 +32,7 @@ from rigidsym.kernels.targets import numpy, remarks
 from rigidsym.kernels.targets.expected_values import samples_of
 from rigidsym.kernels.targets.infix import infix
 from rigidsym.kernels.targets.precision import EITHER, PRECISIONS, Precision
-from rigidsym.kernels.targets.python import WIDTH
+from rigidsym.kernels.targets.python import WIDTH, bracketed
 from rigidsym.system import resources
 
 _NAMES = (
@@ -46,7 +46,6 @@ RESERVED = numpy.RESERVED | {*_NAMES.split()}  # the Python module's, too
 _WIDTH = 92
 _TILE = 32  # orientations that are evaluated side by side
 _WORDS = {"choice": "{0} ? {1} : {2}"}
-_LETTERS = {"double": "NPY_DOUBLE", "float": "NPY_FLOAT"}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -77,14 +76,8 @@ def render(program: Program, **options: Any) -> dict[str, str]:
         f"{name}.h": _header(program, kernels, precisions, contents),
     }
     if contents.is_module:
-        face = numpy.module_text(
-            program,
-            "c/module.py.jinja",
-            compute="_compute_compiled",
-            at_once="_compiled.{}_at_once",
-            empty="_compiled.empty(whole, dtype.num)",
-            name=name,
-        )
+        functions = [numpy.function(kernel, _called(kernel)) for kernel in program.kernels]
+        face = numpy.module_text(program, "c/module.py.jinja", functions, name=name)
         return files | {f"{name}_c.py": face, f"{name}_module.c": _module(name, kernels)}
     tests = []
     for p in precisions:
@@ -153,34 +146,49 @@ def _header(
 
 
 def _module(name: str, kernels: Sequence[Kernel]) -> str:
-    """The generalised ufuncs of the Python module; a matrix is a vector of its rows."""
-    functions = []
-    for kernel in kernels:
-        sizes = [len(argument.components) for argument in kernel.arguments]
-        inputs = ",".join(f"({size})" for size in sizes)
-        kinds = [_LETTERS[p.real] for p in PRECISIONS for _ in (*sizes, "out")]
-        functions.append(
-            {
-                "name": kernel.name,
-                "arguments": len(sizes),
-                "widths": ", ".join(map(str, sizes)),
-                "axes": len(kernel.shape),
-                "shape": ", ".join(map(str, kernel.shape)) or "0",
-                "entries": len(kernel.outputs),
-                "places": range(len(sizes) + 1),  # of the arguments and the result
-                "signature": f"{inputs}->({len(kernel.outputs)})",
-                "types": ", ".join(kinds),
-            }
-        )
-    most = max(len(kernel.arguments) for kernel in kernels)
+    """The functions of the Python module; a matrix is a vector of its rows."""
+    functions = [
+        {
+            "name": kernel.name,
+            "arguments": len(kernel.arguments),
+            "widths": ", ".join(
+                "0" if a.is_scalar else str(len(a.components)) for a in kernel.arguments
+            ),
+            "axes": len(kernel.shape),
+            "shape": ", ".join(map(str, kernel.shape)) or "0",
+            "entries": len(kernel.outputs),
+            "places": range(len(kernel.arguments) + 1),  # of the arguments and the result
+        }
+        for kernel in kernels
+    ]
     return _rendered(
         "c/module.c.jinja",
         name=name,
         functions=functions,
         types=[(p.real, p.suffix) for p in PRECISIONS],
-        most_types=len(PRECISIONS) * (most + 1),
-        most_arguments=most,
+        most_arguments=max(len(kernel.arguments) for kernel in kernels),
     )
+
+
+def _called(kernel: Kernel) -> str:
+    """The body in Python: the compiled function, with arguments as they are or prepared for it.
+
+    A matrix has no components on one axis, and is always prepared.
+    """
+    compiled = f"_compiled.{kernel.name}"
+    prepared = numpy.called("_apply", kernel, compiled)
+    if any(argument.is_matrix for argument in kernel.arguments):
+        return prepared
+    vectors = [*(argument.name for argument in kernel.arguments), "out"]
+    result = "both" if kernel.parts else "result"
+    lines = [
+        "    if threads == 1:",
+        bracketed(8, f"{result} = {compiled}(", vectors, ")"),
+        f"        if {result} is not None:",
+        indent(numpy.parted(kernel) if kernel.parts else f"    return {result}", " " * 8),
+        prepared,
+    ]
+    return "\n".join(lines)
 
 
 def _named(program: Program, kernel: Kernel, precision: Precision, ending: str = "") -> str:

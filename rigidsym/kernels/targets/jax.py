@@ -11,7 +11,6 @@ from rigidsym.kernels.lowering.schedule import narrowed
 from rigidsym.kernels.targets import python
 from rigidsym.kernels.targets.infix import infix
 from rigidsym.kernels.targets.python import WIDTH, bracketed, exploded
-from rigidsym.system import resources
 
 RESERVED = python.RESERVED | {"jax", "jnp", "like", "parts", "both"}
 _DERIVATIVES = 2  # that functions of n = |v| have: each takes two functions c_k more
@@ -30,7 +29,6 @@ def render(program: Program) -> dict[str, str]:
     ]
     functions = [
         {
-            "ufunc": python.ufunc(kernel),
             "signature": python.signature(kernel),
             "about": python.about_function(kernel),
             "body": "\n".join(_body(kernel)),
@@ -38,20 +36,14 @@ def render(program: Program) -> dict[str, str]:
         for kernel in kernels
     ]
     has_series = last_order(kernels) >= 0
-    text = (
-        resources.environment()
-        .get_template("jax/module.py.jinja")
-        .render(
-            about=python.about_module("jax/module.txt.jinja", program),
-            exports=python.exports([kernel.name for kernel in kernels]),
-            components=python.components(program),
-            functions=functions,
-            has_parts=any(kernel.parts for kernel in kernels),
-            has_divisors=any(kernel.guards for kernel in kernels),
-            has_matrices=any(a.is_matrix for kernel in kernels for a in kernel.arguments),
-            has_eps="eps" in functions_of(kernels),
-            series=python.series(kernels, more=2 * _DERIVATIVES) if has_series else "",
-        )
+    text = python.module_text(
+        program,
+        "jax/module.py.jinja",
+        about=python.about_module("jax/module.txt.jinja", program),
+        names=[kernel.name for kernel in kernels],
+        functions=functions,
+        has_eps="eps" in functions_of(kernels),
+        series=python.series(kernels, more=2 * _DERIVATIVES) if has_series else "",
     )
     return {f"{program.name}_jax.py": text}
 

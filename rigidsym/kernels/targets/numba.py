@@ -1,44 +1,54 @@
-"""Kernels as a Python module that Numba compiles: the NumPy module with compiled blocks."""
+"""Kernels as a Python module that Numba compiles: the NumPy module over compiled functions.
+
+Each kernel is printed once, over floats: of one orientation, which other compiled functions can
+call, and in a loop over columns. The loop takes sines without a branch, so that it becomes vector
+instructions, and computes the orientations with an angle too large for them anew.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from types import ModuleType
 
 from rigidsym.kernels import loaded
-from rigidsym.kernels.ir import Choice, Program, functions_of, last_order
-from rigidsym.kernels.targets import numpy
+from rigidsym.kernels.ir import Call, Guarded, Kernel, Program, functions_of, last_order
+from rigidsym.kernels.targets import numpy, python
+from rigidsym.kernels.targets.infix import infix
 from rigidsym.kernels.targets.precision import DOUBLE
+from rigidsym.kernels.targets.python import bracketed
 
-RESERVED = numpy.RESERVED | {"njit", "types"}
-_WORDS = {
-    **numpy.OF_ARRAYS,
-    **{"atan2": "_arctan2", "choice": "_where({0}, {1}, {2})"},
-    **{"eps": "_eps_of({}, eps=_eps)", "or_nan": "_or_nan_of({}, eps=_eps)"},
-}
+RESERVED = numpy.RESERVED | {"njit", "sin_cos", "values", "lost"}
+_WORDS = {"atan2": "_angle_of", "nan": "np.nan"}
 
 
 def render(program: Program) -> dict[str, str]:
     """The module."""
-    last, called = last_order(program.kernels), functions_of(program.kernels)
-    values = [a.value for kernel in program.kernels for a in kernel.assignments]
-    compiled = []  # loops over the columns of vectors
-    for kernel in program.kernels:
-        widths = {argument.name: len(argument.components) for argument in kernel.arguments}
-        columns = [f"_take({name}, _i, {width})" for name, width in widths.items()]
-        columns += ["_eps"] if numpy.needs_eps(kernel) else []
-        compiled.append(
-            {"name": kernel.name, "vectors": ", ".join(widths), "taken": ", ".join(columns)}
-        )
+    kernels = list(map(numpy.fitted, program.kernels))
+    functions = []
+    for kernel in kernels:
+        head, about = numpy.twin_head(kernel)
+        core = bracketed(0, f"def _{kernel.name}(", ["sin_cos", "eps", *kernel.components], "):")
+        given = ["_sin_cos", f"{2.0**-52!r}", *kernel.components]
+        one = bracketed(4, f"values = _{kernel.name}(", given, ")")
+        values = [f"values[{k}]" for k in range(len(kernel.outputs))]
+        twins = [
+            "\n".join(["@_jit", head, about, one, numpy.returned(kernel, values, 4)]),
+            "\n".join(["@_inlined", core, *_body(kernel)]),
+            "\n".join(["@_jit", *_rows(kernel)]),
+        ]
+        numbers = f"{kernel.name}_scalar"
+        numbers = f"_in_a_row({numbers})" if kernel.parts else numbers
+        body = numpy.called("_apply", kernel, f"_{kernel.name}_rows", numbers)
+        functions.append(numpy.function(kernel, body, "\n\n\n".join(twins)))
+    last = last_order(kernels)
     text = numpy.module_text(
         program,
         "numba/module.py.jinja",
-        words=_WORDS,
+        functions,
+        of_math={"sin", "cos", "sqrt"},
         double=DOUBLE.filled(last),
         orders=", ".join(f"c{k}" for k in range(max(last, 2) + 1)) if last >= 0 else "",
-        has_arctangents="atan2" in called,
-        has_choices=any(isinstance(value, Choice) for value in values),
-        kernels=compiled,
+        has_arctangents="atan2" in functions_of(kernels),
     )
     return {f"{program.name}_numba.py": text}
 
@@ -46,3 +56,45 @@ def render(program: Program) -> dict[str, str]:
 def load(name: str, files: Mapping[str, str]) -> ModuleType:
     """The module itself."""
     return loaded.load(f"{name}_numba", files)
+
+
+def _body(kernel: Kernel) -> Iterator[str]:
+    """The statements over floats, and all values in one tuple."""
+    for name, value in kernel.statements:
+        match value:
+            case dict():  # all functions c_k of one square
+                calls = list(value.items())
+                yield f"    values = _entire(sin_cos, {calls[0][1].argument.text})"
+                yield from (f"    {each} = values[{call.order}]" for each, call in calls)
+            case Call("sin" | "cos", angle):
+                both = kernel.sines[angle]
+                if len(both) == 1:
+                    place = 0 if value.function == "sin" else 1
+                    yield f"    {name} = sin_cos({angle.text})[{place}]"
+                elif name == next(iter(both.values())):
+                    yield f"    {both['sin']}, {both['cos']} = sin_cos({angle.text})"
+            case Guarded(divisor, scale, power):
+                limit = "2.0**-970 if eps < 2.0**-50 else 2.0**-103"  # the least normal number/eps
+                if scale is not None:
+                    limit = " * ".join([*["eps"] * power, infix(scale)])
+                yield bracketed(4, f"{name} = _or_nan(", [divisor.text, limit], ")")
+            case Call("eps"):
+                yield f"    {name} = eps"
+            case _:
+                yield python.statement(4, name, value, _WORDS)
+    outputs = list(map(infix, kernel.outputs))
+    yield f"    return {numpy.nested(outputs, (len(outputs),), 4, is_open=True)}"
+
+
+def _rows(kernel: Kernel) -> Iterator[str]:
+    """The loop over columns."""
+    vectors = [argument.name for argument in kernel.arguments]
+    columns = [f"{a.name}[{k}, i]" for a in kernel.arguments for k in range(len(a.components))]
+    loop = "for i in range(out.shape[1]):"
+    yield bracketed(0, f"def _{kernel.name}_rows(", [*vectors, "out", "eps"], "):")
+    yield f"    lost = False\n    {loop}"
+    yield bracketed(8, f"values = _{kernel.name}(", ["_sin_cos_near", "eps", *columns], ")")
+    yield "        lost |= _give(values, out, i)"
+    yield f"    if lost:\n        {loop}\n            if np.any(np.isnan(out[:, i])):"
+    yield bracketed(16, f"values = _{kernel.name}(", ["_sin_cos", "eps", *columns], ")")
+    yield "                _give(values, out, i)"

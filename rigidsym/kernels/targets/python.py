@@ -12,6 +12,7 @@ from rigidsym.algebra.stable_forms import FIRST_SERIES, series_of, taylor
 from rigidsym.kernels.ir import FUNCTIONS, Call, Choice, Expression, Kernel, Program, last_order
 from rigidsym.kernels.targets import remarks
 from rigidsym.kernels.targets.infix import infix
+from rigidsym.system import resources
 
 WIDTH = 88
 MANY = 8  # components
@@ -83,28 +84,38 @@ def passed(kernel: Kernel, library: str) -> list[str]:
     return [f"{name}={value}" for name, value in values.items()]
 
 
-def exports(names: Sequence[str]) -> str:
-    return "\n".join(f'    "{name}",' for name in sorted(names))
-
-
-def components(program: Program) -> str:
-    """The table of components: "q": ("phi", "theta", "psi"), a line each if it fits."""
-    lines = []
+def module_text(
+    program: Program, template: str, *, about: str, names: Sequence[str], **facts: object
+) -> str:
+    """The text of a module that exports some names, with the tables that all modules have."""
+    kernels, components = program.kernels, []
     for argument in program.arguments:
-        names = [f'"{name}"' for name in argument.components]
-        line = f'    "{argument.name}": {tuple_of(names)},'
-        wide = exploded(4, f'"{argument.name}": (', names, "),")
-        lines.append(line if len(line) <= WIDTH else wide)
-    return "\n".join(lines)
-
-
-def ufunc(kernel: Kernel) -> str:
-    """A line of the table of signatures as generalised ufuncs: "f": "(3),(3)->(3)","""
-    given, results = (
-        ",".join(f"({','.join(map(str, shape))})" for shape in shapes)
-        for shapes in ([a.shape for a in kernel.arguments], kernel.results)
+        quoted = [f'"{name}"' for name in argument.components]
+        line = f'    "{argument.name}": {tuple_of(quoted)},'
+        wide = exploded(4, f'"{argument.name}": (', quoted, "),")
+        components.append(line if len(line) <= WIDTH else wide)
+    signatures = []  # as generalised ufuncs: "f": "(3),(3)->(3)",
+    for kernel in kernels:
+        given, results = (
+            ",".join(f"({','.join(map(str, shape))})" for shape in shapes)
+            for shapes in ([a.shape for a in kernel.arguments], kernel.results)
+        )
+        signatures.append(f'    "{kernel.name}": "{given}->{results}",')
+    return (
+        resources.environment()
+        .get_template(template)
+        .render(
+            about=about,
+            exports="\n".join(f'    "{name}",' for name in sorted(names)),
+            components="\n".join(components),
+            signatures="\n".join(signatures),
+            has_parts=any(kernel.parts for kernel in kernels),
+            has_guards=any(kernel.guards for kernel in kernels),
+            has_series=last_order(kernels) >= 0,
+            has_matrices=any(a.is_matrix for kernel in kernels for a in kernel.arguments),
+            **facts,
+        )
     )
-    return f'    "{kernel.name}": "{given}->{results}",'
 
 
 # docstrings
