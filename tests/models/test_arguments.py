@@ -144,12 +144,6 @@ def test_symbols_may_name_angles():
     assert named == rs.EulerAngles("ZYX", angles=("a", "b", "c"))
 
 
-def test_a_body_is_turned_by_constants_of_the_names_of_the_coordinates():
-    matrix, bound = turned_by("zxz")
-    assert matrix.free_symbols == {*sp.symbols("phi theta psi")}
-    assert bound == ()
-
-
 def test_without_coordinates_of_no_rotation_all_are_zero():
     assert no_rotation(rs.rotation_from("x(pi/2) z(a)")) == {"a": 0.0}
     assert no_rotation(rs.rotation_from("quaternion")) == {"w": 1.0, "x": 0.0, "y": 0.0, "z": 0.0}
