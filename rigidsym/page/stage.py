@@ -8,6 +8,7 @@ from functools import cache
 from math import atan2, floor, pi
 from typing import Any
 
+import numpy as np
 import sympy as sp
 
 from rigidsym.algebra import generators
@@ -95,7 +96,11 @@ def _rays(model: RotationModel, scene: Scene | None, letters: Letters) -> Iterat
 
 
 def _ray(kind: str, name: Formula, frame: int, direction: Vector | None) -> dict[str, Any]:
-    return {"kind": kind, "name": label(name), "frame": frame, "direction": direction}
+    return {"kind": kind, "name": label(name), "frame": frame, "direction": _listed(direction)}
+
+
+def _listed(vector: Vector | None) -> list[float] | None:
+    return None if vector is None else vector.tolist()
 
 
 def _turns(model: RotationModel, scene: Scene | None, letters: Letters) -> Iterator[dict[str, Any]]:
@@ -105,7 +110,7 @@ def _turns(model: RotationModel, scene: Scene | None, letters: Letters) -> Itera
     for turn, start, radius in zip(turns, starts, RADII, strict=False):
         rate = formula_of(generators.rate_of(turn.angle), letters) if model.turns else NOTHING
         name = label(formula_of(turn.angle, letters))
-        yield {"name": name, "rate_name": label(rate), "start": start, "radius": radius}
+        yield {"name": name, "rate_name": label(rate), "start": _listed(start), "radius": radius}
     if not turns:
         yield {"name": "", "rate_name": "", "start": None, "radius": RADII[0]}
 
@@ -144,7 +149,7 @@ def _is_top(derivation: Derivation) -> bool:
 
 
 def _sector(face: Face) -> int:
-    x, y, _ = map(sum, zip(*face.corners, strict=True))
+    x, y, _ = face.corners.sum(axis=0)
     return floor(_SECTORS * atan2(y, x) / (2 * pi))
 
 
@@ -168,18 +173,17 @@ def body_of_page(name: str, *, z_down: bool = False) -> Shape:
 
 def as_data(shape: Shape) -> dict[str, Any]:
     """The shape by indices: points, colours, and faces as [colour, corner, corner, ...]."""
-    points: dict[Vector, int] = {}
+    points: dict[tuple[float, ...], int] = {}
     colors: dict[Color, int] = {}
     faces = [
         [
             colors.setdefault(face.color, len(colors)),
-            *(points.setdefault(_rounded(p), len(points)) for p in face.corners),
+            *(points.setdefault((*p,), len(points)) for p in _rounded(face.corners)),
         ]
         for face in shape
     ]
     return {"points": [*points], "colors": [*colors], "faces": faces}
 
 
-def _rounded(point: Vector) -> Vector:
-    x, y, z = (round(part, 3) + 0.0 for part in point)
-    return (x, y, z)
+def _rounded(corners: Vector) -> list[list[float]]:
+    return (np.round(corners, 3) + 0.0).tolist()

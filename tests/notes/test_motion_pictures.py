@@ -55,9 +55,8 @@ def test_the_motion_drawn_is_the_motion_simulated(name):
     parameters = example.parameters
     simulated = motion.simulate(start, parameters, example.time, samples=401)
     drawn = ExampleMotion(motion, motion.forces, example)
-    states = np.array(drawn.states)
-    count = simulated.q.shape[1]
-    assert np.abs(states[:, :count] - simulated.q).max() < 3e-3 * np.ptp(simulated.q)
+    q = drawn.states[:, : simulated.q.shape[1]]
+    assert np.abs(q - simulated.q).max() < 3e-3 * np.ptp(simulated.q)
 
 
 def test_the_caption_tells_parameters_and_initial_values():

@@ -239,7 +239,8 @@ def test_a_body_in_numbers_is_drawn_also_from_its_record(folder, name):
     shape = own_shape(integrated(spec).body)
     assert shape
     assert max(hypot(*p) for face in shape for p in face.corners) == pytest.approx(0.95)
-    assert own_shape(integrated(read_record(spec.to_data())).body) == shape
+    again = own_shape(integrated(read_record(spec.to_data())).body)
+    assert all((a.corners == b.corners).all() for a, b in zip(again, shape, strict=True))
 
 
 def test_the_axes_of_a_drawing_are_those_of_the_formulas(tmp_path):

@@ -78,10 +78,6 @@ class TraceFacts(NamedTuple):
     def is_polhode(self) -> bool:
         return self.kind == "polhode"
 
-    @property
-    def is_polhodes(self) -> bool:
-        return self.kind == "polhodes"
-
 
 @dataclass(frozen=True)
 class PictureFacts:
@@ -130,7 +126,7 @@ class PictureFacts:
 
     @property
     def is_on_a_surface(self) -> bool:
-        return bool({*self.picture.traces} - {"path"})
+        return bool(self.picture.traces)
 
 
 @dataclass(frozen=True)

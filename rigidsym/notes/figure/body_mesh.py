@@ -6,73 +6,88 @@ those that shrink to lines and those that meet, as at the angles 0 and 2π.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice, pairwise, permutations, product
-from math import hypot, isfinite
-from typing import Any
+from typing import Any, NamedTuple
 
+import numpy as np
 import sympy as sp
 
-from rigidsym.algebra.evaluate import function_of
+from rigidsym.algebra.evaluate import Floats, evaluate
 from rigidsym.models.body import (
+    HERE,
+    UPRIGHT,
     Composite,
     Distribution,
     Known,
-    Part,
     Particles,
     Polyhedron,
     RigidBody,
     Solid,
 )
-from rigidsym.notes.figure.camera import Vector, combined, cross, dot, scaled, unit
+from rigidsym.notes.figure.camera import STANDARD, Vector, unit
 
 Color = tuple[int, int, int]
 BLUE, GOLD, GREY = (58, 110, 190), (226, 182, 74), (176, 182, 190)
 RED, BRONZE, HOLE = (204, 72, 58), (196, 146, 56), (52, 54, 60)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Face:
-    """A flat polygon, counterclockwise as seen from outside."""
+    """A flat polygon."""
 
-    corners: tuple[Vector, ...]
+    corners: Vector  # (n, 3), counterclockwise as seen from outside
     color: Color
 
 
 Shape = tuple[Face, ...]
 Numbers = Mapping[sp.Symbol, sp.Float]
-Map = Callable[..., Vector]
 
-PALETTE = (BLUE, GOLD, GREY, RED, BRONZE)
+_PALETTE = (BLUE, GOLD, GREY, RED, BRONZE)
 _SIZE = 0.95  # of the body drawn, from its centre of mass
 _LENGTHS = (1.0, 0.22, 0.3, 1.4, 0.6, 0.15, 0.8)  # of parameters without a value
 _FEW_LENGTHS = {2: (0.6, 1.0), 3: (1.0, 0.55, 0.8)}
 _MOST_TRIES = 500
-# the functions that Python's math has not, or names otherwise
 _ROUND, _CURVED = 24, 8  # divisions of a full circle, and of any other coordinate that bends
-SWELL = "1.01"  # of a hole, so that its rim is seen on the surface
+_SWELL = sp.Rational(101, 100)  # of a hole, so that its rim is seen on the surface
 _THICK = 0.03  # half the width of a line
 _PARTICLE = 0.09  # radius
+_FLOATS = Floats(np)
+_OCTAHEDRON = [  # its faces: signs of the corners on the axes, in counterclockwise order
+    np.diag(signs)[:: int(np.prod(signs))] for signs in product((1.0, -1.0), repeat=3)
+]
 
 
 def own_shape(body: RigidBody | None) -> Shape:
     """The faces of a body, its centre of mass at the origin; none if only its moments are known."""
-    what = None if body is None else body.distribution or body.drawn
+    what = _described(body)
     if body is None or what is None:
         return ()
     values = {p.symbol: p.value for p in (*body.declared, *body.parameters)}
     numbers = lengths_of(what, values)
-    size = 0.0 if numbers is None else _size(what, numbers)
-    if numbers is None or not size:
+    # the size without any thickness, of which those of particles and lines are fractions
+    points = [*_points(what, numbers)] if numbers is not None else []
+    if numbers is None or not points:
         return ()
-    return _fitted(meshed(what, numbers, size), body, numbers, size)
+    size = float(np.linalg.norm(np.concatenate(points) - points[0][0], axis=1).max()) or 1.0
+    middle = body.centre.xreplace(numbers)
+    centre = _floats(middle) / size if not middle.free_symbols else 0.0  # else about its origin
+    moved = [(face.corners - centre, face.color) for face in meshed(what, numbers, size)]
+    reach = max((np.linalg.norm(corners, axis=1).max() for corners, _ in moved), default=0.0)
+    if not (reach and np.isfinite(reach)):
+        return ()
+    return tuple(Face(_SIZE / reach * corners, color) for corners, color in moved)
 
 
 def lengths_in(body: RigidBody | None) -> set[sp.Basic]:
     """The constants that the shape of a body is made of; none if only its moments are known."""
-    what = None if body is None else body.distribution or body.drawn
-    return {s for e in _geometry(what) for s in e.free_symbols} if what else set()
+    what = _described(body)
+    return _constants(what) if what else set()
+
+
+def _described(body: RigidBody | None) -> Distribution | None:
+    return None if body is None else body.distribution or body.drawn
 
 
 def lengths_of(
@@ -80,195 +95,166 @@ def lengths_of(
 ) -> dict[sp.Symbol, sp.Float] | None:
     """The parameters with their values, or a suitable length if they have none."""
     known = {symbol: value for symbol, value in values.items() if value is not None}
-    inner = {variable for solid in _solids(what) for variable in solid.coordinates}
-    held = {s for expression in _geometry(what) for s in expression.free_symbols}
-    missing = sorted(held - inner - {*known}, key=str)
+    solids = [leaf.what for leaf in _leaves(what) if isinstance(leaf.what, Solid)]
+    missing = sorted(_constants(what) - {*known}, key=str)
     lengths = _FEW_LENGTHS.get(len(missing), _LENGTHS[: len(missing)])
     if len(missing) > len(lengths):
         return None
     for chosen in islice(permutations(lengths), _MOST_TRIES):
-        given = {**known, **dict(zip(missing, chosen, strict=True))}
-        numbers = {symbol: sp.Float(value) for symbol, value in given.items()}
-        if all(_is_proper(solid, numbers) for solid in _solids(what)):
+        pairs = {**known, **dict(zip(missing, chosen, strict=True))}
+        numbers = {symbol: sp.Float(value) for symbol, value in pairs.items()}
+        if all(_is_proper(solid, numbers) for solid in solids):
             return numbers
     return None
 
 
 def meshed(what: Distribution, numbers: Numbers, unit: float = 1.0) -> Shape:
     """The faces of what has mass, in its own axes; `unit` is their unit of length, in metres."""
-    return tuple(_faces(what, Scale(numbers, unit), BLUE))
+    return tuple(face for leaf in _leaves(what) for face in _faces(leaf, numbers, unit))
 
 
-@dataclass(frozen=True, slots=True)
-class Scale:
-    """The parameters in numbers, and the unit of length in metres."""
+class _Leaf(NamedTuple):
+    """Part of a body that is not composed, moved into the axes of the whole."""
 
-    numbers: Numbers
-    unit: float = 1.0
+    what: Distribution
+    at: sp.ImmutableMatrix = HERE
+    turned: sp.ImmutableMatrix = UPRIGHT
+    color: Color = BLUE
 
-    def point(self, column: sp.MatrixBase) -> Vector:
-        return scaled(1 / self.unit, vector_of(column.xreplace(self.numbers)))
-
-
-def _size(what: Distribution, numbers: Numbers) -> float:
-    """The distance of the farthest point from the first, in metres, without any thickness."""
-    points = [*_points(what, Scale(numbers))]
-    far = max((hypot(*combined((1, -1), (p, points[0]))) for p in points), default=0.0)
-    return far or float(bool(points))
+    def moved(self, points: Vector, numbers: Numbers, unit: float = 1.0) -> Vector:
+        """Points (n, 3) in the axes of the whole; `unit` is the unit of length."""
+        turned = _floats(self.turned.xreplace(numbers))
+        return _floats(self.at.xreplace(numbers)) / unit + points @ turned.reshape(3, 3).T
 
 
-def _points(what: Distribution, scale: Scale) -> Iterator[Vector]:
-    """Enough points to tell the size of a body."""
-    match what:
+def _leaves(what: Distribution, leaf: _Leaf | None = None) -> Iterator[_Leaf]:
+    leaf = leaf or _Leaf(what)
+    if not isinstance(what, Composite):
+        yield leaf._replace(what=what)
+        return
+    for part, tint in zip(what.parts, _PALETTE * len(what.parts), strict=False):
+        yield from _leaves(
+            part.what,
+            _Leaf(
+                part.what,
+                leaf.at + leaf.turned * part.at,
+                leaf.turned * part.turned * (_SWELL if part.hole else 1),
+                HOLE if part.hole or leaf.color == HOLE else tint,
+            ),
+        )
+
+
+def _constants(what: Distribution) -> set[sp.Basic]:
+    """The symbols in lengths and positions."""
+    symbols: set[sp.Basic] = set()
+    for leaf in _leaves(what):
+        symbols |= leaf.at.free_symbols | leaf.turned.free_symbols
+        match leaf.what:
+            case Particles():
+                symbols |= {s for p in leaf.what.particles for s in p.position.free_symbols}
+            case Polyhedron():
+                symbols |= {s for vertex in leaf.what.vertices for s in vertex.free_symbols}
+            case Solid():
+                bounds = sp.Tuple(*(sp.Tuple(*pair) for pair in leaf.what.bounds))
+                symbols |= leaf.what.place.free_symbols | bounds.free_symbols
+                symbols -= {*leaf.what.coordinates}
+    return symbols
+
+
+def _floats(column: Any) -> Vector:
+    return np.array([*column], float)
+
+
+def _columns(columns: Sequence[sp.MatrixBase], numbers: Numbers) -> Vector:
+    return np.array([_floats(column.xreplace(numbers)) for column in columns])
+
+
+def _points(what: Distribution, numbers: Numbers) -> Iterator[Vector]:
+    """Enough points (n, 3) to tell the size of a body, in metres."""
+    for leaf in _leaves(what):
+        match leaf.what:
+            case Particles():
+                points = _columns([p.position for p in leaf.what.particles], numbers)
+            case Polyhedron():
+                points = _columns(leaf.what.vertices, numbers)
+            case Solid():
+                shares = np.ix_(*[[0.0, 0.5, 1.0]] * len(leaf.what.coordinates))
+                points = _map(leaf.what, numbers, *shares).reshape(-1, 3)
+            case Known():
+                points = np.array(leaf.what.outline.corners)
+        if len(points):
+            yield leaf.moved(points, numbers)
+
+
+def _faces(leaf: _Leaf, numbers: Numbers, unit: float) -> Iterator[Face]:
+    match leaf.what:
         case Particles():
-            yield from (scale.point(particle.position) for particle in what.particles)
+            centres = _columns([p.position for p in leaf.what.particles], numbers) / unit
+            faces = [centre + _PARTICLE * face for centre in centres for face in _OCTAHEDRON]
         case Polyhedron():
-            yield from map(scale.point, what.vertices)
+            corners = _columns(leaf.what.vertices, numbers) / unit
+            faces = [corners[[*face]] for face in leaf.what.faces]
         case Solid():
-            at = _map(what, scale)
-            yield from (at(*s) for s in product((0.0, 0.5, 1.0), repeat=len(what.coordinates)))
-        case Composite():
-            for part in what.parts:
-                moved = _mover(part, scale)
-                yield from map(moved, _points(part.what, scale))
+            faces = [*_of_solid(leaf.what, numbers, unit)]
         case Known():
-            yield from (scaled(1 / scale.unit, corner) for corner in what.outline.corners)
+            corners = np.array(leaf.what.outline.corners) / unit
+            faces = [corners[[*face]] for face in leaf.what.outline.faces]
+    return (Face(leaf.moved(face, numbers, unit), leaf.color) for face in faces)
 
 
-def _geometry(what: Distribution) -> Iterator[sp.Basic]:
-    """Everything in a description that holds lengths."""
-    match what:
-        case Particles():
-            yield from (particle.position for particle in what.particles)
-        case Solid():
-            yield what.place
-            yield from (bound for pair in what.bounds for bound in pair)
-        case Polyhedron():
-            yield from what.vertices
-        case Composite():
-            for part in what.parts:
-                yield from (part.at, part.turned, *_geometry(part.what))
+# A solid
 
 
-def _solids(what: Distribution) -> Iterator[Solid]:
-    if isinstance(what, Composite):
-        for part in what.parts:
-            yield from _solids(part.what)
-    elif isinstance(what, Solid):
-        yield what
-
-
-def _map(solid: Solid, scale: Scale) -> Map:
-    """The point of a solid for coordinates that run from 0 to 1."""
-    numbers = scale.numbers
-    places = [function_of(part.xreplace(numbers), solid.coordinates) for part in solid.place]
-    bounds = [
-        [function_of(sp.S(bound).xreplace(numbers), solid.coordinates) for bound in pair]
-        for pair in solid.bounds
-    ]
-
-    def point(*shares: float) -> Vector:
-        values: list[float] = []
-        for share, pair in zip(shares, bounds, strict=True):
-            low, high = (bound(values) for bound in pair)
-            values.append(low + share * (high - low))
-        x, y, z = (place(values) / scale.unit for place in places)
-        return (x, y, z)
-
-    return point
+def _map(solid: Solid, numbers: Numbers, *shares: Any) -> Vector:
+    """The points (..., 3) of a solid for coordinates that run from 0 to 1, in metres."""
+    values: dict[sp.Expr, Any] = {}
+    for symbol, share, pair in zip(solid.coordinates, shares, solid.bounds, strict=True):
+        low, high = (evaluate(sp.S(end).xreplace(numbers), _FLOATS, values) for end in pair)
+        values[symbol] = low + share * (high - low)
+    place = [evaluate(part.xreplace(numbers), _FLOATS, values) for part in solid.place]
+    return np.stack(np.broadcast_arrays(*place, *shares)[:3], axis=-1)
 
 
 def _is_proper(solid: Solid, numbers: Numbers) -> bool:
     """Whether bounds are in order, and the map never turns inside out."""
-    point, count = _map(solid, Scale(numbers)), len(solid.coordinates)
     lengths = (sp.S(high - low).xreplace(numbers) for low, high in solid.bounds)
-    ordered = all(float(length) >= 0 for length in lengths if length.is_number)
-    shares = product((0.1, 0.5, 0.9), repeat=count)
-    return ordered and (count < 3 or len({_orientation(point, s) > 0 for s in shares}) == 1)
+    if not all(float(length) >= 0 for length in lengths if length.is_number):
+        return False
+    shares = np.ix_(*[[0.1, 0.5, 0.9]] * 3)
+    return len(solid.coordinates) < 3 or len({*_is_outward(solid, numbers, *shares).flat}) == 1
 
 
-def _orientation(point: Map, shares: Sequence[float]) -> float:
-    """The determinant of the map."""
-    here = point(*shares)
-    steps = (
-        combined((1, -1), (point(*(s + 1e-4 * (j == k) for j, s in enumerate(shares))), here))
+def _is_outward(solid: Solid, numbers: Numbers, *shares: Any) -> Vector:
+    """Whether the determinant of the map is positive."""
+    here = _map(solid, numbers, *shares)
+    moved = (
+        _map(solid, numbers, *(share + 1e-4 * (j == k) for j, share in enumerate(shares)))
         for k in range(3)
     )
-    a, b, c = steps
-    return dot(cross(a, b), c)
+    return np.linalg.det(np.stack([there - here for there in moved], axis=-2)) > 0
 
 
-def _faces(what: Distribution, scale: Scale, color: Color) -> Iterator[Face]:
-    match what:
-        case Particles():
-            for particle in what.particles:
-                yield from octahedron(scale.point(particle.position), color)
-        case Polyhedron():
-            corners = [scale.point(vertex) for vertex in what.vertices]
-            yield from (Face(tuple(corners[k] for k in face), color) for face in what.faces)
-        case Solid():
-            yield from of_solid(what, scale, color)
-        case Composite():
-            for part, tint in zip(what.parts, PALETTE * len(what.parts), strict=False):
-                yield from _placed(part, scale, HOLE if part.hole else tint)
-        case Known():
-            corners = [scaled(1 / scale.unit, corner) for corner in what.outline.corners]
-            yield from (Face(tuple(corners[k] for k in f), color) for f in what.outline.faces)
-
-
-def vector_of(column: Iterable[Any]) -> Vector:
-    """Three numbers as floats."""
-    x, y, z = map(float, column)
-    return (x, y, z)
-
-
-def _placed(part: Part, scale: Scale, color: Color) -> Iterator[Face]:
-    moved = _mover(part, scale)
-    for face in _faces(part.what, scale, color):
-        yield Face(tuple(map(moved, face.corners)), HOLE if part.hole else face.color)
-
-
-def _mover(part: Part, scale: Scale) -> Callable[[Vector], Vector]:
-    """From the axes of a part to those of the body."""
-    at, swell = scale.point(part.at), float(SWELL) if part.hole else 1.0
-    axes = [vector_of(part.turned[:, k].xreplace(scale.numbers)) for k in range(3)]
-    return lambda point: combined((1, swell), (at, combined(point, axes)))
-
-
-def octahedron(centre: Vector, color: Color) -> Iterator[Face]:
-    for i, j, k in product((1, -1), repeat=3):
-        signs = ((i, 0, 0), (0, j, 0), (0, 0, k))
-        corners = tuple(combined((1, _PARTICLE), (centre, sign)) for sign in signs)
-        yield Face(corners if i * j * k > 0 else corners[::-1], color)
-
-
-def of_solid(
-    solid: Solid,
-    scale: Scale,
-    color: Color,
-    seen: dict[Vector, tuple[float, ...]] | None = None,
-) -> Iterator[Face]:
-    """The faces of a solid; `seen` is told the coordinates, from 0 to 1, of every point.
-
-    On the tube of a line, the offset from the line follows: (u, 0, 0, x, y, z).
-    """
-    mapped, known = _map(solid, scale), {} if seen is None else seen
-
-    def point(*shares: float) -> Vector:
-        found = mapped(*shares)
-        known.setdefault(near(found), shares)
-        return found
-
+def _of_solid(solid: Solid, numbers: Numbers, unit: float) -> Iterator[Vector]:
     counts = [_divisions(solid, symbol) for symbol in solid.coordinates]
     if len(counts) == 1:
         count = 2 * _ROUND if counts[0] > 1 else 1
-        yield from _tube(point, [k / count for k in range(count + 1)], color, known)
-    elif len(counts) == 2:
-        grid = _grid(point, counts)
-        yield from _tiles(grid, color)
-        yield from _tiles([row[::-1] for row in grid], color)
-    else:
-        yield from _surface(point, counts, color)
+        yield from _tube(_map(solid, numbers, np.linspace(0, 1, count + 1)) / unit)
+        return
+    steps = [np.linspace(0, 1, count + 1) for count in counts]
+    if len(counts) == 2:
+        grid = _map(solid, numbers, *np.ix_(*steps)) / unit
+        yield from (*_tiles(grid), *_tiles(grid[:, ::-1]))
+        return
+    outward = 1 if _is_outward(solid, numbers, 0.5, 0.5, 0.5) else -1
+    for axis in range(3):
+        j, k = (axis + 1) % 3, (axis + 2) % 3
+        shares: dict[int, Any] = dict(zip((j, k), np.ix_(steps[j], steps[k]), strict=True))
+        low, high = (
+            _map(solid, numbers, *({**shares, axis: end}[n] for n in range(3))) / unit
+            for end in (0.0, 1.0)
+        )
+        if np.linalg.norm(high - low, axis=-1).max() > 1e-9:
+            yield from (*_tiles(high[:, ::outward]), *_tiles(low[:, ::-outward]))
 
 
 def _divisions(solid: Solid, symbol: sp.Symbol) -> int:
@@ -278,97 +264,35 @@ def _divisions(solid: Solid, symbol: sp.Symbol) -> int:
         turns = (high - low) / (2 * sp.pi)
         return int(sp.ceiling(_ROUND * turns)) if turns.is_number else _ROUND
     later = [bound for pair in solid.bounds for bound in pair if bound.has(symbol)]
-    slope = solid.place.diff(symbol)
-    if later or slope.has(symbol):
-        return _CURVED
-    return 1
+    return _CURVED if later or solid.place.diff(symbol).has(symbol) else 1
 
 
-def _surface(point: Map, counts: Sequence[int], color: Color) -> Iterator[Face]:
-    outward = _orientation(point, (0.5, 0.5, 0.5)) > 0
-    for axis in range(3):
-        j, k = (axis + 1) % 3, (axis + 2) % 3
-
-        def side(end: float, axis: int = axis, j: int = j) -> Map:
-            def at(s: float, t: float) -> Vector:
-                shares = {axis: end, j: s}
-                return point(*(shares.get(n, t) for n in range(3)))
-
-            return at
-
-        low, high = (_grid(side(end), (counts[j], counts[k])) for end in (0.0, 1.0))
-        gaps = (
-            hypot(*combined((1, -1), pair))
-            for rows in zip(low, high, strict=True)
-            for pair in zip(*rows, strict=True)
-        )
-        if max(gaps) > 1e-9:
-            for grid, is_out in ((high, outward), (low, not outward)):
-                yield from _tiles(grid if is_out else [row[::-1] for row in grid], color)
-
-
-def _grid(at: Map, counts: Sequence[int]) -> list[list[Vector]]:
-    rows, columns = counts
-    return [[at(i / rows, k / columns) for k in range(columns + 1)] for i in range(rows + 1)]
-
-
-def _tiles(grid: Sequence[Sequence[Vector]], color: Color) -> Iterator[Face]:
+def _tiles(grid: Vector) -> Iterator[Vector]:
     """The tiles of a grid, counterclockwise as seen along (row) × (column); none without area."""
-    for lower, upper in pairwise(grid):
-        for (a, b), (d, c) in zip(pairwise(lower), pairwise(upper), strict=True):
-            corners = tuple(dict.fromkeys(near(p) for p in (a, d, c, b)))
-            if len(corners) > 2 and _area(corners) > 1e-9:
-                yield Face(corners, color)
+    grid = np.round(grid, 9) + 0.0  # without the errors that would part one corner into two
+    for i, j in np.ndindex(len(grid) - 1, grid.shape[1] - 1):
+        around = (grid[i, j], grid[i + 1, j], grid[i + 1, j + 1], grid[i, j + 1])
+        corners = np.array([*dict.fromkeys(map(tuple, around))])
+        if len(corners) > 2 and np.linalg.norm(area_of(corners)) > 1e-9:
+            yield corners
 
 
-def near(point: Vector) -> Vector:
-    """Without the rounding errors that would part one corner into two."""
-    x, y, z = (round(part, 9) + 0.0 for part in point)
-    return (x, y, z)
+def area_of(corners: Vector) -> Vector:
+    """Twice the area of a polygon, as a vector along its normal."""
+    edges = corners[1:] - corners[0]
+    return np.cross(edges[:-1], edges[1:]).sum(axis=0)
 
 
-def _area(corners: Sequence[Vector]) -> float:
-    first, *others = corners
-    edges = [combined((1, -1), (corner, first)) for corner in others]
-    return hypot(*combined((1,) * (len(edges) - 1), [cross(a, b) for a, b in pairwise(edges)]))
-
-
-def _tube(
-    line: Map, shares: Sequence[float], color: Color, known: dict[Vector, tuple[float, ...]]
-) -> Iterator[Face]:
-    """A thin square tube along a line; `known` is told where its points are."""
-    is_open = near(line(0.0)) != near(line(1.0))
-    for ends in pairwise(shares):
-        start, end = map(line, ends)
-        along = unit(combined((1, -1), (end, start)))
-        axis: Vector = (1.0, 0.0, 0.0) if abs(along[0]) < 0.8 else (0.0, 1.0, 0.0)
-        u = unit(cross(along, axis))
-        v = cross(along, u)
-        around = [combined((p, q), (u, v)) for p, q in ((1, 1), (-1, 1), (-1, -1), (1, -1))]
-        offsets = [scaled(_THICK, side) for side in (*around, around[0])]
-        grid = [[combined((1, 1), (c, off)) for off in offsets] for c in (start, end)]
-        for share, row in zip(ends, grid, strict=True):
-            known.update(
-                {near(p): (share, 0.0, 0.0, *off) for p, off in zip(row, offsets, strict=True)}
-            )
-        yield from _tiles([row[::-1] for row in grid], color)
-        first, last = (tuple(map(near, row[:-1])) for row in grid)
-        yield from (Face(first[::-1], color) for _ in range(ends[0] == 0.0 and is_open))
-        yield from (Face(last, color) for _ in range(ends[1] == 1.0 and is_open))
-
-
-def _fitted(faces: Sequence[Face], body: RigidBody, numbers: Numbers, size: float) -> Shape:
-    """About the centre of mass, in the size of the figure; lengths are in units of `size`."""
-    middle = [part.xreplace(numbers) for part in body.centre]
-    is_known = all(part.is_number for part in middle)
-    x, y, z = (float(part) / size if is_known else 0.0 for part in middle)  # else its origin
-    moved = [
-        Face(tuple(combined((1, -1), (p, (x, y, z))) for p in face.corners), face.color)
-        for face in faces
-    ]
-    reach = max((hypot(*p) for face in moved for p in face.corners), default=0.0)
-    if not reach or not isfinite(reach):
-        return ()
-    return tuple(
-        Face(tuple(scaled(_SIZE / reach, p) for p in face.corners), face.color) for face in moved
-    )
+def _tube(line: Vector) -> Iterator[Vector]:
+    """A thin square tube along a line (n, 3), with its ends if it is open."""
+    is_open = np.abs(line[0] - line[-1]).max() > 1e-9
+    for k, (start, end) in enumerate(pairwise(line)):
+        along = unit(end - start)
+        u = unit(np.cross(along, STANDARD[0 if abs(along[0]) < 0.8 else 1]))
+        v = np.cross(along, u)
+        around = _THICK * np.array([u + v, v - u, -u - v, u - v, u + v])
+        yield from _tiles(np.array([start + around, end + around])[:, ::-1])
+        if is_open and k == 0:
+            yield (start + around[:-1])[::-1]
+        if is_open and k == len(line) - 2:
+            yield end + around[:-1]

@@ -8,15 +8,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 from math import atan2, ceil, cos, hypot, pi, radians, sin, tau
-from typing import NamedTuple
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
 
 from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.tree import Formula
 from rigidsym.formula.unicode_pen import UnicodePen
-from rigidsym.notes.figure.camera import Camera, Point, Vector, dot, is_same, scaled
+from rigidsym.notes.figure.camera import Camera, Point, Vector, is_same
 from rigidsym.notes.figure.scene import Arc, Kind, Posed, Ray
-
-Segment = tuple[Point, Point]
 
 TYPE_SIZE = 0.15  # one em, in units of the drawing
 AXIS = 1.35  # lengths of the axes drawn
@@ -64,10 +65,6 @@ class Stroke(NamedTuple):
     is_hidden: bool = False  # behind the origin: dashed
     has_arrow: bool = False  # at its end
 
-    @property
-    def segments(self) -> Iterator[Segment]:
-        return pairwise(self.points)
-
 
 class Box(NamedTuple):
     """A rectangle, by its centre and half its width and height."""
@@ -84,32 +81,14 @@ class Box(NamedTuple):
         is_beside = abs(x - a) >= self.half_width + other.half_width
         return not is_beside and abs(y - b) < self.half_height + other.half_height
 
-    def crossed_by(self, segments: Iterable[Segment]) -> list[Segment]:
-        """The segments of which any point is inside (the test of Liang and Barsky)."""
-        (x, y), half_width, half_height = self
-        left, right = x - half_width, x + half_width
-        below, above = y - half_height, y + half_height
-        found = []
-        for segment in segments:
-            (x0, y0), (x1, y1) = segment
-            if (x0 < left and x1 < left) or (x0 > right and x1 > right):
-                continue
-            if (y0 < below and y1 < below) or (y0 > above and y1 > above):
-                continue
-            start, end = 0.0, 1.0
-            for position, change, half in (
-                (x0 - x, x1 - x0, half_width),
-                (y0 - y, y1 - y0, half_height),
-            ):
-                if change == 0:
-                    continue
-                half = half if change > 0 else -half
-                enters, leaves = (-half - position) / change, (half - position) / change
-                start = start if start >= enters else enters
-                end = end if end <= leaves else leaves
-            if start <= end:
-                found.append(segment)
-        return found
+    def crossings(self, segments: NDArray[Any]) -> int:
+        """How many segments (n, 2, 2) have a point inside (the test of Liang and Barsky)."""
+        start, change = segments[:, 0] - self.centre, segments[:, 1] - segments[:, 0]
+        half = np.array([self.half_width, self.half_height])
+        with np.errstate(divide="ignore", invalid="ignore"):  # a segment along an edge
+            ends = (-half - start) / change, (half - start) / change
+        enters, leaves = np.fmin(*ends).max(axis=-1), np.fmax(*ends).min(axis=-1)
+        return int((np.fmax(enters, 0.0) <= np.fmin(leaves, 1.0)).sum())
 
 
 class Label(NamedTuple):
@@ -184,7 +163,7 @@ def drawn(scene: Posed, seen: Camera) -> Drawing:
 
 def _axis(ray: Ray, seen: Camera, *, is_line: bool) -> Stroke:
     reach = AXIS if ray.kind in ("space", "body") else NODE
-    end = seen.project(scaled(reach, ray.direction))
+    end = seen.project(reach * ray.direction)
     start = (-end[0], -end[1]) if is_line else (0.0, 0.0)
     return Stroke(kind=ray.kind, points=(start, end), name=ray.name, has_arrow=not is_line)
 
@@ -196,11 +175,10 @@ def _arc(arc: Arc, seen: Camera) -> Stroke:
 
 def _ellipse(arc: Arc, seen: Camera, radius: float, start: float, end: float) -> Ellipse:
     """Part of the circle that a point of the line describes."""
-    u, v = scaled(radius, arc.start), scaled(radius, arc.side)
     return Ellipse(
         centre=seen.project(arc.centre),
-        u=seen.project(u),
-        v=seen.project(v),
+        u=seen.project(radius * arc.start),
+        v=seen.project(radius * arc.side),
         start=start,
         end=end,
     )
@@ -242,7 +220,7 @@ def _guides(scene: Posed, seen: Camera) -> Iterator[Stroke]:
     drawn: list[Vector] = []
     for arc in scene.arcs:
         for end in (arc.before, arc.after):
-            is_known = scene.named(end) is not None and dot(arc.axis, end) ** 2 < 1e-12
+            is_known = scene.named(end) is not None and abs(arc.axis @ end) < 1e-6
             if not is_known and not any(is_same(end, other) for other in drawn):
                 drawn.append(end)
                 line = (seen.project(arc.centre), seen.project(end))
@@ -273,7 +251,7 @@ Named = tuple[Kind, Formula, Sequence[Place]]  # a label, and where it may go
 
 def labelled(named: Iterable[Named], strokes: Sequence[Stroke]) -> tuple[Label, ...]:
     """Labels at their first free places, the nearest first; else where they touch the fewest."""
-    segments = [segment for stroke in strokes for segment in stroke.segments]
+    segments = segments_of(strokes)
     named = tuple(named)
     widths = half_widths([symbol for _, symbol, _ in named])
     taken: list[Box] = []
@@ -284,26 +262,25 @@ def labelled(named: Iterable[Named], strokes: Sequence[Stroke]) -> tuple[Label, 
     return tuple(labels)
 
 
+def segments_of(strokes: Iterable[Stroke]) -> NDArray[Any]:
+    """The segments of all strokes, (n, 2, 2)."""
+    return np.array([pair for s in strokes for pair in pairwise(s.points)]).reshape(-1, 2, 2)
+
+
 def _free(
-    half_width: float,
-    places: Sequence[Place],
-    segments: Sequence[Segment],
-    taken: Sequence[Box],
+    half_width: float, places: Sequence[Place], segments: NDArray[Any], taken: Sequence[Box]
 ) -> Box:
-    reach = 2 * hypot(half_width, _HALF_HEIGHT) + max(_GAPS) + _MARGIN
-    near: dict[Point, list[Segment]] = {}
-    least, best = len(segments) + len(taken) + 1, None
+    """The first place where nothing is touched, or else the one where the least is."""
+    best, least = None, len(segments) + len(taken) + 1
     for gap in _GAPS:
         for start, direction in places:
-            if start not in near:
-                near[start] = Box(start, reach, reach).crossed_by(segments)
             box = Box(_shifted(half_width, start, direction, gap), half_width, _HALF_HEIGHT)
             grown = box.grown(_MARGIN)
-            met = len(grown.crossed_by(near[start])) + sum(map(grown.meets, taken))
-            if met == 0:
+            touched = grown.crossings(segments) + sum(map(grown.meets, taken))
+            if touched < least:
+                best, least = box, touched
+            if touched == 0:
                 return box
-            if met < least:
-                least, best = met, box
     assert best is not None
     return best
 

@@ -1,4 +1,4 @@
-"""The pictures of examples: coordinates in time, and a trace on a sphere, an ellipsoid or a plane.
+"""The pictures of examples: coordinates in time, and a trace on a sphere or an ellipsoid.
 
 The equations of motion are integrated in floats by the classical Runge-Kutta method, whose steps
 are halved until the picture stays the same.
@@ -7,12 +7,13 @@ are halved until the picture stays the same.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from itertools import chain
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
+import numpy as np
 import sympy as sp
+from numpy.typing import NDArray
 
-from rigidsym.algebra.evaluate import function_of
+from rigidsym.algebra.evaluate import Floats, evaluate, function_of
 from rigidsym.errors import ModelError
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import formula
@@ -20,12 +21,13 @@ from rigidsym.formula.scalars import formula_of
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.models.forces import OMEGA_BODY, OMEGA_COMPONENTS, Example, Forces, initial_values
 from rigidsym.models.rotation import TIME
-from rigidsym.notes.figure.camera import STANDARD, Point, Vector, unit
-from rigidsym.notes.figure.chart import Range, chart, circle, in_a_row, on_ellipsoid
+from rigidsym.notes.figure.camera import STANDARD
+from rigidsym.notes.figure.chart import chart, circle, in_a_row, on_ellipsoid
 from rigidsym.notes.figure.drawing import Drawing
 from rigidsym.notes.figure.scene import BODY
 
-Numbers = list[float]
+Numbers = NDArray[Any]
+Slopes = Callable[[float, Numbers], Numbers]
 
 _NEEDED = {"state_derivative", "angular_velocity_body"}
 _SAMPLES = 400
@@ -42,7 +44,7 @@ class MotionPicture(NamedTuple):
 
     drawing: Drawing
     told: int  # of how many examples the caption needs the numbers
-    traces: tuple[str, ...]  # "axis", "polhode", "polhodes", "path"
+    traces: tuple[str, ...]  # "axis", "polhode", "polhodes"
 
 
 def motion_picture(derivation: Derivation, letters: Letters) -> MotionPicture | None:
@@ -64,34 +66,27 @@ def motion_picture(derivation: Derivation, letters: Letters) -> MotionPicture | 
         width = _WIDE if len(motions) == 1 else _NARROW
         drawings = [_over_time(motion, letters, width) for motion in motions]
     elif len(drawings) == 1:
-        drawings.insert(0, _over_time(motions[0], letters, _NARROW))
+        drawings.insert(0, _over_time(first, letters, _NARROW))
     kinds = tuple(dict.fromkeys(kind for kind, _ in traces))
     return MotionPicture(in_a_row(drawings), 1 if first.is_poinsot else len(motions), kinds)
 
 
 class ExampleMotion:
-    """One example, integrated: `states` at the times `t`, each with the place of a particle."""
+    """One example, integrated: its `states` (n, k) at the times `t` (n,)."""
 
     def __init__(self, derivation: Derivation, forces: Forces, example: Example) -> None:
         self.derivation, self.forces, self.example = derivation, forces, example
         self.y = derivation.argument("y").symbols
-        q = derivation.model.coordinates
-        self.known = dict(zip(self.y, (sp.Dummy() for _ in self.y), strict=True))
+        self.count = len(derivation.model.coordinates)
         slopes = [*derivation.spelled(derivation.step("state_derivative").expression)]
-        particles = [part.velocity for part in forces.parts if part.velocity]
-        self.path = slice(len(self.y), len(self.y) + 3)
-        start = self._start([q.func.__name__ for q in q])
-        start += [0.0] * (3 * bool(particles))
-        found = _integrated(
-            self.function([*slopes, *chain(*particles[:1])], len(start)), start, example.time
-        )
-        if found is None:
+        states = _integrated(self._slopes(slopes), np.array(self._start()), example.time)
+        if states is None:
             raise ModelError(
                 f"{derivation.name}: an example cannot be drawn; expected a motion that is slower, "
                 "shorter, or farther from the poles of the coordinates"
             )
-        self.t = [example.time * k / _SAMPLES for k in range(_SAMPLES + 1)]
-        self.states: list[Numbers] = found
+        self.t = np.linspace(0.0, example.time, _SAMPLES + 1)
+        self.states = states
 
     @property
     def inertia(self) -> sp.ImmutableMatrix:
@@ -108,128 +103,114 @@ class ExampleMotion:
     @property
     def is_turning(self) -> bool:
         """Whether the body does not begin at rest."""
-        return any(self.states[0][len(self.derivation.model.coordinates) :])
+        return bool(self.states[0, self.count :].any())
 
-    def _start(self, coordinates: Sequence[str]) -> Numbers:
+    def _start(self) -> list[float]:
         """The initial state in the order of y."""
-        given = initial_values(self.derivation.model, self.example.initial)
-        wanted = [f"{name}_dot" for name in coordinates]
-        if self.y[len(coordinates) :] == OMEGA_BODY:
-            wanted = [*OMEGA_COMPONENTS]
-        at_rest = not any(v for name, v in given.items() if name not in coordinates)
-        missing = [name for name in wanted if name not in given and not at_rest]
+        values = initial_values(self.derivation.model, self.example.initial)
+        coordinates = self.derivation.argument("q").names
+        rates = [f"{name}_dot" for name in coordinates]
+        if self.y[self.count :] == OMEGA_BODY:
+            rates = [*OMEGA_COMPONENTS]
+        at_rest = not any(v for name, v in values.items() if name not in coordinates)
+        missing = [name for name in rates if name not in values and not at_rest]
         if missing:
             raise ModelError(
                 f"{self.derivation.name}: an example begins without {', '.join(missing)}, which "
                 "are part of the state"
             )
-        return [float(given.get(name, 0.0)) for name in (*coordinates, *wanted)]
+        return [float(values.get(name, 0.0)) for name in (*coordinates, *rates)]
 
-    def function(
-        self, values: Sequence[sp.Expr], count: int = 0
-    ) -> Callable[[float, Numbers], Numbers]:
-        """Expressions in the time, the state and constants, as a function of the first two.
-
-        Raises ModelError for constants without a value, all at once.
-        """
-        plain = [value.xreplace(self.known) for value in values]
-        symbols = sp.Tuple(*plain).free_symbols - {*self.known.values(), TIME}
-        constants = sorted(symbols, key=str)
+    def _constants(self, expressions: Sequence[sp.Expr]) -> dict[sp.Expr, float]:
+        """The values of the constants. Raises ModelError for those without one, all at once."""
+        symbols = sp.Tuple(*expressions).free_symbols - {*self.y, TIME}
         numbers = self.example.parameters
-        missing = [symbol.name for symbol in constants if symbol.name not in numbers]
+        missing = sorted(symbol.name for symbol in symbols if symbol.name not in numbers)
         if missing:
             raise ModelError(
                 f"{self.derivation.name}: an example lacks values of {', '.join(missing)}"
             )
-        spare = [sp.Dummy() for _ in range(count - len(self.known))]
-        arguments = [TIME, *self.known.values(), *spare, *constants]
-        shared, results = sp.cse(plain, sp.numbered_symbols(cls=sp.Dummy))
-        arguments += [symbol for symbol, _ in shared]
+        return {symbol: float(numbers[symbol.name]) for symbol in symbols}
+
+    def _slopes(self, expressions: Sequence[sp.Expr]) -> Slopes:
+        """The derivative of the state as a function of the time and the state."""
+        constants = self._constants(expressions)
+        plain = dict(zip(self.y, (sp.Dummy() for _ in self.y), strict=True))  # also of rates
+        shared, results = sp.cse(
+            [e.xreplace(plain) for e in expressions], sp.numbered_symbols(cls=sp.Dummy)
+        )
+        arguments = [TIME, *constants, *plain.values(), *(symbol for symbol, _ in shared)]
         parts = [function_of(value, arguments) for _, value in shared]
         ends = [function_of(value, arguments) for value in results]
-        given = [float(numbers[symbol.name]) for symbol in constants]
+        numbers = [*constants.values()]
 
-        def evaluated(t: float, state: Numbers) -> Numbers:
-            held = [t, *state, *given]
+        def slopes(t: float, state: Numbers) -> Numbers:
+            values = [t, *numbers, *state.tolist()]
             for part in parts:
-                held.append(part(held))
-            return [end(held) for end in ends]
+                values.append(part(values))
+            return np.array([end(values) for end in ends])
 
-        return evaluated
+        return slopes
 
-    def over_time(self, values: Sequence[sp.Expr]) -> list[Numbers]:
-        """The values at all times."""
-        function = self.function(values, len(self.states[0]))
-        return [function(t, state) for t, state in zip(self.t, self.states, strict=True)]
+    def over_time(self, expressions: Sequence[sp.Expr]) -> Numbers:
+        """The values of expressions at all times, (n, len(expressions))."""
+        values = {TIME: self.t, **self._constants(expressions)}
+        values |= dict(zip(self.y, self.states.T, strict=True))
+        columns = [evaluate(e, Floats(np), values) for e in expressions]
+        return np.stack(np.broadcast_arrays(self.t, *columns)[1:], axis=1)
 
     @property
-    def omega(self) -> list[sp.Expr]:
-        """Ω′ in the state."""
+    def omega(self) -> Numbers:
+        """Ω′ at all times, (n, 3)."""
         if self.y[-3:] == OMEGA_BODY:
-            return list(OMEGA_BODY)
-        return [*self.derivation.spelled(self.derivation.step("angular_velocity_body").expression)]
+            return self.states[:, -3:]
+        step = self.derivation.step("angular_velocity_body")
+        return self.over_time([*self.derivation.spelled(step.expression)])
 
 
-def _integrated(
-    slopes: Callable[[float, Numbers], Numbers], start: Numbers, time: float
-) -> list[Numbers] | None:
+def _integrated(slopes: Slopes, start: Numbers, time: float) -> Numbers | None:
     """The states at all samples; None if steps that are short enough would be too many."""
     before = None
     count = 1
     while count <= _MOST_STEPS:
         try:
-            found = _stepped(slopes, start, time, count)
+            states = _stepped(slopes, start, time / _SAMPLES / count, count)
         except (ArithmeticError, ValueError):  # too long a step has left the domain
-            found = None
-        if before and found and _is_same(before, found):
-            return found
-        before, count = found, 2 * count
+            states = None
+        if before is not None and states is not None:
+            allowed = _SEEN * np.maximum(1e-3, np.ptp(states, axis=0))
+            if (np.abs(states - before) <= allowed).all():
+                return states
+        before, count = states, 2 * count
     return None
 
 
-def _stepped(
-    slopes: Callable[[float, Numbers], Numbers], start: Numbers, time: float, count: int
-) -> list[Numbers]:
-    h = time / _SAMPLES / count
-    found, y = [start], start
+def _stepped(slopes: Slopes, y: Numbers, h: float, count: int) -> Numbers:
+    states = [y]
     for k in range(_SAMPLES * count):
         t = k * h
         a = slopes(t, y)
-        b = slopes(t + h / 2, [u + h / 2 * v for u, v in zip(y, a, strict=True)])
-        c = slopes(t + h / 2, [u + h / 2 * v for u, v in zip(y, b, strict=True)])
-        d = slopes(t + h, [u + h * v for u, v in zip(y, c, strict=True)])
-        rates = zip(y, a, b, c, d, strict=True)
-        y = [u + h / 6 * (p + 2 * (q + r) + s) for u, p, q, r, s in rates]
+        b = slopes(t + h / 2, y + h / 2 * a)
+        c = slopes(t + h / 2, y + h / 2 * b)
+        d = slopes(t + h, y + h * c)
+        y = y + h / 6 * (a + 2 * (b + c) + d)
         if (k + 1) % count == 0:
-            found.append(y)
-    return found
-
-
-def _is_same(one: Sequence[Numbers], other: Sequence[Numbers]) -> bool:
-    """Whether no value differs by more than is seen."""
-    for left, right in zip(zip(*one, strict=True), zip(*other, strict=True), strict=True):
-        allowed = _SEEN * max(1e-3, max(right) - min(right))
-        if any(not abs(a - b) <= allowed for a, b in zip(left, right, strict=True)):
-            return False
-    return True
+            states.append(y)
+    return np.array(states)
 
 
 def _over_time(motion: ExampleMotion, letters: Letters, width: float) -> Drawing:
     """The angles that stay within a turn, or the components of Ω′ if there are no angles."""
-    q = motion.derivation.model.coordinates
-    is_in_angles = set(motion.derivation.model.coordinate_units) == {"rad"}
-    if is_in_angles:
-        names = [letters.name(x) for x in q]
-        columns = list(zip(*(state[: len(q)] for state in motion.states), strict=True))
-        swinging = [k for k, c in enumerate(columns) if max(c) - min(c) < _TURN]
-        shown = [(names[k], columns[k]) for k in swinging or range(len(q))]
+    model = motion.derivation.model
+    if {*model.coordinate_units} == {"rad"}:
+        pairs = [*zip(map(letters.name, model.coordinates), motion.states.T, strict=False)]
+        pairs = [pair for pair in pairs if np.ptp(pair[1]) < _TURN] or pairs
     else:
-        names = [formula_of(omega, letters) for omega in OMEGA_BODY]
-        columns = list(zip(*motion.over_time(motion.omega), strict=True))
-        shown = list(zip(names, columns, strict=True))
-    curves = [(name, list(zip(motion.t, column, strict=True))) for name, column in shown]
-    across = Range.of([0.0, motion.t[-1]])
-    return chart(across, curves, (width, _HEIGHT), formula(r"t / \mathrm{s}"))
+        names = (formula_of(omega, letters) for omega in OMEGA_BODY)
+        pairs = [*zip(names, motion.omega.T, strict=True)]
+    curves = [np.stack([motion.t, column], axis=1) for _, column in pairs]
+    names_of = [name for name, _ in pairs]
+    return chart(curves, (width, _HEIGHT), formula(r"t / \mathrm{s}"), names=names_of)
 
 
 def _traces(motions: Sequence[ExampleMotion], letters: Letters) -> Iterator[tuple[str, Drawing]]:
@@ -239,45 +220,24 @@ def _traces(motions: Sequence[ExampleMotion], letters: Letters) -> Iterator[tupl
     if first.is_poinsot:
         yield "polhode" if len(motions) == 1 else "polhodes", _polhodes(motions, letters)
         motions = motions[:1]
-    if any(part.velocity for part in first.forces.parts):
-        yield from (("path", _path(motion)) for motion in motions)
-    elif turns and turns[-1].axis == "z":
+    if turns and turns[-1].axis == "z":
         yield from (("axis", _axis(motion)) for motion in motions)
 
 
 def _polhodes(motions: Sequence[ExampleMotion], letters: Letters) -> Drawing:
     """Each on the ellipsoid of its own energy, scaled to one size."""
-    first = motions[0]
-    moments = first.function([*first.inertia.diagonal()], len(first.states[0]))
-    a, b, c = (moment**0.5 for moment in moments(0.0, first.states[0]))
-    least = min(a, b, c)
-    paths = [
-        [unit((a * x, b * y, c * z)) for x, y, z in motion.over_time(motion.omega)]
-        for motion in motions
-        if motion.is_turning
-    ]
+    roots = np.sqrt(motions[0].over_time([*motions[0].inertia.diagonal()])[0])
+    paths = [roots * motion.omega for motion in motions if motion.is_turning]
+    paths = [path / np.linalg.norm(path, axis=1, keepdims=True) for path in paths]
     circles = [circle(axis, 0.0) for axis in STANDARD]
     axes = [(letters.notation.applied(name), k) for k, name in enumerate(BODY)]
-    return on_ellipsoid(paths, circles, (least / a, least / b, least / c), axes)
+    return on_ellipsoid(paths, circles, roots.min() / roots, axes)
 
 
 def _axis(motion: ExampleMotion) -> Drawing:
     """The trace of the third axis of the body, with the circles that bound its height."""
-    path: list[Vector] = [
-        (x, y, z) for x, y, z in motion.over_time([*motion.derivation.model.matrix.col(2)])
-    ]
-    heights = [z for _, _, z in path]
-    low, high = min(heights), max(heights)
+    path = motion.over_time([*motion.derivation.model.matrix.col(2)])
+    low, high = path[:, 2].min(), path[:, 2].max()
     bounds = [low] if high - low < _LOW else [low, high]
     circles = [circle(STANDARD[2], height) for height in (0.0, *bounds)]
-    return on_ellipsoid([path], circles, (1.0, 1.0, 1.0), [(formula("z"), 2)])
-
-
-def _path(motion: ExampleMotion) -> Drawing:
-    """The path of the particle, from above, in one scale."""
-    points: list[Point] = [(x, y) for x, y, _ in (state[motion.path] for state in motion.states)]
-    xs, ys = zip(*points, strict=True)
-    across, up = Range.of(xs), Range.of(ys)
-    scale = min(_NARROW / (across.high - across.low), _HEIGHT / (up.high - up.low))
-    size = (scale * (across.high - across.low), scale * (up.high - up.low))
-    return chart(across, [(formula(r"y / \mathrm{m}"), points)], size, formula(r"x / \mathrm{m}"))
+    return on_ellipsoid([path], circles, np.ones(3), [(formula("z"), 2)])

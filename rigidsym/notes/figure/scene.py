@@ -8,13 +8,14 @@ sliders.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from itertools import combinations, pairwise
 from math import hypot, radians, sin
 from typing import Literal, NamedTuple
 
+import numpy as np
 import sympy as sp
 
 from rigidsym.formula.letters import Letters
@@ -28,12 +29,8 @@ from rigidsym.notes.figure.camera import (
     Point,
     Vector,
     camera,
-    combined,
-    cross,
-    dot,
     frames,
     is_same,
-    scaled,
     unit,
 )
 from rigidsym.notes.letters import VECTOR, length_of
@@ -91,15 +88,15 @@ class Arc(NamedTuple):
     @property
     def centre(self) -> Vector:
         """The foot of the perpendicular from the end of the line to the axis."""
-        return scaled(dot(self.before, self.axis), self.axis)
+        return (self.before @ self.axis) * self.axis
 
     @property
     def start(self) -> Vector:
-        return combined((1, -1), (self.before, self.centre))
+        return self.before - self.centre
 
     @property
     def side(self) -> Vector:
-        return cross(self.axis, self.before)
+        return np.cross(self.axis, self.before)
 
 
 class View(NamedTuple):
@@ -148,14 +145,14 @@ class Scene:
     def posed(self, angles: Sequence[float]) -> Posed:
         """The scene at these angles, in radians."""
         bases = list(frames([turn.axis for turn in self.turns], angles))
-        rays = (r._replace(direction=combined(r.direction, bases[r.frame])) for r in self.rays)
+        rays = (r._replace(direction=r.direction @ bases[r.frame]) for r in self.rays)
         arcs = (
             Arc(
                 turn=turn,
-                axis=combined(turn.axis, before),
+                axis=turn.axis @ before,
                 angle=angle,
-                before=combined(turn.start, before),
-                after=combined(turn.start, after),
+                before=turn.start @ before,
+                after=turn.start @ after,
             )
             for turn, angle, (before, after) in zip(
                 self.turns, angles, pairwise(bases), strict=True
@@ -188,7 +185,7 @@ class Scene:
             min(hypot(a[0] - b[0], a[1] - b[1]) for a, b in pairs),
             min(hypot(*end) for end in ends),
             min(2 * _separation(a, b) for a, b in pairs),
-            min(1.5 * abs(sin(arc.angle) * dot(seen.toward, arc.axis)) for arc in posed.arcs),
+            min(1.5 * abs(sin(arc.angle) * seen.depth(arc.axis)) for arc in posed.arcs),
         )
 
 
@@ -223,7 +220,7 @@ def scene_of(model: RotationModel, letters: Letters) -> Scene | None:
     are_numbers = all(part.is_number for direction in directions for part in direction)
     if not (1 <= len(turns) <= MOST_TURNS and are_numbers):
         return None
-    axes = [_unit(direction) for direction in directions]
+    axes = [unit(np.array([*direction], float)) for direction in directions]
     names = [formula_of(turn.angle, letters) for turn in turns]
     starts = [_start(axes, k) for k in range(len(axes))]
     return Scene(
@@ -246,11 +243,6 @@ def scene_of(model: RotationModel, letters: Letters) -> Scene | None:
 def turns_of(model: RotationModel) -> tuple[Turn, ...]:
     """The turns that are drawn: those of the product, or the one about the vector."""
     return model.turns or _about_the_vector(model)
-
-
-def _unit(direction: Iterable[sp.Expr]) -> Vector:
-    x, y, z = map(float, direction)
-    return unit((x, y, z))
 
 
 def _about_the_vector(model: RotationModel) -> tuple[Turn, ...]:
@@ -279,7 +271,7 @@ def _start(axes: Sequence[Vector], k: int) -> Vector:
     """The line that turn k carries along: the axis of the next turn, or of the one before."""
     wished = [axes[k + 1]] if k + 1 < len(axes) else [axes[k - 1]] if k else []
     candidates = (*wished, *STANDARD)
-    return next((c for c in candidates if abs(dot(c, axes[k])) < 0.75), STANDARD[0])
+    return next((c for c in candidates if abs(c @ axes[k]) < 0.75), STANDARD[0])
 
 
 def _name_of(axis: Vector) -> Formula | str:
