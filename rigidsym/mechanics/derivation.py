@@ -114,7 +114,7 @@ class Quantity(NamedTuple):
     reason: str = ""  # how it follows, a key of templates/notes/en/reasons.toml
     words: Callable[[Any], str] | None = None  # a sentence made of several reasons
     without: str = ""  # why a model may not have it
-    vectors: Literal["", "matrix", "vector", "rates"] = ""  # its form by the vector of coordinates
+    vectors: str = ""  # which form it has by a vector of coordinates: "rotation", "velocity", ...
     recursion: str = ""  # over the turns of a chain, in TeX; LAST is the number of turns
     section: str = ""  # of the note
     group: str = ""  # of the summary: a title for several results

@@ -12,7 +12,7 @@ from rigidsym.formula.reader import formula
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import MINUS, PLUS, Bracket, Formula, Matrix, bracketed, row
 from rigidsym.mechanics.derivation import VectorForm, VectorTerm
-from rigidsym.mechanics.kinematics.vector_forms import ALONG, CROSS, TWICE, V_DOT, V
+from rigidsym.mechanics.kinematics.vector_forms import CROSS, TWICE, V_DOT, V
 from rigidsym.models.rotation import TIME
 
 
@@ -128,11 +128,6 @@ _RATES: Mapping[Formula, tuple[Formula, ...]] = {  # of each vector, as a sum
     TWICE: (
         formula(r"\mathbf{v}\times(\mathbf{v}\times\ddot{\mathbf{v}})"),
         formula(r"\dot{\mathbf{v}}\times(\mathbf{v}\times\dot{\mathbf{v}})"),
-    ),
-    ALONG: (
-        formula(r"(\mathbf{v}\cdot\ddot{\mathbf{v}})\,\mathbf{v}"),
-        formula(r"(\dot{\mathbf{v}}\cdot\dot{\mathbf{v}})\,\mathbf{v}"),
-        formula(r"(\mathbf{v}\cdot\dot{\mathbf{v}})\,\dot{\mathbf{v}}"),
     ),
 }
 

@@ -12,8 +12,7 @@ import rigidsym as rs
 from rigidsym.algebra.integrate import Integrator
 from rigidsym.errors import BodyError, DerivationError
 from rigidsym.mechanics.body import BodyValues
-from rigidsym.mechanics.derivation import VectorTerm
-from rigidsym.mechanics.kinematics.vector_forms import Vectors
+from rigidsym.mechanics.kinematics.vector_forms import FORMS
 from rigidsym.mechanics.mass.moments import moments_of
 from rigidsym.models.body import Solid
 
@@ -60,13 +59,11 @@ def test_a_second_door_would_be_seen(source):
     "quantity", ["angular_velocity_space", "rotation_matrix", "rates_from_angular_velocity_body"]
 )
 def test_a_wrong_coefficient_of_a_vector_form_is_refused(monkeypatch, quantity):
-    right = Vectors.terms
-
-    def wrong(*given):
-        first, *others = right(*given)
-        return (VectorTerm(first.coefficient + 1, first.vector), *others)
-
-    monkeypatch.setattr(Vectors, "terms", wrong)
+    form = FORMS["quaternion", 3]
+    wrong = {
+        name: (values[0] + 1, *values[1:]) for name, values in form._asdict().items() if values
+    }
+    monkeypatch.setitem(FORMS, ("quaternion", 3), form._replace(**wrong))
     with pytest.raises(DerivationError, match=r"in terms of v.* is false"):
         rs.derive("gibbs_vector", [quantity])
 

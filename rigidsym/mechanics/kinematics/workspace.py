@@ -20,7 +20,7 @@ from rigidsym.algebra.witness import configurations
 from rigidsym.errors import DerivationError, NotARotation
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Argument, Proof, Quantity, Step, VectorForm
-from rigidsym.mechanics.kinematics.vector_forms import matrix_form, vector_form
+from rigidsym.mechanics.kinematics.vector_forms import vector_form
 from rigidsym.mechanics.prove import Prover, identity
 from rigidsym.mechanics.quantities.table import arguments_of
 from rigidsym.models.rotation import RotationModel
@@ -290,17 +290,4 @@ class Values(Workspace):
         return self.codec.matrix(sp.Matrix(rows)) if rows else None
 
     def vector_form(self, quantity: Quantity, value: Any, /) -> VectorForm | None:
-        if not self.model.vector or not quantity.vectors:
-            return None
-        matrix, below = value if isinstance(value, tuple) else (value, self.codec.ring.one)
-        prove, vector, symbol = self.prove, self.model.vector, quantity.symbol
-        if quantity.vectors == "vector":
-            return vector_form(prove, vector, matrix, symbol)
-        if quantity.vectors == "matrix":
-            return matrix_form(prove, vector, matrix, below, symbol)
-        frame = quantity.frame
-        assert frame is not None
-        inverse = self.inverse(frame.name)
-        assert inverse is not None
-        omega = frame.omega, self.argument(f"omega_{frame.name}")
-        return matrix_form(prove, vector, *inverse, symbol, to=omega)
+        return vector_form(self, quantity, value)

@@ -47,7 +47,7 @@ rotation_matrix = Quantity(
     inputs=("q",),
     value=lambda k: k.shown,
     laws=_of_rotation("R", ORTHOGONAL),
-    vectors="matrix",
+    vectors="rotation",
     reason="product_of_turns",
     section=TURNED,
     group="The rotation",
@@ -136,7 +136,7 @@ spin_matrix = Quantity(
 )
 
 _VELOCITY: dict[str, Any] = {
-    **{"unit": "rad/s", "inputs": ("q", "q_dot"), "shape": "vector", "vectors": "vector"},
+    **{"unit": "rad/s", "inputs": ("q", "q_dot"), "shape": "vector", "vectors": "velocity"},
     **{"source": SOURCES["Murray 2.4"], "section": ANGULAR_VELOCITY, "is_result": True},
     "group": "The angular velocity",
 }
@@ -200,7 +200,7 @@ def _rate_matrix(frame: Frame, *, of_chain: str, columns: str) -> Quantity:
         laws=(
             law(r"#1\dot\q = #2", lambda k, x: x @ k.argument("q_dot") - k.omega(name), *symbols),
         ),
-        vectors="matrix",
+        vectors="rate_matrix",
         reason=f"coefficients_{name}",
         section=OF_RATES,
         group="The rate matrices",
@@ -229,7 +229,7 @@ def _inverse_rate_matrix(frame: Frame, **reasons: str) -> Quantity:
         source=SOURCES["Diebel 5"],
         value=lambda k: k.inverse(name),
         laws=inverts(frame.inverse),
-        vectors="matrix",
+        vectors="inverse",
         reason=f"inverse_{name}",
         section=OF_RATES,
         group="Their inverses",
