@@ -8,13 +8,12 @@ holds in its ring holds for every rotation. Vectors without a derivation are fre
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from functools import cache, reduce
-from typing import TypeAlias
+from functools import cache, cached_property, reduce
+from operator import add
 
 import sympy as sp
-from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import codec_for
 from rigidsym.algebra.matrix import RingMatrix, hat, unhat
@@ -36,8 +35,6 @@ _LINE = sp.symbols("e_1:4")
 _TENSOR = sp.Matrix(3, 3, lambda i, j: sp.Symbol(f"I_{min(i, j) + 1}{max(i, j) + 1}"))
 
 _ITEM = re.compile(r"\n    (?=(?:=|\w+:) )(\S+) ")  # "=" or the name of a claim
-
-Residual: TypeAlias = "RingMatrix | PolyElement"
 
 
 @cache
@@ -74,7 +71,7 @@ def _statement(section: str, heading: str, body: str) -> Statement:
 @cache
 def theory() -> tuple[Statement, ...]:
     """The equations in order, each with what was proved of it."""
-    work = _Theory()
+    work = Equations()
     return tuple(
         statement._replace(proofs=work.proofs(statement), summands=work.summands(statement))
         for statement in statements()
@@ -85,7 +82,7 @@ def _rates(functions: Sequence[sp.Expr]) -> list[sp.Expr]:
     return [sp.diff(function, TIME) for function in functions]
 
 
-class _Theory:
+class Equations:
     """Free vectors, one particle and one rotation, over one ring."""
 
     def __init__(self) -> None:
@@ -97,186 +94,132 @@ class _Theory:
         self.codec = codec_for(
             [*moving, *_rates(moving), *fixed, *model.matrix], constraints=constraints, order=1
         )
-        self.ring = self.codec.ring
         example = (*model.example, *unit_example(_LINE, 3))
         subject = Conditions("lecture", constraints, tuple(moving), example=example)
         self.prover = Prover(subject, self.codec)
         self.R = self.codec.matrix(model.matrix)
-        self.R_dot = self.R.dt()
-        self.x, self.x_dot = self.codec.column(_PLACE), self.codec.column(_rates(_PLACE))
-        self.r, self.r_dot = self.codec.column(_CENTRE), self.codec.column(_rates(_CENTRE))
-        self.at_rest, self.line = self.codec.column(IN_BODY), self.codec.column(_LINE)
-        self.omega, self.u, self.v, self.w = map(self.codec.column, (_OMEGA, _U, _V, _W))
-        self.I = self.codec.matrix(_TENSOR)
-        self.one = RingMatrix.identity(self.ring, 3)
-        self.m, self.M = self.codec.encode(MASS), self.codec.encode(_WHOLE)
-        own = [MASS, *_PLACE, *_rates(_PLACE)]
-        nothing = {MASS * part: sp.S.Zero for part in own[1:]}
-        self.sum = ParticleSums(self.codec, own, {MASS: _WHOLE, **nothing})
-        moments = {MASS * rate: sum_ for rate, sum_ in zip(own[4:], _V, strict=True)}
-        self.sum_of_any = ParticleSums(self.codec, own, {MASS: _WHOLE, **moments})  # Σ m ẋ = v
-        pairs = zip(own[1:], [*_CENTRE, *_rates(_CENTRE)], strict=True)
-        self.sum_of_places = ParticleSums(
-            self.codec, own, {MASS: _WHOLE, **{MASS * part: _WHOLE * mean for part, mean in pairs}}
-        )
+        self.m = self.codec.encode(MASS)
+        # Σ m = M, and Σ m x = 0 with its derivative, for positions from the centre of mass
+        places = [*_PLACE, *_rates(_PLACE)]
+        self.about_centre = dict.fromkeys(places, sp.S.Zero)
+        self.about_origin = dict(zip(places, [*_CENTRE, *_rates(_CENTRE)], strict=True))
 
     def proofs(self, statement: Statement) -> tuple[Proof, ...]:
         """Each claim of a statement, put to the ring."""
-        proofs = []
-        for name, claim in statement.claims:
-            left = _CLAIMS[name](self)
-            matrix = left if isinstance(left, RingMatrix) else RingMatrix.column(self.ring, [left])
-            proofs.append(self.prover.vanishes(matrix, claim))
-        return tuple(proofs)
+        claims = statement.claims
+        return tuple(self.prover.vanishes(self.residuals[name], claim) for name, claim in claims)
 
     def summands(self, statement: Statement) -> sp.ImmutableMatrix | None:
-        """The matrix of the generic particle, where the statement shows one."""
+        """The matrix of the generic particle, if the statement shows one."""
         if not statement.shows_summands:
             return None
-        tensor = self.inertia(self.at_rest)
+        tensor = self.inertia(self.codec.column(IN_BODY)).scale(self.m)
         return presenter_for(self.codec).matrix(tensor)
 
-    # One particle.
+    @property
+    def basis(self) -> list[RingMatrix]:
+        rows = RingMatrix.identity(self.codec.ring, 3).rows
+        return [RingMatrix.column(self.codec.ring, row) for row in rows]
 
     def inertia(self, place: RingMatrix) -> RingMatrix:
-        """m (e_j × x)·(e_k × x), the summand of equation 4."""
-        crossed = [unit.cross(place) for unit in self.units]
-        rows = [[self.ring.reduce(self.m * self.dot(u, v)) for v in crossed] for u in crossed]
-        return RingMatrix.of(self.ring, rows)
+        """(e_j × x)·(e_k × x), the summand of equation 4 but for the mass."""
+        crossed = [unit.cross(place) for unit in self.basis]
+        rows = [[(u.T @ v)[0, 0] for v in crossed] for u in crossed]
+        return RingMatrix(self.codec.ring, tuple(map(tuple, rows)))
 
-    @property
-    def units(self) -> list[RingMatrix]:
-        return [RingMatrix.column(self.ring, row) for row in self.one.rows]
+    def sum_by(self, means: Mapping[sp.Expr, sp.Expr]) -> Callable[[RingMatrix], RingMatrix]:
+        """Σ m of a matrix, for the means of the positions and velocities that are known."""
+        known = {MASS: _WHOLE, **{MASS * part: _WHOLE * mean for part, mean in means.items()}}
+        sums = ParticleSums(self.codec, [MASS, *_PLACE, *_rates(_PLACE)], known)
+        return lambda summand: sums.of_matrix(summand.scale(self.m))
 
-    def crossed(self) -> list[RingMatrix]:
-        """e_j × x for the three vectors of the basis."""
-        return [unit.cross(self.x) for unit in self.units]
-
-    def spin(self) -> RingMatrix:
-        """Ω of the rotation, from the skew matrix dR/dt Rᵀ."""
-        return unhat(self.R_dot @ self.R.T)
-
-    # Products over the ring.
-
-    def dot(self, first: RingMatrix, second: RingMatrix) -> PolyElement:
-        return (first.T @ second)[0, 0]
-
-    def square(self, vector: RingMatrix) -> PolyElement:
-        return self.dot(vector, vector)
-
-    def added(self, vectors: Iterable[RingMatrix]) -> RingMatrix:
-        return reduce(lambda a, b: a + b, vectors)
-
-    def form(self, matrix: RingMatrix, vector: RingMatrix) -> PolyElement:
-        """vᵀ M v."""
-        return self.dot(vector, matrix @ vector)
-
-    def diagonal(self) -> RingMatrix:
-        """The tensor in its principal axes."""
-        zero = self.ring.zero
-        rows = [[self.I[j, k] if j == k else zero for k in range(3)] for j in range(3)]
-        return RingMatrix.of(self.ring, rows)
-
-
-_CLAIMS: dict[str, Callable[[_Theory], Residual]] = {
-    "no_moment": lambda t: t.sum_of_places.of_matrix((t.x - t.r).scale(t.m)),
-    "no_momentum": lambda t: t.sum_of_places.of_matrix((t.x_dot - t.r_dot).scale(t.m)),
-    "no_mixed_energy": lambda t: t.sum.of(t.m * t.dot(t.x_dot, t.r_dot)),
-    "squares": lambda t: (
-        t.square(t.r_dot + t.x_dot)
-        - (t.square(t.r_dot) + 2 * t.dot(t.x_dot, t.r_dot) + t.square(t.x_dot))
-    ),
-    "mass_outside": lambda t: (
-        t.sum_of_any.of(t.m * t.square(t.r_dot + t.x_dot))
-        - t.sum_of_any.of(t.m * t.square(t.r_dot))
-        - 2 * t.dot(t.r_dot, t.v)
-        - t.sum_of_any.of(t.m * t.square(t.x_dot))
-    ),
-    "energy_splits": lambda t: (
-        t.sum.of(t.m * t.square(t.r_dot + t.x_dot))
-        - t.ring.reduce(t.M * t.square(t.r_dot))
-        - t.sum.of(t.m * t.square(t.x_dot))
-    ),
-    "skew": lambda t: t.R_dot @ t.R.T + (t.R_dot @ t.R.T).T,
-    "turning": lambda t: t.R_dot @ t.at_rest - t.spin().cross(t.R @ t.at_rest),
-    "in_the_basis": lambda t: (
-        t.omega.cross(t.x) - t.added(e.scale(t.omega[j, 0]) for j, e in enumerate(t.crossed()))
-    ),
-    "coefficients": lambda t: (
-        t.square(t.omega.cross(t.x))
-        - t.ring.dot(
-            (t.omega[j, 0] * t.omega[k, 0], t.dot(u, v))
-            for j, u in enumerate(t.crossed())
-            for k, v in enumerate(t.crossed())
+    @cached_property
+    def residuals(self) -> dict[str, RingMatrix]:
+        """What vanishes if a claim holds, by its name."""
+        column, inertia, R = self.codec.column, self.inertia, self.R
+        x, x_dot, r, r_dot = map(column, (_PLACE, _rates(_PLACE), _CENTRE, _rates(_CENTRE)))
+        at_rest, line, omega, u, v, w = map(column, (IN_BODY, _LINE, _OMEGA, _U, _V, _W))
+        ring, one = self.codec.ring, RingMatrix.identity(self.codec.ring, 3)
+        tensor, mass = self.codec.matrix(_TENSOR), self.codec.encode(_WHOLE)
+        principal = self.codec.matrix(sp.diag(*_TENSOR.diagonal()))
+        R_dot, spin, two = R.dt(), R.dt() @ R.T, ring.one + ring.one
+        turning, carried, crossed = unhat(spin), omega.cross(x), [e.cross(x) for e in self.basis]
+        total, about_origin = self.sum_by(self.about_centre), self.sum_by(self.about_origin)
+        mean_rate = dict(zip(_rates(_PLACE), [part / _WHOLE for part in _V], strict=True))
+        about_any = self.sum_by(mean_rate)  # Σ m ẋ = v
+        # sums over the basis
+        in_basis = reduce(add, (e.scale(omega[j, 0]) for j, e in enumerate(crossed)))
+        coefficients = reduce(
+            add,
+            (
+                (a.T @ b).scale(ring.reduce(omega[j, 0] * omega[k, 0]))
+                for j, a in enumerate(crossed)
+                for k, b in enumerate(crossed)
+            ),
         )
-    ),
-    "energy_is_a_form": lambda t: (
-        t.sum.of(t.m * t.square(t.omega.cross(t.x))) - t.sum.of(t.form(t.inertia(t.x), t.omega))
-    ),
-    "symmetric": lambda t: t.inertia(t.x) - t.inertia(t.x).T,
-    "whole_vector": lambda t: (
-        t.added(e.scale(t.dot(t.omega, e)) for e in (t.R @ unit for unit in t.units)) - t.omega
-    ),
-    "keeps_products": lambda t: t.dot(t.u, t.v) - t.dot(t.R @ t.u, t.R @ t.v),
-    "goes_over": lambda t: t.dot(t.R.T @ t.u, t.v) - t.dot(t.u, t.R @ t.v),
-    "components": lambda t: t.R.T @ t.omega - (t.omega.T @ t.R).T,
-    "inverse": lambda t: t.R @ t.R.T - t.one,
-    "and_back": lambda t: t.R @ (t.R.T @ t.omega) - t.omega,
-    "same_energy": lambda t: t.form(t.I, t.R @ t.omega) - t.form(t.R.T @ t.I @ t.R, t.omega),
-    "tensor_turns": lambda t: t.R.T @ t.inertia(t.R @ t.at_rest) @ t.R - t.inertia(t.at_rest),
-    "entries": lambda t: t.inertia(t.x) - (t.one.scale(t.square(t.x)) - t.x @ t.x.T).scale(t.m),
-    "lagrange": lambda t: (
-        t.dot(t.u.cross(t.v), t.w.cross(t.omega))
-        - t.ring.reduce(
-            t.dot(t.u, t.w) * t.dot(t.v, t.omega) - t.dot(t.u, t.omega) * t.dot(t.v, t.w)
-        )
-    ),
-    "about_a_line": lambda t: (
-        t.sum.of(t.m * t.square(t.x - t.line.scale(t.dot(t.x, t.line))))
-        - t.sum.of(t.form(t.inertia(t.x), t.line))
-    ),
-    "stays_symmetric": lambda t: t.R.T @ t.I @ t.R - (t.R.T @ t.I @ t.R).T,
-    "energy_in_principal_axes": lambda t: (
-        t.form(t.diagonal(), t.omega)
-        - t.ring.dot((t.I[k, k], t.omega[k, 0] ** 2) for k in range(3))
-    ),
-    "four_products": lambda t: (
-        (t.r + t.x).cross(t.r_dot + t.x_dot)
-        - t.added(a.cross(b) for a in (t.r, t.x) for b in (t.r_dot, t.x_dot))
-    ),
-    "centre_outside": lambda t: (
-        t.sum_of_any.of_matrix(t.r.cross(t.r_dot + t.x_dot).scale(t.m))
-        - t.r.cross(t.r_dot).scale(t.M)
-        - t.r.cross(t.v)
-    ),
-    "momentum_splits": lambda t: (
-        t.sum.of_matrix((t.r + t.x).cross(t.r_dot + t.x_dot).scale(t.m))
-        - t.r.cross(t.r_dot).scale(t.M)
-        - t.sum.of_matrix(t.x.cross(t.x_dot).scale(t.m))
-    ),
-    "no_mixed_momentum": lambda t: t.sum.of_matrix(
-        (t.r.cross(t.x_dot) + t.x.cross(t.r_dot)).scale(t.m)
-    ),
-    "double_product": lambda t: (
-        t.x.cross(t.omega.cross(t.x))
-        - (t.omega.scale(t.square(t.x)) - t.x.scale(t.dot(t.x, t.omega)))
-    ),
-    "momentum_is_linear": lambda t: t.sum.of_matrix(
-        t.x.cross(t.omega.cross(t.x)).scale(t.m) - t.inertia(t.x) @ t.omega
-    ),
-    "components_of_momentum": lambda t: (
-        t.diagonal() @ t.omega
-        - RingMatrix.column(t.ring, [t.I[k, k] * t.omega[k, 0] for k in range(3)])
-    ),
-    "twice_the_energy": lambda t: (
-        t.sum.of(t.dot(t.x.cross(t.omega.cross(t.x)).scale(t.m), t.omega))
-        - t.sum.of(t.m * t.square(t.omega.cross(t.x)))
-    ),
-    "velocity": lambda t: t.R_dot @ t.at_rest - t.R_dot @ t.R.T @ (t.R @ t.at_rest),
-    "operator": lambda t: hat(t.u) @ t.v - t.u.cross(t.v),
-    "spin": lambda t: t.R_dot @ t.R.T - hat(t.spin()),
-    "body_spin": lambda t: t.R.T @ t.R_dot - hat(t.R.T @ t.spin()),
-}
+        components = reduce(add, ((R @ e).scale((omega.T @ (R @ e))[0, 0]) for e in self.basis))
+
+        def square(vector: RingMatrix) -> RingMatrix:
+            return vector.T @ vector
+
+        def form(matrix: RingMatrix, vector: RingMatrix) -> RingMatrix:
+            return vector.T @ matrix @ vector
+
+        return {
+            "no_moment": about_origin(x - r),
+            "no_momentum": about_origin(x_dot - r_dot),
+            "no_mixed_energy": total(x_dot.T @ r_dot),
+            "squares": square(r_dot + x_dot)
+            - (square(r_dot) + (x_dot.T @ r_dot).scale(two) + square(x_dot)),
+            "mass_outside": about_any(square(r_dot + x_dot))
+            - square(r_dot).scale(mass)
+            - (r_dot.T @ v).scale(two)
+            - about_any(square(x_dot)),
+            "energy_splits": total(square(r_dot + x_dot))
+            - square(r_dot).scale(mass)
+            - total(square(x_dot)),
+            "skew": spin + spin.T,
+            "turning": R_dot @ at_rest - turning.cross(R @ at_rest),
+            "in_the_basis": carried - in_basis,
+            "coefficients": square(carried) - coefficients,
+            "energy_is_a_form": total(square(carried)) - total(form(inertia(x), omega)),
+            "symmetric": inertia(x) - inertia(x).T,
+            "whole_vector": components - omega,
+            "keeps_products": u.T @ v - (R @ u).T @ (R @ v),
+            "goes_over": (R.T @ u).T @ v - u.T @ (R @ v),
+            "components": R.T @ omega - (omega.T @ R).T,
+            "inverse": R @ R.T - one,
+            "and_back": R @ (R.T @ omega) - omega,
+            "same_energy": form(tensor, R @ omega) - form(R.T @ tensor @ R, omega),
+            "tensor_turns": R.T @ inertia(R @ at_rest) @ R - inertia(at_rest),
+            "entries": inertia(x) - (one.scale(square(x)[0, 0]) - x @ x.T),
+            "lagrange": u.cross(v).T @ w.cross(omega)
+            - ((u.T @ w) @ (v.T @ omega) - (u.T @ omega) @ (v.T @ w)),
+            "about_a_line": total(square(x - line @ (x.T @ line))) - total(form(inertia(x), line)),
+            "stays_symmetric": R.T @ tensor @ R - (R.T @ tensor @ R).T,
+            "energy_in_principal_axes": form(principal, omega)
+            - RingMatrix.column(
+                ring, [ring.dot((tensor[k, k], omega[k, 0] ** 2) for k in range(3))]
+            ),
+            "four_products": (r + x).cross(r_dot + x_dot)
+            - reduce(add, (a.cross(b) for a in (r, x) for b in (r_dot, x_dot))),
+            "centre_outside": about_any(r.cross(r_dot + x_dot))
+            - r.cross(r_dot).scale(mass)
+            - r.cross(v),
+            "momentum_splits": total((r + x).cross(r_dot + x_dot))
+            - r.cross(r_dot).scale(mass)
+            - total(x.cross(x_dot)),
+            "no_mixed_momentum": total(r.cross(x_dot) + x.cross(r_dot)),
+            "double_product": x.cross(carried) - (omega @ square(x) - x @ (x.T @ omega)),
+            "momentum_is_linear": total(x.cross(carried) - inertia(x) @ omega),
+            "components_of_momentum": principal @ omega
+            - RingMatrix.column(ring, [tensor[k, k] * omega[k, 0] for k in range(3)]),
+            "twice_the_energy": total(x.cross(carried).T @ omega - square(carried)),
+            "velocity": R_dot @ at_rest - spin @ (R @ at_rest),
+            "operator": hat(u) @ v - u.cross(v),
+            "spin": spin - hat(turning),
+            "body_spin": R.T @ R_dot - hat(R.T @ turning),
+        }
 
 
 # The equations of the lecture that these quantities evaluate; steps towards 16 share its number.
