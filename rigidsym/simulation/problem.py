@@ -391,7 +391,6 @@ class Problem:
             first_integrals=self.integrals(t, states, self.parameters),
             inertia=self.inertia,
             is_in_angles={*self.model.coordinate_units} == {"rad"},
-            is_free=self.forces.leave_free(self.model),
             ended=ended,
             remarks=tuple(remarks),
         )

@@ -15,7 +15,7 @@ from rigidsym.simulation.problem import Problem, with_motion
 from rigidsym.simulation.trajectory import Array, Trajectory
 from rigidsym.system.processes import time_limit
 
-METHODS = ("DOP853", "RK45", "Radau", "LSODA", "exact")
+METHODS = ("DOP853", "Radau", "exact")
 _POLE = 1e-3  # of the singularity margin: nearer to a pole, coordinates lose digits
 # A motion comes to an end where the steps become a millionth of the longest one and stay so: at a
 # regular motion the error control never shortens them by more than some thousand times.

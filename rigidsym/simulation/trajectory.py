@@ -34,7 +34,6 @@ class Trajectory:
     rotation_matrix: Array  # (n, 3, 3), body to space components
     first_integrals: Mapping[str, Array]  # (n,) each
     inertia: Array  # (3, 3), kg m², about the fixed point in the axes of the body
-    is_free: bool = False  # nothing acts on the body
     ended: str = ""  # why the motion ends before its time, if it does
     is_in_angles: bool = True  # the coordinates, in radians
     remarks: tuple[str, ...] = ()  # such as a pole that was passed
@@ -93,28 +92,18 @@ def relative_changes(integrals: Mapping[str, Array], momentum: Array) -> dict[st
 
 
 def save_plot(path: Path, motion: Trajectory) -> Path:
-    """One sheet of pictures, PNG, SVG or PDF by the ending; raises MissingExtra.
-
-    Of a free body it shows the polhode on the ellipsoid of energy, and the herpolhode in the
-    invariable plane.
-    """
+    """One sheet of pictures, PNG, SVG or PDF by the ending; raises MissingExtra."""
     check_picture(path)
     try:
         from matplotlib.figure import Figure
     except ModuleNotFoundError as error:
         raise MissingExtra("a picture", "plot") from error
-    rows: list[Any] = [["q", "axis", "drift"] if motion.first_integrals else ["q", "axis"]]
-    if motion.is_free:
-        rows = [["q", "q", "axis"], ["polhode", "herpolhode", "drift"]]
-    size = (4 * len(rows[0]), 4 * len(rows))
-    figure = Figure(figsize=size, layout="constrained")
-    solids = ("axis", "polhode")[: len(rows)]
-    panels = figure.subplot_mosaic(rows, per_subplot_kw={solids: {"projection": "3d"}})
+    names: list[Any] = ["q", "axis", "drift"] if motion.first_integrals else ["q", "axis"]
+    figure = Figure(figsize=(4 * len(names), 4), layout="constrained")
+    panels = figure.subplot_mosaic([names], per_subplot_kw={"axis": {"projection": "3d"}})
     _draw_coordinates(panels["q"], motion)
-    _draw_trace(panels["axis"], motion.rotation_matrix[:, :, 2], np.ones(3))
+    _draw_trace(panels["axis"], motion.rotation_matrix[:, :, 2])
     panels["axis"].set_title("Trace of the third body axis")
-    if motion.is_free:
-        _draw_poinsot(panels["polhode"], panels["herpolhode"], motion)
     if motion.first_integrals:
         axes = panels["drift"]
         for name, values in motion.changes.items():
@@ -133,22 +122,6 @@ def check_picture(path: Path, endings: Collection[str] = PICTURES) -> None:
         raise ModelError(f"{path}: expected a file that ends in {', '.join(endings)}")
 
 
-def _draw_poinsot(solid: Any, plane: Any, motion: Trajectory) -> None:
-    """Ω′ along the principal axes on the ellipsoid of energy, and Ω seen along L."""
-    moments, axes = np.linalg.eigh(motion.inertia)
-    polhode = motion.angular_velocity_body @ axes
-    _draw_trace(solid, polhode, np.sqrt(np.sum(moments * polhode[0] ** 2) / moments), "123")
-    solid.set_title("Polhode on the energy ellipsoid,\naxes in the order of the moments")
-    rotation, omega = motion.rotation_matrix, motion.angular_velocity_body
-    momentum = rotation[0] @ motion.inertia @ omega[0]
-    across = np.linalg.svd(momentum[None])[2][1:]  # two unit vectors normal to L
-    herpolhode = np.einsum("nij,nj->ni", rotation, omega) @ across.T
-    plane.plot(*herpolhode.T, linewidth=0.8)
-    plane.plot(*herpolhode[0], "o", color="C3", markersize=4)
-    plane.plot(0, 0, "+", color="0.4")
-    plane.set(aspect="equal", xlabel="rad/s", title="Herpolhode in the invariable plane")
-
-
 def _draw_coordinates(axes: Any, motion: Trajectory) -> None:
     """All of them; angles that wind on are left out, since they would dwarf the others."""
     names = (f"$\\{name}$" if name in _GREEK else name for name in motion.coordinates)
@@ -163,19 +136,18 @@ def _draw_coordinates(axes: Any, motion: Trajectory) -> None:
     axes.legend(fontsize="small")
 
 
-def _draw_trace(axes: Any, points: Array, size: Array, names: str = "xyz") -> None:
-    """A curve on an ellipsoid, its beginning, and the axes."""
+def _draw_trace(axes: Any, points: Array) -> None:
+    """A curve on the unit sphere, its beginning, and the axes."""
     latitude, longitude = np.meshgrid(np.linspace(0, np.pi, 37), np.linspace(0, 2 * np.pi, 73))
     across = np.sin(latitude)
     sphere = (across * np.cos(longitude), across * np.sin(longitude), np.cos(latitude))
-    surface = (part * length for part, length in zip(sphere, size, strict=True))
-    axes.plot_wireframe(*surface, rstride=6, cstride=6, color="0.75", linewidth=0.5)
+    axes.plot_wireframe(*sphere, rstride=6, cstride=6, color="0.75", linewidth=0.5)
     axes.plot(*points.T, color="C0", linewidth=1.4)
     axes.scatter(*points[:1].T, color="C3", s=18)
-    for name, end in zip(names, np.diag(size), strict=True):
+    for name, end in zip("xyz", np.eye(3), strict=True):
         axes.plot(*np.array([end, 1.15 * end]).T, color="0.4", linewidth=1)
         axes.text(*(1.28 * end), name, color="0.4", ha="center", va="center")
     axes.view_init(*_VIEW)
-    axes.set_box_aspect(size / size.max(), zoom=1.1)
-    axes.set(xlim=(-size[0], size[0]), ylim=(-size[1], size[1]), zlim=(-size[2], size[2]))
+    axes.set_box_aspect(np.ones(3), zoom=1.1)
+    axes.set(xlim=(-1, 1), ylim=(-1, 1), zlim=(-1, 1))
     axes.set_axis_off()

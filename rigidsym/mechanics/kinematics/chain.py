@@ -47,7 +47,7 @@ from rigidsym.models.rotation import TIME, RotationModel, Turn, hat, time_functi
 
 Vector: TypeAlias = sp.ImmutableMatrix  # (3, 1)
 Matrix: TypeAlias = sp.ImmutableMatrix  # (3, 3)
-_CLOSED_FORM = 3  # turns whose inverse rates and singular places textbooks write out
+_WRITTEN_OUT = 3  # turns that textbooks multiply out
 _ZERO, _ONE = sp.ImmutableMatrix(sp.zeros(3, 1)), sp.ImmutableMatrix(sp.eye(3))
 ANGLE = time_function("angle_of_the_turn")
 
@@ -56,20 +56,14 @@ def is_shorter(model: RotationModel) -> bool:
     """Whether a product of turns is shorter turn by turn than multiplied out.
 
     Textbooks write out three turns, unless all three axes are symbols: R then has 2,000 operations,
-    and proofs about it take minutes.
+    and proofs about it take minutes. A turn about a slanted axis counts for two, since its matrix
+    is full.
     """
-    slanted = {turn.direction for turn in model.turns if sp.Tuple(*turn.direction).free_symbols}
-    if max(len(model.turns) - 1, len(slanted)) < _CLOSED_FORM:
-        return False
-    # turn by turn: the product of two turns has hardly any sums
-    composed = sum(45 if turn.components else 18 for turn in model.turns[2:]) + 4
-    terms = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]  # multiplied out: a product and a sum for each term
-    for turn in model.turns:
-        own = [
-            [len(sp.Add.make_args(e)) * int(e != 0) for e in row] for row in turn.matrix.tolist()
-        ]
-        terms = [[sum(row[j] * own[j][k] for j in range(3)) for k in range(3)] for row in terms]
-    return composed < 2 * sum(map(sum, terms)) - 9
+    turns = model.turns
+    symbolic = {turn.direction for turn in turns if sp.Tuple(*turn.direction).free_symbols}
+    slanted = sum(bool(turn.components) for turn in turns)
+    is_long = len(turns) > _WRITTEN_OUT and len(turns) + slanted > _WRITTEN_OUT + 1
+    return is_long or len(symbolic) >= _WRITTEN_OUT
 
 
 # The law, over any matrices

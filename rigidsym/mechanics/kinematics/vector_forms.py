@@ -7,7 +7,7 @@ in v. Each form is proved equal to all entries for every v, as it is printed.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import sympy as sp
 from sympy.polys.rings import PolyElement
@@ -17,9 +17,6 @@ from rigidsym.algebra.ring import Quotient
 from rigidsym.formula.reader import formula
 from rigidsym.mechanics.derivation import Quantity, VectorForm, VectorTerm
 from rigidsym.models.rotation import TIME
-
-if TYPE_CHECKING:
-    from rigidsym.mechanics.kinematics.workspace import Values
 
 LENGTH = sp.Symbol("n", positive=True)  # |v|
 V = formula(r"\v")
@@ -85,8 +82,11 @@ def _forms() -> dict[tuple[str, int], Form]:
 FORMS = _forms()
 
 
-def vector_form(k: Values, quantity: Quantity, value: Any) -> VectorForm | None:
-    """The quantity in terms of the vector of the coordinates; None if there is no such form."""
+def vector_form(k: Any, quantity: Quantity, value: Any) -> VectorForm | None:
+    """The quantity in terms of the vector of the coordinates; None if there is no such form.
+
+    `k` is the workspace of the quantity (`kinematics.workspace`).
+    """
     model, kind, symbol = k.model, quantity.vectors, quantity.symbol
     head = model.definition.partition("(")[0]
     form = FORMS.get((head, len(model.coordinates))) if model.vector else None
@@ -144,7 +144,7 @@ def vector_form(k: Values, quantity: Quantity, value: Any) -> VectorForm | None:
 
 
 def _residual(
-    k: Values,
+    k: Any,
     terms: Sequence[VectorTerm],
     vectors: Sequence[RingMatrix],
     whole: RingMatrix,
