@@ -83,8 +83,7 @@ class Motion(Derivation):
         `unwrap`. `derivatives` adds functions that return a quantity and its derivative:
         {"angular_velocity_body": ("q", "q_dot")} adds `angular_velocity_body_jacobian_q` and
         `angular_velocity_body_jacobian_q_dot`.
-        `options` depend on the target: `kernels("c", precision="double", arrays=False, libm=True)`
-        prints lean C for firmware.
+        `options` depend on the target: `kernels("c", lean="double")` prints C for firmware.
         Raises KernelError for an unknown target, option or derivative.
         """
         return generate(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -16,7 +15,6 @@ from rigidsym.spec.derivation_spec import DerivationSpec
 from rigidsym.system.resources import overridden_by
 
 MOST_LINES = 150  # that a terminal shows by default
-_LEAN: Mapping[str, str | bool] = {"precision": "double", "arrays": False, "libm": True}
 
 
 def _use_templates(context: click.Context, _: object, folder: Path | None) -> None:
@@ -81,7 +79,7 @@ PRINTING = (
     ),
     flag(
         "--lean",
-        help="Print C for firmware: double precision, one orientation per call, <math.h>, a test.",
+        help="Print C for firmware: one plain function a quantity, double precision, <math.h>.",
     ),
     click.option(
         "--style",
@@ -120,7 +118,7 @@ def applied(options: Options, spec: DerivationSpec) -> DerivationSpec:
     kernels = chosen.get("target", spec.kernels)
     target_options = spec.target_options
     if "lean" in chosen:
-        kernels, target_options = (*kernels, "c"), {**target_options, "c": _LEAN}
+        kernels, target_options = (*kernels, "c"), {**target_options, "c": {"lean": "double"}}
     note = (*spec.note, "pdf") if "pdf" in chosen else spec.note
     return replace(
         spec,

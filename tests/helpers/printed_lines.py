@@ -48,15 +48,11 @@ PRINTED: dict[str, list[dict[str, Any]]] = {
     "series": [{}, {"conversions": True, "derivatives": ("rotation_matrix by q",)}],
 }
 _PROSE = re.compile(r'""".*?"""|/\*.*?\*/', re.DOTALL)
-LEAN = {"precision": "double", "arrays": False, "libm": True}
+LEAN = {"lean": "double"}
 OF_C: dict[str, list[dict[str, Any]]] = {
     "turn": [LEAN | {"conversions": True}],
-    "turns": [{"precision": "float"}, {"arrays": False}, {"libm": True}, {"precision": "double"}],
-    "series": [LEAN, LEAN | {"precision": "float", "libm": False}],
-    "quaternion": [LEAN],
-    "long": [LEAN],
-    "matrix": [LEAN],
-    "top": [LEAN | {"precision": "both"}],
+    "series": [LEAN, {"lean": "float"}],
+    **{name: [LEAN] for name in ("quaternion", "long", "matrix", "top")},
 }
 
 

@@ -102,21 +102,6 @@ def test_a_tree_gets_the_brackets_it_needs_and_no_others(tree, text):
     assert infix(tree) == text
 
 
-@pytest.mark.parametrize(
-    ("tree", "text"),
-    [
-        (Sum((a, Product((b, c)))), "a + (b * c)"),
-        (Sum((a, b, Negative(c))), "a + b - c"),
-        (Product((a, b), (c,)), "a * b / c"),
-        (Negative(Product((a, b))), "-(a * b)"),
-        (OVER, "(a + b) < c"),
-    ],
-    ids=str,
-)
-def test_explicit_brackets_leave_nothing_to_the_order_of_operators(tree, text):
-    assert infix(tree, explicit=True) == text
-
-
 def test_a_target_has_its_own_words():
     words = {"sin": "Math.sin", "nan": "NaN", "choice": "{0} ? {1} : {2}", "==": "==="}
     assert infix(Call("sin", a), words) == "Math.sin(a)"

@@ -43,7 +43,7 @@ def test_a_full_file():
         certificates = true
         derivatives = ["angular_velocity_body:q"]
         [output.c]
-        libm = true
+        lean = "float"
         """
     )
     assert spec == DerivationSpec(
@@ -52,7 +52,7 @@ def test_a_full_file():
         models=(EulerAngles("zyx", ("psi", "theta", "lambda"), passive=True),),
         quantities=("angular_velocity_body", "rotation_matrix"),
         kernels=("numpy", "c"),
-        target_options={"c": {"libm": True}},
+        target_options={"c": {"lean": "float"}},
         note=("tex", "pdf"),
         style="audit",
         conversions=True,

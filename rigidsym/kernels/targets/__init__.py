@@ -21,7 +21,11 @@ from rigidsym.errors import KernelError, MissingExtra, offer
 if TYPE_CHECKING:
     from rigidsym.kernels.ir import Program
 
-_REMOVED = {"degrees": "angles are in radians; convert them with np.radians and np.degrees"}
+_ONE_TYPE = 'lean = "double" or "float" prints one plain function a quantity, over <math.h>'
+_REMOVED = {
+    "degrees": "angles are in radians; convert them with np.radians and np.degrees",
+    **dict.fromkeys(("precision", "arrays", "libm"), _ONE_TYPE),
+}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -63,11 +67,7 @@ TARGETS: dict[str, Target] = {  # the default first
         ending=".c",
         stands_alone=False,
         programs=("cc", "gcc", "clang"),
-        options={
-            "precision": ("both", "double", "float"),
-            "arrays": (True, False),
-            "libm": (False, True),
-        },
+        options={"lean": ("none", "double", "float")},
     ),
     "javascript": Target(
         about="NAME.mjs: an ES module without dependencies, and its types in NAME.d.mts; no unwrap",

@@ -1,19 +1,16 @@
 """Kernels in C99: a header and a source without dependencies.
 
 No function allocates memory, recurses or keeps state; the caller owns all arguments and results.
-Two more files let `rigidsym build` make a Python module of them; without arrays, or in one
-precision, there is a test instead.
+Two more files let `rigidsym build` make a Python module of them. Lean C is for firmware: one plain
+function a quantity, in one type, with the functions of <math.h>.
 """
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
 from math import pi
 from textwrap import indent, wrap
 from types import ModuleType
-from typing import Any
 
 from rigidsym.kernels.ir import (
     Call,
@@ -24,12 +21,10 @@ from rigidsym.kernels.ir import (
     Program,
     functions_of,
     last_order,
-    names_in,
 )
 from rigidsym.kernels.lowering.schedule import narrowed
 from rigidsym.kernels.lowering.trigonometry import two_over_pi
 from rigidsym.kernels.targets import numpy, remarks
-from rigidsym.kernels.targets.expected_values import samples_of
 from rigidsym.kernels.targets.infix import infix
 from rigidsym.kernels.targets.precision import EITHER, PRECISIONS, Precision
 from rigidsym.kernels.targets.python import WIDTH, bracketed
@@ -48,47 +43,24 @@ _TILE = 32  # orientations that are evaluated side by side
 _WORDS = {"choice": "{0} ? {1} : {2}"}
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Contents:
-    """What a source holds; the values are those of the target's options."""
-
-    precision: str = "both"
-    arrays: bool = True
-    libm: bool = False
-
-    @property
-    def is_module(self) -> bool:
-        """Whether a Python module can be made of it."""
-        return self.arrays and self.precision == "both"
-
-
-def render(program: Program, **options: Any) -> dict[str, str]:
-    """The source, the header, and what makes a Python module of them, or else a test."""
-    contents, name = Contents(**options), program.name
-    room = _WIDTH - len("    const double  = ;")
+def render(program: Program, *, lean: str = "none") -> dict[str, str]:
+    """The source, the header, and what makes a Python module of them."""
+    name, room = program.name, _WIDTH - len("    const double  = ;")
     kernels = [
         narrowed(kernel, lambda e: infix(e, _WORDS), line=room, output=room)
         for kernel in program.kernels
     ]
-    precisions = [p for p in PRECISIONS if contents.precision in ("both", p.real)]
-    files = {
-        f"{name}.c": _source(program, kernels, precisions, contents),
-        f"{name}.h": _header(program, kernels, precisions, contents),
+    precisions = [p for p in PRECISIONS if lean in ("none", p.real)]
+    header = _header(program, kernels, precisions, is_lean=lean != "none")
+    if lean != "none":
+        return {f"{name}.c": _lean(program, kernels, precisions[0]), f"{name}.h": header}
+    functions = [numpy.function(kernel, _called(kernel)) for kernel in program.kernels]
+    return {
+        f"{name}.c": _source(program, kernels),
+        f"{name}.h": header,
+        f"{name}_c.py": numpy.module_text(program, "c/module.py.jinja", functions, name=name),
+        f"{name}_module.c": _module(name, kernels),
     }
-    if contents.is_module:
-        functions = [numpy.function(kernel, _called(kernel)) for kernel in program.kernels]
-        face = numpy.module_text(program, "c/module.py.jinja", functions, name=name)
-        return files | {f"{name}_c.py": face, f"{name}_module.c": _module(name, kernels)}
-    tests = []
-    for p in precisions:
-        tested = [
-            {"name": f"{name}_{k.name}", "outputs": len(k.outputs), "samples": samples}
-            for k in kernels
-            if (samples := list(samples_of(k, p)))
-        ]
-        tests.append({"real": p.real, "suffix": p.suffix, "functions": tested})
-    test = _rendered("c/test.c.jinja", name=name, precisions=tests)
-    return files | {f"{name}_test.c": test}
 
 
 def load(name: str, files: Mapping[str, str]) -> ModuleType:
@@ -98,47 +70,68 @@ def load(name: str, files: Mapping[str, str]) -> ModuleType:
     return load_built(f"{name}_c", files, lambda folder: build(folder / f"{name}.c"))
 
 
-def _source(
-    program: Program, kernels: Sequence[Kernel], precisions: Sequence[Precision], contents: Contents
-) -> str:
+def _source(program: Program, kernels: Sequence[Kernel]) -> str:
     called, last = functions_of(kernels), last_order(kernels)
     groups = (g for k in kernels for g in (k.outputs, *(a.components for a in k.arguments)))
-    typed = EITHER if contents.arrays or len(precisions) > 1 else precisions[0]
     digits = [f"0x{word:08x}" for word in two_over_pi()]
     return _rendered(
         "c/source.c.jinja",
         title=_safe(program.title),
         name=program.name,
         tile=_TILE,
-        arrays=contents.arrays,
-        libm=contents.libm,
-        has_angles=not contents.libm and (last >= 0 or not called.isdisjoint(("sin", "cos"))),
-        has_arctangents=not contents.libm and "atan2" in called,
+        has_angles=last >= 0 or not called.isdisjoint(("sin", "cos")),
+        has_arctangents="atan2" in called,
         has_guards=any(kernel.guards for kernel in kernels),
         has_series=last >= 0,
         orders=max(2, last) + 1,
-        is_both=len(precisions) > 1,
-        is_typed=typed is EITHER,
-        precisions=[{**p.filled(last), "eps": p.of_eps(), "least": p.least} for p in precisions],
-        functions=[_function(program, kernel, typed, contents) for kernel in kernels],
+        precisions=[{**p.filled(last), "eps": p.of_eps(), "least": p.least} for p in PRECISIONS],
+        functions=[_function(program, kernel) for kernel in kernels],
         two_over_pi=",\n".join("    " + ", ".join(digits[k : k + 6]) for k in range(0, 40, 6)),
         half_pi=repr(pi / 2),
         widths=sorted(set(map(len, groups))),
     )
 
 
+def _lean(program: Program, kernels: Sequence[Kernel], precision: Precision) -> str:
+    functions = []
+    for kernel in kernels:
+        lines = [
+            f"(void){a.name};" for a in kernel.arguments if kernel.used.isdisjoint(a.components)
+        ]
+        lines += [
+            f"const {precision.real} {name} = {a.name}[{k}];"
+            for a in kernel.arguments
+            for k, name in enumerate(a.components)
+            if name in kernel.used
+        ]
+        for name, value in kernel.statements:
+            lines += _statement(kernel, name, value, precision, is_lean=True)
+        lines += [f"out[{k}] = {_text(e, precision)};" for k, e in enumerate(kernel.outputs)]
+        functions.append({"signature": _signature(program, kernel, precision), "lines": lines})
+    last = last_order(kernels)
+    return _rendered(
+        "c/lean.c.jinja",
+        title=_safe(program.title),
+        name=program.name,
+        precision=precision.filled(last),
+        has_guards=any(kernel.guards for kernel in kernels),
+        has_series=last >= 0,
+        orders=max(2, last) + 1,
+        functions=functions,
+    )
+
+
 def _header(
-    program: Program, kernels: Sequence[Kernel], precisions: Sequence[Precision], contents: Contents
+    program: Program, kernels: Sequence[Kernel], precisions: Sequence[Precision], *, is_lean: bool
 ) -> str:
-    has_floats = contents.precision != "double"
-    options = {"arrays": contents.arrays, "libm": contents.libm, "has_floats": has_floats}
-    about = remarks.about_module("c/header.txt.jinja", program, tile=_TILE, **options)
+    facts = {"is_lean": is_lean, "has_floats": precisions[-1].suffix == "f", "tile": _TILE}
+    about = remarks.about_module("c/header.txt.jinja", program, **facts)
     functions = []
     for kernel in kernels:
         declared = []
         for p in precisions:
             declared.append(_signature(program, kernel, p))
-            declared += [_array_signature(program, kernel, p)] if contents.arrays else []
+            declared += [] if is_lean else [_array_signature(program, kernel, p)]
         text = remarks.about_kernel("c/function.txt.jinja", kernel)
         functions.append({"about": _comment(text), "declared": declared})
     guard = f"{program.name.upper()}_H"
@@ -219,127 +212,79 @@ def _listed(head: str, items: Sequence[str]) -> str:
     return f"{head}\n    " + ",\n    ".join(items) + ")"
 
 
-def _function(
-    program: Program, kernel: Kernel, precision: Precision, contents: Contents
-) -> dict[str, Any]:
-    """The pieces of text that the template of the source places."""
-    body = _Body(kernel, precision, contents)
-    ends = [0]
-    for argument in kernel.arguments:
-        ends.append(ends[-1] + len(argument.components))
+def _function(program: Program, kernel: Kernel) -> dict[str, object]:
+    """The pieces of text that the template of the source places, for either type."""
+    arguments: list[dict[str, object]] = []
+    for a in kernel.arguments:
+        place = sum(len(before.components) for before in kernel.arguments[: len(arguments)])
+        arguments.append({"name": a.name, "size": len(a.components), "place": place})
     return {
         "name": kernel.name,
-        "signature": _signature(program, kernel, precision),
-        "array_signature": _array_signature(program, kernel, precision),
-        "arguments": [
-            {"name": a.name, "size": len(a.components), "place": place}
-            for a, place in zip(kernel.arguments, ends, strict=False)
-        ],
-        "inputs": ends[-1],
+        "signature": _signature(program, kernel, EITHER),
+        "array_signature": _array_signature(program, kernel, EITHER),
+        "arguments": arguments,
+        "inputs": len(kernel.components),
         "outputs": len(kernel.outputs),
-        "lines": list(body.side_by_side() if contents.arrays else body.plain()),
+        "lines": list(_side_by_side(kernel)),
     }
 
 
-@dataclass(frozen=True, slots=True)
-class _Body:
-    """The statements of a kernel in one precision."""
+def _side_by_side(kernel: Kernel) -> Iterator[str]:
+    """Of a function of one row among others, whose components are `apart`."""
+    components = enumerate(kernel.components)
+    read = [f"{name} = {_entry('in', k)}" for k, name in components if name in kernel.used]
+    unbroken = ", ".join(item.replace(" ", "\xa0") for item in read)
+    text = f"    const {EITHER.real} {unbroken};"
+    for line in wrap(text, _WIDTH, subsequent_indent=" " * 8) if read else ():
+        yield line.replace("\xa0", " ").removeprefix("    ")
+    for name, value in kernel.statements:
+        yield from _statement(kernel, name, value, EITHER)
+    for k, output in enumerate(kernel.outputs):
+        yield f"{_entry('out', k)} = {_text(output, EITHER)};"
 
-    kernel: Kernel
-    precision: Precision
-    contents: Contents
 
-    def side_by_side(self) -> Iterator[str]:
-        """Of a function of one row among others, whose components are `apart`."""
-        components = enumerate(self.kernel.components)
-        read = [f"{name} = {_entry('in', k)}" for k, name in components if name in self.kernel.used]
-        unbroken = ", ".join(item.replace(" ", "\xa0") for item in read)
-        text = f"    const {self.precision.real} {unbroken};"
-        for line in wrap(text, _WIDTH, subsequent_indent=" " * 8) if read else ():
-            yield line.replace("\xa0", " ").removeprefix("    ")
-        for name, value in self.kernel.statements:
-            yield from self._lines(name, value)
-        for k, output in enumerate(self.kernel.outputs):
-            yield f"{_entry('out', k)} = {self._text(output)};"
+def _statement(
+    kernel: Kernel,
+    name: str,
+    value: Expression | dict[str, Call],
+    precision: Precision,
+    *,
+    is_lean: bool = False,
+) -> Iterator[str]:
+    real, named = precision.real, precision.named
+    match value:
+        case dict():  # all functions c_k of one square
+            square = next(iter(value.values())).argument.text
+            tracked, far = ("", "") if is_lean else ("beyond |= ", "far, ")
+            yield f"{real} _entire_{square}[ORDERS];"
+            yield f"{tracked}{named('entire')}({far}{square}, _entire_{square});"
+            for called, call in value.items():
+                yield f"const {real} {called} = _entire_{square}[{call.order}];"
+        case Guarded(divisor, scale, power):
+            limit = precision.least
+            if scale is not None:
+                limit = f"{precision.of_eps(power)} * {_text(scale, precision)}"
+            yield f"const {real} {name} = {named('or_nan')}({divisor.text}, {limit});"
+        case Call("sin" | "cos", argument) if not is_lean:
+            both, angle = kernel.sines[argument], argument.text
+            if name == next(iter(both.values())):
+                sine, cosine = (both.get(f, f"_{f}_{angle}") for f in ("sin", "cos"))
+                yield f"SIN_COS({angle}, {sine}, {cosine});"
+        case Call("eps"):
+            yield f"const {real} {name} = {precision.of_eps()};"
+        case Call(called):
+            own = {} if is_lean else {"atan2": "angle_of"}
+            function = {"abs": "fabs", **own}.get(called, called)
+            given = ", ".join(argument.text for argument in value.arguments)
+            yield f"const {real} {name} = {named(function)}({given});"
+        case _:
+            kind = "int" if isinstance(value, Compare) else real
+            yield f"const {kind} {name} = {_text(value, precision)};"
 
-    def plain(self) -> Iterator[str]:
-        """Of a function of one orientation; an entry of the result follows the values it needs.
 
-        So few values wait at a time, and the compiler needs little stack for them.
-        """
-        kernel, lines = self.kernel, list[str]()
-        waiting = dict(enumerate(kernel.outputs))
-        defined = {*kernel.components}
-        for name, value in (("", {}), *kernel.statements):
-            lines += self._lines(name, value) if name else ()
-            defined |= {*value} if isinstance(value, dict) else {*self._defined_by(name)}
-            for k, output in tuple(waiting.items()):
-                if defined.issuperset(names_in(output)):
-                    lines.append(f"out[{k}] = {self._text(waiting.pop(k))};")
-        used = set(re.findall(r"\w+", "\n".join(lines)))
-        for a in kernel.arguments:
-            if kernel.used.isdisjoint(a.components):
-                yield f"(void){a.name};"
-        for a in kernel.arguments:
-            for k, name in enumerate(a.components):
-                if name in used:
-                    yield f"const {self.precision.real} {name} = {a.name}[{k}];"
-        yield from lines
-
-    def _defined_by(self, name: str) -> Iterable[str]:
-        """The names of a statement: own sines and cosines of one angle come together."""
-        call = self.kernel.calls.get(name)
-        if self.contents.libm or call is None or call.function not in ("sin", "cos"):
-            return (name,)
-        both = self.kernel.sines[call.argument]
-        return both.values() if name == next(iter(both.values())) else ()
-
-    def _reduced(self, helper: str, *arguments: str) -> str:
-        """A call of a helper that reduces angles, in arrays the far ones later."""
-        called = self.precision.named(helper)
-        if self.contents.libm:
-            return f"{called}({', '.join(arguments)});"
-        tracked, far = ("beyond |= ", "far") if self.contents.arrays else ("(void)", "1")
-        return f"{tracked}{called}({', '.join((far, *arguments))});"
-
-    def _lines(self, name: str, value: Expression | dict[str, Call]) -> Iterator[str]:
-        real, named = self.precision.real, self.precision.named
-        match value:
-            case dict():  # all functions c_k of one square
-                (square,) = {call.argument.text for call in value.values()}
-                yield f"{real} _entire_{square}[ORDERS];"
-                yield self._reduced("entire", square, f"_entire_{square}")
-                for called, call in value.items():
-                    yield f"const {real} {called} = _entire_{square}[{call.order}];"
-            case Guarded(divisor, scale, power):
-                limit = self.precision.least
-                if scale is not None:
-                    limit = f"{self.precision.of_eps(power)} * {self._text(scale)}"
-                yield f"const {real} {name} = {named('or_nan')}({divisor.text}, {limit});"
-            case Call("sin" | "cos", argument) if not self.contents.libm:
-                both, angle = self.kernel.sines[argument], argument.text
-                if name == next(iter(both.values())):
-                    sine, cosine = (both.get(f, f"_{f}_{angle}") for f in ("sin", "cos"))
-                    if self.contents.arrays:
-                        yield f"SIN_COS({angle}, {sine}, {cosine});"
-                    else:
-                        yield f"{real} {sine}, {cosine};"
-                        yield self._reduced("sin_cos", angle, f"&{sine}", f"&{cosine}")
-            case Call("eps"):
-                yield f"const {real} {name} = {self.precision.of_eps()};"
-            case Call(called):
-                own = {} if self.contents.libm else {"atan2": "angle_of"}
-                function = {"abs": "fabs", **own}.get(called, called)
-                given = ", ".join(argument.text for argument in value.arguments)
-                yield f"const {real} {name} = {named(function)}({given});"
-            case _:
-                kind = "int" if isinstance(value, Compare) else real
-                yield f"const {kind} {name} = {self._text(value)};"
-
-    def _text(self, expression: Expression) -> str:
-        words = {**_WORDS, "nan": f"({self.precision.real})NAN"}  # the macro is a float
-        is_explicit = not self.contents.is_module
-        return infix(expression, words, self.precision.literal, explicit=is_explicit)
+def _text(expression: Expression, precision: Precision) -> str:
+    words = {**_WORDS, "nan": f"({precision.real})NAN"}  # the macro is a float
+    return infix(expression, words, precision.literal)
 
 
 def _entry(array: str, k: int) -> str:

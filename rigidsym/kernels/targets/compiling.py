@@ -50,8 +50,7 @@ def build(source: Path, *, portable: bool = False) -> Path:
     needed = [folder / text.format(name) for text in (*_SOURCES, "{}.h", "{}_c.py")]
     if missing := [str(path) for path in needed if not path.is_file()]:
         raise CheckError(
-            f"{', '.join(missing)}: not found; rigidsym derive --target c writes it, with arrays "
-            "and both precisions"
+            f"{', '.join(missing)}: not found; rigidsym derive --target c writes it, without --lean"
         )
     library = folder / f"_{name}_c{sysconfig.get_config_var('EXT_SUFFIX')}"
     handle, draft = tempfile.mkstemp(dir=folder, prefix=".", suffix=".so")

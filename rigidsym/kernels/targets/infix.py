@@ -31,18 +31,15 @@ def infix(
     expression: Expression,
     functions: Mapping[str, str] = MappingProxyType({}),
     number: Literal = repr,
-    *,
-    explicit: bool = False,
 ) -> str:
     """The expression in one line; `functions` are the target's names for functions.
 
     A function without a name there keeps its own; "or_nan" names the function of guards, "None"
     their missing scale. A name with {} is a form for the arguments. "choice" there is a form with
     three places, the condition first, "nan" a word, and "==" the sign of equality. `number` is how
-    the target writes a number. With `explicit`, no reader needs to know which operator binds more
-    tightly (MISRA C:2012, rule 12.1).
+    the target writes a number.
     """
-    return _whole(expression, tuple(functions.items()), number, explicit)
+    return _whole(expression, tuple(functions.items()), number)
 
 
 @lru_cache(maxsize=4096)  # lines are measured before they are printed, and kernels are shared
@@ -50,20 +47,16 @@ def _whole(
     expression: Expression,
     functions: tuple[tuple[str, str], ...],
     number: Literal,
-    explicit: bool,
 ) -> str:
-    return _text(expression, dict(functions), number, explicit)[0]
+    return _text(expression, dict(functions), number)[0]
 
 
-def _text(
-    expression: Expression, functions: Mapping[str, str], number: Literal, explicit: bool
-) -> tuple[str, int]:
+def _text(expression: Expression, functions: Mapping[str, str], number: Literal) -> tuple[str, int]:
     """The text, and how tightly it holds together."""
 
     def within(part: Expression, tightness: int) -> str:
-        text, held = _text(part, functions, number, explicit)
-        is_clear = held in (tightness, _ATOM) if explicit else held >= tightness
-        return text if is_clear else f"({text})"
+        text, held = _text(part, functions, number)
+        return text if held >= tightness else f"({text})"
 
     match expression:
         case Name(text):
@@ -80,18 +73,16 @@ def _text(
             return _called(functions.get(function, function), names), _ATOM
         case Compare(relation, left, right):
             sign = functions.get(relation, relation)
-            side = _ATOM if explicit else _SUM
-            return f"{within(left, side)} {sign} {within(right, side)}", _CHOICE
+            return f"{within(left, _SUM)} {sign} {within(right, _SUM)}", _CHOICE
         case Choice():
             form = functions.get("choice", "{1} if {0} else {2}")
-            held = _ATOM if explicit else _CHOICE
-            return form.format(*(within(part, held) for part in parts(expression))), _CHOICE
+            return form.format(*(within(part, _CHOICE) for part in parts(expression))), _CHOICE
         case Guarded(value, scale, power):
             limit = functions.get("None", "None") if scale is None else within(scale, _SUM)
             given = [value.text, limit, *([str(power)] if power != 1 else [])]
             return _called(functions.get("or_nan", "or_nan"), given), _ATOM
         case Negative(operand):
-            return f"-{within(operand, _ATOM if explicit else _PRODUCT)}", _SUM
+            return f"-{within(operand, _PRODUCT)}", _SUM
         case Sum(terms):
             first, *others = (within(term, _SUM) for term in terms)
             signed = (f"- {t[1:]}" if t.startswith("-") else f"+ {t}" for t in others)
