@@ -1,4 +1,4 @@
-"""Certificates of the whole catalogue and of the lecture: bytes, seconds, and who accepts them."""
+"""Certificates of the whole catalogue and of the lecture: seconds, and who accepts them."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ from rigidsym.models.library import PARAMETRISATIONS, rotation_from
 from rigidsym.models.parametrisations import EULER_SEQUENCES
 from rigidsym.motion import derive
 from rigidsym.notes.formats.record import record
-from rigidsym.tools.certificate.certificate import certificate_of
-from rigidsym.tools.certificate.checker import BROKEN, verify
-from rigidsym.tools.certificate.formal import DEFINITIONS, coq, definitions
+from rigidsym.tools.certificate.certificate import DEFINITIONS, certificate_of, definitions
+from rigidsym.tools.certificate.checker import verify
 
 SLOW = ("rotation_vector",)  # all quantities take minutes
+UNCOVERED = ("direction_cosines",)
 LECTURE = (
     *("rotation_matrix", "spin_matrix", "angular_velocity_space", "angular_velocity_body"),
     *("inertia_tensor", "translational_energy", "rotational_energy", "kinetic_energy"),
@@ -34,9 +34,9 @@ LECTURE = (
 COLUMNS = (
     Column("rotation", ""),
     Column("claims", "d"),
-    Column("bytes", "d"),
-    Column("to write, s", ".2f"),
+    Column("without a theorem", "d"),
     Column("to check, s", ".2f"),
+    Column("to write, s", ".2f"),
     Column("Coq, s", ".1f"),
 )
 
@@ -51,38 +51,35 @@ def run(settings: Settings) -> Report:  # noqa: ARG001  (as the others)
     progress()
     accepted = f"{len(rows) - len(refused)} of {len(rows)}"
     return Report(
-        title="Certificates: bytes and seconds",
+        title="Certificates: seconds",
         tables=(
             Table("all kinematic quantities; the lecture's with a body", COLUMNS, tuple(rows)),
         ),
-        figures=(Figure("certificates accepted by all programs", "all", accepted, not refused),),
+        figures=(Figure("certificates accepted by Coq", "all", accepted, not refused),),
     )
 
 
 def _cases() -> Iterator[tuple[str, dict[str, Any]]]:
-    for name in (*EULER_SEQUENCES, *(name for name in PARAMETRISATIONS if name not in SLOW)):
+    others = (name for name in PARAMETRISATIONS if name not in (*SLOW, *UNCOVERED))
+    for name in (*EULER_SEQUENCES, *others):
         yield name, record(derive(rotation_from(name)), {})
     body = principal_moments(*sp.symbols("A B C", positive=True))
     yield "lecture", record(derive(rotation_from("ZXZ"), LECTURE, body=body), {})
 
 
-def _row(folder: Path, name: str, found: dict[str, Any], refused: list[str]) -> tuple[Cell, ...]:
+def _row(folder: Path, name: str, data: dict[str, Any], refused: list[str]) -> tuple[Cell, ...]:
     progress(name)
-    content: dict[str, Any] = json.loads(json.dumps(found))
+    content: dict[str, Any] = json.loads(json.dumps(data))
     start = perf_counter()
-    certificate = certificate_of(content)
-    text = certificate.json
-    written = perf_counter()
-    try:
-        verify(content, json.loads(text))
-    except BROKEN:
-        refused.append(name)
+    verify(content)
     checked = perf_counter()
-    (folder / "claims.v").write_text(coq(content, certificate.claims), encoding="utf-8")
+    certificate = certificate_of(content)
+    (folder / "claims.v").write_text(certificate.text, encoding="utf-8")
+    written = perf_counter()
     if not _compiles(folder, "claims.v"):
-        refused.append(f"{name} by Coq")
-    times = written - start, checked - written, perf_counter() - checked
-    return (name, len(certificate.claims), len(text), *times)
+        refused.append(name)
+    times = checked - start, written - checked, perf_counter() - written
+    return (name, len(certificate.claims), len(certificate.uncovered), *times)
 
 
 def _compiles(folder: Path, name: str) -> bool:

@@ -44,6 +44,7 @@ class Output(NamedTuple):
     motion: Motion
     conversions: Conversions | None  # if they were asked for
     files: Mapping[str, str]  # name -> content, for the folder motion.name; the record comes last
+    uncovered: tuple[str, ...] = ()  # quantities that a certificate was asked for, in vain
 
     @property
     def name(self) -> str:

@@ -11,12 +11,12 @@ import click
 
 from rigidsym.commands.command import command as make
 from rigidsym.commands.options import TEMPLATES
-from rigidsym.commands.output_folder import CERTIFICATE, CERTIFICATES, content_of, printed
+from rigidsym.commands.output_folder import CERTIFICATE, content_of, printed
 from rigidsym.errors import CheckError
 from rigidsym.notes.formats.record import SCHEMA, SCHEMA_VERSION
 from rigidsym.pipeline import read_record
 from rigidsym.system.files import read_bytes
-from rigidsym.tools.certificate.checker import BROKEN, Refused, Unreadable, load, printed_in, verify
+from rigidsym.tools.certificate.checker import BROKEN, load, verify
 
 
 @make("rigidsym check out", TEMPLATES)
@@ -50,7 +50,7 @@ def _records(path: Path) -> list[Path]:
     """
     if path.is_dir():
         files = sorted(file for file in path.rglob("*.json") if _is_record(file))
-    else:  # NAME.json is also beside NAME.cert.json and NAME.d.mts
+    else:  # NAME.json is also beside NAME.d.mts
         files = [path.with_name(path.name.partition(".")[0] + ".json")]
     if not any(file.exists() for file in files):
         raise CheckError(
@@ -78,13 +78,13 @@ def _findings(record: Path) -> Iterator[tuple[Path, str, str]]:
     for name, text in fresh.files.items():
         path = record.with_name(name)
         problem, note = difference(path, text), ""
-        if name.endswith(CERTIFICATE) and path.is_file():
-            refused, note = _proved_by(path, record)
+        if name == f"{record.stem}.{CERTIFICATE}" and path.is_file():
+            refused, note = _proved_in(record)
             problem = refused or problem
         yield path, problem, note
-    for path in map(record.with_suffix, (f".{ending}" for ending in CERTIFICATES)):
-        if path.name not in fresh.files and path.exists():
-            yield path, f"unknown to {record.name}: derive again with --certificates", ""
+    path = record.with_suffix(f".{CERTIFICATE}")
+    if path.name not in fresh.files and path.exists():
+        yield path, f"unknown to {record.name}: derive again with --certificates", ""
 
 
 def _damage(record: Path) -> str:
@@ -100,17 +100,14 @@ def _damage(record: Path) -> str:
     return "not the record of a derivation"
 
 
-def _proved_by(certificate: Path, record: Path) -> tuple[str, str]:
-    """Why the independent checker refuses a certificate, or what it proves and leaves out."""
+def _proved_in(record: Path) -> tuple[str, str]:
+    """Why the independent checker refuses a record, or what it proves and what it does not."""
     try:
-        content = load(record)
-        proved, quantities = verify(content, load(certificate)), printed_in(content)
-    except (Refused, Unreadable) as error:
-        return f"refused: {error}", ""
-    except BROKEN:
-        return "refused: no certificate of what is printed", ""
-    rest = [name for name in quantities if name not in proved]
-    return "", f"\n  proved: {', '.join(proved)}\n  not covered: {', '.join(rest) or 'nothing'}"
+        proved, reasons = verify(load(record))
+    except BROKEN as error:
+        return f"{record.name} is refused: {error}", ""
+    note = f"\n  proved: {', '.join(proved) or 'nothing'}"
+    return "", f"{note}\n  not proved: {', '.join(reasons) or 'nothing'}"
 
 
 def difference(path: Path, expected: str) -> str:

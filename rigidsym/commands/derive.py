@@ -18,7 +18,7 @@ from rigidsym.commands.options import (
     applied,
     of_rotation,
 )
-from rigidsym.commands.output_folder import CERTIFICATE, printed, with_existing_files, write
+from rigidsym.commands.output_folder import printed, with_existing_files, write
 from rigidsym.errors import RigidsymError
 from rigidsym.motion import Motion
 from rigidsym.notes.formats.pdf import typeset
@@ -114,10 +114,8 @@ def _made(single: DerivationSpec) -> Made:
 
 def _report_uncovered(output: Output) -> None:
     """A message on standard error if the certificate says nothing of some quantities."""
-    if output.spec.certificates:
-        uncovered = json.loads(output.files[f"{output.name}.{CERTIFICATE}"])["uncovered"]
-        if uncovered:
-            message(f"{output.name}: the certificate does not cover {', '.join(uncovered)}")
+    if output.uncovered:
+        message(f"{output.name}: the certificate does not cover {', '.join(output.uncovered)}")
 
 
 def _show(output: Output, written: Sequence[Path], options: Options, *, is_only: bool) -> None:

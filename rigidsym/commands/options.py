@@ -90,8 +90,7 @@ PRINTING = (
     flag("--pdf", help="Also typeset the note; needs TeX."),
     flag(
         "--certificates",
-        help="Also write certificates that other programs can check: NAME.cert.json and "
-        "NAME.v (Coq).",
+        help="Also write NAME.v, theorems about the results that Coq checks.",
     ),
     JSON,
     flag("--full", help=f"Show all lines instead of the first {MOST_LINES}."),

@@ -13,8 +13,7 @@ from rigidsym.pipeline import PDF, Output, digest, output_of, read_record
 from rigidsym.spec.derivation_spec import DerivationSpec
 from rigidsym.system.files import locked, read_bytes, write_text
 
-CERTIFICATE = "cert.json"
-CERTIFICATES = (CERTIFICATE, "v")  # NAME.v is for Coq
+CERTIFICATE = "v"  # NAME.v, theorems for Coq
 
 
 def printed(spec: DerivationSpec) -> Output:
@@ -22,13 +21,12 @@ def printed(spec: DerivationSpec) -> Output:
     output = output_of(spec)
     if not spec.certificates:
         return output
-    from rigidsym.tools.certificate import certificate, formal  # few derivations ask for one
+    from rigidsym.tools.certificate import certificate  # few derivations ask for one
 
-    record = json.loads(output.record_text)
-    proved = certificate.certificate_of(record)
-    texts = zip(CERTIFICATES, (proved.json, formal.coq(record, proved.claims)), strict=True)
-    files = {f"{output.name}.{ending}": text for ending, text in texts}
-    return output.joined_by({**files, formal.DEFINITIONS: formal.definitions()})
+    theorems = certificate.certificate_of(json.loads(output.record_text))
+    files = {f"{output.name}.{CERTIFICATE}": theorems.text}
+    joined = output.joined_by({**files, certificate.DEFINITIONS: certificate.definitions()})
+    return joined._replace(uncovered=tuple(theorems.uncovered))
 
 
 def with_existing_files(spec: DerivationSpec, out: Path) -> DerivationSpec:

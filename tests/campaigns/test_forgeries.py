@@ -1,7 +1,6 @@
-"""Forged certificates: whoever signs a false record, the checker and Coq refuse it.
+"""Forged records: whatever is false in one, the checker and Coq refuse it.
 
-The first seven were accepted by an earlier checker. A forger may write what he likes into both
-files, and signs: every forgery here has the digest of its own record.
+The first seven were accepted by an earlier checker. A forger may write what he likes into a record.
 """
 
 from __future__ import annotations
@@ -16,43 +15,28 @@ import pytest
 import sympy as sp
 
 import rigidsym as rs
-from helpers.certificates import certified, plain, printed, record_of, run_coq, signed
+from helpers.certificates import plain, printed, record_of, run_coq
 from rigidsym.notes.formats.record import record
 from rigidsym.tools.certificate import checker
-from rigidsym.tools.certificate.certificate import certificate_of
-from rigidsym.tools.certificate.formal import coq
+from rigidsym.tools.certificate.certificate import theorems
 
 Content = dict[str, Any]
-Forgery = tuple[Content, Content]  # a record and its certificate, signed
-RATES = "phi_dot", "theta_dot", "psi_dot"
+Change = Callable[[Content], object]
 VELOCITY, W = "angular_velocity_space", "rate_matrix_body"
 
 
 @cache
-def top() -> tuple[Content, str]:
+def top() -> Content:
     A, C = sp.symbols("A C", positive=True)
     names = ["rotation_matrix", "angular_velocity_body", "mass_matrix", "accelerations", "energy"]
     body = rs.principal_moments(A, A, C)
-    motion = rs.derive("ZXZ", names, body=body, potential="m*g*l*cos(theta)")
-    content = plain(record(motion, {}))
-    return content, certificate_of(content).json
+    return plain(record(rs.derive("ZXZ", names, body=body, potential="m*g*l*cos(theta)"), {}))
 
 
-def of_rotation(
-    text: str, change: Callable[[Content], object], claims: list[str] | None = None, **parts: Any
-) -> Forgery:
-    content = copy.deepcopy(record_of(text))
-    change(content)
-    if claims is None:
-        claims = json.loads(certified(text))["claims"]
-    return content, signed(content, certified(text), claims=claims, **parts)
-
-
-def of_top(change: Callable[[Content], object], **parts: Any) -> Forgery:
-    content, certificate = top()
+def changed(content: Content, change: Change) -> Content:
     content = copy.deepcopy(content)
     change(content)
-    return content, signed(content, certificate, **parts)
+    return content
 
 
 def put(name: str, *path: Any) -> Callable[[Content], None]:
@@ -101,45 +85,42 @@ def with_rates_in_v(content: Content) -> None:
     content["motion"]["potential"] = "k*phi_dot*cos(theta)"
 
 
-KNOWN: dict[str, Callable[[], Forgery]] = {
-    "a negative part of an angle": lambda: of_rotation(
-        "ZXZ", everywhere("phi_dot", "(-phi_dot)"), parts={"phi": -1}
-    ),
-    "a comment that hides a rate": lambda: of_rotation(
-        "ZXZ", put(W, 2, 0, "cos(theta) + psi_dot/phi_dot # '")
-    ),
-    "conditions that contradict each other": lambda: of_rotation(
+KNOWN: dict[str, tuple[str, Change]] = {
+    "a rate with the other sign": ("ZXZ", everywhere("phi_dot", "(-phi_dot)")),
+    "a comment that hides a rate": ("ZXZ", put(W, 2, 0, "cos(theta) + psi_dot/phi_dot # '")),
+    "conditions that contradict each other": (
         "ZXZ",
         conditions("phi - 1", "phi - 1 - 29682952539239999999", then=FALSE),
-        example={"phi": "1"},
     ),
-    "a condition without a real point": lambda: of_rotation(
-        "ZXZ", conditions("phi**2 + theta**2 + 1", then=FALSE)
-    ),
-    "a divisor that is zero": lambda: of_rotation(
-        "ZXZ", put("rotation_matrix", 2, 2, f"cos(theta) + 0/{ZERO}")
-    ),
-    "a potential that holds a rate": lambda: of_top(with_rates_in_v),
-    "a singular mass matrix": lambda: of_top(singular),
+    "a condition without a real point": ("ZXZ", conditions("phi**2 + theta**2 + 1", then=FALSE)),
+    "a divisor that is zero": ("ZXZ", put("rotation_matrix", 2, 2, f"cos(theta) + 0/{ZERO}")),
+    "a potential that holds a rate": ("top", with_rates_in_v),
+    "a singular mass matrix": ("top", singular),
 }
 
 
-def is_refused(forgery: Forgery) -> None:
-    content, certificate = forgery
-    with pytest.raises(checker.BROKEN):
-        checker.verify(content, certificate)
+def is_refused(content: Content, name: str | None = None) -> None:
+    """Not accepted as a whole, or at least not what is false in it."""
+    try:
+        proved, _ = checker.verify(content)
+    except checker.BROKEN:
+        return
+    assert not proved or (name is not None and name not in proved)
 
 
-def test_what_is_forged_here_is_accepted_as_it_was():
-    content, certificate = top()
-    assert checker.verify(content, signed(content, certificate))
-    for text in ("ZXZ", "unit_quaternion"):
-        assert checker.verify(record_of(text), signed(record_of(text), certified(text)))
+def original(name: str) -> Content:
+    return top() if name == "top" else record_of(name)
+
+
+@pytest.mark.parametrize("name", ["top", "ZXZ", "unit_quaternion"])
+def test_what_is_forged_here_is_accepted_as_it_was(name):
+    assert checker.verify(original(name))[1] == {}
 
 
 @pytest.mark.parametrize("name", KNOWN)
 def test_forgeries_that_were_once_accepted_are_refused(name):
-    is_refused(KNOWN[name]())
+    of, change = KNOWN[name]
+    is_refused(changed(original(of), change), PARTLY.get(name))
 
 
 def first_entry(content: Content, name: str) -> tuple[Any, int]:
@@ -164,11 +145,15 @@ CHANGES: dict[str, Callable[[str], str]] = {
     "a root of a negative number": lambda text: f"{text} + 0*sqrt(-1)",
     "the other root": lambda text: f"{text} + sqrt((1 + cos(phi))**2) + 1 + cos(phi)",
     "a root of a square": lambda text: f"{text} + sqrt(sin(phi)**2) - sin(phi)",
+    "a root of one square four times": lambda text: (
+        f"{text} + sqrt(psi**2 + psi**2 + psi**2 + psi**2) - 2*psi"
+    ),
+    "a root of a number that may be negative": lambda text: f"{text} + sqrt(cos(4)**2) - cos(4)",
     "a divisor that vanishes": lambda text: f"{text} + 0/(cos(phi)**2 + sin(phi)**2 - 1)",
     "a divisor of roots that vanishes": lambda text: f"{text} + 0/{ZERO}",
     "a divisor nearly zero": lambda text: f"{text} + phi*0/({ZERO}*10**39)",
     "a huge exponent": lambda text: f"({text})**999999999",
-    "exponents of exponents": lambda text: f"({text}) + ((1 + phi)**39)**39 - ((1 + phi)**39)**39",
+    "exponents of exponents": lambda text: f"({text}) + 0*((((1 + phi)**39)**39)**39)**39",
     "a long number": lambda text: f"{text} + 0*{'9' * 5000}",
     "a Greek letter": lambda text: text.replace("phi", "φ") + " + 0*φ",
     "a letter that looks alike": lambda text: f"{text} + 0*\u0440hi",  # Cyrillic р
@@ -198,8 +183,7 @@ def test_a_changed_entry_is_refused(change, name):
         row, place = first_entry(content, name)
         row[place] = CHANGES[change](row[place])
 
-    is_refused(of_rotation("ZXZ", spoil))
-    is_refused(of_rotation("ZXZ", spoil, claims=[name]))
+    is_refused(changed(record_of("ZXZ"), spoil), name)
 
 
 def _arguments(content: Content, group: str) -> list[Content]:
@@ -232,119 +216,72 @@ def in_body(part: str, value: Any) -> Callable[[Content], None]:
     return lambda content: content["body"].update({part: value})
 
 
-def others() -> Iterator[tuple[str, Callable[[], Forgery]]]:
-    """Forgeries of what the record says beside its entries, and of the certificate."""
+def units(name: str, unit: str) -> Change:
+    return lambda content: printed(content, name).update(unit=unit)
+
+
+def others() -> Iterator[tuple[str, str, Change]]:
+    """Forgeries of what the record says beside its entries."""
     for turns in ("z(phi) x(theta) x(psi)", "z(phi) y(theta) z(psi)", "z(-phi) x(theta) z(psi)"):
-        yield f"R is {turns}", lambda t=turns: of_rotation("ZXZ", turned(*t.split()))
-    yield "two turns", lambda: of_rotation("ZXZ", turned("z(phi)", "x(theta)"))
-    yield "an unknown turn", lambda: of_rotation("ZXZ", turned("q(phi)", "x(theta)", "z(psi)"))
-    yield (
-        "a turn about no unit vector",
-        lambda: of_rotation(
-            "ZXZ", turned("axis_angle(0, 0, 2, phi)", "x(theta)", "z(psi)"), claims=[]
-        ),
-    )
-    yield (
-        "a constant turn that is none",
-        lambda: of_rotation("ZXZ", turned("constant_turn(0, 0, 1, 1, 1)"), claims=[]),
-    )
-    yield "the transpose", lambda: of_rotation("ZXZ", lambda c: c.update(presentation="passive"))
-    yield (
-        "a record of another rotation",
-        lambda: (
-            record_of("ZYX"),
-            signed(record_of("ZYX"), certified("ZXZ")),
-        ),
-    )
-    yield (
-        "R by entries that are none",
-        lambda: of_rotation(
-            "ZXZ",
-            lambda c: c.update(rotation={"matrix": [["1", "0", "0"]] * 3, "conditions": []}),
-            claims=[],
-        ),
-    )
+        yield f"R is {turns}", "ZXZ", turned(*turns.split())
+    yield "two turns", "ZXZ", turned("z(phi)", "x(theta)")
+    yield "an unknown turn", "ZXZ", turned("q(phi)", "x(theta)", "z(psi)")
+    no_unit = "axis_angle(0, 0, 2, phi)"
+    yield "a turn about no unit vector", "ZXZ", turned(no_unit, "x(theta)", "z(psi)")
+    yield "a constant turn that is none", "ZXZ", turned("constant_turn(0, 0, 1, 1, 1)")
+    yield "the transpose", "ZXZ", lambda content: content.update(presentation="passive")
+    yield "neither active nor passive", "ZXZ", lambda c: c.update(presentation="Passive")
+    no_rotation = {"matrix": [["1", "0", "0"]] * 3, "conditions": []}
+    yield "R by entries that are none", "ZXZ", lambda c: c.update(rotation=no_rotation)
+    identity = [["1", "0", "0"], ["0", "1", "0"], ["0", "0", "1"]]
+    yield "turns and a matrix", "ZXZ", lambda c: c["rotation"].update(matrix=identity)
+    yield "no turns", "ZXZ", turned()
+    yield "another convention", "ZXZ", lambda content: content.update(name="euler_zyx_intrinsic")
     for name in ("phi", "sin", "phi_dot", "psi ", "рhi", "pi", "omega_space_1", "torque_1"):
-        yield f"a coordinate named {name!r}", lambda n=name: of_rotation("ZXZ", renamed("q", 1, n))
+        yield f"a coordinate named {name!r}", "ZXZ", renamed("q", 1, name)
     for name in ("theta_dot", "phidot", "phi_dot "):
-        yield f"a rate named {name!r}", lambda n=name: of_rotation("ZXZ", renamed("q_dot", 0, n))
+        yield f"a rate named {name!r}", "ZXZ", renamed("q_dot", 0, name)
+
+    def rate_by_definition(content: Content) -> None:
+        defined("a", "psi_dot/phi_dot")(content)
+        put(W, 2, 0, "cos(theta) + a")(content)
+
+    def circle(content: Content) -> None:
+        defined("a", "a")(content)
+        put(VELOCITY, 2, "a")(content)
+
+    def root_by_definition(content: Content) -> None:
+        defined("a", "3*phi")(content)
+        defined("b", "4*phi")(content)
+        put(VELOCITY, 2, "phi_dot + psi_dot*cos(theta) + sqrt(a**2 + b**2) - 5*phi")(content)
+
+    yield "a root of a square by definition", "ZXZ", root_by_definition
+    yield "a definition of a rate", "ZXZ", rate_by_definition
+    yield "a definition of a coordinate", "ZXZ", defined("phi", "psi")
+    yield "a definition in a circle", "ZXZ", circle
+    for text in ("phi - phi", "0*phi", "1", "(phi - 1)**2 + 10**-90", "phi**2 - 1", "0 - 1"):
+        yield f"the condition {text}", "ZXZ", conditions(text, then=FALSE)
+    sphere = "phi**2 + theta**2 - 1"
+    for pair in ((sphere, sphere), (sphere, "theta**2 + psi**2 - 1")):
+        yield f"conditions {pair}", "ZXZ", conditions(*pair, then=FALSE)
+    divisor = put(VELOCITY, 2, f"phi_dot + psi_dot*cos(theta) + 0/({sphere})")
+    yield "a divisor that vanishes under its condition", "ZXZ", conditions(sphere, then=divisor)
+    radius = put(VELOCITY, 2, "phi_dot + psi_dot*cos(theta) + sqrt(phi**2 + theta**2) + phi")
+    yield "the negative branch of a root", "ZXZ", radius
     yield (
-        "a definition of a rate",
-        lambda: of_rotation(
-            "ZXZ", lambda c: (defined("a", "psi_dot/phi_dot")(c), put(W, 2, 0, "cos(theta) + a")(c))
-        ),
+        "a condition that is missing",
+        "unit_quaternion",
+        lambda c: c["rotation"].update(conditions=[]),
     )
-    yield "a definition of a coordinate", lambda: of_rotation("ZXZ", defined("phi", "psi"))
+    yield "a component that is lost", "unit_quaternion", put(VELOCITY, 0, "0")
     yield (
-        "a definition in a circle",
-        lambda: of_rotation("ZXZ", lambda c: (defined("a", "a")(c), put(VELOCITY, 2, "a")(c))),
+        "a norm that is 2",
+        "unit_quaternion",
+        everywhere("w", "(w + w**2 + x**2 + y**2 + z**2 - 2)"),
     )
-    for text in ("phi - phi", "0*phi", "1", "phi - phi + 10**-70", "(phi - 1)**2 + 10**-90"):
-        yield (
-            f"the condition {text}",
-            lambda t=text: of_rotation("ZXZ", conditions(t, then=FALSE), example={"phi": "1"}),
-        )
-    for text in ("sqrt(2)", "1/0", "phi", "nan", "10**999"):
-        yield (
-            f"an example at {text}",
-            lambda t=text: of_rotation(
-                "ZXZ", conditions("phi - 1", then=FALSE), example={"phi": t}
-            ),
-        )
-    yield (
-        "a divisor that vanishes under the condition",
-        lambda: of_rotation(
-            "ZXZ",
-            conditions("phi**2 - 1", then=put(VELOCITY, 2, "phi_dot + 0/(phi**2 - 1)")),
-            example={"phi": "1"},
-        ),
-    )
-    yield (
-        "cofactors of nothing",
-        lambda: of_rotation(
-            "unit_quaternion", put(VELOCITY, 0, "0"), cofactors={f"{VELOCITY} 1": {"0": "1/0"}}
-        ),
-    )
-    yield "no cofactors", lambda: of_rotation("unit_quaternion", lambda _: None, cofactors={})
-    yield (
-        "an example off the sphere",
-        lambda: of_rotation("unit_quaternion", lambda _: None, example=dict.fromkeys("wxyz", "1")),
-    )
-    yield "no example", lambda: of_rotation("unit_quaternion", lambda _: None, example={})
-    yield (
-        "a claim made twice",
-        lambda: of_rotation("ZXZ", lambda _: None, claims=[VELOCITY, VELOCITY]),
-    )
-    yield (
-        "a claim about what is not printed",
-        lambda: of_rotation("ZXZ", lambda _: None, claims=["kinetic_energy"]),
-    )
-    yield (
-        "a quantity printed twice",
-        lambda: of_rotation(
-            "ZXZ", lambda c: c["quantities"].append(copy.deepcopy(c["quantities"][0]))
-        ),
-    )
-    yield (
-        "a name without a law",
-        lambda: of_rotation(
-            "ZXZ", lambda c: printed(c, VELOCITY).update(name="truth"), claims=["truth"]
-        ),
-    )
-    yield (
-        "a frame that is none",
-        lambda: of_rotation(
-            "ZXZ",
-            lambda c: printed(c, VELOCITY).update(name="angular_velocity_moon"),
-            claims=["angular_velocity_moon"],
-        ),
-    )
-    yield (
-        "a method of the checker",
-        lambda: of_rotation(
-            "ZXZ", lambda c: printed(c, VELOCITY).update(name="__init__"), claims=["__init__"]
-        ),
-    )
+    for name in ("angular_velocity_moon", "__init__", "truth"):
+        yield f"a quantity named {name}", "ZXZ", lambda c, n=name: printed(c, W).update(name=n)
+    yield "a quantity printed twice", "ZXZ", lambda c: c["quantities"].append(c["quantities"][0])
     for part, value in (
         ("potential", "k*theta_dot"),
         ("potential", "m*g*l*sin(theta)"),
@@ -353,60 +290,46 @@ def others() -> Iterator[tuple[str, Callable[[], Forgery]]]:
         ("forces", ["0", "theta_ddot", "0"]),
         ("torque", ["1", "0", "0"]),
     ):
-        yield f"{part} {value}", lambda p=part, v=value: of_top(in_motion(p, v))
+        yield f"{part} {value}", "top", in_motion(part, value)
     for tensor in (
         [["A", "0", "0"], ["0", "A", "0"], ["0", "0", "A"]],
         [["A*cos(phi)", "0", "0"], ["0", "A", "0"], ["0", "0", "C"]],
         [["A", "0", "0"], ["0", "A", "0"]],
     ):
-        yield f"a tensor {tensor}", lambda t=tensor: of_top(in_body("inertia", t))
-    identity = [["1", "0", "0"], ["0", "1", "0"], ["0", "0", "1"]]
-    lies: dict[str, Callable[[Content], object]] = {
-        "degrees a second": lambda c: printed(c, VELOCITY).update(unit="deg/s"),
-        "an angle in degrees": lambda c: _arguments(c, "q")[0].update(unit="deg"),
-        "a rate in degrees": lambda c: _arguments(c, "q_dot")[0].update(unit="deg/s"),
-        "turns and a matrix": lambda c: c["rotation"].update(matrix=identity),
-        "no turns": lambda c: c["rotation"].update(turns=[]),
-        "neither active nor passive": lambda c: c.update(presentation="Passive"),
-        "too many multiples of angles": put(VELOCITY, 2, "0*cos(39*phi + 39*theta + 39*psi)"),
-    }
-    for name, lie in lies.items():
-        yield name, lambda lie=lie: of_rotation("ZXZ", lie)
-    yield (
-        "the name of another convention",
-        lambda: of_rotation(
-            "ZXZ", lambda c: c.update(name="euler_zyx_intrinsic"), name="euler_zyx_intrinsic"
-        ),
-    )
-    yield (
-        "a motion under conditions",
-        lambda: of_top(
-            lambda c: c["rotation"].update(conditions=["theta - 1"]), example={"theta": "1"}
-        ),
-    )
+        yield f"a tensor {tensor}", "top", in_body("inertia", tensor)
+    yield "a motion under conditions", "top", lambda c: c["rotation"].update(conditions=[sphere])
+    yield "degrees a second", "ZXZ", units(VELOCITY, "deg/s")
+    yield "an angle in degrees", "ZXZ", lambda c: _arguments(c, "q")[0].update(unit="deg")
+    yield "a rate in degrees", "ZXZ", lambda c: _arguments(c, "q_dot")[0].update(unit="deg/s")
+    many = put(VELOCITY, 2, "0*cos(39*phi + 39*theta + 39*psi)")
+    yield "too many multiples of angles", "ZXZ", many
 
 
-OTHERS = dict(others())
+OTHERS = {name: (of, change) for name, of, change in others()}
+# True about the rest, so that only these are not accepted
+PARTLY = {"a quantity named angular_velocity_moon": "angular_velocity_moon"}
+PARTLY |= {f"a quantity named {name}": name for name in ("__init__", "truth")}
+PARTLY |= {"a motion under conditions": "accelerations", "too many multiples of angles": VELOCITY}
+PARTLY |= {"a divisor that is zero": "rotation_matrix"}
+PARTLY |= {"a root of a square by definition": VELOCITY, "the negative branch of a root": VELOCITY}
 
 
 @pytest.mark.campaign
 @pytest.mark.parametrize("name", OTHERS)
 def test_another_forgery_is_refused(name):
-    is_refused(OTHERS[name]())
+    of, change = OTHERS[name]
+    is_refused(changed(original(of), change), PARTLY.get(name))
 
 
 def test_there_are_sixty_forgeries():
     assert len(KNOWN) + len(CHANGES) + len(OTHERS) >= 60
 
 
-def test_double_keys_and_edits_after_the_fact_are_refused(tmp_path):
-    content = record_of("ZXZ")
+def test_double_keys_are_refused(tmp_path):
     path = tmp_path / "a.json"
-    path.write_text(json.dumps(content).replace('"title"', '"title": "", "title"', 1))
+    path.write_text(json.dumps(record_of("ZXZ")).replace('"title"', '"title": "", "title"', 1))
     with pytest.raises(checker.Refused, match="a key is there twice"):
         checker.load(path)
-    with pytest.raises(checker.Refused, match="not the one of this certificate"):
-        checker.verify({**content, "title": "another"}, json.loads(certified("ZXZ")))
 
 
 @pytest.mark.campaign
@@ -417,4 +340,4 @@ def test_coq_refuses_what_the_checker_would_have_let_through(tmp_path, change):
         content = copy.deepcopy(record_of("ZXZ"))
         row, place = first_entry(content, name)
         row[place] = CHANGES[change](row[place])
-        assert run_coq(tmp_path, coq(content, [name])) != 0, name
+        assert run_coq(tmp_path, theorems(content, [name]).text) != 0, name

@@ -1,8 +1,7 @@
-"""Records, their certificates, and changes of them."""
+"""Records, changes of them, and Coq."""
 
 from __future__ import annotations
 
-import copy
 import json
 import os
 import shutil
@@ -16,13 +15,11 @@ import pytest
 import rigidsym as rs
 from rigidsym.models.library import rotation_from
 from rigidsym.notes.formats.record import record
-from rigidsym.tools.certificate import checker
-from rigidsym.tools.certificate.certificate import certificate_of
-from rigidsym.tools.certificate.formal import DEFINITIONS, definitions
+from rigidsym.tools.certificate.certificate import DEFINITIONS, definitions
 
 
-def plain(found: dict[str, Any]) -> dict[str, Any]:
-    content: dict[str, Any] = json.loads(json.dumps(found))
+def plain(record: dict[str, Any]) -> dict[str, Any]:
+    content: dict[str, Any] = json.loads(json.dumps(record))
     return content
 
 
@@ -30,19 +27,6 @@ def plain(found: dict[str, Any]) -> dict[str, Any]:
 def record_of(text: str, quantities: tuple[str, ...] | None = None) -> dict[str, Any]:
     motion = rs.derive(rotation_from(text), *([quantities] if quantities else []))
     return plain(record(motion, {"rotations": [{"sequence": text}]}))
-
-
-@cache
-def certified(text: str, quantities: tuple[str, ...] | None = None) -> str:
-    return certificate_of(record_of(text, quantities)).json
-
-
-def signed(
-    found: dict[str, Any], certificate: str | dict[str, Any], **parts: Any
-) -> dict[str, Any]:
-    """A certificate for a changed record, as a forger would write it."""
-    content = json.loads(certificate) if isinstance(certificate, str) else certificate
-    return {**copy.deepcopy(content), "record": checker.digest(found), **parts}
 
 
 def printed(found: dict[str, Any], name: str) -> dict[str, Any]:

@@ -1,8 +1,6 @@
-(* Rotations in Coq's own real numbers: what the theorems of a certificate mean.
-
-   Certificates (NAME.v) need this file. The first half defines the words of their theorems: turns, the
-   operator C, derivatives, and "F turns with the angular velocity w". Read it; nothing else has to be
-   believed. The second half, from Lemmas on, proves what all certificates need. *)
+(* Rotations in Coq's own real numbers. Certificates (NAME.v) need this file. The first half defines
+   the words of their theorems: turns, the operator C, derivatives, and "F turns with the angular
+   velocity w". Read it; nothing else has to be believed. The second half proves what they need. *)
 Require Import Reals Lra.
 Open Scope R_scope.
 
@@ -12,12 +10,13 @@ Record mat := M { row1 : vec; row2 : vec; row3 : vec }.
 Definition dot (a b : vec) := v1 a * v1 b + v2 a * v2 b + v3 a * v3 b.
 Definition plus (a b : vec) := V (v1 a + v1 b) (v2 a + v2 b) (v3 a + v3 b).
 Definition scale k (a : vec) := V (k * v1 a) (k * v2 a) (k * v3 a).
-Definition cross (a b : vec) := V (v2 a * v3 b - v3 a * v2 b) (v3 a * v1 b - v1 a * v3 b) (v1 a * v2 b - v2 a * v1 b).
+Definition cross (a b : vec) :=
+  V (v2 a * v3 b - v3 a * v2 b) (v3 a * v1 b - v1 a * v3 b) (v1 a * v2 b - v2 a * v1 b).
 Definition apply (A : mat) (a : vec) := V (dot (row1 A) a) (dot (row2 A) a) (dot (row3 A) a).
 Definition transpose (A : mat) := M (V (v1 (row1 A)) (v1 (row2 A)) (v1 (row3 A)))
   (V (v2 (row1 A)) (v2 (row2 A)) (v2 (row3 A))) (V (v3 (row1 A)) (v3 (row2 A)) (v3 (row3 A))).
-Definition mul (A B : mat) :=
-  M (apply (transpose B) (row1 A)) (apply (transpose B) (row2 A)) (apply (transpose B) (row3 A)).
+Definition mul (A B : mat) := let t := transpose B in
+  M (apply t (row1 A)) (apply t (row2 A)) (apply t (row3 A)).
 Definition add (A B : mat) := M (plus (row1 A) (row1 B)) (plus (row2 A) (row2 B)) (plus (row3 A) (row3 B)).
 Definition times k (A : mat) := M (scale k (row1 A)) (scale k (row2 A)) (scale k (row3 A)).
 Definition det (A : mat) := dot (row1 A) (cross (row2 A) (row3 A)).
@@ -29,79 +28,80 @@ Definition turn_x a := M (V 1 0 0) (V 0 (cos a) (- sin a)) (V 0 (sin a) (cos a))
 Definition turn_y a := M (V (cos a) 0 (sin a)) (V 0 1 0) (V (- sin a) 0 (cos a)).
 Definition turn_z a := M (V (cos a) (- sin a) 0) (V (sin a) (cos a) 0) (V 0 0 1).
 Definition turn (v : vec) (c s : R) := add one (add (times s (C v)) (times (1 - c) (mul (C v) (C v)))).
-Definition is_rotation (A : mat) := mul A (transpose A) = one /\ mul (transpose A) A = one /\ det A = 1.
+Definition is_rotation A := mul A (transpose A) = one /\ mul (transpose A) A = one /\ det A = 1.
 
 (* Derivatives by time, entry by entry *)
-Definition vector_rate (f : R -> vec) t (d : vec) := derivable_pt_lim (fun s => v1 (f s)) t (v1 d)
-  /\ derivable_pt_lim (fun s => v2 (f s)) t (v2 d) /\ derivable_pt_lim (fun s => v3 (f s)) t (v3 d).
-Definition rate (F : R -> mat) t (D : mat) := vector_rate (fun s => row1 (F s)) t (row1 D)
-  /\ vector_rate (fun s => row2 (F s)) t (row2 D) /\ vector_rate (fun s => row3 (F s)) t (row3 D).
+Definition vector_rate (f : R -> vec) t (d : vec) := derivable_pt_lim (fun s => v1 (f s)) t (v1 d) /\
+  derivable_pt_lim (fun s => v2 (f s)) t (v2 d) /\ derivable_pt_lim (fun s => v3 (f s)) t (v3 d).
+Definition rate (F : R -> mat) t (D : mat) := vector_rate (fun s => row1 (F s)) t (row1 D) /\
+  vector_rate (fun s => row2 (F s)) t (row2 D) /\ vector_rate (fun s => row3 (F s)) t (row3 D).
 
-(* F is a rotation that turns at t with the angular velocity w: components in space, and in the body *)
+(* F is a rotation that turns at t with the angular velocity w, in components of space or body *)
 Definition turns (F : R -> mat) t (w : vec) :=
   is_rotation (F t) /\ exists D, rate F t D /\ mul D (transpose (F t)) = C w.
 Definition turns_in_body (F : R -> mat) t (w : vec) :=
   is_rotation (F t) /\ exists D, rate F t D /\ mul (transpose (F t)) D = C w.
 
 (* ---- Lemmas: from here on Coq checks what nobody has to read ---- *)
-Ltac expand := cbv [mul add plus apply transpose dot cross det one scale times C turn Rsqr row1 row2 row3 v1 v2 v3
-  turn_x turn_y turn_z].
-Ltac entries := repeat match goal with v : vec |- _ => destruct v | A : mat |- _ => destruct A end; expand;
+Ltac expand := cbv [mul add plus apply transpose dot cross det one scale times C turn Rsqr
+  row1 row2 row3 v1 v2 v3 turn_x turn_y turn_z].
+Ltac entries :=
+  repeat match goal with v : vec |- _ => destruct v | A : mat |- _ => destruct A end; expand;
   repeat match goal with |- M _ _ _ = M _ _ _ => f_equal | |- V _ _ _ = V _ _ _ => f_equal end.
 Lemma associative A B D : mul (mul A B) D = mul A (mul B D). Proof. entries; ring. Qed.
 Lemma transposed A B : transpose (mul A B) = mul (transpose B) (transpose A). Proof. entries; ring. Qed.
-Lemma twice A : transpose (transpose A) = A. Proof. entries; reflexivity. Qed. Lemma one_right A : mul A one = A. Proof. entries; ring. Qed. Lemma one_left A : mul one A = A. Proof. entries; ring. Qed.
+Lemma twice A : transpose (transpose A) = A. Proof. entries; reflexivity. Qed.
+Lemma one_right A : mul A one = A. Proof. entries; ring. Qed.
 Lemma sum_left A B D : mul (add A B) D = add (mul A D) (mul B D). Proof. entries; ring. Qed.
-Lemma sum_right A B D : mul D (add A B) = add (mul D A) (mul D B). Proof. entries; ring. Qed.
-Lemma C_sum v w : add (C v) (C w) = C (plus v w). Proof. entries; ring. Qed.
-Lemma det_mul A B : det (mul A B) = det A * det B. Proof. entries; ring. Qed. Lemma det_transpose A : det (transpose A) = det A. Proof. entries; ring. Qed.
-Definition adjugate (A : mat) :=
-  transpose (M (cross (row2 A) (row3 A)) (cross (row3 A) (row1 A)) (cross (row1 A) (row2 A))).
-Lemma adjugate_mul A : mul (adjugate A) A = times (det A) one. Proof. unfold adjugate; entries; ring. Qed.
-Lemma C_turned A w : mul (mul A (C w)) (transpose A) = C (apply (transpose (adjugate A)) w).
-Proof. unfold adjugate; entries; ring. Qed.
-Lemma C_of_rotation A w : is_rotation A -> mul (mul A (C w)) (transpose A) = C (apply A w).
+Lemma det_transpose A : det (transpose A) = det A. Proof. entries; ring. Qed.
+Lemma det_mul A B : det (mul A B) = det A * det B. Proof. entries; ring. Qed.
+Lemma C_turned A w : det A = 1 -> mul (transpose A) A = one ->
+  mul (mul A (C w)) (transpose A) = C (apply A w).
 Proof.
-  intros [a [_ d]]. assert (e : adjugate A = transpose A).
-  { rewrite <- (one_right (adjugate A)), <- a, <- associative, adjugate_mul, d. entries; ring. }
-  rewrite C_turned, e, twice. reflexivity.
+  destruct A as [x y z]; intros d a; set (cofactors := M (cross y z) (cross z x) (cross x y)).
+  assert (e : cofactors = M x y z); [ | rewrite <- e at 3; unfold cofactors; entries; ring ].
+  transitivity (mul cofactors (mul (transpose (M x y z)) (M x y z))); [ rewrite a, one_right; reflexivity | ].
+  transitivity (times (det (M x y z)) (M x y z)); [ unfold cofactors | rewrite d ]; entries; ring.
 Qed.
 Lemma product_rotation A B : is_rotation A -> is_rotation B -> is_rotation (mul A B).
 Proof.
-  intros [a [a' d]] [b [b' e]]; repeat split; [ | | rewrite det_mul, d, e; ring ]; rewrite transposed, <- associative.
-  - rewrite (associative A B), b, one_right; exact a.
-  - rewrite (associative (transpose B)), a', one_right; exact b'.
+  intros [a [a' d]] [b [b' e]]; repeat split; [ | | rewrite det_mul, d, e; ring ];
+    rewrite transposed, <- associative; [ rewrite (associative A B), b | rewrite (associative _ _ A), a' ];
+    rewrite one_right; assumption.
 Qed.
-Lemma transposed_rotation A : is_rotation A -> is_rotation (transpose A).
-Proof. intros [a [b c]]; repeat split; rewrite ?twice, ?det_transpose; assumption. Qed.
-Lemma value f t a b : derivable_pt_lim f t a -> a = b -> derivable_pt_lim f t b.
-Proof. intros; subst; assumption. Qed.
+Lemma same {A} (P : A -> Prop) a b : P a -> a = b -> P b. Proof. intros; subst; assumption. Qed.
 Lemma product_rate F G t A B : rate F t A -> rate G t B ->
   rate (fun s => mul (F s) (G s)) t (add (mul A (G t)) (mul (F t) B)).
 Proof.
   intros [[? [? ?]] [[? [? ?]] [? [? ?]]]] [[? [? ?]] [[? [? ?]] [? [? ?]]]].
-  repeat split; (eapply value; [ repeat apply derivable_pt_lim_plus; apply derivable_pt_lim_mult; eassumption
-    | simpl; unfold dot; simpl; ring ]).
+  repeat split; (eapply (same (derivable_pt_lim _ _)); [ repeat apply derivable_pt_lim_plus;
+    apply derivable_pt_lim_mult; eassumption | simpl; unfold dot; simpl; ring ]).
 Qed.
-Lemma transposed_rate F t D : rate F t D -> rate (fun s => transpose (F s)) t (transpose D).
-Proof. intros [[? [? ?]] [[? [? ?]] [? [? ?]]]]; repeat split; assumption. Qed.
 Theorem product F G t v w : turns F t v -> turns G t w ->
   turns (fun s => mul (F s) (G s)) t (plus v (apply (F t) w)).
 Proof.
   intros [f [A [a a']]] [g [B [b b']]]. split; [ apply product_rotation; assumption | ].
   exists (add (mul A (G t)) (mul (F t) B)); split; [ apply product_rate; assumption | ].
   rewrite sum_left, transposed, <- !associative, (associative A (G t)), (proj1 g), one_right, a',
-    (associative (F t) B), b', C_of_rotation; [ apply C_sum | exact f ].
+    (associative (F t) B), b', C_turned; [ entries; ring | apply f | apply f ].
 Qed.
 Theorem rate_of_turns F t w : turns F t w -> rate F t (mul (C w) (F t)).
-Proof.
-  intros [f [D [d e]]]. rewrite <- e, associative, (proj1 (proj2 f)), one_right. exact d.
-Qed.
+Proof. intros [f [D [d e]]]. rewrite <- e, associative, (proj1 (proj2 f)), one_right. exact d. Qed.
 Theorem in_body F t w : turns F t (apply (F t) w) -> turns_in_body F t w.
 Proof.
-  intros [f [D [d e]]]. split; [ exact f | ]. exists D; split; [ exact d | ].
-  rewrite <- (one_right D), <- (proj1 (proj2 f)), <- (associative D), e, <- C_of_rotation, !associative by exact f.
-  rewrite (proj1 (proj2 f)), one_right, <- associative, (proj1 (proj2 f)). apply one_left.
+  intro T; pose proof (rate_of_turns _ _ _ T) as d; destruct T as [[a [a' e]] _].
+  split; [ repeat split; assumption | ]. eexists; split; [ exact d | ].
+  rewrite <- C_turned, !associative, a', one_right, <- associative, a' by assumption. entries; ring.
+Qed.
+Theorem of_transpose F t w : turns F t w ->
+  turns (fun s => transpose (F s)) t (scale (-1) (apply (transpose (F t)) w)).
+Proof.
+  intro T; pose proof (rate_of_turns _ _ _ T) as [[? [? ?]] [[? [? ?]] [? [? ?]]]].
+  destruct T as [[a [a' d]] _]. rewrite <- det_transpose in d.
+  pose proof (C_turned (transpose (F t)) w d) as e; rewrite twice in e; specialize (e a).
+  split; [ repeat split; rewrite ?twice; assumption | ].
+  exists (transpose (mul (C w) (F t))); split; [ repeat split; assumption | ].
+  rewrite twice; transitivity (times (-1) (C (apply (transpose (F t)) w))); [ rewrite <- e | ]; entries; ring.
 Qed.
 Lemma squares a : cos a * cos a = 1 - sin a * sin a.
 Proof. generalize (sin2_cos2 a); unfold Rsqr; intro H; rewrite <- H; ring. Qed.
@@ -109,14 +109,16 @@ Lemma cos_rate f t a : derivable_pt_lim f t a -> derivable_pt_lim (fun s => cos 
 Proof. intro H; exact (derivable_pt_lim_comp f cos t a _ H (derivable_pt_lim_cos (f t))). Qed.
 Lemma sin_rate f t a : derivable_pt_lim f t a -> derivable_pt_lim (fun s => sin (f s)) t (cos (f t) * a).
 Proof. intro H; exact (derivable_pt_lim_comp f sin t a _ H (derivable_pt_lim_sin (f t))). Qed.
-Lemma sqrt_rate f t a : 0 < f t -> derivable_pt_lim f t a -> derivable_pt_lim (fun s => sqrt (f s)) t (/ (2 * sqrt (f t)) * a).
+Lemma sqrt_rate f t a : 0 < f t -> derivable_pt_lim f t a ->
+  derivable_pt_lim (fun s => sqrt (f s)) t (/ (2 * sqrt (f t)) * a).
 Proof. intros p H; exact (derivable_pt_lim_comp f sqrt t a _ H (derivable_pt_lim_sqrt (f t) p)). Qed.
 Lemma constant_rate f t a c : (forall s, f s = c) -> derivable_pt_lim f t a -> a = 0.
 Proof.
-  intros H d. apply (uniqueness_limite f t); [ exact d | ]. intros e p. exists (mkposreal 1 Rlt_0_1). intros h _ _.
+  intros H d. apply (uniqueness_limite f t _ _ d). intros e p. exists (mkposreal 1 Rlt_0_1). intros h _ _.
   rewrite !H. replace ((c - c) / h - 0) with 0 by (unfold Rdiv; ring). rewrite Rabs_R0. exact p.
 Qed.
-Ltac apart := repeat split; repeat apply Rmult_integral_contrapositive_currified; first [ assumption | lra | match goal with H : _ <> 0 |- _ => intro; apply H; lra end ].
+Ltac apart := repeat split; repeat apply Rmult_integral_contrapositive_currified;
+  first [ assumption | lra | match goal with H : _ <> 0 |- _ => intro; apply H; lra end ].
 Ltac derivative := match goal with
   | H : derivable_pt_lim ?f ?t _ |- derivable_pt_lim (fun s => ?f s) ?t _ => exact H
   | H : forall s, derivable_pt_lim ?f s _ |- derivable_pt_lim (fun s => ?f s) ?t _ => exact (H t)
@@ -126,7 +128,7 @@ Ltac derivative := match goal with
   | |- derivable_pt_lim (fun s => @?f s + @?g s) _ _ => apply (derivable_pt_lim_plus f g); derivative
   | |- derivable_pt_lim (fun s => @?f s - @?g s) _ _ => apply (derivable_pt_lim_minus f g); derivative
   | |- derivable_pt_lim (fun s => @?f s * @?g s) _ _ => apply (derivable_pt_lim_mult f g); derivative
-  | |- derivable_pt_lim (fun s => @?f s / @?g s) _ _ => apply (derivable_pt_lim_div f g); [ derivative | derivative | apart ]
+  | |- derivable_pt_lim (fun s => @?f s / @?g s) _ _ => apply (derivable_pt_lim_div f g); [ derivative .. | apart ]
   | |- derivable_pt_lim (fun s => cos (@?f s)) _ _ => apply (cos_rate f); derivative
   | |- derivable_pt_lim (fun s => sin (@?f s)) _ _ => apply (sin_rate f); derivative
   | |- derivable_pt_lim (fun s => sqrt (@?f s)) _ _ => apply (sqrt_rate f); [ assumption | derivative ]
@@ -139,13 +141,10 @@ Theorem turn_y_turns f t a : derivable_pt_lim f t a -> turns (fun s => turn_y (f
 Proof. intro; assert (e := squares (f t)); turning ltac:(ring [e]). Qed.
 Theorem turn_z_turns f t a : derivable_pt_lim f t a -> turns (fun s => turn_z (f s)) t (V 0 0 a).
 Proof. intro; assert (e := squares (f t)); turning ltac:(ring [e]). Qed.
-Theorem axis_turns x y z f t a : x * x + y * y + z * z = 1 -> derivable_pt_lim f t a ->
-  turns (fun s => turn (V x y z) (cos (f s)) (sin (f s))) t (V (a * x) (a * y) (a * z)).
+Theorem turn_turns v c s t a : dot v v = 1 -> c t * c t + s t * s t = 1 ->
+  derivable_pt_lim c t (- s t * a) -> derivable_pt_lim s t (c t * a) ->
+  turns (fun u => turn v (c u) (s u)) t (scale a v).
 Proof.
-  intros n ?; assert (e := squares (f t)). assert (m : z * z = 1 - x * x - y * y) by lra. turning ltac:(ring [e m]).
-Qed.
-Theorem constant_turns x y z c s t : x * x + y * y + z * z = 1 -> c * c + s * s = 1 ->
-  turns (fun _ => turn (V x y z) c s) t (V 0 0 0).
-Proof.
-  intros. assert (z * z = 1 - x * x - y * y) as m by lra. assert (c * c = 1 - s * s) as k by lra. turning ltac:(ring [k m]).
+  destruct v as [x y z]; cbv [dot v1 v2 v3]; intros. assert (m : z * z = 1 - x * x - y * y) by lra.
+  assert (k : c t * c t = 1 - s t * s t) by lra. turning ltac:(ring [k m]).
 Qed.

@@ -1,116 +1,656 @@
-"""A record to its certificate: the claims that `checker` proves, and the cofactors it needs."""
+"""A record to its certificate: theorems for Coq, in its own real numbers.
+
+`Rotation.v` says what their words mean. Coordinates are functions of time, and rates their
+derivatives. F is the rotation. A theorem states what the record prints: that F turns with the
+printed Ω, that p is the derivative of the printed L by q̇, that the printed energy has the
+derivative 0. Certified is what has a theorem here and is proved by the checker as well.
+
+Facts, by which all proofs calculate, precede the theorems: squares of cosines and roots, and
+conditions such as w² + x² + y² + z² = 1 with their derivatives.
+"""
 
 from __future__ import annotations
 
-import json
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
+from functools import reduce
+from pathlib import Path
 from typing import Any
 
 from rigidsym.errors import CheckError
-from rigidsym.tools.certificate import checker
-from rigidsym.tools.certificate.checker import BROKEN, Language, Laws, Names, Unreadable
-from rigidsym.tools.certificate.cofactors import Division, UnfinishedError
+from rigidsym.tools.certificate.checker import (
+    ANGULAR,
+    BROKEN,
+    OMEGA,
+    PRINCIPAL,
+    Names,
+    Tree,
+    names_in,
+    parts_of,
+    printed_in,
+    tree_of,
+    turn_of,
+    verify,
+)
 
-SCHEMA, SCHEMA_VERSION = "rigidsym.certificate", 3
-# Rational points of spheres, for the example of coordinates with a norm
-_ON_A_SPHERE = {2: "3/5 4/5", 3: "2/7 3/7 6/7", 4: "2/9 4/9 5/9 2/3"}
-# R of the quaternion (2, 4, 5, 6)/9
-_ENTRIES = "-41/81 16/81 68/81 64/81 -23/81 44/81 28/81 76/81 -1/81"
+DEFINITIONS = "Rotation.v"
+# A coordinate with a name that Coq, its real numbers or Rotation.v use gets an underscore
+_WORDS = """
+as at cofix else end exists fix for forall fun if in let match mod Prop return Set then Type using
+where with R cos sin sqrt tan PI V M C I v1 v2 v3 row1 row2 row3 vec mat dot plus scale cross apply
+transpose mul add times det one turn turn_x turn_y turn_z is_rotation rate vector_rate turns
+turns_in_body product squares same F shown t s u w a b c inertia derivative entries expand total
+"""
+_TAKEN = frozenset(_WORDS.split())
+_MOST_DEFINITIONS = 20  # Coq unfolds them all, which doubles expressions again and again
+_FIRST = "rotation_matrix", "angular_velocity_space"
+_TURNS = {"space": "turns", "body": "turns_in_body"}
+_ABOUT_POINT = (
+    "(add inertia (times {M} (mul (transpose (C (plus (V p_x p_y p_z) (scale (-1) {centre}))))"
+    " (C (plus (V p_x p_y p_z) (scale (-1) {centre}))))))"
+)
+_CENTRE = "(scale {M} (cross (V X Y Z) (V X_dot Y_dot Z_dot)))"
+_TRANSLATION = "{M} * dot (V X_dot Y_dot Z_dot) (V X_dot Y_dot Z_dot) / 2"
+_KINETIC = "dot w (apply inertia w) / 2"
+# What a quantity of a body is equal to; w is the angular velocity, with components in the body
+_OF_BODY = {
+    "mass": "{M}",
+    "centre_of_mass": "{centre}",
+    "inertia_tensor": "inertia",
+    "inertia_tensor_space": "mul (mul (F t) inertia) (transpose (F t))",
+    "inertia_tensor_point": _ABOUT_POINT,
+    "moment_of_inertia": f"dot (V n_x n_y n_z) (apply {_ABOUT_POINT} (V n_x n_y n_z))",
+    "translational_energy": _TRANSLATION,
+    "rotational_energy": _KINETIC,
+    "kinetic_energy": f"{_TRANSLATION} + {_KINETIC}",
+    "angular_momentum_centre": _CENTRE,
+    "angular_momentum_rotation_body": "apply inertia w",
+    "angular_momentum_rotation": "apply (F t) (apply inertia w)",
+    "angular_momentum": f"plus {_CENTRE} (apply (F t) (apply inertia w))",
+    "potential_energy": "{potential}",
+    "lagrangian": f"{_KINETIC} - {{potential}}",
+    "energy": f"{_KINETIC} + {{potential}}",
+}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Certificate:
-    """The claims of a record that are certified, and what the checker needs to prove them."""
+    """Theorems for Coq about a record, and what they are about."""
 
-    name: str
-    record: str  # its digest
+    text: str
     claims: Sequence[str]
-    uncovered: Sequence[str]  # quantities about which the checker states nothing
-    example: Mapping[str, str]  # real numbers that satisfy the conditions
-    cofactors: Mapping[str, Mapping[str, str]]  # by "NAME ENTRY" and the position of a condition
+    uncovered: Sequence[str]  # quantities without a theorem, or that the checker does not prove
 
-    @property
-    def json(self) -> str:
-        content = {
-            "schema": SCHEMA,
-            "schema_version": SCHEMA_VERSION,
-            "name": self.name,
-            "record": self.record,
-            "claims": list(self.claims),
-            "uncovered": list(self.uncovered),
-            "example": dict(self.example),
-            "cofactors": self.cofactors,
-        }
-        return json.dumps(content, indent=1, ensure_ascii=False) + "\n"
+
+def definitions() -> str:
+    """The file that every theorem needs."""
+    return Path(__file__).with_name(DEFINITIONS).read_text(encoding="utf-8")
 
 
 def certificate_of(record: Mapping[str, Any]) -> Certificate:
-    """Raises CheckError for a claim that the checker refuses, or a rotation it cannot read."""
+    """Raises CheckError if the checker refuses what is printed."""
     try:
-        return _certificate(record)
+        proved, _ = verify(record)
     except BROKEN as error:
         raise CheckError(f"{record['name']}: no certificate, since {error}") from error
+    return theorems(record, proved[1:])
 
 
-def _certificate(record: Mapping[str, Any]) -> Certificate:
-    names, printed = Names(record), [*checker.printed_in(record)]
-    claims, cofactors = printed, dict[str, dict[str, str]]()
-
-    def divide(language: Language, laws: Laws) -> list[str]:
-        """Fill in the cofactors; returns claims that are not certified."""
-        residuals, dropped = checker.residuals(laws, []), list[str]()
-        for name in claims:
-            try:
-                residuals |= checker.residuals(laws, [name])
-            except Unreadable:
-                dropped.append(name)
-        conditions = checker.conditions_of(record, language)
-        division = Division(conditions, [poly for each in residuals.values() for poly in each])
-        for name, entries in residuals.items():
-            try:
-                for k, residual in enumerate(entries, start=1):
-                    if residual.terms:
-                        cofactors[f"{name} {k}"] = division.cofactors(residual)
-            except UnfinishedError:
-                dropped.append(name)
-            except CheckError as error:
-                raise CheckError(f"{record['name']}: {name}: {error}") from error
-        return dropped
-
-    while dropped := checker.exactly(record, names, divide, claims):
-        claims = [name for name in claims if name not in dropped]
-        cofactors.clear()
-    certificate = Certificate(
-        name=record["name"],
-        record=checker.digest(record),
-        claims=claims,
-        uncovered=[name for name in printed if name not in claims],
-        example=_example(record, names),
-        cofactors=cofactors,
-    )
-    checker.agree_in_numbers(record, names, json.loads(certificate.json))
-    return certificate
+class Unstated(ValueError):
+    """There is no theorem for this."""
 
 
-def _example(record: Mapping[str, Any], names: Names) -> dict[str, str]:
-    """Numbers that satisfy the conditions: those of the record, or rational points of spheres."""
-    rotation = record["rotation"]
-    if "example" in rotation or not rotation["conditions"]:
-        return dict(rotation.get("example", {}))
-    letters = [
-        name
-        for name in (*names.q, *names.constant)
-        if name in checker.names_of(rotation["conditions"], names)
+def theorems(record: Mapping[str, Any], claims: Sequence[str]) -> Certificate:
+    """The theorems of those claims that can be stated, whether they are true or not."""
+    head, stated = list[str](), dict[str, str]()
+    with suppress(Unstated):
+        section = _Section(record, claims, stated)
+        head = [*section.head()]
+        # R and Ω first: what follows is calculated from them as printed, which is shorter
+        for name in sorted(claims, key=lambda name: name not in _FIRST):
+            with suppress(Unstated):
+                stated[name] = section.theorem(name)
+    uncovered = [name for name in printed_in(record) if name not in stated]
+    rotation = " ".join(record["rotation"].get("turns", ())) or "the matrix of its entries"
+    lines = [
+        f"(* {record['name']}: R = {rotation}, {record['presentation']}.",
+        f"   Compile {DEFINITIONS} first; it defines the words of these theorems.",
+        f"   Without a theorem here: {', '.join(uncovered) or 'nothing'}. *)",
+        *head,
+        *stated.values(),
+        *(["End Claims."] if head else []),
     ]
-    groups = [
-        [name for name in letters if name in checker.names_of([text], names)]
-        for text in rotation["conditions"]
-    ]
-    if len(letters) == 9:
-        return dict(zip(names.q, _ENTRIES.split(), strict=True))
-    return {
-        name: value
-        for group in groups
-        for name, value in zip(group, _ON_A_SPHERE[len(group)].split(), strict=True)
-    }
+    return Certificate(text="\n".join(lines) + "\n", claims=[*stated], uncovered=uncovered)
+
+
+@dataclass(frozen=True, slots=True)
+class _Factor:
+    """A turn as a function of s, its angular velocity at t, the proof, and what is in it."""
+
+    text: str
+    velocity: str
+    proof: str
+    trees: Sequence[Tree]
+
+
+@dataclass(frozen=True, slots=True)
+class _Statement:
+    claim: str
+    proof: str = "equal t"
+    letters: str = ""  # that are in the claim besides t
+
+
+class _Section:
+    """The theorems of one record; later ones may use those in `stated`."""
+
+    def __init__(
+        self, record: Mapping[str, Any], claims: Sequence[str], stated: Mapping[str, Any]
+    ) -> None:
+        self.record, self.claims, self.stated = record, claims, stated
+        self.names, self.printed = Names(record), printed_in(record)
+        if not claims or len(self.names.definitions) > _MOST_DEFINITIONS:
+            raise Unstated
+        is_passive = record["presentation"] == "passive"
+        self.shown = "shown" if is_passive else "F"
+        self.factors = [*self._factors()]
+        self.facts, self.known, self.apart = list[str](), list[str](), set[tuple[str, ...]]()
+        body, motion = record.get("body"), record.get("motion")
+        self.parts = {
+            "M": self.text(body["mass"]) if body else "",
+            "centre": self.text(body["centre"]) if body else "",
+            "potential": self.text(motion["potential"]) if motion else "",
+        }
+
+    # Texts of the record in Coq
+
+    def real(self, tree: Tree, at: str = "t", other: Mapping[str, str] | None = None) -> str:
+        """A real number at a time; `other` has other texts for some names."""
+        kind, *parts = tree
+        if kind == "number":
+            return str(parts[0])
+        if kind == "name":
+            return (other or {}).get(parts[0]) or self.name(parts[0], at)
+        first = self.real(parts[0], at, other)
+        if kind == "**":
+            return f"({' * '.join([first] * parts[1]) or '1'})"
+        if kind in ("cos", "sin", "sqrt"):
+            return f"({kind} {first})"
+        if kind in ANGULAR:
+            one, two = ("sin", "cos") if kind == "tan" else ("cos", "sin")
+            return f"(({one} {first}) / ({two} {first}))"
+        second = self.real(parts[1], at, other)
+        if kind == "-" and parts[0] == ("number", 0):
+            return f"(- {second})"
+        if kind == "/" and not names_in(parts[1]) - {*self.names.constant}:
+            return f"({first} * / {second})"  # a constant factor, whose derivative is short
+        return f"({first} {kind} {second})"
+
+    def letter(self, name: str) -> str:
+        return f"{name}_" if name in _TAKEN else name
+
+    def name(self, name: str, at: str = "t") -> str:
+        of_time = {*self.names.q, *self.names.rates, *self.names.definitions}
+        letter = "PI" if name == "pi" else self.letter(name)
+        return f"({letter} {at})" if name in of_time else letter
+
+    def text(self, printed: Any, at: str = "t", other: Mapping[str, str] | None = None) -> str:
+        """A printed number, vector or matrix."""
+        if isinstance(printed, str):
+            return self.real(tree_of(printed), at, other)
+        word = "M" if isinstance(printed[0], list) else "V"
+        return f"({word} {' '.join(self.text(part, at, other) for part in printed)})"
+
+    def combination(self, rows: Sequence[Sequence[str]], factors: Sequence[str]) -> str:
+        """A matrix times a vector, as the sum over its columns."""
+        columns = (self.text([row[k] for row in rows]) for k in range(len(rows[0])))
+        terms = [f"(scale {f} {column})" for f, column in zip(factors, columns, strict=True)]
+        return reduce(lambda right, left: f"(plus {left} {right})", reversed(terms))
+
+    def trees(self, *names: str) -> list[Tree]:
+        """All that is printed of some quantities, with the definitions that they need."""
+        texts, trees = [self.printed[name] for name in names], dict[Tree, None]()
+        while texts:
+            text = texts.pop()
+            if isinstance(text, list):
+                texts += text
+            elif (tree := tree_of(text)) not in trees:
+                trees[tree] = None
+                defined = sorted(names_in(tree) & {*self.names.definitions})
+                texts += [self.names.definitions[name] for name in defined]
+        return [*trees]
+
+    def divisors(self, *names: str) -> str:
+        """Hypotheses that divisors are not zero, apart from those of F."""
+        divisors = _divisors(self.trees(*names))
+        texts = [self.real(each) for each in divisors if self.summands(each) not in self.apart]
+        return "".join(f"{text} <> 0 -> " for text in dict.fromkeys(texts))
+
+    def summands(self, tree: Tree) -> tuple[str, ...]:
+        """The terms of a sum, in an order that does not depend on how it is printed."""
+        if tree[0] == "+":
+            return tuple(sorted(self.summands(tree[1]) + self.summands(tree[2])))
+        return (self.real(tree).replace("(1 * 1)", "1"),)
+
+    # The rotation and its angular velocity
+
+    def _factors(self) -> Iterator[_Factor]:
+        rotation = self.record["rotation"]
+        if "matrix" in rotation:
+            trees = [tree_of(text) for row in rotation["matrix"] for text in row]
+            yield self._as_printed(self.text(rotation["matrix"], "s"), trees)
+            return
+        for turn in rotation["turns"]:
+            kind, forms = turn_of(turn)
+            trees = [*map(tree_of, forms)]
+            *axis, cosine, sine = (self.real(tree, "s") for tree in trees)
+            is_fixed = not names_in(("", *trees[:3])) - {*self.names.constant}
+            if kind in ("x", "y", "z"):
+                angle = trees[3][1]
+                function, rate = self.real(angle, "s"), self._rate(angle)
+                velocity = f"(V {' '.join(rate if kind == axis else '0' for axis in 'xyz')})"
+                proof = f"apply (turn_{kind}_turns (fun s => {function})); by_rules t"
+                yield _Factor(f"turn_{kind} {function}", velocity, proof, [("cos", angle)])
+                continue
+            text = f"turn (V {' '.join(axis)}) {cosine} {sine}"
+            if is_fixed and kind in ("axis_angle", "constant_turn"):
+                rate = self._rate(trees[3][1]) if kind == "axis_angle" else "0"
+                functions = f"(fun s => {cosine}) (fun s => {sine})"
+                proof = f"apply (turn_turns (V {' '.join(axis)}) {functions}); cbn; first"
+                proof += " [ calculation t | by_rules t ]"
+                yield _Factor(text, f"(scale {rate} (V {' '.join(axis)}))", proof, trees)
+            elif len(rotation["turns"]) == 1:
+                yield self._as_printed(text, trees)
+            else:
+                raise Unstated
+
+    def _as_printed(self, text: str, trees: list[Tree]) -> _Factor:
+        """F whose entries Coq differentiates; that it turns with the printed Ω is the claim."""
+        if "angular_velocity_space" not in self.claims:
+            raise Unstated
+        velocity = self.text(self.printed["angular_velocity_space"])
+        return _Factor(text, velocity, "turning ltac:(calculation t)", trees)
+
+    def _rate(self, angle: Tree) -> str:
+        """The rate of a sum of multiples of coordinates."""
+        kind, *parts = angle
+        if kind == "number" or (kind == "name" and parts[0] in self.names.constant):
+            return "0"
+        if kind == "name":
+            return self.name(f"{parts[0]}_dot")
+        if kind in ("+", "-"):
+            return f"({self._rate(parts[0])} {kind} {self._rate(parts[1])})"
+        if kind == "*" and not names_in(parts[0]):
+            return f"({self.real(parts[0])} * {self._rate(parts[1])})"
+        if kind == "/" and not names_in(parts[1]):
+            return f"({self._rate(parts[0])} * / {self.real(parts[1])})"
+        raise Unstated
+
+    def head(self) -> Iterator[str]:
+        """Coordinates as functions of time, facts, F, and its angular velocity."""
+        names = self.names
+        q, rates = ([*map(self.letter, group)] for group in (names.q, names.rates))
+        yield "Require Import Reals Lra Rotation."
+        yield "Open Scope R_scope."
+        yield "Section Claims."
+        if names.constant != ["pi"]:
+            yield f"Variables {' '.join(self.letter(n) for n in names.constant if n != 'pi')} : R."
+        yield f"Variables {' '.join(q)} : R -> R. (* coordinates, functions of time *)"
+        yield f"Variables {' '.join(rates)} : R -> R. (* their derivatives *)"
+        for one, two in zip(q, rates, strict=True):
+            slope = f"derivable_pt_lim {one} t ({two} t)"
+            yield f"Hypothesis {one}_is_differentiable : forall t, {slope}."
+        for k, sphere in enumerate(names.spheres):
+            yield from self._sphere(k, sphere)
+        yield from self._roots_and_divisors()
+        using = f" [{' '.join(self.facts)}]" if self.facts else ""
+        known = "; ".join(f"pose proof {fact}" for fact in self.known)
+        yield f"Ltac known t := {known or 'idtac'}."
+        yield "Ltac calculation t :="
+        yield f"  entries; first [ ring{using} | known t; field{using}; apart ]."
+        yield "Ltac by_rules t := known t; eapply (same (derivable_pt_lim _ _));"
+        yield "  [ derivative | calculation t ]."
+        if "body" in self.record:
+            yield f"Definition inertia := {self.text(self.record['body']['inertia'])}."
+        texts = [factor.text for factor in self.factors]
+        product = reduce(lambda right, left: f"mul ({left}) ({right})", reversed(texts))
+        yield f"Definition F s := {product}. (* R *)"
+        for name, text in names.definitions.items():
+            yield f"Definition {self.letter(name)} t := {self.text(text)}."
+        yield from self._turning()
+        words = ["F", *["inertia"] * ("body" in self.record), *map(self.letter, names.definitions)]
+        if self.shown != "F":
+            yield "Definition shown s := transpose (F s)."
+            velocity = f"(scale (-1) (apply (transpose (F t)) {self.velocity}))"
+            yield f"Lemma shown_total t : turns shown t {velocity}."
+            yield "Proof. exact (of_transpose F t _ (total t)). Qed."
+            words.insert(0, "shown")
+        yield f"Ltac equal t := unfold {', '.join(words)}; calculation t."
+        yield "Ltac derived t := known t; eapply (same (derivable_pt_lim _ _));"
+        yield "  [ derivative | equal t ]."
+        yield "Ltac lagrange t := known t; repeat match goal with |- _ /\\ _ => split end;"
+        yield "  eexists; eexists; split; [ derivative | split; [ derivative | equal t ] ]."
+
+    def _sphere(self, k: int, sphere: Sequence[str]) -> Iterator[str]:
+        """A condition Σ n² = 1, and what follows for the rates."""
+        first, *rest = (self.name(name) for name in sphere)
+        at_s = " + ".join(f"{name} * {name}" for name in (self.name(n, "s") for n in sphere))
+        yield f"Hypothesis sphere_{k} : forall s : R, {at_s} = 1."
+        others = "".join(f" - {name} * {name}" for name in rest)
+        yield f"Lemma square_{k} (t : R) : {first} * {first} = 1{others}."
+        yield f"Proof. generalize (sphere_{k} t); lra. Qed."
+        if {*sphere} <= {*self.names.q}:
+            dot, *dots = (self.name(f"{name}_dot") for name in sphere)
+            slopes = "".join(f" - {n} * {d}" for n, d in zip(rest, dots, strict=True))
+            # with these three, every order of rewriting ends in the same polynomial
+            across = "".join(f" - {dot} * {n} * {n}" for n in rest[1:])
+            across += "".join(f" + {first} * {n} * {d}" for n, d in zip(rest, dots, strict=True))
+            yield f"Lemma along_{k} t : {first} * {dot} = 0{slopes}."
+            yield f"Proof. eassert (H : _ = 0) by (eapply (constant_rate _ t _ 1 sphere_{k});"
+            yield "  derivative). lra. Qed."
+            yield f"Lemma across_{k} t : {dot} * {rest[0]} * {rest[0]} = {dot}{across}."
+            yield f"Proof. pose proof (f_equal (Rmult {dot}) (square_{k} t));"
+            yield f"  pose proof (f_equal (Rmult {first}) (along_{k} t)); lra. Qed."
+            self.facts += [f"(along_{k} t)", f"(across_{k} t)"]  # to be tried before the square
+        self.facts.append(f"(square_{k} t)")
+
+    def _roots_and_divisors(self) -> Iterator[str]:
+        """Squares of cosines and roots; divisors in F are not 0, and its roots not of 0."""
+        of_rotation = [tree for factor in self.factors for tree in factor.trees]
+        trees = [*of_rotation, *self.trees(*self.claims)]
+        angles = _arguments(trees, *ANGULAR)
+        self.facts += [f"(squares {text})" for text in dict.fromkeys(map(self.real, angles))]
+        numbers = [root for root in _arguments(trees, "sqrt") if root[0] == "number"]
+        self.roots = [*dict.fromkeys((*_arguments(of_rotation, "sqrt"), *numbers))]
+        for k, root in enumerate(self.roots):
+            text = self.real(root)
+            if root in numbers:
+                yield f"Lemma positive_{k} (t : R) : 0 < {text}. Proof. lra. Qed."
+            else:
+                yield f"Hypothesis positive_{k} : forall t, 0 < {text}."
+            yield f"Lemma root_{k} (t : R) : sqrt {text} * sqrt {text} = {text}."
+            yield f"Proof. apply sqrt_sqrt, Rlt_le, (positive_{k} t). Qed."
+            yield f"Lemma real_{k} (t : R) : sqrt {text} <> 0."
+            yield f"Proof. apply Rgt_not_eq, sqrt_lt_R0, (positive_{k} t). Qed."
+            self.facts.append(f"(root_{k} t)")
+            self.known += [f"(positive_{k} t)", f"(real_{k} t)"]
+            self.apart |= {self.summands(root), self.summands(("sqrt", root))}
+        for k, divisor in enumerate(_divisors(of_rotation)):
+            text = self.real(divisor)
+            if self.summands(divisor) not in self.apart:
+                is_above_one = text.startswith("((((1 * 1) + ")  # of 1 + g², by Gibbs' vector
+                yield f"{'Lemma' if is_above_one else 'Hypothesis'} nonzero_{k} :"
+                yield f"  forall t, {text} <> 0."
+                if is_above_one:
+                    yield "Proof. intro; nra. Qed."
+                self.known.append(f"(nonzero_{k} t)")
+                self.apart.add(self.summands(divisor))
+
+    def _turning(self) -> Iterator[str]:
+        """That F turns with the sum of the angular velocities of its turns."""
+        for k, factor in enumerate(self.factors, start=1):
+            yield f"Lemma step_{k} t : turns (fun s => {factor.text}) t {factor.velocity}."
+            yield f"Proof. known t; {factor.proof}. Qed."
+        velocity, proof = self.factors[-1].velocity, f"(step_{len(self.factors)} t)"
+        for k in range(len(self.factors) - 1, 0, -1):
+            factor = self.factors[k - 1]
+            at = re.sub(r"\bs\)", "t)", factor.text)
+            velocity = f"(plus {factor.velocity} (apply ({at}) {velocity}))"
+            proof = f"(product _ _ t _ _ (step_{k} t) {proof})"
+        self.velocity = velocity
+        yield f"Lemma total t : turns F t {velocity}."
+        yield f"Proof. exact {proof}. Qed."
+
+    # The claims
+
+    def theorem(self, name: str) -> str:
+        """A theorem about what is printed of a quantity; raises Unstated."""
+        kind, _, frame = name.rpartition("_")
+        if name in _OF_BODY:
+            statement = self.of_body(name)
+        elif name.startswith("constant "):
+            statement = self.constant(name)
+        elif law := getattr(self, f"of_{name}", None):
+            statement = law(name)
+        elif frame in _TURNS and (law := getattr(self, f"of_{kind}", None)):
+            statement = law(name, frame)
+        else:
+            raise Unstated
+        if not {*_arguments(self.trees(name), "sqrt")} <= {*self.roots}:
+            raise Unstated
+        return (
+            f"Theorem {name.replace(' ', '_')} (t : R){statement.letters} : {statement.claim}.\n"
+            f"Proof. intros. {statement.proof}. Qed."
+        )
+
+    def turning_as(self, *, shown: bool = False) -> str:
+        """A theorem that F turns, or what is shown."""
+        if shown and self.shown != "F":
+            return "shown_total"
+        is_stated = _FIRST[1] in self.stated and not self.divisors(_FIRST[1])
+        return _FIRST[1] if is_stated else "total"
+
+    @property
+    def equal(self) -> str:
+        """The tactic for equations in which F may be."""
+        is_stated = _FIRST[0] in self.stated and not self.divisors(_FIRST[0])
+        return "rewrite ?rotation_matrix; equal t" if is_stated else "equal t"
+
+    def need(self, *names: str) -> None:
+        """Raise Unstated if there are no theorems about some other quantities."""
+        if not {*names} <= {*self.stated}:
+            raise Unstated
+
+    def of_rotation_matrix(self, name: str) -> _Statement:
+        return _Statement(f"{self.divisors(name)}{self.shown} t = {self.text(self.printed[name])}")
+
+    def of_rotation_rate(self, name: str) -> _Statement:
+        claim = f"{self.divisors(name)}rate {self.shown} t {self.text(self.printed[name])}"
+        rate = f"(rate_of_turns _ _ _ ({self.turning_as(shown=True)} t))"
+        return _Statement(claim, f"apply (same (rate {self.shown} t) _ _ {rate}); {self.equal}")
+
+    def of_spin_matrix(self, name: str) -> _Statement:
+        claim = (
+            f"{self.divisors(name)}exists D, rate {self.shown} t D /\\ "
+            f"mul D (transpose ({self.shown} t)) = {self.text(self.printed[name])}"
+        )
+        total = f"({self.turning_as(shown=True)} t)"
+        proof = f"destruct {total} as [_ [D [d e]]]. exists D; split; [ exact d | ]. "
+        return _Statement(claim, proof + "rewrite e; equal t")
+
+    def turning(self, frame: str, velocity: str, *names: str, more: str = "") -> _Statement:
+        """F turns with a vector; `more` are premises about the rates."""
+        total = f"(same (turns F t) _ _ ({self.turning_as()} t))"
+        proof = f"apply {'in_body, ' * (frame == 'body')}{total}; "
+        rewrite = "repeat match goal with H : _ = _ |- _ => rewrite H; clear H end; " * bool(more)
+        claim = f"{self.divisors(*names)}{more}{_TURNS[frame]} F t {velocity}"
+        return _Statement(claim, f"{proof}{rewrite}{self.equal}")
+
+    def of_angular_velocity(self, name: str, frame: str) -> _Statement:
+        return self.turning(frame, self.text(self.printed[name]), name)
+
+    def of_rate_matrix(self, name: str, frame: str) -> _Statement:
+        rates = [self.name(rate) for rate in self.names.rates]
+        return self.turning(frame, self.combination(self.printed[name], rates), name)
+
+    def of_inverse_rate_matrix(self, name: str, frame: str) -> _Statement:
+        """W W⁻¹ a = a for all vectors a."""
+        W = f"rate_matrix_{frame}"
+        self.need(W)
+        rates = [f"(dot {self.text(row)} (V a b c))" for row in self.printed[name]]
+        claim = f"{self.combination(self.printed[W], rates)} = V a b c"
+        return _Statement(self.divisors(name, W) + claim, letters=" a b c")
+
+    def of_rates_from_angular_velocity(self, name: str, frame: str) -> _Statement:
+        letters = f" {' '.join(OMEGA[frame])}"
+        rates = [self.name(rate) for rate in self.names.rates]
+        equations = zip(rates, map(self.text, self.printed[name]), strict=True)
+        premises = "".join(f"{rate} = {text} -> " for rate, text in equations)
+        statement = self.turning(frame, f"(V{letters})", name, more=premises)
+        return _Statement(statement.claim, statement.proof, letters)
+
+    def of_angular_acceleration(self, name: str, frame: str) -> _Statement:
+        velocity = f"angular_velocity_{frame}"
+        self.need(velocity)
+        if self.divisors(velocity):
+            raise Unstated
+        letters, premises = self.seconds
+        claim = (
+            f"{self.divisors(name)}{premises}exists w, (forall s, {_TURNS[frame]} F s (w s)) "
+            f"/\\ vector_rate w t {self.text(self.printed[name])}"
+        )
+        function = f"(fun s => {self.text(self.printed[velocity], 's')})"
+        proof = f"exists {function}; split; [ exact {velocity} | repeat split; expand; derived t ]"
+        return _Statement(claim, proof, letters)
+
+    @property
+    def seconds(self) -> tuple[str, str]:
+        """Letters for the derivatives of the rates, and hypotheses that say what they are."""
+        letters = [*map(self.letter, self.names.second)]
+        pairs = zip(map(self.letter, self.names.rates), letters, strict=True)
+        premises = (f"derivable_pt_lim {rate} t {second} -> " for rate, second in pairs)
+        return f" {' '.join(letters)}", "".join(premises)
+
+    # A body
+
+    def of_body(self, name: str) -> _Statement:
+        """An equation of `_OF_BODY`, for the w with which the body turns."""
+        right = _OF_BODY[name].format(**self.parts)
+        claim = f"{self.text(self.printed[name])} = {right}"
+        free = sorted({*re.findall(r"\b[XYZ](?:_dot)?\b|\b[pn]_[xyz]\b", claim)})
+        letters = "".join(f" {letter}" for letter in free)
+        if re.search(r"\bw\b", right):
+            return self.for_velocity(claim, name, letters=letters)
+        return _Statement(self.divisors(name) + claim, letters=letters)
+
+    def for_velocity(self, claim: str, *names: str, letters: str = "") -> _Statement:
+        """A claim for the angular velocity w of the body."""
+        velocity = "angular_velocity_body"
+        self.need(velocity)
+        w, premises = self.text(self.printed[velocity]), self.divisors(velocity, *names)
+        proof = f"exists {w}; split; [ apply {velocity}; assumption | repeat split; equal t ]"
+        return _Statement(f"{premises}exists w, turns_in_body F t w /\\ {claim}", proof, letters)
+
+    def of_principal_axes(self, _: str) -> _Statement:
+        """The columns e of a rotation, and I' e = m e for the moments m."""
+        axes, moments = (self.printed[each] for each in PRINCIPAL)
+        columns = [self.text([row[k] for row in axes]) for k in range(3)]
+        equations = (
+            f"apply inertia {column} = scale {self.text(moment)} {column}"
+            for column, moment in zip(columns, moments, strict=True)
+        )
+        claim = " /\\ ".join((f"is_rotation {self.text(axes)}", *equations))
+        return _Statement(self.divisors(*PRINCIPAL) + claim, "repeat split; equal t")
+
+    of_principal_moments = of_principal_axes
+
+    def of_angular_acceleration_from_torque(self, name: str) -> _Statement:
+        """I' x + Ω' × I' Ω' = N'."""
+        omega, torque = " ".join(OMEGA["body"]), "torque_1 torque_2 torque_3"
+        left = f"plus (apply inertia {self.text(self.printed[name])})"
+        left += f" (cross (V {omega}) (apply inertia (V {omega})))"
+        return _Statement(f"{self.divisors(name)}{left} = V {torque}", letters=f" {omega} {torque}")
+
+    # Lagrange's equations
+
+    def slope(self, name: str) -> str:
+        """The printed L as a function of one name."""
+        return f"(fun u => {self.text(self.printed['lagrangian'], 't', {name: 'u'})})"
+
+    def of_generalised_momenta(self, name: str) -> _Statement:
+        """∂L/∂q̇ of the printed L."""
+        self.need("lagrangian")
+        claims = (
+            f"derivable_pt_lim {self.slope(rate)} {self.name(rate)} {self.text(text)}"
+            for rate, text in zip(self.names.rates, self.printed[name], strict=True)
+        )
+        claim = self.divisors(name, "lagrangian") + " /\\ ".join(claims)
+        return _Statement(claim, "repeat split; derived t")
+
+    def of_mass_matrix(self, name: str) -> _Statement:
+        """A symmetric M with 2 T = q̇ · M q̇, for all rates."""
+        masses, rates = self.printed[name], [self.name(rate) for rate in self.names.rates]
+        n = range(len(rates))
+        entry = [[self.text(each) for each in row] for row in masses]
+        square = " + ".join(f"{entry[j][k]} * {rates[j]} * {rates[k]}" for j in n for k in n)
+        symmetry = (f"{entry[j][k]} = {entry[k][j]}" for j in n for k in range(j))
+        twice = f"dot w (apply inertia w) = {square}"
+        return self.for_velocity(" /\\ ".join((twice, *symmetry)), name)
+
+    def of_hamiltonian(self, name: str) -> _Statement:
+        """T + V, if p has the values of the printed momenta."""
+        self.need("generalised_momenta")
+        momenta = map(self.text, self.printed["generalised_momenta"])
+        values = dict(zip(self.names.momenta, momenta, strict=True))
+        claim = f"{self.text(self.printed[name], 't', values)} = {_KINETIC} + {{potential}}"
+        return self.for_velocity(claim.format(**self.parts), name, "generalised_momenta")
+
+    def equations(self, right: Sequence[str]) -> str:
+        """dp/dt - ∂L/∂q = right, for the printed L and p."""
+        self.need("lagrangian", "generalised_momenta")
+        momenta = self.printed["generalised_momenta"]
+        claims = (
+            f"(exists a b, derivable_pt_lim (fun s => {self.text(p, 's')}) t a /\\ "
+            f"derivable_pt_lim {self.slope(q)} {self.name(q)} b /\\ a - b = {side})"
+            for q, p, side in zip(self.names.q, momenta, right, strict=True)
+        )
+        return " /\\ ".join(claims)
+
+    def of_bias_vector(self, name: str) -> _Statement:
+        """M q̈ + h, for all q̈."""
+        self.need("mass_matrix")
+        letters, premises = self.seconds
+        right = []
+        for row, h in zip(self.printed["mass_matrix"], self.printed[name], strict=True):
+            terms = (f"{self.text(m)} * {q}" for m, q in zip(row, letters.split(), strict=True))
+            right.append(" + ".join((*terms, self.text(h))))
+        claim = self.divisors(name, "mass_matrix", "lagrangian") + self.equations(right)
+        return _Statement(premises + claim, "lagrange t", letters)
+
+    @property
+    def along_the_motion(self) -> tuple[str, str]:
+        """Letters and hypotheses: the derivatives of the rates are the printed accelerations."""
+        letters, premises = self.seconds
+        pairs = zip(letters.split(), self.printed["accelerations"], strict=True)
+        equations = "".join(f"{second} = {self.text(text)} -> " for second, text in pairs)
+        return letters, self.divisors("accelerations", "lagrangian") + premises + equations
+
+    def of_accelerations(self, _: str) -> _Statement:
+        """dp/dt - ∂L/∂q = Q."""
+        motion = self.record["motion"]
+        if {*motion["torque"]} != {"0"}:
+            raise Unstated
+        letters, premises = self.along_the_motion
+        claim = self.equations([self.text(force) for force in motion["forces"]])
+        return _Statement(premises + claim, "subst; lagrange t", letters)
+
+    def constant(self, name: str) -> _Statement:
+        """A printed expression whose derivative along every motion is 0."""
+        self.need("accelerations")
+        letters, premises = self.along_the_motion
+        function = f"(fun s => {self.text(self.printed[name], 's')})"
+        claim = f"{premises}derivable_pt_lim {function} t 0"
+        return _Statement(claim, "subst; derived t", letters)
+
+
+def _arguments(trees: Iterable[Tree], *functions: str) -> list[Tree]:
+    """The arguments of some functions, each once."""
+    parts = (part for tree in trees for part in parts_of(tree))
+    return [*dict.fromkeys(part[1] for part in parts if part[0] in functions)]
+
+
+def _divisors(trees: Iterable[Tree]) -> list[Tree]:
+    """The factors of all divisors, each once, without numbers, which are not zero."""
+    divisors: dict[Tree, None] = {}
+    for part in (part for tree in trees for part in parts_of(tree)):
+        if part[0] in ("tan", "cot"):
+            divisors["cos" if part[0] == "tan" else "sin", part[1]] = None
+        factors = [part[2]] if part[0] == "/" else []
+        while factors:
+            factor = factors.pop()
+            if factor[0] in ("*", "**"):
+                factors += [each for each in factor[1:] if isinstance(each, tuple)]
+            elif factor[0] != "number":
+                divisors[factor] = None
+    return [*divisors]
