@@ -149,8 +149,10 @@ class _Section:
         self, record: Mapping[str, Any], claims: Sequence[str], stated: Mapping[str, Any]
     ) -> None:
         self.record, self.claims, self.stated = record, claims, stated
+        if not claims:
+            raise Unstated
         self.names, self.printed = Names(record), printed_in(record)
-        if not claims or len(self.names.definitions) > _MOST_DEFINITIONS:
+        if len(self.names.definitions) > _MOST_DEFINITIONS:
             raise Unstated
         is_passive = record["presentation"] == "passive"
         self.shown = "shown" if is_passive else "F"
@@ -330,7 +332,7 @@ class _Section:
         yield "Ltac derived t := known t; eapply (same (derivable_pt_lim _ _));"
         yield "  [ derivative | equal t ]."
         yield "Ltac lagrange t := known t; repeat match goal with |- _ /\\ _ => split end;"
-        yield "  eexists; eexists; split; [ derivative | split; [ derivative | equal t ] ]."
+        yield "  (eexists; eexists; split; [ derivative | split; [ derivative | equal t ] ])."
 
     def _sphere(self, k: int, sphere: Sequence[str]) -> Iterator[str]:
         """A condition Σ n² = 1, and what follows for the rates."""
