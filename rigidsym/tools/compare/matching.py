@@ -232,7 +232,8 @@ def identified(
     all_readings: list[Reading] = []
     plain: dict[Any, list[Reading]] = {}  # Euler angles of all orders have the same inputs
     for goal in catalogue(formula):
-        inputs = (tuple(goal.inputs.items()), goal.uses, goal.motion.model.vector)
+        model = goal.motion.model
+        inputs = (tuple(goal.inputs.items()), goal.uses, model.vector, model.constraints)
         if inputs not in plain:
             names = readings(formula, goal)
             plain[inputs] = [Reading.of(formula, goal, each) for each in names]
