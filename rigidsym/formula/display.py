@@ -6,7 +6,7 @@ that typesets can write the result.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Literal, NamedTuple
@@ -53,45 +53,31 @@ class Equation:
         return self.entries or indexed(self.sides[0], shape)
 
 
-class Rows(NamedTuple):
-    """Lines below one another, between which a page may end where they are many."""
-
-    lines: tuple[Aligned, ...]
-    is_high: bool = False
-    are_aligned: bool = True
-
-    @property
-    def height(self) -> float:
-        """In lines of text."""
-        return sum(2.4 if line.height else 1.3 for line in self.lines)
-
-    def written(self, pen: SheetPen) -> str:
-        if self.are_aligned:
-            return pen.aligned(self.lines, self.is_high)
-        return pen.gathered(self._bodies(pen), self.is_high)
-
-    def joined(self, pen: LatexPen) -> str:
-        """The same without its environment."""
-        lines = map(pen.line, self.lines) if self.are_aligned else self._bodies(pen)
-        return pen.joined(lines, self.is_high)
-
-    def _bodies(self, pen: SheetPen) -> list[str]:
-        return [pen.continued(line.body, line.indent) for line in self.lines]
-
-
 class Display(NamedTuple):
     """The inside of a display, how wide it is, and what was done that the reader must know."""
 
     text: str
     width: float  # ems; it may be more than was asked for, where there is no place to break
     done: Done = ""
-    rows: Rows | None = None
+    rows: tuple[Aligned, ...] = ()  # between which a page may end where they are many
+    are_aligned: bool = True  # at their signs; else each is in the middle
+    is_high: bool = False
     is_broken: bool = False  # whether a value of the equation, or an entry, fits on no line
 
     @property
     def lines(self) -> int:
         """Of a listing."""
-        return len(self.rows.lines) if self.rows else 1
+        return len(self.rows) or 1
+
+    @property
+    def height(self) -> float:
+        """Of a listing, in lines of text."""
+        return sum(2.4 if line.height else 1.3 for line in self.rows)
+
+    def joined(self, pen: LatexPen) -> str:
+        """The rows without their environment."""
+        lines = (pen.line(r) if self.are_aligned else pen.body(r) for r in self.rows)
+        return pen.joined(lines, self.is_high)
 
 
 def display(
@@ -102,21 +88,18 @@ def display(
     A result is in a box, which is part of its width. `pen` is that of LaTeX by default, in the
     notation of the letters.
     """
-    made: Callable[..., SheetPen] = type(pen) if pen else LatexPen
     inside = replace(equation, number=None, label="", function="", proved=(), unproved=())
-    return _displayed(inside, letters, width, made)
+    return _displayed(inside, letters, width, pen or LatexPen(letters.notation))
 
 
 @lru_cache(maxsize=512)  # what was fitted is printed, often in several formats
-def _displayed(
-    equation: Equation, letters: Letters, width: float, pen: Callable[..., SheetPen]
-) -> Display:
-    setter = _Setter(letters, pen(letters.notation))
+def _displayed(equation: Equation, letters: Letters, width: float, pen: SheetPen) -> Display:
+    setter = _Setter(letters, pen)
     if not equation.is_result:
         shown = setter.display(equation, width)
     else:
         inside = setter.display(equation, width - BOX)
-        shown = inside._replace(text=setter.pen.boxed(inside.text), width=inside.width + BOX)
+        shown = inside._replace(text=pen.boxed(inside.text), width=inside.width + BOX)
     return shown._replace(is_broken=_is_broken(shown, equation, width))
 
 
@@ -172,7 +155,7 @@ def broken(formula: Formula, width: float, pen: SheetPen) -> list[Segment]:
     lines = break_lines(pen.write(formula), width, QUAD)
     if widest(lines) <= width:
         return lines
-    loose = break_lines(pen.but(loose=True).write(formula), width, QUAD)
+    loose = break_lines(replace(pen, loose=True).write(formula), width, QUAD)
     return min(lines, loose, key=widest)
 
 
@@ -208,16 +191,13 @@ class _Setter:
             if form.width <= width:
                 return form
         if equation.matrix.shape[1] > 1:
-            for form in self._forms(sides, full, self.pen.but(short=True)):
+            for form in self._forms(sides, full, replace(self.pen, short=True)):
                 if form.width <= width:
                     return form._replace(done="abbreviated")
         listed = listed_entries(equation.names, equation.matrix)
         values = [formula_of(value, self.letters) for _, value in listed]
         lines, needed = self._listing([name for name, _ in listed], values, width)
-        return self._below(Rows(tuple(lines)), needed, "listed")
-
-    def _below(self, rows: Rows, width: float, done: Done = "") -> Display:
-        return Display(rows.written(self.pen), width, done, rows)
+        return Display(self.pen.aligned(lines, False), needed, "listed", tuple(lines))
 
     def _forms(self, sides: Sequence[Formula], matrix: Formula, pen: SheetPen) -> Iterator[Display]:
         """The equation on one line; broken before its last equals sign; and then farther left."""
@@ -255,7 +235,8 @@ class _Setter:
             lines += [first, *cut[1:]]
             room = width - own if len(cut) == 1 else 0.0
             needed = max(needed, own)
-        return self._below(Rows(tuple(lines), are_aligned=False), needed)
+        text = self.pen.gathered(list(map(self.pen.body, lines)), False)
+        return Display(text, needed, rows=tuple(lines), are_aligned=False)
 
     def _headed(self, name: Formula, body: str) -> str:
         """The first line of a definition, without a place to align it."""
@@ -286,7 +267,8 @@ class _Setter:
         room = head.width + EQUAL
         lines, needed = self._hanging(others, width - room)
         lines[0] = lines[0]._replace(head=head.text)
-        return self._below(Rows(tuple(lines), is_high=True), room + needed)
+        text = self.pen.aligned(lines, True)
+        return Display(text, room + needed, rows=tuple(lines), is_high=True)
 
     def _hanging(self, formulas: Sequence[Formula], room: float) -> tuple[list[Aligned], float]:
         """Each formula behind its sign, long ones broken at + and −; with the greatest width."""

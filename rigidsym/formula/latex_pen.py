@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import unicodedata
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from itertools import pairwise
 from typing import ClassVar
 
@@ -122,12 +122,12 @@ class LatexPen(SheetPen):
     def line(self, line: Aligned) -> str:
         """Head, sign and body; a line that goes on is indented."""
         sign = f"{line.sign} " if line.sign else ""
-        return f"{line.head} &{sign}{self.continued(line.body, line.indent)}".strip()
+        return f"{line.head} &{sign}{self.body(line)}".strip()
 
     def gathered(self, lines: Sequence[str], is_high: bool) -> str:
         return _environment("gathered", self.joined(lines, is_high))
 
-    def joined(self, lines: Sequence[str] | map[str], is_high: bool) -> str:
+    def joined(self, lines: Iterable[str], is_high: bool) -> str:
         return self.row_end.format(4 if is_high else 2).join(lines)
 
 

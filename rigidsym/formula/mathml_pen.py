@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import unicodedata
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from html import escape
 
-from rigidsym.formula.pen import Height, Piece
-from rigidsym.formula.sheet_pen import Aligned, Inline, SheetPen, Size
+from rigidsym.formula.pen import Height, Piece, Segment
+from rigidsym.formula.sheet_pen import Aligned, SheetPen, Size
 from rigidsym.formula.tree import Big, Bracket, Formula, FunctionCall, Symbol
 from rigidsym.formula.unicode_pen import UnicodePen
 
@@ -32,18 +32,15 @@ class MathmlPen(SheetPen):
     spelt_differential = "<mi>{}</mi>".format
     boxed = '<mrow class="boxed">{}</mrow>'.format  # menclose is not in MathML Core
 
-    def inline(self, formulas: Iterable[Formula]) -> dict[Formula, Inline]:
+    def inline(self, formula: Formula) -> Piece:
         """As elements; one too wide for a phone in parts that may go on several lines."""
-        return {formula: self._inline(formula) for formula in formulas}
-
-    def _inline(self, formula: Formula) -> Inline:
         piece, spoken = self.write(formula), UnicodePen(self.notation).write(formula)
         parts, texts = [piece.text], [spoken.text]
         if piece.width > _INLINE and len(inline_parts(piece)) == len(inline_parts(spoken)):
             parts, texts = inline_parts(piece), inline_parts(spoken)
         is_tall = piece.height > Height.FLAT
-        written = [math(p, t, is_tall=is_tall) for p, t in zip(parts, texts, strict=True)]
-        return Inline(tuple(written), is_tall, piece.width)
+        written = (math(p, t, is_tall=is_tall) for p, t in zip(parts, texts, strict=True))
+        return piece._replace(chunks=tuple(Segment(text, 0.0) for text in written))
 
     def spelt_symbol(self, symbol: Symbol, index: str | None) -> str:
         text = _letters(symbol)
@@ -134,7 +131,7 @@ class MathmlPen(SheetPen):
         rows = (
             f'<mtr><mtd class="end">{line.head}</mtd><mtd class="start">'
             f"{self.spelt_sign(line.sign, True) if line.sign else ''}"
-            f"{self.continued(line.body, line.indent)}</mtd></mtr>"
+            f"{self.body(line)}</mtd></mtr>"
             for line in lines
         )
         return f'<mtable displaystyle="true">{"".join(rows)}</mtable>'

@@ -7,11 +7,11 @@ sign between two terms, in how many brackets. Nobody has to read it again to fin
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
+from dataclasses import KW_ONLY, dataclass, replace
 from enum import IntEnum
 from functools import lru_cache
 from itertools import pairwise
-from typing import ClassVar, NamedTuple, Self
+from typing import ClassVar, NamedTuple
 
 from rigidsym.formula import tree
 from rigidsym.formula.notation import DEFAULT, Notation
@@ -85,40 +85,28 @@ def atom(
     return Piece((Segment(text, width),), width, binding, height)
 
 
+@dataclass(frozen=True)
 class Pen:
-    """Writes formulas in one language; a subclass has a method named after each kind of node."""
+    """Writes formulas in one language; a subclass has a method named after each kind of node.
+
+    Pens are equal if they are of one language with the same choices, so that what one has written
+    is kept for all.
+    """
+
+    notation: Notation = DEFAULT
+    _: KW_ONLY
+    loose: bool = False  # whether a line may end within high brackets
+    short: bool = False  # whether s_θ and c_θ stand for sine and cosine
+    small: bool = False  # whether dφ/dt is in small type, as within a matrix
 
     blank: ClassVar[float] = 0.0  # width of the blank between two chunks
-    sign: Callable[..., Piece]  # of a Sign; with is_binary where it stands between two parts
-    between: Callable[[tree.Formula, tree.Formula], Piece]  # the space between two factors
-    around: Callable[..., Piece]  # a piece in brackets of a kind
-
-    def __init__(
-        self,
-        notation: Notation = DEFAULT,
-        *,
-        loose: bool = False,
-        short: bool = False,
-        small: bool = False,
-    ) -> None:
-        self.notation = notation
-        self.small = small  # whether dφ/dt is in small type, as within a matrix
-        self.loose = loose  # whether a line may end within high brackets
-        self.short = short  # whether s_θ and c_θ stand for sine and cosine
+    sign: ClassVar[Callable[..., Piece]]  # of a Sign; `is_binary` between two parts
+    between: ClassVar[Callable[..., Piece]]  # the space between two factors
+    around: ClassVar[Callable[..., Piece]]  # a piece in brackets of a kind
 
     def write(self, formula: tree.Formula) -> Piece:
         """The formula in the notation of this pen."""
-        pen: Callable[..., Pen] = type(self)
-        return _written(pen, self.notation, self.loose, self.short, self.small, formula)
-
-    def but(self, *, loose: bool = False, short: bool = False, small: bool = False) -> Self:
-        """The same pen, which lets lines end within high brackets, or abbreviates functions."""
-        return type(self)(
-            self.notation,
-            loose=loose or self.loose,
-            short=short or self.short,
-            small=small or self.small,
-        )
+        return _written(self, formula)
 
     def node(self, formula: tree.Formula) -> Piece:
         """One node, whose notation is settled; raises TypeError for a kind without a method."""
@@ -140,16 +128,10 @@ class Pen:
                     sign = sign._replace(chunks=(_EMPTY, *sign.chunks))
                 pieces.append(sign)
             else:
-                if (
-                    before is not None
-                    and not isinstance(before, tree.Sign | tree.Gap)
-                    and not is_tight
-                ):
+                is_beside = before is not None and not isinstance(before, tree.Sign | tree.Gap)
+                if is_beside and not is_tight:
                     pieces.append(self.between(before, part))
-                beside = (
-                    *node.parts[max(place - 1, 0) : place],
-                    *node.parts[place + 1 : place + 2],
-                )
+                beside = (*node.parts[:place][-1:], *node.parts[place + 1 :][:1])
                 is_alone = all(isinstance(p, _NO_FACTORS) and p != _TIMES for p in beside)
                 pieces.append(self.node(part) if is_alone else self.factor(part))
             before = part
@@ -199,15 +181,8 @@ class Pen:
 
 
 @lru_cache(maxsize=16384)
-def _written(
-    pen: Callable[..., Pen],
-    notation: Notation,
-    loose: bool,
-    short: bool,
-    small: bool,
-    formula: tree.Formula,
-) -> Piece:
-    return pen(notation, loose=loose, short=short, small=small).node(notation.applied(formula))
+def _written(pen: Pen, formula: tree.Formula) -> Piece:
+    return pen.node(pen.notation.applied(formula))
 
 
 def _on_a_line(index: tree.Formula) -> tree.Formula:

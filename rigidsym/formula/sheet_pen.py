@@ -7,7 +7,8 @@ compares.
 from __future__ import annotations
 
 import unicodedata
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Literal, NamedTuple
 
 from rigidsym.formula import tree
@@ -86,14 +87,6 @@ class Aligned(NamedTuple):
     height: Height = Height.FLAT
 
 
-class Inline(NamedTuple):
-    """A formula among words, in parts between which a line may end."""
-
-    parts: tuple[str, ...]
-    is_tall: bool
-    width: float  # ems
-
-
 class SheetPen(Pen):
     """Subclasses spell, from the texts of the parts; widths are those of the note's font in ems."""
 
@@ -119,12 +112,13 @@ class SheetPen(Pen):
     aligned: Callable[[Sequence[Aligned], bool], str]
     gathered: Callable[[Sequence[str], bool], str]
 
-    def inline(self, formulas: Iterable[tree.Formula]) -> dict[tree.Formula, Inline]:
-        """Each formula as it stands among words."""
-        pieces = ((formula, self.write(formula)) for formula in formulas)
-        return {
-            formula: Inline((p.text,), p.height > Height.FLAT, p.width) for formula, p in pieces
-        }
+    def inline(self, formula: tree.Formula) -> Piece:
+        """A formula as it stands among words, in chunks between which a line may end."""
+        return self.write(formula).solid()
+
+    def body(self, line: Aligned) -> str:
+        """What stands behind the sign of a line, if it has one."""
+        return self.continued(line.body, line.indent)
 
     def symbol(self, node: tree.Symbol) -> Piece:
         index = None
@@ -227,7 +221,7 @@ class SheetPen(Pen):
         return atom(self.spelt_root(inside.text), inside.width + ROOT, height=height)
 
     def matrix(self, node: tree.Matrix) -> Piece:
-        small = self.but(small=True)
+        small = replace(self, small=True)
         rows = [[self._entry(entry, small.write(entry)) for entry in line] for line in node.rows]
         columns = [max(entry.width for entry in column) for column in zip(*rows, strict=True)]
         gaps = COLUMN_GAP * (len(columns) - 1)

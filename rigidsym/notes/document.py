@@ -174,13 +174,6 @@ class Document:
                 return equation.number
         raise ModelError(f"the note refers to the equation of {label}, but its template has none")
 
-    @cached_property
-    def formulas(self) -> tuple[Formula, ...]:
-        """The formulas that stand among words, and the claims, in order, each once."""
-        spans = (span for text in self._texts() for span in text)
-        claims = (claim for e in self.equations for claim in (*e.proved, *e.unproved))
-        return tuple(dict.fromkeys(s for s in chain(spans, claims) if isinstance(s, Formula)))
-
     def _texts(self) -> Iterator[Text]:
         blocks = (block for section in self.sections for block in section.blocks)
         return chain.from_iterable(map(texts_of, blocks))

@@ -6,14 +6,13 @@ pieces that are made here.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from html import escape as escape_markup
 from itertools import pairwise
 
 from rigidsym.formula.display import Display, display, spoken
 from rigidsym.formula.mathml_pen import MathmlPen, math
+from rigidsym.formula.pen import Piece
 from rigidsym.formula.reader import text_of
-from rigidsym.formula.sheet_pen import Inline
 from rigidsym.formula.tree import Formula
 from rigidsym.notes.document import (
     CodeBlock,
@@ -182,13 +181,13 @@ class HtmlPrinter(NotePrinter):
                 if opening:
                     written[-1] = written[-1][:-1]
                 points = after[:held] if isinstance(after, str) else ""
-                written.append(_whole(self.inline(span).parts, opening, points))
+                written.append(_whole(self.pen.inline(span), opening, points))
             else:
                 written.append(self.span(span))
         return "".join(written)
 
-    def formula_of(self, inline: Inline) -> str:
-        return " ".join(inline.parts)
+    def formula_of(self, piece: Piece) -> str:
+        return piece.text
 
     def code(self, text: str) -> str:
         return f"<code>{_breakable(escape(text))}</code>"
@@ -203,9 +202,9 @@ class HtmlPrinter(NotePrinter):
         return f'[<a href="#source-{number}">{number}</a>{f", {escape(place)}" if place else ""}]'
 
 
-def _whole(parts: Sequence[str], opening: str, points: str) -> str:
+def _whole(piece: Piece, opening: str, points: str) -> str:
     """The parts of a formula, with what stands beside it."""
-    written = list(parts)
+    written = [chunk.text for chunk in piece.chunks]
     if opening:
         written[0] = f'<span class="whole">{opening}{written[0]}</span>'
     if points:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from rigidsym.formula.display import PAGE, Rows, pack
+from rigidsym.formula.display import PAGE, Display, pack
 from rigidsym.formula.latex_pen import LatexPen
-from rigidsym.formula.sheet_pen import Inline
+from rigidsym.formula.pen import Piece
 from rigidsym.formula.tree import Formula
 from rigidsym.notes.document import (
     CodeBlock,
@@ -117,8 +117,8 @@ class _LatexPrinter(NotePrinter):
         shown = self.shown[equation]
         announced = self.announced(equation, shown.done)
         lines = [announced] if announced else []
-        if shown.rows is not None and shown.rows.height > _TALL:
-            lines += self._over_pages(equation, shown.rows)
+        if shown.height > _TALL:
+            lines += self._over_pages(equation, shown)
         else:
             lines += self._at_once(equation, shown.text)
         said = " ".join(f"{claim}." for claim in self.claims(equation))
@@ -140,22 +140,22 @@ class _LatexPrinter(NotePrinter):
         is_next = number == before + 1
         return [] if is_next else [rf"\setcounter{{equation}}{{{number - 1}}}"]
 
-    def _over_pages(self, equation: Equation, rows: Rows) -> list[str]:
+    def _over_pages(self, equation: Equation, shown: Display) -> list[str]:
         """Lines between which a page may end, which a box would keep together."""
-        environment = "align*" if rows.are_aligned else "gather*"
+        environment = "align*" if shown.are_aligned else "gather*"
         number = [rf"\numbered{{{self._label(equation.label)}}}"] if equation.number else []
         return [
             *(self._from(equation.number) if equation.number else []),
             rf"{{\freely\begin{{{environment}}}",
-            rows.joined(self.pen),
+            shown.joined(self.pen),
             *number,
             rf"\end{{{environment}}}}}",
         ]
 
     def claim(self, claim: Formula) -> str:
         """A formula in a line of its own height; fractions in small type would be hard to read."""
-        (text,), is_tall, _ = self.inline(claim)
-        return rf"$\displaystyle {text}$" if is_tall else f"${text}$"
+        piece = self.pen.write(claim)
+        return rf"$\displaystyle {piece.text}$" if piece.height else f"${piece.text}$"
 
     def notetable(self, table: NoteTable) -> str:
         head, *rows = (list(map(self._cell, row)) for row in (table.head, *table.rows))
@@ -213,7 +213,7 @@ class _LatexPrinter(NotePrinter):
 
     def _width_of_span(self, span: Span) -> float:
         if isinstance(span, Formula):
-            return self.inline(span).width
+            return self.pen.write(span).width
         words = span if isinstance(span, str) else span.text
         return _LETTER * (4 if isinstance(span, EquationReference) else len(words))
 
@@ -225,7 +225,7 @@ class _LatexPrinter(NotePrinter):
     def _tall(self, formula: Formula) -> str:
         """In a table, where the fractions of neighbouring rows would touch."""
         written = self.claim(formula)
-        return rf"\tall{{{written}}}" if self.inline(formula).is_tall else written
+        return rf"\tall{{{written}}}" if self.pen.write(formula).height else written
 
     def figure(self, figure: Figure) -> str:
         drawing = f"\n\\begin{{drawing}}\n{tikz(figure.drawing)}\n\\end{{drawing}}"
@@ -238,8 +238,8 @@ class _LatexPrinter(NotePrinter):
         """As TeX counts them, which is the place of the figure in a larger document."""
         return rf"\ref{{{self._label(f'figure-{number}')}}}"
 
-    def formula_of(self, inline: Inline) -> str:
-        return f"${inline.parts[0]}$"
+    def formula_of(self, piece: Piece) -> str:
+        return f"${piece.text}$"
 
     def _typed(self, code: str) -> str:
         return rf"\texttt{{{escape(code)}}}"

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 from rigidsym.formula.display import pack
 from rigidsym.formula.latex_pen import MarkdownPen
-from rigidsym.formula.sheet_pen import Inline
+from rigidsym.formula.pen import Piece
 from rigidsym.notes.document import (
     CodeBlock,
     Document,
@@ -108,8 +108,8 @@ class _MarkdownPrinter(NotePrinter):
     def _row(self, cells: Sequence[Text]) -> str:
         return f"| {' | '.join(map(self.text, cells))} |"
 
-    def formula_of(self, inline: Inline) -> str:
-        return f"${inline.parts[0]}$"
+    def formula_of(self, piece: Piece) -> str:
+        return f"${piece.text}$"
 
     def code(self, text: str) -> str:
         return _code(text)

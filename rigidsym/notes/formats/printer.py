@@ -9,7 +9,8 @@ from collections.abc import Callable, Iterator
 from typing import Any, ClassVar
 
 from rigidsym.formula.display import Done, display
-from rigidsym.formula.sheet_pen import Inline, SheetPen
+from rigidsym.formula.pen import Piece
+from rigidsym.formula.sheet_pen import SheetPen
 from rigidsym.formula.tree import Formula
 from rigidsym.notes.document import (
     Cited,
@@ -35,7 +36,7 @@ class NotePrinter:
     width: ClassVar[float]  # ems of a display
     beside_number: ClassVar[float | None] = None  # the same beside a number, if that takes room
     words: Callable[[str], str]
-    formula_of: Callable[[Inline], str]  # among words
+    formula_of: Callable[[Piece], str]  # among words
     code: Callable[[str], str]
     strong: Callable[[str], str]
     reference: Callable[[str], str]  # to an equation, by its label
@@ -45,14 +46,13 @@ class NotePrinter:
     def __init__(self, document: Document, pen: SheetPen) -> None:
         self.document = document
         self.pen = pen
-        formulas, beside = document.formulas, self.beside_number or self.width
+        beside = self.beside_number or self.width
         self.shown = {
             equation: display(
                 equation, document.letters, beside if equation.number else self.width, pen
             )
             for equation in document.displays
         }
-        self._inlines = pen.inline(formulas)
 
     def placed(self) -> dict[str, Any]:
         """What every template places beside the sections."""
@@ -81,7 +81,7 @@ class NotePrinter:
             case str():
                 return self.words(span)
             case Formula():
-                return self.formula_of(self.inline(span))
+                return self.formula_of(self.pen.inline(span))
             case Code(text):
                 return self.code(text)
             case Strong(text):
@@ -92,10 +92,6 @@ class NotePrinter:
                 return self.figure_number(number)
             case Cited():
                 return self.citation(self.document.source_number(span), span.place)
-
-    def inline(self, formula: Formula) -> Inline:
-        """A formula as it stands among words."""
-        return self._inlines.get(formula) or self.pen.inline((formula,))[formula]
 
     def announced(self, equation: Equation, done: Done) -> str:
         """What is said before an equation of the way it is set."""
