@@ -1,6 +1,8 @@
 """Derivation -> Document, in the manner of a good lecture.
 
-Equations carry the numbers of the steps; what is only recalled has none.
+The template of a style orders the sections. It has the facts, and prints the equations of a section
+by `steps`, one equation by `equation`. Equations carry the numbers of the steps; what is only
+recalled has none.
 """
 
 from __future__ import annotations
@@ -8,28 +10,32 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
+from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
+import sympy as sp
 from jinja2 import TemplateRuntimeError
 
 from rigidsym.errors import offer
 from rigidsym.formula.display import PAGE, Display, display
 from rigidsym.formula.notation import DEFAULT, Notation
-from rigidsym.formula.reader import text_of
-from rigidsym.formula.tree import NOTHING, Formula
-from rigidsym.mechanics.derivation import OF_RATES, Argument, Derivation, Proof, Step
-from rigidsym.mechanics.quantities.dynamics import MOTION
-from rigidsym.mechanics.quantities.energy import ENERGY, MOMENTUM
-from rigidsym.mechanics.quantities.kinematics import (
-    ACCELERATION,
-    ANGULAR_VELOCITY,
-    TURNED,
+from rigidsym.formula.reader import formula, text_of
+from rigidsym.formula.scalars import formula_of
+from rigidsym.formula.tree import COMMA, NOTHING, Bracket, Formula, joined
+from rigidsym.mechanics.conversions.function import SHEPPERD, outer_product
+from rigidsym.mechanics.derivation import (
+    OF_RATES,
+    Argument,
+    Derivation,
+    Proof,
+    Statement,
+    Step,
+    sentence_of,
 )
+from rigidsym.mechanics.quantities.kinematics import ROTATION
 from rigidsym.models.parametrisations import GIVEN
-from rigidsym.models.rotation import Citation, lecture
+from rigidsym.models.rotation import SOURCES, Citation, hat, lecture
 from rigidsym.notes.document import (
-    Cited,
-    CodeBlock,
     Document,
     Equation,
     EquationReference,
@@ -39,18 +45,22 @@ from rigidsym.notes.document import (
     Paragraph,
     Section,
     Text,
+    said,
 )
-from rigidsym.notes.end_tables import Claim, ClaimFacts, example_of, symbols
-from rigidsym.notes.facts.convention import convention_facts
-from rigidsym.notes.facts.motion import MotionFacts
-from rigidsym.notes.facts.rotation import RotationFacts, angle_facts
+from rigidsym.notes.facts.mass import mass_facts, number
+from rigidsym.notes.facts.motion import motion_facts
+from rigidsym.notes.facts.rotation import RotationFacts, facts_of_rotation, product_of
 from rigidsym.notes.facts.singular import singular_facts
-from rigidsym.notes.fitting import Fitter, as_vectors
+from rigidsym.notes.facts.symbols import SymbolFacts, example_of
+from rigidsym.notes.fitting import Fitter, as_vectors, definitions
 from rigidsym.notes.letters import entries_of, letters_of
-from rigidsym.notes.summary import summary
+from rigidsym.notes.named_body import OFFSET, in_names, textbook_form
+from rigidsym.notes.summands import sums
 from rigidsym.notes.template import blocks_of, sections_of
 from rigidsym.notes.words import (
+    is_body_alone,
     symbols_of,
+    unit_in_words,
     with_source,
     with_symbols,
 )
@@ -58,16 +68,24 @@ from rigidsym.notes.words import (
 if TYPE_CHECKING:
     from rigidsym.mechanics.conversions.conversions import Conversions
 
-_OF_STEPS = {  # parts of a note that have only the steps of a section
-    "angular_acceleration": ACCELERATION,
-    "energy": ENERGY,
-    "momentum": MOMENTUM,
-}
-PARTS = (  # of a note, which its template places
-    *("convention", "rotation", "rotation_of_the_lecture", "angular_velocity", "rates", "singular"),
-    *("body", "motion", "conversions", "identities", "symbols", "functions", "summary"),
-    *_OF_STEPS,
+_SECTIONS = (
+    *("rotation", "angular_velocity", "rates", "angular_acceleration"),
+    *("body", "inertia", "energy", "momentum", "motion"),
 )
+_IN_A_ROW = ("radii_of_gyration", "inertia_ellipsoid")
+_DIAGONAL = formula("(I'_{11}, I'_{22}, I'_{33})")
+_WHERE_SHOWN = {  # what has no equation of its own in the lecture, and the one that it belongs to
+    "rotation_rate": "velocity_by_the_rotation",
+    "spin_matrix": "velocity_by_the_rotation",
+    "angular_velocity_space": "angular_velocity_of_the_rotation",
+    "energy_expanded": "energy_splits",
+    "energy_as_a_form": "inertia_of_particles",
+    "products_of_turned_vectors": "rotation_goes_over",
+    "momentum_expanded": "momentum_splits",
+    "momentum_by_the_tensor": "momentum_of_rotation",
+    "entries_of_inertia": "inertia_of_particles",
+    "moment_about_a_line": "inertia_of_particles",
+}
 
 
 def template_of(style: str) -> str:
@@ -76,14 +94,12 @@ def template_of(style: str) -> str:
 
 
 class Composer:
-    """The sections of one note.
+    """What a template prints, for one derivation.
 
     `module` is the file name of a kernel module and `functions` the quantities it evaluates; each
-    of their equations names its function. Raises ModelError where a name of the model would be
-    taken for one of the notation.
+    of their equations in an audit names its function. Raises ModelError where a name of the model
+    would be taken for one of the notation.
     """
-
-    is_short = False  # whether the note does without tables at its end
 
     def __init__(
         self,
@@ -96,7 +112,7 @@ class Composer:
         is_audit: bool = True,
     ) -> None:
         notation.check(derivation.model)
-        self.derivation = derivation
+        self.derivation, self.moments = in_names(derivation)
         self.model = derivation.model
         self.module = module or ""
         self.functions = tuple(functions)
@@ -104,13 +120,8 @@ class Composer:
         self.letters = letters_of(derivation.arguments, notation, derivation.model)
         self.symbols = symbols_of(derivation)
         self.is_audit = is_audit
-        self.fitter = Fitter(derivation, self.letters, is_audit=is_audit)
+        self.fitter = Fitter(self.derivation, self.letters, is_audit=is_audit)
         self.cited: set[Citation] = set()
-        self.printed: dict[str, Equation] = {}  # by label, as far as the template has come
-
-    @property
-    def subtitle(self) -> str:
-        return self.derivation.subject
 
     def document(self, name: str) -> Document:
         """The note, as a template orders its sections."""
@@ -119,41 +130,82 @@ class Composer:
         return Document(
             name=self.derivation.name,
             title=self.derivation.title,
-            subtitle=self.subtitle,
+            subtitle="" if is_body_alone(self.derivation) else self.derivation.subject,
             letters=self.letters,
-            sections=tuple(s for s in sections if s.title and s.blocks),
+            sections=tuple(self._shown(s) for s in sections if s.title and s.blocks),
             byline=tuple(text_of(block.text) for block in byline if isinstance(block, Paragraph)),
             language=name.split("/")[0],
         )
 
+    def _shown(self, section: Section) -> Section:
+        """A lecture leaves out identities that were verified, and no unproved claim."""
+        if self.is_audit:
+            return section
+        blocks = (replace(b, proved=()) if isinstance(b, Equation) else b for b in section.blocks)
+        return section._replace(blocks=tuple(blocks))
+
     def facts(self) -> dict[str, Any]:
         """What the template of a style may print, and the booleans that it asks."""
-        singular = singular_facts(self.derivation)
+        derivation = self.derivation
+        proofs = self._proofs()
+        are_proved = all(proof.is_exact for _, proof in proofs)
         return {
-            "blocks": self.blocks,
+            **facts_of_rotation(derivation, self.letters),
+            "singular": singular_facts(derivation),
+            "mass": mass_facts(derivation, self.letters),
+            "motion": motion_facts(derivation, self.letters),
+            "conversions": self.conversions,
+            "quaternion": self._quaternion(),
+            "theory": self._theory(),
+            "numbered_product": self._product,
+            "steps": self.steps,
             "equation": self.equation,
-            "reference": EquationReference,
-            "cite": lambda source: Cited(Citation(text=source)),
-            "is_body_alone": self.is_short,
-            "is_gimbal_lock": singular is not None and singular.is_gimbal_lock,
-            "is_proved": self.derivation.is_proved,
-            "has_theory": bool(self.derivation.theory),
-            "theory": self.theory(),
-            "rotation_title": self.model.title,
-            "angles": angle_facts(self.model),
-            "source_of_theory": Cited(lecture()),
+            "reference": self._reference,
+            "cite": lambda source: Citation(text=source),
+            "words": lambda words: with_symbols(words, self.symbols),
+            "unit_in_words": unit_in_words,
+            "number": number,
+            "sources": SOURCES,
+            "source_of_theory": lecture(),
+            "shepperd": SHEPPERD,
+            "first_figure": FigureReference(1),
+            "cross_matrix": hat(sp.Matrix(sp.symbols("u_1:4"))),
+            "columns": [columns_of_matrix()[:, k] for k in range(4)],
+            "moments": self._moments,
+            "has_offset": any(step.expression.has(*OFFSET) for step in derivation.steps),
+            "proofs": proofs,
+            "are_proved": are_proved,
+            "has_status": self.is_audit or not are_proved,
+            "has_rates": any(step.quantity.section == OF_RATES for step in derivation.steps),
+            "symbols": self._symbols,
+            "symbol_facts": SymbolFacts(derivation),
+            "module": self.module,
+            "example": example_of(derivation, self.module, self.functions),
+            "is_body_alone": is_body_alone(derivation),
+            "has_dots": self.letters.notation.rates == "dot",
         }
 
-    def blocks(self, part: str) -> list[NoteBlock]:
-        """The blocks of one of PARTS, which are printed in order: names explained once stay so.
+    def steps(self, section: str) -> list[NoteBlock]:
+        """The equations of a section, each behind how it follows.
 
-        Raises TemplateRuntimeError, with the nearest name, for any other.
+        They are printed in order: a name that was explained once is only referred to. Raises
+        TemplateRuntimeError, with the nearest name, for a section that there is not.
         """
-        if part not in PARTS:
-            raise TemplateRuntimeError(f"no part {part!r} of a note; {offer(part, PARTS)}")
-        section = _OF_STEPS.get(part)
-        blocks = list(self._steps(section) if section else getattr(self, f"_{part}")())
-        self.printed |= {b.label: b for b in blocks if isinstance(b, Equation) and b.number}
+        if section not in _SECTIONS:
+            near = offer(section, _SECTIONS)
+            raise TemplateRuntimeError(f"no section {section!r} of equations; {near}")
+        blocks: list[NoteBlock] = []
+        for step in self.derivation.steps:
+            if step.quantity.section == section:
+                first, *others = self.fitter.fitted(*self._displayed[step.quantity.name], step)
+                lead = self._lead(step)
+                if isinstance(first, Paragraph):  # on abbreviations
+                    *words, end = lead
+                    end = end.replace(":", ".") if isinstance(end, str) else end
+                    blocks.append(Paragraph((*words, end, " ", *first.text)))
+                else:
+                    blocks += [Paragraph(lead), first]
+                blocks += others
         return blocks
 
     def equation(self, name: str) -> Equation:
@@ -162,118 +214,58 @@ class Composer:
         Raises TemplateRuntimeError, with the nearest name, if the derivation lacks it.
         """
         if name not in self._displayed:
-            known = offer(name, [*self._displayed])
-            raise TemplateRuntimeError(f"nothing is derived by the name {name!r}; {known}")
+            near = offer(name, [*self._displayed])
+            raise TemplateRuntimeError(f"nothing is derived by the name {name!r}; {near}")
         return self._displayed[name][0]
 
-    def theory(self) -> Sequence[Section]:
-        """The sections of the theory for every body and rotation; none here."""
-        return ()
-
-    def _summary(self) -> Iterator[NoteBlock]:
-        """The results on one sheet."""
-        yield from summary(self.derivation, self.printed, self.letters)
-
-    def _symbols(self) -> Iterator[NoteTable]:
-        yield symbols(self.derivation, self.letters)
-
-    def _conversions(self) -> Iterator[NoteBlock]:
-        """The section on the unit quaternion and the matrix, with its equation."""
-        if self.conversions is None:
-            return
-        from rigidsym.notes.conversion_section import conversion_facts
-
-        facts = conversion_facts(self.conversions)
-        step = self.conversions.quaternion
-        if step is not None:
-            numbered = replace(step, number=len(self.derivation.steps) + 1)
-            call = _call(step) if self.module else ""
-            equation = equation_of(numbered, self.derivation.arguments)
-            because = with_source(self.conversions.because, step.quantity.source)
-            quaternion = replace(equation, function=call, is_result=True)
-            facts |= {"because": because, "quaternion": quaternion}
-        has_functions = bool(self.module)
-        yield from blocks_of("en/conversions", self.letters, **facts, has_functions=has_functions)
-
-    def _body(self) -> Iterator[NoteBlock]:
-        """What is said of a body; nothing here."""
-        return iter(())
-
-    def _motion(self) -> Iterator[NoteBlock]:
-        """Lagrange's and Euler's equations, and what is constant along every motion."""
-        if self.derivation.forces is not None:
-            facts = MotionFacts(self.derivation, self.letters)
-            steps = list(self._steps(MOTION))
-            yield from blocks_of("en/motion", self.letters, motion=facts, steps=steps)
-
-    def _convention(self) -> Iterator[NoteBlock]:
-        facts = convention_facts(self.derivation, self.letters)
-        yield from blocks_of("en/convention", self.letters, **facts, angles=angle_facts(self.model))
-
-    def _rotation(self) -> Iterator[NoteBlock]:
-        yield from self._of_the_rotation("rotation")
-        yield from self._steps(TURNED)
-
-    def _angular_velocity(self) -> Iterator[NoteBlock]:
-        yield from self._of_the_rotation("angular_velocity")
-        yield from self._steps(ANGULAR_VELOCITY)
-
-    def _of_the_rotation(self, name: str) -> Sequence[NoteBlock]:
-        facts = RotationFacts(self.model, self.letters)
-        first = FigureReference(1)
-        return blocks_of(f"en/{name}", self.letters, rotation=facts, first_figure=first)
-
-    def _rates(self) -> Sequence[NoteBlock]:
-        steps = list(self._steps(OF_RATES))
-        found = self.derivation.singularities
-        if not steps and found is None:
-            return ()
-        has_no_inverse = found is not None and found.rank < 3
-        return blocks_of("en/rates", self.letters, steps=steps, has_no_inverse=has_no_inverse)
-
-    def _singular(self) -> Iterator[NoteBlock]:
-        facts = singular_facts(self.derivation)
-        if facts is None:
-            return
-        if facts.has_determinant:
-            yield from blocks_of("en/singular_measure", self.letters, singular=facts)
-        yield from blocks_of("en/singular", self.letters, singular=facts)
+    def _reference(self, name: str) -> EquationReference:
+        """To the equation of a quantity, or in the lecture to the one that it belongs to."""
+        return EquationReference(_WHERE_SHOWN.get(name, name) if self.derivation.theory else name)
 
     @cached_property
     def _displayed(self) -> Mapping[str, tuple[Equation, Display]]:
         """The equations of all steps, with vectors if they have such a form, as they fit."""
-        found = {
+        equations = {
             s.quantity.name: as_vectors(self._equation(s), s, self.letters)
             for s in self.derivation.steps
         }
-        return {name: (e, display(e, self.letters, PAGE)) for name, e in found.items()}
+        if self._product:  # it has the number, and the entries have none
+            entries = equations["rotation_matrix"]
+            entries = replace(entries, number=None, label="", is_result=False)
+            equations["rotation_matrix"] = replace(entries, proved=(), function="")
+        return {name: (e, display(e, self.letters, PAGE)) for name, e in equations.items()}
 
-    def _steps(self, section: str) -> Iterator[NoteBlock]:
-        for step in self.derivation.steps:
-            if step.quantity.section == section:
-                first, *others = self.fitter.fitted(*self._displayed[step.quantity.name], step)
-                lead = self._lead(step)
-                if isinstance(first, Paragraph):  # on abbreviations
-                    *said, end = lead
-                    end = end.replace(":", ".") if isinstance(end, str) else end
-                    yield Paragraph((*said, end, " ", *first.text))
-                else:
-                    yield from (Paragraph(lead), first)
-                yield from others
+    def _equation(self, step: Step) -> Equation:
+        """The equation of a step; in the lecture some have no number of their own."""
+        name = step.quantity.name
+        equation = equation_of(step, self.derivation.arguments)
+        equation = replace(equation, is_result=step.quantity.is_result)
+        if self.is_audit and name in self.functions:
+            equation = replace(equation, function=_call(step))
+        if self.derivation.theory and name in _WHERE_SHOWN:
+            equation = replace(equation, number=None, label="", is_result=False)
+        if name == "principal_moments" and self.moments:
+            equation = _ended(equation, self._principal_moments())
+        if name in _IN_A_ROW and equation.matrix is not None:
+            in_a_row = _ended(equation, self._in_a_row(equation.matrix))
+            equation = equation if display(in_a_row, self.letters, PAGE).done else in_a_row
+        return replace(equation, sides=(*equation.sides, *textbook_form(name, self.derivation)))
 
     def _lead(self, step: Step) -> Text:
-        """How the quantity follows; a source is cited once."""
+        """How the quantity follows; a source is cited once, and the theory needs no other."""
+        rotation = RotationFacts(self.model, self.letters)
+        is_explained = rotation.is_quaternion or rotation.is_vector
+        because = step.because
+        if self.derivation.theory:
+            return with_symbols(because, self.symbols)
+        if step.quantity.name == "rotation_matrix" and is_explained and not self.model.passive:
+            because = sentence_of("matrix_of_this_rotation")
         source = self._source(step)
         if source in self.cited:
             source = None
         elif source:
             self.cited.add(source)
-        is_matrix = step.quantity.name == "rotation_matrix"
-        facts = RotationFacts(self.model, self.letters)
-        is_told = facts.is_quaternion or facts.is_vector
-        if is_matrix and is_told and not self.model.passive:
-            return with_source(("The matrix of this rotation is:",), source)
-        return with_source(with_symbols(step.because, self.symbols), source)
+        return with_source(with_symbols(because, self.symbols), source)
 
     def _source(self, step: Step) -> Citation | None:
         """The source of a step; the model's own is cited once, where the rotation is given."""
@@ -282,55 +274,111 @@ class Composer:
             return None if self.model.source.text == GIVEN else self.model.source
         return None if step.quantity.source == self.model.source else step.quantity.source
 
-    def _equation(self, step: Step) -> Equation:
-        function = _call(step) if step.quantity.name in self.functions else ""
-        equation = equation_of(step, self.derivation.arguments)
-        return replace(equation, function=function, is_result=step.quantity.is_result)
+    # The body
 
-    def _identities(self) -> Iterator[NoteBlock]:
-        steps = self.derivation.steps
-        yield from self._claims([(s.quantity.name, p) for s in steps for p in s.proofs])
+    def _principal_moments(self) -> Formula:
+        """(I₁, I₁, I₃), or the entries of I′ if they differ."""
+        assert self.derivation.body is not None
+        names = {moment: name for name, moment in self.moments}
+        moments = [names.get(m, m) for m in self.derivation.body.inertia.diagonal()]
+        return _DIAGONAL if len(set(moments)) == 3 else self._in_a_row(moments)
 
-    def _claims(self, claims: Sequence[Claim]) -> Sequence[NoteBlock]:
-        """A table of claims, each with the label of its equation."""
-        facts = [ClaimFacts(label, proof) for label, proof in claims]
-        unproved = [fact for fact in facts if not fact.is_exact]
-        return blocks_of(
-            "en/identities",
-            self.letters,
-            claims=facts,
+    def _in_a_row(self, entries: Iterable[sp.Expr]) -> Formula:
+        return Bracket(joined([formula_of(entry, self.letters) for entry in entries], COMMA))
+
+    def _moments(self) -> list[NoteBlock]:
+        """The moments behind the names I₁, I₂, I₃."""
+        if not self.moments:
+            return []
+        blocks = list(self.fitter.whole(definitions(self.moments, self.letters)))
+        is_alone = not isinstance(blocks[0], Paragraph)  # nor abbreviations first
+        return [*([said("Here")] if is_alone else []), *blocks]
+
+    # The lecture
+
+    def _theory(self) -> list[tuple[str, list[NoteBlock]]]:
+        """The sections of the theory for every body and rotation."""
+        return [
+            (title, [block for each in statements for block in self._statement(each)])
+            for title, statements in groupby(self.derivation.theory, key=lambda s: s.section)
+        ]
+
+    def _statement(self, statement: Statement) -> Iterator[NoteBlock]:
+        matrix = sums(statement, self.letters)
+        proved, unproved = claims_of(statement.proofs)
+        yield Paragraph(statement.because)
+        yield Equation(
+            sides=(*statement.sides, *([matrix] if matrix else [])),
+            number=statement.number,
+            label=statement.name if statement.number else "",
+            proved=proved,
             unproved=unproved,
-            has_status=self.is_audit or bool(unproved),
-            has_theory=bool(self.derivation.theory),
+            is_result=statement.is_result,
         )
 
-    def _functions(self) -> Iterator[NoteBlock]:
-        if self.functions:
-            example = CodeBlock(example_of(self.derivation, self.module, self.functions))
-            module = {"module": self.module, "example": example}
-            yield from blocks_of("en/functions", self.letters, **module)
+    @cached_property
+    def _product(self) -> Equation | None:
+        """R as a product of turns, which has the number in the lecture."""
+        if not (self.derivation.theory and self.model.turns):
+            return None
+        equation = self._equation(self.derivation.step("rotation_matrix"))
+        product = product_of(self.model.turns, self.letters)
+        return replace(equation, sides=(ROTATION, product), matrix=None, entries=())
+
+    # The end
+
+    def _quaternion(self) -> dict[str, Any] | None:
+        """The unit quaternion, with the number behind those of the steps."""
+        step = self.conversions.quaternion if self.conversions else None
+        if step is None or self.conversions is None:
+            return None
+        numbered = replace(step, number=len(self.derivation.steps) + 1)
+        equation = replace(equation_of(numbered, self.derivation.arguments), is_result=True)
+        if self.is_audit and self.module:
+            equation = replace(equation, function=_call(step))
+        because = with_source(self.conversions.because, step.quantity.source)
+        return {"because": because, "equation": equation}
+
+    def _symbols(self) -> NoteTable:
+        """Each symbol once, with its first meaning."""
+        (table,) = blocks_of("en/symbols", self.letters, **self.facts())
+        assert isinstance(table, NoteTable)
+        rows: dict[Text, tuple[Text, ...]] = {}
+        for row in table.rows:
+            rows.setdefault(row[0], row)
+        return table._replace(rows=tuple(rows.values()))
+
+    def _proofs(self) -> list[tuple[EquationReference, Proof]]:
+        """Each claim once with its equation, in the order of the equations."""
+        stated = [(s.name, s.number, s.proofs) for s in self.derivation.theory]
+        stated += [(s.quantity.name, s.number, s.proofs) for s in self.derivation.steps]
+        numbers = {name: number or 0 for name, number, _ in stated}
+        once: dict[Any, tuple[EquationReference, Proof]] = {}
+        for name, _, proofs in stated:
+            reference = self._reference(name)
+            for proof in proofs:
+                once.setdefault((reference, proof.claim), (reference, proof))
+        return sorted(once.values(), key=lambda pair: numbers[pair[0].label])
 
 
 def claims_of(proofs: Iterable[Proof]) -> tuple[tuple[Formula, ...], tuple[Formula, ...]]:
     """The proved claims, and the unproved ones."""
     proofs = list(proofs)
     return (
-        tuple([proof.claim for proof in proofs if proof.status == "exact"]),
-        tuple([proof.claim for proof in proofs if proof.status != "exact"]),
+        tuple([proof.claim for proof in proofs if proof.is_exact]),
+        tuple([proof.claim for proof in proofs if not proof.is_exact]),
     )
 
 
 def equation_of(step: Step, arguments: Iterable[Argument]) -> Equation:
     """The numbered equation of a step."""
     quantity = step.quantity
-    definition = () if quantity.definition == NOTHING else (quantity.definition,)
     proved, unproved = claims_of(step.proofs)
     is_scalar = quantity.shape == "scalar"
     is_matrix = not (is_scalar or step.recursion)
+    definition = step.recursion or quantity.definition
     return Equation(
-        sides=(quantity.symbol, step.recursion)
-        if step.recursion
-        else (quantity.symbol, *definition),
+        sides=(quantity.symbol, *([] if definition == NOTHING else [definition])),
         matrix=step.expression if is_matrix else None,
         scalar=step.expression[0] if is_scalar else None,
         entries=entries_of(step, arguments) if is_matrix else (),
@@ -339,6 +387,17 @@ def equation_of(step: Step, arguments: Iterable[Argument]) -> Equation:
         proved=proved,
         unproved=unproved,
     )
+
+
+def _ended(equation: Equation, side: Formula) -> Equation:
+    """The equation with one more side in place of its entries."""
+    return replace(equation, sides=(*equation.sides, side), matrix=None, entries=())
+
+
+def columns_of_matrix() -> sp.ImmutableMatrix:
+    """K(R), (4, 4), in the entries of R; each column is a multiple of the quaternion."""
+    entries = sp.Matrix(3, 3, lambda i, j: sp.Symbol(f"R_{i + 1}{j + 1}"))
+    return sp.ImmutableMatrix(outer_product(entries))
 
 
 def _call(step: Step) -> str:

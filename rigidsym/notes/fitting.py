@@ -49,7 +49,7 @@ from rigidsym.notes.document import (
     listed,
     said,
 )
-from rigidsym.notes.facts.rotation import turn
+from rigidsym.notes.facts.rotation import product_of
 from rigidsym.notes.vectors import in_notation, rates_of_form, sum_of_vectors
 
 _MOST_LINES = 24  # of one quantity, where there is a short way to say it
@@ -94,8 +94,9 @@ class Fitter:
         if short is not None and is_vector:
             yield _without_entries(equation, short)
             return
-        if step.quantity.name == "rotation_rate" and not (self._is_audit or shown.is_broken):
-            yield equation  # entries that are long give way to the chain rule: see `note.py`
+        if step.quantity.name == "rotation_rate" and not self._is_audit and shown.done:
+            rate = equation.sides[0]  # nine long entries say less than what they come from
+            yield _without_entries(equation, [by_the_chain_rule(rate, self.letters)])
             return
         form = self._shortest(equation, shown)
         if form.parts and step.quantity.name in _RATHER_SHORT:
@@ -276,7 +277,7 @@ def in_short(step: Step, derivation: Derivation, letters: Letters) -> tuple[Form
 
 def _turns(model: RotationModel, letters: Letters) -> Formula:
     """R_z(φ) R_x(θ) R_z(ψ), and its transpose for A."""
-    whole = row(*(turn(each, letters) for each in model.turns))
+    whole = product_of(model.turns, letters)
     if not model.passive:
         return whole
     return formula(r"\left(#1\right)^{\mathsf T}", whole)

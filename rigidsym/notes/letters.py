@@ -14,6 +14,7 @@ from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Argument, Step
 from rigidsym.mechanics.kinematics.vector_forms import LENGTH
+from rigidsym.mechanics.quantities.dynamics import LETTERS
 from rigidsym.models.rotation import RotationModel
 
 RESIDUAL = formula(r"\boldsymbol{\Delta}")  # what is left over of a claim
@@ -49,7 +50,7 @@ def _letter_of(vector: Sequence[sp.Expr]) -> str:
 def _letters(
     arguments: tuple[Argument, ...], notation: Notation, length: VectorLength | None
 ) -> Letters:
-    names = dict(length.names) if length else {}
+    names = {**LETTERS, **(length.names if length else {})}
     places = {length.rate: (_GIVEN_RATE, -1)} if length else {}
     for argument in arguments:
         names.update(zip(argument.symbols, argument.notation, strict=True))

@@ -6,23 +6,16 @@ A lecture explains, and an audit shows every identity.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from rigidsym.errors import ModelError
-from rigidsym.formula.display import PAGE, display
-from rigidsym.formula.letters import Letters
 from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.notes import formats
 from rigidsym.notes.compose import Composer, template_of
 from rigidsym.notes.document import (
     Document,
-    Equation,
-    NoteBlock,
-    Section,
 )
-from rigidsym.notes.fitting import by_the_chain_rule
 from rigidsym.system import resources
 
 if TYPE_CHECKING:
@@ -76,7 +69,7 @@ def note(
     """
     computed = [step.quantity.name for step in derivation.steps if step.quantity.inputs]
     names = computed if functions is None else functions
-    composer = _composer_of(derivation)(
+    composer = Composer(
         derivation,
         module=module,
         functions=names if module else (),
@@ -84,21 +77,7 @@ def note(
         conversions=conversions,
         is_audit=style == "audit",
     )
-    document = composer.document(template_of(check_style(style)))
-    return Note(document if style == "audit" else plain(document))
-
-
-def _composer_of(derivation: Derivation) -> type[Composer]:
-    """What composes the note of a derivation, with its theory, its body, or without."""
-    if derivation.theory:
-        from rigidsym.notes.lecture_note import LectureComposer
-
-        return LectureComposer
-    if derivation.body is not None:
-        from rigidsym.notes.body_note import BodyComposer
-
-        return BodyComposer
-    return Composer
+    return Note(composer.document(template_of(check_style(style))))
 
 
 STYLES = ("lecture", "audit")  # that are shipped, the default first
@@ -115,32 +94,3 @@ def check_style(style: str) -> str:
             f"no style {style!r}: expected {known}, or your own template {name} (--templates DIR)"
         ) from None
     return style
-
-
-def plain(document: Document) -> Document:
-    """The document without identities and functions beside its equations; unproved claims stay."""
-    letters = document.letters
-    return replace(document, sections=tuple(_plain(s, letters) for s in document.sections))
-
-
-def _plain(section: Section, letters: Letters) -> Section:
-    blocks = (_without_proofs(_by_the_chain_rule(b, letters)) for b in section.blocks)
-    return section._replace(blocks=tuple(blocks))
-
-
-def _without_proofs(block: NoteBlock) -> NoteBlock:
-    """Without the identities that were verified, and the functions."""
-    if isinstance(block, Equation):
-        return replace(block, proved=(), function="")
-    return block
-
-
-def _by_the_chain_rule(block: NoteBlock, letters: Letters) -> NoteBlock:
-    """dR/dt = φ̇ ∂R/∂φ + ..., in place of nine long entries."""
-    if not isinstance(block, Equation) or block.label != "rotation_rate" or block.matrix is None:
-        return block
-    if not display(block, letters, PAGE).done:
-        return block
-    rate = block.sides[0]
-    sides = (rate, by_the_chain_rule(rate, letters))
-    return replace(block, sides=sides, matrix=None, entries=())

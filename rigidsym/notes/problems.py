@@ -14,7 +14,7 @@ import sympy as sp
 
 from rigidsym.errors import ModelError, offer
 from rigidsym.formula.reader import decimal, formula
-from rigidsym.formula.tree import COMMA, Bracket, Formula, Symbol, equal, indexed, joined, row
+from rigidsym.formula.tree import COMMA, Bracket, Formula, Symbol, equal, indexed, joined
 from rigidsym.mechanics.derivation import Argument
 from rigidsym.mechanics.derive import derive
 from rigidsym.mechanics.mass.bodies import rigid_body
@@ -31,7 +31,7 @@ from rigidsym.notes.document import (
     Text,
     listed,
 )
-from rigidsym.notes.facts.rotation import turn
+from rigidsym.notes.facts.rotation import product_of
 from rigidsym.notes.facts.singular import singular_facts
 from rigidsym.notes.letters import letters_of
 from rigidsym.notes.template import sections_of
@@ -113,7 +113,7 @@ def which_convention(rng: Random) -> Problem:
         first=Symbol(first),
         middle=Symbol(middle),
         last=Symbol(last),
-        product=row(*(turn(each, letters_of(found.arguments)) for each in found.model.turns)),
+        product=product_of(found.model.turns, letters_of(found.arguments)),
     )
 
 
@@ -160,6 +160,7 @@ def gimbal_lock(rng: Random) -> Problem:
         sequence=sequence,
         theta=theta,
         singular=facts,
+        model=found.model,
     )
 
 

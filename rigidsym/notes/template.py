@@ -24,7 +24,9 @@ from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import formula, text_of
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import Formula
+from rigidsym.models.rotation import Citation
 from rigidsym.notes.document import (
+    Cited,
     Code,
     CodeBlock,
     Equation,
@@ -38,6 +40,7 @@ from rigidsym.notes.document import (
     Strong,
     Text,
 )
+from rigidsym.notes.figure.drawing import Drawing
 from rigidsym.system import resources
 
 _FIRST = 0xE000  # of the private use area, whose letters no font has
@@ -73,6 +76,8 @@ def _printed(_: Context, value: Any) -> Markup:
     marks = _MARKS.get()
     if isinstance(value, sp.Basic) and not isinstance(value, sp.MatrixBase):
         value = formula_of(value, marks.letters)
+    elif isinstance(value, Citation):
+        value = Cited(value)
     elif type(value) is tuple and value and isinstance(value[0], _BLOCKS):
         value = [*value]  # blocks; other tuples are texts
     marks.things.append(value)
@@ -115,6 +120,12 @@ def texts_of(name: str, letters: Letters, **facts: Any) -> tuple[Text, ...]:
     """The paragraphs of a template of sentences only."""
     blocks = blocks_of(name, letters, **facts)
     return tuple(block.text for block in blocks if isinstance(block, Paragraph))
+
+
+def figure_with(name: str, drawing: Drawing, letters: Letters, **facts: Any) -> Figure:
+    """A drawing with its caption, the first paragraph of a template; the others describe it."""
+    caption, *others = texts_of(name, letters, **facts)
+    return Figure(drawing, caption, others[0] if others else ())
 
 
 def _blocks(chunk: str, things: list[Any]) -> Iterator[NoteBlock]:

@@ -199,7 +199,7 @@ def test_a_second_language_is_a_folder_of_templates(tmp_path: Path):
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        ('{{ blocks("rotatoin") }}', "no part 'rotatoin' of a note; did you mean rotation?"),
+        ('{{ steps("rotatoin") }}', "no section 'rotatoin' of equations; did you mean rotation?"),
         ('{{ equation("spin") }}', "nothing is derived by the name 'spin'"),
     ],
 )

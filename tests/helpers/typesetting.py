@@ -1,4 +1,4 @@
-"""Notes typeset together, and the summary on one sheet."""
+"""Notes typeset together."""
 
 from __future__ import annotations
 
@@ -50,12 +50,3 @@ def numbered_by_tex(latex: str) -> dict[str, int]:
         if label:
             numbers[label] = count
     return numbers
-
-
-def sheet_of(document: Document) -> str:
-    """The summary of a note, with the numbers of equations but not the equations."""
-    whole = print_latex(document)
-    before, rest = whole.split(r"\begin{document}")
-    sheet, _ = rest[rest.rindex("\\newpage\n\\section") :].split(r"{\def\refname")
-    body = re.sub(r".eqref{[^}]*}", "(99)", sheet)
-    return f"{before}\\begin{{document}}{body}\\end{{document}}"

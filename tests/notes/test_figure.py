@@ -19,7 +19,7 @@ from rigidsym.models.library import rotation_from
 from rigidsym.models.parametrisations import EulerAngles, axis_turn, chain
 from rigidsym.models.rotation import Citation, RotationModel, Turn, time_function
 from rigidsym.models.solids import shaped
-from rigidsym.notes.facts.rotation import figure_of
+from rigidsym.notes.facts.rotation import RotationFacts
 from rigidsym.notes.figure.camera import STANDARD, camera, turned, unit
 from rigidsym.notes.figure.drawing import (
     Box,
@@ -37,6 +37,10 @@ from rigidsym.notes.formats.drawings import svg, tikz
 from rigidsym.notes.letters import letters_of
 
 LETTERS = "zxyzxy"  # one more turn than is drawn
+
+
+def figure_of(model, letters):
+    return RotationFacts(model, letters).figure
 
 
 def letters(text: str) -> RotationModel:

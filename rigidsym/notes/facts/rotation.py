@@ -1,11 +1,11 @@
-"""A rotation before its matrix: its angles, its axes, its figure, the vector behind it."""
+"""A rotation before its matrix: its coordinates, its axes, its figure, the vector behind it."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import sympy as sp
 
@@ -25,94 +25,88 @@ from rigidsym.formula.tree import (
     joined,
     row,
 )
-from rigidsym.mechanics.quantities.kinematics import (
-    COSINES_ARE_ORTHOGONAL,
-    COSINES_ARE_SKEW,
-    IS_SKEW,
-    ORTHOGONAL,
-    SPACE,
-    SPIN,
-    SPIN_OF_COSINES,
-)
-from rigidsym.models.rotation import SOURCES, RotationModel, Turn, by_axis, carried_axes, hat
-from rigidsym.notes.document import Cited, Equation, EquationRow, Figure, NoteBlock
+from rigidsym.mechanics.derivation import Derivation
+from rigidsym.mechanics.quantities.kinematics import SPACE
+from rigidsym.mechanics.quantities.mass import MASS
+from rigidsym.mechanics.quantities.table import is_quaternion
+from rigidsym.models.rotation import RotationModel, Turn, by_axis, carried_axes
+from rigidsym.notes.document import Equation, EquationRow, Figure, NoteBlock, Text
 from rigidsym.notes.figure.drawing import drawn
-from rigidsym.notes.figure.scene import Posed, scene_of
-from rigidsym.notes.letters import VECTOR
-from rigidsym.notes.template import texts_of
+from rigidsym.notes.figure.scene import scene_of
+from rigidsym.notes.template import figure_with
+from rigidsym.notes.words import symbols_of, unit_in_words, with_symbols
 
 PROPER = ("precession", "nutation", "spin")
 TAIT_BRYAN = ("yaw", "pitch", "roll")
-GOLDSTEIN = SOURCES["Goldstein 4.9"]
-OPERATOR = formula(r"\mathbf{C}(\mathbf{u})")  # of u ×
 _QUATERNIONS = ("quaternion", "unit_quaternion", "cayley_klein")
 _VECTORS = ("axis_angle", "rotation_vector", "gibbs_vector", "modified_rodrigues")
 _TURN_ANGLES = ("beta", "chi", "delta", "epsilon")  # one that no coordinate is called by is taken
 _MOST_WRITTEN = 3  # axes that are written out
 
 
-def are_euler_angles(model: RotationModel) -> bool:
-    """Whether R is three turns by its coordinates about coordinate axes, no two in a row alike."""
-    turns = model.turns
-    if len(turns) != 3 or {turn.angle for turn in turns} != set(model.coordinates):
-        return False
-    axes = [turn.axis for turn in turns]
-    return axes[0] != axes[1] != axes[2] and not any(turn.components for turn in turns)
+@dataclass(frozen=True, kw_only=True)
+class ConventionFacts:
+    """The coordinates, the vector that they make up, and the place of the body."""
+
+    sentences: list[Text]  # of the model, on its coordinates
+    names: tuple[Formula, ...]
+    unit: str  # that all coordinates have in common
+    programs: tuple[str, ...]  # the names in programs, if those of the note are others
+    conditions: list[Formula]  # which the proofs make use of
+    vector: tuple[sp.Expr, ...]  # the components of v, if formulas hold it
+    length: tuple[Formula, ...]  # the letters of a length and of its rate, if formulas hold it
+    is_length_of_vector: bool  # or of all coordinates
+    is_centre_used: bool  # whether any quantity depends on the position of the centre of mass
+    mass: Formula | sp.Expr | None
 
 
-def turn(turn: Turn, letters: Letters) -> Formula:
-    """R_z(φ), or R_[0, 3/5, 4/5](φ)."""
-    return Apply(Symbol("R", "bold", index=axis_of(turn, letters)), formula_of(turn.angle, letters))
+def convention_facts(derivation: Derivation, letters: Letters) -> ConventionFacts:
+    q, model, body = derivation.argument("q"), derivation.model, derivation.body
+    symbols, length = symbols_of(derivation), letters.length
+    inputs = {name for step in derivation.steps for name in step.quantity.inputs}
+    quantities = {step.quantity.name for step in derivation.steps}
+    first, *other_units = sorted({*q.units})
+    pairs = [condition.as_coeff_Add() for condition in model.constraints]
+    return ConventionFacts(
+        sentences=[with_symbols(words, symbols) for words in model.convention],
+        names=q.notation,
+        unit=unit_in_words(first) if first and not other_units else "",
+        programs=q.names if is_quaternion(q.names, q.units) else (),
+        conditions=[equal(formula_of(x, letters), formula_of(-n, letters)) for n, x in pairs],
+        vector=model.vector if any(step.vector_form for step in derivation.steps) else (),
+        length=tuple(length.names.values()) if length else (),
+        is_length_of_vector=length is not None and length.components == model.vector,
+        is_centre_used=derivation.forces is None or not inputs.isdisjoint(("centre", "centre_dot")),
+        mass=MASS if "mass" in quantities else body and body.mass,
+    )
 
 
-def axis_of(turn: Turn, letters: Letters) -> Formula:
-    """The axis of a turn: its letter, or its components."""
-    if not turn.components:
-        return Symbol(turn.axis)
-    return Bracket(joined([formula_of(c, letters) for c in turn.components], COMMA), "[]")
+class AngleFacts(NamedTuple):
+    """What Euler angles are called, in the order of the factors."""
 
-
-@dataclass(frozen=True)
-class AngleFacts:
-    """What Euler angles are called, and the ranges in which they are unique."""
-
-    model: RotationModel
-
-    @property
-    def all(self) -> list[sp.Expr]:
-        """In the order of the factors."""
-        return [turn.angle for turn in self.model.turns]
-
-    @property
-    def are_proper(self) -> bool:
-        """Precession, nutation and spin: the outer axes are alike."""
-        return self.model.turns[0].axis == self.model.turns[2].axis
-
-    @property
-    def are_tait_bryan(self) -> bool:
-        """Yaw, pitch and roll."""
-        return [turn.axis for turn in self.model.turns] == ["z", "y", "x"]
-
-    @property
-    def have_these_names(self) -> bool:
-        return self._names == (PROPER if self.are_proper else TAIT_BRYAN)
-
-    @property
-    def are_exchanged(self) -> bool:
-        """Whether yaw and roll have the letters that aerospace texts give to roll and yaw."""
-        return self.are_tait_bryan and self._names == ("phi", "theta", "psi")
-
-    @property
-    def _names(self) -> tuple[str, ...]:
-        return tuple(angle.func.__name__ for angle in self.all)
-
-    @property
-    def middle(self) -> sp.Expr:
-        return self.all[1]
+    all: tuple[sp.Expr, ...]
+    are_proper: bool  # precession, nutation and spin: the outer axes are alike
+    are_tait_bryan: bool  # yaw, pitch and roll
+    have_these_names: bool
+    are_exchanged: bool  # yaw and roll have the letters that aerospace texts give to roll and yaw
 
 
 def angle_facts(model: RotationModel) -> AngleFacts | None:
-    return AngleFacts(model) if are_euler_angles(model) else None
+    """None unless R is three turns by its coordinates about axes, no two in a row alike."""
+    axes, angles = [t.axis for t in model.turns], tuple(t.angle for t in model.turns)
+    if len(axes) != 3 or {*angles} != {*model.coordinates} or axes[1] in (axes[0], axes[2]):
+        return None
+    if any(t.components for t in model.turns):
+        return None
+    names = tuple(angle.func.__name__ for angle in angles)
+    are_proper, are_tait_bryan = axes[0] == axes[2], axes == ["z", "y", "x"]
+    return AngleFacts(
+        angles,
+        are_proper,
+        are_tait_bryan,
+        have_these_names=names == (PROPER if are_proper else TAIT_BRYAN),
+        are_exchanged=are_tait_bryan and names == ("phi", "theta", "psi"),
+    )
 
 
 @dataclass(frozen=True)
@@ -123,29 +117,57 @@ class RotationFacts:
     letters: Letters
 
     @property
-    def turns(self) -> tuple[Turn, ...]:
-        return self.model.turns
+    def name(self) -> str:
+        """Of the parametrisation."""
+        return self.model.name.removesuffix("_passive")
 
     @property
-    def is_product(self) -> bool:
-        return len(self.turns) > 1
+    def is_quaternion(self) -> bool:
+        return self.name in _QUATERNIONS
 
     @property
-    def is_passive(self) -> bool:
-        return self.model.passive
-
-    @property
-    def source(self) -> Cited:
-        return Cited(self.model.source)
+    def is_vector(self) -> bool:
+        return self.name in _VECTORS
 
     @property
     def product(self) -> Formula:
-        return row(*(turn(each, self.letters) for each in self.turns))
+        return product_of(self.model.turns, self.letters)
 
     @cached_property
     def figure(self) -> Figure | None:
         """Of a product of turns, or of one turn about a vector; None for any other model."""
-        return figure_of(self.model, self.letters)
+        scene = scene_of(self.model, self.letters)
+        if scene is None:
+            return None
+        posed = scene.posed(scene.view.angles)
+        between = "node" if any(ray.kind == "node" for ray in posed.rays) else "vector"
+        kinds = (
+            (kind, [ray.name for ray in posed.rays if ray.kind == kind])
+            for kind in ("space", "body", between)
+        )
+        arcs = []
+        for arc in posed.arcs:
+            axis, start, end = map(posed.named, (arc.axis, arc.before, arc.after))
+            arcs.append(
+                {
+                    "angle": arc.turn.name,
+                    "axis": axis and axis.name,
+                    "start": start.name if start else arc.turn.start_name,
+                    "is_start_rotated": start is None,
+                    "end": end.name if end else arc.turn.start_name,
+                    "is_end_rotated": end is None,
+                }
+            )
+        return figure_with(
+            "en/figure",
+            drawn(posed, scene.view.camera),
+            self.letters,
+            kinds=[kind for kind in kinds if kind[1]],
+            turns=self.model.turns,
+            has_oblique_axes=any(t.components for t in self.model.turns),
+            down=posed.rays[2].name if self.model.z_down else None,
+            arcs=arcs,
+        )
 
     @property
     def any_angle(self) -> sp.Symbol:
@@ -156,45 +178,17 @@ class RotationFacts:
     def matrices(self) -> list[NoteBlock]:
         """Of a turn by any angle about each axis."""
         shown = [
-            (t, Equation(sides=(turn(t, self.letters),), matrix=matrix))
-            for t, matrix in by_axis(self.turns, self.any_angle)
+            (t, Equation(sides=(product_of((t,), self.letters),), matrix=matrix))
+            for t, matrix in by_axis(self.model.turns, self.any_angle)
         ]
         short = tuple(equation for t, equation in shown if not t.components)
         oblique = [equation for t, equation in shown if t.components]
         return [*([EquationRow(short)] if short else []), *oblique]
 
     @property
-    def is_quaternion(self) -> bool:
-        return self._name in _QUATERNIONS
-
-    @property
-    def is_vector(self) -> bool:
-        return self._name in _VECTORS
-
-    @property
-    def is_axis_angle(self) -> bool:
-        return self._name == "axis_angle"
-
-    @property
-    def is_rotation_vector(self) -> bool:
-        return self._name == "rotation_vector"
-
-    @property
-    def is_gibbs_vector(self) -> bool:
-        return self._name == "gibbs_vector"
-
-    @property
-    def _name(self) -> str:
-        return self.model.name.removesuffix("_passive")
-
-    @property
     def alpha(self) -> Formula:
         """The angle of the rotation; α may be a parameter of Cayley and Klein."""
         return formula(r"\gamma" if "α" in self.model.convention[0] else r"\alpha")
-
-    @property
-    def vector(self) -> Formula:
-        return VECTOR
 
     @property
     def scalar(self) -> sp.Expr:
@@ -207,49 +201,37 @@ class RotationFacts:
         return self.letters.names[self.letters.length.symbol] if self.letters.length else ""
 
     @property
-    def is_sum(self) -> bool:
-        """Whether Ω can be read off as a sum over the turns."""
-        return self.is_product and all(turn.rate for turn in self.turns)
+    def sum(self) -> Formula | None:
+        """Ω as a sum over the turns, if it can be read off."""
+        is_sum = len(self.model.turns) > 1 and all(t.rate for t in self.model.turns)
+        return sum_of_turns(self.model, self.letters) if is_sum else None
 
     @property
-    def of_addition(self) -> Cited:
-        return Cited(GOLDSTEIN)
-
-    @property
-    def sum(self) -> Equation:
-        return Equation(sides=(sum_of_turns(self.model, self.letters),))
+    def axes(self) -> EquationRow | None:
+        """The axes in space components, if they are few and short."""
+        turns = self.model.turns
+        if len(turns) > _MOST_WRITTEN or any(t.components for t in turns):
+            return None
+        pairs = zip(axes_of_turns(self.model, self.letters), carried_axes(turns), strict=True)
+        return EquationRow(tuple(Equation(sides=(name,), matrix=axis) for name, axis in pairs))
 
     @property
     def has_carried_axes(self) -> bool:
         return _carried(2) in axes_of_turns(self.model, self.letters)
 
-    @property
-    def axes(self) -> EquationRow | None:
-        """The axes in space components, if they are few and short."""
-        if len(self.turns) > _MOST_WRITTEN or any(turn.components for turn in self.turns):
-            return None
-        names = axes_of_turns(self.model, self.letters)
-        pairs = zip(names, carried_axes(self.turns), strict=True)
-        return EquationRow(tuple(Equation(sides=(name,), matrix=axis) for name, axis in pairs))
 
-    @property
-    def of_turning(self) -> Cited:
-        return Cited(SOURCES["Landau 31"])
+def product_of(turns: Iterable[Turn], letters: Letters) -> Formula:
+    """R_z(φ) R_[0, 3/5, 4/5](θ): each turn with the letter or the components of its axis."""
 
-    @property
-    def spin(self) -> Formula:
-        return SPIN_OF_COSINES if self.is_passive else SPIN
+    def axis_of(turn: Turn) -> Formula:
+        if not turn.components:
+            return Symbol(turn.axis)
+        return Bracket(joined([formula_of(c, letters) for c in turn.components], COMMA), "[]")
 
-    @property
-    def orthogonal(self) -> Formula:
-        return COSINES_ARE_ORTHOGONAL if self.is_passive else ORTHOGONAL
-
-    @property
-    def operator(self) -> EquationRow:
-        """The matrix of u ×, and that the spin matrix is skew."""
-        matrix = Equation(sides=(OPERATOR,), matrix=hat(sp.Matrix(sp.symbols("u_1:4"))))
-        skew = COSINES_ARE_SKEW if self.is_passive else IS_SKEW
-        return EquationRow((matrix, Equation(sides=(skew,))))
+    factors = (
+        Apply(Symbol("R", "bold", index=axis_of(t)), formula_of(t.angle, letters)) for t in turns
+    )
+    return row(*factors)
 
 
 def axes_of_turns(model: RotationModel, letters: Letters) -> list[Formula]:
@@ -265,107 +247,25 @@ def axes_of_turns(model: RotationModel, letters: Letters) -> list[Formula]:
 def _carried(k: int) -> Formula:
     """P_{k-1} n_k: the k-th axis, as the rotations before it carry it along."""
     axis = Symbol("n", "bold", index=Numeral(str(k)))
-    before = Symbol("P", "bold", index=Numeral(str(k - 1)))
-    return row(before, axis) if k > 1 else axis
+    return row(Symbol("P", "bold", index=Numeral(str(k - 1))), axis) if k > 1 else axis
 
 
 def sum_of_turns(model: RotationModel, letters: Letters) -> Formula:
     """Ω = φ̇ e_z + θ̇ e_N + ψ̇ e_z′; turns by constant angles add nothing."""
-    axes = axes_of_turns(model, letters)
     terms = [
         row(bracketed(formula_of(turn.rate, letters)), axis)
-        for turn, axis in zip(model.turns, axes, strict=True)
+        for turn, axis in zip(model.turns, axes_of_turns(model, letters), strict=True)
         if turn.rate != 0
     ]
     return equal(SPACE.omega, joined(terms, PLUS))
 
 
-# The figure
-
-
-class AxesFacts(NamedTuple):
-    """Axes of one kind in a figure."""
-
-    kind: str  # "space", "body"; any other is between them
-    names: tuple[Formula, ...]
-    turns: tuple[Turn, ...]
-
-    @property
-    def is_space(self) -> bool:
-        return self.kind == "space"
-
-    @property
-    def is_body(self) -> bool:
-        return self.kind == "body"
-
-    @property
-    def has_several(self) -> bool:
-        return len(self.names) > 1
-
-    @property
-    def is_of_vector(self) -> bool:
-        return not self.turns
-
-    @property
-    def is_of_one_rotation(self) -> bool:
-        return len(self.turns) == 1
-
-    @property
-    def is_line_of_nodes(self) -> bool:
-        return not any(turn.components for turn in self.turns)
-
-
-class ArcFacts(NamedTuple):
-    """A turn by an angle about an axis, which takes one line of the figure to another."""
-
-    angle: Formula
-    axis: Formula | None
-    start: Formula | str
-    end: Formula | str
-    is_start_rotated: bool
-    is_end_rotated: bool
-
-
-@dataclass(frozen=True)
-class FigureFacts:
-    """Which axis is which in a figure, and what each turn does."""
-
-    scene: Posed
-    model: RotationModel
-
-    @property
-    def kinds(self) -> list[AxesFacts]:
-        between = "node" if any(ray.kind == "node" for ray in self.scene.rays) else "vector"
-        named = (
-            (kind, tuple(ray.name for ray in self.scene.rays if ray.kind == kind))
-            for kind in ("space", "body", between)
-        )
-        return [AxesFacts(kind, names, self.model.turns) for kind, names in named if names]
-
-    @property
-    def down(self) -> Formula | None:
-        """The axis that points down."""
-        return self.scene.rays[2].name if self.model.z_down else None
-
-    @property
-    def arcs(self) -> Iterator[ArcFacts]:
-        for arc in self.scene.arcs:
-            axis, start, end = map(self.scene.named, (arc.axis, arc.before, arc.after))
-            yield ArcFacts(
-                arc.turn.name,
-                axis.name if axis else None,
-                start.name if start else arc.turn.start_name,
-                end.name if end else arc.turn.start_name,
-                is_start_rotated=start is None,
-                is_end_rotated=end is None,
-            )
-
-
-def figure_of(model: RotationModel, letters: Letters) -> Figure | None:
-    """The figure of a product of turns, or of one turn about a vector; None for any other model."""
-    scene = scene_of(model, letters)
-    if scene is None:
-        return None
-    posed = scene.posed(scene.view.angles)
-    caption, *description = texts_of("en/figure", letters, figure=FigureFacts(posed, model))
-    return Figure(drawn(posed, scene.view.camera), caption, description[0] if description else ())
+def facts_of_rotation(derivation: Derivation, letters: Letters) -> dict[str, Any]:
+    """The facts of the templates on conventions and on the rotation, by their names there."""
+    return {
+        "derivation": derivation,
+        "model": derivation.model,
+        "convention": convention_facts(derivation, letters),
+        "angles": angle_facts(derivation.model),
+        "rotation": RotationFacts(derivation.model, letters),
+    }

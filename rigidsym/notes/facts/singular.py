@@ -6,35 +6,16 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import prod, radians, sin
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from rigidsym.formula.letters import TIME
-from rigidsym.formula.reader import formula
-from rigidsym.formula.tree import Formula, Numeral, Symbol
-from rigidsym.mechanics.derivation import Derivation, Measure, Place, Singularities, Singularity
-from rigidsym.mechanics.quantities.kinematics import BODY, SPACE
-from rigidsym.notes.facts.rotation import are_euler_angles
+from rigidsym.mechanics.derivation import Derivation, Place, Singularities, Singularity
+from rigidsym.models.rotation import RotationModel
+from rigidsym.notes.facts.rotation import angle_facts
 
-WITH_CONDITIONS = formula(r"\mathbf{J}")
-_BOTH = r"\det\begin{pmatrix}#1\\#2\end{pmatrix}"
-_MEASURED: dict[Measure, tuple[Formula, ...]] = {
-    "det W": (formula(r"\det #1", SPACE.matrix), formula(r"\det #1", BODY.matrix)),
-    "det [W, J]": (
-        formula(_BOTH, SPACE.matrix, WITH_CONDITIONS),
-        formula(_BOTH, BODY.matrix, WITH_CONDITIONS),
-    ),
-    "det W Wᵀ": (
-        formula(r"\det(#1#1^{\mathsf T})", SPACE.matrix),
-        formula(r"\det(#1#1^{\mathsf T})", BODY.matrix),
-    ),
-    "det Wᵀ W": (
-        formula(r"\det(#1^{\mathsf T}#1)", SPACE.matrix),
-        formula(r"\det(#1^{\mathsf T}#1)", BODY.matrix),
-    ),
-}
 _MOST_POINTS = 8  # that are told of one by one
 _MOST_PLACES = 2  # of one point that are repeated
 _COUNT = sp.Symbol("k")
@@ -52,11 +33,7 @@ class Choice(NamedTuple):
     """Coordinates that have any of some values."""
 
     coordinates: tuple[sp.Expr, ...]
-    values: tuple[sp.Expr, ...]
-
-    @property
-    def has_several(self) -> bool:
-        return len(self.coordinates) > 1
+    options: tuple[sp.Expr, ...]
 
 
 class Multiples(NamedTuple):
@@ -78,32 +55,23 @@ class Period(NamedTuple):
 class PointFacts:
     """What is lost at a singular point, and what remains determined."""
 
-    point: Singularity
+    at: Singularity
     coordinates: tuple[sp.Expr, ...]
     is_only_one: bool = False  # so that its many places were just named
 
     @property
     def places(self) -> tuple[PlaceFacts, ...]:
-        return () if self.is_only_one else tuple(map(_place, self.point.places))
-
-    @property
-    def rank(self) -> int:
-        return self.point.rank
-
-    @property
-    def is_still(self) -> bool:
-        """Whether the body does not turn, whatever the rates are."""
-        return not self.point.rank
+        return () if self.is_only_one else tuple(map(_place, self.at.places))
 
     @property
     def varies(self) -> bool:
         """Whether the rates that turn nothing depend on the orientation."""
-        return not all(entry.is_number for entry in self.point.null_rates)
+        return not all(entry.is_number for entry in self.at.null_rates)
 
     @property
     def undetermined(self) -> tuple[sp.Expr, ...]:
         """The coordinates whose rates are lost, if others remain and the loss varies."""
-        moved = self._moved_by(self.point.null_rates.tolist())
+        moved = self._moved_by(self.at.null_rates.tolist())
         return moved if self.varies and len(moved) < len(self.coordinates) else ()
 
     @cached_property
@@ -114,10 +82,10 @@ class PointFacts:
         all along. Where they leave it, only rates are determined, and the combinations are those
         of rates.
         """
-        null_rates = self.point.null_rates
+        null_rates = self.at.null_rates
         if not all(entry.is_Rational for entry in null_rates):
             return []
-        fixed = {place.coordinate for place in self.point.places}
+        fixed = {place.coordinate for place in self.at.places}
         leaves = not fixed.isdisjoint(self._moved_by(null_rates.tolist()))
         named = [q.diff(TIME) for q in self.coordinates] if leaves else self.coordinates
         kept = sp.Matrix(null_rates.T).nullspace()
@@ -125,114 +93,40 @@ class PointFacts:
         return [combination for combination in sums if combination not in fixed]
 
     @property
-    def determines_several(self) -> bool:
-        return len(self.determined) != 1
-
-    @property
     def idle(self) -> list[list[sp.Expr]]:
         """Rates that turn nothing."""
-        return self.point.null_rates.T.tolist()
+        rates: list[list[sp.Expr]] = self.at.null_rates.T.tolist()
+        return rates
 
     @property
     def moved(self) -> tuple[sp.Expr, ...]:
         """The coordinates that change without a motion of the body."""
         return self._moved_by([[n] for n in self.idle[0]])
 
+    @property
+    def change(self) -> Literal["", "single", "equal", "opposite"]:
+        """How these coordinates change, if it is simple to say."""
+        amounts = [n for n in self.idle[0] if n]
+        if len(self.idle) > 1 or len({abs(n) for n in amounts}) > 1 or len(amounts) > 2:
+            return ""
+        if len(amounts) == 1:
+            return "single"
+        return "equal" if amounts[0] == amounts[1] else "opposite"
+
     def _moved_by(self, rates: Sequence[Sequence[sp.Expr]]) -> tuple[sp.Expr, ...]:
         return tuple(q for q, row in zip(self.coordinates, rates, strict=True) if any(row))
-
-    @property
-    def is_single(self) -> bool:
-        return len(self.idle) == 1 and len(self.moved) == 1
-
-    @property
-    def is_equal_pair(self) -> bool:
-        return self._is_pair and len({n for n in self.idle[0] if n}) == 1
-
-    @property
-    def is_opposite_pair(self) -> bool:
-        return self._is_pair and not self.is_equal_pair
-
-    @property
-    def _is_pair(self) -> bool:
-        amounts = [abs(n) for n in self.idle[0] if n]
-        return len(self.idle) == 1 and len(amounts) == 2 and amounts[0] == amounts[1]
-
-    @property
-    def reachable(self) -> sp.ImmutableMatrix | None:
-        """The only axis about which the body can turn."""
-        return self.point.reachable_axis
-
-    @property
-    def lost_space(self) -> sp.ImmutableMatrix | None:
-        return self.point.lost_axis_space if self.point.lost_axis_body is not None else None
-
-    @property
-    def lost_body(self) -> sp.ImmutableMatrix | None:
-        return self.point.lost_axis_body
 
 
 @dataclass(frozen=True)
 class SingularFacts:
     """Where the rate matrices lose rank."""
 
-    derivation: Derivation
+    model: RotationModel
     found: Singularities
 
     @property
-    def measured(self) -> tuple[Formula, ...]:
-        """What is worked out in both frames: det W and det W′, det (W Wᵀ), ..."""
-        measured = _MEASURED.get(self.found.measure)
-        return measured or (Symbol("Σ", index=Numeral(str(self.found.rank))),)
-
-    @property
-    def is_of_squares(self) -> bool:
-        return self.found.measure == "det W"
-
-    @property
-    def is_with_conditions(self) -> bool:
-        return self.found.measure == "det [W, J]"
-
-    @property
-    def is_wide(self) -> bool:
-        return self.found.measure == "det W Wᵀ"
-
-    @property
-    def is_tall(self) -> bool:
-        return self.found.measure == "det Wᵀ W"
-
-    @property
-    def conditions(self) -> Formula:
-        return WITH_CONDITIONS
-
-    @property
     def is_gimbal_lock(self) -> bool:
-        return len(self.derivation.model.turns) > 1 and bool(self.found.points)
-
-    @property
-    def rank(self) -> int:
-        return self.found.rank
-
-    @property
-    def is_solved(self) -> bool:
-        return self.found.is_solved
-
-    @property
-    def has_determinant(self) -> bool:
-        return self.found.determinant is not None
-
-    @property
-    def are_unlisted(self) -> bool:
-        """Whether the determinant is too long to work out."""
-        return not self.has_determinant and not self.is_solved
-
-    @property
-    def is_without_divisor(self) -> bool:
-        return not self.has_determinant and not self.found.minors
-
-    @property
-    def is_still(self) -> bool:
-        return not self.found.rank
+        return len(self.model.turns) > 1 and bool(self.found.points)
 
     @property
     def has_constants(self) -> bool:
@@ -246,25 +140,13 @@ class SingularFacts:
     def has_full_rank(self) -> bool:
         return self.found.rank == 3
 
-    @property
-    def is_at_infinity(self) -> bool:
-        return self.has_full_rank and len(self._coordinates) == 3
-
-    @property
-    def is_confined_to_a_line(self) -> bool:
-        return self.found.rank == 1
-
     @cached_property
     def _placed(self) -> list[Singularity]:
         return [point for point in self.found.points if point.places]
 
     @property
-    def has_zeros(self) -> bool:
-        return bool(self._placed)
-
-    @property
     def zeros(self) -> list[PointFacts]:
-        return [PointFacts(point, self._coordinates) for point in self._placed]
+        return [PointFacts(point, self.model.coordinates) for point in self._placed]
 
     @cached_property
     def _values(self) -> Mapping[sp.Expr, tuple[sp.Expr, ...]]:
@@ -275,20 +157,19 @@ class SingularFacts:
         return {coordinate: tuple(several) for coordinate, several in values.items()}
 
     @property
-    def is_grid(self) -> bool:
-        """Whether the points are all combinations of values of several coordinates."""
-        return len(self._values) > 1 and len(self._placed) == prod(map(len, self._values.values()))
-
-    @property
     def grid(self) -> list[Choice]:
+        """The values, if the points are all combinations of values of several coordinates."""
+        values = self._values
+        if len(values) < 2 or len(self._placed) != prod(map(len, values.values())):
+            return []
         alike: dict[tuple[sp.Expr, ...], list[sp.Expr]] = {}
-        for coordinate, several in self._values.items():
+        for coordinate, several in values.items():
             alike.setdefault(several, []).append(coordinate)
         return [Choice(tuple(coordinates), several) for several, coordinates in alike.items()]
 
     @property
     def multiples(self) -> Multiples | None:
-        if not self.is_solved or len(self._values) != 1:
+        if not self.found.is_solved or len(self._values) != 1:
             return None
         ((angle, zeros),) = self._values.items()
         if {*zeros} == {sp.S.Zero, sp.pi}:
@@ -309,19 +190,16 @@ class SingularFacts:
         return [*others, *(Period(period, q) for q, period in longer.items())]
 
     @property
-    def not_at_zero(self) -> list[sp.Expr]:
+    def not_at_zero(self) -> sp.Expr | None:
         """Of a length, which could be taken to be such a place where it is nothing."""
-        places = (place for point in self._placed for place in point.places)
-        lengths = dict.fromkeys(place.coordinate for place in places if place.is_length)
-        return [sp.Eq(length, 0, evaluate=False) for length in lengths]
+        length = self.found.length
+        return None if length is None else sp.Eq(length, 0, evaluate=False)
 
     @property
     def outer_angles(self) -> tuple[sp.Expr, ...]:
         """The angles of the two rotations that come to turn about one axis, in gimbal lock."""
-        turns = self.derivation.model.turns
-        if not self.found.points or not are_euler_angles(self.derivation.model):
-            return ()
-        return (turns[0].angle, turns[2].angle)
+        angles = angle_facts(self.model)
+        return (angles.all[0], angles.all[2]) if angles and self.found.points else ()
 
     @property
     def at_one_degree(self) -> int:
@@ -333,20 +211,16 @@ class SingularFacts:
         is_only_one = len(self.found.points) == 1
         for point in self.found.points[:_MOST_POINTS]:
             is_named = is_only_one and len(point.places) > _MOST_PLACES
-            yield PointFacts(point, self._coordinates, is_only_one=is_named)
+            yield PointFacts(point, self.model.coordinates, is_only_one=is_named)
 
     @property
     def more_points(self) -> int:
         return max(0, len(self.found.points) - _MOST_POINTS)
 
-    @property
-    def _coordinates(self) -> tuple[sp.Expr, ...]:
-        return self.derivation.model.coordinates
-
 
 def singular_facts(derivation: Derivation) -> SingularFacts | None:
     found = derivation.singularities
-    return None if found is None else SingularFacts(derivation, found)
+    return None if found is None else SingularFacts(derivation.model, found)
 
 
 def _place(place: Place) -> PlaceFacts:

@@ -4,23 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rigidsym.formula.console import INDENT, Block, Headline, Line, Style, lines_of, unstyled
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.notation import DEFAULT, Notation
-from rigidsym.formula.reader import sentence
-from rigidsym.formula.tree import equal, row
+from rigidsym.formula.reader import formula, sentence
+from rigidsym.formula.tree import equal
 from rigidsym.mechanics.derivation import Argument, Derivation, Proof, Step
 from rigidsym.mechanics.quantities.kinematics import BODY, ROTATION, SPACE
 from rigidsym.models.rotation import RotationModel
-from rigidsym.notes.compose import equation_of
-from rigidsym.notes.document import Equation
-from rigidsym.notes.facts.convention import convention_facts
-from rigidsym.notes.facts.rotation import turn
+from rigidsym.notes.compose import columns_of_matrix, equation_of
+from rigidsym.notes.document import Equation, Paragraph
+from rigidsym.notes.facts.mass import mass_facts
+from rigidsym.notes.facts.rotation import facts_of_rotation, product_of
 from rigidsym.notes.facts.singular import singular_facts
 from rigidsym.notes.letters import RESIDUAL, letters_of
-from rigidsym.notes.template import texts_of
+from rigidsym.notes.template import blocks_of, texts_of
 from rigidsym.notes.vectors import sum_of_vectors
 from rigidsym.notes.words import (
     is_body_alone,
@@ -31,6 +31,7 @@ from rigidsym.notes.words import (
 if TYPE_CHECKING:
     from rigidsym.mechanics.conversions.conversions import Conversions
 
+_COLUMNS = formula(r"\mathbf{K}")
 _OMEGA = {"Ω": SPACE.omega, "Ω′": BODY.omega}
 
 
@@ -129,20 +130,17 @@ class _Screen:
             yield ""
 
     def _convention(self) -> Iterator[Block]:
-        facts = convention_facts(self.derivation, self.letters)
-        yield from texts_of("en/convention", self.letters, **facts, angles=None)
+        facts = {**facts_of_rotation(self.derivation, self.letters), "angles": None}
+        has_dots = self.letters.notation.rates == "dot"
+        yield from texts_of("en/convention", self.letters, **facts, has_dots=has_dots)
         turns = self.derivation.model.turns
         if turns:
-            factors = [turn(t, self.letters) for t in turns]
-            yield Line((INDENT, equal(ROTATION, row(*factors))))
+            yield Line((INDENT, equal(ROTATION, product_of(turns, self.letters))))
 
     def _numbers(self) -> Iterator[Block]:
         """The parameters of the body that have values, and its principal axes."""
-        if self.derivation.body is None:
-            return
-        from rigidsym.notes.facts.mass import lines_of_body
-
-        lines = list(lines_of_body(self.derivation, self.letters))
+        facts = mass_facts(self.derivation, self.letters)
+        lines = list(facts.lines()) if facts else []
         yield from _under("In numbers") if lines else ()
         yield from (INDENT + line for line in lines)
 
@@ -152,11 +150,14 @@ class _Screen:
             return
         gimbal_lock = " (gimbal lock)" if facts.is_gimbal_lock else ""
         yield from _under(f"Singular orientations{gimbal_lock}")
-        if facts.found.measure == "minors":  # else Σ₁ would have no meaning
-            yield from texts_of("en/singular_measure", self.letters, singular=facts)
-        if facts.has_determinant:
-            yield Equation(sides=facts.measured, scalar=facts.found.determinant)
-        yield from texts_of("en/singular", self.letters, singular=facts)
+        given: dict[str, Any] = {"singular": facts, "model": self.derivation.model}
+        if facts.found.determinant is not None:
+            for block in blocks_of("en/singular_measure", self.letters, **given):
+                if isinstance(block, Equation):
+                    yield block
+                elif isinstance(block, Paragraph) and facts.found.measure == "minors":
+                    yield block.text  # or Σ₁ would have no meaning
+        yield from texts_of("en/singular", self.letters, **given)
 
     def _conversions(self) -> Iterator[Block]:
         """To the unit quaternion and back, or why there is no way back."""
@@ -166,10 +167,8 @@ class _Screen:
         yield from _under("Conversions")
         for step in self.steps[len(self.derivation.steps) :]:
             yield from _blocks_of(step, self.derivation.arguments, self.letters)
-        from rigidsym.notes.conversion_section import COLUMNS, columns_of_matrix
-
-        yield sentence("Each column of {} is a multiple of the quaternion.", COLUMNS)
-        yield Equation(sides=(COLUMNS,), matrix=columns_of_matrix())
+        yield sentence("Each column of {} is a multiple of the quaternion.", _COLUMNS)
+        yield Equation(sides=(_COLUMNS,), matrix=columns_of_matrix())
         back = found.inverse
         yield from (back.because, back.branch) if back else ((found.without,),)
 
