@@ -125,16 +125,6 @@ def spoken(equation: Equation, letters: Letters) -> str:
     return UnicodePen(letters.notation).write(equal(*equation.sides, *value)).text
 
 
-def height(equation: Equation, letters: Letters) -> float:
-    """About how many lines of text an equation takes, with the air around it."""
-    pen = LatexPen(letters.notation)
-    if equation.matrix is None:
-        line = 2.4 if any(pen.write(side).height for side in equation.sides) else 1.3
-        return 0.7 + line * display(equation, letters, PAGE).lines
-    rows = [list(map(pen.write, line)) for line in matrix_of(equation.matrix, letters)]
-    return 1.2 + sum(2.4 if any(entry.height for entry in line) else 1.2 for line in rows)
-
-
 def pack(equations: Sequence[Equation], letters: Letters, width: float, pen: SheetPen) -> str:
     """Short equations, as many on a line as fit into `width` ems."""
     lines: list[str] = []

@@ -117,7 +117,6 @@ class Quantity(NamedTuple):
     vectors: str = ""  # which form it has by a vector of coordinates: "rotation", "velocity", ...
     recursion: str = ""  # over the turns of a chain, in TeX; LAST is the number of turns
     section: str = ""  # of the note
-    group: str = ""  # of the summary: a title for several results
     is_result: bool = False  # whether it is framed in the note
     of_centre: bool = False  # whether it has no meaning for a body with a fixed point
     variants: tuple[tuple[frozenset[str], Mapping[str, Any]], ...] = ()

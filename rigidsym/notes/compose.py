@@ -30,7 +30,7 @@ from rigidsym.mechanics.derivation import (
     Proof,
     Statement,
     Step,
-    sentence_of,
+    phrases,
 )
 from rigidsym.mechanics.quantities.kinematics import ROTATION
 from rigidsym.models.parametrisations import GIVEN
@@ -259,7 +259,7 @@ class Composer:
         if self.derivation.theory:
             return with_symbols(because, self.symbols)
         if step.quantity.name == "rotation_matrix" and is_explained and not self.model.passive:
-            because = sentence_of("matrix_of_this_rotation")
+            because = phrases("equations")["matrix_of_this_rotation"]
         source = self._source(step)
         if source in self.cited:
             source = None
@@ -292,7 +292,7 @@ class Composer:
             return []
         blocks = list(self.fitter.whole(definitions(self.moments, self.letters)))
         is_alone = not isinstance(blocks[0], Paragraph)  # nor abbreviations first
-        return [*([said("Here")] if is_alone else []), *blocks]
+        return [*([said("here")] if is_alone else []), *blocks]
 
     # The lecture
 

@@ -17,6 +17,7 @@ from rigidsym.formula.display import Equation as Equation
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import sentence
 from rigidsym.formula.tree import Formula
+from rigidsym.mechanics.derivation import phrases
 from rigidsym.models.rotation import Citation
 from rigidsym.notes.figure.drawing import Drawing
 
@@ -85,9 +86,9 @@ class Paragraph(NamedTuple):
     text: Text
 
 
-def said(typed: str, *spans: Span) -> Paragraph:
-    """A paragraph of a `sentence`."""
-    return Paragraph(sentence(typed, *spans))
+def said(key: str, *spans: Span) -> Paragraph:
+    """A sentence of templates/notes/en/equations.toml."""
+    return Paragraph(sentence(phrases("equations")[key], *spans))
 
 
 class EquationRow(NamedTuple):
@@ -121,7 +122,6 @@ NoteBlock = Paragraph | Equation | EquationRow | NoteTable | CodeBlock | Figure
 class Section(NamedTuple):
     title: str
     blocks: tuple[NoteBlock, ...]
-    on_own_page: bool = False  # at the end, on a sheet that can be handed out alone
 
 
 @dataclass(frozen=True, kw_only=True)

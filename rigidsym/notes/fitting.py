@@ -109,7 +109,7 @@ class Fitter:
             if lines > (_MOST_OF_ROTATION if is_rotation else _MOST_LINES):
                 self._namer.forget()
                 yield _without_entries(equation, short)  # the function evaluates it all the same
-                yield said(f"The explicit components would fill {lines} lines and are left out.")
+                yield said("left_out", str(lines))
                 return
         yield from self._blocks(form)
         if equation.number:  # it can be referred to
@@ -180,7 +180,7 @@ class Fitter:
         if old:
             yield Paragraph((*_again(old), "; let" if new else "."))
         elif new:
-            yield said("Let")
+            yield said("let")
         if new:
             yield definitions(new, self.letters)
         yield form.equation

@@ -102,9 +102,8 @@ def sections_of(name: str, letters: Letters, **facts: Any) -> Iterator[Section]:
         heading, _, rest = chunk.partition("\n") if chunk.startswith("#") else ("", "", chunk)
         if heading:
             yield section._replace(blocks=tuple(blocks))
-            words, page, _ = heading.partition("{page}")
-            title = text_of(_text(words.strip("# "), marks.things))
-            section, blocks = Section(title, (), on_own_page=bool(page)), []
+            title = text_of(_text(heading.strip("# "), marks.things))
+            section, blocks = Section(title, ()), []
         if rest.strip():
             blocks += _blocks(rest.strip(), marks.things)
     yield section._replace(blocks=tuple(blocks))

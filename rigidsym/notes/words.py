@@ -19,7 +19,7 @@ from rigidsym.formula.tree import (
     equal,
     transpose_of,
 )
-from rigidsym.mechanics.derivation import Derivation
+from rigidsym.mechanics.derivation import Derivation, phrases
 from rigidsym.mechanics.quantities.kinematics import (
     BODY,
     COSINES,
@@ -119,15 +119,10 @@ def vector(entries: Iterable[sp.Expr], letters: Letters) -> Text:
     return ("(", *listed([(formula_of(entry, letters),) for entry in entries], ", "), ")")
 
 
-_SHORTHAND = sentence(
-    r"With the abbreviations $s_\alpha$ for $\sin\alpha$ and $c_\alpha$ for $\cos\alpha$,"
-)
-
-
 def announcement(equation: Equation, done: Done) -> Text:
     """What a reader has to be told of the way an equation is set, before it; often nothing."""
     if done == "abbreviated":
-        return _SHORTHAND
+        return sentence(phrases("equations")["shorthand"])
     if done == "listed":
-        return sentence("The entries of {} are", equal(*equation.sides))
+        return sentence(phrases("equations")["entries"], equal(*equation.sides))
     return ()

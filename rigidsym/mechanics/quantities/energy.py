@@ -22,11 +22,11 @@ _SUM = formula(r"{\textstyle\sum_i} m_i")
 
 _ENERGY: dict[str, Any] = {
     **{"unit": "J", "shape": "scalar", "source": SOURCES["Landau 32"]},
-    **{"section": ENERGY, "group": "The kinetic energy"},
+    **{"section": ENERGY},
 }
 _MOMENTUM: dict[str, Any] = {
     **{"unit": "kg m^2/s", "shape": "vector"},
-    **{"section": MOMENTUM, "group": "The angular momentum"},
+    **{"section": MOMENTUM},
 }
 
 translational_energy = Quantity(

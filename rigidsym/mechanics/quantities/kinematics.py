@@ -50,7 +50,6 @@ rotation_matrix = Quantity(
     vectors="rotation",
     reason="product_of_turns",
     section=TURNED,
-    group="The rotation",
     is_result=True,
     variants=(
         when("one_turn", reason="single_turn"),
@@ -138,7 +137,6 @@ spin_matrix = Quantity(
 _VELOCITY: dict[str, Any] = {
     **{"unit": "rad/s", "inputs": ("q", "q_dot"), "shape": "vector", "vectors": "velocity"},
     **{"source": SOURCES["Murray 2.4"], "section": ANGULAR_VELOCITY, "is_result": True},
-    "group": "The angular velocity",
 }
 
 angular_velocity_space = Quantity(
@@ -203,7 +201,6 @@ def _rate_matrix(frame: Frame, *, of_chain: str, columns: str) -> Quantity:
         vectors="rate_matrix",
         reason=f"coefficients_{name}",
         section=OF_RATES,
-        group="The rate matrices",
         variants=(
             when("by_turns", reason=f"axes_of_turns_{name}"),
             when("one_coordinate", reason=f"axis_of_turn_{name}"),
@@ -232,7 +229,6 @@ def _inverse_rate_matrix(frame: Frame, **reasons: str) -> Quantity:
         vectors="inverse",
         reason=f"inverse_{name}",
         section=OF_RATES,
-        group="Their inverses",
         variants=(
             when(
                 WIDE,
@@ -277,7 +273,6 @@ def _rates(frame: Frame) -> Quantity:
         vectors="rates",
         reason=f"rates_from_{name}",
         section=OF_RATES,
-        group="The rates of the coordinates",
         is_result=True,
         variants=(
             when(WIDE, **by(frame.right_inverse)),
@@ -314,7 +309,6 @@ rates_from_angular_velocity_body = _rates(BODY)
 _ACCELERATION: dict[str, Any] = {
     **{"unit": "rad/s^2", "inputs": ("q", "q_dot", "q_ddot"), "shape": "vector"},
     **{"source": SOURCES["Diebel 5"], "section": ACCELERATION, "is_result": True},
-    "group": "The angular acceleration",
 }
 
 angular_acceleration_space = Quantity(

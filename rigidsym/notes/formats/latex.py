@@ -46,7 +46,6 @@ def render(document: Document) -> str:
         {
             "title": escape(section.title),
             "body": printer.body(section),
-            "on_own_page": section.on_own_page,
             "lines": _least_lines(section),
         }
         for section in document.sections
