@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import re
+import shutil
 from collections.abc import Callable
 from functools import cache
 from types import ModuleType
@@ -15,6 +16,7 @@ import sympy as sp
 
 import rigidsym as rs
 from helpers.motions import derived
+from helpers.node import load
 from helpers.witness import evaluate, mp
 from rigidsym.kernels.targets import TARGETS
 from rigidsym.models.rotation import RotationModel, elementary, lecture, time_function
@@ -33,11 +35,11 @@ ROTATIONS = {  # and some quantities of each
     "z(phi) [1,2,2](theta) x(psi0)": ("rotation_matrix", "angular_velocity_body"),
 }
 EPS = {np.float64: 2.0**-52, np.float32: 2.0**-23}
+MISSING = {name: target.missing for name, target in TARGETS.items()}
+MISSING["javascript"] = "" if shutil.which("node") else "node"
 EVERY = [
-    pytest.param(
-        name, marks=pytest.mark.skipif(bool(TARGETS[name].missing), reason=TARGETS[name].missing)
-    )
-    for name in TARGETS
+    pytest.param(name, marks=pytest.mark.skipif(bool(missing), reason=missing))
+    for name, missing in MISSING.items()
 ]
 SPECIAL = np.array([*itertools.product(np.pi / 4 * np.arange(-4, 5), repeat=3)])
 STRICT = ("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wshadow", "-Wconversion")
@@ -54,7 +56,7 @@ def motion(rotation: str) -> rs.Motion:
 
 @cache
 def module(rotation: str = "ZXZ", target: str = "numpy") -> ModuleType:
-    return motion(rotation).kernels(target).load()
+    return load(motion(rotation).kernels(target))
 
 
 def names(rotation: str, target: str = "numpy") -> list[str]:

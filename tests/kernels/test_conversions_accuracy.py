@@ -10,6 +10,7 @@ import pytest
 
 import rigidsym as rs
 from helpers.conversion_modules import module as numpy_module
+from helpers.node import load
 from helpers.target_modules import EVERY, row_by_row
 from helpers.witness import distance, hat, mp, rotation as exact_rotation
 from rigidsym.models.library import rotation_from
@@ -126,7 +127,7 @@ def test_inverse_conversions_are_accurate_near_poles_too(text):
 @pytest.mark.parametrize("target", [e for e in EVERY if e.values != ("numpy",)])
 @pytest.mark.parametrize("text", ["zyx", "rotation_vector"])
 def test_they_are_so_in_every_target(text, target):
-    module = motion(text).kernels(target, conversions=True).load()
+    module = load(motion(text).kernels(target, conversions=True))
     for name, error in worst(text, module, given(text, 20, 8), target).items():
         assert error <= most(text), name
 

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import rigidsym as rs
+from helpers.node import load
 from helpers.target_modules import EVERY
 from rigidsym.kernels.targets import TARGETS
 from rigidsym.models.library import rotation_from
@@ -35,7 +36,7 @@ def motion(text: str) -> rs.Motion:
 
 @cache
 def module(text: str, target: str) -> ModuleType:
-    return motion(text).kernels(target, conversions=True).load()
+    return load(motion(text).kernels(target, conversions=True))
 
 
 def given(text: str) -> dict[str, list[np.ndarray]]:
@@ -86,11 +87,11 @@ def test_every_target_has_the_numbers_of_numpy(text, target):
         np.testing.assert_allclose(found, expected, rtol=1e-13, atol=1e-13, err_msg=name)
 
 
-@pytest.mark.skipif(bool(TARGETS["javascript"].missing), reason="node is not installed")
+@pytest.mark.usefixtures("node")
 def test_a_quaternion_read_off_from_the_transpose_of_r():
     motion = rs.derive(rotation_from("direction_cosines", passive=True), ["rotation_matrix"])
     q = [0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0]  # R, which turns y to x; A turns x to y
-    found = motion.kernels("javascript", conversions=True).load().quaternion(q)
+    found = load(motion.kernels("javascript", conversions=True)).quaternion(q)
     expected = motion.kernels(conversions=True).load().quaternion(q)
     np.testing.assert_allclose(found, expected, atol=1e-6)
     np.testing.assert_allclose(expected, [0.5, -0.5, -0.5, -0.5])

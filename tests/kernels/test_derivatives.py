@@ -13,6 +13,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 import rigidsym as rs
 from helpers.motions import derived
+from helpers.node import load
 from helpers.target_modules import EVERY, row_by_row
 from helpers.witness import evaluate, mp
 from rigidsym.algebra.stable_forms import FIRST_SERIES, series_of
@@ -37,7 +38,7 @@ def of(name: str, quantity: str, *vectors: str, target: str = "numpy"):
 
 @cache
 def _module(name: str, target: str, asked: tuple[str, ...]):
-    return motion(name).kernels(target, derivatives=asked).load()
+    return load(motion(name).kernels(target, derivatives=asked))
 
 
 def arrays_for(name: str, quantity: str, leading: tuple[int, ...] = (), size: float = 1.0):
@@ -130,7 +131,7 @@ def test_the_jacobian_along_the_motion_is_the_acceleration(sequence):
 def test_every_target_gives_the_value_and_the_derivative(target):
     alone = motion("ZXZ").select(["angular_velocity_body"])
     asked = ["angular_velocity_body by q", "angular_velocity_body by q_dot"]
-    functions = alone.kernels(target, derivatives=asked).load()
+    functions = load(alone.kernels(target, derivatives=asked))
     plain = of("ZXZ", "angular_velocity_body", "q", "q_dot")
     point = [*arrays_for("ZXZ", "angular_velocity_body", (70,)).values()]
     for name in ("angular_velocity_body_jacobian_q", "angular_velocity_body_jacobian_q_dot"):

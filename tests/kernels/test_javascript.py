@@ -12,9 +12,11 @@ import numpy as np
 import pytest
 
 import rigidsym as rs
+from helpers import node
 from helpers.motions import derived
+from helpers.node import load
 from helpers.target_modules import turned_by
-from rigidsym.errors import MissingTool
+from rigidsym.errors import KernelError
 from rigidsym.kernels.ir import Kernel, KernelArgument, Name, Negative
 from rigidsym.kernels.targets import javascript
 from rigidsym.motion import derive
@@ -37,7 +39,7 @@ def given(motion: rs.Motion, inputs: tuple[str, ...], count: int = 2) -> list[np
 
 def test_functions_of_the_length_pass_through_zero_and_over_the_switch():
     motion = motion_of("rotation_vector")
-    kernels, known = motion.kernels("javascript").load(), motion.kernels().load()
+    kernels, known = load(motion.kernels("javascript")), motion.kernels().load()
     lengths = np.array([0.0, 1e-12, 1e-3, 1.0, 1.93, 1.94, 2.78, 2.79, 3.99, 4.01, 6.0])
     q = lengths[:, None] * np.array([2.0, -1.0, 2.0]) / 3
     rates = [0.3, -0.5, 0.7]
@@ -106,7 +108,7 @@ def test_text_in_a_title_stays_in_its_comment():
     kernels = odd.kernels("javascript")
     assert "*/ throw" not in kernels.source
     q = [0.1, 0.2, 0.3]
-    found = kernels.load().rotation_matrix(q)
+    found = load(kernels).rotation_matrix(q)
     assert np.allclose(found, motion.kernels().load().rotation_matrix(q), atol=1e-14)
 
 
@@ -115,7 +117,7 @@ def test_a_component_may_be_called_as_its_vector_is():
     kernel = Kernel(
         name="minus", arguments=(vector,), assignments=(), outputs=(Negative(Name("q")),), shape=()
     )
-    made = javascript.load("made", {"made.mjs": javascript.bare([kernel])})
+    made = node.module("made", javascript.bare([kernel]))
     assert made.minus([2.0]) == -2.0
 
 
@@ -131,8 +133,8 @@ def test_every_function_is_declared_for_typescript(tmp_path: Path):
     assert kernels.write(tmp_path / "mine.mjs") == tmp_path / "mine.mjs"
 
 
-def test_without_node_it_is_said(monkeypatch):
-    monkeypatch.setenv("PATH", "")
-    kernels = derived("ZXZ").kernels("javascript")
-    with pytest.raises(MissingTool, match="no program `node`"):
-        kernels.load()
+def test_python_does_not_load_it():
+    with pytest.raises(
+        KernelError, match=f"{NAME}.mjs runs in browsers and in Node, not in Python"
+    ):
+        derived("ZXZ").kernels("javascript").load()

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import rigidsym as rs
+from helpers.node import load
 from helpers.target_modules import EVERY
 from rigidsym.kernels.lowering.lower import lower
 from rigidsym.kernels.lowering.naming import Names, identifier
@@ -59,7 +60,7 @@ WORDS = [
 def test_words_of_languages_are_renamed_so_that_every_module_loads(names, target):
     motion = rs.derive(rs.EulerAngles("ZXZ", angles=names), only=["angular_velocity_body"])
     plain = rs.derive("ZXZ", only=["angular_velocity_body"]).kernels().load()
-    module = motion.kernels(target, conversions=True).load()
+    module = load(motion.kernels(target, conversions=True))
     given = [[0.1, 0.2, 0.3], [0.4, 0.5, 0.6]]
     found = module.angular_velocity_body(*given)
     np.testing.assert_allclose(found, plain.angular_velocity_body(*given), rtol=1e-6)

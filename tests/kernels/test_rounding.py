@@ -11,6 +11,7 @@ import pytest
 import rigidsym as rs
 from benchmarks.bounds import PUBLISHED, bounded_kernels, gappa_bound, rigid_body
 from helpers.motions import derived
+from helpers.node import load
 from helpers.target_modules import EVERY, SPECIAL, row_by_row
 from helpers.witness import evaluate, mp
 from rigidsym.kernels.ir import Assignment, Call, Kernel, KernelArgument, Name, Number, Product, Sum
@@ -108,7 +109,7 @@ def measured(motion, name: str, function, arrays) -> float:
 
 def ratios(motion, target, dtype, count: int) -> dict[str, float]:
     """Measured error over proved bound, for each function that has a bound."""
-    module = motion.kernels(target).load()
+    module = load(motion.kernels(target))
     random = np.random.default_rng(6)
     found = {}
     for kernel in lower(motion).kernels:

@@ -275,7 +275,7 @@ def _files(target):
 
 @pytest.mark.parametrize(
     ("target", "hidden"),
-    [("c", None), ("javascript", None), ("jax", "jax.numpy"), ("numba", "numba")],
+    [("c", None), ("jax", "jax.numpy"), ("numba", "numba")],
 )
 def test_without_its_tools_a_target_is_written_and_loading_ends_in_code_4(
     target, hidden, monkeypatch

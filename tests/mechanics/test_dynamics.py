@@ -13,6 +13,7 @@ from scipy.spatial.transform import Rotation
 from sympy.physics.mechanics import LagrangesMethod
 
 import rigidsym as rs
+from helpers.node import load
 from helpers.witness import agree, cross, evaluate, mp
 from rigidsym.mechanics.dynamics.lagrange import LagrangeEquations
 from rigidsym.mechanics.quantities.dynamics import bias_vector
@@ -131,7 +132,7 @@ def test_every_language_has_the_derivative_of_the_state_for_one_and_for_many(tar
     if target == "javascript":
         request.getfixturevalue("node")
     motion = flowing()
-    kernels = motion.kernels(target).load()
+    kernels = load(motion.kernels(target))
     values = {s: float(v) for s, v in values_for(motion).items()}
     y, parameters = ([values[s] for s in motion.argument(n).symbols] for n in ("y", "parameters"))
     time = values[sp.Symbol("t")]

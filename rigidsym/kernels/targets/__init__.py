@@ -72,7 +72,6 @@ TARGETS: dict[str, Target] = {  # the default first
     "javascript": Target(
         about="NAME.mjs: an ES module without dependencies, and its types in NAME.d.mts; no unwrap",
         ending=".mjs",
-        programs=("node",),
         has_single=False,
     ),
     "jax": Target(

@@ -12,6 +12,7 @@ from math import prod
 from types import ModuleType
 
 from rigidsym.algebra.stable_forms import FIRST_SERIES, series_of, taylor
+from rigidsym.errors import KernelError
 from rigidsym.kernels.ir import (
     FUNCTIONS,
     Call,
@@ -55,10 +56,9 @@ def render(program: Program) -> dict[str, str]:
 
 
 def load(name: str, files: Mapping[str, str]) -> ModuleType:
-    """The functions as a Python module that runs node; for comparison, each call is a process."""
-    from rigidsym.kernels.targets.node import module
-
-    return module(name, files[f"{name}.mjs"])
+    """Raises KernelError: Python does not run JavaScript."""
+    main = next(iter(files), name)
+    raise KernelError(f"{main} runs in browsers and in Node, not in Python; write it to a file")
 
 
 def bare(kernels: Sequence[Kernel]) -> str:

@@ -1,4 +1,4 @@
-"""An ES module as a Python module: each call is a run of node, so that it can be compared."""
+"""Loaded kernels of every target: an ES module as a Python module, whose calls run node."""
 
 from __future__ import annotations
 
@@ -17,8 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rigidsym.errors import MissingTool
-from rigidsym.system import resources
+from rigidsym.kernels.module import KernelModule
 
 _EXPORTED = re.compile(
     r"^export function (\w+)\((.*)\) \{\n(?:  const values = .*\n  return (\[))?", re.MULTILINE
@@ -29,17 +28,19 @@ Numbers = NDArray[np.float64]
 Run = Callable[[list[Numbers]], list[Numbers]]
 
 
+def load(kernels: KernelModule) -> ModuleType:
+    """The functions in Python, which loads all languages but JavaScript itself."""
+    if kernels.target == "javascript":
+        return module(kernels.name, kernels.source)
+    return kernels.load()
+
+
 def module(name: str, source: str) -> ModuleType:
     """The functions of a module on arrays with components last; their other axes broadcast.
 
     Those of many orientations, ..._batch, take and give flat arrays as they do in JavaScript;
-    with ..._each behind the name, a call for every row, in one process. Raises MissingTool if
-    node is not installed.
+    with ..._each behind the name, a call for every row, in one process.
     """
-    if shutil.which("node") is None:
-        raise MissingTool(
-            "no program `node` (on Debian: apt install nodejs) to run JavaScript with"
-        )
     made = ModuleType(name)
     shapes = {n: (int(size) // int(c), int(c)) for n, c, size in _MATRIX.findall(source)}
     for function, listed, parted in _EXPORTED.findall(source):
@@ -79,7 +80,7 @@ def _run(source: str, function: str, time: str, parted: str, rows: list[Numbers]
     sizes = [str(array.shape[-1]) for array in rows]
     with TemporaryDirectory(prefix="rigidsym-") as folder:
         (Path(folder) / "kernels.mjs").write_text(source, encoding="utf-8")
-        (Path(folder) / "run.mjs").write_text(resources.text("templates", "javascript/run.mjs"))
+        shutil.copy(Path(__file__).with_name("run.mjs"), folder)
         done = subprocess.run(
             ["node", "run.mjs", function, time, parted, *sizes],
             cwd=folder,
