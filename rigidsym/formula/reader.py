@@ -72,10 +72,10 @@ def formula(text: str, *parts: tree.Formula) -> tree.Formula:
     Raises AlgebraError, showing the rest, where it cannot be read.
     """
     reader = _TexReader(text, parts)
-    found = reader.row(())
+    whole = reader.row()
     if reader.tokens:
         raise reader.error()
-    return found
+    return whole
 
 
 def decimal(value: float, most: int = 6) -> tree.Formula:
@@ -107,68 +107,73 @@ class _TexReader:
     def __init__(self, text: str, parts: tuple[tree.Formula, ...]) -> None:
         self.text = text
         self.parts = parts
-        found = (match[0] for match in _TOKEN.finditer(text))
-        self.tokens = [_NORMAL.get(t, t[:2] if t[:2] == r"\\" else t) for t in found][::-1]
+        tokens = (match[0] for match in _TOKEN.finditer(text))
+        self.tokens = [_NORMAL.get(t, t[:2] if t[:2] == r"\\" else t) for t in tokens][::-1]
+
+    @property
+    def next(self) -> str:
+        """The token that is read next; empty at the end."""
+        return self.tokens[-1] if self.tokens else ""
 
     def error(self) -> AlgebraError:
-        left = "".join(reversed(self.tokens)) or "the end"
-        return AlgebraError(f"no formula: {self.text!r}, at {left!r}")
+        rest = "".join(reversed(self.tokens)) or "the end"
+        return AlgebraError(f"no formula: {self.text!r}, at {rest!r}")
 
-    def row(self, ends: tuple[str, ...]) -> tree.Formula:
-        """Parts up to one of `ends`, which is left; or up to the end of all."""
+    def row(self, *ends: str) -> tree.Formula:
+        """Parts up to one of `ends`, which is not read; or up to the end of all."""
         parts: list[tree.Formula] = []
-        while self.tokens and self.tokens[-1] not in ends:
-            token = self.tokens[-1]
-            if token.isspace() or token in _IGNORED:
+        while self.next not in (*ends, ""):
+            if self.next.isspace() or self.next in _IGNORED:
                 self.tokens.pop()
             else:
-                parts.append(self._scripted())
+                parts.append(self._applied())
         return tree.row(*parts)
 
-    def _scripted(self) -> tree.Formula:
-        """A part with its primes, index and exponent, and the argument of a symbol."""
-        base = self._part()
-        while self._next() in ("'", "_", "^"):
+    def _within(self, end: str) -> tree.Formula:
+        """What stands before a closing bracket, which is read too."""
+        inside = self.row(end)
+        if not self.tokens:
+            raise self.error()
+        self.tokens.pop()
+        return inside
+
+    def _applied(self) -> tree.Formula:
+        """A part with its scripts, and the argument of a symbol."""
+        base = self._scripted(self._part())
+        head = base.base if isinstance(base, tree.Power) else base
+        if not (isinstance(head, tree.Symbol) and self.next == "("):
+            return base
+        self.tokens.pop()
+        return self._scripted(tree.Apply(base, self._within(")")))
+
+    def _scripted(self, base: tree.Formula) -> tree.Formula:
+        """A part with its primes, index and exponent."""
+        while self.next in ("'", "_", "^"):
             base = self._script(base, self.tokens.pop())
-        is_applied = isinstance(base, tree.Symbol) or (
-            isinstance(base, tree.Power) and isinstance(base.base, tree.Symbol)
-        )
-        if is_applied and self._next() == "(":
-            inside = self._part()
-            assert isinstance(inside, tree.Bracket)
-            base = tree.Apply(base, inside.inside)
-            while self._next() in ("'", "_", "^"):
-                base = self._script(base, self.tokens.pop())
         return base
 
     def _script(self, base: tree.Formula, mark: str) -> tree.Formula:
-        if mark == "^":
-            exponent = self._argument()
-            if exponent == tree.Symbol("T"):
-                exponent = tree.TRANSPOSE
-            return (
-                replace(base, above=exponent)
-                if isinstance(base, tree.Big)
-                else tree.Power(base, exponent)
-            )
-        if isinstance(base, tree.Power):  # d^⊥_i
-            return tree.Power(self._script(base.base, mark), base.exponent)
-        if isinstance(base, tree.Big):
-            return replace(base, below=self._argument())
-        if not isinstance(base, tree.Symbol):
-            return tree.Indexed(base, self._argument())
-        return replace(base, prime="′") if mark == "'" else replace(base, index=self._argument())
+        match base:
+            case tree.Power() if mark != "^":  # d^⊥_i
+                return tree.Power(self._script(base.base, mark), base.exponent)
+            case tree.Symbol() if mark == "'":
+                return replace(base, prime="′")
+        script = self._argument()
+        match base:
+            case tree.Big():
+                return replace(base, above=script) if mark == "^" else replace(base, below=script)
+            case _ if mark == "^":
+                is_transpose = script == tree.Symbol("T")
+                return tree.Power(base, tree.TRANSPOSE if is_transpose else script)
+            case tree.Symbol():
+                return replace(base, index=script)
+        return tree.Indexed(base, script)
 
     def _argument(self) -> tree.Formula:
         """What stands in braces, or one token."""
-        while self._next().isspace():
+        while self.next.isspace():
             self.tokens.pop()
-        if self._next() != "{":
-            return self._part()
-        self.tokens.pop()
-        inside = self.row(("}",))
-        self._expect("}")
-        return inside
+        return self._part()
 
     def _part(self) -> tree.Formula:
         token = self.tokens.pop() if self.tokens else ""
@@ -176,25 +181,22 @@ class _TexReader:
             return _ATOMS[token]
         if token in _OPEN:
             kind = _OPEN[token]
-            inside = self.row((kind[1],))
-            self._expect(kind[1])
-            return tree.Bracket(inside, kind)
+            return tree.Bracket(self._within(kind[1]), kind)
         if token == "{":
-            self.tokens.append(token)
-            return self._argument()
+            return self._within("}")
         if token.isdigit():
             return tree.Numeral(token)
         if token.startswith("#"):
             return self.parts[int(token[1:]) - 1]
-        if token == "d" and (self._next()[:1].isalpha() or self._next()[:1] in ("\\", "#")):
-            return tree.Differential() if self._next() != r"\," else tree.Symbol("d")
-        found = self._macro(token) if token.startswith("\\") else None
-        if len(token) == 1 and token.isalpha():
-            found = tree.Symbol(token)
-        if found is None:
+        if token == "d" and (self.next[:1].isalpha() or self.next[:1] in ("\\", "#")):
+            return tree.Differential() if self.next != r"\," else tree.Symbol("d")
+        if token.isalpha() and len(token) == 1:
+            return tree.Symbol(token)
+        part = self._macro(token) if token.startswith("\\") else None
+        if part is None:
             self.tokens.append(token)
             raise self.error()
-        return found
+        return part
 
     def _macro(self, token: str) -> tree.Formula | None:
         match = _TOKEN.fullmatch(token)
@@ -226,59 +228,48 @@ class _TexReader:
     def _call(self, function: str) -> tree.Formula:
         """The function of the next part; a power is that of the value."""
         exponent = 1
-        if self._next() == "^":
+        if self.next == "^":
             self.tokens.pop()
             power = self._argument()
             assert isinstance(power, tree.Numeral)
             exponent = int(power.digits)
-        while self._next().isspace() or self._next() == r"\,":
+        while self.next.isspace() or self.next == r"\,":
             self.tokens.pop()
-        argument = self._part()
-        while self._next() in ("'", "_", "^"):
-            argument = self._script(argument, self.tokens.pop())
-        return tree.FunctionCall(function, argument, exponent)
+        return tree.FunctionCall(function, self._scripted(self._part()), exponent)
 
     def _matrix(self) -> tree.Formula:
         rows: list[list[tree.Formula]] = [[]]
-        ends = ("&", r"\end{pmatrix}", r"\\")
+        end = r"\end{pmatrix}"
         while True:
-            rows[-1].append(self.row(ends))
+            rows[-1].append(self.row("&", end, r"\\"))
             if not self.tokens:
                 raise self.error()
-            end = self.tokens.pop()
-            if end == r"\end{pmatrix}":
+            mark = self.tokens.pop()
+            if mark == end:
                 return tree.Matrix(tuple(map(tuple, rows)))
-            if end == r"\\":
+            if mark != "&":
                 rows.append([])
-
-    def _next(self) -> str:
-        return self.tokens[-1] if self.tokens else ""
-
-    def _expect(self, token: str) -> None:
-        while self._next() in _IGNORED:
-            self.tokens.pop()
-        if self._next() != token:
-            raise self.error()
-        self.tokens.pop()
 
 
 def _faced(inside: tree.Formula, face: tree.Face) -> tree.Formula:
     """A letter, a word, or a bold 1 or 0, in another face."""
-    if isinstance(inside, tree.Numeral):
-        return tree.Symbol(inside.digits, face)
-    if isinstance(inside, tree.Row):
-        letters = (part.letter for part in inside.parts if isinstance(part, tree.Symbol))
-        return tree.Symbol("".join(letters), face)
-    return replace(inside, face=face) if isinstance(inside, tree.Symbol) else inside
+    match inside:
+        case tree.Numeral(digits):
+            return tree.Symbol(digits, face)
+        case tree.Row(parts):
+            letters = (part.letter for part in parts if isinstance(part, tree.Symbol))
+            return tree.Symbol("".join(letters), face)
+        case tree.Symbol():
+            return replace(inside, face=face)
+    return inside
 
 
 def _quotient(above: tree.Formula, below: tree.Formula) -> tree.Formula:
     """A fraction, or the derivative with respect to time."""
     by_time = tree.row(tree.Differential(), tree.Symbol("t"))
-    if below != by_time:
-        return tree.Fraction(above, below)
-    if isinstance(above, tree.Row) and above.parts[0] == tree.Differential():
-        return tree.Rate(tree.row(*above.parts[1:]))
+    match above:
+        case tree.Row((tree.Differential("d"), *differentiated)) if below == by_time:
+            return tree.Rate(tree.row(*differentiated))
     return tree.Fraction(above, below)
 
 
