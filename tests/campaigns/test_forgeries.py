@@ -151,6 +151,10 @@ CHANGES: dict[str, Callable[[str], str]] = {
     "a root of a number that may be negative": lambda text: f"{text} + sqrt(cos(4)**2) - cos(4)",
     "a divisor that vanishes": lambda text: f"{text} + 0/(cos(phi)**2 + sin(phi)**2 - 1)",
     "a divisor of roots that vanishes": lambda text: f"{text} + 0/{ZERO}",
+    "the sine of pi": lambda text: f"{text} + 0/sin(pi)",
+    "a double angle in disguise": lambda text: (
+        f"{text} + 0/(cos((phi + phi)*psi/psi) - 2*cos(phi)**2 + 1)"
+    ),
     "a divisor nearly zero": lambda text: f"{text} + phi*0/({ZERO}*10**39)",
     "a huge exponent": lambda text: f"({text})**999999999",
     "exponents of exponents": lambda text: f"({text}) + 0*((((1 + phi)**39)**39)**39)**39",
@@ -225,6 +229,9 @@ def others() -> Iterator[tuple[str, str, Change]]:
     for turns in ("z(phi) x(theta) x(psi)", "z(phi) y(theta) z(psi)", "z(-phi) x(theta) z(psi)"):
         yield f"R is {turns}", "ZXZ", turned(*turns.split())
     yield "two turns", "ZXZ", turned("z(phi)", "x(theta)")
+    yield "a turn with more places", "ZXZ", turned("z(phi, theta)", "x(theta)", "z(psi)")
+    pieces = turned("axis_angle(0, 0, 1); cos(phi), phi)", "x(theta)", "z(psi)")
+    yield "a turn in more pieces", "ZXZ", pieces
     yield "an unknown turn", "ZXZ", turned("q(phi)", "x(theta)", "z(psi)")
     no_unit = "axis_angle(0, 0, 2, phi)"
     yield "a turn about no unit vector", "ZXZ", turned(no_unit, "x(theta)", "z(psi)")
@@ -256,12 +263,27 @@ def others() -> Iterator[tuple[str, str, Change]]:
         put(VELOCITY, 2, "phi_dot + psi_dot*cos(theta) + sqrt(a**2 + b**2) - 5*phi")(content)
 
     yield "a root of a square by definition", "ZXZ", root_by_definition
+
+    def double_angle(content: Content) -> None:
+        defined("a", "2*phi")(content)
+        put(VELOCITY, 2, "phi_dot + psi_dot*cos(theta) + 0/(cos(a) - 2*cos(phi)**2 + 1)")(content)
+
+    def potential_by_definition(content: Content) -> None:
+        defined("a", "m*g*l*cos(theta)")(content)
+        content["motion"]["potential"] = "a"
+        everywhere("g", "0*g")(content)
+
+    yield "a divisor of a double angle by definition", "ZXZ", double_angle
+    yield "a potential by definition, without its force", "top", potential_by_definition
     yield "a definition of a rate", "ZXZ", rate_by_definition
     yield "a definition of a coordinate", "ZXZ", defined("phi", "psi")
     yield "a definition in a circle", "ZXZ", circle
     for text in ("phi - phi", "0*phi", "1", "(phi - 1)**2 + 10**-90", "phi**2 - 1", "0 - 1"):
         yield f"the condition {text}", "ZXZ", conditions(text, then=FALSE)
     sphere = "phi**2 + theta**2 - 1"
+    yield "a sphere of no real radius", "ZXZ", conditions("phi**2 + pi**2 - 1", then=FALSE)
+    imaginary = conditions("pi**2 + g**2 - 1", then=everywhere("g*", "g*(pi**2 + g**2)*"))
+    yield "a sphere of constants of no real radius", "top", imaginary
     for pair in ((sphere, sphere), (sphere, "theta**2 + psi**2 - 1")):
         yield f"conditions {pair}", "ZXZ", conditions(*pair, then=FALSE)
     divisor = put(VELOCITY, 2, f"phi_dot + psi_dot*cos(theta) + 0/({sphere})")
@@ -281,6 +303,8 @@ def others() -> Iterator[tuple[str, str, Change]]:
     )
     for name in ("angular_velocity_moon", "__init__", "truth"):
         yield f"a quantity named {name}", "ZXZ", lambda c, n=name: printed(c, W).update(name=n)
+    twin = {"name": "q", "components": []}
+    yield "two groups of coordinates", "ZXZ", lambda c: c["arguments"].insert(0, twin)
     yield "a quantity printed twice", "ZXZ", lambda c: c["quantities"].append(c["quantities"][0])
     for part, value in (
         ("potential", "k*theta_dot"),
@@ -295,6 +319,7 @@ def others() -> Iterator[tuple[str, str, Change]]:
         [["A", "0", "0"], ["0", "A", "0"], ["0", "0", "A"]],
         [["A*cos(phi)", "0", "0"], ["0", "A", "0"], ["0", "0", "C"]],
         [["A", "0", "0"], ["0", "A", "0"]],
+        [["A", "A", "0"], ["-A", "A", "0"], ["0", "0", "C"]],
     ):
         yield f"a tensor {tensor}", "top", in_body("inertia", tensor)
     yield "a motion under conditions", "top", lambda c: c["rotation"].update(conditions=[sphere])
@@ -311,6 +336,7 @@ PARTLY = {"a quantity named angular_velocity_moon": "angular_velocity_moon"}
 PARTLY |= {f"a quantity named {name}": name for name in ("__init__", "truth")}
 PARTLY |= {"a motion under conditions": "accelerations", "too many multiples of angles": VELOCITY}
 PARTLY |= {"a divisor that is zero": "rotation_matrix"}
+PARTLY |= {"a divisor of a double angle by definition": VELOCITY}
 PARTLY |= {"a root of a square by definition": VELOCITY, "the negative branch of a root": VELOCITY}
 
 

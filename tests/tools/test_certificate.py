@@ -148,6 +148,7 @@ def test_an_expression_in_another_language_is_refused(text):
         ("cos(2*phi)", "1 - 2*sin(phi)**2", True),
         ("sin(phi - theta/2)", "sin(phi)*cos(theta/2) - cos(phi)*sin(theta/2)", True),
         ("tan(phi)*cot(phi)", "1", True),
+        ("cos(phi*theta)", "cos(theta*phi)", True),
         ("cos(2*phi)", "1 - sin(phi)**2", False),
         ("cos(theta + 1)", "cos(theta)", False),
     ],

@@ -152,7 +152,10 @@ class _Section:
         if not claims:
             raise Unstated
         self.names, self.printed = Names(record), printed_in(record)
-        if len(self.names.definitions) > _MOST_DEFINITIONS:
+        inside = set().union(*map(names_in, self.trees(*claims)))
+        definitions = self.names.definitions.items()
+        self.definitions = {name: text for name, text in definitions if name in inside}
+        if len(self.definitions) > _MOST_DEFINITIONS:
             raise Unstated
         is_passive = record["presentation"] == "passive"
         self.shown = "shown" if is_passive else "F"
@@ -318,10 +321,10 @@ class _Section:
         texts = [factor.text for factor in self.factors]
         product = reduce(lambda right, left: f"mul ({left}) ({right})", reversed(texts))
         yield f"Definition F s := {product}. (* R *)"
-        for name, text in names.definitions.items():
+        for name, text in self.definitions.items():
             yield f"Definition {self.letter(name)} t := {self.text(text)}."
         yield from self._turning()
-        words = ["F", *["inertia"] * ("body" in self.record), *map(self.letter, names.definitions)]
+        words = ["F", *["inertia"] * ("body" in self.record), *map(self.letter, self.definitions)]
         if self.shown != "F":
             yield "Definition shown s := transpose (F s)."
             velocity = f"(scale (-1) (apply (transpose (F t)) {self.velocity}))"

@@ -64,7 +64,8 @@ def tree_of(text: str) -> Tree:
     try:
         if not re.fullmatch(r"[A-Za-z0-9_+*/() -]*", text, re.ASCII):
             raise SyntaxError
-        return _tree(ast.parse(text.strip(), mode="eval").body)
+        text = re.sub(r"\b[A-Za-z]\w*", r"\g<0>_", text.strip())  # so that no name is a keyword
+        return _tree(ast.parse(text, mode="eval").body)
     except (SyntaxError, MemoryError, RecursionError) as error:
         raise Refused(f"the expression {text[:60]!r} cannot be read") from error
 
@@ -72,11 +73,13 @@ def tree_of(text: str) -> Tree:
 def _tree(node: ast.AST) -> Tree:
     match node:
         case ast.Name(id=name):
-            return ("name", name)
+            return ("name", name[:-1])
         case ast.Constant(value=number) if type(number) is int and number < 10**MOST_DIGITS:
             return ("number", number)
-        case ast.Call(func=ast.Name(id=name), args=[argument], keywords=[]) if name in FUNCTIONS:
-            return (name, _tree(argument))
+        case ast.Call(func=ast.Name(id=name), args=[argument], keywords=[]) if (
+            name[:-1] in FUNCTIONS
+        ):
+            return (name[:-1], _tree(argument))
         case ast.UnaryOp(op=ast.USub(), operand=operand):
             return ("-", ("number", 0), _tree(operand))
         case ast.BinOp(left=base, op=ast.Pow(), right=ast.Constant(value=power)) if (
@@ -294,8 +297,11 @@ class Names:
 
     def __init__(self, record: Mapping[str, Any]) -> None:
         groups = {g["name"]: [c["name"] for c in g["components"]] for g in record["arguments"]}
+        if len(groups) < len(record["arguments"]):
+            raise Refused("two groups of arguments have one name")
         self.q, self.constant = groups["q"], [*groups.get("parameters", ()), "pi"]
         self.rates, self.second = ([name + end for name in self.q] for end in ("_dot", "_ddot"))
+        self.free = {*self.q, *self.constant} - {"pi"}
         self.momenta = [f"p_{name}" for name in self.q]
         self.definitions = {d["name"]: d["expression"] for d in record["definitions"]}
         of_motion = {"q_dot": self.rates, "q_ddot": self.second, "momenta": self.momenta}
@@ -326,7 +332,7 @@ class Names:
 
     def are_alike(self, names: Sequence[str]) -> bool:
         """Whether they are all coordinates, or all constant."""
-        return {*names} <= {*self.q} or {*names} <= {*self.constant}
+        return {*names} <= {*self.q} or {*names} <= {*self.constant} - {"pi"}
 
     def inside(self, printed: Any) -> set[str]:
         """The names in texts and in their definitions."""
@@ -367,7 +373,10 @@ def turn_of(text: str) -> tuple[str, list[str]]:
     if kind not in TURNS or not inside.endswith(")"):
         raise Refused(f"the turn {text!r}")
     places = [f"({place})" for place in inside[:-1].split(",")]
-    return kind, TURNS[kind].replace("N", SQUARES).format(*places).split(";")
+    forms = TURNS[kind].replace("N", SQUARES)
+    if len(places) != len({*re.findall(r"\{.\}", forms)}):
+        raise Refused(f"the turn {text!r}")
+    return kind, [form.format(*places) for form in forms.split(";")]
 
 
 def printed_in(record: Mapping[str, Any]) -> dict[str, Any]:
@@ -439,6 +448,15 @@ class Point:
         """The course on which one name changes at the rate 1, and no other."""
         values = self.time.meaning.items()
         return Course(self, {each: Series(v.parts[0], int(each == name)) for each, v in values})
+
+    def is_independent(self, angle: Tree) -> bool:
+        """Whether its cosine is tied to no other: a product of free names, a length, or 1."""
+        kind, *parts = angle
+        if kind == "*":
+            return all(part != UNIT and self.is_independent(part) for part in parts)
+        if kind == "sqrt":
+            return {*squared(parts[0])} in self.vectors
+        return angle == UNIT or parts[0] in self.names.free
 
     def turn(self, angle: Fraction, multiple: Fraction) -> Turn:
         """The cosine and the sine of a multiple of an angle, which are independent of the angle."""
@@ -537,8 +555,8 @@ class Course:
 
     def name(self, name: str) -> Series:
         definitions = self.point.names.definitions
-        if name not in self.meaning and name in definitions:
-            self.meaning[name] = self.value(tree_of(definitions[name]))
+        if name in definitions:
+            return self.value(tree_of(definitions[name]))
         if name not in self.meaning:
             raise Refused(f"{name} has no meaning here")
         return self.meaning[name]
@@ -547,10 +565,9 @@ class Course:
         """The cosine and the sine of an angle."""
         turn = NO_TURN
         for part, multiple in summands(angle).items():
-            value = self.value(part).parts[0]
-            if not isinstance(value, Fraction):
-                raise Unreadable("an angle with a root of a number")
-            turn = sum_of_turns(turn, self.point.turn(value, multiple))
+            if not self.point.is_independent(part):
+                raise Unreadable("an angle that may be a multiple of another one")
+            turn = sum_of_turns(turn, self.point.turn(self.value(part).parts[0], multiple))
         return self.value(angle).turn(*turn)
 
 
@@ -602,7 +619,10 @@ class Motion:
         if "body" not in self.record:
             raise Unreadable("there is no body")
         constant = self.names.holding(self.record["body"][part], self.names.constant)
-        return self.point.time.read(constant)
+        value = self.point.time.read(constant)
+        if part == "inertia":
+            agree("the inertia tensor is not symmetric", [(value, value.T)])
+        return value
 
     @property
     def momentum(self) -> Matrix:
@@ -628,32 +648,41 @@ class Motion:
     def momentum_of_centre(self) -> Matrix:
         return self.vector("X Y Z").hat() * self.vector("X_dot Y_dot Z_dot") * self.body("mass")
 
-    def acting(self, part: str, *more: str) -> Any:
-        """The text of the potential, the forces or the torque of a motion in free coordinates."""
+    @property
+    def acting(self) -> Mapping[str, Any]:
+        """The texts of what acts on a body of one part in independent coordinates."""
         if "motion" not in self.record or self.on_sphere:
             raise Unreadable("there is no motion in independent coordinates")
-        names = [*self.names.q, *self.names.constant, *more]
-        return self.names.holding(self.record["motion"][part], names)
+        names = [*self.names.q, *self.names.constant]
+        motion = self.record["motion"]
+        self.names.holding(motion["potential"], names)
+        self.names.holding([motion["forces"], motion["torque"]], [*names, *self.names.rates])
+        return motion
+
+    @property
+    def rate_matrix_of_motion(self) -> Matrix:
+        """W', if the record describes a motion."""
+        _ = self.acting
+        return self.rate_matrix("body")
 
     @property
     def potential(self) -> Matrix:
-        return self.point.still.read(self.acting("potential"))
+        return self.point.still.read(self.acting["potential"])
 
     @property
     def forces(self) -> Matrix:
         """Q, with W'ᵀ N' of a torque N' along the axes of the body."""
-        forces, torque = (self.acting(part, *self.names.rates) for part in ("forces", "torque"))
-        read = self.point.still.read
-        return read(forces) + self.rate_matrix("body").T * read(torque)
+        forces, torque = (self.point.still.read(self.acting[part]) for part in ("forces", "torque"))
+        return forces + self.rate_matrix("body").T * torque
 
     @property
     def momenta(self) -> Matrix:
         """p = W'ᵀ I' Ω'."""
-        return self.rate_matrix("body").T * self.momentum
+        return self.rate_matrix_of_motion.T * self.momentum
 
     @property
     def mass_matrix(self) -> Matrix:
-        W = self.rate_matrix("body")
+        W = self.rate_matrix_of_motion
         return W.T * self.body("inertia") * W
 
     @cached_property
@@ -661,7 +690,7 @@ class Motion:
         """M q̈ + h, by d'Alembert's principle: W'ᵀ (dL'/dt + Ω' × L') + ∂V/∂q with L' = I' Ω'."""
         turning = self.momentum.rate() + self.velocity("body").hat() * self.momentum
         courses = map(self.point.along, self.names.q)
-        slopes = [course.read(self.acting("potential")).rate().entries for course in courses]
+        slopes = [course.read(self.acting["potential"]).rate().entries for course in courses]
         return self.rate_matrix("body").T * turning + Matrix(slopes)
 
     @property
@@ -786,7 +815,8 @@ def refuse_words(record: Mapping[str, Any], names: Names) -> None:
     units = {c["name"]: c["unit"] for g in record["arguments"] for c in g["components"]}
     for turn in rotation.get("turns", ()):
         kind, forms = turn_of(turn)
-        angles = names.inside(forms[4]) & {*names.q} if kind in ("x", "y", "z") else ()
+        is_by_angle = kind in ("x", "y", "z", "axis_angle")
+        angles = names.inside(forms[4]) & {*names.q} if is_by_angle else ()
         if any(units[name] != "rad" for name in angles):
             raise Refused("an angle is not in radians")
     for one, two in [*zip(names.q, names.rates), *zip(names.rates, names.second)]:  # noqa: B905
