@@ -16,7 +16,6 @@ import pytest
 import sympy as sp
 
 import rigidsym as rs
-from helpers.command import call
 from rigidsym.errors import DerivationError, NotARotation, QuantityError
 from rigidsym.mechanics.body import BodyValues
 from rigidsym.mechanics.conversions.conversions import Conversions
@@ -32,7 +31,6 @@ from rigidsym.models.body import Composite, Part
 from rigidsym.models.forces import Forces
 from rigidsym.models.solids import shaped
 from rigidsym.notes.formats.record import record
-from rigidsym.notes.formats.terminal import show
 from rigidsym.pipeline import output_of
 from rigidsym.spec.derivation_spec import spec_for
 
@@ -178,26 +176,3 @@ def test_conversions_are_part_of_what_is_proved(monkeypatch):
     open_claim = Proof(claim=conversions.from_matrix.claim, status="unproved")
     monkeypatch.setattr(Conversions, "from_matrix", open_claim)
     assert not record(motion, {}, conversions)["is_proved"]
-
-
-def test_the_terminal_shows_conversions_and_their_proofs():
-    motion = rs.derive("ZXZ")
-    text = show(motion, width=120, conversions=motion.conversions)
-    proofs = text.partition("Identities verified")[2]
-    for proof in motion.conversions.proofs:
-        assert f"exact     {proof.claim.text}" in proofs
-    assert "Conversions" not in show(motion, width=120)
-    motion = rs.derive("z(phi) x(phi)")
-    text = " ".join(show(motion, width=120, conversions=motion.conversions).split())
-    assert motion.conversions.without in text
-
-
-def test_the_summary_counts_the_proofs_of_conversions(tmp_path):
-    (tmp_path / "two.toml").write_text(
-        '[rotation]\nsequence = ["ZXZ", "ZYX"]\n[output]\nnote = ["tex"]\n'
-    )
-    counts = [
-        int(call("run", "two.toml", *more, cwd=tmp_path).stdout.split()[1])
-        for more in ((), ("--conversions",))
-    ]
-    assert counts[1] > counts[0]

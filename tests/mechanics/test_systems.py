@@ -138,30 +138,6 @@ def test_the_dual_spin_satellite_has_the_equations_that_sympy_finds():
     assert [integral.name for integral in motion.first_integrals] == ["momentum_phi"]
 
 
-def test_the_note_of_a_top_writes_the_rate_of_the_matrix_by_the_chain_rule():
-    """The state holds the coordinates a second time; they stay the coordinates"""
-    latex = shipped("heavy_symmetric_top").note(with_kernels=False).latex()
-    assert r"\frac{\partial \mathbf{R}}{\partial \theta}" in latex
-
-
-def test_the_phase_portrait_of_a_top_shows_motions_of_constant_energy():
-    """Drawn for constants of 1, p_φ = 1 and p_ψ = 3"""
-    motion = shipped("heavy_symmetric_top")
-    figure = motion.note(with_kernels=False).document.figures[-2]
-    curves = [stroke.points for stroke in figure.drawing.strokes if stroke.kind == "body"]
-    assert len(curves) == 3
-    ratios = []
-    for curve in curves:
-        theta, rate = np.array(curve).T
-        theta *= np.pi / 3.2
-        potential = np.cos(theta) + (1 - 3 * np.cos(theta)) ** 2 / (2 * np.sin(theta) ** 2)
-        top = np.argmax(rate)
-        middle = (0.3 * rate[top] < rate) & (rate < 0.8 * rate[top])
-        squares = rate[top] ** 2 - rate[middle] ** 2  # M = A = 1 in units of the drawing
-        ratios += [*((potential[middle] - potential[top]) / squares)]
-    assert np.ptp(ratios) < 1e-6 * np.mean(ratios)
-
-
 def test_the_quadcopter_has_the_equations_that_sympy_finds():
     space, _, _, body = frame(("z", PSI), ("y", THETA), ("x", PHI))
     thrusts, k = sp.symbols("F_1:5"), sp.Symbol("k")
