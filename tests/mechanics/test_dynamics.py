@@ -15,6 +15,8 @@ from sympy.physics.mechanics import LagrangesMethod
 import rigidsym as rs
 from helpers.node import load
 from helpers.witness import agree, cross, evaluate, mp
+from rigidsym.errors import Defect
+from rigidsym.mechanics.dynamics import tree
 from rigidsym.mechanics.dynamics.lagrange import LagrangeEquations
 from rigidsym.mechanics.quantities.dynamics import bias_vector
 from rigidsym.models.forces import Forces
@@ -266,6 +268,16 @@ def test_a_wrong_bias_is_refuted():
         work.step(bias_vector)
 
 
+@pytest.mark.parametrize("law", ["velocity", "acceleration"])
+def test_a_wrong_recursion_over_joints_is_a_defect(monkeypatch, law):
+    true = getattr(tree, law)
+    monkeypatch.setattr(tree, law, lambda R, own, first, *more: true(R, own, -first, *more))
+    with pytest.raises(Defect, match="wrong at a point"):
+        rs.derive("z(phi) x(theta)", ["mass_matrix"], body=BODY, parts=[BRANCH])
+
+
+BODY = rs.principal_moments(A, B, C)
+BRANCH = {"rotation": "z(phi) y(2*theta)", "principal_moments": ["1", "2", "2"]}
 LAGRANGE = {"method": "lagrange"}
 SQUARE = {"velocity": ["theta_dot**2", "a*phi_dot", "0"], "mass": "m"}
 ROLLING = {"velocity": ["cos(phi)*psi_dot", "sin(phi)*psi_dot", "0"], "mass": "m"}

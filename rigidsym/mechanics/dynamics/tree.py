@@ -28,7 +28,7 @@ from typing import Any, NamedTuple
 import sympy as sp
 
 from rigidsym.algebra.codec import codec_for
-from rigidsym.errors import ModelError
+from rigidsym.errors import Defect, ModelError
 from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import FirstIntegral, Proof, Quantity
@@ -379,8 +379,53 @@ class TreeEquations(Flow):
 
     @cached_property
     def _lemmas(self) -> list[Proof]:
+        self._check()
         turns = kinds_of((joint.turn for joint in self.joints.values()), self.model)
         return [*of_any_body(), *(of_any_turn(*kind) for kind in turns)]
+
+    def _check(self) -> None:
+        """M and h at a real point, against Jacobians of the turns multiplied out in numbers.
+
+        The lemmas say nothing of the parts that the recursion names; raises Defect if one is wrong.
+        """
+        turns = {joint.turn for joint in self.joints.values()}
+        held = [e for turn in turns for e in (*turn.matrix.diff(TIME), *turn.matrix)]
+        held += [e for p in self.particles for e in (*p.slopes.diff(TIME), *p.slopes, p.mass)]
+        held += [e for joint in self.joints.values() for e in joint.inertia]
+        named = [*self.mass_matrix, *self.bias]
+        work = self.names.values_of([*named, *held, *self.rates, *self.gradient])
+        numbers = work.context.matrix
+
+        def read(matrix: sp.MatrixBase) -> Any:
+            return numbers([[work(entry) for entry in row] for row in matrix.tolist()])
+
+        q_dot, gradient = (read(sp.Matrix(part)) for part in (self.rates, self.gradient))
+        mass, needed = numbers(len(self.q), len(self.q)), gradient
+        for path, joint in self.joints.items():
+            if joint.inertia.is_zero_matrix:
+                continue
+            jacobian = rate = numbers(3, len(self.q))
+            for turn in path:
+                back, back_rate = read(turn.matrix.T), read(turn.matrix.T.diff(TIME))
+                slopes = sp.Matrix([[sp.diff(turn.angle, q) for q in self.q]])
+                column = sp.Matrix(turn.direction) * slopes
+                rate = back_rate * jacobian + back * rate + read(column.diff(TIME))
+                jacobian = back * jacobian + read(column)
+            tensor, omega = read(joint.inertia), jacobian * q_dot
+            (x, y, z), (a, b, c) = omega, tensor * omega
+            gyroscopic = numbers([y * c - z * b, z * a - x * c, x * b - y * a])
+            mass += jacobian.T * tensor * jacobian
+            needed += jacobian.T * (tensor * rate * q_dot + gyroscopic)
+        for p in self.particles:
+            jacobian, rate = read(p.slopes), read(p.slopes.diff(TIME))
+            mass += work(p.mass) * jacobian.T * jacobian
+            needed += work(p.mass) * jacobian.T * rate * q_dot
+        off = [*(mass - read(self.mass_matrix)), *(needed - read(self.bias))]
+        if not all(0 in entry for entry in off):
+            raise Defect(
+                f"{self.model.name}: the mass matrix or the bias vector is wrong at a point; this "
+                "is a defect of rigidsym, please report it"
+            )
 
     def _solves(self, claim: Formula) -> Proof:
         """The rows of M = L D Lᵀ, of L y = Q − h and of D Lᵀ q̈ = y, by the definitions."""

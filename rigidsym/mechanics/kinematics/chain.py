@@ -34,6 +34,7 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from rigidsym.algebra.codec import Codec, codec_for
+from rigidsym.algebra.evaluate import RealValues
 from rigidsym.algebra.matrix import RingMatrix, hat as operator
 from rigidsym.algebra.witness import configurations
 from rigidsym.formula.reader import formula
@@ -297,15 +298,19 @@ class Names:
         codec = codec_for(entries, constraints=bound)
         return Prover(self.model, codec).vanishes(codec.column(entries), claim)
 
-    def is_nonzero(self, value: sp.Expr) -> bool:
-        """Whether bounds on the value at one point do not contain zero."""
-        definitions, model = self.definitions_of([value]), self.model
-        parts = (*(d.expression for d in definitions), value)
+    def values_of(self, expressions: Sequence[sp.Expr]) -> RealValues:
+        """Bounds on the values of expressions in names at one point, and of all that they hold."""
+        definitions, model = self.definitions_of(expressions), self.model
+        parts = (*(d.expression for d in definitions), *expressions)
         points = configurations(model.name, model.constraints, parts, model.example)
         work = points[0].intervals(parts)
         for symbol, expression in definitions:
             work.set(symbol, work(expression))
-        return 0 not in work(value)
+        return work
+
+    def is_nonzero(self, value: sp.Expr) -> bool:
+        """Whether bounds on the value at one point do not contain zero."""
+        return 0 not in self.values_of([value])(value)
 
 
 class Chain(Names, Workspace):
