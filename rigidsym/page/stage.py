@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from functools import cache
 from math import atan2, floor, pi
 from typing import Any
@@ -148,11 +147,6 @@ def _is_top(derivation: Derivation) -> bool:
     return is_heavy and moments[:1] == moments[1:2] and f"momentum_{last}" in conserved
 
 
-def _sector(face: Face) -> int:
-    x, y, _ = face.corners.sum(axis=0)
-    return floor(_SECTORS * atan2(y, x) / (2 * pi))
-
-
 @cache
 def body_of_page(name: str, *, z_down: bool = False) -> Shape:
     """A top on its tip, about z′, or an aircraft: nose along x′, wings along y′, fin up."""
@@ -167,8 +161,12 @@ def body_of_page(name: str, *, z_down: bool = False) -> Shape:
     shape = meshed(Composite(parts=tuple(parts)), {})
     if name != "top":
         return shape
-    # the sectors show the spin
-    return tuple(replace(face, color=(RED, _WHITE)[_sector(face) % 2]) for face in shape)
+    striped = []
+    for face in shape:  # in sectors, which show the spin
+        x, y, _ = face.corners.sum(axis=0)
+        sector = floor(_SECTORS * atan2(y, x) / (2 * pi))
+        striped.append(Face(face.corners, (RED, _WHITE)[sector % 2]))
+    return tuple(striped)
 
 
 def as_data(shape: Shape) -> dict[str, Any]:
@@ -178,12 +176,11 @@ def as_data(shape: Shape) -> dict[str, Any]:
     faces = [
         [
             colors.setdefault(face.color, len(colors)),
-            *(points.setdefault((*p,), len(points)) for p in _rounded(face.corners)),
+            *(
+                points.setdefault((*p,), len(points))
+                for p in (np.round(face.corners, 3) + 0.0).tolist()
+            ),
         ]
         for face in shape
     ]
     return {"points": [*points], "colors": [*colors], "faces": faces}
-
-
-def _rounded(corners: Vector) -> list[list[float]]:
-    return (np.round(corners, 3) + 0.0).tolist()

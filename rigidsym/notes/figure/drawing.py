@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
-from math import atan2, ceil, cos, hypot, pi, radians, sin, tau
+from math import acos, atan2, ceil, cos, hypot, pi, radians, sin, tau
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,7 +17,7 @@ from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.tree import Formula
 from rigidsym.formula.unicode_pen import UnicodePen
 from rigidsym.notes.figure.camera import Camera, Point, Vector, is_same
-from rigidsym.notes.figure.scene import Arc, Kind, Posed, Ray
+from rigidsym.notes.figure.scene import Arc, Kind, Posed
 
 TYPE_SIZE = 0.15  # one em, in units of the drawing
 AXIS = 1.35  # lengths of the axes drawn
@@ -150,53 +150,40 @@ class Drawing(NamedTuple):
 
 def drawn(scene: Posed, seen: Camera) -> Drawing:
     """The drawing of a scene, with labels that touch no line and no other label if they can."""
-    axes = [_axis(ray, seen, is_line=ray is scene.line_of_nodes) for ray in scene.rays]
-    arcs = [_arc(arc, seen) for arc in scene.arcs]
-    circles = () if scene.is_crowded else _circles(scene, seen)
+    axes, arcs, circles = list[Stroke](), list[Stroke](), list[Stroke]()
+    named: list[Named] = []
+    for arc in scene.arcs:
+        ellipse = _ellipse(arc, seen, arc.turn.radius, 0.0, arc.angle)
+        arcs.append(Stroke(kind="turn", points=ellipse.points, arc=ellipse, has_arrow=True))
+        named.append(("turn", arc.turn.name, beside(ellipse.points)))
+    for ray in scene.rays:
+        end = seen.project((AXIS if ray.kind in ("space", "body") else NODE) * ray.direction)
+        is_line = ray is scene.line_of_nodes
+        points = ((-end[0], -end[1]) if is_line else (0.0, 0.0), end)
+        axes.append(Stroke(kind=ray.kind, points=points, name=ray.name, has_arrow=not is_line))
+        named.append((ray.kind, ray.name, beyond(points)))
+    if not scene.is_crowded:
+        first, last = scene.arcs[0], scene.arcs[-1]
+        circles += _circle("space", first, seen)
+        circles += () if is_same(first.axis, last.axis) else _circle("body", last, seen)
     strokes = (*circles, *_guides(scene, seen), *axes, *arcs)
-    of_turns = zip(scene.arcs, arcs, strict=True)
-    named: list[Named] = [("turn", arc.turn.name, beside(s.points)) for arc, s in of_turns]
-    of_axes = zip(scene.rays, axes, strict=True)
-    named += [(ray.kind, ray.name, beyond(stroke.points)) for ray, stroke in of_axes]
     return Drawing(strokes=strokes, labels=labelled(named, strokes))
-
-
-def _axis(ray: Ray, seen: Camera, *, is_line: bool) -> Stroke:
-    reach = AXIS if ray.kind in ("space", "body") else NODE
-    end = seen.project(reach * ray.direction)
-    start = (-end[0], -end[1]) if is_line else (0.0, 0.0)
-    return Stroke(kind=ray.kind, points=(start, end), name=ray.name, has_arrow=not is_line)
-
-
-def _arc(arc: Arc, seen: Camera) -> Stroke:
-    ellipse = _ellipse(arc, seen, arc.turn.radius, 0.0, arc.angle)
-    return Stroke(kind="turn", points=ellipse.points, arc=ellipse, has_arrow=True)
 
 
 def _ellipse(arc: Arc, seen: Camera, radius: float, start: float, end: float) -> Ellipse:
     """Part of the circle that a point of the line describes."""
-    return Ellipse(
-        centre=seen.project(arc.centre),
-        u=seen.project(radius * arc.start),
-        v=seen.project(radius * arc.side),
-        start=start,
-        end=end,
-    )
-
-
-def _circles(scene: Posed, seen: Camera) -> Iterator[Stroke]:
-    """The circles about the axes of the first and the last turn, dashed behind the origin."""
-    first, last = scene.arcs[0], scene.arcs[-1]
-    yield from _circle("space", first, seen)
-    if not is_same(first.axis, last.axis):
-        yield from _circle("body", last, seen)
+    u, v = seen.project(radius * arc.start), seen.project(radius * arc.side)
+    return Ellipse(centre=seen.project(arc.centre), u=u, v=v, start=start, end=end)
 
 
 def _circle(kind: Kind, arc: Arc, seen: Camera) -> Iterator[Stroke]:
-    """In front of the plane of the picture and behind it; there the depth changes its sign."""
-    across, along = seen.depth(arc.start), seen.depth(arc.side)
-    nearest = atan2(along, across)
-    half = _visible_half(hypot(across, along), seen.depth(arc.centre))
+    """The circle about the axis of a turn, dashed behind the plane of the picture.
+
+    Its depth is d + s cos(t − t₀), which changes its sign at t = t₀ ± arccos(−d/s).
+    """
+    across, along, depth = map(seen.depth, (arc.start, arc.side, arc.centre))
+    nearest, swing = atan2(along, across), hypot(across, along)
+    half = pi if depth >= swing else 0.0 if depth <= -swing else acos(-depth / swing)
     for is_hidden, start, end in (
         (False, nearest - half, nearest + half),
         (True, nearest + half, nearest - half + tau),
@@ -206,13 +193,6 @@ def _circle(kind: Kind, arc: Arc, seen: Camera) -> Iterator[Stroke]:
             yield Stroke(
                 kind=kind, points=ellipse.points, arc=ellipse, is_thin=True, is_hidden=is_hidden
             )
-
-
-def _visible_half(swing: float, centre: float) -> float:
-    """Half the angle over which centre + swing·cos t is positive."""
-    if abs(centre) >= swing:
-        return pi if centre >= 0 else 0.0
-    return pi / 2 + atan2(centre, (swing**2 - centre**2) ** 0.5)
 
 
 def _guides(scene: Posed, seen: Camera) -> Iterator[Stroke]:
@@ -232,18 +212,14 @@ Place = tuple[Point, float]  # a point, and the direction in radians in which it
 
 def beyond(line: Sequence[Point]) -> list[Place]:
     """Where the label of an axis goes: beyond its end."""
-    outward = _direction(line[0], line[-1])
-    return [(line[-1], outward + radians(bend)) for bend in _BENDS]
+    (x0, y0), (x1, y1) = line[0], line[-1]
+    return [((x1, y1), atan2(y1 - y0, x1 - x0) + radians(bend)) for bend in _BENDS]
 
 
 def beside(line: Sequence[Point]) -> list[Place]:
     """Where the label of an arc goes: outside its middle, or else near it."""
     points = [line[round(share * (len(line) - 1))] for share in _ALONG]
-    return [(p, _direction((0.0, 0.0), p) + radians(bend)) for p in points for bend in _BESIDE]
-
-
-def _direction(start: Point, end: Point) -> float:
-    return atan2(end[1] - start[1], end[0] - start[0])
+    return [((x, y), atan2(y, x) + radians(bend)) for x, y in points for bend in _BESIDE]
 
 
 Named = tuple[Kind, Formula, Sequence[Place]]  # a label, and where it may go

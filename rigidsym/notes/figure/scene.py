@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from itertools import combinations, pairwise
+from itertools import combinations
 from math import hypot, radians, sin
 from typing import Literal, NamedTuple
 
@@ -26,7 +26,6 @@ from rigidsym.models.rotation import AXES, RotationModel, Turn
 from rigidsym.notes.figure.camera import (
     STANDARD,
     Camera,
-    Point,
     Vector,
     camera,
     frames,
@@ -147,15 +146,9 @@ class Scene:
         bases = list(frames([turn.axis for turn in self.turns], angles))
         rays = (r._replace(direction=r.direction @ bases[r.frame]) for r in self.rays)
         arcs = (
-            Arc(
-                turn=turn,
-                axis=turn.axis @ before,
-                angle=angle,
-                before=turn.start @ before,
-                after=turn.start @ after,
-            )
-            for turn, angle, (before, after) in zip(
-                self.turns, angles, pairwise(bases), strict=True
+            Arc(turn, turn.axis @ before, angle, turn.start @ before, turn.start @ after)
+            for turn, angle, before, after in zip(
+                self.turns, angles, bases, bases[1:], strict=False
             )
         )
         return Posed(rays=tuple(_merged(rays)), arcs=tuple(arcs))
@@ -163,15 +156,12 @@ class Scene:
     @cached_property
     def view(self) -> View:
         """The clearest of the standard views."""
-        return max(map(self._seen, _VIEWS_DOWN if self.z_down else _VIEWS), key=self._clarity)
-
-    def _seen(self, view: tuple[tuple[int, ...], int, int]) -> View:
-        acute, azimuth, elevation = view
-        angles = (
-            radians(angle) if fixed is None else fixed
-            for angle, fixed in zip(acute, self.fixed, strict=False)
-        )
-        return View(tuple(angles), azimuth, elevation, self.z_down)
+        views = []
+        for acute, azimuth, elevation in _VIEWS_DOWN if self.z_down else _VIEWS:
+            pairs = zip(acute, self.fixed, strict=False)
+            angles = tuple(radians(angle) if f is None else f for angle, f in pairs)
+            views.append(View(angles, azimuth, elevation, self.z_down))
+        return max(views, key=self._clarity)
 
     def _clarity(self, view: View) -> float:
         """How far apart the ends of all axes appear, and how open the arcs: the worst case."""
@@ -180,20 +170,16 @@ class Scene:
         if posed.line_of_nodes:
             x, y = seen.project(posed.line_of_nodes.direction)
             ends.append((-x, -y))
-        pairs = list(combinations(ends, 2))
+        first, second = np.array([*combinations(ends, 2)]).swapaxes(0, 1)
+        lengths = np.hypot(*first.T) * np.hypot(*second.T) + 1e-9
+        sines = np.abs(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]) / lengths
+        is_acute = (first * second).sum(axis=1) >= 0
         return min(
-            min(hypot(a[0] - b[0], a[1] - b[1]) for a, b in pairs),
+            np.hypot(*(first - second).T).min(),
             min(hypot(*end) for end in ends),
-            min(2 * _separation(a, b) for a, b in pairs),
+            2 * sines.min(where=is_acute, initial=1.0),
             min(1.5 * abs(sin(arc.angle) * seen.depth(arc.axis)) for arc in posed.arcs),
         )
-
-
-def _separation(a: Point, b: Point) -> float:
-    """The sine of the angle between two directions, 1 where it is obtuse."""
-    if a[0] * b[0] + a[1] * b[1] < 0:
-        return 1.0
-    return abs(a[0] * b[1] - a[1] * b[0]) / (hypot(*a) * hypot(*b) + 1e-9)
 
 
 def _merged(rays: Iterator[Ray]) -> Iterator[Ray]:
@@ -216,39 +202,30 @@ def scene_of(model: RotationModel, letters: Letters) -> Scene | None:
     None for any other model, for more than MOST_TURNS, and for axes that are not numbers.
     """
     turns = turns_of(model)
-    directions = [turn.direction for turn in turns]
-    are_numbers = all(part.is_number for direction in directions for part in direction)
+    are_numbers = all(part.is_number for turn in turns for part in turn.direction)
     if not (1 <= len(turns) <= MOST_TURNS and are_numbers):
         return None
-    axes = [unit(np.array([*direction], float)) for direction in directions]
-    names = [formula_of(turn.angle, letters) for turn in turns]
-    starts = [_start(axes, k) for k in range(len(axes))]
+    axes = [unit(np.array([*turn.direction], float)) for turn in turns]
+    drawn = []
+    for k, (turn, axis, radius) in enumerate(zip(turns, axes, RADII, strict=False)):
+        # the line that is carried along: the axis of the next turn, or of the one before
+        lines = [*(axes[k + 1 : k + 2] or axes[:k][-1:]), *STANDARD]
+        start = next((line for line in lines if abs(line @ axis) < 0.75), STANDARD[0])
+        names = (n for n, other in zip(_SPACE, STANDARD, strict=True) if is_same(start, other))
+        name = formula_of(turn.angle, letters)
+        drawn.append(Rotary(axis, start, radius, name, next(names, "axis")))
     return Scene(
         rays=tuple(_rays(axes, model, letters)),
-        turns=tuple(
-            Rotary(
-                axis=axis,
-                start=start,
-                radius=radius,
-                name=name,
-                start_name=_name_of(start),
-            )
-            for axis, start, radius, name in zip(axes, starts, RADII, names, strict=False)
-        ),
+        turns=tuple(drawn),
         fixed=tuple(float(turn.angle) if turn.angle.is_number else None for turn in turns),
         z_down=model.z_down,
     )
 
 
 def turns_of(model: RotationModel) -> tuple[Turn, ...]:
-    """The turns that are drawn: those of the product, or the one about the vector."""
-    return model.turns or _about_the_vector(model)
-
-
-def _about_the_vector(model: RotationModel) -> tuple[Turn, ...]:
-    """The one turn about the vector that three coordinates are components of, drawn somewhere."""
-    if not model.vector:
-        return ()
+    """The turns that are drawn: those of the product, or one about the vector, drawn somewhere."""
+    if model.turns or not model.vector:
+        return model.turns
     axis = tuple(sp.Rational(part, 3) for part in (1, 2, 2))
     return (Turn(axis=VECTOR.text, angle=_angle_about(model), components=axis),)
 
@@ -265,19 +242,6 @@ def _angle_about(model: RotationModel) -> sp.Expr:
     greek = {"alpha": "α", "beta": "β", "gamma": "γ"}
     free = (letter for letter in greek if not taken & {letter, greek[letter]})
     return angles[0] if angles else sp.Symbol(next(free))
-
-
-def _start(axes: Sequence[Vector], k: int) -> Vector:
-    """The line that turn k carries along: the axis of the next turn, or of the one before."""
-    wished = [axes[k + 1]] if k + 1 < len(axes) else [axes[k - 1]] if k else []
-    candidates = (*wished, *STANDARD)
-    return next((c for c in candidates if abs(c @ axes[k]) < 0.75), STANDARD[0])
-
-
-def _name_of(axis: Vector) -> Formula | str:
-    """The letter of a coordinate axis, or the word "axis"."""
-    names = (name for name, other in zip(_SPACE, STANDARD, strict=True) if is_same(axis, other))
-    return next(names, "axis")
 
 
 def _rays(axes: Sequence[Vector], model: RotationModel, letters: Letters) -> Iterator[Ray]:
