@@ -18,9 +18,8 @@ from helpers.target_modules import EVERY, row_by_row
 from helpers.witness import evaluate, mp
 from rigidsym.algebra.stable_forms import FIRST_SERIES, series_of
 from rigidsym.errors import KernelError, QuantityError
-from rigidsym.kernels.lowering.derivatives import read_request, read_requests
+from rigidsym.kernels.lowering.derivatives import read_request
 from rigidsym.kernels.targets import TARGETS
-from rigidsym.pipeline import output_of, read_record, read_spec
 
 MODELS = ("ZXZ", "zyx", "rotation_vector", "modified_rodrigues", "quaternion")
 ALONE = ("z(phi) [a,b,c](beta)",)  # with parameters
@@ -153,6 +152,11 @@ def test_out_holds_both_and_float32_stays():
     assert {part.dtype for part in single} == {np.dtype(np.float32)}
 
 
+def test_products_with_a_vector_are_left_to_numpy():
+    with pytest.raises(KernelError, match="multiply the Jacobian J by your vector instead: J @ v"):
+        read_request("a by q jvp")
+
+
 @pytest.mark.parametrize(
     "text",
     ["", "q", "angular_velocity_body", "a by", "a by q hessian", "a by b c d"],
@@ -162,44 +166,11 @@ def test_texts_that_ask_for_no_derivative(text):
         read_request(text)
 
 
-@pytest.mark.parametrize("text", ["a by q jvp", "a:q:vjp"])
-def test_products_with_a_vector_are_left_to_numpy(text):
-    with pytest.raises(KernelError, match="multiply the Jacobian J by your vector instead: J @ v"):
-        read_request(text)
-
-
-def test_spellings_of_one_request():
-    asked = read_requests(["a by q", "a:q", "a by q_dot", "a:q_dot"])
-    assert [*map(str, asked)] == ["a by q", "a by q_dot"]
-    assert read_requests({"a": ("q", "q_dot")}) == asked
-    assert read_requests({"a": "q"}) == read_requests("a by q") == asked[:1]
-
-
 def test_what_a_quantity_does_not_take_is_refused():
     with pytest.raises(KernelError, match=r"^rotation_matrix by q_dot: .* depends only on q$"):
         motion("ZXZ").kernels(derivatives=["rotation_matrix by q_dot"])
     with pytest.raises(QuantityError, match="no quantity 'speed'"):
         motion("ZXZ").kernels(derivatives=["speed by q"])
-
-
-FILE = """
-[rotation]
-sequence = "ZXZ"
-[output]
-quantities = ["angular_velocity_body"]
-kernels = ["numpy", "javascript"]
-note = ["tex"]
-derivatives = ["angular_velocity_body by q", "angular_velocity_body:q_dot"]
-"""
-
-
-def test_a_file_asks_for_them():
-    spec = read_spec(FILE, source="a.toml", name="a")
-    assert spec.derivatives == ("angular_velocity_body by q", "angular_velocity_body by q_dot")
-    assert read_record(spec.to_data()) == spec
-    files = output_of(spec).files
-    assert "def angular_velocity_body_jacobian_q_dot(" in files["a.py"]
-    assert "function angular_velocity_body_jacobian_q(q, q_dot)" in files["a.mjs"]
 
 
 @pytest.mark.parametrize(

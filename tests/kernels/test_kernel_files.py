@@ -1,4 +1,4 @@
-"""Generated NumPy modules as files: formatted, documented, alone, and the way to them."""
+"""Generated modules as files: formatted, documented, alone, and the way to them."""
 
 from __future__ import annotations
 
@@ -16,8 +16,9 @@ from helpers.motions import derived
 from helpers.printed_lines import LEAN, of_rotations
 from helpers.target_modules import inputs, module, turned_by
 from rigidsym import __version__
+from rigidsym.commands.list import inventory
 from rigidsym.errors import KernelError
-from rigidsym.kernels.lowering.lower import MARGIN
+from rigidsym.kernels import targets
 from rigidsym.kernels.module import generate
 from rigidsym.kernels.targets import TARGETS
 from rigidsym.motion import derive
@@ -97,26 +98,6 @@ def test_a_written_module_needs_numpy_alone(written):
     assert "sympy" not in done.stdout
 
 
-def test_every_function_is_documented_and_exported(sequence):
-    functions = generate(derived(sequence)).load()
-    steps = derived(sequence).steps
-    names = [*(step.quantity.name for step in steps), MARGIN]
-    assert functions.__all__ == sorted([*names, *(f"{name}_scalar" for name in names)])
-    for number, step in enumerate(steps, start=1):
-        name, arguments, shape = step.quantity.name, step.quantity.inputs, step.shape
-        function = getattr(functions, name)
-        assert list(inspect.signature(function).parameters) == [*arguments, "out", "threads"]
-        inputs = ",".join("(3)" for _ in arguments)
-        assert function.signature == f"{inputs}->({','.join(map(str, shape))})"
-        about = inspect.getdoc(function)
-        assert f"Equation ({number}) of the note; " in about
-        (returned,) = (line for line in about.splitlines() if line.startswith("  returns "))
-        assert f"(..., {', '.join(map(str, shape))})" in returned
-        assert " operations: " in about
-        assert "Raises TypeError for a dtype and ValueError for a shape" in about
-        assert ("Divides by" in about) == ("inverse" in name or "rates_from" in name)
-
-
 def test_divisors_are_written_in_the_inputs_of_a_function():
     """No reader knows x1, a name of an intermediate value"""
     for rotation, divisor in (
@@ -125,11 +106,6 @@ def test_divisors_are_written_in_the_inputs_of_a_function():
     ):
         source = rs.derive(rotation, "inverse_rate_matrix_body").kernels("numpy").source
         assert f"Divides by {divisor}, near whose zeros" in source
-
-
-def test_the_same_text_every_time():
-    fresh = derive(rs.EulerAngles("YZX"))
-    assert generate(fresh).source == generate(derived("YZX")).source
 
 
 def test_names_that_clash_are_kept_apart():
@@ -183,3 +159,61 @@ def test_what_modules_say_of_angles_series_poles_and_trajectories(golden):
         source = motion.kernels(conversions=rotation == "modified_rodrigues").source
         heads.append(source.split('"""')[1].replace(f"rigidsym {__version__};", "rigidsym *;"))
     golden("kernels/words.txt", "\n".join(heads))
+
+
+PRINTER = """
+from types import ModuleType
+
+from rigidsym.kernels.ir import FUNCTIONS
+from rigidsym.kernels.targets.infix import infix
+
+RESERVED = frozenset({"theta"})
+
+
+def render(program):
+    names = {name: name.upper() for name in FUNCTIONS}
+    lines = []
+    for kernel in program.kernels:
+        lines.append(f"FUNCTION {kernel.name}({', '.join(kernel.components)})")
+        lines += [f"  {a.name} := {infix(a.value, names)}" for a in kernel.assignments]
+        lines += [f"  RESULT {infix(value, names)}" for value in kernel.outputs]
+    return {f"{program.name}.toy": "\\n".join(lines) + "\\n"}
+
+
+def load(name, files):
+    module = ModuleType(name)
+    module.text = "".join(files.values())
+    return module
+"""
+ZXZ = """\
+FUNCTION angular_velocity_body(phi, theta_, psi, phi_dot, theta_dot, psi_dot)
+  sin_theta := SIN(theta_)
+  cos_theta := COS(theta_)
+  sin_psi := SIN(psi)
+  cos_psi := COS(psi)
+  x0 := phi_dot * sin_theta
+  RESULT theta_dot * cos_psi + x0 * sin_psi
+  RESULT x0 * cos_psi - theta_dot * sin_psi
+  RESULT phi_dot * cos_theta + psi_dot
+"""
+
+
+def test_a_file_and_its_line_print_and_load(tmp_path, monkeypatch):
+    (tmp_path / "toy.py").write_text(PRINTER, encoding="utf-8")
+    monkeypatch.setattr(targets, "__path__", [*targets.__path__, str(tmp_path)])
+    monkeypatch.setitem(targets.TARGETS, "toy", targets.Target(about="NAME.toy", ending=".toy"))
+    motion = rs.derive("ZXZ", only=["angular_velocity_body"])
+    kernels = motion.kernels("toy")
+    del sys.modules[f"{targets.__name__}.toy"]
+    assert kernels.source.splitlines() == ZXZ.splitlines()
+    assert kernels.load().text == kernels.source
+    with pytest.raises(KernelError, match=r"no target 'toi'; there is numpy, .*toy"):
+        motion.kernels("toi")
+
+
+def test_every_target_is_a_file_of_the_same_form():
+    for name, target in targets.TARGETS.items():
+        printer = targets.printer(name)
+        assert {"RESERVED", "render", "load"} <= vars(printer).keys()
+        assert target.about.startswith("NAME")
+        assert f"{name} " in inventory()

@@ -1,28 +1,52 @@
-"""Lowering: exact, each sine once, no more operations than SymPy's own pass."""
+"""Lowering: exact, each sine once, no more operations than SymPy's own pass; names and notation."""
 
 from __future__ import annotations
 
+import math
+import re
+import shutil
+import subprocess
 from dataclasses import replace
 from fractions import Fraction
+from random import Random
 
+import numpy as np
 import pytest
 import sympy as sp
 from hypothesis import given, settings, strategies as st
 
 import rigidsym as rs
+from helpers.motions import derived
+from helpers.node import load
+from helpers.target_modules import EVERY
+from helpers.witness import mp
 from rigidsym.algebra.stable_forms import Stumpff
 from rigidsym.errors import KernelError
 from rigidsym.kernels import ir
-from rigidsym.kernels.ir import Assignment, Call, Guarded, Name, Negative, Number, Product, Sum
+from rigidsym.kernels.ir import (
+    Assignment,
+    Call,
+    Choice,
+    Compare,
+    Expression,
+    Guarded,
+    Name,
+    Negative,
+    Number,
+    Product,
+    Sum,
+)
 from rigidsym.kernels.lowering.cse import Reader
 from rigidsym.kernels.lowering.lower import MARGIN, lower
-from rigidsym.kernels.lowering.naming import Names
+from rigidsym.kernels.lowering.naming import Names, identifier
 from rigidsym.kernels.lowering.rounding import guarded
 from rigidsym.kernels.lowering.schedule import narrowed, write
+from rigidsym.kernels.targets import TARGETS
 from rigidsym.kernels.targets.infix import infix
-from rigidsym.kernels.targets.python import bracketed, statement
 from rigidsym.kernels.targets.remarks import count
 from rigidsym.mechanics.conversions.function import Where
+from rigidsym.models.library import rotation_from
+from rigidsym.motion import derive
 
 A, B, C, D = sp.symbols("a b c d")
 INPUTS = {symbol: symbol.name for symbol in (A, B, C, D)}
@@ -292,20 +316,6 @@ def test_lowering_is_exact_for_any_sum_of_products_and_quotients(expressions):
 a, b, c = Name("a"), Name("b"), Name("c")
 
 
-@pytest.mark.parametrize(("second", "lines"), [(39, 1), (40, 3), (41, 4)])
-def test_items_are_laid_out_by_width(second, lines):
-    text = bracketed(4, "fun(", ["a" * 38, "b" * second], ")")
-    assert len(text.splitlines()) == lines
-    assert max(map(len, text.splitlines())) <= 88
-
-
-@pytest.mark.parametrize(("size", "lines"), [(42, 1), (43, 3), (80, 3), (81, 4)])
-def test_wide_assignments_get_brackets(size, lines):
-    text = statement(4, "a" * 39, Product((Name("b" * (size - 4)), c)), {})
-    assert len(text.splitlines()) == lines
-    assert max(map(len, text.splitlines())) <= 88
-
-
 def test_operations_are_counted_as_written():
     expressions = [
         Negative(Product((a, b))),
@@ -369,3 +379,192 @@ def test_what_reaches_a_divisor_is_delicate():
     rounded = Assignment("x1", Sum((Name("x0"), Number(Fraction(1)))))
     summed = replace(kernel, assignments=(kernel.assignments[0], rounded, kernel.assignments[2]))
     assert summed.delicate == {"x1"}  # a sum has a rounding of its own
+
+
+SKEW = "z(phi) x(theta) [1,1,0](psi)"
+
+
+def kernel_of(program: ir.Program, name: str) -> ir.Kernel:
+    return next(kernel_of for kernel_of in program.kernels if kernel_of.name == name)
+
+
+def test_quantities_come_in_the_order_of_their_equations_and_the_margin_last():
+    program = lower(derived("ZXZ"))
+    assert program.name == "euler_zxz_intrinsic"
+    assert [k.equation for k in program.kernels] == [*range(1, 14), None]
+    assert [k.name for k in program.kernels][-1] == MARGIN
+    matrix = kernel_of(program, "rotation_matrix")
+    assert (matrix.shape, matrix.symbol, matrix.unit) == ((3, 3), "R", "")
+    assert [a.name for a in matrix.arguments] == ["q"]
+    assert program.arguments[0].components == ("phi", "theta", "psi")
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "symbol", "end"),
+    [
+        ("ZYX", "abs_cos_theta", "|det W|", "; 1 at most, 0 at one"),
+        ("ZXZ", "abs_sin_theta", "|det W|", "; 1 at most, 0 at one"),
+        ("rotation_vector", "2.0 * abs_c2_x0", "|det W|", "; 1 at most, 0 at one"),
+        (SKEW, "0.5 * abs_x0", "|det W|", "; 0 at one"),
+    ],
+)
+def test_the_margin_is_scaled_to_one_if_its_largest_value_is_known(name, value, symbol, end):
+    motion = derive(rotation_from(name), only=["inverse_rate_matrix_space"])
+    found = kernel_of(lower(motion), MARGIN)
+    assert (found.symbol, found.shape, infix(found.outputs[0])) == (symbol, (), value)
+    assert found.about == f"how far the coordinates are from a singular orientation{end}"
+    assert [a.name for a in found.arguments] == ["q"]
+
+
+VALUES = {name: mp.mpf(k) / 7 for name, k in zip("abcde", (3, -5, 11, 16, -2), strict=True)}
+NUMBERS = [Number(Fraction(n)) for n in (2, -3, Fraction(1, 3), Fraction(-7, 5), Fraction(1, 2))]
+
+
+def random_tree(rng: Random, depth: int) -> Expression:
+    if depth == 0 or rng.random() < 0.15:
+        return rng.choice([*map(Name, VALUES), *NUMBERS, Call("sin", Name("a"))])
+    some = [random_tree(rng, depth - 1) for _ in range(rng.randint(1, 3))]
+    kind = rng.randrange(4)
+    if kind == 0:
+        return Negative(some[0])
+    if kind == 1:
+        return Sum(tuple(some))
+    others = [random_tree(rng, depth - 1) for _ in range(rng.randint(0, 2))]
+    return Product(tuple(some), tuple(others))
+
+
+def value_of(tree: Expression) -> object:
+    match tree:
+        case Name(text):
+            return VALUES[text]
+        case Number(value):
+            return mp.mpf(value.numerator) / value.denominator
+        case Negative(operand):
+            return -value_of(operand)
+        case Sum(terms):
+            return mp.fsum(map(value_of, terms))
+        case Product(factors, divisors):
+            above, below = (mp.fprod(map(value_of, side)) for side in (factors, divisors))
+            return above / below
+    assert isinstance(tree, Call)
+    return mp.sin(VALUES[tree.argument.text])
+
+
+def test_an_expression_has_the_value_of_its_tree():
+    for k in range(400):
+        tree = random_tree(Random(f"tree:{k}"), 1 + k % 4)
+        try:
+            expected = value_of(tree)
+        except ZeroDivisionError:
+            continue
+        exact = re.sub(r"\d+\.\d+", r"mpf(\g<0>)", infix(tree))
+        found = eval(exact, {"mpf": mp.mpf, "sin": mp.sin, **VALUES})
+        assert mp.fabs(found - expected) <= mp.mpf(10) ** -35 * (1 + mp.fabs(expected)), tree
+
+
+OVER = Compare("<", Sum((a, b)), c)
+
+
+@pytest.mark.parametrize(
+    ("tree", "text"),
+    [
+        (Call("atan2", a, b), "atan2(a, b)"),
+        (Number(math.nan), "nan"),
+        (Number(0.1), "0.1"),
+        (Number(Fraction(1, 3)), "1.0 / 3.0"),
+        (OVER, "a + b < c"),
+        (Compare("==", OVER, c), "(a + b < c) == c"),
+        (Choice(OVER, a, Negative(b)), "a if a + b < c else -b"),
+        (Sum((Choice(OVER, a, b), c)), "(a if a + b < c else b) + c"),
+        (Guarded(a, None), "or_nan(a, None)"),
+        (Guarded(a, b), "or_nan(a, b)"),
+        (Product((a,), (b,)), "a / b"),
+        (Product((a,), (b, c)), "a / (b * c)"),
+        (Product((a,), (Product((b,), (c,)),)), "a / (b / c)"),
+        (Product((a,), (Product((b,), (c,)), c)), "a / (b / c * c)"),
+        (Product((a, Sum((b, c)))), "a * (b + c)"),
+        (Sum((a, Negative(Sum((b, c))))), "a - (b + c)"),
+        (Negative(Product((a, b))), "-a * b"),
+        (Product((Negative(a), b)), "(-a) * b"),
+    ],
+    ids=str,
+)
+def test_a_tree_gets_the_brackets_it_needs_and_no_others(tree, text):
+    assert infix(tree) == text
+
+
+def test_a_target_has_its_own_words():
+    words = {"sin": "Math.sin", "nan": "NaN", "choice": "{0} ? {1} : {2}", "==": "==="}
+    assert infix(Call("sin", a), words) == "Math.sin(a)"
+    assert infix(Number(math.nan), words) == "NaN"
+    assert infix(Choice(Compare("==", a, b), a, b), words) == "a === b ? a : b"
+    assert infix(Number(Fraction(1, 2)), number=lambda value: f"{value}f") == "0.5f"
+
+
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [
+        ("phi", "phi"),
+        ("θ", "θ"),
+        ("ϕ", "φ"),
+        (r"\theta'", "theta"),
+        ("2nd angle", "v2nd_angle"),
+        ("__init__", "init"),
+        ("_", "v"),
+    ],
+)
+def test_names_become_identifiers(text, name):
+    assert identifier(text) == name
+
+
+def test_names_are_given_once():
+    names = Names(["lambda", "x0"])
+    assert [names.fresh(n) for n in ("lambda", "phi", "phi", "lambda")] == [
+        "lambda_",
+        "phi",
+        "phi_",
+        "lambda__",
+    ]
+    assert [names.numbered("x"), names.numbered("x")] == ["x1", "x2"]
+
+
+WORDS = [
+    ("lambda", "eps", "y0"),
+    ("λ", "double", "M_PI"),
+    ("eps_row", "least", "far"),
+    ("new", "this", "arguments"),
+    ("signed", "j1", "NULL"),
+    ("def", "class", "None"),
+]
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("target", EVERY)
+@pytest.mark.parametrize("names", WORDS, ids=" ".join)
+def test_words_of_languages_are_renamed_so_that_every_module_loads(names, target):
+    motion = rs.derive(rs.EulerAngles("ZXZ", angles=names), only=["angular_velocity_body"])
+    plain = rs.derive("ZXZ", only=["angular_velocity_body"]).kernels().load()
+    module = load(motion.kernels(target, conversions=True))
+    given = [[0.1, 0.2, 0.3], [0.4, 0.5, 0.6]]
+    found = module.angular_velocity_body(*given)
+    np.testing.assert_allclose(found, plain.angular_velocity_body(*given), rtol=1e-6)
+
+
+def test_words_of_languages_are_renamed_alike_in_every_target():
+    motion = rs.derive(rs.EulerAngles("ZXZ", angles=("lambda", "eps", "y0")))
+    program = lower(motion)
+    assert program.arguments[0].components == ("lambda_", "eps", "y0_")
+    for target in TARGETS:
+        source = " ".join(motion.kernels(target).files.values())
+        assert all(re.search(rf"\b{name}\b", source) for name in ("lambda_", "eps_", "y0_"))
+
+
+@pytest.mark.skipif(not shutil.which("g++"), reason="no g++")
+def test_a_c_header_is_taken_by_cpp_beside_cmath(tmp_path):
+    for names in WORDS:
+        motion = rs.derive(rs.EulerAngles("ZXZ", angles=names), only=["rotation_matrix"])
+        header = motion.kernels("c", conversions=True).write(tmp_path).with_suffix(".h")
+        source = tmp_path / "use.cpp"
+        source.write_text(f'#include <cmath>\n#include "{header.name}"\nint main() {{}}\n', "utf-8")
+        command = ["g++", "-Wall", "-Wextra", "-Wshadow", "-Werror", "-fsyntax-only", str(source)]
+        assert subprocess.run(command, capture_output=True, check=False).returncode == 0

@@ -1,19 +1,23 @@
-"""The numbers of sine, cosine and the angle of a point: series, remainders and bits."""
+"""Sine, cosine and the angle of a point in targets that print their own: numbers, and 50 digits."""
 
 from __future__ import annotations
 
+import ctypes
+import shutil
+import subprocess
 from fractions import Fraction
-from math import factorial
 
+import numpy as np
 import pytest
 
+import rigidsym as rs
+from helpers.target_modules import STRICT
 from helpers.witness import mp
 from rigidsym.kernels.lowering.trigonometry import arctangent, reduction, two_over_pi
 
 # digits: bits of n quarter turns, short parts of π/2, coefficients of sine and cosine, of atan
 KNOWN = {53: (21, 2, 6, 12), 24: (13, 3, 3, 5)}
 EIGHTH = mp.pi / 4
-NEAR = 1e-22  # the points are rounded to doubles
 
 
 def value(number: Fraction) -> mp.mpf:
@@ -22,11 +26,6 @@ def value(number: Fraction) -> mp.mpf:
 
 def polynomial(coefficients: tuple[Fraction, ...], z: mp.mpf) -> mp.mpf:
     return mp.fsum(value(c) * z**k for k, c in enumerate(coefficients))
-
-
-def chebyshev_points(count: int, top: mp.mpf) -> list[mp.mpf]:
-    """The zeros of the polynomial T_count, moved from (−1, 1) to (0, top)."""
-    return [top * (1 + mp.cos(mp.pi * (2 * k - 1) / (2 * count))) / 2 for k in range(1, count + 1)]
 
 
 @pytest.mark.parametrize("digits", KNOWN)
@@ -41,42 +40,6 @@ def test_pi_over_two_is_cut_into_parts_that_n_quarter_turns_multiply_exactly(dig
         last_bit = mp.mpf(2) ** (mp.floor(mp.log(rest, 2)) + 1 - bits)
         assert value(part) == mp.floor(rest / last_bit) * last_bit  # cut, not rounded
         rest -= value(part)
-
-
-@pytest.mark.parametrize("digits", KNOWN)
-def test_sine_and_cosine_agree_with_their_polynomials_in_chebyshevs_points(digits):
-    _, _, terms, _ = KNOWN[digits]
-    found, top = reduction(digits), (EIGHTH * 51 / 50) ** 2
-    assert len(found.sine) == len(found.cosine) == terms
-    for z in chebyshev_points(terms, top):
-        r = mp.sqrt(z)
-        assert mp.almosteq(polynomial(found.sine, z), (mp.sin(r) - r) / r**3, NEAR)
-        assert mp.almosteq(polynomial(found.cosine, z), (mp.cos(r) - 1 + z / 2) / z**2, NEAR)
-
-
-@pytest.mark.parametrize("digits", KNOWN)
-def test_the_arctangent_agrees_with_its_polynomial_in_chebyshevs_points(digits):
-    terms, found = KNOWN[digits][3], arctangent(digits)
-    assert len(found.coefficients) == terms
-    for z in chebyshev_points(terms, mp.mpf(17158) / 100000):
-        t = mp.sqrt(z)
-        assert mp.almosteq(polynomial(found.coefficients, z), (mp.atan(t) / t - 1) / z, NEAR)
-
-
-@pytest.mark.parametrize("digits", KNOWN)
-def test_the_errors_are_chebyshevs_remainder(digits):
-    """Of n terms on (0, h): 2 (h/4)ⁿ times the first coefficient left out.
-
-    z S and z A are h times as large at most; a sine is at least 25/28 of its angle, and an
-    arctangent 50/53 of its quotient.
-    """
-    _, _, terms, more = KNOWN[digits]
-    top = (EIGHTH * 51 / 50) ** 2
-    remainder = top * 2 * (top / 4) ** terms / factorial(2 * terms + 3) * 28 / 25
-    assert mp.almosteq(value(reduction(digits).error), remainder, 1e-30)
-    top = mp.mpf(17158) / 100000
-    remainder = top * 2 * (top / 4) ** more / (2 * more + 3) * 53 / 50
-    assert mp.almosteq(value(arctangent(digits).error), remainder, 1e-30)
 
 
 @pytest.mark.parametrize("digits", KNOWN)
@@ -113,3 +76,64 @@ def test_two_over_pi_is_right_to_the_last_bit():
     with mp.workdps(420):
         number = sum(mp.mpf(2) ** (32 * (1 - k)) * word for k, word in enumerate(two_over_pi()))
         assert 0 <= 2 / mp.pi - number < mp.mpf(2) ** (-32 * 38)
+
+
+DIGITS = {"double": 53, "float": 24}
+WRAPPER = """
+#include "euler_zxz_intrinsic.c"
+void every_double(int n, const double *y, const double *x, double *out);
+void every_float(int n, const float *y, const float *x, float *out);
+void every_double(int n, const double *y, const double *x, double *out)
+{
+    for (int k = 0; k < n; k++) out[k] = angle_of(y[k], x[k]);
+}
+void every_float(int n, const float *y, const float *x, float *out)
+{
+    for (int k = 0; k < n; k++) out[k] = angle_of_FLOAT(y[k], x[k]);
+}
+""".replace("angle_of_FLOAT", "angle_off")
+
+
+def points(dtype: type) -> tuple[np.ndarray, np.ndarray]:
+    """Points of all octants and sizes, on the axes and diagonals, and where the formula changes."""
+    random = np.random.default_rng(3)
+    y, x = random.normal(size=(2, 3000)) * 10.0 ** random.uniform(-15, 15, size=(2, 3000))
+    edge = float(arctangent(53).edge) * (1 + np.linspace(-1e-7, 1e-7, 41))
+    near = np.concatenate([np.linspace(0, 1, 200), edge])
+    y = np.concatenate([y, near, np.ones_like(near), -near])
+    x = np.concatenate([x, np.ones_like(near), near, -np.ones_like(near)])
+    return y.astype(dtype), x.astype(dtype)
+
+
+def error(found: np.ndarray, y: np.ndarray, x: np.ndarray) -> float:
+    """The largest relative error, in eps of the type."""
+    exact = [mp.atan2(mp.mpf(float(a)), mp.mpf(float(b))) for a, b in zip(y, x, strict=True)]
+    misses = [abs(mp.mpf(float(f)) - e) / abs(e) for f, e in zip(found, exact, strict=True) if e]
+    return float(max(misses) / mp.mpf(float(np.finfo(found.dtype).eps)))
+
+
+@pytest.mark.campaign
+@pytest.mark.skipif(not shutil.which("gcc"), reason="no gcc")
+@pytest.mark.parametrize("optimised", ["-O0", "-O3"])
+@pytest.mark.parametrize("name", ["double", "float"])
+def test_c_within_one_and_a_half_eps(tmp_path, name, optimised):
+    rs.derive("ZXZ").kernels("c", conversions=True).write(tmp_path)
+    (tmp_path / "wrapped.c").write_text(WRAPPER, encoding="utf-8")
+    flags = (*STRICT, "-Wno-unused-function", optimised, "-fPIC", "-shared")
+    built = tmp_path / "wrapped.so"
+    subprocess.run(["gcc", *flags, tmp_path / "wrapped.c", "-o", built, "-lm"], check=True)
+    dtype = {"double": np.float64, "float": np.float32}[name]
+    y, x = points(dtype)
+    found = np.empty_like(y)
+    pointers = [ctypes.c_void_p(array.ctypes.data) for array in (y, x, found)]
+    getattr(ctypes.CDLL(str(built)), f"every_{name}")(len(y), *pointers)
+    assert error(found, y, x) < 1.5
+    assert found[(y == 0) & (x > 0)].max() == 0
+
+
+def test_numba_within_one_and_a_half_eps():
+    pytest.importorskip("numba")
+    module = rs.derive("ZXZ").kernels("numba", conversions=True).load()
+    y, x = points(np.float64)
+    found = np.array([module._angle_of(a, b) for a, b in zip(y.tolist(), x.tolist(), strict=True)])
+    assert error(found, y, x) < 1.5

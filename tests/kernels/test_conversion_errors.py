@@ -1,10 +1,11 @@
-"""Errors of inverse conversions and of `unwrap`, as angles between rotations."""
+"""Errors of conversions in every target, as angles between rotations, and the numbers of NumPy."""
 
 from __future__ import annotations
 
 from functools import cache
 from types import ModuleType
 
+import jax
 import numpy as np
 import pytest
 
@@ -135,29 +136,44 @@ def test_they_are_so_in_every_target(text, target):
 # unwrap
 
 
-def test_where_signs_alone_change_unwrap_is_exact():
-    q = np.random.default_rng(3).normal(size=(50, 4))
-    found = motion("unit_quaternion").kernels(conversions=True).load().unwrap(q)
-    np.testing.assert_array_equal(np.abs(found), np.abs(q))
-    assert (found != q).any()
+pytestmark = pytest.mark.usefixtures("double")
+
+CONSTANTS = "z(gamma) x(phi) y(alpha0) z(beta)"  # only its quaternion
+TEXTS = ("ZXZ", "rotation_vector", "modified_rodrigues", CONSTANTS)
 
 
-LARGEST_UNWRAPPED = {  # eps; ten times what was measured
-    "ZXZ": 260,
-    "zyx": 250,
-    "axis_angle": 8,
-    "modified_rodrigues": 15,
-}
+@cache
+def module(text: str, target: str) -> ModuleType:
+    return load(motion(text).kernels(target, conversions=True))
 
 
-@pytest.mark.parametrize("text", LARGEST_UNWRAPPED)
-def test_unwrapped_samples_are_the_same_rotations(text):
-    functions = numpy_module(text)
-    q = functions.from_quaternion(given(text, 40, 9))
-    found = functions.unwrap(q)
-    size = np.abs(found).max(axis=1, initial=1.0)
-    errors = [
-        float(distance(turned(text, a), turned(text, b))) for a, b in zip(q, found, strict=True)
-    ]
-    assert (found != q).any()
-    assert (np.array(errors) / size).max() <= LARGEST_UNWRAPPED[text] * 2**-52
+def arguments(text: str) -> dict[str, list[np.ndarray]]:
+    """Arguments of each conversion of the NumPy module: the poles, half turns and no turn too."""
+    known, random = module(text, "numpy"), np.random.default_rng(4)
+    if motion(text).model.constants:
+        return {"quaternion": [random.normal(size=(40, 3)), np.full(1, 0.4)]}
+    p = np.concatenate([np.eye(4), -np.eye(4)[:1], random.normal(size=(40, 4))])
+    q = known.from_quaternion(p)
+    arguments = {
+        "from_quaternion": [p],
+        "from_rotation_matrix": [known.rotation_matrix(q)],
+        "quaternion": [q],
+    }
+    return {name: arrays for name, arrays in arguments.items() if hasattr(known, name)}
+
+
+@pytest.mark.parametrize("target", [each for each in EVERY if each.values != ("numpy",)])
+@pytest.mark.parametrize("text", ["modified_rodrigues", CONSTANTS])
+def test_every_target_has_the_numbers_of_numpy(text, target):
+    for name, arrays in arguments(text).items():
+        expected = getattr(module(text, "numpy"), name)(*arrays)
+        found = getattr(module(text, target), name)(*arrays)
+        np.testing.assert_allclose(found, expected, rtol=1e-13, atol=1e-13, err_msg=name)
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.7])
+def test_derivatives_of_conversions(angle):
+    """There and back is the identity, and so is its derivative: at no turn at all, too."""
+    functions = module("rotation_vector", "jax")
+    back = jax.jacobian(lambda v: functions.from_quaternion(functions.quaternion(v)))
+    np.testing.assert_allclose(back(angle * np.array([0.6, 0.0, 0.8])), np.eye(3), atol=1e-14)
