@@ -11,16 +11,9 @@ from typing import Any
 import click
 
 from rigidsym.commands.command import Options, command as make, message
-from rigidsym.commands.options import (
-    MOST_LINES,
-    PRINTING,
-    ROTATION,
-    applied,
-    of_rotation,
-)
+from rigidsym.commands.options import MOST_LINES, PRINTING, ROTATION, applied, of_rotation
 from rigidsym.commands.output_folder import printed, with_existing_files, write
 from rigidsym.errors import RigidsymError
-from rigidsym.motion import Motion
 from rigidsym.notes.formats.pdf import typeset
 from rigidsym.notes.formats.record import record
 from rigidsym.notes.formats.terminal import show
@@ -28,8 +21,6 @@ from rigidsym.pipeline import PDF, Output, integrated, motion_of
 from rigidsym.spec.derivation_spec import DerivationSpec, spec_for
 from rigidsym.system.files import write_bytes
 from rigidsym.system.processes import in_processes
-
-Made = tuple[Output, bytes | RigidsymError | None]  # with the PDF, or why there is none
 
 
 @make(
@@ -54,55 +45,47 @@ def command(rotation: str, equations: str | None, **options: Any) -> None:
     spec = applied(options, spec_for(rotation, **of_rotation(options)))
     if equations is None:
         produce([spec], options)
+        return
+    motion = motion_of(spec)
+    if equations == "json":
+        click.echo(json.dumps(record(motion, {})["quantities"], indent=1, ensure_ascii=False))
     else:
-        click.echo(_equations(motion_of(spec), equations))
+        is_latex = equations == "latex"
+        click.echo("\n\n".join(s.latex() if is_latex else s.text() for s in motion.steps))
 
 
 def produce(specs: Iterable[DerivationSpec], options: Options) -> None:
     """Derive, print, write and show each rotation of some specifications."""
-    singles = [single for spec in specs for single in integrated(spec).singles()]
-    _check_folders(singles)
-    wanted = [with_existing_files(single, options["out"]) for single in singles]
-    missing: list[RigidsymError] = []
-    count = 0
-    try:
-        for output, paper in in_processes(_made, wanted):
-            written = write(output, options["out"], force=options["force"])
-            if isinstance(paper, bytes):
-                written.append(write_bytes(written[0].parent / f"{output.name}.pdf", paper))
-            elif paper is not None:
-                missing.append(paper)
-            _report_uncovered(output)
-            _show(output, written, options, is_only=len(singles) == 1)
-            count += 1
-    finally:
-        if 0 < count < len(singles):
-            finished = f"{count} of {len(singles)} derivations are finished"
-            message(f"{finished} and kept in {options['out']}")
-    if missing:
-        raise missing[0]
-
-
-def _equations(motion: Motion, form: str) -> str:
-    """The equations of a motion, for a paper or a program."""
-    if form == "json":
-        return json.dumps(record(motion, {})["quantities"], indent=1, ensure_ascii=False)
-    return "\n\n".join(step.latex() if form == "latex" else step.text() for step in motion.steps)
-
-
-def _check_folders(singles: Iterable[DerivationSpec]) -> None:
-    """Refuse two different derivations that would write one folder."""
-    first: dict[str, DerivationSpec] = {}
-    for single in singles:
-        if first.setdefault(single.name, single) != single:
+    out = options["out"]
+    singles: dict[str, DerivationSpec] = {}
+    for single in (single for spec in specs for single in integrated(spec).singles()):
+        if singles.setdefault(single.name, single) != single:
             raise click.UsageError(
                 f"two different derivations are named {single.name} and would write one folder; "
                 "run them separately with different --out, or rename a file"
             )
+    wanted = [with_existing_files(single, out) for single in singles.values()]
+    missing: list[RigidsymError] = []
+    count = 0
+    try:
+        for output, paper in in_processes(_made, wanted):
+            written = write(output, out, force=options["force"])
+            if isinstance(paper, bytes):
+                written.append(write_bytes(written[0].parent / f"{output.name}.pdf", paper))
+            elif paper is not None:
+                missing.append(paper)
+            _show(output, written, options, is_only=len(wanted) == 1)
+            count += 1
+    finally:
+        if 0 < count < len(wanted):
+            finished = f"{count} of {len(wanted)} derivations are finished"
+            message(f"{finished} and kept in {out}")
+    if missing:
+        raise missing[0]
 
 
-def _made(single: DerivationSpec) -> Made:
-    """The output of a rotation; a missing TeX is reported after all other files are written."""
+def _made(single: DerivationSpec) -> tuple[Output, bytes | RigidsymError | None]:
+    """The output of a rotation, and its PDF or why there is none, which is reported at the end."""
     output = printed(single)
     if PDF not in output.spec.note:
         return output, None
@@ -112,36 +95,24 @@ def _made(single: DerivationSpec) -> Made:
         return output, error
 
 
-def _report_uncovered(output: Output) -> None:
-    """A message on standard error if the certificate says nothing of some quantities."""
+def _show(output: Output, written: Sequence[Path], options: Options, *, is_only: bool) -> None:
+    """The files, the record, the derivation or one line of it on standard output."""
     if output.uncovered:
         message(f"{output.name}: the certificate does not cover {', '.join(output.uncovered)}")
-
-
-def _show(output: Output, written: Sequence[Path], options: Options, *, is_only: bool) -> None:
+    proved = sum(proof.is_exact for proof in output.proofs)
+    claims = f"{proved} of {len(output.proofs)} claims proved"
     if options["quiet"]:
         click.echo("\n".join(map(str, written)))
     elif options["as_json"]:
         click.echo(output.record_text, nl=False)
-    elif is_only:
-        click.echo(_shown(output, full=options["full"]))
-        click.echo("\nWritten: " + "\n         ".join(map(str, written)))
+    elif not is_only:
+        click.echo(f"{output.name:<28} {claims}  {written[0].parent}")
     else:
-        click.echo(f"{output.name:<28} {_proved(output)}  {written[0].parent}")
-
-
-def _shown(output: Output, *, full: bool) -> str:
-    """The derivation for a terminal; its first lines unless all are asked for."""
-    width = min(shutil.get_terminal_size((88, 24)).columns, 120)
-    motion = output.motion
-    text = show(motion, width=width, notation=motion.notation, conversions=output.conversions)
-    lines = text.split("\n")
-    if full or len(lines) <= MOST_LINES:
-        return text
-    left = f"... and {len(lines) - MOST_LINES} more lines: use --full, or read the note"
-    return "\n".join([*lines[:MOST_LINES], "", f"{left}; {_proved(output)}"])
-
-
-def _proved(output: Output) -> str:
-    exact = sum(proof.is_exact for proof in output.proofs)
-    return f"{exact} of {len(output.proofs)} claims proved"
+        width = min(shutil.get_terminal_size((88, 24)).columns, 120)
+        motion, conversions = output.motion, output.conversions
+        text = show(motion, width=width, notation=motion.notation, conversions=conversions)
+        lines = text.split("\n")
+        if len(lines) > MOST_LINES and not options["full"]:
+            more = f"... and {len(lines) - MOST_LINES} more lines: use --full, or read the note"
+            lines = [*lines[:MOST_LINES], "", f"{more}; {claims}"]
+        click.echo("\n".join([*lines, "", "Written: " + "\n         ".join(map(str, written))]))

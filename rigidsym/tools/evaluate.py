@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from itertools import product
 from math import pi
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 import numpy as np
 
@@ -83,36 +83,46 @@ def evaluate(
             raise RequestError(f"{where}: the result would replace the file that is read")
     chosen = motion.select(derived_for(quantities))
     kernels = chosen.kernels(target, conversions=not {*CONVERSIONS}.isdisjoint(quantities))
-    calls = [(name, _arguments(chosen, kernels, name)) for name in quantities]
+    calls = {name: _arguments(chosen, kernels, name) for name in quantities}
+    taken = {argument for arguments in calls.values() for argument in arguments}
+    known = [_Input(a.name, a.names, a.units) for a in chosen.arguments]
+    inputs = [each for each in (*known, _QUATERNION, _MATRIX) if each.name in taken]
+    constants = _constants(inputs, given or {}, table.dtype)
+    free = [each for each in inputs if each.name not in constants]
+    if not free:
+        raise RequestError(f"{table.source}: no column is used; every row has the same result")
+    components = [pair for each in free for pair in zip(each.names, each.units, strict=True)]
     try:
         names = names_for(columns, table.width, table.names)
         header = None if names is None else ColumnNames(names)
-        used, inputs = _inputs(_needed(chosen, calls), header, table.width, given or {}, degrees)
+        used = _by_order(components, table.width) if header is None else _by_name(free, header)
+        pairs = zip(used, components, strict=True)
+        scales = [_scale(header, column, unit, degrees) for column, (_, unit) in pairs]
         kept = dict(_kept(header, name) for name in keep)
-    except RequestError:
-        raise
     except DataError as error:
         raise DataError(f"{table.source}: {error}") from None
-    if not used:
-        raise RequestError(f"{table.source}: no column is used; every row has the same result")
     results = [result for name in quantities for result in _results(chosen, name)]
     factors = [180 / pi if degrees and _is_angle(unit) else 1.0 for _, unit in results]
+    ends = np.cumsum([len(each.names) for each in free])[:-1]
     module = kernels.load()
 
     def computed() -> Iterator[Rows]:
-        batches = table.batches(list(used), rows, list(kept))
-        for batch in without_missing(table, batches, list(used.values()), missing):
+        batches = table.batches(used, rows, [*kept])
+        for batch in without_missing(table, batches, [name for name, _ in components], missing):
+            count = len(batch.table)
+            parts = np.split(_scaled(batch.table, scales), ends, axis=1)
+            vectors = constants | {
+                each.name: part.reshape(count, *each.shape)
+                for each, part in zip(free, parts, strict=True)
+            }
             values = []
-            for name, arguments in calls:
-                taken = [inputs[argument].of(batch.table) for argument in arguments]
-                value = np.asarray(getattr(module, name)(*taken, threads=threads))
-                is_constant = not any(inputs[argument].columns for argument in arguments)
-                value = value.reshape(1 if is_constant else len(batch.table), -1)
-                values.append(np.broadcast_to(value, (len(batch.table), value.shape[1])))
-            result = np.concatenate(values, axis=1)
-            if any(factor != 1 for factor in factors):
-                result = result * np.array(factors).astype(result.dtype)
-            yield result, batch.kept
+            for name, arguments in calls.items():
+                function = getattr(module, name)
+                value = function(*(vectors[each] for each in arguments), threads=threads)
+                is_constant = constants.keys() >= {*arguments}
+                value = np.asarray(value).reshape(1 if is_constant else count, -1)
+                values.append(np.broadcast_to(value, (count, value.shape[1])))
+            yield _scaled(np.concatenate(values, axis=1), factors), batch.kept
             if progress is not None:
                 progress(batch.share)
 
@@ -121,33 +131,34 @@ def evaluate(
     return Evaluated(path=where, rows=count, columns=titles)
 
 
+def _scaled(table: Numbers, factors: Sequence[float]) -> Numbers:
+    """The columns times their factors, in the precision of the table."""
+    if all(factor == 1 for factor in factors):
+        return table
+    return table * np.array(factors).astype(table.dtype)
+
+
 # The functions, their arguments and results
 
 
 @dataclass(frozen=True, slots=True)
-class _Argument:
-    """A vector or matrix that a function takes, with a name and a unit for each component."""
+class _Input:
+    """A vector or matrix that functions take, with a name and a unit for each component."""
 
     name: str
     names: tuple[str, ...]
     units: tuple[str, ...]
-    shape: tuple[int, ...] = (-1,)
+    shape: tuple[int, ...] = (-1,)  # of one row
 
 
-_QUATERNION = _Argument("quaternion", ("qw", "qx", "qy", "qz"), ("",) * 4)
+_QUATERNION = _Input("quaternion", ("qw", "qx", "qy", "qz"), ("",) * 4)
 _ENTRIES = tuple(f"r{row}{column}" for row, column in product("123", repeat=2))
-_MATRIX = _Argument("matrix", _ENTRIES, ("",) * 9, (3, 3))
+_MATRIX = _Input("matrix", _ENTRIES, ("",) * 9, (3, 3))
 
 
 def derived_for(names: Sequence[str]) -> tuple[str, ...]:
     """The quantities to derive for some functions."""
     return tuple(name for name in names if name not in CONVERSIONS) or ("rotation_matrix",)
-
-
-def _needed(motion: Motion, calls: Sequence[tuple[str, Sequence[str]]]) -> list[_Argument]:
-    wanted = {argument for _, taken in calls for argument in taken}
-    known = [_Argument(a.name, a.names, a.units) for a in motion.arguments]
-    return [a for a in (*known, _QUATERNION, _MATRIX) if a.name in wanted]
 
 
 def _is_angle(unit: str) -> bool:
@@ -198,85 +209,50 @@ def _title(name: str, unit: str, *, degrees: bool) -> str:
 # Which column is which argument
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class _Input:
-    """One argument of a function: columns of each batch, or numbers that stay the same."""
+def _constants(
+    inputs: Sequence[_Input], given: Mapping[str, float], dtype: np.dtype[Any]
+) -> dict[str, Numbers]:
+    """The arguments whose components all have given numbers.
 
-    columns: slice | None = None  # of the batch; None if the numbers are given
-    given: tuple[float, ...] = ()
-    factors: tuple[float, ...] = ()  # to the units of the functions
-    shape: tuple[int, ...] = (-1,)  # of the argument of one row
-
-    def of(self, table: Numbers) -> Numbers:
-        """The argument of each row, (rows, *shape), in the units of the functions."""
-        if self.columns is None:
-            return np.array(self.given, table.dtype).reshape(self.shape)
-        values = table[:, self.columns]
-        if any(factor != 1 for factor in self.factors):
-            values = values * np.array(self.factors).astype(table.dtype)
-        return values.reshape(len(table), *self.shape)
-
-
-def _inputs(
-    arguments: Sequence[_Argument],
-    header: ColumnNames | None,
-    width: int,
-    given: Mapping[str, float],
-    degrees: bool,
-) -> tuple[dict[int, str], dict[str, _Input]]:
-    """The columns to read for some arguments, with their names, and each argument from these.
-
-    Columns are found by their names or else by their order; `given` holds numbers for components
-    that no column has, such as constants. Numbers are in the unit that the name of their column
-    states, or else in radians, in degrees with `degrees`, and SI units. Raises DataError for a
-    column that is missing or twice there and for a unit that does not fit; RequestError for given
-    numbers that belong to no input.
+    Raises RequestError for numbers that belong to no input, and for some of a vector only.
     """
-    known = [name for argument in arguments for name in argument.names]
+    known = {name for each in inputs for name in each.names}
     if strange := [name for name in given if name not in known]:
         raise RequestError(f"{strange[0]} is not an input; {offer(strange[0], sorted(known))}")
-    free = [a for a in arguments if not set(a.names) <= given.keys()]
-    if partly := [a for a in free if not given.keys().isdisjoint(a.names)]:
-        raise RequestError(
-            f"expected numbers for all of {', '.join(partly[0].names)}, or columns for all of them"
-        )
-    columns = _by_order(free, width) if header is None else _by_name(free, header)
-    inputs: dict[str, _Input] = {}
-    start = 0
-    for argument in arguments:
-        if argument not in free:
-            numbers = tuple(given[name] for name in argument.names)
-            inputs[argument.name] = _Input(given=numbers, shape=argument.shape)
-            continue
-        part = slice(start, start := start + len(argument.names))
-        pairs = zip(columns[part], argument.units, strict=True)
-        inputs[argument.name] = _Input(
-            columns=part,
-            factors=tuple(_factor(header, column, unit, degrees) for column, unit in pairs),
-            shape=argument.shape,
-        )
-    return dict(zip(columns, (n for a in free for n in a.names), strict=True)), inputs
+    constants = {}
+    for each in inputs:
+        if given.keys() >= {*each.names}:
+            numbers = np.array([given[name] for name in each.names], dtype)
+            constants[each.name] = numbers.reshape(each.shape)
+        elif not given.keys().isdisjoint(each.names):
+            names = ", ".join(each.names)
+            raise RequestError(f"expected numbers for all of {names}, or columns for all of them")
+    return constants
 
 
-def _factor(header: ColumnNames | None, column: int, unit: str, degrees: bool) -> float:
-    """What the numbers of a column are multiplied by to be in the unit of the functions."""
+def _scale(header: ColumnNames | None, column: int, unit: str, degrees: bool) -> float:
+    """What the numbers of a column are multiplied by to be in the unit of the functions.
+
+    They are in the unit that the name of the column states, or else in SI units, but angles in
+    degrees with `degrees`. Raises DataError for a unit that does not fit.
+    """
     stated = None if header is None else header.factor(column, unit)
     if stated is not None:
         return stated
     return _DEGREE if degrees and _is_angle(unit) else 1.0
 
 
-def _by_order(arguments: Sequence[_Argument], width: int) -> list[int]:
-    wanted = [name for argument in arguments for name in argument.names]
-    if width != len(wanted):
+def _by_order(components: Sequence[tuple[str, str]], width: int) -> list[int]:
+    if width != len(components):
+        names = ", ".join(name for name, _ in components)
         raise DataError(
-            f"{counted(width, 'column')} without names: expected {len(wanted)} "
-            f"({', '.join(wanted)}); or name them with --columns"
+            f"{counted(width, 'column')} without names: expected {len(components)} ({names}); or "
+            "name them with --columns"
         )
     return [*range(width)]
 
 
-def _by_name(arguments: Sequence[_Argument], header: ColumnNames) -> list[int]:
+def _by_name(arguments: Sequence[_Input], header: ColumnNames) -> list[int]:
     columns: list[int] = []
     missing: list[str] = []
     for argument in arguments:

@@ -11,7 +11,6 @@ from click.testing import CliRunner
 
 import rigidsym as rs
 from rigidsym.commands.cli import commands
-from rigidsym.errors import SpecError
 from rigidsym.models.library import PARAMETRISATIONS, rotation_from
 from rigidsym.pipeline import output_of, read_record, read_spec
 
@@ -22,14 +21,6 @@ sequence = "{}"
 quantities = ["rotation_matrix"]
 note = ["tex"]
 {}
-"""
-
-BODY = """
-[parameters]
-A = { positive = true }
-C = { positive = true }
-[body]
-principal_moments = ["A", "A", "C"]
 """
 
 
@@ -56,13 +47,6 @@ def test_what_is_not_offered_stands_in_the_record():
     found = json.loads(output_of(read_spec(text, source="a.toml", name="a")).record_text)
     assert found["conversions"]["coordinates"] is None
     assert "scipy.optimize" in found["conversions"]["without"]
-
-
-def test_a_wrong_value_and_a_wrong_place_are_told():
-    with pytest.raises(SpecError, match=r"output\.conversions: .*expected true or false"):
-        read_spec(FILE.format("ZXZ", "conversions = 1"), source="a.toml", name="a")
-    with pytest.raises(SpecError, match=r"conversions: .*it belongs in \[output\]"):
-        read_spec("conversions = true\n" + FILE.format("ZXZ", ""), source="a.toml", name="a")
 
 
 @pytest.fixture(scope="module")

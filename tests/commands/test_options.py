@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-from pathlib import Path
 
 import pytest
 from click.testing import CliRunner, Result
@@ -13,7 +12,6 @@ import rigidsym as rs
 from rigidsym.commands.cli import commands
 from rigidsym.commands.list import inventory
 from rigidsym.commands.options import MOST_LINES
-from rigidsym.errors import KernelError
 from rigidsym.motion import QUANTITIES
 
 NAMES = commands.list_commands(None)
@@ -55,11 +53,6 @@ def test_a_long_derivation_is_cut_unless_asked_for_in_full(tmp_path):
     assert short[:MOST_LINES] == full[:MOST_LINES]
 
 
-def test_quiet_prints_the_files_alone(tmp_path):
-    done = run("derive", "ZXZ", "--quiet", "--out", str(tmp_path))
-    assert [Path(line).is_file() for line in done.stdout.splitlines()] == [True] * 4
-
-
 def test_kernels_without_a_note_are_possible(tmp_path):
     (tmp_path / "top.toml").write_text('[rotation]\nsequence = "ZXZ"\n[output]\nnote = []\n')
     done = run("run", str(tmp_path / "top.toml"), "--out", str(tmp_path / "out"))
@@ -67,15 +60,6 @@ def test_kernels_without_a_note_are_possible(tmp_path):
     files = {path.name for path in (tmp_path / "out" / "top").iterdir()}
     assert files == {"top.py", "top.json"}
     assert run("check", str(tmp_path / "out")).exit_code == 0
-
-
-def test_the_faults_of_all_files_are_reported(tmp_path):
-    files = [tmp_path / name for name in ("a.toml", "b.toml")]
-    for file in files:
-        file.write_text('[rotation]\nsequence = "ZXX"\n')
-    done = run("run", *map(str, files))
-    assert "a.toml: 1 fault" in done.stderr
-    assert "b.toml: 1 fault" in str(done.exception)
 
 
 def test_two_derivations_of_one_name_are_refused(tmp_path):
@@ -120,10 +104,3 @@ def test_the_list_has_every_quantity_and_straight_columns():
         "euler_all ",
     ):
         assert f"  {part}" in inventory()
-
-
-def test_kernels_in_degrees_name_their_substitute():
-    said = str(run("derive", "ZYX", "--degrees").output)
-    assert "there is no --degrees: functions take radians; convert angles with np.radians" in said
-    with pytest.raises(KernelError, match=r"convert them with np\.radians"):
-        rs.kernels("ZYX", degrees=True)

@@ -32,29 +32,17 @@ def test_an_own_template_that_was_changed_is_read_again(tmp_path: Path):
     assert [html_with(tmp_path, text) for text in ("one", "two")] == ["one", "two"]
 
 
-def test_an_own_template_may_include_others(tmp_path: Path):
-    (tmp_path / "head.jinja").write_text("<b>{{ title }}</b>", encoding="utf-8")
-    assert html_with(tmp_path, "{% include 'head.jinja' %}").startswith("<b>Euler")
-
-
 @pytest.mark.parametrize(
     ("template", "line", "said"),
     [
         ("a\n{{ titel }}", 2, "'titel' is undefined; names here: byline, language, sections,"),
         ("{% for s in sections %}\n\n{{ s.name }}{% endfor %}", 3, "has no attribute 'name'"),
-        ("{% if x %}", 1, "Unexpected end of template"),
         ("\n{{ title.__class__.__mro__ }}", 2, "access to attribute '__class__'"),
         ("{% include 'nowhere.jinja' %}", 1, "nowhere.jinja"),
-        ("\n{% include '/etc/hostname' %}", 2, "hostname"),
         ("{% include '../note.html.jinja' %}", 1, "note.html.jinja"),
         ("{% include 'note.html.jinja' %}", 1, "it includes itself"),
         ("\n{{ title + 1 }}", 2, "can only concatenate str"),
-        ("{{ 1 / 0 }}", 1, "division by zero"),
-        ("{{ title() }}", 1, "'str' object is not callable"),
-        ("{% for i in range(999999) %}{% endfor %}", 1, "Range too big"),
-        ("{% include 'a\x00b' %}", 1, "no template a\\x00b"),
         ("{{ ['a'].append('b') }}", 1, "access to attribute 'append'"),
-        ("\n{% for x in 1 %}{% endfor %}", 2, "'int' object is not iterable"),
     ],
 )
 def test_a_fault_is_named_with_its_template_and_line(tmp_path: Path, template, line, said):
@@ -111,16 +99,6 @@ def test_a_misspelt_block_is_refused_and_a_new_one_inside_a_block_is_not(tmp_pat
         f"{tmp_path}/en/handout.md.jinja, line 4: there is no block singlar to override; did you "
         "mean singular?"
     )
-
-
-def test_a_fact_that_there_is_not_is_named_with_its_template_and_line(tmp_path: Path):
-    (tmp_path / "en").mkdir()
-    own = tmp_path / "en" / "singular.md.jinja"
-    own.write_text("One\n\n{{ singular.determinants }}", encoding="utf-8")
-    with resources.overridden_by(tmp_path), pytest.raises(TemplateFault) as caught:
-        derived("ZXZ").note()
-    assert str(caught.value).startswith(f"{own}, line 3: ")
-    assert "has no attribute 'determinants'" in str(caught.value)
 
 
 HANDOUT = """\

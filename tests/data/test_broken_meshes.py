@@ -47,16 +47,6 @@ def test_what_trimesh_logs_stays_silent(tmp_path):
     assert done.stdout.startswith("12 faces") or done.returncode == 3
 
 
-def test_a_mesh_in_an_encoding_that_needs_an_extra_is_a_message(tmp_path):
-    path = tmp_path / "part.obj"
-    path.write_bytes("o schräg\n".encode("latin-1") + exported("obj"))
-    try:
-        count = len(read_mesh_file(path).faces)
-    except MissingExtra as error:
-        count = 12 if "pip install '.[mesh]'" in str(error) else 0
-    assert count == 12
-
-
 def test_a_file_that_is_no_mesh_is_described_and_not_quoted(tmp_path):
     secret = tmp_path / "secret.stl"
     secret.write_text("root:x:0:0:root:/root:/bin/bash\n" * 9)

@@ -7,8 +7,7 @@ from math import pi
 
 import pytest
 
-from rigidsym.data.columns import ColumnNames, names_for
-from rigidsym.data.units import conversion, is_angular, unit_of
+from rigidsym.data.columns import ColumnNames, conversion, is_angular, names_for, unit_of
 from rigidsym.errors import DataError
 
 DEGREE = pi / 180

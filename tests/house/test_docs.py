@@ -215,8 +215,3 @@ def test_the_gallery_has_every_rotation_solid_and_shipped_file(gallery):
     shipped = {path.stem for path in ROOT.glob("derivations/*.toml")}
     assert found >= {*EULER_SEQUENCES, *PARAMETRISATIONS, *PRESETS, *SHAPES} - {"tetrahedron"}
     assert found >= shipped - {"euler_all", "euler_zxz"}  # those are conventions
-
-
-def test_the_gallery_gives_the_moments_of_a_solid(gallery):
-    moments = re.findall('alttext="(.*?)"', gallery.Item("cylinder", "solid").entry())
-    assert moments[1:] == ["((1/12) M (3a² + h²); ½M a²)"]

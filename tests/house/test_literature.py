@@ -50,18 +50,6 @@ def test_a_changed_sign_is_found(literature):
     assert any(decision.residual)
 
 
-@pytest.mark.parametrize(
-    ("text", "latex"),
-    [
-        ("sin(phi)**2*(a + b)/2", r"\frac{\sin^{2} \varphi\,\left(a + b\right)}{2}"),
-        ("T(rotation_matrix)*C(v)", r"R^{\mathsf T}\,C(v)"),
-        ("-(a - (b - c))*o1", r"-\left(a - \left(b - c\right)\right)\,o_{1}"),
-    ],
-)
-def test_expressions_are_printed_as_latex(literature, text, latex):
-    assert literature.latex(text) == latex
-
-
 def test_an_expression_calls_nothing_but_its_functions(literature):
     with pytest.raises(ExpressionError, match="is not a function"):
         literature.value("__import__('os')", {})

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import sympy as sp
 import trimesh
-from sympy.physics.mechanics import Point, ReferenceFrame, inertia_of_point_mass
+from sympy.physics.mechanics import Point, ReferenceFrame
 
 import rigidsym as rs
 from rigidsym.algebra.codec import codec_for
@@ -20,7 +20,6 @@ from rigidsym.mechanics.mass.bodies import body_of, solid
 from rigidsym.mechanics.mass.moments import moments_of
 from rigidsym.mechanics.mass.principal import principal_of
 from rigidsym.mechanics.quantities.mass import INERTIA_QUANTITIES
-from rigidsym.models import solids
 from rigidsym.models.body import (
     BodyDescription,
     Composite,
@@ -207,17 +206,6 @@ def test_laws_of_every_shape(shape):
     assert difference.applyfunc(sp.cancel) == sp.zeros(3)
 
 
-def test_a_new_solid_is_one_entry(monkeypatch):
-    lengths = tuple(
-        solids.Length(key=k, names=(n,), about=k) for k, n in (("side", "a"), ("h", "h"))
-    )
-    entry = solids.Shape("Wedge", "at the origin", lengths, "u, v, w", "0..a, 0..a - u, 0..h")
-    monkeypatch.setattr(solids, "SHAPES", {**solids.SHAPES, "wedge": entry})
-    wedge = rs.solid("wedge")
-    assert rs.derive("ZXZ", ["inertia_tensor"], body=wedge).is_proved
-    assert wedge.centre == column(a / 3, a / 3, h / 2)
-
-
 def test_a_solid_of_any_density_by_its_bounds():
     x, y, z = sp.symbols("x y z")
     density = rho * (1 + z / h)
@@ -243,16 +231,6 @@ def test_a_solid_of_any_density_by_its_bounds():
 
 
 # What is put together
-
-
-def test_particles_agree_with_sympy():
-    cluster = particles((M, a, 0, 0), (rho, 0, b, h), (2, a, b, -h), (M, -a, 1, 2))
-    frame, found, total = ReferenceFrame("N"), body_of(cluster), sp.zeros(3)
-    for particle in cluster.particles:
-        x, y, z = particle.position - found.centre
-        place = x * frame.x + y * frame.y + z * frame.z
-        total += inertia_of_point_mass(particle.mass, place, frame).to_matrix(frame)
-    assert (total - found.inertia).applyfunc(sp.cancel) == sp.zeros(3)
 
 
 def test_parallel_axes_agree_with_sympy():

@@ -87,21 +87,6 @@ def test_a_number_takes_no_name_that_means_something_else(text, expected):
     assert rest.is_zero_matrix
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
-        '[body]\nprincipal_moments = ["A", "A", "C"]\nmass = "rho*V"',
-        "[body]\ninertia = [[1.5, 0.1, 0], [0.1, 2.0, 0], [0, 0, 2.5]]\ncentre = [0.1, 0, 0]",
-        '[body]\ninertia = "general"',
-        "[parameters]\nA = { positive = true, value = 2.0 }\n[body]\n"
-        'principal_moments = ["A", "A", "A"]',
-    ],
-)
-def test_a_body_comes_back_from_its_data(text):
-    spec = read(text)
-    assert integrated(read_record(spec.to_data())) == integrated(spec)
-
-
 # shapes, particles, parts, files
 
 BOX = trimesh.creation.box(extents=(1.0, 2.0, 3.0))
@@ -164,14 +149,6 @@ def test_a_coordinate_of_the_centre_may_have_any_sign():
     assert signs == {"M": True, "A": True, "C": True, "c": False}
 
 
-def test_a_file_of_particles_may_have_holes_if_that_is_allowed(tmp_path):
-    np.save(tmp_path / "cloud.npy", [[3.0, 0, 0, 1], [3.0, 0, 1, 0], [-1.0, 0, 0, 0]])
-    text = '[body]\nparticles = "cloud.npy"\n'
-    with pytest.raises(SpecError, match="a mass that is not negative"):
-        read_spec(text, source="a", name="a", folder=tmp_path)
-    assert read_spec(text + "allow = true\n", source="a", name="a", folder=tmp_path).body
-
-
 def test_parts_in_numbers_become_numbers():
     body = body_in('[body]\nshape = "cylinder"')
     assert body.inertia[2, 2] == M * sp.Symbol("a") ** 2 / 2
@@ -207,7 +184,7 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-@pytest.mark.parametrize("name", ["mesh", "particles", "both", "composite"])
+@pytest.mark.parametrize("name", ["mesh", "both"])
 def test_one_command_from_a_file_to_energies_kernels_and_note(folder, name):
     """I, principal axes, energies, kernels and note; and the record asks for the same again."""
     run = ["run", str(folder / f"{name}.toml"), "--full", "--out", str(folder / "out")]
@@ -233,7 +210,7 @@ def test_one_command_from_a_file_to_energies_kernels_and_note(folder, name):
     assert [p.value for p in again.parameters] == pytest.approx(values, rel=1e-14)
 
 
-@pytest.mark.parametrize("name", ["mesh", "composite", "both"])
+@pytest.mark.parametrize("name", ["both"])
 def test_a_body_in_numbers_is_drawn_also_from_its_record(folder, name):
     spec = read_file(str(folder / f"{name}.toml"))
     shape = own_shape(integrated(spec).body)

@@ -9,7 +9,7 @@ from textwrap import dedent
 
 import pytest
 
-from rigidsym.errors import ModelError, RigidsymError, SpecError
+from rigidsym.errors import ModelError, SpecError
 from rigidsym.models.library import rotation_from, rotation_given
 from rigidsym.models.parametrisations import EULER_SEQUENCES, EulerAngles
 from rigidsym.pipeline import read_file, read_record, read_spec
@@ -71,11 +71,6 @@ def test_a_full_file():
         "kernels": ["numpy"],
         "note": ["tex", "html"],
     }
-
-
-@pytest.mark.parametrize("sequence", ["ZXZ", "313", "z(phi) x(theta) z(psi)", "z(φ)*x(θ)*z(ψ)"])
-def test_spellings_of_one_rotation(sequence):
-    assert read(f'[rotation]\nsequence = "{sequence}"').models == (EulerAngles("ZXZ"),)
 
 
 @pytest.mark.parametrize(
@@ -172,23 +167,6 @@ def test_the_shipped_list_has_all_sequences():
 
 
 # specifications in Python
-
-
-@pytest.mark.parametrize(
-    ("sequence", "angles", "message"),
-    [
-        ("ZZX", None, "consecutive axes must differ: Z follows Z"),
-        ("ZXZ", [], "three different names"),
-        ("ZXZ", ["a", "b", "b"], "three different names"),
-        ("ZXZ", ["a", "b", "t"], "t is the time"),
-        ("z(a) x(b) z(c)", ["a", "b", "c"], "names its angles itself; leave the other names out"),
-        ("z(a) x(b", None, "column 7: unclosed \\("),
-    ],
-)
-def test_a_wrong_rotation_is_a_wrong_use(sequence, angles, message):
-    with pytest.raises(RigidsymError, match=message) as caught:
-        spec_for(sequence, angles=angles)
-    assert caught.value.exit_code == 2
 
 
 def test_a_specification_checks_itself():

@@ -109,18 +109,6 @@ def is_read_or_refused(read_it, *arguments) -> None:
     assert read_record(spec.to_data()) == spec
 
 
-GOOD = (SHIPPED / "yaw_pitch_roll.toml").read_text(encoding="utf-8")
-places = st.integers(0, len(GOOD))
-
-
-@pytest.mark.campaign
-@settings(max_examples=200, deadline=timedelta(seconds=10))
-@given(places, places, st.text(max_size=3) | st.sampled_from(['"', "[", "]", "\n", "=", ".", "{"]))
-def test_a_damaged_file_is_read_or_refused(first, second, patch):
-    start, end = sorted((first, second))
-    is_read_or_refused(read, GOOD[:start] + patch + GOOD[min(end, start + 20) :])
-
-
 fields = st.sampled_from(
     ["title", "rotation", "sequence", "angles", "passive", "output", "note", "kernels", "body"]
 )
@@ -190,19 +178,6 @@ def test_a_point_of_constraints_is_read_and_kept():
     assert {str(name): value for name, value in model.example} == {"a": 3, "b": 9, "c": 0}
     again = read_record(spec.to_data())
     assert again.models == spec.models
-
-
-NUMBERS = """\
-[rotation]
-matrix = [["cos(phi)", "-sin(phi)", 0], ["sin(phi)", "cos(phi)", 0], [0, 0.0, ONE]]
-coordinates = ["phi"]
-"""
-
-
-def test_entries_of_a_matrix_may_be_numbers():
-    (model,) = read(NUMBERS.replace("ONE", "1")).models
-    (texts,) = read(NUMBERS.replace("ONE", '"1"')).models
-    assert model == texts
 
 
 # records and files of strangers

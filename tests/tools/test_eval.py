@@ -85,14 +85,6 @@ def test_what_is_wrong_with_a_text_is_said(motion, tmp_path, text, message):
     assert [path.name for path in tmp_path.iterdir()] == ["log.csv"]
 
 
-def test_a_fault_of_the_file_is_exit_code_3_and_leaves_nothing(tmp_path):
-    (tmp_path / "log.csv").write_text("1,2,3\n", encoding="utf-8")
-    done = run("ZXZ", tmp_path / "log.csv", "--out", tmp_path / "result.npy")
-    assert done.returncode == 3
-    assert done.stderr.startswith(f"rigidsym: {tmp_path / 'log.csv'}: 3 columns without names")
-    assert [path.name for path in tmp_path.iterdir()] == ["log.csv"]
-
-
 def test_what_is_no_table_of_numbers_is_refused(tmp_path):
     np.save(tmp_path / "words.npy", np.array(["a", "b"]))
     np.save(tmp_path / "objects.npy", np.array([{}, {}]), allow_pickle=True)
@@ -122,12 +114,6 @@ def test_a_file_that_is_no_text_is_named_for_what_it_is(tmp_path, content, found
     (tmp_path / "log.csv").write_bytes(content)
     with pytest.raises(DataError, match=rf"log\.csv holds .*{found}; expected text in UTF-8"):
         open_table(tmp_path / "log.csv")
-
-
-def test_the_result_does_not_replace_the_file_that_is_read(motion, table, tmp_path):
-    np.save(tmp_path / "given.npy", table)
-    with pytest.raises(DataError, match="the file that is read"):
-        evaluate(motion, VELOCITY, tmp_path / "given.npy", tmp_path / "given.npy")
 
 
 def test_what_no_row_changes_stands_in_every_row(motion, table, tmp_path):

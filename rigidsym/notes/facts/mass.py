@@ -16,8 +16,8 @@ from rigidsym.formula.reader import decimal
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import NOTHING, Big, Differential, Formula, bracketed, equal, row
 from rigidsym.mechanics.derivation import Derivation
+from rigidsym.mechanics.mass.bodies import in_numbers
 from rigidsym.mechanics.mass.moments import moments_of
-from rigidsym.mechanics.mass.numbers import in_numbers
 from rigidsym.models.body import (
     UPRIGHT,
     Composite,

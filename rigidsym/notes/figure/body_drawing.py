@@ -12,7 +12,7 @@ import sympy as sp
 from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Derivation
-from rigidsym.mechanics.mass.numbers import in_numbers
+from rigidsym.mechanics.mass.bodies import in_numbers
 from rigidsym.notes.figure.body_mesh import Color, Shape, area_of, lengths_of, own_shape
 from rigidsym.notes.figure.camera import STANDARD, Vector, camera, unit
 from rigidsym.notes.figure.drawing import Drawing, Facet, Named, Stroke, beyond, labelled

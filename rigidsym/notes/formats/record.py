@@ -108,7 +108,7 @@ def _turn(turn: Turn, direction: Sequence[sp.Expr], names: Names) -> Iterator[st
 
 def _body(body: RigidBody) -> dict[str, Any]:
     """The body itself; its principal axes in numbers, where all its parameters have values."""
-    from rigidsym.mechanics.mass.numbers import in_numbers, parts_of
+    from rigidsym.mechanics.mass.bodies import in_numbers, parts_of
 
     found, parts = in_numbers(body), parts_of(body)
     return {
