@@ -8,7 +8,6 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import permutations
 from math import isfinite
 from operator import index
 from typing import Any
@@ -252,10 +251,11 @@ class RigidBody:
                 f"{self.name!r} cannot name a body: expected lower-case letters, digits and "
                 "underscores, beginning with a letter"
             )
-        for what, matrix, shape in (
-            ("the inertia tensor", self.inertia, (3, 3)),
-            ("the centre of mass", self.centre, (3, 1)),
-        ):
+        shapes = {
+            "the inertia tensor": (self.inertia, (3, 3)),
+            "the centre of mass": (self.centre, (3, 1)),
+        }
+        for what, (matrix, shape) in shapes.items():
             if matrix.shape != shape:
                 raise BodyError(
                     f"{self.name}: expected {what} of shape {shape}, got {matrix.shape}"
@@ -263,8 +263,8 @@ class RigidBody:
         self._check_symbols()
         self._check_symmetry()
         if not self.allow:
-            _check_mass(self.name, self.in_numbers(self.mass))
-            _check_inertia(self.name, self.in_numbers(self.inertia))
+            self._check_mass()
+            self._check_moments()
 
     def sentences(self, *, about_fixed_point: bool) -> tuple[str, ...]:
         """The body in plain sentences, to follow the convention of its rotation."""
@@ -308,69 +308,54 @@ class RigidBody:
                     f"I_{places[1]} = {format(float(value), 'g') if value.is_Float else value}"
                 )
 
-    def _repr_mimebundle_(self, **_: object) -> dict[str, str]:
-        """What Jupyter shows: the mass, the centre and the inertia tensor about it."""
-        return {"text/latex": self._repr_latex_(), "text/plain": self._in_words()}
+    def _check_mass(self) -> None:
+        mass = self.in_numbers(self.mass)
+        if mass.is_number and not (isfinite(mass) and mass > 0):
+            raise BodyError(
+                f"{self.name}: the mass is {float(mass):g} kg; expected a positive number"
+            )
+
+    def _check_moments(self) -> None:
+        """Raises BodyError for a matrix of numbers that no body has, with the amount.
+
+        For a mass distribution that is nowhere negative, the moments are not negative and no moment
+        is larger than the sum of the other two, since Ix + Iy − Iz = 2 Σ m z² (L. D. Landau and
+        E. M. Lifshitz, Mechanics, section 32). A matrix with symbols left in it is not checked.
+        """
+        inertia = self.in_numbers(self.inertia)
+        if not all(entry.is_number for entry in inertia):
+            return
+        import numpy as np
+
+        numbers = np.array(inertia.tolist(), dtype=float)
+        if not np.isfinite(numbers).all():
+            raise BodyError(
+                f"{self.name}: the inertia tensor holds NaN or infinity: {numbers.tolist()}"
+            )
+        low, middle, high = map(float, np.linalg.eigvalsh(numbers))
+        slack = _ROUNDING * max(-low, high)
+        if low < -slack:
+            raise BodyError(
+                f"{self.name}: the inertia tensor is not positive: its smallest principal moment "
+                f"is {low:.6g} kg m²"
+            )
+        if low + middle < high - slack:
+            raise BodyError(
+                f"{self.name}: no body has the principal moments {low:.6g}, {middle:.6g}, "
+                f"{high:.6g} kg m²: the largest exceeds the sum of the others by "
+                f"{high - low - middle:.6g} kg m²"
+            )
 
     def _repr_latex_(self) -> str:
+        """What Jupyter shows: the mass, the centre and the inertia tensor about it."""
         mass, centre, inertia = map(sp.latex, (self.mass, self.centre, self.inertia))
         masses = "" if self.mass == sp.Symbol("M") else f"M = {mass}"
         place = "" if self.centre.is_zero_matrix else rf"\mathbf{{c}} = {centre}"
         parts = filter(None, (masses, place, rf"\mathbf{{I}}' = {inertia}"))
         return f"$${_SPACE.join(parts)}$$"
 
-    def _in_words(self) -> str:
-        rows = (", ".join(map(str, row)) for row in self.inertia.tolist())
-        return "\n".join(
-            [
-                self.title,
-                f"mass M = {self.mass}",
-                f"centre of mass c = ({', '.join(map(str, self.centre))})",
-                "inertia tensor about the centre of mass, along the axes of the body",
-                *(f"  ({row})" for row in rows),
-            ]
-        )
-
     def __str__(self) -> str:
         return self.name
-
-
-def _check_mass(name: str, mass: sp.Expr) -> None:
-    """Raises BodyError for a number that is not positive."""
-    if not mass.is_number:
-        return
-    value = float(mass)
-    if not (isfinite(value) and value > 0):
-        raise BodyError(f"{name}: the mass is {value:g} kg; expected a positive number")
-
-
-def _check_inertia(name: str, inertia: sp.MatrixBase) -> None:
-    """Raises BodyError for a matrix of numbers that no body has, with the amount.
-
-    For a mass distribution that is nowhere negative, the moments are not negative and no moment is
-    larger than the sum of the other two, since Ix + Iy − Iz = 2 Σ m z² (L. D. Landau and E. M.
-    Lifshitz, Mechanics, section 32). A matrix with symbols left in it is not checked.
-    """
-    if not all(entry.is_number for entry in inertia):
-        return
-    import numpy as np
-
-    numbers = np.array(inertia.tolist(), dtype=float)
-    if not np.isfinite(numbers).all():
-        raise BodyError(f"{name}: the inertia tensor holds NaN or infinity: {numbers.tolist()}")
-    moments = [float(moment) for moment in np.linalg.eigvalsh(numbers)]
-    slack = _ROUNDING * max(map(abs, moments))
-    if moments[0] < -slack:
-        raise BodyError(
-            f"{name}: the inertia tensor is not positive: its smallest principal moment is "
-            f"{moments[0]:.6g} kg m²"
-        )
-    for a, b, c in permutations(moments):
-        if a <= b and a + b < c - slack:
-            raise BodyError(
-                f"{name}: no body has the principal moments {a:.6g}, {b:.6g}, {c:.6g} kg m²: the "
-                f"largest exceeds the sum of the others by {c - a - b:.6g} kg m²"
-            )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -413,7 +398,7 @@ def principal_moments(
         mass=total,
         inertia=sp.ImmutableMatrix(sp.diag(*moments)),
         parameters=described(
-            parameters, mass_slot(total), *((m, "principal moment of inertia") for m in moments)
+            parameters, (total, "mass"), *((m, "principal moment of inertia") for m in moments)
         ),
         declared=tuple(parameters),
         allow=allow,
@@ -446,17 +431,13 @@ def given_inertia(
         centre=place,
         parameters=described(
             parameters,
-            mass_slot(mass),
+            (mass, "mass"),
             *zip(inertia, _ENTRIES, strict=True),
             *((entry, "coordinate of the centre of mass") for entry in place),
         ),
         declared=tuple(parameters),
         allow=allow,
     )
-
-
-def mass_slot(mass: sp.Expr) -> tuple[sp.Expr, str]:
-    return mass, "mass"
 
 
 _UNITS = {
@@ -476,21 +457,17 @@ def described(given: Sequence[Parameter], *slots: tuple[sp.Expr, str]) -> tuple[
 
     What is `given` goes before; a symbol that stands alone in its place is described by it.
     """
-    known = {parameter.symbol: parameter for parameter in given}
-    found: dict[sp.Symbol, Parameter] = {}
-    for expression, about in slots:
+    declared = {parameter.symbol: parameter for parameter in given}
+    parameters: dict[sp.Symbol, Parameter] = {}
+    for expression, what in slots:
         for symbol in sorted(expression.free_symbols, key=str):
-            alone = Parameter(
-                symbol=symbol,
-                about=about if expression == symbol else "",
-                unit=_UNITS.get(about, "") if expression == symbol else "",
-                positive=expression == symbol and about not in _SIGNED,
+            about = what if expression == symbol else ""
+            is_positive = bool(about) and about not in _SIGNED
+            own = declared.get(symbol) or parameters.get(symbol) or Parameter(symbol=symbol)
+            if symbol not in declared:
+                known = symbol in parameters and own.positive
+                own = replace(own, positive=known or is_positive)
+            parameters[symbol] = replace(
+                own, about=own.about or about, unit=own.unit or _UNITS.get(about, "")
             )
-            own = known.get(symbol) or found.get(symbol, alone)
-            found[symbol] = replace(
-                own,
-                about=own.about or alone.about,
-                unit=own.unit or alone.unit,
-                positive=own.positive or (symbol not in known and alone.positive),
-            )
-    return tuple(found.values())
+    return tuple(parameters.values())

@@ -6,7 +6,7 @@ A note draws the examples, and `simulate` begins with the first.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
 from math import isfinite
@@ -57,11 +57,7 @@ def examples_of(model: RotationModel, given: Sequence[Mapping[str, Any]]) -> Ite
         for name in motion.initial:
             if name not in known:
                 raise ModelError(f"an example: unknown initial value {name}; {offer(name, known)}")
-        numbers: tuple[Any, ...] = (
-            *motion.parameters.values(),
-            *motion.initial.values(),
-            motion.time,
-        )
+        numbers: list[Any] = [*motion.parameters.values(), *motion.initial.values(), motion.time]
         are_finite = all(isinstance(value, Real) and isfinite(value) for value in numbers)
         if not are_finite or motion.time <= 0:
             raise ModelError("an example needs finite numbers, and a time > 0 in seconds")
@@ -148,28 +144,33 @@ class Forces:
         """Whether the time occurs by itself in what acts, or in a claimed first integral."""
         return any(map(depends_on_time, self.expressions))
 
-    def in_symbols_of(self, body: RigidBody) -> Forces:
-        """With the symbols of the body where names are the same: m for a positive m."""
-        own = {symbol.name: symbol for symbol in body.inertia.free_symbols | body.mass.free_symbols}
-        used = set().union(*(expression.free_symbols for expression in self.expressions))
-        same = {s: own[s.name] for s in used if s.name in own and s != own[s.name]}
-        if not same:
-            return self
+    def map(self, function: Callable[[sp.Expr], sp.Expr]) -> Forces:
+        """The forces with a function of each expression in its place."""
 
-        def named(values: Sequence[sp.Expr]) -> tuple[sp.Expr, ...]:
-            return tuple(value.xreplace(same) for value in values)
+        def each(values: Iterable[sp.Expr]) -> tuple[sp.Expr, ...]:
+            return tuple(map(function, values))
 
         return replace(
             self,
-            potential=self.potential.xreplace(same),
-            generalised={q: force.xreplace(same) for q, force in self.generalised.items()},
-            torque=named(self.torque),
-            first_integrals={n: e.xreplace(same) for n, e in self.first_integrals.items()},
+            potential=function(self.potential),
+            generalised={q: function(force) for q, force in self.generalised.items()},
+            torque=each(self.torque),
+            first_integrals={name: function(e) for name, e in self.first_integrals.items()},
             parts=tuple(
-                part._replace(velocity=named(part.velocity), inertia=named(part.inertia))
+                part._replace(velocity=each(part.velocity), inertia=each(part.inertia))
                 for part in self.parts
             ),
         )
+
+    def in_symbols_of(self, body: RigidBody) -> Forces:
+        """With the symbols of the body where names are the same: m for a positive m."""
+        own = {symbol.name: symbol for symbol in body.inertia.free_symbols | body.mass.free_symbols}
+
+        def named(expression: sp.Expr) -> sp.Expr:
+            symbols = (s for s in expression.free_symbols if s.name in own)
+            return expression.xreplace({s: own[s.name] for s in symbols})
+
+        return self.map(named)
 
     def with_parameters(self, body: RigidBody, model: RotationModel) -> RigidBody:
         """The body with the constants of the forces among its parameters.
@@ -203,17 +204,15 @@ class Forces:
             raise ModelError(
                 f"an example: unknown parameter {name}; {offer(name, sorted(constants))}"
             )
-        own = {p.symbol: p for p in body.declared}
         moments = {moment for part in self.parts for moment in part.inertia}
-
-        def described(symbol: sp.Symbol) -> Parameter:
-            about, unit = (
-                ("principal moment of inertia", "kg m^2") if symbol in moments else ("", "")
-            )
-            given = own.get(symbol, Parameter(symbol=symbol, positive=False))
-            return replace(given, about=given.about or about, unit=given.unit or unit)
-
-        more = map(described, sp.ordered(symbols))
+        declared = {p.symbol: p for p in body.declared}
+        more = []
+        for symbol in sp.ordered(symbols):
+            parameter = declared.get(symbol, Parameter(symbol=symbol, positive=False))
+            if symbol in moments:
+                about = parameter.about or "principal moment of inertia"
+                parameter = replace(parameter, about=about, unit=parameter.unit or "kg m^2")
+            more.append(parameter)
         return replace(body, parameters=(*body.parameters, *more))
 
     @property
@@ -321,13 +320,12 @@ def _check_spelling(name: str, names: Mapping[str, sp.Expr]) -> None:
     near = [known for known in near if len(plain) > 1]  # T may be a constant beside the time t
     if not near and len(name) >= _LONG and not any(letter.isdigit() for letter in name):
         near = get_close_matches(name, names, n=1, cutoff=_ALIKE)
-    if not near and _OF_MOTION.fullmatch(name):
-        if "velocity" in name.lower() or "omega" in name.lower():
-            near = [f"omega_body_{name[-1] if name[-1].isdigit() else 1}"]
-        if not near:
-            raise ModelError(
-                f"{name} is a quantity, not a constant; expected coordinates, rates (theta_dot), "
-                "components of Ω′ (omega_body_1) and constants"
-            )
+    if not near and _OF_MOTION.fullmatch(name) and re.search("velocity|omega", name.lower()):
+        near = [f"omega_body_{name[-1] if name[-1].isdigit() else 1}"]
     if near:
         raise ModelError(f"unknown name {name}; did you mean {near[0]}?")
+    if _OF_MOTION.fullmatch(name):
+        raise ModelError(
+            f"{name} is a quantity, not a constant; expected coordinates, rates (theta_dot), "
+            "components of Ω′ (omega_body_1) and constants"
+        )

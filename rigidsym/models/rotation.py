@@ -185,7 +185,6 @@ class RotationModel:
     )  # what asks for it in a file
     # the symbols in R or its conditions that do not move: fixed angles, parts of an axis
     constants: tuple[sp.Symbol, ...] = field(init=False, repr=False, compare=False)
-    coordinate_units: tuple[str, ...] = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         if not _MODULE_NAME.fullmatch(self.name):
@@ -193,34 +192,57 @@ class RotationModel:
                 f"{self.name!r} cannot name a model: expected lower-case letters, digits and "
                 "underscores, beginning with a letter"
             )
-        if self.matrix.shape != (3, 3):
-            raise ModelError(f"{self.name}: a rotation matrix is 3x3, got {self.matrix.shape}")
-        if not self.coordinates:
-            raise ModelError(
-                f"{self.name}: a model needs at least one coordinate, a function of time as phi(t)"
-            )
-        self._check_coordinates()
-        object.__setattr__(self, "constants", _constants(self._parts))
-        units = self.units or ("rad",) * len(self.coordinates)
-        object.__setattr__(self, "coordinate_units", units)
-        self._check_constants()
-        self._check_turns()
+        fault = self._fault_of_shape() or self._fault_of_coordinates()
+        if not fault:
+            object.__setattr__(self, "constants", _constants(self._parts))
+            fault = self._fault_of_numbers() or self._fault_of_turns()
+        if fault:
+            raise ModelError(f"{self.name}: {fault}")
 
-    def _check_constants(self) -> None:
+    def _fault_of_shape(self) -> str:
+        if self.matrix.shape != (3, 3):
+            return f"a rotation matrix is 3x3, got {self.matrix.shape}"
+        if not self.coordinates:
+            return "a model needs at least one coordinate, a function of time as phi(t)"
+        if self.units and len(self.units) != len(self.coordinates):
+            return f"{len(self.coordinates)} coordinates, but {len(self.units)} units"
+        return ""
+
+    def _fault_of_coordinates(self) -> str:
+        for place, coordinate in enumerate(self.coordinates):
+            if coordinate in self.coordinates[:place]:
+                return f"the coordinate {coordinate} is named twice"
+            if not isinstance(coordinate, AppliedUndef) or coordinate.args != (TIME,):
+                return (
+                    f"the coordinate {coordinate} is not a function of t; "
+                    "make it with sympy.physics.vector.dynamicsymbols"
+                )
+        return ""
+
+    def _fault_of_numbers(self) -> str:
         moving = {coordinate.func.__name__ for coordinate in self.coordinates}
         for constant in self.constants:
             if constant.name in moving:
-                raise ModelError(f"{self.name}: {constant} is both a coordinate and a constant")
+                return f"{constant} is both a coordinate and a constant"
         numbers = set().union(*(part.atoms(*_NUMBERS) for part in self._parts))
         if sp.I in numbers:
-            raise ModelError(
-                f"{self.name}: a rotation is real, but the matrix contains the number i"
-            )
+            return "a rotation is real, but the matrix contains the number i"
         for number in numbers - {sp.pi, sp.E}:
-            raise ModelError(
-                f"{self.name}: the matrix contains the number {number}, which is not in the ring; "
+            return (
+                f"the matrix contains the number {number}, which is not in the ring; "
                 f"expected roots, as in {sp.expand_func(sp.GoldenRatio)}, or a symbol"
             )
+        return ""
+
+    def _fault_of_turns(self) -> str:
+        """The matrix is the product of the turns, as it stands or in the ring."""
+        if not self.turns or product_of(self.turns) == self.matrix:
+            return ""
+        residual = product_of(self.turns) - self.matrix
+        codec = codec_for(residual, constraints=self.constraints, order=0)
+        if not any(map(codec.encode, residual)):
+            return ""
+        return f"the matrix is not the product of its turns, {self.product}"
 
     @property
     def _parts(self) -> tuple[sp.Basic, ...]:
@@ -228,30 +250,9 @@ class RotationModel:
         turns = [part for turn in self.turns for part in (turn.angle, *turn.components)]
         return (*(turns or [self.matrix]), *self.constraints)
 
-    def _check_turns(self) -> None:
-        """The matrix is the product of the turns, as it stands or in the ring."""
-        if not self.turns or product_of(self.turns) == self.matrix:
-            return
-        left = product_of(self.turns) - self.matrix
-        codec = codec_for(left, constraints=self.constraints, order=0)
-        if any(codec.encode(entry) for entry in left):
-            raise ModelError(
-                f"{self.name}: the matrix is not the product of its turns, {self.product}"
-            )
-
-    def _check_coordinates(self) -> None:
-        for place, coordinate in enumerate(self.coordinates):
-            if coordinate in self.coordinates[:place]:
-                raise ModelError(f"{self.name}: the coordinate {coordinate} is named twice")
-            if not isinstance(coordinate, AppliedUndef) or coordinate.args != (TIME,):
-                raise ModelError(
-                    f"{self.name}: the coordinate {coordinate} is not a function of t; "
-                    "make it with sympy.physics.vector.dynamicsymbols"
-                )
-        if self.units and len(self.units) != len(self.coordinates):
-            raise ModelError(
-                f"{self.name}: {len(self.coordinates)} coordinates, but {len(self.units)} units"
-            )
+    @property
+    def coordinate_units(self) -> tuple[str, ...]:
+        return self.units or ("rad",) * len(self.coordinates)
 
     @property
     def presentation(self) -> str:
@@ -284,18 +285,11 @@ class RotationModel:
         """One line, for a prompt."""
         return f"<RotationModel {self.name}: {self.title}>"
 
-    def _repr_mimebundle_(self, **_: object) -> dict[str, str]:
-        """What Jupyter shows: R in the coordinates, and the convention in words."""
-        return {"text/latex": self._repr_latex_(), "text/plain": self._in_words()}
-
     def _repr_latex_(self) -> str:
+        """What Jupyter shows: R in the coordinates."""
         shown = in_names(self.matrix.T if self.passive else self.matrix)
         symbol = r"\mathbf{A} = \mathbf{R}^{\mathsf T}" if self.passive else r"\mathbf{R}"
         return f"$${symbol} = {sp.latex(shown)}$$"
-
-    def _in_words(self) -> str:
-        product = f"R = {self.product}" if self.turns else ""
-        return "\n".join(filter(None, (self.title, *self.convention, self.presentation, product)))
 
     def __str__(self) -> str:
         return self.name

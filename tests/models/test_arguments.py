@@ -156,16 +156,12 @@ def test_numbers_describe_a_solid():
 
 
 @pytest.mark.parametrize("shown", [rs.rotation_from("z(a)"), rs.EulerAngles("ZXZ", passive=True)])
-def test_a_rotation_shows_itself_in_jupyter(shown, golden):
-    bundle = shown._repr_mimebundle_()
-    assert bundle["text/latex"].startswith(r"$$\mathbf{A}" if shown.passive else r"$$\mathbf{R}")
-    golden(f"terminal/model_{shown.name}.txt", bundle["text/plain"] + "\n")
+def test_a_rotation_shows_itself_in_jupyter(shown):
+    assert shown._repr_latex_().startswith(r"$$\mathbf{A}" if shown.passive else r"$$\mathbf{R}")
     assert repr(shown) == f"<RotationModel {shown}: {shown.title}>"
 
 
 def test_a_body_shows_itself_in_jupyter():
     cone = rs.solid("cone")
-    bundle = cone._repr_mimebundle_()
-    assert sp.latex(cone.centre) in bundle["text/latex"]
-    assert f"mass M = {cone.mass}" in bundle["text/plain"]
+    assert sp.latex(cone.centre) in cone._repr_latex_()
     assert str(cone) == cone.name
