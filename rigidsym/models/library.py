@@ -49,12 +49,12 @@ class Entry(NamedTuple):
 
 
 class Preset(NamedTuple):
-    """The Euler angles, or another rotation, of one text."""
+    """The Euler angles of one text."""
 
-    rotation: str  # a sequence, turns, or the name of a parametrisation
+    sequence: str
     about: str
     source: Citation
-    names: tuple[str, ...] = ()
+    names: tuple[str, ...] = DEFAULT_ANGLES
     passive: bool = False
     z_down: bool = False  # whether its z-axis points to the ground
 
@@ -144,29 +144,36 @@ def rotation_from(
         raise ModelError(f"expected {_A_ROTATION}, got {text!r}")
     if len(text) > LONGEST:
         raise ModelError(f"expected {_A_ROTATION}, got {len(text)} characters")
-    asked: dict[str, Any] = {"sequence": text, "angles": names and list(names)}
-    asked |= {"constants": list(constants), "scalar_last": scalar_last, "passive": passive}
     if constants and "(" not in text:
         raise ModelError(f"{text} has no constants; they go with turns such as z(phi) x(incline)")
     name = text.strip().lower().replace("-", "_").replace(" ", "_")
-    if name in ALIASES:
-        name = asked["sequence"] = ALIASES[name]
+    name = ALIASES.get(name, name)
+    entry, preset = PARAMETRISATIONS.get(name), PRESETS.get(name)
+    if scalar_last and not (entry and entry.has_scalar):
+        raise ModelError(f"scalar-last applies only to quaternions; {text} is not one")
     if "(" in text:
         model = _turned(text, names, constants, passive)
-    elif name in PARAMETRISATIONS:
-        model = _parametrised(name, names, scalar_last, passive)
-    elif name in PRESETS:
-        model = _preset(name, names, passive)
+    elif entry:
+        options: dict[str, Any] = {} if names is None else {"names": tuple(names)}
+        model = entry.build(
+            **options, **({"scalar_last": True} if scalar_last else {}), passive=passive
+        )
+    elif preset:
+        model = _preset(name, preset, preset.names if names is None else names, passive)
     else:
-        model = EulerAngles(
+        return EulerAngles(
             _sequence(text), DEFAULT_ANGLES if names is None else names, passive=passive
         )
-    if scalar_last and not (name in PARAMETRISATIONS and PARAMETRISATIONS[name].has_scalar):
-        raise ModelError(f"scalar-last applies only to quaternions; {text} is not one")
-    if model.request and name not in PRESETS:
+    if model.request and not preset:
         return model  # Euler angles know what asks for them
-    kept = {key: value for key, value in asked.items() if value or key == "sequence"}
-    return replace(model, request=kept)
+    asked = {
+        "sequence": name if name in ALIASES.values() else text,
+        "angles": names and list(names),
+        "constants": list(constants),
+        "scalar_last": scalar_last,
+        "passive": passive,
+    }
+    return replace(model, request={key: value for key, value in asked.items() if value})
 
 
 def rotation_given(
@@ -189,8 +196,7 @@ def rotation_given(
     if len(functions) != len(coordinates):
         raise ModelError(f"a coordinate is named twice: {', '.join(coordinates)}")
     texts = [*(entry for row in rows for entry in row), *constraints]
-    used = {n: functions.get(n) or sp.Symbol(check_name(n)) for t in texts for n in names_in(t)}
-    entries = [parse_expression(text, used) for text in texts]
+    entries = [_read(text, functions) for text in texts]
     model = given(
         sp.Matrix(3, 3, entries[:9]),
         name=name,
@@ -216,11 +222,16 @@ def faults_in(
     faults: dict[tuple[str | int, ...], str] = {}
     for place, text in texts.items():
         try:
-            names = {n: moving.get(n) or sp.Symbol(check_name(n)) for n in names_in(text)}
-            parse_expression(text, names)
+            _read(text, moving)
         except ExpressionError as error:
             faults[place] = f"column {error.column}: {error.message}"
     return faults
+
+
+def _read(text: str, moving: Mapping[str, sp.Expr]) -> sp.Expr:
+    """The expression in a text, whose names are coordinates or constants."""
+    names = {name: moving.get(name) or sp.Symbol(check_name(name)) for name in names_in(text)}
+    return parse_expression(text, names)
 
 
 def turned_by(text: str) -> sp.ImmutableMatrix:
@@ -265,26 +276,10 @@ def _meant(text: str) -> str:
     return f"expected {_A_ROTATION} (`rigidsym list`)"
 
 
-def _parametrised(
-    name: str, names: Sequence[str] | None, scalar_last: bool, passive: bool
-) -> RotationModel:
-    entry = PARAMETRISATIONS[name]
-    options: dict[str, Any] = {"passive": passive}
-    if names is not None:
-        options["names"] = tuple(names)
-    if scalar_last and entry.has_scalar:
-        options["scalar_last"] = True
-    return entry.build(**options)
-
-
-def _preset(name: str, names: Sequence[str] | None, passive: bool) -> RotationModel:
-    """The rotation of a text under its own name; `passive` turns its presentation over."""
-    preset = PRESETS[name]
-    model = rotation_from(
-        preset.rotation, names=names or preset.names or None, passive=preset.passive != passive
-    )
+def _preset(name: str, preset: Preset, names: Sequence[str], passive: bool) -> RotationModel:
+    """The Euler angles under a name of their own; `passive` turns their presentation over."""
     return replace(
-        model,
+        EulerAngles(preset.sequence, names, passive=preset.passive != passive),
         name=name + ("_transposed" if passive else ""),
         title=preset.about[0].upper() + preset.about[1:] + (", transposed" if passive else ""),
         source=preset.source,
@@ -327,7 +322,7 @@ def _turn(axis: str, angle: str, column: int, symbol: Callable[[str], sp.Expr]) 
     parts = axis[1:-1].split(",")
     if len(parts) != 3:
         raise ExpressionError(f"the axis {axis} has {len(parts)} components; expected three")
-    exact = [parse_expression(p, {name: _constant(name) for name in names_in(p)}) for p in parts]
+    exact = [_read(part, {}) for part in parts]
     turn = axis_turn(direction(exact), value)
     return replace(turn, axis=f"[{','.join(part.strip() for part in parts)}]")
 

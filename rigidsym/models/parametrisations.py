@@ -73,10 +73,16 @@ def EulerAngles(
     ]
     manner = "intrinsic" if letters.isupper() else "extrinsic"
     turns = tuple(in_order if manner == "intrinsic" else reversed(in_order))
+    convention = f"Intrinsic rotations: {_in_order(turns, 'new')}."
+    if manner == "extrinsic":
+        equivalent = convention[0].lower() + convention[1:]
+        convention = (
+            f"Extrinsic rotations: {_in_order(in_order, 'fixed')}. Equivalently, {equivalent}"
+        )
     return RotationModel(
         name=f"euler_{letters.lower()}_{manner}" + ("_passive" if passive else ""),
         title=f"Euler angles {letters}, {manner}" + (", passive" if passive else ""),
-        convention=(_order_in_words(manner, in_order),),
+        convention=(convention,),
         coordinates=coordinates,
         matrix=product_of(turns),
         turns=turns,
@@ -95,46 +101,35 @@ def euler_sequence(text: str) -> str:
     if not isinstance(text, str):
         raise ModelError(f"expected a sequence such as 'ZXZ', got {text!r}")
     letters = text.translate(DIGITS)
-    if letters not in EULER_SEQUENCES:
-        raise ModelError(f"{text!r} is not an Euler sequence: {_what_is_wrong(text)}")
-    return letters
-
-
-def _what_is_wrong(text: str) -> str:
-    letters = text.translate(DIGITS)
+    if letters in EULER_SEQUENCES:
+        return letters
     if letters not in (letters.upper(), letters.lower()):
-        return "upper case is intrinsic and lower case extrinsic; do not mix them"
-    if len(letters) != 3 or not set(letters.lower()) <= set(AXES):
-        return "expected three axes such as ZXZ (intrinsic), zxz (extrinsic) or 313 (intrinsic)"
-    place = 1 if letters[0] == letters[1] else 2
-    here = [sequence for sequence in EULER_SEQUENCES if sequence.isupper() == letters.isupper()]
-    if text.isdigit():  # digits are answered in digits
-        letters, here = text, [sequence.translate(_TO_DIGITS) for sequence in here]
-    follows = f"{text[place]} follows {text[place - 1]}"
-    return f"consecutive axes must differ: {follows}; {offer(letters, here)}"
+        fault = "upper case is intrinsic and lower case extrinsic; do not mix them"
+    elif len(letters) != 3 or not set(letters.lower()) <= set(AXES):
+        fault = "expected three axes such as ZXZ (intrinsic), zxz (extrinsic) or 313 (intrinsic)"
+    else:
+        place = 1 if letters[0] == letters[1] else 2
+        alike = [
+            sequence for sequence in EULER_SEQUENCES if sequence.isupper() == letters.isupper()
+        ]
+        if text.isdigit():  # digits are answered in digits
+            letters, alike = text, [sequence.translate(_TO_DIGITS) for sequence in alike]
+        follows = f"{text[place]} follows {text[place - 1]}"
+        fault = f"consecutive axes must differ: {follows}; {offer(letters, alike)}"
+    raise ModelError(f"{text!r} is not an Euler sequence: {fault}")
 
 
-def _order_in_words(manner: str, turns: Sequence[Turn]) -> str:
-    """The rotations in the order in which the body makes them."""
-    if manner == "intrinsic":
-        return f"Intrinsic rotations: {_one_by_one(turns, 'new')}."
-    equivalent = f"Equivalently, intrinsic rotations: {_one_by_one(turns[::-1], 'new')}."
-    return f"Extrinsic rotations: {_one_by_one(turns, 'fixed')}. {equivalent}"
-
-
-def _one_by_one(turns: Sequence[Turn], which: str) -> str:
+def _in_order(turns: Sequence[Turn], which: str) -> str:
     """First by φ about the z-axis, then by θ about the new x-axis, ..."""
-    angles = [lettered(turn.angle.func.__name__) for turn in turns]
-    axes = [f"the {which} {turn.axis}-axis" for turn in turns]
-    axes[0] = axes[0].replace("new ", "")
-    first, second, third = (f"by {a} about {axis}" for a, axis in zip(angles, axes, strict=True))
-    return f"first {first}, then {second}, then {third}"
+    steps = [f"by {turn.angle_text} about the {which} {turn.axis}-axis" for turn in turns]
+    steps[0] = steps[0].replace("new ", "")
+    return "first " + ", then ".join(steps)
 
 
 # Products of turns of any length, about any constant axes
 
 
-_NUMBERS = ("Two", "Three", "Four", "Five", "Six", "Seven", "Eight", "Nine", "Ten")
+_NUMBERS = ("One", "Two", "Three", "Four", "Five", "Six", "Seven", "Eight", "Nine", "Ten")
 _SOURCE = SOURCES["Goldstein 4.4"]
 
 
@@ -158,11 +153,8 @@ def chain(
     """
     if isinstance(turns, str):
         raise ModelError(f"expected a list of rs.Turn; for a text use rs.rotation_from({turns!r})")
-    if turns is None:
-        raise ModelError("expected a list of rs.Turn, got None")
-    for turn in turns:
-        if not isinstance(turn, Turn):
-            raise ModelError(f"expected a list of rs.Turn, got {turn!r} in it")
+    if turns is None or not all(isinstance(turn, Turn) for turn in turns):
+        raise ModelError(f"expected a list of rs.Turn, got {turns!r}")
     if not turns:
         raise ModelError("a chain needs at least one turn, such as z(phi)")
     moving = (sp.ordered(turn.angle.atoms(AppliedUndef)) for turn in turns)
@@ -213,19 +205,14 @@ def _in_words(turns: Sequence[Turn]) -> str:
     steps = [f"{turn.angle_text} about {turn.axis}" for turn in turns]
     if len(steps) == 1:
         return f"One turn: {steps[0]}."
-    return (
-        f"{_counted(turns)}, each about an axis that the turns before it have moved: first "
-        + ", then ".join(steps)
-        + "."
-    )
+    moved = "each about an axis that the turns before it have moved"
+    return f"{_counted(turns)}, {moved}: first {', then '.join(steps)}."
 
 
 def _counted(turns: Sequence[Turn]) -> str:
     """One turn, Two turns, ..., 11 turns."""
-    if len(turns) == 1:
-        return "One turn"
-    numbers = dict(enumerate(_NUMBERS, start=2))
-    return f"{numbers.get(len(turns), len(turns))} turns"
+    number = dict(enumerate(_NUMBERS, start=1)).get(len(turns), len(turns))
+    return f"{number} turn{'s' * (len(turns) > 1)}"
 
 
 def axis_turn(axis: Sequence[sp.Expr], angle: sp.Expr) -> Turn:
@@ -546,8 +533,7 @@ def given(
         matrix = sp.Matrix(*(matrix.shape if hasattr(matrix, "shape") else (3, 3)), entries)
     except (TypeError, ValueError):
         raise ModelError(f"{name}: expected a 3x3 matrix, got {matrix!r}") from None
-    found = tuple(sp.ordered(sp.Matrix(matrix).atoms(AppliedUndef)))
-    used = tuple(coordinates) or found
+    used = tuple(coordinates) or tuple(sp.ordered(matrix.atoms(AppliedUndef)))
     whole = sp.Matrix([*matrix, *constraints])
     symbols = sp.ordered((whole.free_symbols | whole.atoms(AppliedUndef)) - {TIME})
     return RotationModel(
@@ -568,12 +554,9 @@ def _named_example(
     model: str, given: Mapping[sp.Expr | str, Any], known: Iterable[sp.Expr]
 ) -> tuple[tuple[sp.Expr, sp.Expr], ...]:
     """(symbol, value) pairs from values by name; raises ModelError for what is neither."""
-    named = {
-        str(symbol.func if isinstance(symbol, AppliedUndef) else symbol): symbol for symbol in known
-    }
-    found = []
-    for key, value in given.items():
-        name = str(key.func if isinstance(key, AppliedUndef) else key)
+    named = {_plain(symbol): symbol for symbol in known}
+    pairs = []
+    for name, value in ((_plain(key), value) for key, value in given.items()):
         exact = symbolic(value, f"{model}: the example of {name}")
         if name not in named:
             raise ModelError(f"{model}: the example: unknown name {name}; {offer(name, named)}")
@@ -581,5 +564,9 @@ def _named_example(
             raise ModelError(
                 f"{model}: the example of {name}: expected an exact number, got {exact}"
             )
-        found.append((named[name], exact))
-    return tuple(found)
+        pairs.append((named[name], exact))
+    return tuple(pairs)
+
+
+def _plain(symbol: sp.Expr | str) -> str:
+    return str(symbol.func if isinstance(symbol, AppliedUndef) else symbol)

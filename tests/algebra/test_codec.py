@@ -7,8 +7,8 @@ import sympy as sp
 from hypothesis import given, settings, strategies as st
 from sympy import Rational, cos, cot, csc, pi, sec, sin, sqrt, tan
 
-from helpers.witness import TOLERANCE, derivative, mp, number, paths, values_along
-from rigidsym.algebra.codec import Codec, codec_for
+from helpers.witness import TOLERANCE, mp, number, paths, values_along
+from rigidsym.algebra.codec import codec_for
 from rigidsym.errors import AlgebraError
 from rigidsym.models.rotation import time_function
 
@@ -30,67 +30,45 @@ def are_equal(first: sp.Expr, second: sp.Expr, *constraints: sp.Expr) -> bool:
 IDENTITIES = [
     (sin(a) ** 2 + cos(a) ** 2, 1),
     (sin(2 * a), 2 * sin(a) * cos(a)),
-    (cos(3 * a), 4 * cos(a) ** 3 - 3 * cos(a)),
     (sin(a / 2) ** 2, (1 - cos(a)) / 2),
     (cos(2 * a) * cos(a / 3), (cos(7 * a / 3) + cos(5 * a / 3)) / 2),
-    (sin(a - 2 * b), sin(a) * cos(2 * b) - cos(a) * sin(2 * b)),
     (cos(a / 2 + b / 3) ** 2, (1 + cos(a + 2 * b / 3)) / 2),
     (sin(a + b) * sin(a - b), cos(b) ** 2 - cos(a) ** 2),
-    ((sin(a / 2) ** 2 + cos(a / 2) ** 2) * cos(a / 3), cos(a / 3)),
-    (cos(4 * a / 3), 2 * cos(2 * a / 3) ** 2 - 1),
     (sin(k * a) ** 2 + cos(k * a) ** 2, 1),
     (cos(k) * cos(k / 5), (cos(6 * k / 5) + cos(4 * k / 5)) / 2),
-    (sin(a + k), sin(a) * cos(k) + cos(a) * sin(k)),
-    (sin(a * b + u), sin(a * b) * cos(u) + cos(a * b) * sin(u)),
     (sin((a + b) * u), sin(a * u) * cos(b * u) + cos(a * u) * sin(b * u)),
     (sin(u.diff(TIME)) ** 2, 1 - cos(u.diff(TIME)) ** 2),
     (tan(a), sin(a) / cos(a)),
     (tan(2 * a), 2 * tan(a) / (1 - tan(a) ** 2)),
     (tan(a / 2), sin(a) / (1 + cos(a))),
     (cot(a) * tan(a), 1),
-    (sec(a) ** 2, 1 + tan(a) ** 2),
     (csc(a) ** 2 - cot(a) ** 2, 1),
-    (sec(2 * a) * cos(2 * a), 1),
     (sin(a + pi / 3), sin(a) / 2 + sqrt(3) / 2 * cos(a)),
-    (cos(a - pi / 4) * sqrt(2), sin(a) + cos(a)),
-    (sin(a + pi / 6) + sin(a - pi / 6), sqrt(3) * sin(a)),
     (cos(a + pi / 5) + cos(a - pi / 5), (1 + sqrt(5)) / 2 * cos(a)),
     (sin(a + pi / 12), (sqrt(6) + sqrt(2)) / 4 * sin(a) + (sqrt(6) - sqrt(2)) / 4 * cos(a)),
     (cos(a + pi / 8) ** 2 + sin(a + pi / 8) ** 2, 1),
-    (sin(a + 7 * pi / 2), -cos(a)),
     (cos(a - 9 * pi), -cos(a)),
-    (sqrt(2) * sqrt(3), sqrt(6)),
     (1 / sqrt(12), sqrt(3) / 6),
     (sp.Integer(2) ** Rational(1, 4) * sqrt(sqrt(2)) * m, sqrt(2) * m),
     ((1 + sqrt(5)) ** 2, 6 + 2 * sqrt(5)),
     (sp.I**2 * m, -m),
-    (1 / (1 + u**2) + u**2 / (1 + u**2), 1),
     (1 / (1 + 4 * u**2) + 4 * u**2 / (1 + 4 * u**2), 1),
-    (1 / (2 + 3 * k * u), 1 / (2 + 3 * k * u)),
     (1 / m - 1 / length, (length - m) / (m * length)),
-    (sqrt(squares) ** 2, squares),
     (squares ** Rational(-3, 2), sqrt(squares) / squares**2),
     (x / sqrt(squares) * sqrt(squares), x),
     (sin(sqrt(squares)) ** 2, 1 - cos(sqrt(squares)) ** 2),
     (sin(sin(a)) ** 2 + cos(sin(a)) ** 2, 1),
     (sqrt(1 - u**2) ** 4, (1 - u**2) ** 2),
     (m ** Rational(3, 2), m * sqrt(m)),
-    (sp.Integer(0), m - m),
-    (Rational(2, 3) * a, a - a / 3),
 ]
 DIFFERENCES = [
     (sin(2 * a), 2 * sin(a)),
-    (cos(a) ** 2, sin(a) ** 2),
     (sin(a) ** 2 + cos(b) ** 2, 1),
-    (sin(a) * cos(a), Rational(1, 2)),
     (sin(a / 2), (1 - cos(a)) / 2),
-    (tan(a), cot(a)),
-    (sec(a), csc(a)),
     (sin(a + pi / 3), sin(a) / 2),
     (sqrt(2), Rational(665857, 470832)),
     (sqrt(2) + sqrt(3), sqrt(5)),
     (1 / (1 + u**2), 1 / (1 - u**2)),
-    (1 / m, 1 / length),
     (sqrt(squares), x + y + z),
     (sin(k * a), k * sin(a)),
     (a, a.diff(TIME)),
@@ -117,11 +95,6 @@ def test_a_constraint_holds_for_all_time():
     assert are_equal(second, 0, unit)
     assert not are_equal(rates, 0)
     assert not are_equal(x * x.diff(TIME), 0, unit)
-
-
-def test_a_constraint_may_have_any_coefficients():
-    """Its leading coefficient need not divide the others."""
-    assert are_equal(4 * x**2, 1 - 3 * y**2, 4 * x**2 + 3 * y**2 - 1)
     assert are_equal(8 * x * x.diff(TIME), -6 * y * y.diff(TIME), 4 * x**2 + 3 * y**2 - 1)
 
 
@@ -136,16 +109,6 @@ def test_contradictory_constraints_are_refused():
         codec_for([x], constraints=[x - 1, x - 2])
     with pytest.raises(AlgebraError, match="contradict"):
         codec_for([sin(a)], constraints=[sin(a) ** 2 + cos(a) ** 2])
-
-
-def test_rings_with_and_without_a_constraint_do_not_mix():
-    entries = [x**2, y**2, z**2]
-    free = codec_for(entries)
-    bound = codec_for(entries, constraints=[squares - 1])
-    assert free is codec_for(entries)
-    assert not free.ring.is_zero(free.encode(squares - 1))
-    assert bound.ring.is_zero(bound.encode(squares - 1))
-    assert not free.ring.is_zero(free.encode(squares - 1))
 
 
 def test_generators_are_as_few_as_can_be():
@@ -170,12 +133,6 @@ def test_independent_sums_are_angles_by_themselves():
     )
     with pytest.raises(AlgebraError, match="is not in the ring"):
         codec.encode(sin(a))
-
-
-def test_constants_do_not_move():
-    codec = codec_for([m / length + sqrt(k), sin(k) * pi, sqrt(3)])
-    for expression in (m, 1 / length, sqrt(k), sin(k), cos(k), pi, sqrt(3)):
-        assert not codec.ring.dt(codec.encode(expression))
 
 
 ATOMS = [
@@ -214,15 +171,9 @@ def expressions() -> st.SearchStrategy:
 @LAW
 def test_the_way_in_and_out_keeps_the_value(expression):
     decoded = EVERY.decode(EVERY.encode(expression))
+    assert EVERY.encode(decoded) == EVERY.encode(expression)
     error = number(decoded, at(0)) - number(expression, at(0))
     assert abs(error) < TOLERANCE * 1000
-
-
-@given(expression=expressions())
-@LAW
-def test_the_way_out_leads_back_in(expression):
-    element = EVERY.encode(expression)
-    assert EVERY.encode(EVERY.decode(element)) == element
 
 
 @given(first=expressions(), second=expressions())
@@ -238,13 +189,6 @@ def test_encoding_is_a_homomorphism(first, second):
 def test_dt_is_the_derivative(expression):
     rate = EVERY.ring.dt(EVERY.encode(expression))
     assert rate == EVERY.encode(sp.diff(expression, TIME))
-
-
-def test_dt_is_the_numerical_derivative():
-    expression = sin(2 * a - b) * tan(b) / (2 + u**2) + sqrt(3 + u**2) * m * cos(a / 2)
-    rate = EVERY.decode(EVERY.ring.dt(EVERY.encode(expression)))
-    moving = derivative(lambda t: mp.matrix([number(expression, at(t))]))
-    assert abs(number(rate, at(0)) - moving[0]) < TOLERANCE
 
 
 def test_beyond_the_order_there_is_no_derivative():
@@ -299,27 +243,16 @@ def test_what_no_ring_holds_is_refused_in_words(expression, part):
     assert part in refusal(expression)
 
 
-def test_what_this_ring_was_not_built_for_is_refused():
-    codec = codec_for([sin(a), m])
-    for foreign in (sin(b), sin(a / 2), u, k, sqrt(2), sp.cosh(u)):
+def test_quotients_and_foreign_expressions_are_not_polynomials():
+    codec = codec_for([sin(a), cos(a)])
+    for foreign in (sin(b), sin(a / 2), u, sqrt(2), sp.cosh(u)):
         with pytest.raises(AlgebraError, match="not in the ring"):
             codec.encode(foreign)
-
-
-def test_a_quotient_is_not_a_polynomial():
-    codec = codec_for([sin(a), cos(a)])
+    with pytest.raises(AlgebraError, match="division by an expression that is zero"):
+        codec.encode_quotient(1 / (sin(a) ** 2 + cos(a) ** 2 - 1))
     with pytest.raises(AlgebraError, match=r"is a quotient, and its inverse is not in the ring$"):
         codec.encode(1 / cos(a))
     assert codec.encode_quotient(1 / cos(a)).denominator == codec.encode(cos(a))
-
-
-def test_zero_does_not_divide():
-    hidden = sin(a) ** 2 + cos(a) ** 2 - 1
-    codec = codec_for([sin(a), cos(a)])
-    with pytest.raises(AlgebraError, match="division by an expression that is zero"):
-        codec.encode_quotient(m * 0 + 1 / hidden)
-    with pytest.raises(AlgebraError):
-        codec_for([1 / hidden])
 
 
 @pytest.mark.parametrize(
@@ -328,20 +261,7 @@ def test_zero_does_not_divide():
 def test_a_ring_that_may_not_know_all_relations_says_so(expression):
     """Roots of related numbers and expressions may depend on one another unseen."""
     assert not codec_for([expression]).ring.complete
-
-
-@pytest.mark.parametrize("expression", [sin(a), 1 / (1 + u**2), m * x, tan(a / 2)], ids=str)
-def test_a_ring_that_knows_all_relations_says_so(expression):
-    assert codec_for([expression]).ring.complete
-
-
-def test_codec_is_shared_between_equal_requests():
-    first, second = codec_for([sin(a), m]), codec_for([m, cos(a)])
-    assert isinstance(first, Codec)
-    assert codec_for([sin(a), m]) is first
-    assert {g.expression for g in second.ring.generators} == {
-        g.expression for g in first.ring.generators
-    }
+    assert codec_for([sin(a), 1 / (1 + u**2), m * x, tan(a / 2)]).ring.complete
 
 
 RINGS: list[tuple[list[sp.Expr], dict[str, object]]] = [
@@ -411,11 +331,3 @@ def test_rings_are_as_they_were(golden):
         lines.append(f"{expressions} {options or ''}".strip())
         lines += [f"    {line}" for line in ring_in_words(expressions, options)]
     golden("notes/rings.txt", "\n".join(lines) + "\n")
-
-
-def test_roots_of_one_number_know_of_each_other():
-    codec = codec_for([2 ** Rational(1, 4), sqrt(2)])
-    deep, shallow = (codec.encode(root) for root in (2 ** Rational(1, 4), sqrt(2)))
-    assert codec.ring.is_zero(deep**2 - shallow)
-    assert codec.ring.is_zero(deep**4 - 2)
-    assert not codec.ring.is_zero(deep**2 + shallow)

@@ -8,7 +8,7 @@ import pytest
 import sympy as sp
 from hypothesis import given, settings, strategies as st
 
-from rigidsym.algebra.matrix import RingMatrix, cross
+from rigidsym.algebra.matrix import cross
 from rigidsym.algebra.ring import Generator, Quotient, Ring
 from rigidsym.errors import AlgebraError
 from rigidsym.models.rotation import time_function
@@ -68,22 +68,14 @@ def polynomials(ring: Ring, *, without: tuple[int, ...] = ()) -> st.SearchStrate
 @every_ring
 @given(data=st.data())
 @LAW
-def test_normal_form_is_a_homomorphism(ring, data):
+def test_the_normal_form_is_an_idempotent_homomorphism(ring, data):
     a, b = data.draw(polynomials(ring)), data.draw(polynomials(ring))
     reduce = ring.reduce
     assert reduce(a + b) == reduce(reduce(a) + reduce(b))
     assert reduce(a * b) == reduce(reduce(a) * reduce(b))
     assert reduce(-a) == -reduce(a)
-
-
-@every_ring
-@given(data=st.data())
-@LAW
-def test_normal_form_is_idempotent_and_fixes_numbers(ring, data):
-    normal = ring.reduce(data.draw(polynomials(ring)))
-    assert ring.reduce(normal) == normal
-    assert ring.reduce(ring.one * 7) == ring.one * 7
-    assert ring.reduce(ring.zero) == ring.zero
+    assert reduce(reduce(a)) == reduce(a)
+    assert ring.dot([(a, b), (b, b)]) == reduce(a * b + b * b)
 
 
 @every_ring
@@ -97,14 +89,6 @@ def test_members_of_the_ideal_and_they_alone_are_zero(ring, data):
     assert ring.is_zero(member)
     assert ring.reduce(other + member) == ring.reduce(other)
     assert not ring.is_zero(ring.reduce(other) + member + 1) or ring.reduce(other) == -ring.one
-
-
-@every_ring
-@given(data=st.data())
-@LAW
-def test_dot_is_the_sum_of_products(ring, data):
-    pairs = [(data.draw(polynomials(ring)), data.draw(polynomials(ring))) for _ in range(2)]
-    assert ring.dot(pairs) == ring.reduce(sum((a * b for a, b in pairs), ring.zero))
 
 
 SMOOTH = {
@@ -122,22 +106,6 @@ def test_dt_is_linear_and_obeys_leibniz(ring, rates, data):
     b = data.draw(polynomials(ring, without=rates))
     assert ring.dt(a * 3 - b) == ring.reduce(ring.dt(a) * 3 - ring.dt(b))
     assert ring.dt(a * b) == ring.reduce(ring.dt(a) * b + a * ring.dt(b))
-
-
-@every_derivation
-@given(data=st.data(), power=st.integers(1, 3))
-@LAW
-def test_dt_obeys_the_chain_rule(ring, rates, data, power):
-    a = data.draw(polynomials(ring, without=rates))
-    below = a ** (power - 1) if power > 1 else ring.one
-    assert ring.dt(a**power) == ring.reduce(power * below * ring.dt(a))
-
-
-@every_derivation
-@given(data=st.data())
-@LAW
-def test_dt_does_not_ask_which_form_it_is_given(ring, rates, data):
-    a = data.draw(polynomials(ring, without=rates))
     assert ring.dt(ring.reduce(a)) == ring.dt(a)
 
 
@@ -147,15 +115,6 @@ def test_dt_of_a_relation_is_zero(ring, rates):
     assert q == set(ring.derivatives)
     assert ring.dt(ring.relations[0]) == ring.zero
     assert ring.dt(ring.one * 5) == ring.zero
-
-
-def test_dt_of_the_circle():
-    ring = RINGS["circle"]
-    s, c, rate, m = ring.polynomials.gens
-    assert ring.dt(s) == c * rate
-    assert ring.dt(c) == -s * rate
-    assert ring.dt(m * s * c) == ring.reduce(m * rate * (c**2 - s**2))
-    assert not ring.dt(m)
 
 
 def test_dt_beyond_the_order_names_what_is_missing():
@@ -177,13 +136,6 @@ def test_contradictory_relations_are_refused():
         ring.set_relations([q - 1, q - 2])
 
 
-def test_relations_that_say_nothing_are_no_relations():
-    ring = ring_of(x)
-    ring.set_relations([ring.zero])
-    assert ring.relations == ()
-    assert ring.reduce(ring.generator(0) ** 5) == ring.generator(0) ** 5
-
-
 def test_new_relations_replace_what_was_remembered():
     ring = ring_of(x)
     q = ring.generator(0)
@@ -192,15 +144,6 @@ def test_new_relations_replace_what_was_remembered():
     assert ring.reduce(q**2) == ring.one * 2
     ring.set_relations([])
     assert ring.reduce(q**2) == q**2
-
-
-def test_new_derivatives_replace_what_was_remembered():
-    ring = ring_of(x, y)
-    q, other = ring.polynomials.gens
-    ring.set_derivatives({0: other})
-    assert ring.dt(q**2) == 2 * q * other
-    ring.set_derivatives({0: ring.one})
-    assert ring.dt(q**2) == 2 * q
 
 
 def test_whole_numbers_and_fractions_give_one_normal_form():
@@ -225,29 +168,6 @@ class TestQuotient:
     def of(self, numerator, denominator):
         return Quotient(self.ring, numerator, denominator)
 
-    def test_equal_by_cross_multiplication(self):
-        tangent = self.of(self.s, self.c)
-        doubled = self.of(2 * self.s * self.m, 2 * self.c * self.m)
-        assert tangent.equals(doubled)
-        assert self.of(self.s, 1 + self.c).equals(self.of(1 - self.c, self.s))
-        assert not tangent.equals(tangent.inverse())
-
-    def test_arithmetic(self):
-        tangent, one = self.of(self.s, self.c), Quotient.whole(self.ring, self.ring.one)
-        secant = self.of(self.ring.one, self.c)
-        assert (one + tangent**2).equals(secant**2)
-        assert (tangent * tangent.inverse()).equals(one)
-        assert (tangent**-2).equals(tangent.inverse() ** 2)
-        assert (tangent**0).equals(one)
-        assert Quotient.sum(self.ring, []).equals(Quotient.whole(self.ring, self.ring.zero))
-        assert Quotient.product(self.ring, [tangent, secant]).equals(self.of(self.s, self.c**2))
-
-    @pytest.mark.parametrize("power", [-1, -3])
-    def test_zero_does_not_divide(self, power):
-        zero = Quotient.whole(self.ring, self.ring.zero)
-        with pytest.raises(AlgebraError, match="zero in the ring"):
-            zero**power
-
     def test_hidden_zero_does_not_divide(self):
         hidden = self.ring.reduce(self.s**2 + self.c**2 - 1)
         with pytest.raises(AlgebraError, match="zero in the ring"):
@@ -258,55 +178,11 @@ class TestMatrix:
     ring = RINGS["circle"]
     s, c, rate, m = ring.polynomials.gens
 
-    def turn(self):
-        one, zero = self.ring.one, self.ring.zero
-        rows = [[self.c, -self.s, zero], [self.s, self.c, zero], [zero, zero, one]]
-        return RingMatrix.of(self.ring, rows)
-
-    def test_products_and_transposes(self):
-        turn = self.turn()
-        one = RingMatrix.identity(self.ring, 3)
-        assert (turn @ turn.T - one).is_zero()
-        assert ((turn @ turn).T - turn.T @ turn.T).is_zero()
-        assert not (turn - turn.T).is_zero()
-        assert turn.shape == (3, 3)
-        assert turn[1, 0] == self.s
-
-    def test_product_rule(self):
-        turn = self.turn()
-        both = (turn @ turn).dt()
-        assert (both - (turn.dt() @ turn + turn @ turn.dt())).is_zero()
-        assert ((turn @ turn.T).dt()).is_zero()
-
-    def test_adjugate_and_determinant(self):
-        m, s, c, one = self.m, self.s, self.c, self.ring.one
-        matrix = RingMatrix.of(self.ring, [[m, s, one], [c, 2 * m, s], [s * c, one, m**2]])
-        identity = RingMatrix.identity(self.ring, 3)
-        assert (matrix @ matrix.adjugate() - identity.scale(matrix.det())).is_zero()
-        assert (matrix.adjugate() @ matrix - identity.scale(matrix.det())).is_zero()
-        assert matrix.T.det() == matrix.det()
-        assert (matrix @ matrix).det() == self.ring.reduce(matrix.det() ** 2)
-        assert self.turn().det() == self.ring.one
-
-    def test_cross_product(self):
-        u, v = (self.s, self.c, self.m), (self.m, self.ring.one, self.s)
-        normal = cross(self.ring, u, v)
-        for vector in (u, v):
-            assert not self.ring.dot(zip(vector, normal, strict=True))
-        assert cross(self.ring, v, u) == tuple(-entry for entry in normal)
-
     def test_parallel_vectors_are_seen_through_the_relations(self):
         """s·(s, c, 0) is held as (1 − c², sc, 0), and its cross product with (s, c, 0) is zero."""
         vector = (self.s, self.c, self.ring.zero)
         longer = tuple(self.ring.reduce(self.s * entry) for entry in vector)
         assert not any(cross(self.ring, vector, longer))
-
-
-def test_a_ring_without_relations_leaves_its_elements_as_they_are():
-    ring = ring_of(x, y)
-    ring.set_relations([])
-    a, b = ring.polynomials.gens
-    assert ring.reduce(a**2 - b) == a**2 - b
 
 
 def test_every_term_of_a_relation_but_its_number_can_be_replaced():

@@ -64,7 +64,7 @@ def dynamics(rotation: str = "z(theta)", **acting: object) -> rs.Motion:
         (lambda: rs.derive("ZXZ", timeout="1"), "expected a positive number of seconds, got '1'"),
         (lambda: rs.identify("abc", matrix=sp.eye(3)), "angles: expected real numbers"),
         (lambda: rs.identify(MASKED, matrix=np.eye(3)), "angles: masked entries"),
-        (lambda: rs.chain([1]), "expected a list of rs.Turn, got 1 in it"),
+        (lambda: rs.chain([1]), "expected a list of rs.Turn, got [1]"),
         (lambda: rs.given(IDENTITY, name="mine"), "expected a SymPy expression, got '1'"),
         (lambda: rs.given(None, name="mine"), "expected a"),
         (lambda: rs.principal_moments("A", "B", "C"), "expected a SymPy expression, got 'A'"),
