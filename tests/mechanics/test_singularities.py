@@ -19,7 +19,6 @@ from helpers.parametrisations import CHAINS, WITNESSES, constants_of, motion_of
 from helpers.witness import evaluate, mp, number
 from rigidsym.models.library import PARAMETRISATIONS
 from rigidsym.notes.formats.record import record
-from rigidsym.notes.formats.terminal import show
 
 Array = np.ndarray[Any, Any]
 
@@ -196,23 +195,6 @@ def test_rotation_vector_and_axis_fail_at_whole_turns_alone(angle):
     assert rank(rate_matrix("axis_angle", np.array([*axis, angle]))) == (1 if is_whole else 3)
     is_whole &= angle != 0
     assert rank(rate_matrix("rotation_vector", axis * angle)) == (1 if is_whole else 3)
-
-
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        ("quaternion", "It never vanishes, so this parametrisation has no singularity"),
-        ("axis_angle", "At φ = 0 the rates of e₁, e₂ and e₃ are not determined: the rank is 1"),
-        ("z(a) z(b)", "Everywhere only a + b is determined"),
-        (UNDECIDED, "Its zeros have no closed form here"),
-        (
-            "z(phi) x(theta) z(psi) y(delta)",  # idle rates lead away from the point
-            "At θ = 0 and ψ = π/2 only φ̇ + ψ̇ and θ̇ − δ̇ are determined",
-        ),
-    ],
-)
-def test_every_model_says_something_true_where_its_rates_are_shown(text, words):
-    assert words in " ".join(show(motion_of(text), width=100).split())
 
 
 def test_the_record_says_where_the_rotation_vector_fails():

@@ -324,21 +324,3 @@ def test_the_theory_goes_with_any_rotation_and_says_what_it_cannot():
 @pytest.mark.usefixtures("tex")
 def test_its_note_through_tex_without_a_warning():
     assert typeset(lecture().note().latex()).warnings == ()
-
-
-@pytest.mark.parametrize(
-    "choices",
-    [
-        {"body": "superscript", "vectors": "arrow"},
-        {"body": "superscript", "rates": "fraction", "angular_velocity": "omega"},
-    ],
-    ids=lambda choices: "-".join(choices.values()),
-)
-def test_its_note_in_every_notation(choices):
-    """MathML takes what TeX takes: a body superscript and a transpose are two superscripts."""
-    note = lecture().with_notation(**choices).note()
-    assert "<math" in note.html()
-    latex = note.latex()
-    omega = r"\vec{\Omega}" if "vectors" in choices else r"\boldsymbol{\omega}"
-    assert rf"({omega}^{{\mathrm{{B}}}})^{{\mathsf T}}" in latex
-    assert (r"\vec{r}_C" in latex) == ("vectors" in choices)

@@ -384,7 +384,7 @@ class TreeEquations(Flow):
         return [*of_any_body(), *(of_any_turn(*kind) for kind in turns)]
 
     def _check(self) -> None:
-        """M and h at a real point, against Jacobians of the turns multiplied out in numbers.
+        """M, h, p and T at a real point, against Jacobians of the turns multiplied out in numbers.
 
         The lemmas say nothing of the parts that the recursion names; raises Defect if one is wrong.
         """
@@ -392,7 +392,7 @@ class TreeEquations(Flow):
         held = [e for turn in turns for e in (*turn.matrix.diff(TIME), *turn.matrix)]
         held += [e for p in self.particles for e in (*p.slopes.diff(TIME), *p.slopes, p.mass)]
         held += [e for joint in self.joints.values() for e in joint.inertia]
-        named = [*self.mass_matrix, *self.bias]
+        named = [*self.mass_matrix, *self.bias, *self.momenta, self.kinetic]
         work = self.names.values_of([*named, *held, *self.rates, *self.gradient])
         numbers = work.context.matrix
 
@@ -420,11 +420,13 @@ class TreeEquations(Flow):
             jacobian, rate = read(p.slopes), read(p.slopes.diff(TIME))
             mass += work(p.mass) * jacobian.T * jacobian
             needed += work(p.mass) * jacobian.T * rate * q_dot
+        momenta = mass * q_dot
         off = [*(mass - read(self.mass_matrix)), *(needed - read(self.bias))]
+        off += [*(momenta - read(self.momenta)), (q_dot.T * momenta)[0] - 2 * work(self.kinetic)]
         if not all(0 in entry for entry in off):
             raise Defect(
-                f"{self.model.name}: the mass matrix or the bias vector is wrong at a point; this "
-                "is a defect of rigidsym, please report it"
+                f"{self.model.name}: the equations of motion are wrong at a point; this is a "
+                "defect of rigidsym, please report it"
             )
 
     def _solves(self, claim: Formula) -> Proof:
