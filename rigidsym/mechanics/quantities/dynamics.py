@@ -23,6 +23,9 @@ MOTION = "motion"  # section of the note
 DRIVING = formula(r"\frac{\partial V}{\partial t}")
 _PARTS, _TREE, _EULER = "parts", "tree", "euler"  # traits
 _FREE = "no_potential"
+# of bodies on joints and of particles, by the angular velocities of the joints
+_TURNING = r"\tfrac{1}{2}\sum_k \w_k^T\,\I_k\,\w_k + \tfrac{1}{2}\sum_p m_p\,|\v_p|^2"
+_SPEEDS = r", \quad \w_k = \dot{\theta}_k\,\n_k + \T_k^T\,\w_{k-1}"
 _ENERGY: dict[str, Any] = {"unit": "J", "shape": "scalar", "section": MOTION}
 
 potential_energy = Quantity(
@@ -49,6 +52,8 @@ lagrangian = Quantity(
         when(_FREE, definition=formula("E_R")),
         when(_PARTS, definition=formula("T - V"), reason="energies_of_parts"),
         when(_PARTS, _FREE, definition=formula("T")),
+        when(_TREE, reason="energies_of_joints", recursion=f"{_TURNING} - V{_SPEEDS}"),
+        when(_TREE, _FREE, recursion=_TURNING + _SPEEDS),
     ),
 )
 
@@ -78,6 +83,8 @@ energy = Quantity(
         when(_FREE, definition=formula("E_R")),
         when(_PARTS, definition=formula("T + V")),
         when(_PARTS, _FREE, definition=formula("T")),
+        when(_TREE, recursion=f"{_TURNING} + V{_SPEEDS}"),
+        when(_TREE, _FREE, recursion=_TURNING + _SPEEDS),
         when(
             _EULER,
             inputs=("q", "omega_body"),
@@ -109,6 +116,12 @@ generalised_momenta = Quantity(
     section=MOTION,
     variants=(
         when(_PARTS, definition=formula(r"\frac{\partial T}{\partial\dot\q}"), laws=_slopes("T")),
+        when(
+            _TREE,
+            reason="carried_momentum",
+            recursion=r"\left(\n_k\cdot\H_k\right)_k, \quad "
+            r"\H_k = \I_k\,\w_k + \sum \T_{k+1}\,\H_{k+1}",
+        ),
     ),
 )
 
