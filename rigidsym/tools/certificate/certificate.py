@@ -160,6 +160,7 @@ class _Section:
         is_passive = record["presentation"] == "passive"
         self.shown = "shown" if is_passive else "F"
         self.factors = [*self._factors()]
+        self.trees_of_rotation = [tree for factor in self.factors for tree in factor.trees]
         self.facts, self.known, self.apart = list[str](), list[str](), set[tuple[str, ...]]()
         body, motion = record.get("body"), record.get("motion")
         self.parts = {
@@ -362,7 +363,7 @@ class _Section:
 
     def _roots_and_divisors(self) -> Iterator[str]:
         """Squares of cosines and roots; divisors in F are not 0, and its roots not of 0."""
-        of_rotation = [tree for factor in self.factors for tree in factor.trees]
+        of_rotation = self.trees_of_rotation
         trees = [*of_rotation, *self.trees(*self.claims)]
         angles = _arguments(trees, *ANGULAR)
         self.facts += [f"(squares {text})" for text in dict.fromkeys(map(self.real, angles))]
@@ -422,7 +423,12 @@ class _Section:
             statement = law(name, frame)
         else:
             raise Unstated
-        if not {*_arguments(self.trees(name), "sqrt")} <= {*self.roots}:
+        # The facts are about the roots and the angles of F
+        trees, of_rotation = self.trees(name), self.trees_of_rotation
+        angles = {*_arguments(of_rotation, *ANGULAR)}
+        if not {*_arguments(trees, "sqrt")} <= {*self.roots}:
+            raise Unstated
+        if not {*_arguments(trees, *ANGULAR)} <= angles:
             raise Unstated
         return (
             f"Theorem {name.replace(' ', '_')} (t : R){statement.letters} : {statement.claim}.\n"
