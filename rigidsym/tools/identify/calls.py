@@ -10,12 +10,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from rigidsym.tools.identify.readings import (
-    AS_THE_TURNS,
-    IDENTITY,
-    PERMUTATIONS,
     RATES_IN_DEGREES,
     RATES_IN_RADIANS,
-    Matrix,
     Reading,
     Velocity,
 )
@@ -59,9 +55,6 @@ def _scipy(reading: Reading) -> Iterator[str]:
     yield from _turns(reading)
     arguments = f'"{reading.sequence}", {_angles(reading)}{degrees}'
     yield f"rotation = Rotation.from_euler({arguments}){inverse}"
-    if reading.frames != AS_THE_TURNS:
-        yield from _frames(reading)
-        yield f"rotation = {_framed(reading, 'rotation', 'Rotation.from_matrix({})', '*')}"
     if reading.scalar_last is None:
         yield "matrix = rotation.as_matrix()"
     else:
@@ -75,10 +68,9 @@ def _rigidsym(reading: Reading) -> Iterator[str]:
     yield "import rigidsym as rs"
     yield from _turns(reading)
     yield f'model = rs.EulerAngles("{reading.sequence}"{passive})'
-    if reading.scalar_last is None or reading.frames != AS_THE_TURNS:
+    if reading.scalar_last is None:
         yield "kernels = rs.derive(model).kernels().load()"
         yield f"matrix = kernels.rotation_matrix({_radians(reading)})"
-        yield from _framed_matrix(reading, "matrix")
     else:
         conjugate = " * [1, -1, -1, -1]" if reading.passive else ""
         yield "kernels = rs.derive(model).kernels(conversions=True).load()"
@@ -88,46 +80,7 @@ def _rigidsym(reading: Reading) -> Iterator[str]:
     if reading.velocity:
         name = f"angular_velocity_{reading.velocity.frame}"
         yield f"omega = kernels.{name}({_radians(reading)}, {_rates(reading)})"
-        if side := _side_of(reading.velocity, reading):
-            yield f"omega = omega @ {side}"
         yield from _scaled(reading.velocity)
-
-
-def _sides(reading: Reading) -> dict[str, Matrix]:
-    """The constant rotations S and B that are not 1."""
-    both = {"S": reading.frames.space, "B": reading.frames.body}
-    return {name: matrix for name, matrix in both.items() if matrix != IDENTITY}
-
-
-def _frames(reading: Reading) -> Iterator[str]:
-    for name, matrix in _sides(reading).items():
-        rows = [f"[{', '.join(f'{x:.15g}' for x in row)}]" for row in matrix]
-        separator = ", " if matrix in PERMUTATIONS else ",\n     "
-        yield f"{name} = np.array([{separator.join(rows)}])"
-
-
-def _framed(reading: Reading, name: str, form: str, operator: str) -> str:
-    """S R B, or its transpose if the reading is passive and `name` is Rᵀ already."""
-    sides = _sides(reading)
-    before, after = ("B", "S") if reading.passive else ("S", "B")
-    inverse = ".T" if reading.passive else ""
-    parts = [form.format(before + inverse)] if before in sides else []
-    parts += [name, *([form.format(after + inverse)] if after in sides else [])]
-    return f" {operator} ".join(parts)
-
-
-def _framed_matrix(reading: Reading, name: str) -> Iterator[str]:
-    if reading.frames != AS_THE_TURNS:
-        yield from _frames(reading)
-        yield f"matrix = {_framed(reading, name, '{}', '@')}"
-
-
-def _side_of(velocity: Velocity, reading: Reading) -> str:
-    """What Ω as a row is multiplied by: Sᵀ in space components, B in those of the body."""
-    side = {"space": "S", "body": "B"}[velocity.frame]
-    if side not in _sides(reading):
-        return ""
-    return "S.T" if side == "S" else side
 
 
 def _scaled(velocity: Velocity) -> Iterator[str]:

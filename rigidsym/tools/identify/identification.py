@@ -24,7 +24,7 @@ from rigidsym.tools.identify.readings import ANGLE_NAMES, VELOCITIES, Reading, d
 from rigidsym.tools.identify.samples import SampleSource, from_arrays, from_file
 
 SCHEMA = "rigidsym.identification"
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 _MOST_SHOWN = 6
 _ACCEPTABLE = 0.2  # radians; no tolerance is suggested for a nearest reading further off
 
@@ -161,7 +161,8 @@ def _further(result: Identification, further: FurtherSample | None) -> Iterator[
 
 def _no_fit(result: Identification, nearest: Answer) -> Iterator[str]:
     yield f"No convention fits {counted(result.samples, 'sample')}: {result.tried} were tried,"
-    yield "also with permuted or reversed axes and with misaligned frames."
+    yield "for the axes of the data. If its frames are others than those of the angles (NED and"
+    yield "ENU, FRD and FLU), convert the attitude first."
     yield f"tolerance {_tolerance(result)}"
     yield ""
     yield from _wrapped(nearest.reading.words(result.names), "Nearest: ")
@@ -230,7 +231,6 @@ def _reading(reading: Reading, names: Sequence[str]) -> dict[str, Any]:
         "columns": list(reading.columns),
         "signs": list(reading.signs),
         "scalar_last": reading.scalar_last,
-        "frames": {"space": reading.frames.space, "body": reading.frames.body},
         "velocity": velocity
         and {"frame": velocity.frame, "opposite": velocity.is_opposite, "units": velocity.units},
     }
@@ -248,8 +248,8 @@ def identify(
 ) -> Identification:
     """Every convention that reproduces these samples.
 
-    If no reading of the data as they are fits, the axes of space and body are permuted and reversed
-    (NED and ENU, FRD and FLU), and constant misalignments are tried.
+    The attitude must be between the frames of the angles: convert from NED to ENU, or from FRD to
+    FLU, before.
 
     Parameters
     ----------

@@ -8,98 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import permutations, product
-from math import acos, pi, prod, sqrt
+from itertools import product
+from math import pi
 from typing import Literal
-
-Matrix = tuple[tuple[float, ...], ...]  # (3, 3), a rotation
-
-IDENTITY: Matrix = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-_HALF_TURN: Matrix = ((1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, -1.0))
-_SWAPPED: Matrix = ((0.0, 1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, -1.0))
-_SPACE_NAMES = {_SWAPPED: "NED and ENU", _HALF_TURN: "NED and NWU"}
-_BODY_NAMES = {_HALF_TURN: "FRD and FLU", _SWAPPED: "FRD and RFU"}
-
-
-def transposed(matrix: Matrix) -> Matrix:
-    """The inverse of a rotation."""
-    return tuple(zip(*matrix, strict=True))
-
-
-def multiplied(first: Matrix, second: Matrix) -> Matrix:
-    """The product of two rotations; no entry is −0."""
-    columns = transposed(second)
-    return tuple(
-        tuple(sum(a * b for a, b in zip(row, column, strict=True)) + 0.0 for column in columns)
-        for row in first
-    )
-
-
-_EVEN = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
-PERMUTATIONS: tuple[Matrix, ...] = tuple(
-    tuple(
-        tuple(sign if column == place else 0.0 for column in range(3))
-        for place, sign in zip(order, signs, strict=True)
-    )
-    for order, signs in product(permutations(range(3)), product((1.0, -1.0), repeat=3))
-    if prod(signs) == (1 if order in _EVEN else -1)
-)
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Frames:
-    """The rotation of the data is S R B, that of the turns is R.
-
-    S takes space components in the frame of the turns to those in the frame of the data, B body
-    components in the frame of the data to those in the frame of the turns.
-    """
-
-    space: Matrix = IDENTITY
-    body: Matrix = IDENTITY
-
-    @property
-    def inverse(self) -> Frames:
-        """The frames of Rᵀ, whose data are Bᵀ Rᵀ Sᵀ."""
-        return Frames(space=transposed(self.body), body=transposed(self.space))
-
-    def cost(self) -> int:
-        """Sorts frames: those of the turns, then those that have names, then any others."""
-        sides = (self.space, _SPACE_NAMES), (self.body, _BODY_NAMES)
-        return sum(_cost(matrix, names) for matrix, names in sides)
-
-    def words(self) -> list[str]:
-        """ "space axes (y, x, −z) as between NED and ENU", and of the body."""
-        sides = ("space", self.space, _SPACE_NAMES), ("body", transposed(self.body), _BODY_NAMES)
-        return [_words(*side) for side in sides if side[1] != IDENTITY]
-
-
-def _cost(matrix: Matrix, names: dict[Matrix, str]) -> int:
-    if matrix == IDENTITY:
-        return 0
-    return 1 + list(names).index(matrix) if matrix in names else 3
-
-
-def _words(side: str, matrix: Matrix, names: dict[Matrix, str]) -> str:
-    if matrix not in PERMUTATIONS:
-        return f"{side} frame misaligned by {_turn(transposed(matrix))}"
-    axes = [
-        ("−" if entry < 0 else "") + axis
-        for row in matrix
-        for entry, axis in zip(row, "xyz", strict=True)
-        if entry
-    ]
-    name = f" as between {names[matrix]}" if matrix in names else ""
-    return f"{side} axes ({axes[0]} {axes[1]} {axes[2]}){name}"
-
-
-def _turn(m: Matrix) -> str:
-    """A rotation by its angle and axis: 3.2° about (0.1 0.2 0.97)."""
-    angle = acos(max(-1.0, min(1.0, (m[0][0] + m[1][1] + m[2][2] - 1) / 2)))
-    axis = (m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1])
-    length = sqrt(sum(entry * entry for entry in axis)) or 1.0
-    components = " ".join(f"{round(entry / length, 3) + 0.0:.2g}" for entry in axis)
-    return f"{angle * 180 / pi:.3g}° about ({components})"
-
 
 Three = tuple[int, int, int]
 Frame = Literal["space", "body"]
@@ -117,7 +28,6 @@ _PLAIN_COLUMNS: tuple[Three, ...] = ((0, 1, 2), (0, 2, 1), (1, 0, 2))
 # Of two patterns of signs that are each other's opposite, the one with fewer flips.
 _PLAIN_SIGNS: tuple[Three, ...] = ((1, 1, 1), (-1, 1, 1), (1, -1, 1), (1, 1, -1))
 _OTHER: dict[Frame, Frame] = {"space": "body", "body": "space"}
-AS_THE_TURNS = Frames()
 RATES_IN_DEGREES, RATES_IN_RADIANS = "rates in deg/s, Ω in rad/s", "rates in rad/s, Ω in deg/s"
 _FACTORS = {"": 1.0, RATES_IN_DEGREES: pi / 180, RATES_IN_RADIANS: 180 / pi}
 
@@ -174,7 +84,6 @@ class Reading:
     degrees: bool = False
     scalar_last: bool | None = None  # None: a matrix
     velocity: Velocity | None = None
-    frames: Frames = AS_THE_TURNS  # of the data
 
     @property
     def is_intrinsic(self) -> bool:
@@ -229,20 +138,6 @@ class Reading:
             signs=(-third, -second, -first),
             passive=not self.passive,
             velocity=self.velocity and self.velocity.of_the_inverse(),
-            frames=self.frames.inverse,
-        )
-
-    def about_other_axes(self, matrix: Matrix) -> Reading:
-        """P R Pᵀ for a rotation P that permutes and reverses axes: turns about P e."""
-        images = [
-            tuple(row[axis] for row in matrix) for axis in map("xyz".index, self.sequence.lower())
-        ]
-        letters = "".join("xyz"[[abs(x) for x in image].index(1)] for image in images)
-        signs = [int(sum(image)) * sign for image, sign in zip(images, self.signs, strict=True)]
-        return replace(
-            self,
-            sequence=letters.upper() if self.is_intrinsic else letters,
-            signs=(signs[0], signs[1], signs[2]),
         )
 
     def intrinsic(self) -> Reading:
@@ -255,8 +150,6 @@ class Reading:
 
     def aliases(self) -> tuple[Reading, ...]:
         """The other readings that are this function of the data, the plainest first."""
-        if self.frames != AS_THE_TURNS:  # in the other direction, S and B would change sides
-            return (self.in_other_manner(),)
         other = self.in_other_direction()
         aliases = (self.in_other_manner(), other, other.in_other_manner())
         return tuple(sorted(aliases, key=Reading.plainness))
@@ -265,7 +158,6 @@ class Reading:
         """Sorts readings: few signs flipped, columns as given, active, intrinsic, radians."""
         opposite = self.velocity is not None and self.velocity.is_opposite
         return (
-            self.frames.cost(),
             self.flips + opposite,
             _displaced(self.columns),
             self.passive,
@@ -280,14 +172,14 @@ class Reading:
     def words(self, names: Sequence[str] = ANGLE_NAMES) -> str:
         """ "ZYX intrinsic, passive, degrees, columns (yaw, −pitch, roll), scalar first" """
         turns, direction, columns = self._parts(names)
-        parts = [turns, direction, self.unit, columns, self.scalar_words, *self.frames.words()]
+        parts = [turns, direction, self.unit, columns, self.scalar_words]
         parts += [self.velocity.words] if self.velocity else []
         return ", ".join(filter(None, parts))
 
     def brief(self, names: Sequence[str] = ANGLE_NAMES) -> str:
         """The parts in which it differs from its aliases."""
         velocity = [self.velocity.of_what] if self.velocity else []
-        return ", ".join([*self._parts(names), *self.frames.words(), *velocity])
+        return ", ".join([*self._parts(names), *velocity])
 
     def _parts(self, names: Sequence[str]) -> tuple[str, str, str]:
         return (
@@ -302,11 +194,6 @@ class Reading:
         angles = turns._angles(names)
         text = " ".join(
             f"R{axis}({angle})" for axis, angle in zip(turns.sequence.lower(), angles, strict=True)
-        )
-        text = " ".join(
-            ["S"] * (self.frames.space != IDENTITY)
-            + [text]
-            + ["B"] * (self.frames.body != IDENTITY)
         )
         return f"({text})ᵀ" if self.passive else text
 

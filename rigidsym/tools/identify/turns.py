@@ -9,7 +9,7 @@ from types import ModuleType
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidsym.tools.identify.readings import AS_THE_TURNS, RADIANS_PER_DEGREE, Reading, Velocity
+from rigidsym.tools.identify.readings import RADIANS_PER_DEGREE, Reading, Velocity
 
 Array = NDArray[np.float64]
 _AXES = "XYZ"
@@ -27,11 +27,6 @@ class ReadingTable:
         self._signs = np.array([turn.signs for turn in turns], float).T
         self._units = np.array([int(turn.degrees) for turn in turns])
         self._scalar_last = np.array([bool(reading.scalar_last) for reading in self.readings])
-        frames = [turn.frames for turn in turns]
-        self._frames = None
-        if any(each != AS_THE_TURNS for each in frames):
-            sides = [each.space for each in frames], [each.body for each in frames]
-            self._frames = [quaternion_of(np.array(side)).T for side in sides]  # (4, readings)
 
     def __len__(self) -> int:
         return len(self.readings)
@@ -42,14 +37,6 @@ class ReadingTable:
         `orientation` (n, 4) is the quaternion of the data with its numbers in their own order.
         """
         return angle_between(self._quaternions(angles), self._given(orientation), axis=0)
-
-    def constants(self, angles: Array, orientation: Array) -> tuple[Array, Array]:
-        """The rotations by which each reading falls short of the data: (4, n, readings), twice.
-
-        The data are the reading times the first, and the second times the reading.
-        """
-        turns, given = conjugate(self._quaternions(angles)), self._given(orientation)
-        return times(turns, given), times(given, turns)
 
     def _given(self, orientation: Array) -> Array:
         """The data as each reading takes them, scalar first: (4, n, readings)."""
@@ -78,9 +65,6 @@ class ReadingTable:
                 which = (slice(None), columns, self._units[places])
                 turn = _then_about(_AXES.index(axis), turn, cosines[which], sines[which] * signs)
             q[..., places] = turn
-        if self._frames:
-            space, body = (side[:, None] for side in self._frames)
-            q = times(times(space, q), body)
         return q
 
 
@@ -93,26 +77,6 @@ def _then_about(axis: int, turn: Array, cosine: Array, sine: Array) -> Array:
     product[first] += turn[second] * sine
     product[second] -= turn[first] * sine
     return product
-
-
-def times(p: Array, q: Array) -> Array:
-    """The product of quaternions (4, ...), scalar first: v·w is taken off the scalar, v×w added."""
-    a, v, b, w = p[0], p[1:], q[0], q[1:]
-    scalar = a * b - np.sum(v * w, axis=0)
-    vector = a * w + b * v + np.cross(v, w, axis=0)
-    return np.concatenate([scalar[None], vector])
-
-
-def conjugate(q: Array) -> Array:
-    """The inverse of unit quaternions (4, ...), scalar first."""
-    return np.stack([q[0], -q[1], -q[2], -q[3]])
-
-
-def matrix_of(q: Array) -> Array:
-    """The rotation matrix (3, 3) of a unit quaternion (4,), scalar first."""
-    w, v = q[0], q[1:]
-    cross = np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
-    return np.asarray(np.eye(3) + 2 * w * cross + 2 * cross @ cross)
 
 
 def angle_between(p: Array, q: Array, axis: int = -1) -> Array:
@@ -177,10 +141,6 @@ def angular_velocities(readings: Sequence[Reading], angles: Array, rates: Array)
         for k, frame in enumerate(_FRAMES):
             kernel = getattr(_kernels(sequence), f"angular_velocity_{frame}")
             omega[:, here, k] = kernel(q[:, here], q_dot[:, here])
-    for k, turn in enumerate(turns):
-        if turn.frames != AS_THE_TURNS:  # Ω of S R B is S Ω, and its Ω′ is Bᵀ Ω′
-            omega[:, k, 0] = omega[:, k, 0] @ np.array(turn.frames.space).T
-            omega[:, k, 1] = omega[:, k, 1] @ np.array(turn.frames.body)
     return omega
 
 
