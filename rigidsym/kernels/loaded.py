@@ -21,7 +21,8 @@ from types import ModuleType
 
 from rigidsym.system.files import cache_folder
 
-_KEPT = 200  # packages in the cache folder; those unused for the longest time go
+# Packages in the cache folder, some 60 kB each; those unused for the longest time go.
+_KEPT = 200
 _DAY = 86400.0  # seconds, after which a draft belongs to a process that was killed
 
 

@@ -22,7 +22,9 @@ from rigidsym.errors import KernelError
 from rigidsym.mechanics.conversions.function import Epsilon, Where
 
 HELD, CHOICE = "held", "choice"  # functions: a value as it is; one of two by a condition
-_FEWEST_RECIPROCALS = 3  # divisions by one thing that a reciprocal and as many products replace
+# Divisions by one thing that a reciprocal and as many products replace. A division takes as long as
+# two products in vectors (NumPy on AVX-512) and several in scalars, so that two would gain nothing.
+_FEWEST_RECIPROCALS = 3
 
 Factors = tuple[int, ...]  # nodes in order; ~node divides
 Terms = tuple[tuple[Fraction, int], ...]  # coefficient and node, in the order of the nodes

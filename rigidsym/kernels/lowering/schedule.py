@@ -35,7 +35,7 @@ from rigidsym.kernels.lowering.naming import Names
 Rank = tuple[tuple[int, int], ...]
 
 _NUMBER, _INPUT, _VALUE, _CALL, _SUM = range(5)
-_LONGEST_ARGUMENT = 20  # that the name of its sine repeats
+_LONGEST_ARGUMENT = 20  # letters that the name of a sine repeats; longer ones make wide lines
 _ONE = Number(Fraction(1))
 _CALL_ORDER = {function: place for place, function in enumerate(FUNCTIONS)}
 
@@ -237,7 +237,7 @@ def _split(expression: Expression) -> tuple[tuple[Expression, ...], tuple[Expres
     return tuple(f for f in expression.factors if f != _ONE), expression.divisors
 
 
-_MANY_TERMS = 6  # of a sum that is written in several
+_MANY_TERMS = 6  # a longer sum is cut in two, so that its terms need no names of their own
 
 
 def narrowed(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import lru_cache, partial
 from math import ceil
 from textwrap import wrap
@@ -69,7 +69,7 @@ def about_module(template: str, program: Program, **facts: object) -> list[Parag
             }
             for each in series
         ],
-        guards={kind for kernel in kernels for kind in _kinds(kernel)},
+        has_guards=any(kernel.guards for kernel in kernels),
         version=__version__,
         ownership=OWNERSHIP,
         **facts,
@@ -120,16 +120,6 @@ def comment(texts: Sequence[Paragraph], width: int, safe: Callable[[str], str]) 
     blocks = (filled(paragraph, width - len(" * ")) for paragraph in texts)
     text = safe("\n\n".join("\n".join(block) for block in blocks))
     return "\n".join(f" * {line}".rstrip() for line in text.split("\n"))
-
-
-def _kinds(kernel: Kernel) -> Iterator[str]:
-    """The kinds of divisors that are guarded."""
-    for guard in kernel.guards.values():
-        call = kernel.calls.get(guard.value.text)
-        if call is not None:
-            yield "angle" if call.order is None else "length"
-        else:
-            yield "squares" if guard.scale is None else {1: "sum", 2: "minors"}[guard.power]
 
 
 def _divisor(kernel: Kernel, divisor: Name) -> str:
