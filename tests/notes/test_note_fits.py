@@ -305,12 +305,3 @@ def test_a_factor_of_all_terms_goes_before_the_matrix():
     factor, rest = factored(sp.ImmutableMatrix(entries))
     assert factor == a**2 * m
     assert rest == sp.ImmutableMatrix([11 + sp.sqrt(13), 22])
-
-
-def test_wide_identities_go_below_the_two_halves_of_their_table():
-    motion = rs.derive("ZXZ", body=rs.solid("cone"))
-    tables = motion.note().latex().split(r"\begin{ruled}")
-    (table,) = (text.split(r"\end{ruled}")[0] for text in tables if "& Identity &" in text)
-    (wide,) = [line for line in table.splitlines() if r"\rlap" in line]
-    assert r"\int" in wide
-    assert table.count(r"\eqref") == len([*motion.proofs])

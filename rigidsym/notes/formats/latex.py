@@ -160,23 +160,14 @@ class _LatexPrinter(NotePrinter):
         head, *rows = (list(map(self._cell, row)) for row in (table.head, *table.rows))
         # l for a column of one line a cell, T for the one of words
         columns = "".join("T" if k == table.of_words else "l" for k in range(len(table.head)))
-        wide = self._wide(table)
-        wider = [row for row, is_wide in zip(rows, wide, strict=True) if is_wide]
-        rows = [row for row, is_wide in zip(rows, wide, strict=True) if not is_wide]
         parts = self._parts(table)
-        if len(rows) >= _MANY and len(wider) <= len(rows) / 4:
+        if parts > 1:
             high = -(-len(rows) // parts)
             rows += [[""] * len(head)] * (parts * high - len(rows))
             beside = zip(*(rows[k : k + high] for k in range(0, len(rows), high)), strict=True)
             rows = [[cell for row in line for cell in row] for line in beside]
-            # over the columns beside it; \multicolumn would cost another run of TeX
-            rows += [[first, rf"\rlap{{{second}}}"] for first, second in wider]
-            head, columns = (
-                head * parts,
-                rf"@{{\hspace{{{_GAP if parts == 2 else 1}em}}}}".join([columns] * parts),
-            )
-        else:
-            rows = [list(map(self._cell, row)) for row in table.rows]
+            head = head * parts
+            columns = rf"@{{\hspace{{{_GAPS[parts]}em}}}}".join([columns] * parts)
         lines = [" & ".join(row) + r" \\" for row in (head, *rows)]
         is_said = table.caption.lower() in self.heading.lower()
         caption = "" if is_said else escape(table.caption)
@@ -188,19 +179,15 @@ class _LatexPrinter(NotePrinter):
 
     def _parts(self, table: NoteTable) -> int:
         """In how many parts beside one another a narrow table is set."""
-        high = -(-len(table.rows) // 3)
-        thirds = (table._replace(rows=table.rows[k * high :][:high]) for k in range(3))
-        return 3 if sum(map(self._width, thirds)) + 2 <= _SLACK * _LINE / _SMALL else 2
-
-    def _wide(self, table: NoteTable) -> list[bool]:
-        """Which rows do not fit into one of two parts; those of two cells may go below them."""
-        room = (_LINE / _SMALL - _GAP) / 2
-        if 2 * self._width(table) + _GAP <= _LINE / _SMALL:
-            return [False] * len(table.rows)
-        is_alike = len(table.head) == 2
-        return [
-            not is_alike or self._width(table._replace(rows=(row,))) > room for row in table.rows
-        ]
+        if len(table.rows) < _MANY or len(table.head) > 2:
+            return 1
+        for parts in (3, 2):
+            high = -(-len(table.rows) // parts)
+            beside = (table._replace(rows=table.rows[k * high :][:high]) for k in range(parts))
+            width = sum(map(self._width, beside)) + _GAPS[parts] * (parts - 1)
+            if width <= _SLACK * _LINE / _SMALL:
+                return parts
+        return 1
 
     def _width(self, table: NoteTable) -> float:
         """About how wide a table is, in ems."""
@@ -267,8 +254,8 @@ class _LatexPrinter(NotePrinter):
 
 _TOGETHER = 8  # lines of a table that stay on one page
 _MANY = 8  # rows of a narrow table that are set in two parts or three
-_GAP = 3  # ems between two of them; 1 between three
-_SLACK = 1.05  # by which three may seem too wide: the widths of formulas are upper bounds
+_GAPS = {2: 3, 3: 1}  # ems between them
+_SLACK = 1.05  # by which they may seem too wide: the widths of formulas are upper bounds
 _SMALL = 0.9  # size of a table
 _COLUMN_GAP = 1.1  # ems
 _LETTER = 0.5  # ems
