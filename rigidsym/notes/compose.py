@@ -51,7 +51,7 @@ from rigidsym.notes.facts.mass import mass_facts, number
 from rigidsym.notes.facts.motion import motion_facts
 from rigidsym.notes.facts.rotation import RotationFacts, facts_of_rotation, product_of
 from rigidsym.notes.facts.singular import singular_facts
-from rigidsym.notes.facts.symbols import SymbolFacts, example_of
+from rigidsym.notes.facts.symbols import SymbolFacts
 from rigidsym.notes.fitting import Fitter, as_vectors, definitions
 from rigidsym.notes.letters import entries_of, letters_of
 from rigidsym.notes.named_body import OFFSET, in_names, textbook_form
@@ -180,7 +180,7 @@ class Composer:
             "symbols": self._symbols,
             "symbol_facts": SymbolFacts(derivation),
             "module": self.module,
-            "example": example_of(derivation, self.module, self.functions),
+            "functions": self.functions,
             "is_body_alone": is_body_alone(derivation),
             "has_dots": self.letters.notation.rates == "dot",
         }

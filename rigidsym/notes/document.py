@@ -104,19 +104,13 @@ class NoteTable(NamedTuple):
     of_words: int | None = None  # the column whose cells may take several lines
 
 
-class CodeBlock(NamedTuple):
-    """A few lines of Python that can be run as they stand, beside the kernel module."""
-
-    code: str  # ASCII, lines of at most 80 columns
-
-
 class Figure(NamedTuple):
     drawing: Drawing
     caption: Text  # which line is what
     description: Text  # what the figure says, in words that do without it
 
 
-NoteBlock = Paragraph | Equation | EquationRow | NoteTable | CodeBlock | Figure
+NoteBlock = Paragraph | Equation | EquationRow | NoteTable | Figure
 
 
 class Section(NamedTuple):

@@ -28,7 +28,6 @@ from rigidsym.models.rotation import Citation
 from rigidsym.notes.document import (
     Cited,
     Code,
-    CodeBlock,
     Equation,
     EquationRow,
     Figure,
@@ -50,7 +49,7 @@ _INLINE = re.compile(
 )
 _MARKUP = re.compile(rf"[$*`|#&\n]|{_MARK}")  # what would be read as Markdown, or as a mark
 _TABLE = "Table:"
-_BLOCKS = (Paragraph, Equation, EquationRow, NoteTable, CodeBlock, Figure, list)
+_BLOCKS = (Paragraph, Equation, EquationRow, NoteTable, Figure, list)
 
 
 class _Marks(NamedTuple):

@@ -1,19 +1,16 @@
-"""The symbols of a note with their units, and a call of one function of its module."""
+"""The symbols of a note with their meanings and units."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import repeat
 from typing import NamedTuple
 
 from rigidsym.formula.tree import Formula
-from rigidsym.mechanics.derivation import Argument, Derivation
-from rigidsym.notes.document import CodeBlock
+from rigidsym.mechanics.derivation import Derivation
 
 _PLACES = ("centre", "point", "direction")
-_SHOWN = "angular_velocity_body"
-_CODE_WIDTH = 76  # columns of typewriter type on a page
 
 
 class SameMeaning(NamedTuple):
@@ -80,26 +77,3 @@ def _grouped(named: Iterable[tuple[Formula, str, str]]) -> list[SameMeaning]:
     for name, about, unit in named:
         groups.setdefault((about, unit), []).append(name)
     return [SameMeaning(tuple(names), *same) for same, names in groups.items()]
-
-
-def example_of(derivation: Derivation, module: str, names: Sequence[str]) -> CodeBlock | None:
-    """A call of one function with made-up numbers; of the angular velocity, if it is there."""
-    if not names:
-        return None
-    name = _SHOWN if _SHOWN in names else names[0]
-    inputs = derivation.step(name).quantity.inputs
-    lines = (
-        f"import {module.removesuffix('.py')} as kinematics",
-        "",
-        *(_assigned(derivation.argument(each)) for each in inputs),
-        f"kinematics.{name}({', '.join(inputs)})",
-    )
-    return CodeBlock("\n".join(lines))
-
-
-def _assigned(argument: Argument) -> str:
-    """q = [0.1, 0.2, 0.3]  # phi, theta, psi"""
-    numbers = ", ".join(f"{k / 10:.1f}" for k in range(1, 1 + len(argument.symbols)))
-    line = f"{argument.name} = [{numbers}]"
-    explained = f"{line}  # {', '.join(argument.names)}"
-    return explained if len(explained) <= _CODE_WIDTH else line

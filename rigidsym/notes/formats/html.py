@@ -15,7 +15,6 @@ from rigidsym.formula.pen import Piece
 from rigidsym.formula.reader import text_of
 from rigidsym.formula.tree import Formula
 from rigidsym.notes.document import (
-    CodeBlock,
     Document,
     Equation,
     EquationRow,
@@ -86,9 +85,6 @@ class HtmlPrinter(NotePrinter):
 
     def equationrow(self, block: EquationRow) -> str:
         return f'<div class="row">{"".join(map(self.forms, block.equations))}</div>'
-
-    def codeblock(self, block: CodeBlock) -> str:
-        return f'<pre tabindex="0"><code>{escape_markup(block.code)}</code></pre>'
 
     def equation(self, equation: Equation) -> str:
         shown = self.forms(equation)

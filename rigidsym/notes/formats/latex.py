@@ -7,7 +7,6 @@ from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.pen import Piece
 from rigidsym.formula.tree import Formula
 from rigidsym.notes.document import (
-    CodeBlock,
     Document,
     Equation,
     EquationReference,
@@ -108,9 +107,6 @@ class _LatexPrinter(NotePrinter):
 
     def equationrow(self, block: EquationRow) -> str:
         return f"\\[\n{self.rows[block]}\n\\]"
-
-    def codeblock(self, block: CodeBlock) -> str:
-        return f"{{\\keep\n\\begin{{verbatim}}\n{block.code}\n\\end{{verbatim}}\n}}"
 
     def equation(self, equation: Equation) -> str:
         shown = self.shown[equation]

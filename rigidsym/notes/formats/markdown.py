@@ -14,7 +14,6 @@ from rigidsym.formula.display import pack
 from rigidsym.formula.latex_pen import MarkdownPen
 from rigidsym.formula.pen import Piece
 from rigidsym.notes.document import (
-    CodeBlock,
     Document,
     Equation,
     EquationRow,
@@ -80,9 +79,6 @@ class _MarkdownPrinter(NotePrinter):
         sources = enumerate(self.document.sources, start=1)
         lines = (f"{place}. {escape(source)}" for place, source in sources)
         return "\n".join(["## Sources", "", *lines])
-
-    def codeblock(self, block: CodeBlock) -> str:
-        return f"```python\n{block.code}\n```"
 
     def paragraph(self, block: Paragraph) -> str:
         return _LINE_START.sub(_unlisted, self.text(block.text).lstrip())
