@@ -18,10 +18,21 @@ from jinja2 import TemplateRuntimeError
 
 from rigidsym.errors import offer
 from rigidsym.formula.display import PAGE, Display, display
+from rigidsym.formula.letters import Letters, is_negative
 from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.formula.reader import formula, text_of
 from rigidsym.formula.scalars import formula_of
-from rigidsym.formula.tree import COMMA, NOTHING, Bracket, Formula, joined
+from rigidsym.formula.tree import (
+    COMMA,
+    MINUS,
+    NOTHING,
+    Bracket,
+    Formula,
+    Matrix,
+    bracketed,
+    joined,
+    row,
+)
 from rigidsym.mechanics.conversions.function import SHEPPERD, outer_product
 from rigidsym.mechanics.derivation import (
     OF_RATES,
@@ -32,6 +43,7 @@ from rigidsym.mechanics.derivation import (
     Step,
     phrases,
 )
+from rigidsym.mechanics.particles import MASS
 from rigidsym.mechanics.quantities.kinematics import ROTATION
 from rigidsym.models.parametrisations import GIVEN
 from rigidsym.models.rotation import SOURCES, Citation, hat, lecture
@@ -55,7 +67,6 @@ from rigidsym.notes.facts.symbols import SymbolFacts
 from rigidsym.notes.fitting import Fitter, as_vectors, definitions
 from rigidsym.notes.letters import entries_of, letters_of
 from rigidsym.notes.named_body import OFFSET, in_names, textbook_form
-from rigidsym.notes.summands import sums
 from rigidsym.notes.template import blocks_of, sections_of
 from rigidsym.notes.words import (
     is_body_alone,
@@ -73,6 +84,7 @@ _SECTIONS = (
     *("body", "inertia", "energy", "momentum", "motion"),
 )
 _IN_A_ROW = ("radii_of_gyration", "inertia_ellipsoid")
+_SUM = formula(r"\sum_i m_i")
 _DIAGONAL = formula("(I'_{11}, I'_{22}, I'_{33})")
 _WHERE_SHOWN = {  # what has no equation of its own in the lecture, and the one that it belongs to
     "rotation_rate": "velocity_by_the_rotation",
@@ -344,8 +356,8 @@ class Composer:
         (table,) = blocks_of("en/symbols", self.letters, **self.facts())
         assert isinstance(table, NoteTable)
         rows: dict[Text, tuple[Text, ...]] = {}
-        for row in table.rows:
-            rows.setdefault(row[0], row)
+        for cells in table.rows:
+            rows.setdefault(cells[0], cells)
         return table._replace(rows=tuple(rows.values()))
 
     def _proofs(self) -> list[tuple[EquationReference, Proof]]:
@@ -387,6 +399,22 @@ def equation_of(step: Step, arguments: Iterable[Argument]) -> Equation:
         proved=proved,
         unproved=unproved,
     )
+
+
+def sums(statement: Statement, letters: Letters) -> Matrix | None:
+    """The matrix of sums; None where the statement has no summands."""
+    if statement.summands is None:
+        return None
+    rows = statement.summands.tolist()
+    return Matrix(tuple(tuple(_sum(entry, letters) for entry in line) for line in rows))
+
+
+def _sum(summand: sp.Expr, letters: Letters) -> Formula:
+    """Σ mᵢ (b² + c²): the mass first."""
+    minus = is_negative(summand)
+    rest = (-summand if minus else summand) / MASS
+    whole = row(_SUM, bracketed(formula_of(rest, letters)))
+    return row(MINUS, whole) if minus else whole
 
 
 def _ended(equation: Equation, side: Formula) -> Equation:

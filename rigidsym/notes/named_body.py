@@ -28,7 +28,6 @@ _ABOUT_POINT = ("inertia_tensor_point", "moment_of_inertia")
 _MOMENTS = sp.symbols("I_1:4")
 OFFSET = tuple(sp.Symbol(f"d_{axis}") for axis in "xyz")
 _DISTANCE = formula(r"\mathbf{d}")
-OFFSET_IS = formula(r"\mathbf{d} = \mathbf{p} - \mathbf{c}")
 _STEINER = formula(STEINER, INERTIA, MASS, _DISTANCE, _DISTANCE)
 _TURNED = formula(r"\boldsymbol{\Omega}")
 

@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from functools import lru_cache
 from itertools import chain
 
-import sympy as sp
-
 from rigidsym.formula.display import Done
-from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import formula, sentence
-from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import (
     Formula,
     Symbol,
@@ -33,19 +29,17 @@ from rigidsym.notes.document import (
     Cited,
     Equation,
     Text,
-    listed,
 )
 from rigidsym.notes.letters import VECTOR, length_of
 
-POSITION = formula(r"\mathbf{x}")
-BODY_POSITION = formula(r"\mathbf{x}'")
+_BODY_POSITION = formula(r"\mathbf{x}'")
 
 _OF_ROTATIONS = (ROTATION, transpose_of(ROTATION), transpose_of(COSINES), *map(Symbol, AXES))
 _OF_RATES = (SPACE.omega, BODY.omega, SPACE.matrix, BODY.matrix, RATES, formula(r"\mathbf{C}^{-1}"))
 _OF_BODIES = (
-    BODY_POSITION,
-    formula(r"|#1\times(#2-#3)|", DIRECTION, BODY_POSITION, POINT),
-    formula(r"#1^{\mathsf T}\mathbf{I}'\,#1 = 1", BODY_POSITION),
+    _BODY_POSITION,
+    formula(r"|#1\times(#2-#3)|", DIRECTION, _BODY_POSITION, POINT),
+    formula(r"#1^{\mathsf T}\mathbf{I}'\,#1 = 1", _BODY_POSITION),
     POINT,
     DIRECTION,
 )
@@ -112,11 +106,6 @@ def unit_in_words(unit: str) -> str:
     """rad/s² for rad/s^2; a pure number has the unit 1."""
     unit = re.sub(r"\((.+)\)\^\(-1/2\)", r"1/√(\1)", unit)
     return re.sub(r"\^(-?\d+)", lambda m: m[1].translate(_SUPERSCRIPTS), unit) or "1"
-
-
-def vector(entries: Iterable[sp.Expr], letters: Letters) -> Text:
-    """The components in a row, with a place to break the line after each comma."""
-    return ("(", *listed([(formula_of(entry, letters),) for entry in entries], ", "), ")")
 
 
 def announcement(equation: Equation, done: Done) -> Text:

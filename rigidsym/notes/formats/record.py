@@ -64,11 +64,7 @@ def record(
         "arguments": _arguments(derivation.arguments),
         "quantities": list(map(_step, derivation.steps, sources)),
         "first_integrals": [
-            {
-                "name": integral.name,
-                "expression": integral.expression,
-                "proof": _proof(integral.proof),
-            }
+            {**_picked(integral, "name", "expression"), "proof": _proof(integral.proof)}
             for integral in derivation.first_integrals
         ],
         "definitions": [
@@ -170,12 +166,8 @@ def _theory(derivation: Derivation) -> list[dict[str, Any]]:
     """The equations for every body and rotation, in order."""
     return [
         {
-            "number": statement.number,
-            "name": statement.name,
-            "section": statement.section,
+            **_picked(statement, "number", "name", "section", "sides", "summands"),
             "because": text_of(statement.because),
-            "sides": statement.sides,
-            "summands": statement.summands,
             "source": str(statement.source),
             "proofs": list(map(_proof, statement.proofs)),
         }
@@ -217,11 +209,7 @@ def _step(step: Step, source: str | None) -> dict[str, Any]:
     shape, expression = values[quantity.shape]
     return {
         "number": step.number,
-        "name": quantity.name,
-        "about": quantity.about,
-        "unit": quantity.unit,
-        "symbol": quantity.symbol,
-        "inputs": quantity.inputs,
+        **_picked(quantity, "name", "about", "unit", "symbol", "inputs"),
         "shape": shape,
         "expression": expression,
         "vector_form": _vector_form(step.vector_form),
@@ -243,20 +231,14 @@ def _vector_form(form: VectorForm | None) -> dict[str, Any] | None:
 
 
 def _proof(proof: Proof) -> dict[str, Any]:
-    return {"claim": proof.claim, "status": proof.status, "residual": proof.residual}
+    return _picked(proof, "claim", "status", "residual")
 
 
 def _singularities(found: Singularities | None) -> dict[str, Any] | None:
     if found is None:
         return None
-    return {
-        "rank": found.rank,
-        "measure": found.measure,
-        "determinant": found.determinant,
-        "minors": found.minors,
-        "is_solved": found.is_solved,
-        "points": list(map(_point, found.points)),
-    }
+    own = _picked(found, "rank", "measure", "determinant", "minors", "is_solved")
+    return {**own, "points": list(map(_point, found.points))}
 
 
 def _point(point: Singularity) -> dict[str, Any]:
@@ -278,6 +260,11 @@ def _place(place: Place) -> dict[str, Any]:
         "modulo": place.period,
         "least": place.value if place.is_length else None,
     }
+
+
+def _picked(thing: Any, *names: str) -> dict[str, Any]:
+    """Attributes that the record has by the same names."""
+    return {name: getattr(thing, name) for name in names}
 
 
 def _vector(column: sp.ImmutableMatrix | None) -> list[sp.Expr] | None:
