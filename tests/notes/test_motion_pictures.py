@@ -12,7 +12,8 @@ import sympy as sp
 import rigidsym as rs
 from rigidsym.errors import ModelError, SpecError
 from rigidsym.formula.reader import decimal
-from rigidsym.notes.figure.chart import Range
+from rigidsym.notes.figure.camera import STANDARD
+from rigidsym.notes.figure.chart import Range, circle, on_ellipsoid
 from rigidsym.notes.figure.motion_picture import ExampleMotion
 from rigidsym.notes.figure.phase_portrait import phase_portrait
 from rigidsym.notes.letters import letters_of
@@ -102,6 +103,22 @@ def test_a_free_body_at_rest_has_no_polhode():
     example = {"parameters": moments, "initial": {"theta": 1}, "time": 2}
     still = rs.derive("ZXZ", body=A_PENDULUM["body"], potential="0", examples=[example])
     assert "polhode" not in str(figure_of(still).description)
+
+
+def test_what_is_behind_a_surface_is_dashed():
+    """From above, the farther half of a level circle is higher in the picture."""
+    level = on_ellipsoid([circle(STANDARD[2], 0.3)], [], np.ones(3), [])
+    heights = {
+        is_hidden: [
+            y
+            for s in level.strokes
+            if s.kind == "body"
+            for _, y in s.points
+            if s.is_hidden == is_hidden
+        ]
+        for is_hidden in (True, False)
+    }
+    assert np.mean(heights[True]) > np.mean(heights[False])
 
 
 def test_numbers_and_ticks():

@@ -13,6 +13,7 @@ from sympy.physics.vector import dynamicsymbols
 from helpers.reading import Formula as Reader, latex_of
 from helpers.witness import mp, number
 from rigidsym.formula import sheet_pen
+from rigidsym.formula.display import Equation, display
 from rigidsym.formula.latex_pen import LatexPen, MarkdownPen
 from rigidsym.formula.letters import Letters, VectorLength
 from rigidsym.formula.mathml_pen import MathmlPen, math
@@ -323,3 +324,16 @@ def test_a_formula_among_words_is_cut_only_if_it_is_too_wide():
     assert [bool(piece.height) for piece in (narrow, high)] == [False, True]
     assert 'class="tall"' in high.text
     assert all("(" in chunk.text and ")" in chunk.text for chunk in cut.chunks)
+
+
+def test_a_listing_over_pages_has_the_lines_that_it_has_in_one_display():
+    """Entries at their signs, and definitions each in the middle."""
+    value = sum(sp.Symbol(f"a_{k}") * sp.sin(theta) for k in range(40))
+    matrix = sp.ImmutableMatrix([value, value + 1])
+    names = (formula("k_1"), formula("k_2"))
+    for sides, is_aligned in (((formula(r"\mathbf{w}"),), True), ((), False)):
+        equation = Equation(sides=sides, matrix=matrix, entries=names)
+        shown = display(equation, LETTERS, 30.0)
+        assert (shown.are_aligned, shown.lines > 4) == (is_aligned, True)
+        assert shown.joined(LatexPen()) in shown.text
+        assert ("&" in shown.text) == is_aligned

@@ -17,7 +17,9 @@ import rigidsym as rs
 from rigidsym.mechanics.mass.bodies import rigid_body
 from rigidsym.models.body import Composite, Part, Particle, Particles
 from rigidsym.models.solids import SHAPES as SOLIDS, shaped
-from rigidsym.notes.figure.body_mesh import HOLE, Shape, lengths_of, meshed, own_shape
+from rigidsym.notes.figure.body_drawing import body_drawing
+from rigidsym.notes.figure.body_mesh import BLUE, HOLE, Shape, lengths_of, meshed, own_shape
+from rigidsym.notes.figure.camera import Camera, camera
 from rigidsym.page.stage import as_data, body_of_page
 from rigidsym.system import resources
 
@@ -121,21 +123,76 @@ def colors_from_the_back(shape: Shape, *angles: float) -> list[str]:
     return of_script(seen, as_data(shape), frame.tolist())
 
 
-@pytest.mark.usefixtures("node")
-def test_what_is_nearer_is_drawn_later_also_where_parts_pierce_each_other():
-    """A long bar goes through a plate, and a half of it is in front."""
+def pierced() -> Composite:
+    """A long bar through a plate."""
     bar = shaped("box", (4, sp.Rational(1, 5), sp.Rational(1, 5)), density=sp.S.One)
     plate = shaped("box", (sp.Rational(1, 5), 2, 2), density=sp.S.One)
-    both = meshed(Composite(parts=(Part(what=bar), Part(what=plate))), {})
-    straight = colors_from_the_back(both, 0, 0)
-    assert len(set(straight)) == 2  # the end of the bar, before the plate
-    assert straight[-1] == colors_from_the_back(meshed(bar, {}), 0, 0)[0]
-    seen = colors_from_the_back(both, 25, 20)
-    alone = set(colors_from_the_back(meshed(bar, {}), 25, 20))
-    is_bar = [color in alone for color in seen]
-    assert is_bar[-1]
-    assert is_bar[0]  # its other half is behind
-    assert sum(is_bar) > len(alone)  # the plate has cut the bar
+    return Composite(parts=(Part(what=bar), Part(what=plate)))
+
+
+def check_order(shape: Shape, drawn: list[tuple[np.ndarray, bool]], view: Camera) -> None:
+    """At points of the picture, what was drawn last is nearest to the viewer."""
+    triangles = [
+        (np.array([face.corners[0], *pair]), face.color == BLUE)
+        for face in shape
+        for pair in pairwise(face.corners[1:])
+    ]
+    rng, count = np.random.default_rng(1), 0
+    for point in rng.uniform(-0.6, 0.6, (400, 2)):
+        last = [is_bar for polygon, is_bar in drawn if is_inside(polygon, point)][-1:]
+        depths = []
+        for corners, is_bar in triangles:
+            flat = corners @ np.array([view.right, view.up]).T
+            edges = (flat[1:] - flat[0]).T
+            if abs(np.linalg.det(edges)) > 1e-9:
+                weights = np.linalg.solve(edges, point - flat[0])
+                if weights.min() > 0.01 and weights.sum() < 0.99:
+                    depth = (corners[0] + weights @ (corners[1:] - corners[0])) @ view.toward
+                    depths.append((depth, is_bar))
+        if last and depths:
+            count += 1
+            assert last[0] == max(depths)[1]
+    assert count > 50
+
+
+def is_inside(polygon: np.ndarray, point: np.ndarray) -> bool:
+    (x, y), (dx, dy) = (polygon - point).T, (np.roll(polygon, -1, axis=0) - polygon).T
+    sides = dx * y - dy * x
+    return bool((sides > 0).all() or (sides < 0).all())
+
+
+@pytest.mark.usefixtures("node")
+def test_what_is_nearer_is_drawn_later_also_where_parts_pierce_each_other():
+    """In the page and in the note, whose camera this is."""
+    motion, view = rs.derive("ZXZ", body=rs.body_of(pierced())), camera(35, 24)
+    shape = own_shape(motion.body)
+    seen = "seenFaces(...given, cameraAt(35, 24, 1)).map(({ points, fill }) => [points, fill])"
+    of_page = of_script(seen, as_data(shape), np.eye(3).tolist())
+    parts = [(np.array(points), [*map(int, fill[4:-1].split())]) for points, fill in of_page]
+    check_order(shape, [(points, color[2] > color[0]) for points, color in parts], view)
+    drawing, _ = body_drawing(motion)
+    facets = [(np.array(f.points), f.color[2] > f.color[0]) for f in drawing.facets]
+    check_order(shape, facets, view)
+
+
+def test_axes_leave_a_body_at_its_surface():
+    drawing, _ = body_drawing(
+        rs.derive("ZXZ", body=rs.body_of(shaped("box", (4, 2, 1), mass=sp.S.One)))
+    )
+    scale = 0.95 / np.linalg.norm([2, 1, 0.5])
+    for stroke, half, axis in zip(drawing.strokes, (2, 1, 0.5), np.eye(3), strict=False):
+        end = camera(35, 24).project(scale * half * axis)
+        assert stroke.points == (pytest.approx((0, 0)), pytest.approx(end))
+
+
+def test_parts_are_turned_and_moved_within_parts():
+    bar = Part(what=shaped("box", (4, 2, 1), density=sp.S.One), at=sp.ImmutableMatrix([5, 0, 0]))
+    quarter = sp.ImmutableMatrix([[0, -1, 0], [1, 0, 0], [0, 0, 1]])
+    at = sp.ImmutableMatrix([0, 0, 7])
+    whole = Composite(parts=(Part(what=Composite(parts=(bar,)), at=at, turned=quarter),))
+    points = np.concatenate([face.corners for face in meshed(whole, {})])
+    assert points.min(axis=0) == pytest.approx([-1, 3, 6.5])
+    assert points.max(axis=0) == pytest.approx([1, 7, 7.5])
 
 
 @pytest.mark.usefixtures("node")
