@@ -49,7 +49,11 @@ def _records(path: Path) -> list[Path]:
     Raises CheckError if there is none.
     """
     if path.is_dir():
-        files = sorted(file for file in path.rglob("*.json") if _is_record(file))
+        files = sorted(
+            file
+            for file in path.rglob("*.json")
+            if file.stem == file.parent.name or content_of(file).get("schema") == SCHEMA
+        )
     else:  # NAME.json is also beside NAME.d.mts
         files = [path.with_name(path.name.partition(".")[0] + ".json")]
     if not any(file.exists() for file in files):
@@ -57,11 +61,6 @@ def _records(path: Path) -> list[Path]:
             f"{path}: no record of a derivation here; expected NAME.json beside generated files"
         )
     return files
-
-
-def _is_record(file: Path) -> bool:
-    """Whether a file is a record, or has the place of one."""
-    return file.stem == file.parent.name or content_of(file).get("schema") == SCHEMA
 
 
 def _findings(record: Path) -> Iterator[tuple[Path, str, str]]:

@@ -62,6 +62,9 @@ def main() -> None:
     except (KeyboardInterrupt, click.Abort):
         message("interrupted")
         status = _INTERRUPTED
+    except MemoryError:
+        message("out of memory")
+        status = 1
     except OSError as error:
         place = f"{error.filename}: " if error.filename else ""
         message(f"{place}{error.strerror or error}")

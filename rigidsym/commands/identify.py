@@ -65,7 +65,20 @@ def command(context: click.Context, /, file: Path | None, **options: Any) -> Non
     texts = {name: options[name] for name in _COUNTS}
     if (file is None) == (not any(texts.values())):
         raise OptionError(["expected a file, or --angles with --matrix or --quaternion"])
-    result = _from_texts(texts, options) if file is None else _from_file(file, options)
+    if file is None:
+        result = _from_texts(texts, options)
+    else:
+        with bar(file.name) as progress:
+            try:
+                result = identify_file(
+                    file,
+                    columns=options["columns"] or None,
+                    tolerance=options["tolerance"],
+                    drops_missing=options["missing"] == "drop",
+                    progress=progress,
+                )
+            except SampleError as error:
+                raise error.of(file) from None
     if options["as_json"]:
         click.echo(json.dumps(result.record(), indent=1, ensure_ascii=False))
     else:
@@ -108,18 +121,3 @@ def _numbers(name: str, text: str, faults: list[str]) -> tuple[list[str], list[f
     if len(words) != _COUNTS[name]:
         faults.append(f"--{name}: expected {_COUNTS[name]} numbers, got {len(words)}")
     return [label for label, _, _ in pairs if label], numbers
-
-
-def _from_file(path: Path, options: Options) -> Identification:
-    """Samples from a file, with a bar if standard error is a terminal."""
-    with bar(path.name) as progress:
-        try:
-            return identify_file(
-                path,
-                columns=options["columns"] or None,
-                tolerance=options["tolerance"],
-                drops_missing=options["missing"] == "drop",
-                progress=progress,
-            )
-        except SampleError as error:
-            raise error.of(path) from None

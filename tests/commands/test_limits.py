@@ -132,6 +132,14 @@ def test_a_check_is_stopped_too(tmp_path, rotations):
     assert isinstance(done.exception, LimitReached), done.output
 
 
+def test_want_of_memory_is_a_message(tmp_path, monkeypatch):
+    def starved(**_: object) -> None:
+        raise MemoryError
+
+    monkeypatch.setattr(commands, "main", starved)
+    assert call("list", cwd=tmp_path, status=1).stderr == "rigidsym: out of memory\n"
+
+
 @pytest.mark.parametrize(
     "arguments",
     [
