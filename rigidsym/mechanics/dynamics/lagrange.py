@@ -147,6 +147,11 @@ class LagrangeEquations(Flow):
         return self.codec.column(self.generalised) - self.codec.column(self.gradient)
 
     @cached_property
+    def needed(self) -> RingMatrix:
+        """Q − h."""
+        return self.codec.column(self.generalised) - self.bias
+
+    @cached_property
     def solved(self) -> Inverse:
         """(n, d) with q̈ = n/d, from M q̈ = Q − h.
 
@@ -155,7 +160,7 @@ class LagrangeEquations(Flow):
         if len(self.rates) == 3:
             above, below = self._solved_by_euler()
         else:
-            above = self.mass_matrix.adjugate() @ (self.codec.column(self.generalised) - self.bias)
+            above = self.mass_matrix.adjugate() @ self.needed
             below = self.mass_matrix.det()
         if not below:
             raise ModelError(
@@ -215,20 +220,6 @@ class LagrangeEquations(Flow):
         left = self.mass_matrix @ self.codec.column(self.accelerations) + self.bias  # M q̈ + h
         return self._scalar(value).dt() - self.q_dot.T @ left - self.driving
 
-    @property
-    def slopes_by_rates(self) -> RingMatrix:
-        """∂T/∂q̇ of T as it is written."""
-        return self.codec.column([sp.diff(self.kinetic, rate) for rate in self.rates])
-
-    def form_of_rates(self, matrix: RingMatrix) -> RingMatrix:
-        """q̇ᵀ M q̇."""
-        return self.q_dot.T @ matrix @ self.q_dot
-
-    @property
-    def twice_quadratic(self) -> RingMatrix:
-        """2T as it is written."""
-        return self._scalar(2 * self.kinetic)
-
     @cached_property
     def coriolis(self) -> RingMatrix:
         """C q̇ = h − ∂V/∂q with the skew Ṁ − 2C, by Christoffel's symbols of M."""
@@ -249,15 +240,6 @@ class LagrangeEquations(Flow):
             for i in places
         ]
         return RingMatrix.of(self.ring, rows)
-
-    def skew_part(self, coriolis: RingMatrix) -> RingMatrix:
-        """Ṁ − 2C."""
-        return self.mass_matrix.dt() - coriolis - coriolis
-
-    def left_over(self, above: RingMatrix, below: PolyElement) -> RingMatrix:
-        """M q̈ + h − Q for the accelerations above/below, times their divisor."""
-        bias = self.bias - self.codec.column(self.generalised)
-        return self.mass_matrix @ above + bias.scale(below)
 
     @property
     def hamiltonian(self) -> sp.Expr:

@@ -97,9 +97,10 @@ energy = Quantity(
 
 
 def _slopes(T: str) -> tuple[Law, ...]:
-    return (
-        law(rf"\p = \frac{{\partial {T}}}{{\partial\dot\q}}", lambda k, x: k.slopes_by_rates - x),
-    )
+    def residual(k: Any, x: Any) -> Any:
+        return k.codec.column([sp.diff(k.kinetic, rate) for rate in k.rates]) - x
+
+    return (law(rf"\p = \frac{{\partial {T}}}{{\partial\dot\q}}", residual),)
 
 
 generalised_momenta = Quantity(
@@ -128,7 +129,7 @@ generalised_momenta = Quantity(
 
 def _form(T: str) -> tuple[Law, ...]:
     claim = rf"\dot\q^T\M\dot\q = 2{T}"
-    return (law(claim, lambda k, x: k.form_of_rates(x) - k.twice_quadratic),)
+    return (law(claim, lambda k, x: k.q_dot.T @ x @ k.q_dot - k.codec.column([2 * k.kinetic])),)
 
 
 mass_matrix = Quantity(
@@ -199,7 +200,7 @@ coriolis_matrix = Quantity(
         ),
         law(
             r"\left(\dot\M - 2\C\right) + \left(\dot\M - 2\C\right)^T = 0",
-            lambda k, x: k.skew_part(x) + k.skew_part(x).T,
+            lambda k, x: k.mass_matrix.dt() + k.mass_matrix.dt().T - (x + x.T) - (x + x.T),
         ),
     ),
     without="it is written only for one body with at most four turns",
@@ -217,7 +218,7 @@ accelerations = Quantity(
     definition=formula(r"\M^{-1}\left(\Q - \h\right)"),
     source=SOURCES["Goldstein 1.4"],
     value=lambda k: k.solved,
-    laws=(law(r"\M\ddot\q + \h = \Q", lambda k, x: k.left_over(*x)),),
+    laws=(law(r"\M\ddot\q + \h = \Q", lambda k, x: k.mass_matrix @ x[0] - k.needed.scale(x[1])),),
     reason="solved",
     section=MOTION,
     is_result=True,
