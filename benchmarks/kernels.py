@@ -21,7 +21,7 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from benchmarks.measure import Settings, Spread, interleaved, on_one_core, progress, ratios, timed
-from benchmarks.report import Cell, Column, Figure, Report, Table, machine, spread_columns
+from benchmarks.report import Cell, Column, Figure, Report, Table, machine
 from rigidsym.kernels.targets import TARGETS
 from rigidsym.models.body import principal_moments
 from rigidsym.motion import Motion, derive
@@ -219,7 +219,7 @@ def measured(name: str, size: int, repeats: int, layout: str = "rows", **options
 
 
 def run(settings: Settings) -> Report:
-    """Every side, Ω′ and R, with `out` given: medians, then ratios turn by turn."""
+    """Every side, Ω′ and R, with `out` given."""
     repeats = settings.repeats or 15
     with on_one_core():
         cases = {
@@ -248,14 +248,6 @@ def report(cases: Mapping[tuple[int, str], Turns]) -> Report:
             for side in there
         ),
     )
-    rows: list[tuple[Cell, ...]] = [
-        (heads[key], above, below, *ratios(turns[above], turns[below]).in_order())
-        for key, turns in cases.items()
-        for below in ("numpy", "c")
-        for above in there
-        if above != below and above in turns and below in turns
-    ]
-    titles = (Column("case"), Column("time of"), Column("over ours"), *spread_columns("ratio", 2))
     figures = [
         Figure(
             f"{heads[key]}: {ours} against {peer}",
@@ -270,7 +262,7 @@ def report(cases: Mapping[tuple[int, str], Turns]) -> Report:
     ]
     return Report(
         title="Kernels: one core, float64, ZXZ",
-        tables=(medians, Table("Ratios, turn by turn", titles, tuple(rows))),
+        tables=(medians,),
         figures=tuple(figures),
         documented=medians,
     )

@@ -36,7 +36,6 @@ NAMES = (
     "sizes",
     "accuracy",
     "bounds",
-    "notes",
     "motion",
     "rosetta",
     "certificates",

@@ -8,7 +8,6 @@ import shutil
 import subprocess
 from dataclasses import replace
 from fractions import Fraction
-from random import Random
 
 import numpy as np
 import pytest
@@ -19,7 +18,6 @@ import rigidsym as rs
 from helpers.motions import derived
 from helpers.node import load
 from helpers.target_modules import EVERY
-from helpers.witness import mp
 from rigidsym.algebra.stable_forms import Stumpff
 from rigidsym.errors import KernelError
 from rigidsym.kernels import ir
@@ -28,7 +26,6 @@ from rigidsym.kernels.ir import (
     Call,
     Choice,
     Compare,
-    Expression,
     Guarded,
     Name,
     Negative,
@@ -414,52 +411,6 @@ def test_the_margin_is_scaled_to_one_if_its_largest_value_is_known(name, value, 
     assert (found.symbol, found.shape, infix(found.outputs[0])) == (symbol, (), value)
     assert found.about == f"how far the coordinates are from a singular orientation{end}"
     assert [a.name for a in found.arguments] == ["q"]
-
-
-VALUES = {name: mp.mpf(k) / 7 for name, k in zip("abcde", (3, -5, 11, 16, -2), strict=True)}
-NUMBERS = [Number(Fraction(n)) for n in (2, -3, Fraction(1, 3), Fraction(-7, 5), Fraction(1, 2))]
-
-
-def random_tree(rng: Random, depth: int) -> Expression:
-    if depth == 0 or rng.random() < 0.15:
-        return rng.choice([*map(Name, VALUES), *NUMBERS, Call("sin", Name("a"))])
-    some = [random_tree(rng, depth - 1) for _ in range(rng.randint(1, 3))]
-    kind = rng.randrange(4)
-    if kind == 0:
-        return Negative(some[0])
-    if kind == 1:
-        return Sum(tuple(some))
-    others = [random_tree(rng, depth - 1) for _ in range(rng.randint(0, 2))]
-    return Product(tuple(some), tuple(others))
-
-
-def value_of(tree: Expression) -> object:
-    match tree:
-        case Name(text):
-            return VALUES[text]
-        case Number(value):
-            return mp.mpf(value.numerator) / value.denominator
-        case Negative(operand):
-            return -value_of(operand)
-        case Sum(terms):
-            return mp.fsum(map(value_of, terms))
-        case Product(factors, divisors):
-            above, below = (mp.fprod(map(value_of, side)) for side in (factors, divisors))
-            return above / below
-    assert isinstance(tree, Call)
-    return mp.sin(VALUES[tree.argument.text])
-
-
-def test_an_expression_has_the_value_of_its_tree():
-    for k in range(400):
-        tree = random_tree(Random(f"tree:{k}"), 1 + k % 4)
-        try:
-            expected = value_of(tree)
-        except ZeroDivisionError:
-            continue
-        exact = re.sub(r"\d+\.\d+", r"mpf(\g<0>)", infix(tree))
-        found = eval(exact, {"mpf": mp.mpf, "sin": mp.sin, **VALUES})
-        assert mp.fabs(found - expected) <= mp.mpf(10) ** -35 * (1 + mp.fabs(expected)), tree
 
 
 OVER = Compare("<", Sum((a, b)), c)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from itertools import product
 
 import numpy as np
 import pytest
@@ -12,12 +11,11 @@ import rigidsym as rs
 from benchmarks.bounds import PUBLISHED, bounded_kernels, gappa_bound, rigid_body
 from helpers.motions import derived
 from helpers.node import load
-from helpers.target_modules import EVERY, SPECIAL, row_by_row
+from helpers.target_modules import SPECIAL, row_by_row
 from helpers.witness import evaluate, mp
 from rigidsym.kernels.ir import Assignment, Call, Kernel, KernelArgument, Name, Number, Product, Sum
 from rigidsym.kernels.lowering.lower import lower
 from rigidsym.kernels.lowering.rounding import Bounded, largest_error, rounding
-from rigidsym.kernels.targets import TARGETS
 from rigidsym.models.library import PARAMETRISATIONS
 
 A, B, ONE, TENTH = Name("a"), Name("b"), Number(Fraction(1)), Number(Fraction(1, 10))
@@ -131,28 +129,3 @@ def ratios(motion, target, dtype, count: int) -> dict[str, float]:
 def test_measured_errors_are_within_the_bounds_over_the_catalogue(rotation):
     found = ratios(rs.derive(rotation), "numpy", np.float64, 8)
     assert all(ratio <= 1.0 for ratio in found.values()), found
-
-
-JITTED = ("rotation_matrix", "angular_velocity_space", "rates_from_angular_velocity_body")
-
-
-@pytest.mark.campaign
-@pytest.mark.parametrize(
-    ("rotation", "target"),
-    # NumPy has all rotations above
-    [
-        *(
-            pytest.param(rotation, *target.values, marks=target.marks)
-            for rotation, target in product(["ZXZ", "rotation_vector"], EVERY)
-        ),
-        (TURNS[1], "c"),
-        (TURNS[1], "javascript"),
-    ],
-)
-def test_measured_errors_are_within_the_bounds_in_every_target(rotation, target):
-    # each function and each type is compiled: these take a second each
-    only = JITTED if target in ("numba", "jax") else ()
-    for dtype in (np.float64, np.float32)[: 1 + TARGETS[target].has_single]:
-        found = ratios(rs.derive(rotation, only), target, dtype, 32)
-        assert all(ratio <= 1.0 for ratio in found.values()), found
-        assert found["angular_velocity_space"] > 0.01  # the bounds are not idle
