@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import sympy as sp
 
 import rigidsym as rs
 from helpers.command import call
@@ -296,6 +297,25 @@ def test_a_matrix_fills_an_out_of_any_strides(both, out):
     q = np.random.default_rng(4).uniform(-3, 3, (5, 3))
     assert compiled.rotation_matrix(q, out=out) is out
     np.testing.assert_array_equal(out, compiled.rotation_matrix(q))
+
+
+def test_a_number_and_one_row_serve_all_orientations_without_preparation():
+    """The right-hand side of many tops, whose time and constants are the same."""
+    a, c = sp.symbols("A C")
+    body = rs.principal_moments(a, a, c)
+    motion = rs.derive("ZXZ", ["state_derivative"], body=body, potential="m*g*l*cos(theta)")
+    compiled, count = motion.kernels("c").load(), 70
+    y = np.random.default_rng(6).uniform(0.3, 3, (count, 6))
+    constants = np.linspace(1, 2, len(motion.argument("parameters").names))
+    rows = np.tile(constants, (count, 1))
+    for time in (0.5, np.float64(0.5), np.array(0.5), np.full(count, 0.5)):
+        expected = compiled.state_derivative(np.full(count, 0.5), y, rows)
+        assert compiled._compiled.state_derivative(time, y, constants, None) is not None
+        np.testing.assert_array_equal(compiled.state_derivative(time, y, constants), expected)
+        found = compiled.state_derivative(time, y, constants, threads=2)  # prepared in Python
+        np.testing.assert_array_equal(found, expected)
+    single = compiled.state_derivative(0.5, y.astype(np.float32), constants.astype(np.float32))
+    assert single.dtype == np.float64  # a plain number is one
 
 
 def test_the_memory_of_a_large_result_is_used_again_when_nobody_refers_to_it(both):
