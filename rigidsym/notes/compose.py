@@ -18,32 +18,24 @@ from jinja2 import TemplateRuntimeError
 
 from rigidsym.errors import offer
 from rigidsym.formula.display import PAGE, Display, display
-from rigidsym.formula.letters import Letters, is_negative
 from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.formula.reader import formula, text_of
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import (
     COMMA,
-    MINUS,
-    NOTHING,
     Bracket,
     Formula,
-    Matrix,
-    bracketed,
     joined,
-    row,
 )
-from rigidsym.mechanics.conversions.function import SHEPPERD, outer_product
+from rigidsym.mechanics.conversions.function import SHEPPERD
 from rigidsym.mechanics.derivation import (
     OF_RATES,
-    Argument,
     Derivation,
     Proof,
     Statement,
     Step,
     phrases,
 )
-from rigidsym.mechanics.particles import MASS
 from rigidsym.mechanics.quantities.kinematics import ROTATION
 from rigidsym.models.parametrisations import GIVEN
 from rigidsym.models.rotation import SOURCES, Citation, hat, lecture
@@ -59,13 +51,14 @@ from rigidsym.notes.document import (
     Text,
     said,
 )
+from rigidsym.notes.equations import claims_of, columns_of_matrix, equation_of, sums
 from rigidsym.notes.facts.mass import mass_facts, number
 from rigidsym.notes.facts.motion import motion_facts
 from rigidsym.notes.facts.rotation import RotationFacts, facts_of_rotation, product_of
 from rigidsym.notes.facts.singular import singular_facts
 from rigidsym.notes.facts.symbols import SymbolFacts
 from rigidsym.notes.fitting import Fitter, as_vectors, definitions
-from rigidsym.notes.letters import entries_of, letters_of
+from rigidsym.notes.letters import letters_of
 from rigidsym.notes.named_body import OFFSET, in_names, textbook_form
 from rigidsym.notes.template import blocks_of, sections_of
 from rigidsym.notes.words import (
@@ -84,7 +77,6 @@ _SECTIONS = (
     *("body", "inertia", "energy", "momentum", "motion"),
 )
 _IN_A_ROW = ("radii_of_gyration", "inertia_ellipsoid")
-_SUM = formula(r"\sum_i m_i")
 _DIAGONAL = formula("(I'_{11}, I'_{22}, I'_{33})")
 _WHERE_SHOWN = {  # what has no equation of its own in the lecture, and the one that it belongs to
     "rotation_rate": "velocity_by_the_rotation",
@@ -98,11 +90,6 @@ _WHERE_SHOWN = {  # what has no equation of its own in the lecture, and the one 
     "entries_of_inertia": "inertia_of_particles",
     "moment_about_a_line": "inertia_of_particles",
 }
-
-
-def template_of(style: str) -> str:
-    """The name of the template of a style: lecture is en/lecture, and fr/lecture is itself."""
-    return style if "/" in style else f"en/{style}"
 
 
 class Composer:
@@ -373,59 +360,9 @@ class Composer:
         return sorted(once.values(), key=lambda pair: numbers[pair[0].label])
 
 
-def claims_of(proofs: Iterable[Proof]) -> tuple[tuple[Formula, ...], tuple[Formula, ...]]:
-    """The proved claims, and the unproved ones."""
-    proofs = list(proofs)
-    return (
-        tuple([proof.claim for proof in proofs if proof.is_exact]),
-        tuple([proof.claim for proof in proofs if not proof.is_exact]),
-    )
-
-
-def equation_of(step: Step, arguments: Iterable[Argument]) -> Equation:
-    """The numbered equation of a step."""
-    quantity = step.quantity
-    proved, unproved = claims_of(step.proofs)
-    is_scalar = quantity.shape == "scalar"
-    is_matrix = not (is_scalar or step.recursion)
-    definition = step.recursion or quantity.definition
-    return Equation(
-        sides=(quantity.symbol, *([] if definition == NOTHING else [definition])),
-        matrix=step.expression if is_matrix else None,
-        scalar=step.expression[0] if is_scalar else None,
-        entries=entries_of(step, arguments) if is_matrix else (),
-        number=step.number,
-        label=quantity.name,
-        proved=proved,
-        unproved=unproved,
-    )
-
-
-def sums(statement: Statement, letters: Letters) -> Matrix | None:
-    """The matrix of sums; None where the statement has no summands."""
-    if statement.summands is None:
-        return None
-    rows = statement.summands.tolist()
-    return Matrix(tuple(tuple(_sum(entry, letters) for entry in line) for line in rows))
-
-
-def _sum(summand: sp.Expr, letters: Letters) -> Formula:
-    """Σ mᵢ (b² + c²): the mass first."""
-    minus = is_negative(summand)
-    rest = (-summand if minus else summand) / MASS
-    whole = row(_SUM, bracketed(formula_of(rest, letters)))
-    return row(MINUS, whole) if minus else whole
-
-
 def _ended(equation: Equation, side: Formula) -> Equation:
     """The equation with one more side in place of its entries."""
     return replace(equation, sides=(*equation.sides, side), matrix=None, entries=())
-
-
-def columns_of_matrix() -> sp.ImmutableMatrix:
-    """K(R), (4, 4), in the entries of R; each column is a multiple of the quaternion."""
-    entries = sp.Matrix(3, 3, lambda i, j: sp.Symbol(f"R_{i + 1}{j + 1}"))
-    return sp.ImmutableMatrix(outer_product(entries))
 
 
 def _call(step: Step) -> str:

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import chain, zip_longest
-from typing import NamedTuple, TypeVar
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 from rigidsym.errors import ModelError
 from rigidsym.formula.display import Equation as Equation
@@ -19,7 +19,9 @@ from rigidsym.formula.reader import sentence
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import phrases
 from rigidsym.models.rotation import Citation
-from rigidsym.notes.figure.drawing import Drawing
+
+if TYPE_CHECKING:
+    from rigidsym.notes.figure.drawing import Drawing
 
 
 class Code(NamedTuple):

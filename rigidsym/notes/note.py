@@ -12,7 +12,6 @@ from rigidsym.errors import ModelError
 from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.notes import formats
-from rigidsym.notes.compose import Composer, template_of
 from rigidsym.notes.document import (
     Document,
 )
@@ -69,6 +68,9 @@ def note(
     """
     computed = [step.quantity.name for step in derivation.steps if step.quantity.inputs]
     names = computed if functions is None else functions
+    # composing draws figures, for which NumPy is imported; a style is checked without
+    from rigidsym.notes.compose import Composer
+
     composer = Composer(
         derivation,
         module=module,
@@ -81,6 +83,11 @@ def note(
 
 
 STYLES = ("lecture", "audit")  # that are shipped, the default first
+
+
+def template_of(style: str) -> str:
+    """The name of the template of a style: lecture is en/lecture, and fr/lecture is itself."""
+    return style if "/" in style else f"en/{style}"
 
 
 def check_style(style: str) -> str:

@@ -13,7 +13,7 @@ import re
 from collections.abc import Iterable, Iterator
 from contextvars import ContextVar
 from itertools import groupby
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import sympy as sp
 from jinja2 import TemplateRuntimeError, Undefined, pass_context
@@ -39,8 +39,10 @@ from rigidsym.notes.document import (
     Strong,
     Text,
 )
-from rigidsym.notes.figure.drawing import Drawing
 from rigidsym.system import resources
+
+if TYPE_CHECKING:
+    from rigidsym.notes.figure.drawing import Drawing
 
 _FIRST = 0xE000  # of the private use area, whose letters no font has
 _MARK = "[\ue000-\uf8ff]"

@@ -14,8 +14,8 @@ from rigidsym.formula.scalars import factored, listed_entries
 from rigidsym.mechanics.kinematics.vector_forms import LENGTH
 from rigidsym.models.library import PARAMETRISATIONS, PRESETS, rotation_from
 from rigidsym.models.rotation import hat
-from rigidsym.notes.compose import equation_of
 from rigidsym.notes.document import Document, Equation, EquationReference, Paragraph
+from rigidsym.notes.equations import equation_of
 from rigidsym.notes.letters import length_of, letters_of
 from rigidsym.notes.vectors import (
     by_half_angle,

@@ -20,8 +20,8 @@ from rigidsym.mechanics.derivation import Derivation, Place, Proof, Singularity
 from rigidsym.mechanics.derive import derive
 from rigidsym.models.parametrisations import EulerAngles, given
 from rigidsym.models.rotation import LECTURE, elementary, time_function
-from rigidsym.notes.compose import equation_of
 from rigidsym.notes.document import Cited, Document, EquationReference, NoteTable, Paragraph
+from rigidsym.notes.equations import equation_of
 from rigidsym.notes.facts.singular import PointFacts
 from rigidsym.notes.formats.terminal import show
 from rigidsym.notes.note import STYLES, note

@@ -31,8 +31,6 @@ from rigidsym.mechanics.quantities.mass import MASS
 from rigidsym.mechanics.quantities.table import is_quaternion
 from rigidsym.models.rotation import RotationModel, Turn, by_axis, carried_axes
 from rigidsym.notes.document import Equation, EquationRow, Figure, NoteBlock, Text
-from rigidsym.notes.figure.drawing import drawn
-from rigidsym.notes.figure.scene import scene_of
 from rigidsym.notes.template import figure_with
 from rigidsym.notes.words import symbols_of, unit_in_words, with_symbols
 
@@ -136,6 +134,10 @@ class RotationFacts:
     @cached_property
     def figure(self) -> Figure | None:
         """Of a product of turns, or of one turn about a vector; None for any other model."""
+        # figures need NumPy, which the text of a terminal does without
+        from rigidsym.notes.figure.drawing import drawn
+        from rigidsym.notes.figure.scene import scene_of
+
         scene = scene_of(self.model, self.letters)
         if scene is None:
             return None
@@ -236,6 +238,8 @@ def product_of(turns: Iterable[Turn], letters: Letters) -> Formula:
 
 def axes_of_turns(model: RotationModel, letters: Letters) -> list[Formula]:
     """The unit vectors about which the turns are made, named after the figure: e_z, e_N, e_z′."""
+    from rigidsym.notes.figure.scene import scene_of
+
     scene = scene_of(model, letters)
     posed = scene.posed(scene.view.angles) if scene else None
     rays = [posed.named(arc.axis) for arc in posed.arcs] if posed else []

@@ -13,7 +13,7 @@ from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.notation import Notation
 from rigidsym.mechanics.derivation import Argument, Derivation, Step
 from rigidsym.models.rotation import RotationModel
-from rigidsym.notes.compose import equation_of
+from rigidsym.notes.equations import equation_of
 from rigidsym.notes.fitting import as_vectors
 from rigidsym.notes.formats.terminal import show, show_step
 from rigidsym.notes.letters import letters_of

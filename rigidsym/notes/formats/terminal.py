@@ -15,9 +15,8 @@ from rigidsym.formula.tree import equal
 from rigidsym.mechanics.derivation import Argument, Derivation, Step
 from rigidsym.mechanics.quantities.kinematics import BODY, ROTATION, SPACE
 from rigidsym.models.rotation import RotationModel
-from rigidsym.notes.compose import columns_of_matrix, equation_of, sums
 from rigidsym.notes.document import Equation, Paragraph
-from rigidsym.notes.facts.mass import mass_facts
+from rigidsym.notes.equations import columns_of_matrix, equation_of, sums
 from rigidsym.notes.facts.rotation import facts_of_rotation, product_of
 from rigidsym.notes.facts.singular import singular_facts
 from rigidsym.notes.letters import RESIDUAL, letters_of
@@ -115,9 +114,11 @@ def _screen(
                     yield block.text  # or Σ₁ would have no meaning
         yield from texts_of("en/singular", letters, **facts)
 
-    mass = mass_facts(derivation, letters)
-    if lines := list(mass.lines()) if mass else []:
-        yield from _under("In numbers")
+    if derivation.body is not None:
+        from rigidsym.notes.facts.mass import MassFacts
+
+        lines = list(MassFacts(derivation, derivation.body, letters).lines())
+        yield from _under("In numbers") if lines else ()
         yield from (INDENT + line for line in lines)
 
     back = conversions and conversions.inverse
