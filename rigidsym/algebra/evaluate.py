@@ -211,13 +211,13 @@ class Floats:
 
     def __init__(self, module: Any) -> None:
         self._module = module
-        self._functions = {
+        self.by_name = {
             name: getattr(module, own)
             for name, names in self._NAMES.items()
             for own in names
             if hasattr(module, own)
         }
-        self.functions = frozenset(self._functions)
+        self.functions = frozenset(self.by_name)
 
     def number(self, numerator: int, denominator: int) -> float:
         return numerator / denominator
@@ -230,19 +230,14 @@ class Floats:
         return (base + 0.0) ** (int(exponent) if exponent.is_Integer else float(exponent))
 
     def apply(self, name: str, whole: sp.Expr, *values: Any) -> Any:  # noqa: ARG002
-        return self._functions[name](*values)
+        return self.by_name[name](*values)
 
 
-_IN_FLOATS: dict[type[sp.Basic], Callable[..., float]] = {
-    sp.Add: lambda *parts: sum(parts),
-    sp.Mul: lambda *parts: math.prod(parts),
-    sp.Pow: pow,
-    sp.Abs: abs,
-    **{getattr(sp, name): getattr(math, name) for name in ("sin", "cos", "tan", "exp", "log")},
-    **{getattr(sp, f"{name}h"): getattr(math, f"{name}h") for name in ("sin", "cos", "tan")},
-    **{
-        getattr(sp, f"a{name}"): getattr(math, f"a{name}") for name in ("sin", "cos", "tan", "tan2")
-    },
+_IN_FLOATS: dict[str, Callable[..., float]] = {
+    "Add": lambda *parts: sum(parts),
+    "Mul": lambda *parts: math.prod(parts),
+    "Pow": pow,
+    **Floats(math).by_name,
 }
 
 
@@ -256,11 +251,11 @@ def function_of(
         number = float(expression)
         return lambda _: number
     name = expression.func.__name__
-    if name in _REWRITTEN and expression.func not in _IN_FLOATS:
+    if name in _REWRITTEN and name not in _IN_FLOATS:
         return function_of(_REWRITTEN[name](*expression.args), symbols)
-    if expression.func not in _IN_FLOATS:
+    if name not in _IN_FLOATS:
         raise Unknown(expression)
-    function = _IN_FLOATS[expression.func]
+    function = _IN_FLOATS[name]
     parts = [function_of(part, symbols) for part in expression.args]
     if len(parts) > 1:
         return lambda values: function(*[part(values) for part in parts])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from itertools import combinations
+from itertools import combinations, product
 from operator import add, mul, sub
 from typing import Any
 
@@ -207,26 +207,19 @@ class RingMatrix:
             pairs = combinations(self.rows, 2)
             normal = next(n for u, v in pairs if any(n := cross(self.ring, u, v)))
             return RingMatrix.column(self.ring, primitive(self.ring, normal))
-        vectors: dict[Row, None] = {}
-        for rows, pivots in self._regular_parts(rank):
+        parts: list[tuple[RingMatrix, Sequence[Row], Sequence[int]]] = []
+        for rows, pivots in product(
+            combinations(self.rows, rank), combinations(range(width), rank)
+        ):
             square = self._part(rows, pivots)
-            found = list(_solutions(square, rows, pivots, width))
-            if square.det().is_ground:
-                return RingMatrix(self.ring, tuple(found)).T
-            vectors |= dict.fromkeys(found)
+            determinant = square.det()
+            if determinant and determinant.is_ground:  # it is regular everywhere
+                parts = [(square, rows, pivots)]
+                break
+            if determinant:
+                parts.append((square, rows, pivots))
+        vectors = dict.fromkeys(v for part in parts for v in _solutions(*part, width))
         return RingMatrix(self.ring, tuple(vectors)).T
-
-    def _regular_parts(self, rank: int) -> list[tuple[Sequence[Row], Sequence[int]]]:
-        """Rows and columns of the regular parts; only one if its determinant is constant."""
-        found: list[tuple[Sequence[Row], Sequence[int]]] = []
-        for rows in combinations(self.rows, rank):
-            for columns in combinations(range(self.shape[1]), rank):
-                determinant = self._part(rows, columns).det()
-                if determinant.is_ground and determinant:
-                    return [(rows, columns)]
-                if determinant:
-                    found.append((rows, columns))
-        return found
 
     def right_inverse(self, bound: RingMatrix | None = None) -> Inverse | None:
         """G (n, 3) and d with W G = d 1, for a rate matrix W (3, n); None if there is none.

@@ -98,19 +98,6 @@ def test_a_constraint_holds_for_all_time():
     assert are_equal(8 * x * x.diff(TIME), -6 * y * y.diff(TIME), 4 * x**2 + 3 * y**2 - 1)
 
 
-def test_a_constraint_teaches_what_a_function_obeys():
-    hyperbola = sp.cosh(u) ** 2 - sp.sinh(u) ** 2 - 1
-    assert are_equal(sp.cosh(u) ** 2, 1 + sp.sinh(u) ** 2, hyperbola)
-    assert not are_equal(sp.cosh(u) ** 2, 1 + sp.sinh(u) ** 2)
-
-
-def test_contradictory_constraints_are_refused():
-    with pytest.raises(AlgebraError, match="contradict"):
-        codec_for([x], constraints=[x - 1, x - 2])
-    with pytest.raises(AlgebraError, match="contradict"):
-        codec_for([sin(a)], constraints=[sin(a) ** 2 + cos(a) ** 2])
-
-
 def test_generators_are_as_few_as_can_be():
     def held(*expressions):
         return {generator.expression for generator in codec_for(expressions).ring.generators}

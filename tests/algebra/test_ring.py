@@ -146,21 +146,6 @@ def test_new_relations_replace_what_was_remembered():
     assert ring.reduce(q**2) == q**2
 
 
-def test_whole_numbers_and_fractions_give_one_normal_form():
-    whole, field = circle(has_fractions=False), circle(has_fractions=True)
-    for ring in (whole, field):
-        s, c, _, m = ring.polynomials.gens
-        assert ring.is_zero((s**2 + c**2) ** 3 * m - m)
-        assert not ring.is_zero(s**2 - c**2)
-
-
-def test_a_ring_with_an_opaque_function_is_not_complete():
-    plain = ring_of(x)
-    dark = Ring([Generator(expression=sp.cosh(x), opaque=True), Generator(expression=x)])
-    assert plain.complete
-    assert not dark.complete
-
-
 class TestQuotient:
     ring = RINGS["circle"]
     s, c, rate, m = ring.polynomials.gens

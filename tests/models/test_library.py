@@ -17,7 +17,7 @@ from helpers.parametrisations import (
     nearly_straight,
     values_on,
 )
-from helpers.witness import derivative, evaluate, hat, mp, number, paths, unhat
+from helpers.witness import evaluate, hat, mp, number
 from rigidsym.errors import ExpressionError, ModelError, QuantityError
 from rigidsym.mechanics.derive import derive as derivation_of
 from rigidsym.models.library import PARAMETRISATIONS, PRESETS, rotation_from
@@ -82,19 +82,6 @@ def test_the_rotation_vector_has_the_form_of_the_textbooks():
     expected = [1, (1 - sp.cos(n)) / n**2, (n - sp.sin(n)) / n**3]
     for term, coefficient in zip(terms, expected, strict=True):
         assert sp.expand(term.coefficient - coefficient) == 0
-
-
-def test_eight_turns_are_proved_turn_by_turn():
-    text = " ".join(f"{axis}(a_{k})" for k, axis in enumerate("zxzyxzyx", start=1))
-    names = ("angular_velocity_space", "angular_velocity_body")
-    motion = derivation_of(rotation_from(text), only=names)
-    assert motion.is_proved
-    assert tuple(step.quantity.name for step in motion.steps) == names
-    path = paths(1, size=8)[0]
-    values = values_on(motion, lambda t: list(path.at(t)))
-    build = chain_witness(motion)
-    spin = derivative(lambda t: build(list(path.at(t)))) * build(list(path.at(0))).T
-    assert agree(evaluate(motion.angular_velocity_space, values), unhat(spin))
 
 
 @pytest.mark.parametrize("name", ["quaternion", "unit_quaternion"])

@@ -153,10 +153,10 @@ def _euler_rule(model: RotationModel) -> InverseRule | None:
         other = -1 if order[0] == 2 else 1
         chosen = values.let("half_difference", Where(is_low, other * total, difference))
         total = values.let("half_sum", Where(is_high, other * difference, total))
-        alpha = values.wrapped("first", total + chosen)
-        gamma = values.wrapped("last", total - chosen)
+        first_angle = values.wrapped("first", total + chosen)
+        last_angle = values.wrapped("last", total - chosen)
         offset = sp.Float(float(sp.pi / 2)) if quarters else sp.S.Zero
-        return alpha, sign * (2 * sp.atan2(near, far) - offset), gamma
+        return first_angle, sign * (2 * sp.atan2(near, far) - offset), last_angle
 
     def of_quaternion(values: NamedValues, quaternion: Vector) -> Vector:
         parts = map(sp.expand, in_frame(quaternion))
@@ -169,11 +169,8 @@ def _euler_rule(model: RotationModel) -> InverseRule | None:
         turned = (frame.T * sp.Matrix(3, 3, matrix) * fixed * frame).applyfunc(sp.expand)
         return angles_of(values, shepperd(values, turned))
 
-    half, sigma, delta = (
-        sign * angles[1] / 2,
-        (angles[0] + angles[2]) / 2,
-        (angles[0] - angles[2]) / 2,
-    )
+    alpha, beta, gamma = angles
+    half, sigma, delta = sign * beta / 2, (alpha + gamma) / 2, (alpha - gamma) / 2
     cosine = along * sp.cos(half) - across * sp.sin(half)
     sine = along * sp.sin(half) + across * sp.cos(half)
     expected = (
