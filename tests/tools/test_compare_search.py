@@ -405,7 +405,7 @@ CHANGED = {  # statements of a function of phi and psi: what its matrix is
     f"phi = 2*phi; {SINES}; return {TURN}": "",
     f"phi, psi = psi, phi; {SINES}; return {TURN}": "in (psi)",
     f"{SINES}; M = {TURN}; M[0, 1] = s; return M": "entry (1, 2): sin(phi) should be -sin(phi)",
-    f"{SINES}; M = {TURN}; change(M); return M": "",
+    f"{SINES}; M = {TURN}; change(M); return M": "equal to",  # before it is changed
     f"{SINES}; M = {TURN}; N = M; N[0, 1] = s; return M": "entry (1, 2)",
     f"{SINES}\n    if flip: s = -s\n    return {TURN}": "",
     f"{SINES}\n    if flip: return None\n    return {TURN}": "equal to",
@@ -423,7 +423,7 @@ CHANGED = {  # statements of a function of phi and psi: what its matrix is
     f"{SINES}; M = {TURN}; N = M; N *= -1; return M": "",
     f"{SINES}\n    try: g()\n    except OSError: s = -s\n    return {TURN}": "",
     f"{SINES}; return np.array([c, -s, 0, s, c, 0, 0, 0, 1]).reshape((3, 3), order='F')": "",
-    f"phi = psi % 1.4; {SINES}; return {TURN}": "",
+    f"phi = psi % 1.4; {SINES}; return {TURN}": "; not read: phi in line 3",
     f"q = psi % 1.4; {SINES.replace('phi', 'q')}; return {TURN}": "; not read: q in line 3",
     f"turn = lambda phi: {TURN.replace('c', 'np.cos(phi)').replace('s,', 'np.sin(phi),')}; "
     f"{SINES}; return {TURN}": "equal to",

@@ -76,7 +76,9 @@ SPELLINGS = {f + end: f for f in FUNCTIONS for end in "fFl"} | {  # of functions
 }
 _SHORT = {"c": "cos", "s": "sin", "t": "tan", "C": "cos", "S": "sin", "T": "tan"}
 CONSTANTS = dict.fromkeys(("pi", "M_PI", "PI", "Pi"), sp.pi)
-CONSTANTS |= {"M_PI_2": sp.pi / 2, "HALF_PI": sp.pi / 2, "DEG_TO_RAD": sp.pi / 180}
+CONSTANTS |= dict.fromkeys(("M_PI_2", "HALF_PI"), sp.pi / 2)
+CONSTANTS |= dict.fromkeys(("DEG_TO_RAD", "DEG2RAD"), sp.pi / 180)
+CONSTANTS |= dict.fromkeys(("RAD_TO_DEG", "RAD2DEG"), 180 / sp.pi)
 
 
 def _of_fitting_sizes(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -126,8 +128,8 @@ def called(name: str, values: list[Any], functions: Mapping[str, Any] | None = N
         name = _SHORT.get(name, name)
     if name in ("sind", "cosd", "tand"):
         return called(name[:-1], [called("deg2rad", values)])
-    if name in ("deg2rad", "radians"):
-        return combined("*", Sized.atom(sp.pi / 180), *values)
+    if name in ("deg2rad", "rad2deg"):
+        return combined("*", Sized.atom(sp.pi / 180 if name == "deg2rad" else 180 / sp.pi), *values)
     if name in ("pow", "sq"):
         exponent = values[1] if name == "pow" else Sized.number(sp.Integer(2))
         return combined("**", values[0], exponent)

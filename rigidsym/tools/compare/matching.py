@@ -31,14 +31,17 @@ from rigidsym.tools.compare.quantities import (
     are_angles,
     catalogue,
     evaluated,
-    is_reflection,
+    is_in_own_names,
+    is_orthogonal,
     near,
     readings,
+    stem_of,
     target,
 )
 
 _MOST_REPAIRS = 2  # of a formula that nobody has named
 _NEAR = 0.6  # share of entries that must be right for a formula to be close to another
+_TURNS = (QUATERNION, "rotation_matrix")
 _NEAREST = 16  # readings of which the wrong entries are repaired
 _MOST_OPERATIONS = 200  # of an entry in which each part is changed
 _MOST_ENTRIES = 3  # that may be wrong, each by one change
@@ -166,7 +169,8 @@ class Comparison:
         asked, found = self.asked, self.found
         symbols = self.formula.free_symbols
         called, own = self._called(), [*found.coordinates] if found else []
-        in_order = [called.get(name, name) for name in own]
+        stems = {name: stem_of(called.get(f"{name}_dot", "")) for name in own}
+        in_order = [called.get(name) or stems[name] or name for name in own]
         facts: dict[str, Any] = {each.name: getattr(self, each.name) for each in fields(self)}
         facts |= {
             "calls": f" in ({', '.join(in_order)})" if in_order != own else "",
@@ -197,12 +201,14 @@ def against(
 ) -> Comparison:
     """Compare with one quantity, under these meanings or all that its names allow."""
     unknown = Comparison(formula=formula, asked=goal)
-    meanings = meanings or [Reading.of(formula, goal, names) for names in readings(formula, goal)]
+    meanings = meanings or [
+        Reading.of(formula, goal, names) for names in readings(formula, goal, in_own_names=True)
+    ]
     for reading in meanings:
         if reading.is_equal:
             return _proved(reading, (), goal)
     is_by_names = not formula.atoms(sp.Dummy)
-    if is_by_names and is_reflection(formula) and not any(each.is_whole for each in meanings):
+    if is_by_names and is_orthogonal(formula, -1) and not any(each.is_whole for each in meanings):
         return replace(unknown, is_reflection=True)
     for reading in meanings:  # before repairs: no change makes it right for all angles
         if reading.is_right_for_some:
@@ -230,23 +236,17 @@ def identified(
     """
     unknown = Comparison(formula=formula, asked=None)
     all_readings: list[Reading] = []
-    plain: dict[Any, list[Reading]] = {}  # Euler angles of all orders have the same inputs
-    for goal in catalogue(formula):
-        model = goal.motion.model
-        inputs = (tuple(goal.inputs.items()), goal.uses, model.vector, model.constraints)
-        if inputs not in plain:
-            names = readings(formula, goal)
-            plain[inputs] = [Reading.of(formula, goal, each) for each in names]
-        for way in goal.arrangements if plain[inputs] else ():
-            for reading in (replace(each, goal=way) for each in plain[inputs]):
-                if reading.is_equal:
-                    return _proved(reading, (), None)
-                all_readings.append(reading)
+    has_own_names = any(is_in_own_names(formula, goal) for goal in catalogue(formula))
+    for in_own_names in (True, False) if has_own_names else (False,):
+        for reading in _all_readings(formula, in_own_names=in_own_names):
+            if reading.is_equal:
+                return _proved(reading, (), None)
+            all_readings.append(reading)
     if only_equal:
         return unknown
     if (turned := _in_other_senses(formula)) is not None:
         return turned
-    is_mirror = is_reflection(formula)
+    is_mirror = is_orthogonal(formula, -1)
     whole = None
     if is_mirror or (not is_in_program and not are_angles(formula)):
         whole = next((each for each in all_readings if each.is_whole), None)
@@ -264,18 +264,30 @@ def identified(
     return unknown
 
 
-def _in_other_senses(formula: sp.ImmutableMatrix) -> Comparison | None:
-    """A quaternion of angles of which some count in the other sense: a convention, no fault.
+def _all_readings(formula: sp.ImmutableMatrix, *, in_own_names: bool) -> Iterator[Reading]:
+    """A formula beside all quantities of the catalogue, in all ways of writing them."""
+    plain: dict[Any, list[Reading]] = {}  # Euler angles of all orders have the same inputs
+    for goal in catalogue(formula):
+        model = goal.motion.model
+        inputs = (tuple(goal.inputs.items()), goal.uses, model.vector, model.constraints)
+        if inputs not in plain:
+            names = readings(formula, goal, in_own_names=in_own_names)
+            plain[inputs] = [Reading.of(formula, goal, each) for each in names]
+        for way in goal.arrangements if plain[inputs] else ():
+            yield from (replace(each, goal=way) for each in plain[inputs])
 
-    In a rotation matrix more entries would differ than a repair may change.
-    """
+
+def _in_other_senses(formula: sp.ImmutableMatrix) -> Comparison | None:
+    """A rotation by angles of which some count in the other sense: a convention, no fault."""
     angles = sorted(formula.free_symbols, key=str)
-    if formula.shape != (4, 1) or not formula.has(sp.sin) or len(angles) > 3:
+    if not formula.has(sp.sin) or not 1 < len(angles) + (formula.rows == 4) < 5:
+        return None
+    if formula.shape != (4, 1) and not is_orthogonal(formula, 1):
         return None
     for senses in islice(product((1, -1), repeat=len(angles)), 1, None):
         turned = {s: sense * s for s, sense in zip(angles, senses, strict=True)}
         comparison = identified(formula.xreplace(turned), only_equal=True)
-        if comparison.found is not None and comparison.found.quantity == QUATERNION:
+        if comparison.found is not None and comparison.found.quantity in _TURNS:
             opposite = " and ".join(str(s) for s in angles if turned[s] != s)
             words = f"with the opposite sense of {opposite}"
             arrangement = ", ".join(filter(None, (comparison.arrangement, words)))
@@ -361,7 +373,8 @@ def _relatives(goal: KnownQuantity) -> Iterator[tuple[str, KnownQuantity]]:
     for kind, quantity in related:
         if quantity in QUANTITIES:
             yield kind, goal.sibling(quantity)
-    if goal.rotation.isalpha() and len(goal.rotation) == 3 and goal.motion.body is None:
+    is_sequence = goal.rotation.isalpha() and len(goal.rotation) == 3
+    if is_sequence and goal.quantity != ANGLES and goal.motion.body is None:
         yield "order of the turns", target(goal.rotation.swapcase(), name)
 
 

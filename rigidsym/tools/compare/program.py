@@ -24,7 +24,6 @@ from rigidsym.tools.compare.language import (
     CONSTANTS,
     MINUS,
     OF_MATRICES,
-    SPELLINGS,
     as_matrix,
     called,
     combined,
@@ -46,6 +45,7 @@ from rigidsym.tools.compare.syntax import (
     child,
     children,
     function_name,
+    function_word,
     left_of,
     line_of,
     operator,
@@ -70,32 +70,44 @@ _LONG_IN_LONG = 3  # names for long values that use other such names
 _MOST_PARTS = 2_000  # of a matrix
 _INLINED = 3  # calls of functions of the same file inside one another
 
-_NUMBERS = re.compile(r"((?:\d[\d_]*\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)_?[fFlLuUdDmM]*(?:32|64)?")
+_NUMBERS = re.compile(r"(-?)((?:\d[\d_]*\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)_?[fFlLuUdDmM]*(?:32|64)?")
 _NUMPY = re.compile(r"^\s*(?:import|from) (?:numpy|jax)\b", re.MULTILINE)
 _MATRICES = re.compile(r"\bsympy\b|\bcasadi\b|\b(?:np|numpy)\.mat\(|[mM]atrix\(")  # whose * is @
 _MATRIX_NAME = re.compile(r"mat|rot|dcm|basis|tensor|^set|setvalue|new|tf", re.IGNORECASE)
-_VECTOR_NAME = re.compile(r"vec|quat|^set|new|array", re.IGNORECASE)
+_VECTOR_NAME = re.compile(r"vec|quat|^set|new|array|wxyz|xyzw", re.IGNORECASE)
 _MAY_BE_MATRIX = re.compile(r"[\[{].*,|(?i:sin|cos|mat|quat|dcm)", re.DOTALL)
 _BY_COLUMNS = re.compile(r"from_?col|^f?mat3x?3?$|column_stack|hstack|^c_$", re.IGNORECASE)
 _HARMLESS = re.compile(
     r"print|disp|log|assert|plot|show|append|push|test|check|expect", re.IGNORECASE
 )
 _ROW = re.compile(r"(?P<stem>(?:.*\.)?)(?P<row>[abc])\.(?P<column>[xyz])")  # Matrix3 of ArduPilot
+_FLAT_NAME = re.compile(r"(.*m)(\d\d?)")
 _AXES = {"x": 0, "y": 1, "z": 2, "X": 0, "Y": 1, "Z": 2}
+_LARGE = r"(?:1(?:\.0*)?f?|0?\.9{2,}\d*f?)"  # what a sine exceeds at the poles only
+_POLE = re.compile(
+    rf"(?P<abs>(?:\w+(?:\.|::))?f?absf?\()?(?P<name>[\w.>\[\]-]+)\)?(?P<sign>[<>])=?(?P<minus>-?){_LARGE}"
+)
+_NULL = re.compile(
+    r"(?P<name>\w+)(?P<sign>[=!]==?|[<>]=?)(?:0(?:\.0*)?f?|\d(?:\.\d*)?e-\d+f?|\w*(?:EPS|eps)\w*)"
+)
+_SATURATED = re.compile(rf"(\w+)[<>]=?-?{_LARGE}\?-?{_LARGE}:\1")
+_NORMALISED = re.compile(r"norm", re.IGNORECASE)
 _BOOLEANS = {"0": False, "false": False, "False": False, "1": True, "true": True, "True": True}
-_BEYOND_ONE = re.compile(r"(?:\w+(?:\.|::))?f?absf?\([\w.>-]+\)>=?1(?:\.0*)?f?")
 _NOT_NULL = re.compile(r"\w+(?:!=|isnot)(?:nullptr|NULL|null|None)")
 _CLAMPS = re.compile(r"clip|clamp|constrain|math_constrain|clampf", re.IGNORECASE)
 _TRIPLES = (
     *(("roll", "pitch", "yaw"), ("phi", "theta", "psi"), ("alpha", "beta", "gamma")),
-    *(("x", "y", "z"), ("rx", "ry", "rz")),
+    *(("x", "y", "z"), ("rx", "ry", "rz"), ("heading", "attitude", "bank")),
+    ("angle1", "angle2", "angle3"),
 )
 _TRIGONOMETRIC = (sp.sin, sp.cos, sp.tan)
 _INVERSE = (sp.atan2, sp.asin, sp.acos, sp.atan)
+_DEGREE = 180 / sp.pi
 _OPERATORS = ("+", "-", "*", "/", "**", "@")
 _ELEMENTWISE = {".*": "%", "./": "/", ".^": "**", "^": "**"}  # MATLAB
 _FLAT = {9: (3, 3), 12: (4, 3), 16: (4, 4)}
-_OF_NUMBERS = {*FUNCTIONS, "pow", "sq", "sind", "cosd", "tand", "deg2rad", "radians"}
+_OF_NUMBERS = {*FUNCTIONS, "pow", "sq", "sind", "cosd", "tand", "deg2rad", "rad2deg"}
+_NO_ENTRIES = WORDS["cast"] | WORDS["zeros"] | WORDS["unit"] | WORDS["pair"] | WORDS["column"]
 
 
 class _Unreadable(ExpressionError):
@@ -239,18 +251,6 @@ def _assigned_value(text: str, suffix: str) -> Node | None:
     return None
 
 
-def _truth(condition: Node | None) -> bool | None:
-    """Whether a condition always holds, or never does; None if that depends.
-
-    A sine is never 1 outside of the poles, and what a null pointer points to is not written.
-    """
-    text = re.sub(r"\s", "", text_of(condition))
-    text = text[1:-1] if text.startswith("(") and text.endswith(")") else text
-    if _BEYOND_ONE.fullmatch(text):
-        return False
-    return True if _NOT_NULL.fullmatch(text) else _BOOLEANS.get(text)
-
-
 class _Interpreter:
     """One function, or the code of a file outside of all functions."""
 
@@ -352,6 +352,10 @@ class _Interpreter:
                 self._store(left, value)
                 return
             matrix = value.matrix() if isinstance(value, _Grid) else None
+            if isinstance(value, sp.Function) and len(value.free_symbols) == 1:  # c, s, t = cos(v)
+                (vector,) = value.free_symbols
+                parts = (sp.Symbol(f"{vector}_{k}", real=True) for k in range(len(names)))
+                matrix = sp.ImmutableMatrix([value.xreplace({vector: part}) for part in parts])
             if matrix is None or len(matrix) != len(names) or 1 not in matrix.shape:
                 raise self.unreadable(right)  # w, x, y, z = q
             for name, entry in zip(names, matrix, strict=True):
@@ -386,6 +390,7 @@ class _Interpreter:
 
     def _store_scalar(self, name: str, value: sp.Expr, line: int) -> None:
         self.lines.setdefault(name, line)
+        value = self._renamed(name, value)
         if _is_short(value) or name in self.inputs or name in self.cut:
             self.state.values[name] = value
         else:
@@ -395,6 +400,22 @@ class _Interpreter:
             names, values = zip(*last, strict=True)
             if len(names) >= 3 and _are_components(names):
                 self.runs.append((line, names, values))
+
+    def _renamed(self, name: str, value: sp.Expr) -> sp.Expr:
+        """The name itself for its value in another unit, or divided by the length of its vector."""
+        own = self.state.values.get(name, sp.Symbol(name, real=True))
+        if not isinstance(own, sp.Expr) or own.is_number:
+            return value
+        ratio = value / own
+        unread = [n for n in map(str, ratio.free_symbols) if self.cut.get(n, own) is None]
+        if unread and len(ratio.free_symbols) == 1 and name not in unread:  # q0 *= recipNorm
+            self._cut(name, None)
+            return sp.Symbol(name, real=True)
+        for _ in range(_LONG_IN_LONG):
+            ratio = ratio.xreplace({s: self.cut.get(str(s)) or s for s in ratio.free_symbols})
+        is_unit = ratio.is_number and any(abs(ratio * c - 1) < 1e-3 for c in (_DEGREE, 1 / _DEGREE))
+        is_divided = _is_length(1 / ratio) and own.free_symbols <= ratio.free_symbols
+        return own if is_unit or is_divided else value
 
     def _cut(self, name: str, value: sp.Expr | None) -> None:
         """A new name for a long or an unreadable value is an input of the formulas after it."""
@@ -442,12 +463,11 @@ class _Interpreter:
             self._drop(left, error)
 
     def _drop(self, left: Node, reason: object) -> None:
-        """The value is unreadable: a new name for it is an input, any other name unreadable."""
+        """The value is unreadable: the name is a new input, an entry unreadable."""
         for target in targets(left):
             name = self.written(target)
-            is_new = name not in self.inputs and name not in self.cut and self.index(target) is None
-            if name and is_new and not isinstance(self.state.values.get(name), _Grid):
-                self.lines.setdefault(name, line_of(target))
+            if name and self.index(target) is None:
+                self.lines[name] = line_of(target)
                 self._cut(name, None)
             elif name:
                 self._spoil(name, str(reason))
@@ -516,13 +536,30 @@ class _Interpreter:
             branches.append((None, other))
         possible, is_sure = [], False
         for condition, block in branches:
-            constant = _truth(condition)
+            constant = self._truth(condition)
             if constant is not False:
                 possible.append(block)
             if condition is None or constant:
                 is_sure = True
                 break
         self._either(possible, node, is_sure=is_sure)
+
+    def _truth(self, condition: Node | None) -> bool | None:
+        """Whether a condition always holds, or never does; None if that depends.
+
+        A sine is never 1 outside of the poles, a length never 0, and what a null pointer points
+        to is not written.
+        """
+        text = re.sub(r"\s", "", text_of(condition))
+        text = text[1:-1] if text.startswith("(") and text.endswith(")") else text
+        if match := _POLE.fullmatch(text):
+            name = self.name_of(match["name"].replace("->", "."))
+            is_computed = "[" in name or (name in self.state.values and name not in self.inputs)
+            if match["abs"] or is_computed or "." in match["name"]:
+                return (match["sign"] == ">") == bool(match["minus"])
+        if (match := _NULL.fullmatch(text)) and _is_length(self.cut.get(match["name"])):
+            return match["sign"][0] in "!>"
+        return True if _NOT_NULL.fullmatch(text) else _BOOLEANS.get(text)
 
     def _choice(self, node: Node) -> None:
         """switch, match."""
@@ -567,7 +604,7 @@ class _Interpreter:
             for each in [block] if is_simple else children(block):
                 if each != condition:
                     self.run(each)
-            self._emit([k for k in self.state.values if k not in start.values])
+            self._emit([k for k in self.state.values if _is_unfinished(start.values.get(k))])
             self.state.is_over &= not ends_at_break  # a break ends only the loop or the choice
             paths.append(self.state)
         self.scalars = []
@@ -579,8 +616,12 @@ class _Interpreter:
             if all(_same(ends[0], value) for value in ends[1:]):
                 continue
             is_new = name not in before.values and name not in self.inputs | self.cut.keys()
-            if is_new and not any(isinstance(value, _Grid) for value in ends):
-                self.lines.setdefault(name, line_of(node))
+            own = sp.Symbol(name, real=True)
+            values = [own if value is None and not is_new else value for value in ends]
+            is_other = all(isinstance(v, sp.Expr) and (v - values[0]).is_number for v in values)
+            is_other |= all(isinstance(value, sp.Symbol) for value in values)
+            if is_other or (is_new and not any(isinstance(value, _Grid) for value in ends)):
+                self.lines[name] = line_of(node)  # phi, or phi[0]: whichever, it is an input
                 self._cut(name, None)
             else:
                 self.state.values[name] = f"{name} depends on the condition in line {line_of(node)}"
@@ -609,19 +650,32 @@ class _Interpreter:
         call = call_of(node)
         if "::" in text_of(part(node, "function")):  # of a type, not of an object
             return
-        if call.base and (_MATRIX_NAME.search(call.name) or _VECTOR_NAME.search(call.name)):
+        is_own = not call.base and call.name in ("set", "setValue")
+        if (call.base or is_own) and (
+            _MATRIX_NAME.search(call.name) or _VECTOR_NAME.search(call.name)
+        ):
             try:
                 values = [self.read(argument) for argument in call.arguments]
                 if len(values) in (3, 4, 9, 16):
-                    name = self.name_of(call.base)
+                    name = self.name_of(call.base or "this")
                     self._emit([name])
                     self.state.values[name] = _Grid.of(line_of(node), rows(values), name)
                     return
             except ExpressionError:
                 pass  # the call is taken as any other below
+        for argument in call.arguments:  # list.append(np.array(...))
+            if argument.type in PARTS["list"] or EXPRESSIONS.get(argument.type) == "_call":
+                try:
+                    matrix = as_matrix(self.read(argument))
+                    self._add(line_of(argument), "argument", matrix)
+                except ExpressionError:
+                    continue
         if not _HARMLESS.search(call.path):
             for name in self._reached(node):
                 if name in self.state.values or name in self.inputs:
+                    self._emit(
+                        [name] if getattr(self.state.values.get(name), "is_whole", 0) else []
+                    )
                     reason = f"{name} may be changed by {call.path}() in line {line_of(node)}"
                     self._spoil(name, reason)
 
@@ -669,6 +723,7 @@ class _Interpreter:
         angles: dict[
             tuple[str, str], tuple[str, sp.Expr]
         ] = {}  # roll, pitch and yaw are one vector
+        flat: dict[str, dict[int, tuple[sp.Expr, int]]] = {}  # m0 to m15: one in a row
         grids: dict[str, _Grid] = {}  # m00 to m22, m11 to m33, and a.x to c.z: one matrix
         for name, held in self.state.values.items():
             value = self.cut.get(name) if held == sp.Symbol(name, real=True) else held
@@ -682,11 +737,17 @@ class _Interpreter:
                 place = (int(match["row"], 36) % 10, int(match["column"], 36))
                 grid = _Grid(self.lines.get(name, 1), match["stem"], {})
                 grids.setdefault(match["stem"], grid).entries[place] = value
+            if match := _FLAT_NAME.fullmatch(name):
+                flat.setdefault(match[1], {})[int(match[2])] = value, self.lines.get(name, 1)
         for base, triple in product({base for base, _ in angles}, _TRIPLES):
             three = [angles[base, each] for each in triple if (base, each) in angles]
             if len(three) == 3:
                 names, column = zip(*three, strict=True)
                 self._add(self.lines.get(names[0], 1), ", ".join(names), sp.ImmutableMatrix(column))
+        for stem, entries in flat.items():
+            if {0, 1, 2, 4, 5, 6, 8, 9, 10} <= entries.keys() <= {*range(16)}:
+                block = [entries[4 * i + j][0] for i in range(3) for j in range(3)]
+                self._add(entries[0][1], stem, sp.ImmutableMatrix(3, 3, block))
         for stem, grid in grids.items():
             if len(grid.entries) == 9:
                 self._add(grid.line, stem.strip("._") or "elements", grid.matrix())
@@ -706,6 +767,14 @@ class _Interpreter:
             (symbol.name, self.lines.get(symbol.name, line))
             for symbol in sorted((whole or matrix).free_symbols & computed, key=str)
             if self.cut[symbol.name] is None and symbol.name not in self.components
+        )
+        bases = {
+            re.sub(r"(?:_\d+)+$", "", s.name) for s in (whole or matrix).free_symbols - computed
+        }
+        unread += tuple(
+            (b, self.lines.get(b, line))
+            for b in sorted(bases & self.cut.keys())
+            if b not in self.components
         )
         whole = spelled_out(whole, computed) if whole is not None and whole != matrix else None
         self.formulas.append(
@@ -733,8 +802,9 @@ class _Interpreter:
                 raise self.unreadable(node, "is nested too deeply")
             digits = _NUMBERS.fullmatch(text_of(node)) if not children(node) else None
             if digits:
-                text = digits[1].replace("_", "")
-                return number(text if text.isdigit() else repr(float(text)))
+                text = digits[2].replace("_", "")
+                value = number(text if text.isdigit() else repr(float(text)))
+                return combined("*", MINUS, value) if digits[1] else value
             return getattr(self, EXPRESSIONS.get(node.type, "_named"))(node)
         except _Unreadable:
             raise
@@ -751,7 +821,12 @@ class _Interpreter:
     def _list(self, node: Node) -> Any:
         if not children(node):
             raise self.unreadable(node)
-        return rows([self.read(each) for each in children(node)])
+        values = [self.read(each) for each in children(node)]
+        return (
+            values[0]
+            if children(node)[0].type == "initializer_pair" and len(values) == 1
+            else rows(values)
+        )
 
     def _record(self, node: Node) -> Any:
         """{w: a, x: b, y: c, z: d} of JavaScript, and Quaternion { x: a, ... } of Rust."""
@@ -803,7 +878,9 @@ class _Interpreter:
         else:
             parts = (part(node, f) for f in ("consequence", "condition", "alternative"))
             first, condition, other = (each or node for each in parts)
-        constant = _truth(condition)
+        if match := _SATURATED.fullmatch(re.sub(r"\s|\.0f?", "", text_of(node))):
+            return self._symbol(node, self.name_of(match[1]))
+        constant = self._truth(condition)
         if constant is None:
             raise self.unreadable(condition, "is a condition that decides on it")
         return self.read(first if constant else other)
@@ -826,8 +903,8 @@ class _Interpreter:
         base, name = self.name_of(place.path), place.path.rpartition(".")[2]
         if place.is_called:
             is_function = name in self.program.functions and not self.is_matlab
-            name = SPELLINGS.get(name, name)
-            words = name in _OF_NUMBERS or name in OF_MATRICES or name in WORDS["cast"]
+            name = function_word(name)
+            words = name in _OF_NUMBERS or name in OF_MATRICES or name in _NO_ENTRIES
             if is_function or words or len(place.indices) > 2:
                 return None
         indices = []
@@ -906,11 +983,12 @@ class _Interpreter:
         if self.index(node) is not None or (place is not None and not place.indices):  # q.w()
             return self._named(node)
         call = call_of(node)
-        name, nodes = SPELLINGS.get(call.name, call.name), call.arguments
+        name, nodes = function_word(call.name), call.arguments
         held = self.state.values.get(self.name_of(call.base)) if call.base else None
         is_value = call.base == "?" or isinstance(held, _Grid)
         is_of_number = name in _OF_NUMBERS and len(nodes) < 1 + (name in ("pow", "atan2"))
-        is_method = call.owner is not None and (is_value or is_of_number)
+        is_same = name in WORDS["same"] and not nodes
+        is_method = call.owner is not None and (is_value or is_of_number or is_same)
         if is_method and call.owner is not None:
             nodes = [call.owner, *nodes]
         is_listed = bool(nodes) and (len(nodes) == 1 or nodes[0].type in PARTS["list"])
@@ -920,6 +998,16 @@ class _Interpreter:
             nodes = [_unclamped(nodes[0])]
         if (name in _OF_NUMBERS or in_formula or name in self.program.own) and nodes:
             return called(name, [self.read(each) for each in nodes], self.program.own)
+        if name in WORDS["pair"] and len(nodes) == 1:
+            return rows([called(each, [self.read(nodes[0])]) for each in ("sin", "cos")])
+        if name in WORDS["number"] and not call.arguments:  # T::zero()
+            return number(str(int("one" in name.lower())))
+        if name in WORDS["column"] and len(call.arguments) == 1 and call.base not in ("", "?"):
+            index = text_of(call.arguments[0])
+            places = [(k, index) if name == "col" else (index, k) for k in range(3)]
+            return rows(
+                [self._symbol(node, f"{self.name_of(call.base)}_{i}_{j}") for i, j in places]
+            )
         if name in WORDS["transpose"] and len(nodes) == 1:
             return as_matrix(self.read(nodes[0])).T
         is_reordered = any(text_of(option).startswith("order") for option in call.options)
@@ -935,11 +1023,16 @@ class _Interpreter:
             return self._filled(node, call)
         if name in WORDS["stack"] or _BY_COLUMNS.search(name):
             return self._stacked(node, call)
-        if name in self.program.functions and call.base in ("", "self", "this"):
-            return self._inline(node, name, nodes)
         count = len(call.arguments)  # nine numbers or three rows; three or four numbers
         is_vector = count in (3, 4) and bool(_VECTOR_NAME.search(call.path))
         is_matrix = count in (3, 9, 16) and bool(_MATRIX_NAME.search(call.path))
+        if name in self.program.functions and call.base in ("", "self", "this"):
+            if not (is_vector or is_matrix):
+                return self._inline(node, name, nodes)
+            try:
+                return self._inline(node, name, nodes)
+            except ExpressionError:  # a constructor
+                pass
         if not (is_vector or is_matrix):
             if self.program.is_formula and call.owner is None:
                 hint = offer(name, [*FUNCTIONS, *OF_MATRICES, *self.program.own])
@@ -981,8 +1074,15 @@ class _Interpreter:
             inner.state.values[each] = value.copy() if isinstance(value, _Grid) else value
         inner.formulas_of(function)
         result = inner.result.matrix() if isinstance(inner.result, _Grid) else inner.result
-        if inner.results != 1 or result is None or inner.inputs - set(names) or inner.cut:
+        if (
+            inner.results != 1
+            or result is None
+            or inner.inputs - set(names)
+            or None in inner.cut.values()
+        ):
             raise self.unreadable(node)
+        for _ in range(_LONG_IN_LONG):
+            result = result.xreplace({sp.Symbol(k, real=True): v for k, v in inner.cut.items()})
         return sized(result)
 
 
@@ -995,6 +1095,21 @@ def _unclamped(node: Node) -> Node:
     nodes = nodes or call.arguments
     bounds = [re.sub(r"\.0*|[\sfF]|T\(|\)|static_cast<\w+>\(", "", text_of(a)) for a in nodes[1:]]
     return nodes[0] if bounds == ["-1", "1"] and _CLAMPS.search(call.name) else node
+
+
+def _is_unfinished(value: Any) -> bool:
+    """Whether a name has no value, or that of a matrix without some entries."""
+    return value is None or (
+        isinstance(value, _Grid) and not value.is_whole and len(value.entries) < 3
+    )
+
+
+def _is_length(value: Any) -> bool:
+    """Whether this is a sum of squares, or the root of one."""
+    if isinstance(value, sp.Pow) and value.exp == sp.Rational(1, 2):
+        value = value.base
+    terms = sp.Add.make_args(value) if isinstance(value, sp.Expr) else ()
+    return len(terms) > 1 and all(t.is_Pow and t.exp == 2 for t in terms)
 
 
 def _same(one: Any, other: Any) -> bool:
@@ -1016,7 +1131,7 @@ def _are_components(names: Sequence[str]) -> bool:
     """Whether scalars in a row are one vector: rates, or components of an angular velocity."""
     if tuple(names) in (("p", "q", "r"), ("P", "Q", "R")):
         return True
-    last = "".join(name[-1] for name in names)
+    last = "".join(name[-1].lower() for name in names)
     is_vector = last in ("xyz", "wxyz", "xyzw") or last in ("012", "123", "0123", "1234")
-    same = len({name[:-1] for name in names}) == 1
+    same = len({name[:-1] for name in names if name[-1] not in "wW"}) == 1
     return (is_vector and same) or all(map(stem_of, names))

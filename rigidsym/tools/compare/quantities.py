@@ -407,18 +407,23 @@ ROW = re.compile(r"(?P<stem>.*?)_?(?P<row>[abc])_(?P<column>[xyz])")  # Matrix3 
 _FLAT = {9: ([*range(9)], False), 16: ([0, 1, 2, 4, 5, 6, 8, 9, 10], True)}  # places, by columns
 
 
-def readings(matrix: sp.MatrixBase, goal: KnownQuantity) -> Iterator[Names]:
-    """The possible meanings of the names in a formula."""
+def readings(
+    matrix: sp.MatrixBase, goal: KnownQuantity, *, in_own_names: bool = False
+) -> Iterator[Names]:
+    """The possible meanings of the names in a formula.
+
+    `in_own_names`: if all are names of inputs of the quantity, these are meant.
+    """
     if goal.quantity == ANGLES:
         yield from _of_vectors(matrix, [goal.inputs["q"]])
         yield from _of_entries(matrix, goal.motion.rotation_matrix)
     elif goal.rotation:
-        yield from _of_rotation(matrix, goal)
+        yield from _of_rotation(matrix, goal, in_own_names)
     else:
         yield from _of_vectors(matrix, [*goal.inputs.values()])
 
 
-def _of_rotation(matrix: sp.MatrixBase, goal: KnownQuantity) -> Iterator[Names]:
+def _of_rotation(matrix: sp.MatrixBase, goal: KnownQuantity, in_own_names: bool) -> Iterator[Names]:
     """Their own meaning if all are names of inputs, else every assignment.
 
     If the rotation has a vector, n is the length of this vector or of all coordinates, as in notes,
@@ -430,14 +435,14 @@ def _of_rotation(matrix: sp.MatrixBase, goal: KnownQuantity) -> Iterator[Names]:
     lengths = {_LENGTHS[0]} if model.constraints else lengths
     length = next((s for s in matrix.free_symbols if s.name in lengths), None)
     if length and model.vector and length.name not in goal.names:
-        for names in _of_rotation(matrix.xreplace({length: sp.Integer(1)}), goal):
+        for names in _of_rotation(matrix.xreplace({length: sp.Integer(1)}), goal, in_own_names):
             for parts in dict.fromkeys((model.coordinates, model.vector)):
                 yield {**names, length: sp.sqrt(sum(part**2 for part in parts))}
         return
     symbols = sorted(matrix.free_symbols, key=lambda s: _natural(s.name))
-    own = {s: goal.names.get(s.name) or goal.names.get(f"{stem_of(s.name)}_dot") for s in symbols}
-    if all(own.values()):
-        yield {s: value for s, value in own.items() if value is not None}
+    if in_own_names and is_in_own_names(matrix, goal):
+        own = (goal.names.get(s.name) or goal.names[f"{stem_of(s.name)}_dot"] for s in symbols)
+        yield dict(zip(symbols, own, strict=True))
         return
     q = goal.inputs.get("q", ())
     velocity = next(
@@ -453,11 +458,26 @@ def _of_rotation(matrix: sp.MatrixBase, goal: KnownQuantity) -> Iterator[Names]:
     stems = sorted({s.name for s in others if s not in rates} | {*rates.values()})
     if len(stems) > len(q) or len(omega) > 3:
         return
-    for order in permutations(q, len(stems)):
+    if velocity and not omega and len(symbols) == len(q) + 3:  # vel[0] beside quat[0]
+        yield from _of_vectors(matrix, [q, velocity])
+    is_array = len({stem.rstrip("0123").rstrip("_") for stem in stems}) == 1
+    is_array &= all(stem[-1].isdigit() for stem in stems) and len(stems) == len(q) == 4
+    orders: Iterator[tuple[sp.Expr, ...]] = permutations(q, len(stems))
+    if is_array:  # of a quaternion in an array, the scalar is the first or the last entry
+        orders = iter([q, (*q[1:], q[0])])
+    for order in orders:
         of_stem = dict(zip(stems, order, strict=True))
         meant: dict[sp.Symbol, sp.Expr] = {s: of_stem[s.name] for s in others if s.name in of_stem}
         meant |= {s: sp.diff(of_stem[stem], *of_stem[stem].args) for s, stem in rates.items()}
         yield meant | dict(zip(omega, velocity, strict=False))
+
+
+def is_in_own_names(matrix: sp.MatrixBase, goal: KnownQuantity) -> bool:
+    """Whether all names in a formula are those of the inputs of a rotation's quantity."""
+    names = {
+        s.name if s.name in goal.names else f"{stem_of(s.name)}_dot" for s in matrix.free_symbols
+    }
+    return bool(goal.rotation) and names <= goal.names.keys()
 
 
 def _of_arrays(others: Sequence[sp.Symbol], angles: set[sp.Symbol]) -> dict[sp.Symbol, str]:
@@ -493,6 +513,9 @@ def _of_vectors(matrix: sp.MatrixBase, wanted: Sequence[tuple[sp.Expr, ...]]) ->
             if symbol.name in ("p", "q", "r"):
                 stem, part = "p, q, r", symbol.name
             groups.setdefault(stem if part else symbol.name, []).append((part, symbol))
+        three = next((g for g in groups.values() if [part for part, _ in g] == [*"xyz"]), None)
+        if three and "w" in groups and len(groups["w"]) == 1:  # this.x beside w
+            three += groups.pop("w")
         vectors = [
             tuple(s for _, s in sorted(group, key=lambda each: (each[0] != "w", each[0])))
             for group in groups.values()
@@ -578,12 +601,12 @@ def near(one: Array, other: Array) -> NDArray[np.bool_]:
         return np.asarray(np.abs(one - other) <= _TOLERANCE * np.maximum(1, np.abs(other)))
 
 
-def is_reflection(matrix: sp.MatrixBase) -> bool:
-    """Whether a 3x3 matrix is orthogonal with the determinant −1 at all points."""
+def is_orthogonal(matrix: sp.MatrixBase, sign: int) -> bool:
+    """Whether a 3x3 matrix is orthogonal at all points: a rotation, or with −1 a reflection."""
     if matrix.shape != (3, 3):
         return False
     symbols = sorted(matrix.free_symbols, key=str)
     values = evaluated(matrix, dict(zip(symbols, TABLE[0], strict=False)))
     with np.errstate(all="ignore"):
         is_orthogonal = near(values @ values.transpose(0, 2, 1), np.eye(3)).all()
-        return bool(is_orthogonal and (np.linalg.det(values) < 0).all())
+        return bool(is_orthogonal and (sign * np.linalg.det(values) > 0).all())

@@ -121,7 +121,12 @@ def disappointment(
 
 
 def _block(matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
-    """The rotation in a homogeneous transformation."""
+    """The rotation in a homogeneous transformation; a row as a column; angles in radians."""
+    matrix = matrix.T if matrix.rows == 1 else matrix
+    if matrix.has(sp.pi):
+        scale = {s: s * 180 / sp.pi for s in matrix.free_symbols}
+        in_radians = matrix * sp.pi / 180 if are_angles(matrix) else matrix.xreplace(scale)
+        matrix = matrix if in_radians.has(sp.pi) else in_radians
     is_homogeneous = matrix.shape == (4, 4) and tuple(matrix[3, :]) == (0, 0, 0, 1)
     return matrix[:3, :3] if is_homogeneous else matrix
 

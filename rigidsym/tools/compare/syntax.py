@@ -38,9 +38,11 @@ PARTS, WORDS = (
 )
 _LONGEST_PLACE = 120  # characters
 _NAME = r"[A-Za-z_]\w*"
-_PLACE = re.compile(rf"(?P<path>{_NAME}(?:\.{_NAME})*)(?P<indices>(?:\[[\w,.()]+\]|\([\w,]+\))*)")
+_PLACE = re.compile(
+    rf"(?P<path>{_NAME}(?:\.{_NAME})*)(?P<indices>(?:\[[\w,.()*+:]+\]|\([\w,]+\))*)"
+)
 _KEY = re.compile(r"""\[["'](\w+)["']\]""")  # state["phi"]
-_GETTER = re.compile(rf"\.(?:get)?([wxyzWXYZ]|{ANGLE.pattern})\(\)", re.IGNORECASE)  # q.w()
+_GETTER = re.compile(rf"(^|\.)(?:get)?([wxyz]|{ANGLE.pattern})\(\)", re.IGNORECASE)  # q.w()
 _POINTER = re.compile(r"^\(\*(\w+)\)|^\*(?=\w)")  # (*m)(0, 1), *roll
 
 
@@ -155,23 +157,25 @@ class Place(NamedTuple):
 
 
 def _plain_mark(match: re.Match[str]) -> str:
-    return match[1] if match[1] in "[](),." else "."
+    return match[1] if match[1] in "[](),.*+" else "."
 
 
 def place_of(node: Node | None) -> Place | None:
     """The place that a node names, or None for other expressions."""
     if node is None or node.end_byte - node.start_byte > _LONGEST_PLACE:
         return None
-    text = re.sub(r"\s*(->|::|[?!]\.|[\[\](),.])\s*", _plain_mark, text_of(node).strip())
+    text = re.sub(r"\s*(->|::|[?!]\.|[\[\](),.*+])\s*", _plain_mark, text_of(node).strip())
     text = _POINTER.sub(lambda m: m[1] or "", spelled(text))
-    text = _GETTER.sub(r".\1", _KEY.sub(r".\1", text))
+    text = _GETTER.sub(r"\1\2", _KEY.sub(r".\1", text))
     match = _PLACE.fullmatch(text)
     if match is None:
         return None
     path, method = match["path"], match["path"].rpartition(".")
     if match["indices"] and method[0] and method[2] in WORDS["entry"]:
         path = method[0]
-    parts = re.sub(r"[\[(]*\.\.\.,", "[", match["indices"])  # q[..., 0]
+    parts = re.sub(r"\[(?:\.\.\.|:),", "[", match["indices"])  # q[..., 0]
+    parts = re.sub(r"(\d+)\*(\d+)", lambda m: str(int(m[1]) * int(m[2])), parts)
+    parts = re.sub(r"(\d+)\+(\d+)", lambda m: str(int(m[1]) + int(m[2])), parts)
     indices = tuple(index for index in re.split(r"[\[\](),]+", parts) if index)
     return Place(path, indices, is_called="(" in match["indices"] and path == match["path"])
 
@@ -208,6 +212,28 @@ def call_of(node: Node) -> Call:
         place = place_of(owner)
         base = place.path if place and not place.indices else "?"
     return Call(owner, base, name, plain, options)
+
+
+_SPELLED = re.compile(  # tf2Sin, arm_cos_f32, FusionArcSin
+    r"(?:tf2?|bt|b3|mju_|arm_|simd_|safe_|fast_?|Fusion)?_?(a|arc)?(sin|cos|tan2?|sqrt)(?:_f32|[fFlL])?",
+    re.IGNORECASE,
+)
+_ANGLE_UNITS = re.compile(
+    r"\w*?(to)?_?(rad|deg)(?:ian|ree)?s?(?:_?(?:to|2)_?(rad|deg)(?:ian|ree)?s?)?", re.IGNORECASE
+)
+
+
+def function_word(name: str) -> str:
+    """The function of numbers that a program calls by this name, or the name itself."""
+    if name in SPELLINGS:
+        return SPELLINGS[name]
+    if match := _SPELLED.fullmatch(name):
+        return ("a" if match[1] else "") + match[2].lower()
+    match = _ANGLE_UNITS.fullmatch(name)
+    if match and (match[1] or match[3] or name in ("radians", "degrees")):
+        unit = (match[3] or match[2]).lower()
+        return "deg2rad" if unit == "rad" else "rad2deg"
+    return name
 
 
 def short_name(path: str) -> str:
