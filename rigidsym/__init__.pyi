@@ -32,7 +32,7 @@ from .models.rotation import (
     Turn as Turn,
 )
 from .motion import Motion as Motion, derive as derive, kernels as kernels
-from .tools.compare.comparison import checked as checked, compare as compare
+from .tools.compare.comparison import compare as compare
 from .tools.compare.matching import Comparison as Comparison
 from .tools.identify.identification import Identification as Identification, identify as identify
 from .version import __version__ as __version__

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from functools import cache
 
-import numpy as np
 import pytest
 import sympy as sp
 
@@ -14,16 +13,11 @@ from rigidsym.tools.compare.program import formula_matrix
 
 CASES = [
     ("ZXZ", "rotation_matrix"),
-    ("ZYX", "rotation_matrix"),
     ("unit_quaternion", "rotation_matrix"),
-    ("ZYX", "rate_matrix_space"),
-    ("XZY", "rate_matrix_body"),
     ("xyz", "inverse_rate_matrix_body"),
     ("zxz", "angular_velocity_body"),
-    ("YXZ", "rates_from_angular_velocity_space"),
     ("modified_rodrigues", "inverse_rate_matrix_body"),
     ("unit_quaternion", "rate_matrix_body"),
-    ("yxy", "rate_matrix_space"),
 ]
 
 
@@ -208,7 +202,7 @@ def test_a_forgotten_operator_is_named_with_its_neighbours():
         formula_matrix("a or b")
     with pytest.raises(ExpressionError, match="is nested too deeply"):
         formula_matrix("-" * 3000 + "a")
-    with pytest.raises(ExpressionError, match="unexpected"):
+    with pytest.raises(ExpressionError, match=r"`\* psi` is not understood"):
         formula_matrix("phi + * psi")
 
 
@@ -242,7 +236,7 @@ def test_the_finding_is_said_in_one_sentence():
 
 def test_a_rotation_is_compared_with_a_quantity():
     with pytest.raises(ExpressionError, match="expected a rotation and a quantity"):
-        rs.compare(lambda q: q, "ZYX")
+        rs.compare("[[1, 0], [0, 1]]", "ZYX")
 
 
 @pytest.mark.parametrize("last", [False, True], ids=["first", "last"])
@@ -380,13 +374,6 @@ def test_texts_call_the_versine_v_and_the_length_by_the_letter_of_its_components
     assert found.is_equal
 
 
-def test_functions_may_return_anything_with_entries():
-    found = rs.compare(lambda q: np.full((3, 3), np.sin(q[0])), "ZYX", "rotation_matrix")
-    assert found.text().startswith("not rotation_matrix of ZYX, and no single change makes it one")
-    turn = lambda q: sp.Matrix([[sp.cos(q[0]), -sp.sin(q[0])], [sp.sin(q[0]), sp.cos(q[0])]])  # noqa: E731
-    assert rs.compare(lambda q: sp.diag(turn(q), 1), "z(a)", "rotation_matrix").is_proved
-
-
 def test_a_p_before_an_index_is_no_rate():
     """mrp_1 is a coordinate, although p may end the name of a rate"""
     formula = right("modified_rodrigues", "angular_velocity_body")
@@ -414,26 +401,6 @@ def test_a_formula_that_is_right_for_some_angles_only_is_wrong_with_a_counterexa
         found = rs.compare(Z.format(sine, cosine), *asked)
         assert not found.is_equal
         assert "for all angles: wrong at psi = " in found.text()
-
-
-def test_functions_are_tried_in_all_quadrants():
-    def taylor(q):
-        s, c = q[0] - q[0] ** 3 / 6 + q[0] ** 5 / 120, np.cos(q[0])
-        return [[c, -s, 0], [s, c, 0], [0, 0, 1]]
-
-    def folded(q):
-        s, c = np.sin(q[0] % 1.4), np.cos(q[0] % 1.4)
-        return [[c, -s, 0], [s, c, 0], [0, 0, 1]]
-
-    def right(q):
-        s, c = np.sin(q[0]), np.cos(q[0])
-        return [[c, -s, 0], [s, c, 0], [0, 0, 1]]
-
-    for wrong in (taylor, folded):
-        assert not rs.compare(wrong, "z(psi)", "rotation_matrix").is_equal
-    assert "agrees with rotation_matrix of z(psi) (to nine digits at 20 points, not proved)" in (
-        rs.compare(right, "z(psi)", "rotation_matrix").text()
-    )
 
 
 def test_a_reflection_is_no_rotation_with_wrong_signs():

@@ -178,7 +178,7 @@ class Comparison:
             "is_as_asked": found and asked and str(asked) == str(found),
             "shape": in_words(self.formula.shape),
             "expected": in_words(asked.matrix.shape if asked else self.formula.shape),
-            "names": sorted(str(s) for s in symbols if not isinstance(s, sp.Dummy)),
+            "names": sorted(map(str, symbols)),
         }
         return str(environment().get_template("compare/comparison.txt.jinja").render(facts))
 
@@ -196,19 +196,16 @@ def in_words(shape: tuple[int, int]) -> str:
     return f"a vector of {shape[0]} entries" if shape[1] == 1 else "a {}x{} matrix".format(*shape)
 
 
-def against(
-    formula: sp.ImmutableMatrix, goal: KnownQuantity, meanings: Sequence[Reading] = ()
-) -> Comparison:
-    """Compare with one quantity, under these meanings or all that its names allow."""
+def against(formula: sp.ImmutableMatrix, goal: KnownQuantity) -> Comparison:
+    """Compare with one quantity, under all meanings of its names."""
     unknown = Comparison(formula=formula, asked=goal)
-    meanings = meanings or [
+    meanings = [
         Reading.of(formula, goal, names) for names in readings(formula, goal, in_own_names=True)
     ]
     for reading in meanings:
         if reading.is_equal:
             return _proved(reading, (), goal)
-    is_by_names = not formula.atoms(sp.Dummy)
-    if is_by_names and is_orthogonal(formula, -1) and not any(each.is_whole for each in meanings):
+    if is_orthogonal(formula, -1) and not any(each.is_whole for each in meanings):
         return replace(unknown, is_reflection=True)
     for reading in meanings:  # before repairs: no change makes it right for all angles
         if reading.is_right_for_some:
@@ -216,7 +213,7 @@ def against(
     for reading in meanings:
         if repair := next(whole_repairs(reading), None):
             return _proved(reading, (repair,), goal)
-    as_it_stands = identified(formula, only_equal=True) if is_by_names else unknown
+    as_it_stands = identified(formula, only_equal=True)
     nearest = max(meanings, key=lambda each: each.share, default=None)
     if nearest and (repairs := entry_repairs(nearest)):
         return replace(_proved(nearest, repairs, goal), as_it_stands=as_it_stands.found)
@@ -329,7 +326,7 @@ def _proved(reading: Reading, repairs: Sequence[Repair], asked: KnownQuantity | 
         names=reading.names,
         repairs=tuple(repairs),
     )
-    if found.quantity == ANGLES or changed.atoms(sp.Dummy):  # no expressions of the ring
+    if found.quantity == ANGLES:  # no expressions of the ring
         return comparison
     try:
         theirs = sp.ImmutableMatrix(changed).xreplace(dict(reading.names))

@@ -10,6 +10,7 @@ the formulas after it. A formula is therefore only read if the program computes 
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import product
@@ -64,6 +65,9 @@ if TYPE_CHECKING:
 _SHARING = (".py", ".js", ".mjs", ".jsx", ".ts", ".java", ".cs")  # b = a is the same matrix
 _DEEPEST = 60  # nested nodes of an expression; formulas of real programs have fewer than 30
 _DEEPEST_BLOCK = 40
+_LONGEST_LIST = 64
+_MOST_FORMULAS = 1_000  # of a file
+_MOST_STEPS = 20_000  # expressions of a file: what takes some ten seconds
 _MOST_NODES = 400_000  # of a file: a generated megabyte is not worth reading
 _MOST_CHARACTERS = 20_000  # of a formula
 _LONG_IN_LONG = 3  # names for long values that use other such names
@@ -181,6 +185,7 @@ class _Program:
     suffix: str
     functions: Mapping[str, Node] = field(default_factory=dict)
     is_numpy: bool = False  # * is the product entry by entry
+    steps: Counter[str] = field(default_factory=Counter)  # expressions that were read
     is_formula: bool = False  # a formula on its own, with the functions of `language`
     names: Mapping[str, Any] | None = None  # the only names that a formula may use
     own: Mapping[str, Callable[..., Any]] = field(default_factory=dict)  # functions of a formula
@@ -197,7 +202,13 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
     program = _Program(suffix, by_name, is_numpy)
     formulas: dict[tuple[int, str, Any], Formula] = {}
     for scope in (root, *functions):
-        for formula in _Interpreter(program).formulas_of(scope):
+        interpreter = _Interpreter(program)
+        try:
+            interpreter.formulas_of(scope)
+        except RecursionError:  # SymPy, in a sum that a program nests in itself
+            reason = "expressions are nested too deeply"
+            interpreter.formulas.append(Formula(line_of(scope), "", None, reason))
+        for formula in interpreter.formulas:
             formulas.setdefault((formula.line, formula.name, formula.matrix), formula)
     return sorted(formulas.values(), key=lambda each: each.line)
 
@@ -223,7 +234,9 @@ def formula_matrix(
     for suffix in (".cpp",) if "{" in text else (".py", ".m", ".cpp"):
         value = _assigned_value(text, suffix)
         if value is not None:
-            program = _Program(suffix, {}, is_numpy, True, names, functions or {})
+            program = _Program(
+                suffix, is_numpy=is_numpy, is_formula=True, names=names, own=functions or {}
+            )
             matrix = as_matrix(_Interpreter(program).read(value))
             return _unflattened(matrix) if "{" in text else matrix  # float R[9] = {...}
     missing = re.search(r"[)\]]\s*(\w+)", text)
@@ -302,6 +315,7 @@ class _Interpreter:
                 self._return(last[0])
         if not self.state.is_over:
             self._emit()
+            self._emit_groups()
         long = {sp.Symbol(k, real=True): v for k, v in self.cut.items() if v is not None}
         for line, names, first in self.runs:
             column = []
@@ -404,7 +418,7 @@ class _Interpreter:
     def _renamed(self, name: str, value: sp.Expr) -> sp.Expr:
         """The name itself for its value in another unit, or divided by the length of its vector."""
         own = self.state.values.get(name, sp.Symbol(name, real=True))
-        if not isinstance(own, sp.Expr) or own.is_number:
+        if not isinstance(own, sp.Expr) or own.is_number or not value.is_Mul:
             return value
         ratio = value / own
         unread = [n for n in map(str, ratio.free_symbols) if self.cut.get(n, own) is None]
@@ -605,6 +619,7 @@ class _Interpreter:
                 if each != condition:
                     self.run(each)
             self._emit([k for k in self.state.values if _is_unfinished(start.values.get(k))])
+            self._emit_groups()
             self.state.is_over &= not ends_at_break  # a break ends only the loop or the choice
             paths.append(self.state)
         self.scalars = []
@@ -643,6 +658,7 @@ class _Interpreter:
                 if _MAY_BE_MATRIX.search(text_of(node)):
                     self.formulas.append(Formula(line_of(node), "returned", None, str(error)))
         self._emit()
+        self._emit_groups()
         self.state.is_over = True
 
     def _call_statement(self, node: Node) -> None:
@@ -715,11 +731,14 @@ class _Interpreter:
     # Formulas
 
     def _emit(self, names: Iterable[str] | None = None) -> None:
-        """The matrices of some names, or of all, have their final values; so do angles."""
+        """The matrices of some names, or of all, have their final values."""
         for name in self.state.values if names is None else names:
             grid = self.state.values.get(name)
             if isinstance(grid, _Grid) and grid.name:  # not the result of a helper
                 self._add(grid.line, grid.name, grid.matrix())
+
+    def _emit_groups(self) -> None:
+        """Scalars that are three angles or nine entries, at the end of a path."""
         angles: dict[
             tuple[str, str], tuple[str, sp.Expr]
         ] = {}  # roll, pitch and yaw are one vector
@@ -753,8 +772,9 @@ class _Interpreter:
                 self._add(grid.line, stem.strip("._") or "elements", grid.matrix())
 
     def _add(self, line: int, name: str, matrix: sp.ImmutableMatrix | None) -> None:
-        if matrix is None:
+        if matrix is None or self.program.steps["formulas"] >= _MOST_FORMULAS:
             return
+        self.program.steps["formulas"] += 1
         values = {sp.Symbol(k, real=True): v for k, v in self.cut.items() if v is not None}
         whole: sp.ImmutableMatrix | None = matrix
         for _ in range(_LONG_IN_LONG):
@@ -797,9 +817,12 @@ class _Interpreter:
     def read(self, node: Node) -> Any:
         """The value of an expression; raises ExpressionError if it is not understood."""
         self.depth += 1
+        self.program.steps["read"] += 1
         try:
             if self.depth > _DEEPEST:
                 raise self.unreadable(node, "is nested too deeply")
+            if self.program.steps["read"] > _MOST_STEPS:
+                raise self.unreadable(node, "is not read, since the file is too long")
             digits = _NUMBERS.fullmatch(text_of(node)) if not children(node) else None
             if digits:
                 text = digits[2].replace("_", "")
@@ -819,7 +842,7 @@ class _Interpreter:
         return self.read(part(node, "value") or children(node)[-1])
 
     def _list(self, node: Node) -> Any:
-        if not children(node):
+        if not 0 < len(children(node)) <= _LONGEST_LIST:
             raise self.unreadable(node)
         values = [self.read(each) for each in children(node)]
         return (
@@ -951,7 +974,8 @@ class _Interpreter:
         place, index = place_of(node), self.index(node)
         if index is not None:
             return self._entry(node, *index)
-        if place is None or place.indices:
+        is_slip = self.program.is_formula and text_of(node).startswith("*")  # a + * b
+        if place is None or place.indices or is_slip:
             raise self.unreadable(node)
         base, _, member = place.path.rpartition(".")
         if member in CONSTANTS:
@@ -987,7 +1011,7 @@ class _Interpreter:
         held = self.state.values.get(self.name_of(call.base)) if call.base else None
         is_value = call.base == "?" or isinstance(held, _Grid)
         is_of_number = name in _OF_NUMBERS and len(nodes) < 1 + (name in ("pow", "atan2"))
-        is_same = name in WORDS["same"] and not nodes
+        is_same = name in WORDS["same"] | WORDS["pair"] and not nodes
         is_method = call.owner is not None and (is_value or is_of_number or is_same)
         if is_method and call.owner is not None:
             nodes = [call.owner, *nodes]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -83,14 +84,19 @@ def search(path: Path) -> Iterator[FormulaInFile]:
             continue
         whole = formula.whole or formula.matrix
         try:
-            comparison = identified(whole, is_in_program=True)
+            comparison = _identified(whole)
             if comparison.found is None and formula.whole:  # a long value may be an angle
-                comparison = identified(formula.matrix, is_in_program=True)
-        except ExpressionError as error:  # a function without values
+                comparison = _identified(formula.matrix)
+        except (ExpressionError, RecursionError) as error:  # a function without values
             yield FormulaInFile(path, formula, reason=str(error))
             continue
         if comparison.found is not None or comparison.is_reflection:
             yield FormulaInFile(path, formula, comparison)
+
+
+@lru_cache(maxsize=1024)  # programs repeat themselves
+def _identified(matrix: sp.ImmutableMatrix) -> Comparison:
+    return identified(matrix, is_in_program=True)
 
 
 def formulas(text: str, suffix: str) -> Iterator[Formula]:
