@@ -76,8 +76,9 @@ FALSE = put(VELOCITY, 2, "phi_dot")  # without ψ̇ cos θ
 
 
 def singular(content: Content) -> None:
-    content["body"]["inertia"][2][2] = "0"
-    put("mass_matrix", 2, 2, "0")(content)
+    """A thin rod, for which every ψ̈ satisfies Lagrange's equations."""
+    content["body"]["inertia"][2][2], content["first_integrals"] = "0", []
+    everywhere("C", "0")(content)
     put("accelerations", 2, "1000*phi_dot*psi_dot")(content)
 
 

@@ -28,7 +28,7 @@ from pathlib import Path
 from random import SystemRandom
 from typing import Any
 
-BITS, MOST_DEGREE, MOST_POWER, MOST_DIGITS, MOST_PARTS = 128, 100_000, 40, 40, 12
+BITS, MOST_DEGREE, MOST_DIGITS, MOST_PARTS = 128, 100_000, 40, 12
 ANGULAR = "cos", "sin", "tan", "cot"
 FUNCTIONS = *ANGULAR, "sqrt"
 OPERATORS = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/"}
@@ -83,7 +83,7 @@ def _tree(node: ast.AST) -> Tree:
         case ast.UnaryOp(op=ast.USub(), operand=operand):
             return ("-", ("number", 0), _tree(operand))
         case ast.BinOp(left=base, op=ast.Pow(), right=ast.Constant(value=power)) if (
-            type(power) is int and power <= MOST_POWER
+            type(power) is int
         ):
             return ("**", _tree(base), power)
         case ast.BinOp(left=one, op=operator, right=two) if type(operator) in OPERATORS:
