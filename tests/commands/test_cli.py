@@ -150,7 +150,10 @@ def test_the_exit_code_does_not_need_standard_error(closed, arguments, status):
 
 @pytest.mark.parametrize(
     ("words", "heavy"),
-    [(["--help"], {"sympy", "numpy", "rich", "jinja2"}), (["derive", "ZXZ"], {"numpy"})],
+    [
+        (["--help"], {"sympy", "numpy", "rich", "jinja2"}),
+        (["derive", "ZXZ"], {"scipy", "polars", "trimesh", "tree_sitter"}),
+    ],
 )
 def test_heavy_packages_are_imported_only_where_they_are_used(tmp_path, words, heavy):
     probe = (

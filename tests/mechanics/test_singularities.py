@@ -32,7 +32,10 @@ MORE_CHAINS = (
 )
 TURNS = ("ZXZ", "zyx", "aerospace", *CHAINS, *MORE_CHAINS)
 EVERY = (*PARAMETRISATIONS, *TURNS)
-UNDECIDED = "z(phi) [a,b,c](beta) [1,2,2](psi)"  # a cosine and a sine by any constants
+UNDECIDED = (
+    "z(phi) [a,b,c](beta) [1,2,2](psi)",  # a cosine and a sine by any constants
+    "x(a_1) y(a_2) z(a_3) x(a_4) y(a_5)",  # five turns: W is not multiplied out
+)
 
 
 @cache
@@ -126,7 +129,7 @@ def numbers(matrix: sp.ImmutableMatrix, text: str, q: Array) -> Array:
 @pytest.mark.parametrize("text", EVERY)
 def test_away_from_the_points_the_rank_is_the_stated_one(text):
     found = motion_of(text).singularities
-    assert found.is_solved == (text != UNDECIDED)
+    assert found.is_solved == (text not in UNDECIDED)
     for seed in range(5):
         assert rank(rate_matrix(text, somewhere(text, seed))) == found.rank
 
@@ -161,7 +164,7 @@ def test_at_the_points_the_rank_and_the_directions_are_the_stated_ones(text):
 EIGHTHS = np.arange(-4, 4) * (np.pi / 4)
 
 
-@pytest.mark.parametrize("text", [text for text in TURNS if text != UNDECIDED])
+@pytest.mark.parametrize("text", [text for text in TURNS if text not in UNDECIDED])
 def test_on_a_grid_the_rank_falls_at_the_stated_points_alone(text):
     """Eighths of a turn, through a whole period, of those coordinates that lie inside."""
     found = motion_of(text).singularities
