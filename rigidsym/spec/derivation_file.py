@@ -188,12 +188,20 @@ def _spec(
 
 def _dynamics(data: Data, place: Place, models: Sequence[RotationModel]) -> dict[str, Any]:
     """What [dynamics] contains, each key read once with the names of every model."""
-    dynamics = {"potential": "0"} | {k: value for k, value in data.items() if value is not None}
+    dynamics = {"potential": "0"} | {k: value for k, value in data.items() if not _is_broken(value)}
     for model in models:
         for key, value in dynamics.items():
             with place.at(key).noting():
                 forces_on(model, **{key: value})
     return dynamics
+
+
+def _is_broken(value: Any) -> bool:
+    """Whether a part of a value was wrong, so that None stands in its place."""
+    entries = value.values() if isinstance(value, Mapping) else value
+    return value is None or (
+        not isinstance(value, str | float | int) and any(map(_is_broken, entries))
+    )
 
 
 def _derivatives(
