@@ -329,6 +329,7 @@ class _Interpreter:
 
     def run(self, node: Node) -> None:
         """One statement, or all statements in a block."""
+        self.state.is_over |= self.program.steps["read"] > _MOST_STEPS  # later values are unknown
         if self.state.is_over or node.type in PARTS["function"]:
             return
         self.depth += 1
