@@ -47,7 +47,6 @@ from rigidsym.notes.document import (
     NoteBlock,
     NoteTable,
     Paragraph,
-    Section,
     Text,
     said,
 )
@@ -126,22 +125,25 @@ class Composer:
         """The note, as a template orders its sections."""
         sections = list(sections_of(name, self.letters, **self.facts()))
         byline = [block for section in sections if not section.title for block in section.blocks]
+        if not self.is_audit:  # a lecture leaves out that identities were verified
+            sections = [
+                section._replace(
+                    blocks=tuple(
+                        replace(block, proved=()) if isinstance(block, Equation) else block
+                        for block in section.blocks
+                    )
+                )
+                for section in sections
+            ]
         return Document(
             name=self.derivation.name,
             title=self.derivation.title,
             subtitle="" if is_body_alone(self.derivation) else self.derivation.subject,
             letters=self.letters,
-            sections=tuple(self._shown(s) for s in sections if s.title and s.blocks),
+            sections=tuple(s for s in sections if s.title and s.blocks),
             byline=tuple(text_of(block.text) for block in byline if isinstance(block, Paragraph)),
             language=name.split("/")[0],
         )
-
-    def _shown(self, section: Section) -> Section:
-        """A lecture leaves out identities that were verified, and no unproved claim."""
-        if self.is_audit:
-            return section
-        blocks = (replace(b, proved=()) if isinstance(b, Equation) else b for b in section.blocks)
-        return section._replace(blocks=tuple(blocks))
 
     def facts(self) -> dict[str, Any]:
         """What the template of a style may print, and the booleans that it asks."""
@@ -155,7 +157,10 @@ class Composer:
             "motion": motion_facts(derivation, self.letters),
             "conversions": self.conversions,
             "quaternion": self._quaternion(),
-            "theory": self._theory(),
+            "theory": [
+                (title, [block for each in statements for block in self._statement(each)])
+                for title, statements in groupby(derivation.theory, key=lambda s: s.section)
+            ],
             "numbered_product": self._product,
             "steps": self.steps,
             "equation": self.equation,
@@ -244,7 +249,12 @@ class Composer:
         if self.derivation.theory and name in _WHERE_SHOWN:
             equation = replace(equation, number=None, label="", is_result=False)
         if name == "principal_moments" and self.moments:
-            equation = _ended(equation, self._principal_moments())
+            assert self.derivation.body is not None
+            names = {moment: name for name, moment in self.moments}
+            moments = [names.get(m, m) for m in self.derivation.body.inertia.diagonal()]
+            # (I₁, I₁, I₃), or the entries of I′ if they differ
+            end = _DIAGONAL if len(set(moments)) == 3 else self._in_a_row(moments)
+            equation = _ended(equation, end)
         if name in _IN_A_ROW and equation.matrix is not None:
             in_a_row = _ended(equation, self._in_a_row(equation.matrix))
             equation = equation if display(in_a_row, self.letters, PAGE).done else in_a_row
@@ -259,28 +269,19 @@ class Composer:
             return with_symbols(because, self.symbols)
         if step.quantity.name == "rotation_matrix" and is_explained and not self.model.passive:
             because = phrases("equations")["matrix_of_this_rotation"]
-        source = self._source(step)
+        source = step.quantity.source
+        # the model's own source is cited where the rotation is given
+        if step.quantity.name == "rotation_matrix" and not self.model.turns:
+            source = None if self.model.source.text == GIVEN else self.model.source
+        elif source == self.model.source:
+            source = None
         if source in self.cited:
             source = None
         elif source:
             self.cited.add(source)
         return with_source(with_symbols(because, self.symbols), source)
 
-    def _source(self, step: Step) -> Citation | None:
-        """The source of a step; the model's own is cited once, where the rotation is given."""
-        is_given = step.quantity.name == "rotation_matrix" and not self.model.turns
-        if is_given:
-            return None if self.model.source.text == GIVEN else self.model.source
-        return None if step.quantity.source == self.model.source else step.quantity.source
-
     # The body
-
-    def _principal_moments(self) -> Formula:
-        """(I₁, I₁, I₃), or the entries of I′ if they differ."""
-        assert self.derivation.body is not None
-        names = {moment: name for name, moment in self.moments}
-        moments = [names.get(m, m) for m in self.derivation.body.inertia.diagonal()]
-        return _DIAGONAL if len(set(moments)) == 3 else self._in_a_row(moments)
 
     def _in_a_row(self, entries: Iterable[sp.Expr]) -> Formula:
         return Bracket(joined([formula_of(entry, self.letters) for entry in entries], COMMA))
@@ -294,13 +295,6 @@ class Composer:
         return [*([said("here")] if is_alone else []), *blocks]
 
     # The lecture
-
-    def _theory(self) -> list[tuple[str, list[NoteBlock]]]:
-        """The sections of the theory for every body and rotation."""
-        return [
-            (title, [block for each in statements for block in self._statement(each)])
-            for title, statements in groupby(self.derivation.theory, key=lambda s: s.section)
-        ]
 
     def _statement(self, statement: Statement) -> Iterator[NoteBlock]:
         matrix = sums(statement, self.letters)

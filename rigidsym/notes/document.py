@@ -155,7 +155,8 @@ class Document:
     @cached_property
     def sources(self) -> tuple[str, ...]:
         """The sources that the text cites, each once, in order of appearance."""
-        spans = (span for text in self._texts() for span in text)
+        blocks = (block for section in self.sections for block in section.blocks)
+        spans = (span for block in blocks for text in texts_of(block) for span in text)
         cited = (span.citation.text for span in spans if isinstance(span, Cited))
         return tuple(dict.fromkeys(cited))
 
@@ -169,10 +170,6 @@ class Document:
             if equation.label == label and equation.number:
                 return equation.number
         raise ModelError(f"the note refers to the equation of {label}, but its template has none")
-
-    def _texts(self) -> Iterator[Text]:
-        blocks = (block for section in self.sections for block in section.blocks)
-        return chain.from_iterable(map(texts_of, blocks))
 
 
 def texts_of(block: NoteBlock) -> Iterator[Text]:

@@ -35,11 +35,10 @@ from rigidsym.formula.tree import (
     row,
     transpose_of,
 )
-from rigidsym.mechanics.derivation import Derivation, Frame, Step
+from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES, MOMENTUM_BODY
 from rigidsym.mechanics.quantities.kinematics import BODY, RATES, ROTATION, SPACE
 from rigidsym.mechanics.quantities.mass import INERTIA_QUANTITIES
-from rigidsym.models.rotation import RotationModel
 from rigidsym.notes.document import (
     Equation,
     EquationReference,
@@ -116,39 +115,32 @@ class Fitter:
             for name, _ in form.parts:
                 self._explained_at.setdefault(name, equation.label)
         if equation.number and step.quantity.name == _BODY_VELOCITY:
-            self._give(step)
+            # from here on, Ω′₁, Ω′₂, Ω′₃ stand for the components of the angular velocity
+            for names in (a.symbols for a in self.derivation.arguments if a.name == "omega_body"):
+                self._namer.give(zip(names, step.expression, strict=True))
+                self._explained_at |= dict.fromkeys(names, step.quantity.name)
 
     def whole(self, equation: Equation) -> Iterator[NoteBlock]:
         """An equation that belongs to no quantity, with the names of its parts."""
         shown = display(equation, self.letters, PAGE)
         yield from self._blocks(self._shortest(equation, shown))
 
-    def _give(self, step: Step) -> None:
-        """Use Ω′₁, Ω′₂, Ω′₃ from here on for the components of the angular velocity."""
-        found = [a.symbols for a in self.derivation.arguments if a.name == "omega_body"]
-        for names in found:
-            self._namer.give(zip(names, step.expression, strict=True))
-            self._explained_at |= dict.fromkeys(names, step.quantity.name)
-
     def _shortest(self, equation: Equation, shown: Display) -> _Form:
         """With names for its parts, where that is better than without."""
         plain = _Form(equation)
         if not shown.is_broken and not shown.done:
             return plain
-        named = self._named(equation)
-        is_better = self._is_shorter if shown.is_broken else self._is_more_of_a_matrix
-        if named.parts and is_better(named, plain):
-            return named
-        self._namer.forget()
-        return plain
-
-    def _named(self, equation: Equation) -> _Form:
         scalar = equation.scalar
         matrix = sp.ImmutableMatrix([scalar]) if equation.matrix is None else equation.matrix
         names = 1.5 if matrix.rows > 1 and matrix == matrix.T else 1.0  # I₁₂ = I₂₁
         parts, short = self._namer.named(matrix, PAGE - names * _ROOM_OF_A_NAME)
         value = {"scalar": short[0]} if equation.matrix is None else {"matrix": short}
-        return _Form(replace(equation, **value), parts)
+        named = _Form(replace(equation, **value), parts)
+        is_better = self._is_shorter if shown.is_broken else self._is_more_of_a_matrix
+        if named.parts and is_better(named, plain):
+            return named
+        self._namer.forget()
+        return plain
 
     def _is_shorter(self, named: _Form, plain: _Form) -> bool:
         """Whether names save lines; two more are worth it where nothing is broken then."""
@@ -259,7 +251,10 @@ def in_short(step: Step, derivation: Derivation, letters: Letters) -> tuple[Form
     """What a quantity is equal to, by other quantities; None where it is known by itself alone."""
     kind, _, frame = step.quantity.name.rpartition("_")
     if step.quantity.name == "rotation_matrix" and derivation.model.turns:
-        return (_turns(derivation.model, letters),)
+        whole = product_of(derivation.model.turns, letters)
+        if derivation.model.passive:  # A is the transpose
+            whole = formula(r"\left(#1\right)^{\mathsf T}", whole)
+        return (whole,)
     if step.quantity.name == "rotation_rate":
         return (by_the_chain_rule(step.quantity.symbol, letters),)
     if step.quantity.name == "angular_momentum_rotation":
@@ -270,17 +265,17 @@ def in_short(step: Step, derivation: Derivation, letters: Letters) -> tuple[Form
     if kind == "inverse_rate_matrix" and is_free:  # the right inverse of least norm
         matrix = _FRAMES[frame].matrix
         return (formula(r"#2\,(#1#2)^{-1}", matrix, transpose_of(matrix)),)
-    if kind == "angular_acceleration":
-        return (_acceleration(derivation, _FRAMES[frame], letters),)
-    return None
-
-
-def _turns(model: RotationModel, letters: Letters) -> Formula:
-    """R_z(φ) R_x(θ) R_z(ψ), and its transpose for A."""
-    whole = product_of(model.turns, letters)
-    if not model.passive:
-        return whole
-    return formula(r"\left(#1\right)^{\mathsf T}", whole)
+    if kind != "angular_acceleration":
+        return None
+    # the derivative of the vector form of Ω, or Ẇ q̇ + W q̈
+    names = [step.quantity.name for step in derivation.steps]
+    velocity = f"angular_velocity_{frame}"
+    form = derivation.step(velocity).vector_form if velocity in names else None
+    if form is not None and letters.length is not None:
+        rates = rates_of_form(in_notation(form, letters.length), letters.length.rate)
+        return (min((sum_of_vectors(rate, letters) for rate in rates), key=lambda f: len(f.text)),)
+    matrix = _FRAMES[frame].matrix
+    return (formula(r"#1\,#2 + #4\,#3", matrix, _ACCELERATIONS, RATES, Rate(matrix)),)
 
 
 def by_the_chain_rule(rate: Formula, letters: Letters) -> Formula:
@@ -292,14 +287,3 @@ def by_the_chain_rule(rate: Formula, letters: Letters) -> Formula:
         for q in coordinates
     ]
     return joined(terms, PLUS)
-
-
-def _acceleration(derivation: Derivation, frame: Frame, letters: Letters) -> Formula:
-    """The derivative of the vector form of Ω, or Ẇ q̇ + W q̈."""
-    names = [step.quantity.name for step in derivation.steps]
-    velocity = f"angular_velocity_{frame.name}"
-    form = derivation.step(velocity).vector_form if velocity in names else None
-    if form is not None and letters.length is not None:
-        rates = rates_of_form(in_notation(form, letters.length), letters.length.rate)
-        return min((sum_of_vectors(rate, letters) for rate in rates), key=lambda f: len(f.text))
-    return formula(r"#1\,#2 + #4\,#3", frame.matrix, _ACCELERATIONS, RATES, Rate(frame.matrix))

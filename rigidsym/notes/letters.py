@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import replace
 from functools import lru_cache
 
@@ -36,14 +36,11 @@ def letters_of(
     """
     if model is None or not model.vector:
         return _letters(tuple(arguments), notation, None)
-    notation = replace(notation, vector=_letter_of(model.vector))
-    return _letters(tuple(arguments), notation, length_of(model))
-
-
-def _letter_of(vector: Sequence[sp.Expr]) -> str:
-    """That of its components, e for (e₁, e₂, e₃), or v."""
-    letter, *others = {part.func.__name__.rstrip("0123456789").rstrip("_") for part in vector}
-    return letter if not others and letter in _OF_VECTORS else VECTOR.text
+    # the vector has the letter of its components, e for (e₁, e₂, e₃), or v
+    letter, *others = {part.func.__name__.rstrip("0123456789").rstrip("_") for part in model.vector}
+    if others or letter not in _OF_VECTORS:
+        letter = VECTOR.text
+    return _letters(tuple(arguments), replace(notation, vector=letter), length_of(model))
 
 
 @lru_cache(maxsize=64)

@@ -97,7 +97,8 @@ def _named(body: RigidBody) -> tuple[Parts, RigidBody]:
         parts = [(name, moment) for moment, name in reversed(letters.items()) if moment]
         tensor = sp.diag(*(letters[moment] if moment else moment for moment in tensor.diagonal()))
     elif not _is_short(body):
-        tensor = sp.Matrix(3, 3, lambda i, j: body.inertia[i, j] and _entry(i, j))
+        names = [[f"I'_{min(i, j) + 1}{max(i, j) + 1}" for j in range(3)] for i in range(3)]
+        tensor = sp.Matrix(3, 3, lambda i, j: body.inertia[i, j] and sp.Symbol(names[i][j]))
     mass = body.mass if body.mass.is_Symbol else sp.Symbol("M")
     return parts, given_inertia(
         tensor,
@@ -106,10 +107,6 @@ def _named(body: RigidBody) -> tuple[Parts, RigidBody]:
         parameters=[Parameter(symbol=s, positive=False) for s in tensor.free_symbols | {mass}],
         allow=True,
     )
-
-
-def _entry(row: int, column: int) -> sp.Symbol:
-    return sp.Symbol(f"I'_{min(row, column) + 1}{max(row, column) + 1}")
 
 
 def textbook_form(name: str, derivation: Derivation) -> tuple[Formula, ...]:
@@ -130,16 +127,11 @@ def textbook_form(name: str, derivation: Derivation) -> tuple[Formula, ...]:
         half = formula(r"\tfrac{1}{2}\,#1", bracketed(whole) if len(terms) > 1 else whole)
         return (half,)
     if name == "angular_momentum_rotation" and len(numbered) == 3:
-        return (_momentum([moment for _, moment in numbered]),)
+        middle = numbered[1][1]
+        terms = [row(middle, _TURNED)]
+        for k, moment in (numbered[0], numbered[2]):
+            if moment != middle:
+                excess = bracketed(row(moment, MINUS, middle))
+                terms.append(formula(rf"#1\,\Omega'_{k}\,\mathbf{{e}}'_{k}", excess))
+        return (joined(terms, PLUS),)
     return ()
-
-
-def _momentum(moments: Sequence[Formula]) -> Formula:
-    """I₂ Ω + (I₁ − I₂) Ω′₁ e′₁ + (I₃ − I₂) Ω′₃ e′₃, without what vanishes."""
-    middle = moments[1]
-    terms = [row(middle, _TURNED)]
-    for k in (1, 3):
-        if moments[k - 1] != middle:
-            excess = bracketed(row(moments[k - 1], MINUS, middle))
-            terms.append(formula(rf"#1\,\Omega'_{k}\,\mathbf{{e}}'_{k}", excess))
-    return joined(terms, PLUS)

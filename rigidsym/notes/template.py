@@ -186,7 +186,11 @@ def _text(words: str, things: list[Any]) -> Text:
         spans += _spans(match, things)
         end = match.end()
     spans.append(line[end:])
-    return _joined(spans)
+    text: list[Span] = []
+    for are_words, group in groupby(spans, lambda span: isinstance(span, str)):
+        neighbours = list(group)
+        text += ["".join(map(str, neighbours))] if are_words else neighbours
+    return tuple(span for span in text if span != "")
 
 
 def _spans(match: re.Match[str], things: list[Any]) -> Iterable[Span]:
@@ -198,11 +202,3 @@ def _spans(match: re.Match[str], things: list[Any]) -> Iterable[Span]:
         return (Code(text_of(_text(match["code"], things))),)
     thing = things[ord(match["mark"]) - _FIRST]
     return thing if type(thing) is tuple else (thing,)
-
-
-def _joined(spans: Iterable[Span]) -> Text:
-    found: list[Span] = []
-    for are_words, group in groupby(spans, lambda span: isinstance(span, str)):
-        together = list(group)
-        found += ["".join(map(str, together))] if are_words else together
-    return tuple(span for span in found if span != "")

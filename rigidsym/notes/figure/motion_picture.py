@@ -6,7 +6,7 @@ are halved until the picture stays the same.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -60,7 +60,14 @@ def motion_picture(derivation: Derivation, letters: Letters) -> MotionPicture | 
     most = None if first.is_poinsot else _IN_A_ROW  # all polhodes are on one ellipsoid
     others = (ExampleMotion(derivation, forces, e) for e in forces.examples[1:most])
     motions = [first, *others]
-    traces = list(_traces(motions, letters))
+    traces: list[tuple[str, Drawing]] = []  # what is traced, with its drawing
+    if first.is_poinsot:
+        kind = "polhode" if len(motions) == 1 else "polhodes"
+        traces.append((kind, _polhodes(motions, letters)))
+    turns = derivation.model.turns
+    if turns and turns[-1].axis == "z":
+        by_axis = motions[:1] if first.is_poinsot else motions
+        traces += [("axis", _axis(motion)) for motion in by_axis]
     drawings = [drawing for _, drawing in traces]
     if not drawings:
         width = _WIDE if len(motions) == 1 else _NARROW
@@ -211,17 +218,6 @@ def _over_time(motion: ExampleMotion, letters: Letters, width: float) -> Drawing
     curves = [np.stack([motion.t, column], axis=1) for _, column in pairs]
     names_of = [name for name, _ in pairs]
     return chart(curves, (width, _HEIGHT), formula(r"t / \mathrm{s}"), names=names_of)
-
-
-def _traces(motions: Sequence[ExampleMotion], letters: Letters) -> Iterator[tuple[str, Drawing]]:
-    """What is traced, with its drawing."""
-    first = motions[0]
-    turns = first.derivation.model.turns
-    if first.is_poinsot:
-        yield "polhode" if len(motions) == 1 else "polhodes", _polhodes(motions, letters)
-        motions = motions[:1]
-    if turns and turns[-1].axis == "z":
-        yield from (("axis", _axis(motion)) for motion in motions)
 
 
 def _polhodes(motions: Sequence[ExampleMotion], letters: Letters) -> Drawing:

@@ -85,7 +85,8 @@ def _character(character: str) -> str:
         return "~"
     if character.isspace() or unicodedata.category(character).startswith("C"):
         return " "
-    if _is_in_font(character):
+    is_letter = character <= "\u017e" and character not in _MISSING
+    if is_letter or character in _PUNCTUATION:  # the font has it
         return character
     parts = unicodedata.normalize("NFD", character)
     return _cluster(parts[0], parts[1:]) if len(parts) > 1 else _code(character)
@@ -101,11 +102,6 @@ def _formula(character: str) -> str:
         written = base if base in _PLAIN else _formula(base)
         return f"{_SCRIPTS[place]}{{{written}}}" if written else ""
     return GREEK.get(character, "")
-
-
-def _is_in_font(character: str) -> bool:
-    is_letter = character <= "\u017e" and character not in _MISSING
-    return is_letter or character in _PUNCTUATION
 
 
 def _code(character: str) -> str:

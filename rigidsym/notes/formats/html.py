@@ -172,12 +172,15 @@ class HtmlPrinter(NotePrinter):
                 held = 0
             elif isinstance(span, Formula):
                 after = text[place + 1] if place + 1 < len(text) else ""
-                held = len(after) - len(after.lstrip(_POINTS)) if isinstance(after, str) else 0
-                opening = "(" if written and written[-1].endswith("(") else ""
-                if opening:
+                words = after if isinstance(after, str) else ""
+                held = len(words) - len(words.lstrip(_POINTS))
+                parts = [chunk.text for chunk in self.pen.inline(span).chunks]
+                if written and written[-1].endswith("("):
                     written[-1] = written[-1][:-1]
-                points = after[:held] if isinstance(after, str) else ""
-                written.append(_whole(self.pen.inline(span), opening, points))
+                    parts[0] = f'<span class="whole">({parts[0]}</span>'
+                if held:
+                    parts[-1] = f'<span class="whole">{parts[-1]}{words[:held]}</span>'
+                written.append(" ".join(parts))
             else:
                 written.append(self.span(span))
         return "".join(written)
@@ -186,7 +189,9 @@ class HtmlPrinter(NotePrinter):
         return piece.text
 
     def code(self, text: str) -> str:
-        return f"<code>{_breakable(escape(text))}</code>"
+        # a line may end within the long name of a function
+        breakable = escape(text).replace("_", "_<wbr>").replace("(", "<wbr>(")
+        return f"<code>{breakable}</code>"
 
     def strong(self, text: str) -> str:
         return f"<strong>{escape(text)}</strong>"
@@ -196,18 +201,3 @@ class HtmlPrinter(NotePrinter):
 
     def citation(self, number: int, place: str) -> str:
         return f'[<a href="#source-{number}">{number}</a>{f", {escape(place)}" if place else ""}]'
-
-
-def _whole(piece: Piece, opening: str, points: str) -> str:
-    """The parts of a formula, with what stands beside it."""
-    written = [chunk.text for chunk in piece.chunks]
-    if opening:
-        written[0] = f'<span class="whole">{opening}{written[0]}</span>'
-    if points:
-        written[-1] = f'<span class="whole">{written[-1]}{points}</span>'
-    return " ".join(written)
-
-
-def _breakable(name: str) -> str:
-    """A name in a program, with places where a line may end."""
-    return name.replace("_", "_<wbr>").replace("(", "<wbr>(")

@@ -45,27 +45,19 @@ def render(document: Document) -> str:
         {
             "title": escape(section.title),
             "body": printer.body(section),
-            "lines": _least_lines(section),
+            # that stay on one page: more if it begins with a table
+            "lines": 14 if any(isinstance(b, NoteTable) for b in section.blocks[:2]) else 6,
         }
         for section in document.sections
     ]
+    lines = 4 + sum(1 + len(source) // _LINE_OF_A_SOURCE for source in document.sources)
     parts = {
         "sections": sections,
         "metadata": metadata(document),
-        "source_lines": _lines_of_sources(document),
+        "source_lines": min(30, lines),  # a list that is not long stays on one page
         **printer.placed(),
     }
     return resources.environment(**_DELIMITERS).get_template(TEMPLATE).render(parts)
-
-
-def _lines_of_sources(document: Document) -> int:
-    """About how many lines stay on one page: the list, if it is not long, and its heading."""
-    return min(30, 4 + sum(1 + len(source) // _LINE_OF_A_SOURCE for source in document.sources))
-
-
-def _least_lines(section: Section) -> int:
-    """Lines of a section that stay on one page: more if it begins with a table."""
-    return 14 if any(isinstance(block, NoteTable) for block in section.blocks[:2]) else 6
 
 
 def metadata(document: Document) -> str:
@@ -76,12 +68,12 @@ def metadata(document: Document) -> str:
         "Author": document.author or "rigidsym",
         "Creator": f"rigidsym {__version__}",
     }
-    return " ".join(f"/{key} <{_utf16(text)}>" for key, text in said.items())
-
-
-def _utf16(text: str) -> str:
-    """Any text as a string of a PDF; nothing in it is TeX."""
-    return ("\ufeff" + cleaned(text)).encode("utf-16-be", "replace").hex().upper()
+    # in UTF-16 a string of a PDF may be any text, and nothing in it is TeX
+    codes = {
+        key: ("\ufeff" + cleaned(text)).encode("utf-16-be", "replace").hex().upper()
+        for key, text in said.items()
+    }
+    return " ".join(f"/{key} <{code}>" for key, code in codes.items())
 
 
 class _LatexPrinter(NotePrinter):
@@ -114,19 +106,16 @@ class _LatexPrinter(NotePrinter):
         lines = [announced] if announced else []
         if shown.height > _TALL:
             lines += self._over_pages(equation, shown)
+        elif equation.number:
+            begin = rf"\begin{{resultof}}{{{self._label(equation.label)}}}"
+            lines += [*self._from(equation.number), begin, shown.text, r"\end{resultof}"]
         else:
-            lines += self._at_once(equation, shown.text)
+            lines.append(f"\\[\n{shown.text}\n\\]")
         said = " ".join(f"{claim}." for claim in self.claims(equation))
         function = self._typed(equation.function) if equation.function else ""
         if said or function:
             lines = ["{\\followed", *lines, "}", rf"\remark{{{said}}}{{{function}}}"]
         return "\n".join(lines)
-
-    def _at_once(self, equation: Equation, inside: str) -> list[str]:
-        if not equation.number:
-            return [f"\\[\n{inside}\n\\]"]
-        begin = rf"\begin{{resultof}}{{{self._label(equation.label)}}}"
-        return [*self._from(equation.number), begin, inside, r"\end{resultof}"]
 
     def _from(self, number: int) -> list[str]:
         """TeX counts the equations; where the numbers of a theory leave some out, so does TeX."""
@@ -188,10 +177,10 @@ class _LatexPrinter(NotePrinter):
     def _width(self, table: NoteTable) -> float:
         """About how wide a table is, in ems."""
         columns = zip(table.head, *table.rows, strict=True)
-        return sum(_COLUMN_GAP + max(map(self._width_of_cell, column)) for column in columns)
-
-    def _width_of_cell(self, cell: Text) -> float:
-        return sum(map(self._width_of_span, cell))
+        return sum(
+            _COLUMN_GAP + max(sum(map(self._width_of_span, cell)) for cell in column)
+            for column in columns
+        )
 
     def _width_of_span(self, span: Span) -> float:
         if isinstance(span, Formula):
@@ -200,14 +189,14 @@ class _LatexPrinter(NotePrinter):
         return _LETTER * (4 if isinstance(span, EquationReference) else len(words))
 
     def _cell(self, text: Text) -> str:
-        written = "".join(self._tall(s) if isinstance(s, Formula) else self.span(s) for s in text)
+        written = ""
+        for span in text:
+            part = self.claim(span) if isinstance(span, Formula) else self.span(span)
+            if isinstance(span, Formula) and self.pen.write(span).height:
+                part = rf"\tall{{{part}}}"  # or the fractions of neighbouring rows would touch
+            written += part
         is_number = len(text) == 1 and isinstance(text[0], EquationReference)
         return rf"\numbercell{{{written}}}" if is_number else written
-
-    def _tall(self, formula: Formula) -> str:
-        """In a table, where the fractions of neighbouring rows would touch."""
-        written = self.claim(formula)
-        return rf"\tall{{{written}}}" if self.pen.write(formula).height else written
 
     def figure(self, figure: Figure) -> str:
         drawing = f"\n\\begin{{drawing}}\n{tikz(figure.drawing)}\n\\end{{drawing}}"

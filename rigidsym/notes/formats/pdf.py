@@ -57,35 +57,33 @@ def typeset(tex: str, *, timeout: float = TIMEOUT) -> Typeset:
     Raises MissingTool where TeX or one of its packages is not installed, and ToolFailed, with the
     end of the log, where TeX stops at an error or runs longer than `timeout` seconds.
     """
-    _require_programs()
-    with tempfile.TemporaryDirectory(prefix="rigidsym-") as folder:
-        source = Path(folder, "note.tex")
-        source.write_text(tex, encoding="utf-8")
-        output = _run(folder, timeout)
-        for _ in range(_MOST_RERUNS):
-            log = _read(source.with_suffix(".log")) or output
-            if _UNFINISHED not in log:
-                break
-            output = _run(folder, timeout, "-g")
-        pdf = source.with_suffix(".pdf")
-        if not pdf.is_file():
-            _require_packages(log)
-            raise ToolFailed(f"TeX made no PDF; the end of its log:\n{_last_lines(log)}")
-        return Typeset(pdf=pdf.read_bytes(), warnings=tuple(_WARNING.findall(log)))
-
-
-def missing_programs() -> tuple[str, ...]:
-    """The programs that typesetting needs and that are not on the search path."""
-    return tuple(program for program in PROGRAMS if shutil.which(program) is None)
-
-
-def _require_programs() -> None:
     missing = missing_programs()
     if missing:
         raise MissingTool(
             f"a PDF needs {' and '.join(missing)}, not found here; on Debian: "
             f"apt install {' '.join(DEBIAN_PACKAGES)}"
         )
+    with tempfile.TemporaryDirectory(prefix="rigidsym-") as folder:
+        source = Path(folder, "note.tex")
+        source.write_text(tex, encoding="utf-8")
+        output = _run(folder, timeout)
+        for _ in range(_MOST_RERUNS):
+            path = source.with_suffix(".log")
+            log = path.read_text(encoding="utf-8", errors="replace") if path.is_file() else output
+            if _UNFINISHED not in log:
+                break
+            output = _run(folder, timeout, "-g")
+        pdf = source.with_suffix(".pdf")
+        if not pdf.is_file():
+            _require_packages(log)
+            last_lines = "\n".join(log.splitlines()[-_LOG_LINES:])
+            raise ToolFailed(f"TeX made no PDF; the end of its log:\n{last_lines}")
+        return Typeset(pdf=pdf.read_bytes(), warnings=tuple(_WARNING.findall(log)))
+
+
+def missing_programs() -> tuple[str, ...]:
+    """The programs that typesetting needs and that are not on the search path."""
+    return tuple(program for program in PROGRAMS if shutil.which(program) is None)
 
 
 def _require_packages(log: str) -> None:
@@ -115,19 +113,7 @@ def _run(folder: str, timeout: float, *options: str) -> str:
     except subprocess.TimeoutExpired as error:
         raise ToolFailed(f"TeX was stopped after {timeout:g} seconds") from error
     finally:
-        _end(process)
+        if process.poll() is None:
+            os.killpg(process.pid, signal.SIGKILL)
+            process.communicate()
     return output.decode("utf-8", "replace")
-
-
-def _end(process: subprocess.Popen[bytes]) -> None:
-    if process.poll() is None:
-        os.killpg(process.pid, signal.SIGKILL)
-        process.communicate()
-
-
-def _read(path: Path) -> str:
-    return path.read_text(encoding="utf-8", errors="replace") if path.is_file() else ""
-
-
-def _last_lines(log: str) -> str:
-    return "\n".join(log.splitlines()[-_LOG_LINES:])

@@ -16,12 +16,10 @@ from rigidsym.formula.scalars import Names, plain_data
 from rigidsym.mechanics.derivation import (
     Argument,
     Derivation,
-    Place,
     Proof,
     Singularities,
     Singularity,
     Step,
-    VectorForm,
 )
 from rigidsym.mechanics.dynamics.lagrange import is_bound
 from rigidsym.models.forces import OMEGA_BODY
@@ -44,7 +42,11 @@ def record(
     `request` is the data that asked for it, from which `rigidsym check` derives it again;
     `conversions` stand in it where they were asked for.
     """
-    names = _plain_names(derivation.arguments)
+    names = {  # for functions of time, the highest derivatives first to be replaced first
+        expression: sp.Symbol(name)
+        for argument in reversed(derivation.arguments)
+        for expression, name in zip(argument.symbols, argument.names, strict=True)
+    }
     cited = [derivation.model.source, *[step.quantity.source for step in derivation.steps]]
     source, *sources = [place and str(place) for place in cited]
     found = {
@@ -106,25 +108,23 @@ def _body(body: RigidBody) -> dict[str, Any]:
     """The body itself; its principal axes in numbers, where all its parameters have values."""
     from rigidsym.mechanics.mass.bodies import in_numbers, parts_of
 
-    found, parts = in_numbers(body), parts_of(body)
+    found = in_numbers(body)
+    parts = [  # about their centres of mass; `turn` takes the axes of a part to those of the whole
+        {"mass": mass, "centre": _vector(centre), "inertia": inertia, "turn": turn}
+        for mass, centre, inertia, turn in parts_of(body)
+    ]
     return {
         "title": body.title,
         "mass": body.mass,
         "centre": _vector(body.centre),
         "inertia": body.inertia,
-        **({"parts": list(map(_part, parts))} if parts else {}),
+        **({"parts": parts} if parts else {}),
         "parameters": [
             {"name": p.symbol.name, "about": p.about, "unit": p.unit, "value": p.value}
             for p in body.parameters
         ],
         "in_numbers": None if found is None else found.record(),
     }
-
-
-def _part(part: Sequence[Any]) -> dict[str, Any]:
-    """A part about its centre of mass; `turn` takes its axes to those of the whole."""
-    mass, centre, inertia, turn = part
-    return {"mass": mass, "centre": _vector(centre), "inertia": inertia, "turn": turn}
 
 
 def _motion(derivation: Derivation) -> dict[str, Any]:
@@ -175,15 +175,6 @@ def _theory(derivation: Derivation) -> list[dict[str, Any]]:
     ]
 
 
-def _plain_names(arguments: tuple[Argument, ...]) -> Names:
-    """Symbols in place of functions of time, highest derivatives first to be replaced first."""
-    return {
-        expression: sp.Symbol(name)
-        for argument in reversed(arguments)
-        for expression, name in zip(argument.symbols, argument.names, strict=True)
-    }
-
-
 def _arguments(arguments: Sequence[Argument]) -> list[dict[str, Any]]:
     letters = plain_data([argument.notation for argument in arguments], {})
     return [
@@ -207,26 +198,22 @@ def _step(step: Step, source: str | None) -> dict[str, Any]:
         "matrix": (step.expression.shape, step.expression),
     }
     shape, expression = values[quantity.shape]
+    form = step.vector_form
     return {
         "number": step.number,
         **_picked(quantity, "name", "about", "unit", "symbol", "inputs"),
         "shape": shape,
         "expression": expression,
-        "vector_form": _vector_form(step.vector_form),
+        # coefficients as expressions in the length n of the vector v
+        "vector_form": form
+        and {
+            "vector": form.components,
+            "length": str(form.length),
+            "terms": [term._asdict() for term in (*form.terms, form.last) if term],
+        },
         "because": step.because,
         "source": source,
         "proofs": list(map(_proof, step.proofs)),
-    }
-
-
-def _vector_form(form: VectorForm | None) -> dict[str, Any] | None:
-    """Coefficients as expressions in the length n of the vector v; None where there is no form."""
-    if form is None:
-        return None
-    return {
-        "vector": form.components,
-        "length": str(form.length),
-        "terms": [term._asdict() for term in (*form.terms, form.last) if term],
     }
 
 
@@ -243,22 +230,20 @@ def _singularities(found: Singularities | None) -> dict[str, Any] | None:
 
 def _point(point: Singularity) -> dict[str, Any]:
     return {
-        "at": list(map(_place, point.places)),
+        "at": [
+            {  # value + k modulo, for whole k; none of them below `least`, if there is one
+                "coordinate": place.coordinate,
+                "value": place.value,
+                "modulo": place.period,
+                "least": place.value if place.is_length else None,
+            }
+            for place in point.places
+        ],
         "rank": point.rank,
         "lost_direction_space": _vector(point.lost_axis_space),
         "lost_direction_body": _vector(point.lost_axis_body),
         "undetermined_rates": point.null_rates.T,
         "reached_direction_space": _vector(point.reachable_axis),
-    }
-
-
-def _place(place: Place) -> dict[str, Any]:
-    """The values are value + k modulo, for whole k; none of them below `least`, if there is one."""
-    return {
-        "coordinate": place.coordinate,
-        "value": place.value,
-        "modulo": place.period,
-        "least": place.value if place.is_length else None,
     }
 
 
