@@ -452,10 +452,6 @@ _MOST_TERMS = 60  # of a form that is tried multiplied out; longer ones are no t
 _HALF = sp.Rational(1, 2)
 
 
-Powers = dict[sp.Expr, sp.Expr]
-Scaled = tuple[sp.Rational, sp.Expr]  # a number apart: SymPy would multiply it into a sum
-
-
 def half_form(present: Presenter, matrix: RingMatrix, vector: RingMatrix) -> sp.Expr:
     """½ vᵀ M v for a constant symmetric M, (3, 3), and v, (3, 1)."""
     entries = vector.entries

@@ -75,9 +75,11 @@ def write(output: Output, out: Path, *, force: bool) -> list[Path]:
         before = _spec_in(folder)
         if before is not None and before.models != output.spec.models:
             message(f"replacing {folder}, which held another rotation (use --out to keep both)")
-        for path in contents.keys() - edited:
-            if path.name not in output.files:
-                path.unlink()
+        gone = sorted({path.name for path in contents.keys() - edited} - output.files.keys())
+        if gone and (before is None or before.models == output.spec.models):
+            message(f"removing {', '.join(gone)} from {folder} (use --out to keep both)")
+        for name in gone:
+            (folder / name).unlink()
         if PDF not in output.spec.note:
             report_old_pdf(folder / f"{folder.name}.tex", output.files.get(f"{folder.name}.tex"))
         return [write_text(folder / name, text) for name, text in output.files.items()]

@@ -34,6 +34,8 @@ def _grid(context: click.Context, _: object, axes: Sequence[str]) -> dict[str, A
     values = {}
     for text in axes:
         name, _, numbers = text.partition("=")
+        if name in values:
+            raise click.UsageError(f"--grid gives {name} twice", context)
         try:
             first, last, count = numbers.split(":")
             values[name] = np.linspace(float(first), float(last), int(count))

@@ -57,6 +57,15 @@ def test_another_rotation_replaces_what_was_printed_but_not_what_was_edited(tmp_
     assert _run("derive", "ZXZ", "--angles", "a,b,c", "--conversions", *out) == ""
 
 
+def test_files_that_another_choice_of_quantities_removes_are_named(tmp_path):
+    out = "--out", str(tmp_path)
+    _run("derive", "ZXZ", "--target", "c", "--lean", *out)
+    said = _run("derive", "ZXZ", "--only", "rotation_matrix", *out)
+    gone = f"{NAME}.c, {NAME}.h"
+    assert said == f"rigidsym: removing {gone} from {tmp_path / NAME} (use --out to keep both)\n"
+    assert _files(tmp_path) == _checked(tmp_path)
+
+
 def test_a_record_of_a_stranger_removes_nothing_elsewhere(tmp_path):
     outside = tmp_path / "precious.txt"
     outside.write_text("mine")

@@ -13,7 +13,6 @@ from rigidsym.formula.reader import formula
 from rigidsym.mechanics.derivation import Quantity, by_name, law, when
 from rigidsym.models.rotation import SOURCES
 
-CENTRE = formula(r"\r_C")
 ROTATIONAL = formula("E_R")
 MOMENTUM_ROTATION = formula(r"\L_R")
 MOMENTUM_BODY = formula(r"\L'_R")

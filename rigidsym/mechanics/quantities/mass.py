@@ -18,7 +18,6 @@ from rigidsym.models.rotation import SOURCES
 MASS = formula("M")
 INERTIA = formula(r"\I'")
 INERTIA_SPACE = formula(r"\I")
-PLACE = formula(r"\x'")
 POINT = formula(r"\p")
 DIRECTION = formula(r"\n")
 # I′ + M (|d|² 1 − d dᵀ), the theorem of parallel axes

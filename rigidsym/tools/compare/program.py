@@ -95,7 +95,6 @@ _NULL = re.compile(
     r"(?P<name>\w+)(?P<sign>[=!]==?|[<>]=?)(?:0(?:\.0*)?f?|\d(?:\.\d*)?e-\d+f?|\w*(?:EPS|eps)\w*)"
 )
 _SATURATED = re.compile(rf"(\w+)[<>]=?-?{_LARGE}\?-?{_LARGE}:\1")
-_NORMALISED = re.compile(r"norm", re.IGNORECASE)
 _BOOLEANS = {"0": False, "false": False, "False": False, "1": True, "true": True, "True": True}
 _NOT_NULL = re.compile(r"\w+(?:!=|isnot)(?:nullptr|NULL|null|None)")
 _CLAMPS = re.compile(r"clip|clamp|constrain|math_constrain|clampf", re.IGNORECASE)
