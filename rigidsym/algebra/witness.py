@@ -16,6 +16,7 @@ from __future__ import annotations
 import random
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
+from decimal import Decimal, localcontext
 from functools import cached_property, lru_cache, partial
 from itertools import islice
 from typing import Any, NamedTuple
@@ -241,9 +242,11 @@ class Witness:
         """Whether a matrix that the ring takes for zero is certainly not zero at the first point.
 
         It is evaluated product by product, without the ring's reduction; `known` remembers the
-        values of matrices from one claim to the next. A disagreement is put to intervals.
+        values of matrices from one claim to the next. Decimal numbers are the fastest of so many
+        digits; a disagreement is put to intervals.
         """
-        rows = residual.values(partial(_value, self._numbers, context(DIGITS + _GUARD).mpf), known)
+        with localcontext(prec=DIGITS + _GUARD):
+            rows = residual.values(partial(_value, self._numbers, Decimal), known)
         if all(abs(entry) < _SMALL for row in rows for entry in row):
             return False
         number = context(DIGITS, of_intervals=True).mpf
@@ -251,10 +254,10 @@ class Witness:
         return any(0 not in entry for row in rows for entry in row)
 
     @cached_property
-    def _numbers(self) -> list[Any]:
+    def _numbers(self) -> list[Decimal]:
         """The values of the generators at the first point."""
         number = context(DIGITS + _GUARD).mpf
-        return [number(bounds.mid) for bounds in self._bounds(self._first)]
+        return [Decimal(str(number(bounds.mid))) for bounds in self._bounds(self._first)]
 
 
 def _value(values: Sequence[Any], number: Any, element: PolyElement) -> Any:
