@@ -94,25 +94,20 @@ class Codec:
                 if not is_highest(e, order)
             }
         )
+        # constraints and their time derivatives, as far as the ring can derive them
+        for element in [self.encode(constraint) for constraint in constraints]:
+            while element:
+                relations.append(element)
+                if not self.ring.can_derive(element):
+                    break
+                element = self.ring.dt(element)
         if constraints:
-            encoded = [self.encode(constraint) for constraint in constraints]
-            self._set_relations([*relations, *self._with_derivatives(encoded)])
+            self._set_relations(relations)
 
     def _set_relations(self, relations: Iterable[PolyElement]) -> None:
         self.ring.set_relations(relations)
         self._known.clear()  # what was read before is not in the new normal form
         self._pairs.clear()
-
-    def _with_derivatives(self, constraints: Iterable[PolyElement]) -> list[PolyElement]:
-        """The constraints and their time derivatives, as far as the ring can derive them."""
-        result: list[PolyElement] = []
-        for constraint in constraints:
-            while constraint:
-                result.append(constraint)
-                if not self.ring.can_derive(constraint):
-                    break
-                constraint = self.ring.dt(constraint)
-        return result
 
     def _relation(self, expression: sp.Expr, kind: Kind) -> PolyElement | None:
         """What vanishes for one generator, by its kind; for a sine, of the pair."""
@@ -184,7 +179,12 @@ class Codec:
         if place is not None:
             return Quotient.whole(ring, ring.reduce(ring.generator(place)))
         if expression.is_Rational:
-            return self._number(int(expression.p), int(expression.q))
+            numerator, denominator = int(expression.p), int(expression.q)
+            polynomials = ring.polynomials
+            if polynomials.domain.is_Field:
+                number = polynomials(polynomials.domain(numerator, denominator))
+                return Quotient.whole(ring, number)
+            return Quotient(ring, polynomials(numerator), polynomials(denominator))
         if expression.is_Add:
             return Quotient.sum(ring, [self.encode_quotient(part) for part in expression.args])
         if expression.is_Mul:
@@ -220,14 +220,6 @@ class Codec:
                 others.append(self.encode_quotient(factor))
         term = self.ring.reduce(self.ring.polynomials.term_new(tuple(powers), number))
         return reduce(mul, others, Quotient.whole(self.ring, term))
-
-    def _number(self, numerator: int, denominator: int) -> Quotient:
-        polynomials = self.ring.polynomials
-        if polynomials.domain.is_Field:
-            return Quotient.whole(
-                self.ring, polynomials(polynomials.domain(numerator, denominator))
-            )
-        return Quotient(self.ring, polynomials(numerator), polynomials(denominator))
 
     def _power(self, base: sp.Expr, exponent: sp.Rational) -> Quotient:
         whole = int(exponent.p)

@@ -148,17 +148,15 @@ class Intervals:
                 raise NotReal("the logarithm of a number that is not positive,", part)
             return context.log(value)
         if name == "atan2":
-            return self._direction(value, others[0], whole)
+            # by the arc tangent of a quotient that stays finite
+            (x,) = others
+            if x.a > 0:
+                return self._monotone("atan", value / x, whole)
+            if value.a > 0 or value.b < 0:
+                quarter = context.pi / 2 if value.a > 0 else -context.pi / 2
+                return quarter - self._monotone("atan", x / value, whole)
+            raise NotReal("no direction is known of", sp.Tuple(*whole.args[::-1]))
         return self._monotone(name, value, whole)
-
-    def _direction(self, y: Any, x: Any, whole: sp.Expr) -> Any:
-        """atan2 by the arc tangent of a quotient that stays finite."""
-        if x.a > 0:
-            return self._monotone("atan", y / x, whole)
-        if y.a > 0 or y.b < 0:
-            quarter = self.context.pi / 2 if y.a > 0 else -self.context.pi / 2
-            return quarter - self._monotone("atan", x / y, whole)
-        raise NotReal("no direction is known of", sp.Tuple(*whole.args[::-1]))
 
     def _monotone(self, name: str, value: Any, whole: sp.Expr) -> Any:
         """A monotone function, by its values at both ends."""

@@ -293,22 +293,19 @@ class GeneratorSet:
             for part in expression.args:
                 self.collect(part)
         elif expression.is_Pow and expression.exp.is_Rational:
-            self._collect_power(expression.base, expression.exp)
+            base, exponent = expression.base, expression.exp
+            self.collect(base)
+            for root in [base] if exponent.q == 1 else roots_of(base, exponent.q):
+                if exponent.q != 1:
+                    self._add(root, Kind.RADICAL)
+                if exponent.p < 0:
+                    self._add(1 / root, Kind.INVERSE)
         elif isinstance(expression, sp.sin | sp.cos):
             self._collect_angle(expression.args[0])
         elif expression.is_Rational:
             self._has_fractions = self._has_fractions or not expression.is_Integer
         else:
             self._add(expression, _kind(expression))
-
-    def _collect_power(self, base: sp.Expr, exponent: sp.Rational) -> None:
-        self.collect(base)
-        roots = [base] if exponent.q == 1 else roots_of(base, exponent.q)
-        for root in roots:
-            if exponent.q != 1:
-                self._add(root, Kind.RADICAL)
-            if exponent.p < 0:
-                self._add(1 / root, Kind.INVERSE)
 
     def _collect_angle(self, argument: sp.Expr) -> None:
         terms = combination(argument)

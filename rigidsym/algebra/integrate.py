@@ -14,7 +14,6 @@ import sympy as sp
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import Codec, codec_for
-from rigidsym.algebra.ring import Monomial
 from rigidsym.errors import AlgebraError
 
 Bounds = tuple[sp.Expr, sp.Expr]
@@ -71,10 +70,12 @@ class Integrator:
     def antiderivative(self, element: PolyElement) -> PolyElement:
         """F with ∂F/∂u = element, for an element in normal form."""
         self._refuse_others(element)
+        places = (self._place, *(self._pair or ()))  # of u, sin u and cos u
         parts = []
         for monomial, coefficient in element.items():
-            powers, rest = self._split(monomial)
-            parts.append(self._basis(*powers).mul_term((rest, coefficient)))
+            rest = tuple(0 if place in places else power for place, power in enumerate(monomial))
+            n, a, b = ([monomial[place] for place in places] + [0, 0])[:3]
+            parts.append(self._basis(n, a, b).mul_term((rest, coefficient)))
         return self.ring.reduce(self.ring.total(parts))
 
     def between(self, antiderivative: PolyElement, bounds: Bounds) -> PolyElement:
@@ -84,13 +85,6 @@ class Integrator:
             self.codec.encode(expression.xreplace({self.variable: bound})) for bound in bounds
         )
         return upper - lower
-
-    def _split(self, monomial: Monomial) -> tuple[tuple[int, int, int], Monomial]:
-        """The powers of u, sin u and cos u, and the monomial without them."""
-        places = (self._place, *(self._pair or ()))
-        rest = tuple(0 if place in places else power for place, power in enumerate(monomial))
-        n, a, b = ([monomial[place] for place in places] + [0, 0])[:3]
-        return (n, a, b), rest
 
     def _antiderivative_of_power(self, n: int, a: int, b: int) -> PolyElement:
         """∫ uⁿ sᵃ cᵇ du, where a is 0 or 1, since s² = 1 − c² in normal form."""

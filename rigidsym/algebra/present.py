@@ -169,20 +169,17 @@ class Presenter:
         key = product.powers, product.bracket
         factors = self._products.get(key)
         if factors is None:
-            factors = self._products[key] = self._multiplied(*key)
+            powers = list(product.powers)
+            parts = self._ratios(powers)
+            named = self._expressions
+            parts += [named[k] if n == 1 else named[k] ** n for k, n in enumerate(powers) if n]
+            if product.bracket:
+                parts.append(self._sum(product.bracket))
+            factors = self._products[key] = sp.Mul(*parts)
         number = product.coefficient
         if abs(number) == 1:
             return factors if number == 1 else -factors
         return sp.Rational(number.numerator, number.denominator) * factors
-
-    def _multiplied(self, given: Monomial, bracket: Sequence[FactoredTerm]) -> sp.Expr:
-        powers = list(given)
-        factors = self._ratios(powers)
-        named = self._expressions
-        factors += [named[k] if n == 1 else named[k] ** n for k, n in enumerate(powers) if n]
-        if bracket:
-            factors.append(self._sum(bracket))
-        return sp.Mul(*factors)
 
     def _ratios(self, powers: list[int]) -> list[sp.Expr]:
         """tan and cot for sines over cosines and the reverse, taken out of `powers`."""

@@ -70,7 +70,13 @@ class Ring:
         basis = groebner(list(self.relations), self.polynomials) if self.relations else []
         if any(element.is_ground for element in basis):
             raise AlgebraError("the relations contradict one another: they imply 1 = 0")
-        self._normal_forms = _NormalForms([_rewriting_rule(element) for element in basis])
+        rules: list[Rule] = []
+        for element in basis:  # read as: leading monomial -> minus the rest
+            leading, divide = element.leading_expv(), element.ring.domain.exquo
+            lead = element[leading]
+            tail = {m: divide(-c, lead) for m, c in element.items() if m != leading}
+            rules.append((leading, _powers(leading), tail))
+        self._normal_forms = _NormalForms(rules)
         self.relation_terms = [
             (term, _powers(term), coefficient, relation)
             for relation in self.relations
@@ -280,14 +286,6 @@ class _NormalForms(dict[Monomial, Terms | None]):
         return None
 
 
-def _rewriting_rule(element: PolyElement) -> Rule:
-    """A basis element read as: leading monomial -> minus the rest."""
-    leading = element.leading_expv()
-    lead = element[leading]
-    tail = {m: element.ring.domain.exquo(-c, lead) for m, c in element.items() if m != leading}
-    return leading, _powers(leading), tail
-
-
 def _powers(monomial: Monomial) -> list[tuple[int, int]]:
     """(place, power) of the generators that occur."""
     return [(place, power) for place, power in enumerate(monomial) if power]
@@ -309,7 +307,7 @@ def shortest(ring: Ring, element: PolyElement) -> PolyElement:
     if element.is_ground or len(element) > _MOST_TERMS:
         return element
     best = current = element
-    least = length = _size(element)
+    least = length = (len(element), sum(map(sum, element)))  # the terms, then their degrees
     seen = {current}
     for _ in range(_MOST_STEPS):
         shorter = [n for n in _neighbours(ring, current, length) if n.length <= length]
@@ -323,11 +321,6 @@ def shortest(ring: Ring, element: PolyElement) -> PolyElement:
         if length < least:
             least, best = fresh
     return best
-
-
-def _size(element: PolyElement) -> tuple[int, int]:
-    """The number of terms, then the sum of the degrees."""
-    return len(element), sum(map(sum, element))
 
 
 class Neighbour(NamedTuple):

@@ -13,7 +13,7 @@ c_k and in the other generators. The form is put back into the ring, and must be
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from functools import cache, lru_cache
 from math import factorial
@@ -221,18 +221,14 @@ def _vanishing(entry: sp.Expr) -> tuple[sp.Expr, ...]:
 @lru_cache(maxsize=32)
 def rewriter_for(codec: Codec) -> Rewriter | None:
     """The rewriter of a ring with sines, cosines and the inverse of one norm; else None."""
-    found = list(_norms(codec))
-    return Rewriter(codec, found[0]) if len(found) == 1 else None
-
-
-def _norms(codec: Codec) -> Iterator[_Norm]:
-    """The roots n with 1/n, sin rn and cos rn in the ring."""
     index = codec.ring.index
+    norms: list[_Norm] = []  # the roots n with 1/n, sin rn and cos rn in the ring
     for sine, cosine in codec.angle_pairs:
         ratio, root = codec.ring.generators[sine].expression.args[0].as_coeff_Mul()
         if _is_root(root) and 1 / root in index:
             powers = {index[root**k]: k for k in (1, -1, -2) if root**k in index}
-            yield _Norm(root, ratio, sine, cosine, powers)
+            norms.append(_Norm(root, ratio, sine, cosine, powers))
+    return Rewriter(codec, norms[0]) if len(norms) == 1 else None
 
 
 class Rewriter:

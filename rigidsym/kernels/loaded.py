@@ -39,7 +39,10 @@ def load(
     """
     digest = sha256(repr([*files.items(), *depends]).encode()).hexdigest()
     package = f"kernels_{digest[:32]}"
-    kept = _home() / package
+    home = cache_folder("kernels") or _own()
+    if str(home) not in __path__:
+        __path__.append(str(home))  # where Python looks for the packages
+    kept = home / package
     if not kept.is_dir():
         draft = Path(tempfile.mkdtemp(dir=kept.parent, prefix="."))
         try:
@@ -56,14 +59,6 @@ def load(
         os.utime(kept)  # it was used now
     invalidate_caches()
     return import_module(f"{__name__}.{package}.{main}")
-
-
-def _home() -> Path:
-    """The folder of the packages, where Python finds them."""
-    home = cache_folder("kernels") or _own()
-    if str(home) not in __path__:
-        __path__.append(str(home))
-    return home
 
 
 @cache

@@ -8,7 +8,7 @@ holds in its ring holds for every rotation. Vectors without a derivation are fre
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache, cached_property, reduce
 from operator import add
@@ -243,11 +243,9 @@ def with_theory(derivation: Derivation) -> Derivation:
         raise ModelError(
             f"{derivation.name}: the theory is written for active rotations; remove passive"
         )
-    return replace(derivation, theory=theory(), steps=tuple(_numbered(derivation.steps)))
-
-
-def _numbered(steps: Sequence[Step]) -> Iterator[Step]:
+    steps: list[Step] = []
     number = LAST
-    for step in steps:
+    for step in derivation.steps:
         number += step.quantity.name not in NUMBERS
-        yield replace(step, number=NUMBERS.get(step.quantity.name, number))
+        steps.append(replace(step, number=NUMBERS.get(step.quantity.name, number)))
+    return replace(derivation, theory=theory(), steps=tuple(steps))

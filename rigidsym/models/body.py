@@ -263,7 +263,11 @@ class RigidBody:
         self._check_symbols()
         self._check_symmetry()
         if not self.allow:
-            self._check_mass()
+            mass = self.in_numbers(self.mass)
+            if mass.is_number and not (isfinite(mass) and mass > 0):
+                raise BodyError(
+                    f"{self.name}: the mass is {float(mass):g} kg; expected a positive number"
+                )
             self._check_moments()
 
     def sentences(self, *, about_fixed_point: bool) -> tuple[str, ...]:
@@ -307,13 +311,6 @@ class RigidBody:
                     f"{self.name}: the inertia tensor is not symmetric: I_{places[0]} − "
                     f"I_{places[1]} = {format(float(value), 'g') if value.is_Float else value}"
                 )
-
-    def _check_mass(self) -> None:
-        mass = self.in_numbers(self.mass)
-        if mass.is_number and not (isfinite(mass) and mass > 0):
-            raise BodyError(
-                f"{self.name}: the mass is {float(mass):g} kg; expected a positive number"
-            )
 
     def _check_moments(self) -> None:
         """Raises BodyError for a matrix of numbers that no body has, with the amount.

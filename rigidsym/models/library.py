@@ -241,7 +241,9 @@ def turned_by(text: str) -> sp.ImmutableMatrix:
     """
     if "(" not in text:
         raise ModelError(f'expected turns such as "z(pi/4) x(alpha)", got {text!r}')
-    turns = tuple(_turn(*turn, _constant) for turn in parse_turns(text))
+    turns = tuple(
+        _turn(*turn, lambda name: sp.Symbol(check_name(name))) for turn in parse_turns(text)
+    )
     if any(part.free_symbols for turn in turns for part in turn.components):
         raise ExpressionError(f"{text}: expected an axis with numbers as components")
     return product_of(turns)
@@ -325,10 +327,6 @@ def _turn(axis: str, angle: str, column: int, symbol: Callable[[str], sp.Expr]) 
     exact = [_read(part, {}) for part in parts]
     turn = axis_turn(direction(exact), value)
     return replace(turn, axis=f"[{','.join(part.strip() for part in parts)}]")
-
-
-def _constant(name: str) -> sp.Symbol:
-    return sp.Symbol(check_name(name))
 
 
 def _symbol(name: str, constants: Sequence[str]) -> sp.Expr:

@@ -125,16 +125,12 @@ def _tokens(text: str) -> list[_Token]:
             continue
         match = _TOKEN.match(text, place)
         if match is None:
-            raise _unknown_character(text, place)
+            character = text[place]
+            hint = _HINTS.get(character, "expected a number, a name, ( ) or one of + - * / **")
+            raise ExpressionError(f"unexpected {character!r}; {hint}", column=place + 1)
         tokens.append(_Token(str(match.lastgroup), match[0], place))
         place = match.end()
     return tokens
-
-
-def _unknown_character(text: str, place: int) -> ExpressionError:
-    character = text[place]
-    hint = _HINTS.get(character, "expected a number, a name, ( ) or one of + - * / **")
-    return ExpressionError(f"unexpected {character!r}; {hint}", column=place + 1)
 
 
 def _expected(what: str, text: str, place: int) -> ExpressionError:

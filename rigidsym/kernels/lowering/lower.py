@@ -91,15 +91,6 @@ def _convention(model: RotationModel) -> tuple[str, ...]:
     return (*product, *model.convention, presented, *bound)
 
 
-def _roots(derivation: Derivation) -> list[sp.Expr]:
-    """The roots of numbers that a body adds to those of R, such as √3 where a part is turned."""
-    if derivation.body is None:
-        return []
-    entries = (entry for step in derivation.steps for entry in step.expression)
-    powers = {power for entry in entries for power in entry.atoms(sp.Pow)}
-    return list(sp.ordered(p for p in powers if p.is_number and p.exp.is_Rational))
-
-
 class _Lowering:
     """The kernels of one derivation, over the same names."""
 
@@ -238,8 +229,15 @@ class _Lowering:
     @cached_property
     def _given(self) -> list[sp.Expr]:
         """What the entries are made of."""
-        inputs = [symbol for vector in self.derivation.arguments for symbol in vector.symbols]
-        return [*self.derivation.model.matrix, *inputs, *_roots(self.derivation)]
+        derivation = self.derivation
+        inputs = [symbol for vector in derivation.arguments for symbol in vector.symbols]
+        roots: list[sp.Expr] = []
+        if derivation.body is not None:
+            # a body adds roots of numbers to those of R, such as √3 where a part is turned
+            entries = (entry for step in derivation.steps for entry in step.expression)
+            powers = {power for entry in entries for power in entry.atoms(sp.Pow)}
+            roots += sp.ordered(p for p in powers if p.is_number and p.exp.is_Rational)
+        return [*derivation.model.matrix, *inputs, *roots]
 
     def _stable(self, groups: Iterable[Iterable[sp.Expr]]) -> list[list[sp.Expr]]:
         """Groups of entries in forms that keep their digits where they can."""

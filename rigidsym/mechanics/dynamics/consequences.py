@@ -232,7 +232,11 @@ class Reduced:
     acceleration: sp.Expr  # of θ
 
     def consequences(self) -> Iterator[Consequence]:
-        yield self._one_dimension()
+        value = self.mass * self.rate**2 / 2 + self.potential
+        claim = formula(r"E = \tfrac{1}{2}m\dot{q}^2 + V_{\mathrm{eff}}")
+        residual = self.letters.E - value
+        q = self.coordinate
+        yield self._follows("effective_potential", claims.ENERGY, value, claim, residual, q=q)
         yield from self._others()
         yield from self._steady()
         if self.in_cosine is not None and not self.mass.has(self.coordinate):
@@ -270,20 +274,19 @@ class Reduced:
             residual = residual.xreplace(values)
         return _consequence(self.name, name, left, value, (claim, [residual]), **more)
 
-    def _one_dimension(self) -> Consequence:
-        value = self.mass * self.rate**2 / 2 + self.potential
-        claim = formula(r"E = \tfrac{1}{2}m\dot{q}^2 + V_{\mathrm{eff}}")
-        residual = self.letters.E - value
-        q = self.coordinate
-        return self._follows("effective_potential", claims.ENERGY, value, claim, residual, q=q)
-
     def _others(self) -> Iterator[Consequence]:
         """The rates of the ignorable coordinates, and what is left to integrate."""
         for k, (q, rate, p) in enumerate(
             zip(self.ignorable, self.rates, self.symbols, strict=True)
         ):
             slope = sp.diff(self.potential, p)
-            value = sp.Add(*map(_shorter, sp.Add.make_args(slope)))
+            # each term as one fraction, with its factors if that is shorter
+            value = sp.Add(
+                *(
+                    min(sp.cancel(term), sp.factor(term), key=sp.count_ops)
+                    for term in sp.Add.make_args(slope)
+                )
+            )
             yield self._follows(
                 "another_coordinate" if k else "other_coordinates",
                 rate,
@@ -449,11 +452,6 @@ class Reduced:
             where=((_LAMBDA**2, rate_squared.xreplace({a: lead})), (_MODULUS**2, modulus)),
             **spans,
         )
-
-
-def _shorter(value: sp.Expr) -> sp.Expr:
-    """One fraction, with its factors if that is shorter."""
-    return min(sp.cancel(value), sp.factor(value), key=sp.count_ops)
 
 
 def _factor(value: sp.Expr, turning: sp.Symbol) -> sp.Poly | None:

@@ -186,15 +186,10 @@ class TreeEquations(Flow):
 
     # Sums over the tree
 
-    @property
-    def _backwards(self) -> Iterator[Joint]:
-        """Each joint after those that it carries."""
-        return reversed(self.joints.values())
-
     def _gathered(self, letter: str, own: Any, *, of_tensors: bool = False) -> dict[Joint, Any]:
         """What all that a joint carries adds up to, in the axes of the joint."""
         total: dict[Joint, Any] = {}
-        for joint in self._backwards:
+        for joint in reversed(self.joints.values()):  # each after those that it carries
             parts = [own(joint)]
             for other in joint.carried:
                 back = other.matrix * total[other]

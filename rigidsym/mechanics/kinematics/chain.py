@@ -521,7 +521,13 @@ class Chain(Names, Workspace):
                 yield consequence(self._inverts(quantity.frame.name, law.claim), law.claim)
             else:
                 composed = [each.proof(owner, law) for each in self._compositions]
-                yield consequence([*composed, *self._as_printed(law.claim)], law.claim)
+                # the definitions as they are printed are the compositions, if they differ in form
+                for group, (_, value) in self._named.items():
+                    pairs = zip(self.opened(group), value, strict=True)
+                    differences = [printed - entry for printed, entry in pairs if printed != entry]
+                    if differences:
+                        composed.append(self.vanish(differences, law.claim))
+                yield consequence(composed, law.claim)
 
     @cached_property
     def _compositions(self) -> tuple[Composition, ...]:
@@ -532,14 +538,6 @@ class Chain(Names, Workspace):
             for turn, conditions in kinds
             for comes_first in (True, False)
         )
-
-    def _as_printed(self, claim: Formula) -> Iterator[Proof]:
-        """That the definitions as they are printed are the compositions, if they differ in form."""
-        for group, (_, value) in self._named.items():
-            pairs = zip(self.opened(group), value, strict=True)
-            differences = [printed - entry for printed, entry in pairs if printed != entry]
-            if differences:
-                yield self.vanish(differences, claim)
 
     def _inverts(self, frame: str, claim: Formula) -> list[Proof]:
         """W Uᵀ D⁻¹ L⁻¹ = G L⁻ᵀ D⁻¹ L⁻¹, which is 1 if G = L D Lᵀ."""

@@ -91,7 +91,12 @@ def _(given: Known) -> Moments:
 @moments_of.register
 def _(given: Composite) -> Moments:
     """The parts, each turned, moved and added; a hole is taken away."""
-    found = [_of_part(part, place) for place, part in enumerate(given.parts)]
+    found: list[Moments] = []
+    for place, part in enumerate(given.parts):
+        try:
+            found.append(moments_of(part.what))
+        except BodyError as error:
+            raise BodyError(str(error), place=("parts", place, *error.place)) from error
     held = [e for m in found for e in m.expressions]
     held += [e for part in given.parts for e in (*part.at, *part.turned)]
     field = Rationals.of(held)
@@ -112,13 +117,6 @@ def _(given: Composite) -> Moments:
         [field.total([second[i][j] for second in seconds]) for i, j in _PAIRS],
         proofs=tuple(dict.fromkeys(proof for m in found for proof in m.proofs)),
     )
-
-
-def _of_part(part: Part, place: int) -> Moments:
-    try:
-        return moments_of(part.what)
-    except BodyError as error:
-        raise BodyError(str(error), place=("parts", place, *error.place)) from error
 
 
 def about_centre(part: Part) -> tuple[sp.Expr, sp.Matrix, sp.Matrix]:

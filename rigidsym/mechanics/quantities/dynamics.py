@@ -154,14 +154,11 @@ mass_matrix = Quantity(
 )
 
 
-def _of_lagrange(T: str) -> str:
-    """The terms of Lagrange's equations with the kinetic energy."""
-    by_rates = rf"\frac{{\partial {T}}}{{\partial\dot\q}}"
-    return rf"\frac{{d}}{{dt}}{by_rates} - \frac{{\partial {T}}}{{\partial\q}}"
-
-
 def _rest(T: str, terms: str) -> tuple[Law, ...]:
-    return (law(f"{_of_lagrange(T)} = {terms}", lambda k, x: k.of_lagrange + k.bias - x),)
+    # the terms of Lagrange's equations with the kinetic energy
+    by_rates = rf"\frac{{\partial {T}}}{{\partial\dot\q}}"
+    of_lagrange = rf"\frac{{d}}{{dt}}{by_rates} - \frac{{\partial {T}}}{{\partial\q}}"
+    return (law(f"{of_lagrange} = {terms}", lambda k, x: k.of_lagrange + k.bias - x),)
 
 
 bias_vector = Quantity(
