@@ -218,7 +218,14 @@ class RingMatrix:
                 break
             if determinant:
                 parts.append((square, rows, pivots))
-        vectors = dict.fromkeys(v for part in parts for v in _solutions(*part, width))
+        vectors: dict[Row, None] = {}
+        for square, rows, pivots in parts:
+            above, below = square.adjugate(), square.det()
+            for free in (k for k in range(width) if k not in pivots):  # a vector for each
+                solved = above @ RingMatrix.column(self.ring, [-row[free] for row in rows])
+                found = dict(zip(pivots, solved.entries, strict=True)) | {free: below}
+                entries = [found.get(k, self.ring.zero) for k in range(width)]
+                vectors[primitive(self.ring, entries)] = None
         return RingMatrix(self.ring, tuple(vectors)).T
 
     def right_inverse(self, bound: RingMatrix | None = None) -> Inverse | None:
@@ -290,18 +297,6 @@ def hat(vector: RingMatrix) -> RingMatrix:
 def unhat(skew: RingMatrix) -> RingMatrix:
     """C⁻¹: the vector of a skew matrix, from its entries below the diagonal (lecture, 3.2)."""
     return RingMatrix.column(skew.ring, [skew[2, 1], skew[0, 2], skew[1, 0]])
-
-
-def _solutions(
-    square: RingMatrix, rows: Sequence[Row], pivots: Sequence[int], width: int
-) -> Iterator[Row]:
-    """A vector of the kernel for each column that is no pivot."""
-    ring = square.ring
-    above, below = square.adjugate(), square.det()
-    for free in (k for k in range(width) if k not in pivots):
-        solved = above @ RingMatrix.column(ring, [-row[free] for row in rows])
-        found = dict(zip(pivots, solved.entries, strict=True)) | {free: below}
-        yield primitive(ring, [found.get(k, ring.zero) for k in range(width)])
 
 
 def primitive(ring: Ring, given: Sequence[PolyElement]) -> Row:

@@ -317,19 +317,19 @@ class Rule(NamedTuple):
 
 def rules(angles: Sequence[Angle], expressions: Sequence[sp.Expr]) -> tuple[Rule, ...]:
     """The addition theorems of every two angles."""
-    return tuple(rule for a, b in combinations(angles, 2) for rule in _of_two(a, b, expressions))
-
-
-def _of_two(a: Angle, b: Angle, expressions: Sequence[sp.Expr]) -> Iterator[Rule]:
-    alpha, beta = expressions[a[0]].args[0], expressions[b[0]].args[0]
-    if not is_sum_of(alpha + beta, alpha, beta):
-        return  # the angles cancel in part, and the ring has other generators for their sum
-    (s, c), (sine, cosine) = a, b
-    plus, minus = (alpha, beta), (alpha, -beta)
-    yield Rule((c, cosine), (s, sine), -1, sp.cos, plus)
-    yield Rule((c, cosine), (s, sine), 1, sp.cos, minus)
-    yield Rule((s, cosine), (c, sine), 1, sp.sin, plus)
-    yield Rule((s, cosine), (c, sine), -1, sp.sin, minus)
+    found: list[Rule] = []
+    for (s, c), (sine, cosine) in combinations(angles, 2):
+        alpha, beta = expressions[s].args[0], expressions[sine].args[0]
+        if not is_sum_of(alpha + beta, alpha, beta):
+            continue  # the angles cancel in part, and the ring has other generators for their sum
+        plus, minus = (alpha, beta), (alpha, -beta)
+        found += [
+            Rule((c, cosine), (s, sine), -1, sp.cos, plus),
+            Rule((c, cosine), (s, sine), 1, sp.cos, minus),
+            Rule((s, cosine), (c, sine), 1, sp.sin, plus),
+            Rule((s, cosine), (c, sine), -1, sp.sin, minus),
+        ]
+    return tuple(found)
 
 
 def folded(terms: Mapping[Monomial, Number], found: Iterable[Rule]) -> FoldedTerms:
@@ -351,23 +351,18 @@ def folded(terms: Mapping[Monomial, Number], found: Iterable[Rule]) -> FoldedTer
         return dict(terms)
     result = {(*monomial, *[0] * len(found)): value for monomial, value in terms.items()}
     for place, rule in may:
-        for monomial in list(result):
-            _fold_at(result, monomial, rule, place)
+        a, b = rule.first
+        for monomial in list(result):  # it may begin a pair
+            if monomial not in result or monomial[a] < 1 or monomial[b] < 1:
+                continue
+            rest = _times(monomial, rule.first, -1)
+            other = _times(rest, rule.second, 1)
+            if result.get(other) == rule.sign * result[monomial]:
+                value = result.pop(monomial)
+                del result[other]
+                target = _times(rest, (place,), 1)
+                result[target] = result.get(target, 0) + value
     return result
-
-
-def _fold_at(terms: FoldedTerms, monomial: Monomial, rule: Rule, place: int) -> None:
-    """Fold the pair that this monomial begins, if its other half is there."""
-    a, b = rule.first
-    if monomial not in terms or monomial[a] < 1 or monomial[b] < 1:
-        return
-    rest = _times(monomial, rule.first, -1)
-    other = _times(rest, rule.second, 1)
-    if terms.get(other) == rule.sign * terms[monomial]:
-        value = terms.pop(monomial)
-        del terms[other]
-        target = _times(rest, (place,), 1)
-        terms[target] = terms.get(target, 0) + value
 
 
 def _times(monomial: Monomial, places: Iterable[int], power: int) -> Monomial:

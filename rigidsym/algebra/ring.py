@@ -268,12 +268,6 @@ class _NormalForms(dict[Monomial, Terms | None]):
         self._rules = rules
 
     def __missing__(self, monomial: Monomial) -> Terms | None:
-        form = self[monomial] = self._rewritten(monomial)
-        if form is None:
-            self.standard.add(monomial)
-        return form
-
-    def _rewritten(self, monomial: Monomial) -> Terms | None:
         for leading, needed, tail in self._rules:
             if all(monomial[place] >= power for place, power in needed):
                 rest = tuple(map(sub, monomial, leading))
@@ -282,7 +276,10 @@ class _NormalForms(dict[Monomial, Terms | None]):
                     product = tuple(map(add, rest, term))
                     form = self[product]
                     _add(result, coefficient, {product: 1} if form is None else form)
-                return {m: c for m, c in result.items() if c}
+                self[monomial] = {m: c for m, c in result.items() if c}
+                return self[monomial]
+        self[monomial] = None
+        self.standard.add(monomial)
         return None
 
 

@@ -47,25 +47,23 @@ def statements() -> tuple[Statement, ...]:
         if heading.startswith("# "):
             section = heading[2:]
             heading, _, rest = rest.partition("\n")
-        found.append(_statement(section, heading, "\n" + rest))
+        number, name, place, *more = heading.split()
+        words, *items = _ITEM.split("\n" + rest)
+        pairs = [(mark, formula(item)) for mark, item in zip(items[::2], items[1::2], strict=True)]
+        found.append(
+            Statement(
+                name=name,
+                number=None if number == "-" else int(number),
+                section=section,
+                because=sentence(" ".join(words.split())),
+                sides=tuple(side for mark, side in pairs if mark == "="),
+                claims=tuple((mark[:-1], claim) for mark, claim in pairs if mark != "="),
+                source=lecture("" if number == "-" else number, f"section {place}"),
+                is_result="result" in more,
+                shows_summands="summands" in more,
+            )
+        )
     return tuple(found)
-
-
-def _statement(section: str, heading: str, body: str) -> Statement:
-    number, name, place, *more = heading.split()
-    words, *items = _ITEM.split(body)
-    pairs = [(mark, formula(item)) for mark, item in zip(items[::2], items[1::2], strict=True)]
-    return Statement(
-        name=name,
-        number=None if number == "-" else int(number),
-        section=section,
-        because=sentence(" ".join(words.split())),
-        sides=tuple(side for mark, side in pairs if mark == "="),
-        claims=tuple((mark[:-1], claim) for mark, claim in pairs if mark != "="),
-        source=lecture("" if number == "-" else number, f"section {place}"),
-        is_result="result" in more,
-        shows_summands="summands" in more,
-    )
 
 
 @cache

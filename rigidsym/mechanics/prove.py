@@ -118,7 +118,14 @@ class Prover:
             fails = f"{claim.text} is false"
             if error is NotARotation:
                 fails = f"not a rotation, since {claim.text} fails"
-            raise error(f"{self.subject.name}: {fails}; left over: {self._plain(left)}")
+            entries = [
+                (str(in_names(left[i, j])), f" in row {i + 1}, column {j + 1}")
+                for i in range(left.rows)
+                for j in range(left.cols)
+                if left[i, j] != 0
+            ]
+            rest = "; ".join(text + (place if len(left) > 1 else "") for text, place in entries)
+            raise error(f"{self.subject.name}: {fails}; left over: {rest}")
         return left
 
     def vanishes(
@@ -162,13 +169,3 @@ class Prover:
         given = [gen.expression for gen in self.codec.ring.generators if gen.expression.is_Symbol]
         inputs = [*pullback.coordinates, *given]
         return codec_for(inputs, constraints=pullback.constraints), values
-
-    def _plain(self, left: sp.ImmutableMatrix) -> str:
-        """The entries that are not zero, in the plain names of the coordinates."""
-        entries = [
-            (f"{in_names(left[i, j])}", f" in row {i + 1}, column {j + 1}")
-            for i in range(left.rows)
-            for j in range(left.cols)
-            if left[i, j] != 0
-        ]
-        return "; ".join(text + (place if len(left) > 1 else "") for text, place in entries)

@@ -299,18 +299,12 @@ def _turned(
         turns = [_turn(*turn, symbol) for turn in parse_turns(text)]
     except ExpressionError as error:
         raise ExpressionError(f"column {error.column}: {error.message}") from None
-    return _euler(turns, passive) or chain(turns, passive=passive)
-
-
-def _euler(turns: Sequence[Turn], passive: bool) -> RotationModel | None:
-    """The Euler angles that three turns about coordinate axes are, if they are."""
     letters = "".join(turn.axis for turn in turns).upper()
     angles = [turn.angle for turn in turns]
-    if letters not in EULER_SEQUENCES or len(set(angles)) != len(angles):
-        return None
-    if not all(isinstance(angle, AppliedUndef) for angle in angles):
-        return None
-    return EulerAngles(letters, [angle.func.__name__ for angle in angles], passive=passive)
+    is_euler = letters in EULER_SEQUENCES and len(set(angles)) == len(angles)
+    if is_euler and all(isinstance(angle, AppliedUndef) for angle in angles):
+        return EulerAngles(letters, [angle.func.__name__ for angle in angles], passive=passive)
+    return chain(turns, passive=passive)
 
 
 def _turn(axis: str, angle: str, column: int, symbol: Callable[[str], sp.Expr]) -> Turn:

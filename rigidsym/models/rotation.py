@@ -192,10 +192,10 @@ class RotationModel:
                 f"{self.name!r} cannot name a model: expected lower-case letters, digits and "
                 "underscores, beginning with a letter"
             )
-        fault = self._fault_of_shape() or self._fault_of_coordinates()
+        fault = self._fault_of_shape()
         if not fault:
             object.__setattr__(self, "constants", _constants(self._parts))
-            fault = self._fault_of_numbers() or self._fault_of_turns()
+            fault = self._fault_of_matrix()
         if fault:
             raise ModelError(f"{self.name}: {fault}")
 
@@ -206,9 +206,6 @@ class RotationModel:
             return "a model needs at least one coordinate, a function of time as phi(t)"
         if self.units and len(self.units) != len(self.coordinates):
             return f"{len(self.coordinates)} coordinates, but {len(self.units)} units"
-        return ""
-
-    def _fault_of_coordinates(self) -> str:
         for place, coordinate in enumerate(self.coordinates):
             if coordinate in self.coordinates[:place]:
                 return f"the coordinate {coordinate} is named twice"
@@ -219,7 +216,7 @@ class RotationModel:
                 )
         return ""
 
-    def _fault_of_numbers(self) -> str:
+    def _fault_of_matrix(self) -> str:
         moving = {coordinate.func.__name__ for coordinate in self.coordinates}
         for constant in self.constants:
             if constant.name in moving:
@@ -232,10 +229,7 @@ class RotationModel:
                 f"the matrix contains the number {number}, which is not in the ring; "
                 f"expected roots, as in {sp.expand_func(sp.GoldenRatio)}, or a symbol"
             )
-        return ""
-
-    def _fault_of_turns(self) -> str:
-        """The matrix is the product of the turns, as it stands or in the ring."""
+        # the matrix is the product of the turns, as it stands or in the ring
         if not self.turns or product_of(self.turns) == self.matrix:
             return ""
         residual = product_of(self.turns) - self.matrix

@@ -98,7 +98,12 @@ class Graph:
         left = [(c, node) for node, c in sorted(total.items()) if c]
         if len(left) < 2:
             return left[0] if left else (Fraction(0), self.one)
-        scale = _common_scale([c for c, _ in left])
+        # the sign of most coefficients, and their size where it is one
+        minuses = sum(c < 0 for c, _ in left) - sum(c > 0 for c, _ in left)
+        sizes = {abs(c) for c, _ in left}
+        scale = sizes.pop() if len(sizes) == 1 else Fraction(1)
+        if minuses > 0 or (minuses == 0 and left[0][0] < 0):
+            scale = -scale
         scaled = tuple((c / scale, node) for c, node in left)
         number = self.atom(scaled)
         self.sums.setdefault(number, scaled)
@@ -176,15 +181,6 @@ class Graph:
         """Write a node in other terms; it can still be found by its new form."""
         table[node] = value
         self._numbers.setdefault(value, node)
-
-
-def _common_scale(coefficients: list[Fraction]) -> Fraction:
-    """The sign of most coefficients, and their size where it is one."""
-    minuses = sum(c < 0 for c in coefficients) - sum(c > 0 for c in coefficients)
-    is_minus = minuses > 0 or (minuses == 0 and coefficients[0] < 0)
-    sizes = {abs(c) for c in coefficients}
-    size = sizes.pop() if len(sizes) == 1 else Fraction(1)
-    return -size if is_minus else size
 
 
 @lru_cache(maxsize=4096)  # a round alters few nodes

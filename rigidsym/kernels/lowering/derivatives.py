@@ -16,7 +16,6 @@ import sympy as sp
 
 from rigidsym.errors import KernelError
 from rigidsym.mechanics.derivation import Argument, Derivation, Step
-from rigidsym.models.rotation import RotationModel
 
 _FREE = (
     "; bound components count as free, so that this is the derivative of the expression as "
@@ -118,19 +117,16 @@ def derivatives_of(
         if request.vector not in inputs:
             only = " and ".join(inputs)
             raise KernelError(f"{request}: {request.quantity} depends only on {only}")
-        by = derivation.argument(request.vector)
+        by, model = derivation.argument(request.vector), derivation.model
+        # whether the vector, or the coordinates whose rates it holds, are bound by a constraint
+        is_rates = by.name in ("q_dot", "q_ddot")
+        symbols = set(model.coordinates) if is_rates else set(by.symbols)
+        is_pulled_back = model.pullback is not None and symbols.intersection(model.coordinates)
         yield Derivative(
             request=request,
             step=replace(step, expression=derivation.spelled(step.expression)),
             vectors=tuple(map(derivation.argument, inputs)),
             by=by,
-            is_bound=_is_bound(derivation.model, by),
+            is_bound=bool(is_pulled_back)
+            or any(symbols.intersection(sp.preorder_traversal(c)) for c in model.constraints),
         )
-
-
-def _is_bound(model: RotationModel, by: Argument) -> bool:
-    """Whether the vector, or the coordinates whose rates it holds, are bound by a constraint."""
-    symbols = set(model.coordinates) if by.name in ("q_dot", "q_ddot") else set(by.symbols)
-    if model.pullback is not None and symbols.intersection(model.coordinates):
-        return True
-    return any(symbols.intersection(sp.preorder_traversal(c)) for c in model.constraints)

@@ -29,7 +29,6 @@ from rigidsym.mechanics.derivation import (
     Singularities,
     Step,
 )
-from rigidsym.models.rotation import RotationModel
 
 MARGIN = "singularity_margin"
 NO_CONVERSIONS = Converted()
@@ -63,11 +62,20 @@ def lower(
     found += tuple(map(kernels.of_function, added.functions))
     used = {argument.name for kernel in found for argument in kernel.arguments}
     model, body = derivation.model, derivation.body
+    presented = (
+        "Passive: rotation_matrix is the direction cosine matrix A = Rᵀ, which takes space "
+        "components to body components, x′ = A x; R itself turns the body."
+        if model.passive
+        else "Active: R takes body components to space components, x = R x′."
+    )
     return ir.Program(
         name=derivation.name,
         title=derivation.title,
         convention=(
-            *_convention(model),
+            *((f"R = {model.product}.",) if model.turns else ()),
+            *model.convention,
+            presented,
+            *(f"R is a rotation where {condition}." for condition in model.conditions),
             *(body.sentences(about_fixed_point=derivation.about_fixed_point) if body else ()),
         ),
         source=str(model.source),
@@ -76,19 +84,6 @@ def lower(
         remarks=added.remarks,
         continuity=added.continuity,
     )
-
-
-def _convention(model: RotationModel) -> tuple[str, ...]:
-    """The convention in sentences, the frames of R among them."""
-    presented = (
-        "Passive: rotation_matrix is the direction cosine matrix A = Rᵀ, which takes space "
-        "components to body components, x′ = A x; R itself turns the body."
-        if model.passive
-        else "Active: R takes body components to space components, x = R x′."
-    )
-    product = (f"R = {model.product}.",) if model.turns else ()
-    bound = tuple(f"R is a rotation where {condition}." for condition in model.conditions)
-    return (*product, *model.convention, presented, *bound)
 
 
 class _Lowering:

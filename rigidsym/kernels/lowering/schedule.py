@@ -94,7 +94,15 @@ class _Writer:
         if node == self.graph.one or not coefficient:
             number = Number(abs(coefficient))
             return Negative(number) if coefficient < 0 else number
-        expression = _scaled(abs(coefficient), self._node(node))
+        size, expression = abs(coefficient), self._node(node)
+        if size != 1:
+            factors, divisors = _split(expression)
+            if Fraction(float(size)) == size:  # one literal, since a double holds it exactly
+                expression = Product((Number(size), *factors), divisors)
+            else:
+                whole = [] if size.numerator == 1 else [Number(Fraction(size.numerator))]
+                divisors = (*divisors, Number(Fraction(size.denominator)))
+                expression = Product((*whole, *factors) or (_ONE,), divisors)
         return self._negated(expression) if coefficient < 0 else expression
 
     def _negated(self, expression: Expression) -> Expression:
@@ -217,17 +225,6 @@ class _Writer:
 
 def _is_function(called: str) -> bool:
     return called.isidentifier() and called not in (HELD, CHOICE)
-
-
-def _scaled(size: Fraction, expression: Expression) -> Expression:
-    """A positive number times an expression: one literal where a double holds it exactly."""
-    if size == 1:
-        return expression
-    factors, divisors = _split(expression)
-    if Fraction(float(size)) == size:
-        return Product((Number(size), *factors), divisors)
-    above = (*([] if size.numerator == 1 else [Number(Fraction(size.numerator))]), *factors)
-    return Product(above or (_ONE,), (*divisors, Number(Fraction(size.denominator))))
 
 
 def _split(expression: Expression) -> tuple[tuple[Expression, ...], tuple[Expression, ...]]:

@@ -83,7 +83,17 @@ class Conversions:
         """The unit quaternion; None if it has no formula of its own, but is taken from R."""
         model, rule = self.model, self.inverse
         if rule is not None and rule.rule != "euler":
-            return self._step_of_form(rule) if rule.quaternion else None
+            if not rule.quaternion:
+                return None
+            entries = [*model.matrix, *rule.quaternion]
+            codec = codec_for(entries, constraints=model.constraints, order=0)
+            step = self._proved_step(codec, sp.ImmutableMatrix(rule.quaternion))
+            if not rule.is_scalar_last:
+                return step
+            # in the order of the coordinates, (x, y, z, w)
+            quantity = step.quantity._replace(about="unit quaternion of the rotation, scalar last")
+            moved = sp.ImmutableMatrix(scalar_last(rule.quaternion))
+            return replace(step, quantity=quantity, expression=moved)
         if not model.turns or len(model.turns) > LONGEST_CHAIN:
             return None
         try:
@@ -117,17 +127,6 @@ class Conversions:
     @property
     def is_proved(self) -> bool:
         return all(proof.is_exact for proof in self.proofs)
-
-    def _step_of_form(self, form: InverseRule) -> Step:
-        """In the order of the coordinates: (x, y, z, w) if the scalar is last."""
-        model = self.model
-        codec = codec_for([*model.matrix, *form.quaternion], constraints=model.constraints, order=0)
-        step = self._proved_step(codec, sp.ImmutableMatrix(form.quaternion))
-        if not form.is_scalar_last:
-            return step
-        quantity = step.quantity._replace(about="unit quaternion of the rotation, scalar last")
-        moved = sp.ImmutableMatrix(scalar_last(form.quaternion))
-        return replace(step, quantity=quantity, expression=moved)
 
     def _step_of_turns(self) -> Step:
         """The product of cos(β/2) + sin(β/2) e over all turns, in the form of textbooks."""
@@ -174,7 +173,17 @@ def converted(derivation: Derivation) -> Converted:
     """The functions of the conversions; where there is no inverse, a remark says why."""
     conversions = Conversions(derivation.model)
     inverse = conversions.inverse
-    steps, functions = _quaternion(derivation, conversions)
+    steps: tuple[Step, ...] = ()  # the unit quaternion, where it has a formula of its own
+    functions: tuple[ConversionFunction, ...] = ()
+    number = len(derivation.steps) + 1  # in the note
+    if inverse is not None and inverse.rule == "quaternion":
+        functions = (_of_any_length(derivation, inverse, number),)
+    elif inverse is not None and inverse.rule == "rotation_vector":
+        functions = (_of_rotation_vector(derivation, number),)
+    elif conversions.quaternion is not None:
+        steps = (replace(conversions.quaternion, number=number),)
+    else:
+        functions = (_quaternion_of_matrix(derivation),)
     continuity = None
     if inverse is not None:
         functions += (_from_quaternion(inverse), from_matrix(derivation, inverse))
@@ -212,21 +221,6 @@ def _function(
         remarks=(*remarks, *(r.format(**holes) for r in texts.get("remarks", ()))),
         unit=unit,
     )
-
-
-def _quaternion(
-    derivation: Derivation, conversions: Conversions
-) -> tuple[tuple[Step, ...], tuple[ConversionFunction, ...]]:
-    """The unit quaternion, as a step where it has a formula of its own."""
-    number = len(derivation.steps) + 1  # in the note
-    rule = conversions.inverse
-    if rule is not None and rule.rule == "quaternion":
-        return (), (_of_any_length(derivation, rule, number),)
-    if rule is not None and rule.rule == "rotation_vector":
-        return (), (_of_rotation_vector(derivation, number),)
-    if conversions.quaternion is not None:
-        return (replace(conversions.quaternion, number=number),), ()
-    return (), (_quaternion_of_matrix(derivation),)
 
 
 def _from_quaternion(inverse: InverseRule) -> ConversionFunction:

@@ -111,7 +111,15 @@ class InverseRule:
 
 def inverse_rule(model: RotationModel) -> InverseRule | None:
     """The rule of a model; None if its coordinates do not follow in closed form."""
-    return _closed_form(model) or _euler_rule(model)
+    count = len(model.coordinates)
+    orders = [tuple(range(count)), *([(3, 0, 1, 2)] if count == 4 else [])]  # w may stand last
+    for rule, (build, size, form) in _FORMS.items():
+        for order in orders if count == size else ():
+            q = tuple(model.coordinates[place] for place in order)
+            known = build([part.func.__name__ for part in q])
+            if known.matrix == model.matrix and known.constraints == model.constraints:
+                return _in_coordinates(model, rule, order, form(q))
+    return _euler_rule(model)
 
 
 # Three turns about coordinate axes. With e₁, e₂ the first two axes and C the fixed turn about e₂
@@ -196,19 +204,6 @@ def _euler_rule(model: RotationModel) -> InverseRule | None:
 
 
 # Parametrisations whose quaternion has a closed form. Nothing cancels on the way back.
-
-
-def _closed_form(model: RotationModel) -> InverseRule | None:
-    """The rule of a model that is one of the parametrisations; None where it is none."""
-    count = len(model.coordinates)
-    orders = [tuple(range(count)), *([(3, 0, 1, 2)] if count == 4 else [])]  # w may stand last
-    for rule, (build, size, form) in _FORMS.items():
-        for order in orders if count == size else ():
-            q = tuple(model.coordinates[place] for place in order)
-            known = build([part.func.__name__ for part in q])
-            if known.matrix == model.matrix and known.constraints == model.constraints:
-                return _in_coordinates(model, rule, order, form(q))
-    return None
 
 
 def _in_coordinates(

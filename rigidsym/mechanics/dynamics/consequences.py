@@ -433,23 +433,21 @@ class Reduced:
             (sp.sin(angle) * self.rate) ** 2 - value.xreplace({u: sp.cos(angle)}),
             **spans,
         )
-        yield self._nutation(f.LC(), spans)
-
-    def _nutation(self, lead: sp.Expr, spans: dict[str, Any]) -> Consequence:
-        """u(t) between the roots u₁ ≤ u₂ of the cubic f; its third root is u₃."""
+        # u(t) between the roots u₁ ≤ u₂ of the cubic f; its third root is u₃
         one, two, three = _FIRST, _SECOND, _THIRD
         sn, a = sp.Dummy("sn"), sp.Dummy("a")
-        u = one + (two - one) * sn**2
+        between = one + (two - one) * sn**2
         modulus = (two - one) / (three - one)
         rate_squared = a * (three - one) / 4
         slope_squared = 4 * (two - one) ** 2 * sn**2 * (1 - sn**2) * (1 - modulus * sn**2)
-        return self._follows(
+        yield self._follows(
             "nutation",
-            sp.cos(self.coordinate),
-            u.xreplace({sn: sp.Function("sn")(_LAMBDA * TIME, _MODULUS)}),
+            sp.cos(angle),
+            between.xreplace({sn: sp.Function("sn")(_LAMBDA * TIME, _MODULUS)}),
             spans["equation"],
-            slope_squared * rate_squared - a * (u - one) * (u - two) * (u - three),
-            where=((_LAMBDA**2, rate_squared.xreplace({a: lead})), (_MODULUS**2, modulus)),
+            slope_squared * rate_squared
+            - a * (between - one) * (between - two) * (between - three),
+            where=((_LAMBDA**2, rate_squared.xreplace({a: f.LC()})), (_MODULUS**2, modulus)),
             **spans,
         )
 

@@ -158,7 +158,18 @@ class LagrangeEquations(Flow):
         Raises ModelError if the mass matrix has no inverse.
         """
         if len(self.rates) == 3:
-            above, below = self._solved_by_euler()
+            # by Euler's equations: W′ q̈ = dΩ′/dt − dW′/dt q̇
+            jacobian, tensor = self.jacobian, self.inertia
+            back, divisor, size = jacobian.adjugate(), jacobian.det(), tensor.det()
+            slopes = jacobian.dt() @ self.q_dot
+            inner = tensor.adjugate() @ turned(tensor, self.omega) + slopes.scale(size)
+            if self.applied.is_zero():
+                above = back @ inner.scale(-self.ring.one)
+                below = self.ring.reduce(size * divisor)
+            else:
+                torque = tensor.adjugate() @ (back.T @ self.applied)
+                above = back @ (torque - inner.scale(divisor))
+                below = self.ring.reduce(size * divisor * divisor)
         else:
             above = self.mass_matrix.adjugate() @ self.needed
             below = self.mass_matrix.det()
@@ -168,17 +179,6 @@ class LagrangeEquations(Flow):
                 "move the body in different ways"
             )
         return above, below
-
-    def _solved_by_euler(self) -> Inverse:
-        """The same for three coordinates: W′ q̈ = dΩ′/dt − dW′/dt q̇."""
-        jacobian, tensor = self.jacobian, self.inertia
-        back, below, size = jacobian.adjugate(), jacobian.det(), tensor.det()
-        slopes = jacobian.dt() @ self.q_dot
-        inner = tensor.adjugate() @ turned(tensor, self.omega) + slopes.scale(size)
-        if self.applied.is_zero():
-            return back @ inner.scale(-self.ring.one), self.ring.reduce(size * below)
-        torque = tensor.adjugate() @ (back.T @ self.applied)
-        return back @ (torque - inner.scale(below)), self.ring.reduce(size * below * below)
 
     @cached_property
     def blocks(self) -> tuple[StateBlock, StateBlock]:

@@ -25,7 +25,7 @@ induction over the turns they hold for the chain.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import cache, cached_property
 from itertools import product
 from typing import Any, NamedTuple, TypeAlias
@@ -508,17 +508,16 @@ class Chain(Names, Workspace):
         return formula(text.replace("BEFORE", str(self.count - 1))) if text else None
 
     def proofs(self, quantity: Quantity, _value: Any = None) -> tuple[Proof, ...]:
-        return tuple(self._proofs_of(quantity))
-
-    def _proofs_of(self, quantity: Quantity) -> Iterator[Proof]:
         """The laws of a quantity, and of those that its value is written with."""
+        proofs: list[Proof] = []
         laws = [(quantity, law) for law in quantity.laws]
         others = (KINEMATICS[name].presented(self.traits) for name in quantity.also)
         laws += [(other, law) for other in others for law in other.laws]
         for owner, law in laws:
             if law.is_of_inverse:
                 assert quantity.frame is not None
-                yield consequence(self._inverts(quantity.frame.name, law.claim), law.claim)
+                inverts = self._inverts(quantity.frame.name, law.claim)
+                proofs.append(consequence(inverts, law.claim))
             else:
                 composed = [each.proof(owner, law) for each in self._compositions]
                 # the definitions as they are printed are the compositions, if they differ in form
@@ -527,7 +526,8 @@ class Chain(Names, Workspace):
                     differences = [printed - entry for printed, entry in pairs if printed != entry]
                     if differences:
                         composed.append(self.vanish(differences, law.claim))
-                yield consequence(composed, law.claim)
+                proofs.append(consequence(composed, law.claim))
+        return tuple(proofs)
 
     @cached_property
     def _compositions(self) -> tuple[Composition, ...]:

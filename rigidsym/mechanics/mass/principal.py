@@ -42,22 +42,21 @@ def principal_of(inertia: sp.ImmutableMatrix) -> Principal | None:
 
 def _closed_form(inertia: sp.ImmutableMatrix) -> Principal | None:
     if inertia.is_diagonal():
-        return _diagonal(inertia)
+        moments = list(inertia.diagonal())
+        single = [k for k in range(3) if moments.count(moments[k]) == 1]
+        reason = {0: "diagonal_sphere", 1: "diagonal_symmetric", 3: "diagonal"}[len(single)]
+        return Principal(
+            moments=sp.ImmutableMatrix(moments),
+            axes=sp.ImmutableMatrix(sp.eye(3)),
+            reasons=(reason,),
+            axis=_LETTERS[single[0]] if single else "",
+        )
     for alone in (2, 1, 0):
         if not any(inertia[alone, k] for k in range(3) if k != alone):
             principal = _one_axis_apart(inertia, alone)
             if principal is not None:
                 return principal
     return _factored(inertia)
-
-
-def _diagonal(inertia: sp.ImmutableMatrix) -> Principal:
-    moments = list(inertia.diagonal())
-    single = [k for k in range(3) if moments.count(moments[k]) == 1]
-    reason = {0: "diagonal_sphere", 1: "diagonal_symmetric", 3: "diagonal"}[len(single)]
-    axes = sp.ImmutableMatrix(sp.eye(3))
-    axis = _LETTERS[single[0]] if single else ""
-    return Principal(moments=sp.ImmutableMatrix(moments), axes=axes, reasons=(reason,), axis=axis)
 
 
 def _square_root(expression: sp.Expr) -> sp.Expr:

@@ -53,7 +53,13 @@ def arguments_of(model: RotationModel, body: RigidBody | None = None) -> tuple[A
         *_parameters(model, body),
     )
     if body is not None:
-        _check_names(found, model.name)
+        names = [name for argument in found for name in argument.names]
+        twice = sorted(name for name, count in Counter(names).items() if count > 1)
+        if twice:
+            raise ModelError(
+                f"{model.name}: {twice[0]} is a name both in the rotation and in the body; "
+                "rename one"
+            )
     return found
 
 
@@ -93,15 +99,6 @@ def arguments_of_flow(state: Sequence[Argument]) -> tuple[Argument, ...]:
         about=f"the state: {', '.join(part.name for part in state)}",
     )
     return time, whole
-
-
-def _check_names(arguments: Iterable[Argument], model: str) -> None:
-    names = [name for argument in arguments for name in argument.names]
-    twice = sorted(name for name, count in Counter(names).items() if count > 1)
-    if twice:
-        raise ModelError(
-            f"{model}: {twice[0]} is a name both in the rotation and in the body; rename one"
-        )
 
 
 def _parameters(model: RotationModel, body: RigidBody | None) -> tuple[Argument, ...]:
