@@ -44,25 +44,12 @@ class Unit:
     powers: tuple[tuple[str, int], ...]  # in alphabetical order, none of them 0
 
 
-def _product(*units: tuple[Unit, int]) -> Unit:
-    powers: dict[str, int] = {}
-    for unit, exponent in units:
-        for base, power in unit.powers:
-            powers[base] = powers.get(base, 0) + power * exponent
-    factor = prod((unit.factor**exponent for unit, exponent in units), start=1.0)
-    return Unit(factor, tuple(sorted((base, power) for base, power in powers.items() if power)))
-
-
-def _known() -> dict[str, Unit]:
-    known = {name: Unit(factor, (("rad", 1), ("s", -1))) for name, factor in _RATES.items()}
-    for names, prefixes, base, multiple in _SPELLINGS:
-        for name in names.split():
-            for prefix in ("", *prefixes):
-                known[prefix + name] = Unit(_PREFIXES[prefix] * multiple, ((base, 1),))
-    return known
-
-
-_KNOWN = _known()
+_KNOWN = {name: Unit(factor, (("rad", 1), ("s", -1))) for name, factor in _RATES.items()} | {
+    prefix + name: Unit(_PREFIXES[prefix] * multiple, ((base, 1),))
+    for names, prefixes, base, multiple in _SPELLINGS
+    for name in names.split()
+    for prefix in ("", *prefixes)
+}
 
 
 def unit_of(text: str) -> Unit:
@@ -84,7 +71,12 @@ def unit_of(text: str) -> Unit:
         rest = rest[factor.end() :].strip()
         sign = {"/": -1, "*": 1}.get(rest[:1], sign)  # a blank keeps it: rad/s s is rad/s²
         rest = rest.lstrip("*/() ")
-    return _product(*units)
+    powers: dict[str, int] = {}
+    for unit, exponent in units:
+        for base, power in unit.powers:
+            powers[base] = powers.get(base, 0) + power * exponent
+    size = prod((unit.factor**exponent for unit, exponent in units), start=1.0)
+    return Unit(size, tuple(sorted((base, power) for base, power in powers.items() if power)))
 
 
 def conversion(text: str, expected: str) -> float:
