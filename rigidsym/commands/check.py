@@ -12,7 +12,7 @@ import click
 from rigidsym.commands.command import command as make
 from rigidsym.commands.options import TEMPLATES
 from rigidsym.commands.output_folder import CERTIFICATE, content_of, printed
-from rigidsym.errors import CheckError
+from rigidsym.errors import CheckError, SpecError
 from rigidsym.notes.formats.record import SCHEMA, SCHEMA_VERSION
 from rigidsym.pipeline import read_record
 from rigidsym.system.files import read_bytes
@@ -73,7 +73,11 @@ def _findings(record: Path) -> Iterator[tuple[Path, str, str]]:
     if version != SCHEMA_VERSION:
         yield record, f"schema version {version}, expected {SCHEMA_VERSION}", ""
         return
-    fresh = printed(read_record(content.get("request"), source=str(record)))
+    try:
+        fresh = printed(read_record(content.get("request"), source=str(record)))
+    except SpecError as error:  # the other records are checked all the same
+        yield record, f"a damaged request: {'; '.join(map(str, error.faults))}; derive it again", ""
+        return
     for name, text in fresh.files.items():
         path = record.with_name(name)
         problem, note = difference(path, text), ""

@@ -37,6 +37,8 @@ _REMOVED = {  # options that left: what to use instead
     "--only": "--quantity names the quantities",
     "--quantity": "--only names the quantities",
     "--scheduler": "use dask.array.apply_gufunc with a kernel, as in docs/howto/cluster.md",
+    "--seed": "--grid varies initial values and parameters over a range",
+    "--spread": "--grid varies initial values and parameters over a range",
 }
 POSITIVE = click.FloatRange(min=0, min_open=True)
 

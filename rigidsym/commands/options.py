@@ -31,7 +31,7 @@ def _notation(name: str, about: str) -> Decorator:
 
 TEMPLATES = click.option(
     "--templates",
-    type=click.Path(file_okay=False, path_type=Path),
+    type=click.Path(exists=True, file_okay=False, path_type=Path),
     callback=_use_templates,
     expose_value=False,
     metavar="DIR",

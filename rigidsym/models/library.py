@@ -269,7 +269,7 @@ def _meant(text: str) -> str:
     turns = re.findall(r"([xyz]) +(\w+)", text)
     if turns and " ".join(f"{axis} {angle}" for axis, angle in turns) == " ".join(text.split()):
         return f"did you mean {' '.join(f'{axis}({angle})' for axis, angle in turns)}?"
-    if set(text.lower()) <= {"x", "y", "z"}:
+    if text and set(text.lower()) <= {"x", "y", "z"}:
         turned = " ".join(f"{a}({b})" for a, b in zip(text.lower(), "abcdefgh", strict=False))
         return f"an Euler sequence has three axes; for another number write turns: {turned}"
     near = get_close_matches(text.lower(), [*PARAMETRISATIONS, *PRESETS], n=1)

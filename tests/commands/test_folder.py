@@ -86,7 +86,7 @@ def test_what_is_refused_writes_over_nothing_and_does_not_say_so(tmp_path):
     wrong = "--derivative", "angular_velocity_body:z"
     done = CliRunner().invoke(commands, ["derive", "ZXZ", "--angles", "a,b,c", *wrong, *out])
     assert isinstance(done.exception, rs.RigidsymError), done.output
-    assert "overwriting" not in done.stderr
+    assert "replacing" not in done.stderr
     assert (tmp_path / NAME / f"{NAME}.json").read_bytes() == before
 
 
@@ -117,6 +117,18 @@ def test_a_damaged_record_is_named_by_every_command(tmp_path, content, line):
     for words in (["run"], ["page"], ["simulate"], ["eval", "half.json", "--out", "r.csv"]):
         done = call(words[0], "half.json", *words[1:], cwd=tmp_path, status=3)
         assert "half.json: 1 fault, nothing written\n  expected a derivation file" in done.stderr
+
+
+def test_a_damaged_request_keeps_no_other_record_from_being_checked(tmp_path):
+    for rotation in ("xyz", "ZXZ"):
+        _run("derive", rotation, "--only", "rotation_matrix", "--out", str(tmp_path))
+    record = tmp_path / "euler_xyz_extrinsic" / "euler_xyz_extrinsic.json"
+    content = json.loads(record.read_text())
+    content["request"] = {"rotation": {"sequence": 1}}
+    record.write_text(json.dumps(content))
+    printed = call("check", str(tmp_path), cwd=tmp_path, status=1).stdout
+    assert f"{record}: a damaged request: " in printed
+    assert f"{NAME}.py: up to date" in printed
 
 
 @pytest.mark.parametrize("command", [("derive", "ZXZ"), ("problems", "euler", "--number", "1")])
