@@ -51,8 +51,6 @@ from rigidsym.notes.document import (
     said,
 )
 from rigidsym.notes.equations import claims_of, columns_of_matrix, equation_of, sums
-from rigidsym.notes.facts.mass import mass_facts, number
-from rigidsym.notes.facts.motion import motion_facts
 from rigidsym.notes.facts.rotation import RotationFacts, facts_of_rotation, product_of
 from rigidsym.notes.facts.singular import singular_facts
 from rigidsym.notes.facts.symbols import SymbolFacts
@@ -62,6 +60,7 @@ from rigidsym.notes.named_body import OFFSET, in_names, textbook_form
 from rigidsym.notes.template import blocks_of, sections_of
 from rigidsym.notes.words import (
     is_body_alone,
+    number,
     symbols_of,
     unit_in_words,
     with_source,
@@ -153,8 +152,7 @@ class Composer:
         return {
             **facts_of_rotation(derivation, self.letters),
             "singular": singular_facts(derivation),
-            "mass": mass_facts(derivation, self.letters),
-            "motion": motion_facts(derivation, self.letters),
+            **self._facts_of_body(),
             "conversions": self.conversions,
             "quaternion": self._quaternion(),
             "theory": [
@@ -187,6 +185,18 @@ class Composer:
             "functions": self.functions,
             "is_body_alone": is_body_alone(derivation),
             "has_dots": self.letters.notation.rates == "dot",
+        }
+
+    def _facts_of_body(self) -> dict[str, Any]:
+        if self.derivation.body is None and self.derivation.forces is None:
+            return {"mass": None, "motion": None}
+        # bodies in numbers and pictures of motions take long to import, and rotations have none
+        from rigidsym.notes.facts.mass import mass_facts
+        from rigidsym.notes.facts.motion import motion_facts
+
+        return {
+            "mass": mass_facts(self.derivation, self.letters),
+            "motion": motion_facts(self.derivation, self.letters),
         }
 
     def steps(self, section: str) -> list[NoteBlock]:

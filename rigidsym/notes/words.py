@@ -32,6 +32,7 @@ from rigidsym.notes.document import (
 )
 from rigidsym.notes.letters import VECTOR, length_of
 
+_DIGITS = 6
 _BODY_POSITION = formula(r"\mathbf{x}'")
 
 _OF_ROTATIONS = (ROTATION, transpose_of(ROTATION), transpose_of(COSINES), *map(Symbol, AXES))
@@ -106,6 +107,11 @@ def unit_in_words(unit: str) -> str:
     """rad/s² for rad/s^2; a pure number has the unit 1."""
     unit = re.sub(r"\((.+)\)\^\(-1/2\)", r"1/√(\1)", unit)
     return re.sub(r"\^(-?\d+)", lambda m: m[1].translate(_SUPERSCRIPTS), unit) or "1"
+
+
+def number(value: float) -> str:
+    """A number as a reader wants it."""
+    return f"{float(value) + 0.0:.{_DIGITS}g}".replace("-", "−")
 
 
 def announcement(equation: Equation, done: Done) -> Text:

@@ -33,9 +33,8 @@ from rigidsym.notes.document import Figure
 from rigidsym.notes.figure.body_drawing import body_drawing
 from rigidsym.notes.figure.body_mesh import lengths_of
 from rigidsym.notes.template import figure_with
-from rigidsym.notes.words import unit_in_words
+from rigidsym.notes.words import number, unit_in_words
 
-_DIGITS = 6
 _KINDS = {
     Particles: "particles",
     Composite: "composite",
@@ -223,8 +222,3 @@ class MassFacts:
 
 def mass_facts(derivation: Derivation, letters: Letters) -> MassFacts | None:
     return None if derivation.body is None else MassFacts(derivation, derivation.body, letters)
-
-
-def number(value: float) -> str:
-    """A number as a reader wants it."""
-    return f"{float(value) + 0.0:.{_DIGITS}g}".replace("-", "−")
