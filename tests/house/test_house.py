@@ -155,10 +155,10 @@ def test_kernels_import_their_representation_and_not_the_reverse():
 # sizes
 
 BUDGETS = {  # what was reached; who makes the house smaller lowers them
-    "files": 222,
-    "lines of code": 33_000,
-    "lines of tests": 26_420,
-    "lines of benchmarks": 2_660,
+    "files": 200,
+    "lines of code": 29_800,
+    "lines of tests": 23_520,
+    "lines of benchmarks": 2_540,
 }
 
 
