@@ -29,9 +29,10 @@ iframe {{
 </style>{frames}"""
 
 
-# What comes before the angular velocity would fill the picture.
+# What comes before the angular velocity would fill the picture; its section stays the third.
 _SHORTER = """<style>
 nav, section[aria-labelledby="section-1"], section[aria-labelledby="section-2"] { display: none; }
+body { counter-reset: section 2; }
 </style></head>"""
 
 
