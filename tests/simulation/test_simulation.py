@@ -161,6 +161,10 @@ def test_the_command_writes_a_table_and_a_picture(tmp_path):
     page = (tmp_path / "top.html").read_text(encoding="utf-8")
     assert f'"start":{np.degrees(0.5)}'[:14] in page
     assert f'"start":{TOP["A"]}' in page
+    call(*free, "--animate=free.html", cwd=tmp_path)
+    page = (tmp_path / "free.html").read_text(encoding="utf-8")
+    for place, start in enumerate(("1", "2")):  # rad/s, which Euler's equations change
+        assert f'{{"kind":"omega_body","place":{place},"start":{start}.' in page
     wrong = call(*free, "--animate=free.gif", cwd=tmp_path, status=2)
     assert "free.gif: expected a file that ends in .html" in wrong.stderr
     wrong = call("simulate", "heavy_symmetric_top", "--set", "A", cwd=tmp_path, status=2)
