@@ -412,6 +412,8 @@ def test_coq_accepts_a_heavy_symmetric_top_and_nothing_false_about_it(tmp_path):
     integral = next(
         line for line in certificate.text.splitlines() if "constant_momentum_psi" in line
     )
-    wrong = certificate.text.replace(integral, integral.replace("(C *", "(A *"))
+    wrong = certificate.text.replace(
+        integral, integral.replace("(cos (theta s))", "(sin (theta s))")
+    )
     assert wrong != certificate.text
     assert run_coq(tmp_path, wrong) != 0
