@@ -15,9 +15,14 @@ from rigidsym.commands.command import EXISTING_FILE, JSON, Options, command as m
 from rigidsym.system.processes import bar
 from rigidsym.tools.identify.identification import Identification, identify_file, identify_source
 from rigidsym.tools.identify.readings import ANGLE_NAMES
-from rigidsym.tools.identify.samples import OptionError, SampleError, from_arrays, parts_missing
+from rigidsym.tools.identify.samples import (
+    SIZES,
+    OptionError,
+    SampleError,
+    from_arrays,
+    parts_missing,
+)
 
-_COUNTS = {"angles": 3, "matrix": 9, "quaternion": 4, "rates": 3, "omega": 3}
 _BRACKETS = str.maketrans("[](){};", "      ,")
 
 
@@ -62,7 +67,7 @@ def command(context: click.Context, /, file: Path | None, **options: Any) -> Non
     of the angular velocity. Units in names, such as "yaw [mrad]", are converted. The exit code is 1
     if no convention fits.
     """
-    texts = {name: options[name] for name in _COUNTS}
+    texts = {name: options[name] for name in SIZES}
     if (file is None) == (not any(texts.values())):
         raise OptionError(["expected a file, or --angles with --matrix or --quaternion"])
     if file is None:
@@ -118,6 +123,6 @@ def _numbers(name: str, text: str, faults: list[str]) -> tuple[list[str], list[f
             numbers.append(float(number))
         except ValueError:
             faults.append(f"--{name}: {number!r} is not a number")
-    if len(words) != _COUNTS[name]:
-        faults.append(f"--{name}: expected {_COUNTS[name]} numbers, got {len(words)}")
+    if len(words) != SIZES[name]:
+        faults.append(f"--{name}: expected {SIZES[name]} numbers, got {len(words)}")
     return [label for label, _, _ in pairs if label], numbers

@@ -80,7 +80,7 @@ def test_no_fit_is_an_answer_with_exit_code_1(tmp_path):
     assert "No convention fits 1 sample: 1152 were tried," in done.stdout
     assert "Nearest: xyz extrinsic, passive, degrees, columns (a1, a2, a3)" in done.stdout
     assert "residual 0.0087 rad (0.5°), worst at sample 1" in done.stdout
-    assert "--tolerance 0.0092 would accept it." in done.stdout
+    assert "as far off as that, --tolerance 0.0092 accepts it." in done.stdout
     assert done.stderr == ""
     call(*words, "--tolerance", "0.0092", cwd=tmp_path)
     far = call(*words[:2], "30,20,99", *words[3:], cwd=tmp_path, status=1)
@@ -95,7 +95,7 @@ def test_no_fit_is_an_answer_with_exit_code_1(tmp_path):
     [
         (("log.csv", "--angles", "1,2,3"), 2, "expected a file, or --angles"),
         (("nowhere.csv",), 2, "does not exist"),
-        (("log.csv",), 3, "log.csv: bad samples\n  no column roll: did you mean rol?"),
+        (("log.csv",), 3, "the samples cannot be read\n  no column roll: did you mean rol?"),
     ],
 )
 def test_bad_input_is_told_at_once(tmp_path, words, status, message):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from helpers.conventions import GENERIC, RATES, sample, some
-from rigidsym.tools.identify.calls import calls
+from rigidsym.tools.identify.fit import calls
 from rigidsym.tools.identify.readings import VELOCITIES, Reading
 
 

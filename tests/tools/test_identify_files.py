@@ -182,7 +182,7 @@ def test_all_bad_samples_are_named_with_their_amounts():
         rs.identify(angles, matrix=[good, good, stretched, mirrored, np.full((3, 3), np.inf)])
     assert error.value.exit_code == 3
     assert str(error.value).splitlines() == [
-        "bad samples",
+        "the samples cannot be read",
         "  sample 2: angles: a number that is missing or not finite",
         "  sample 3: matrix: not a rotation, M Mᵀ differs from 1 by 0.21 in an entry "
         "(det M = 1.331)",

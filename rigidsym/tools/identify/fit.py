@@ -12,7 +12,7 @@ import numpy as np
 
 from rigidsym.data.tables import MOST_SHOWN
 from rigidsym.system.processes import Progress
-from rigidsym.tools.identify.calls import calls
+from rigidsym.system.resources import environment
 from rigidsym.tools.identify.readings import (
     VELOCITIES,
     Reading,
@@ -190,6 +190,17 @@ class Answer:
     def calls(self) -> dict[str, str]:
         """Python statements by library (SciPy, rigidsym) that reproduce the data."""
         return calls(self.reading)
+
+
+def calls(reading: Reading) -> dict[str, str]:
+    """Statements that end in `matrix` or `quaternion`, and perhaps in `omega`, by library.
+
+    They start from NumPy as np and from `angles` (and `rates`): the columns of one sample in the
+    order of the data, (3,); SciPy and rigidsym take (..., 3) too.
+    """
+    template = environment().get_template("identify/calls.py.jinja")
+    libraries = ("SciPy", "rigidsym")
+    return {name: template.render(library=name, reading=reading).rstrip() for name in libraries}
 
 
 def fit(

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from math import degrees
 from pathlib import Path
-from textwrap import indent
+from textwrap import fill
 from typing import Any
 
 from numpy.typing import ArrayLike
 
 from rigidsym.data.columns import counted
 from rigidsym.system.processes import Progress
+from rigidsym.system.resources import environment
 from rigidsym.tools.identify.fit import (
     Answer,
     FurtherSample,
@@ -25,8 +26,7 @@ from rigidsym.tools.identify.samples import SampleSource, from_arrays, from_file
 
 SCHEMA = "rigidsym.identification"
 SCHEMA_VERSION = 2
-_MOST_SHOWN = 6
-_ACCEPTABLE = 0.2  # radians; no tolerance is suggested for a nearest reading further off
+_NEAR = 0.2  # radians; no tolerance is suggested for a nearest reading further off
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,19 +48,49 @@ class Identification:
     def fits(self) -> bool:
         return bool(self.answers)
 
+    @property
+    def distance(self) -> float:
+        """The largest residual of the nearest reading, if nothing fits."""
+        return (
+            max(self.nearest.residual, self.nearest.velocity_residual or 0) if self.nearest else 0
+        )
+
+    @property
+    def is_near(self) -> bool:
+        """Whether noise could be why nothing fits."""
+        return self.distance <= _NEAR
+
+    @property
+    def differ_in_velocity(self) -> bool:
+        """Whether all answers take the angles and the attitude alike."""
+        return len({answer.reading.orientation for answer in self.answers}) == 1
+
+    @property
+    def common(self) -> str:
+        """In words, what all answers have in common: unit, order of the quaternion, Ω."""
+        readings = [answer.reading for answer in self.answers]
+        words = [(r.unit, r.scalar_words, r.velocity.words if r.velocity else "") for r in readings]
+        columns = [{*column} for column in zip(*words, strict=True)]
+        return ", ".join(word for column in columns if len(column) == 1 for word in column if word)
+
     def text(self, *, everything: bool = False) -> str:
         """The report of `rigidsym identify`; with `everything`, that of --all.
 
         Its lines have 80 columns unless the names of the angles are long.
         """
-        if self.nearest:
-            lines = _no_fit(self, self.nearest)
-        elif len(self.answers) == 1:
-            lines = _single(self, self.answers[0])
-        else:
-            lines = _several(self, everything=everything)
-        unused = [f"not used: {self.unused}"] if self.unused else []
-        return "\n".join([*lines, *unused])
+        template = environment().get_template("identify/report.txt.jinja")
+        further = self.further
+        angles = zip(self.names, further.angles, strict=True) if further else ()
+        return template.render(
+            result=self,
+            names=self.names,
+            everything=everything,
+            wrapped=_wrapped,
+            counted=counted,
+            degrees=degrees,
+            further=[f"{name} = {angle:g}" for name, angle in angles],
+            rates=[f"{rate:g}" for rate in (further and further.rates) or ()],
+        ).rstrip()
 
     def record(self) -> dict[str, Any]:
         """The report of `rigidsym identify --json`: dictionaries, lists, texts and numbers."""
@@ -86,125 +116,12 @@ class Identification:
         return self.text()
 
 
-def _single(result: Identification, answer: Answer) -> Iterator[str]:
-    yield from _wrapped(answer.reading.words(result.names), "")
-    same, *others = answer.aliases
-    yield from _wrapped("= " + same.brief(result.names), "")
-    yield ""
-    kind = "matrix =" if answer.reading.scalar_last is None else "quaternion of"
-    yield f"{kind} {answer.reading.product(result.names)}"
-    yield f"fits {counted(result.samples, 'sample')}: {_residual(answer)}"
-    yield f"tolerance {_tolerance(result)}"
-    if result.converted:
-        yield f"converted to {answer.reading.unit}: {', '.join(result.converted)}"
-    if others:
-        yield ""
-        yield "Equivalent descriptions:"
-    for reading in others:
-        yield from _wrapped(reading.brief(result.names), "  ")
-    yield ""
-    yield from _calls(answer)
-
-
-def _calls(answer: Answer) -> Iterator[str]:
-    given = "angles and rates" if answer.reading.velocity else "angles"
-    yield f"Calls that reproduce the data (np is NumPy; {given} as in the data):"
-    for library, statements in answer.calls.items():
-        yield f"  {library}"
-        yield indent(statements, "    ")
-
-
-def _several(result: Identification, *, everything: bool) -> Iterator[str]:
-    count = len(result.answers)
-    shown = result.answers if everything else result.answers[:_MOST_SHOWN]
-    common = _common([answer.reading for answer in result.answers])
-    yield f"{count} conventions fit {counted(result.samples, 'sample')}" + (
-        f", all {common}" if common else ""
-    )
-    yield f"tolerance {_tolerance(result)}"
-    for number, answer in enumerate(shown, 1):
-        yield ""
-        yield from _wrapped(answer.reading.words(result.names), f"{number:>2}  ")
-        yield f"    {answer.reading.product(result.names)}; {_residual(answer)}"
-        if everything:
-            for reading in answer.aliases:
-                yield from _wrapped("= " + reading.brief(result.names), "    ")
-            yield indent("\n".join(_calls(answer)), "    ")
-    if not everything:
-        more = f"and {count - len(shown)} more; " if count > len(shown) else ""
-        yield f"\n{more}--all shows {'them and ' if more else ''}the calls for each."
-    yield ""
-    yield from _further(result, result.further)
-
-
-def _common(readings: Sequence[Reading]) -> str:
-    """In words, what all readings have in common: unit, order of the quaternion, Ω."""
-    said = {
-        (reading.unit, reading.scalar_words, reading.velocity.words if reading.velocity else "")
-        for reading in readings
-    }
-    columns = [set(column) for column in zip(*said, strict=True)]
-    return ", ".join(word for column in columns if len(column) == 1 for word in column if word)
-
-
-def _further(result: Identification, further: FurtherSample | None) -> Iterator[str]:
-    if further is None:
-        yield "The tolerance is too large for one further sample to tell all of them apart."
-        return
-    if len({answer.reading.orientation for answer in result.answers}) == 1:
-        yield "They differ only in Ω; no sample at rest tells them apart."
-    yield "To tell them apart, add a sample with these values in the columns:"
-    values = ", ".join(f"{n} = {a:g}" for n, a in zip(result.names, further.angles, strict=True))
-    rates = ", ".join(f"{rate:g}" for rate in further.rates or ())
-    yield f"  {values}" + (f"; rates {rates}" if rates else "")
-
-
-def _no_fit(result: Identification, nearest: Answer) -> Iterator[str]:
-    yield f"No convention fits {counted(result.samples, 'sample')}: {result.tried} were tried,"
-    yield "for the axes of the data. If its frames are others than those of the angles (NED and"
-    yield "ENU, FRD and FLU), convert the attitude first."
-    yield f"tolerance {_tolerance(result)}"
-    yield ""
-    yield from _wrapped(nearest.reading.words(result.names), "Nearest: ")
-    yield f"  {nearest.reading.product(result.names)}"
-    yield f"  {_residual(nearest)}, worst at {nearest.worst}"
-    if nearest.samples > 1:
-        yield f"  {nearest.fitting} of {nearest.samples} samples fit"
-    worst = max(nearest.residual, nearest.velocity_residual or 0.0)
-    if worst <= _ACCEPTABLE:
-        yield f"--tolerance {worst * 1.05:.2g} would accept it."
-    else:
-        yield f"Even the best match is {degrees(worst):.2g}° off: do the angles and the attitude"
-        yield "belong to the same instant and the same body?"
-
-
-def _residual(answer: Answer) -> str:
-    said = f"residual {answer.residual:.2g} rad"
-    if answer.residual > 1e-4:
-        said += f" ({degrees(answer.residual):.2g}°)"
-    if answer.velocity_residual is not None:
-        said += f", Ω off by {answer.velocity_residual:.2g} of |Ω|"
-    return said
-
-
-def _tolerance(result: Identification) -> str:
-    tolerance = result.tolerance
-    said = f"{tolerance.orientation:.2g} rad"
-    if result.has_velocity:
-        said += f" and {tolerance.velocity:.2g} of |Ω|"
-    return f"{said}, {tolerance.because}"
-
-
-def _wrapped(words: str, head: str, width: int = 80) -> Iterator[str]:
-    """Words after a head, broken between the parts of a reading if they are too long."""
-    line, margin = head, " " * len(head)
-    for part in words.split(", "):
-        piece = part if line in (head, margin) else ", " + part
-        if len(line + piece) > width - 1 and line not in (head, margin):
-            yield line + ","
-            line, piece = margin, part
-        line += piece
-    yield line
+def _wrapped(words: str, head: str = "") -> str:
+    """Words after a head, in lines of 79 characters that end with a comma."""
+    parts, margin = words.replace(" ", "\N{NO-BREAK SPACE}"), " " * len(head)
+    text = parts.replace(",\N{NO-BREAK SPACE}", ", ")
+    lines = fill(text, 79, initial_indent=head, subsequent_indent=margin, break_long_words=False)
+    return lines.replace("\N{NO-BREAK SPACE}", " ")
 
 
 def _answer(answer: Answer, names: Sequence[str]) -> dict[str, Any]:

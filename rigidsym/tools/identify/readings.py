@@ -28,8 +28,11 @@ _PLAIN_COLUMNS: tuple[Three, ...] = ((0, 1, 2), (0, 2, 1), (1, 0, 2))
 # Of two patterns of signs that are each other's opposite, the one with fewer flips.
 _PLAIN_SIGNS: tuple[Three, ...] = ((1, 1, 1), (-1, 1, 1), (1, -1, 1), (1, 1, -1))
 _OTHER: dict[Frame, Frame] = {"space": "body", "body": "space"}
-RATES_IN_DEGREES, RATES_IN_RADIANS = "rates in deg/s, Ω in rad/s", "rates in rad/s, Ω in deg/s"
-_FACTORS = {"": 1.0, RATES_IN_DEGREES: pi / 180, RATES_IN_RADIANS: 180 / pi}
+_FACTORS = {
+    "": 1.0,
+    "rates in deg/s, Ω in rad/s": pi / 180,
+    "rates in rad/s, Ω in deg/s": 180 / pi,
+}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -109,6 +112,12 @@ class Reading:
     def is_plain(self) -> bool:
         """Whether the columns are the angles of the turns as they are."""
         return not (self.flips or _displaced(self.columns))
+
+    @property
+    def taken(self) -> str:
+        """How Python takes the turns from the columns: "[..., [2, 1, 0]] * [1, -1, 1]"."""
+        columns = f"[..., {[*self.columns]}]" if _displaced(self.columns) else ""
+        return columns + (f" * {[*self.signs]}" if self.flips else "")
 
     @property
     def flips(self) -> int:

@@ -12,14 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rigidsym.data.columns import ColumnNames, counted, names_for
-from rigidsym.data.tables import (
-    MOST_SHOWN,
-    ArrayTable,
-    Batch,
-    Table,
-    names_of,
-    open_table,
-)
+from rigidsym.data.tables import MOST_SHOWN, ArrayTable, Batch, Table, names_of, open_table
 from rigidsym.errors import DataError
 from rigidsym.tools.identify.readings import ANGLE_NAMES
 from rigidsym.tools.identify.turns import Array, quaternion_of
@@ -34,6 +27,16 @@ from rigidsym.tools.spellings import (
 )
 
 SLACK = 0.05  # how far M Mᵀ may be from 1, and |q| from 1, before data are refused
+BLOCK = 16384  # rows that are in memory at once
+SPREAD = 64  # rows that are looked at first
+SIZES = {"angles": 3, "matrix": 9, "quaternion": 4, "rates": 3, "omega": 3}  # numbers in a sample
+_WITHOUT_HEADER = {
+    7: ("angles", "quaternion"),
+    12: ("angles", "matrix"),
+    13: ("angles", "quaternion", "rates", "omega"),
+    18: ("angles", "matrix", "rates", "omega"),
+}
+_NUMBERED_RATES: Names = ("rate1", "rate2", "rate3")
 
 
 class SampleError(DataError):
@@ -47,9 +50,8 @@ class SampleError(DataError):
         more = self.count - len(faults[:MOST_SHOWN])
         lines = [*faults[:MOST_SHOWN], *([f"and {more} more"] if more else [])]
         place = "" if path is None or str(path) in lines[0] else f"{path}: "
-        super().__init__(
-            place + (lines[0] if len(lines) == 1 else "\n  ".join(["bad samples", *lines]))
-        )
+        head = f"{place}the samples cannot be read"
+        super().__init__(place + lines[0] if len(lines) == 1 else "\n  ".join([head, *lines]))
 
     def of(self, path: Path) -> SampleError:
         """The same, with the file that the samples are from."""
@@ -64,10 +66,10 @@ class OptionError(SampleError):
 
 @dataclass(frozen=True, slots=True)
 class SampleBlock:
-    """Some rows of the data: angles, a matrix or quaternion, and perhaps rates and Ω."""
+    """Some rows of the data."""
 
     rows: NDArray[np.intp]  # their numbers in the data, (n,)
-    table: Array  # (n, 7), (n, 12), or 6 columns more with rates and Ω
+    parts: Mapping[str, Array]  # angles, matrix or quaternion, and perhaps rates and omega
     done: float = 1.0  # share of the data that is read with this block
 
     def __len__(self) -> int:
@@ -75,24 +77,15 @@ class SampleBlock:
 
     @property
     def is_matrix(self) -> bool:
-        return self.table.shape[1] in (12, 18)
-
-    @property
-    def parts(self) -> dict[str, Array]:
-        """The parts of the data by name: angles, matrix or quaternion, rates, omega."""
-        attitude = ("matrix", 9) if self.is_matrix else ("quaternion", 4)
-        sizes = dict([("angles", 3), attitude, ("rates", 3), ("omega", 3)])
-        ends = np.cumsum([*sizes.values()])[:-1]
-        parts = zip(sizes, np.split(self.table, ends, axis=1), strict=True)
-        return {name: part for name, part in parts if part.shape[1]}
+        return "matrix" in self.parts
 
     @property
     def angles(self) -> Array:
-        return self.table[:, :3]
+        return self.parts["angles"]
 
     @property
     def attitude(self) -> Array:
-        return self.table[:, 3:12] if self.is_matrix else self.table[:, 3:7]
+        return self.parts["matrix" if self.is_matrix else "quaternion"]
 
     @property
     def rates(self) -> Array | None:
@@ -108,7 +101,8 @@ class SampleBlock:
 
     def at(self, which: slice | NDArray[np.bool_]) -> SampleBlock:
         """Some of the rows."""
-        return SampleBlock(self.rows[which], self.table[which], self.done)
+        parts = {name: part[which] for name, part in self.parts.items()}
+        return SampleBlock(self.rows[which], parts, self.done)
 
     def defects(self) -> Array:
         """How far each matrix is from orthogonal, or each quaternion from unit length: (n,)."""
@@ -133,36 +127,31 @@ def check(
     Faults are numbers that are missing or not finite, matrices that are not rotations, and
     quaternions that are not of unit length; `slack` is how far off the last two may be.
     """
-    finite = np.ones(len(block), bool)
-    faults: list[tuple[int, str]] = []  # the first of each kind, since a log may have millions
-    count = 0
-    for name, part in block.parts.items():
-        good = np.isfinite(part).all(axis=1)
-        finite &= good
-        missing = block.rows[~good].tolist()
-        count += len(missing)
-        lacks = f"{name}: a number that is missing or not finite"
-        faults += [(row, lacks) for row in missing[:MOST_SHOWN]]
-    rest = block.at(finite)
+    finite = {name: np.isfinite(part).all(axis=1) for name, part in block.parts.items()}
+    rest = block.at(np.all([*finite.values()], axis=0))
     turns = rest.defects() <= slack
     if block.is_matrix:
         turns &= np.linalg.det(rest.matrices) > 0
-    wrong = np.flatnonzero(~turns).tolist()
-    count += len(wrong)
-    for k in wrong[:MOST_SHOWN]:
+    wrong = np.flatnonzero(~turns)
+    faults = [  # the first of each kind, since a log may have millions
+        (row, f"{name}: a number that is missing or not finite")
+        for name, good in finite.items()
+        for row in block.rows[~good][:MOST_SHOWN].tolist()
+    ]
+    for k in wrong[:MOST_SHOWN].tolist():
         faults.append((int(rest.rows[k]), _what_is_wrong(rest.at(slice(k, k + 1)))))
+    count = len(wrong) + sum(int((~good).sum()) for good in finite.values())
     messages = [f"{place(row)}: {fault}" for row, fault in sorted(faults)[:MOST_SHOWN]]
     return rest.at(turns), messages, count
 
 
 def _what_is_wrong(row: SampleBlock) -> str:
-    defect = float(row.defects()[0])
     if not row.is_matrix:
         length = float(np.linalg.norm(row.attitude))
         if not length:
             return "quaternion: zero, which is not a rotation"
         return f"quaternion: its length is {length:.4g}, expected 1"
-    determinant = float(np.linalg.det(row.matrices[0]))
+    defect, determinant = float(row.defects()[0]), float(np.linalg.det(row.matrices[0]))
     if determinant < 0 and defect <= SLACK:
         return f"matrix: not a rotation but a reflection, its determinant is {determinant:.4g}"
     return (
@@ -171,20 +160,11 @@ def _what_is_wrong(row: SampleBlock) -> str:
     )
 
 
-_NUMBERED_RATES: Names = ("rate1", "rate2", "rate3")
-_WITHOUT_HEADER = {
-    7: "angles and a quaternion",
-    12: "angles and a matrix",
-    13: "angles, a quaternion, rates, omega",
-    18: "angles, a matrix, rates, omega",
-}
-
-
 @dataclass(frozen=True, slots=True)
 class Columns:
-    """The columns of a table in the order of `SampleBlock`, counted from 0."""
+    """Where the parts of a sample are in the columns of a table, counted from 0."""
 
-    used: tuple[int, ...]
+    parts: Mapping[str, tuple[int, ...]]  # in the order of SIZES
     names: Names = ANGLE_NAMES  # of the angles
     scalar_last: bool | None = None  # of a quaternion whose names tell which is the scalar
     factors: tuple[float, ...] = ()  # of all columns used; none if all are 1
@@ -192,24 +172,34 @@ class Columns:
     unused: str = ""  # columns of rates without Ω, or of Ω without rates, in words
 
     @property
+    def used(self) -> tuple[int, ...]:
+        return tuple(column for part in self.parts.values() for column in part)
+
+    @property
     def layouts(self) -> tuple[bool | None, ...]:
         """Whether the scalar of a quaternion may be last; None for a matrix."""
-        if len(self.used) in (12, 18):
+        if "matrix" in self.parts:
             return (None,)
         return (False, True) if self.scalar_last is None else (self.scalar_last,)
+
+    def split(self, batch: Batch) -> SampleBlock:
+        """The parts of some rows, in one unit."""
+        table = np.asarray(batch.table, float) * (self.factors or 1.0)
+        ends = np.cumsum([len(part) for part in self.parts.values()])[:-1]
+        parts = dict(zip(self.parts, np.split(table, ends, axis=1), strict=True))
+        return SampleBlock(batch.rows, parts, batch.share)
 
 
 def by_width(width: int) -> Columns:
     """The columns of an array without names; raises SampleError for other widths than 7, 12, ..."""
     if width not in _WITHOUT_HEADER:
-        widths = "; ".join(f"{number} ({parts})" for number, parts in _WITHOUT_HEADER.items())
-        raise SampleError(
-            [
-                f"{counted(width, 'column')} without names: expected {widths}; or name them with "
-                "--columns"
-            ]
-        )
-    return Columns(tuple(range(width)))
+        widths = "; ".join(f"{w} ({', '.join(parts)})" for w, parts in _WITHOUT_HEADER.items())
+        names = f"{counted(width, 'column')} without names"
+        raise SampleError([f"{names}: expected {widths}; or name them with --columns"])
+    columns = iter(range(width))
+    return Columns(
+        {part: tuple(next(columns) for _ in range(SIZES[part])) for part in _WITHOUT_HEADER[width]}
+    )
 
 
 def by_name(names: Sequence[str]) -> Columns:
@@ -221,61 +211,69 @@ def by_name(names: Sequence[str]) -> Columns:
     rates.
     """
     header = ColumnNames(names)
-    angles = tuple(sorted(_nearest(ANGLES, header), key=_order(header)))
-    attitude = _attitude(header)
-    rates, omega = _rates_of(angles, header), _nearest(OMEGAS, header)
-    has_rates, has_omega = (all(map(header.has, part)) for part in (rates, omega))
-    has_velocity = has_rates and has_omega
-    wanted = (*angles, *attitude, *((*rates, *omega) if has_velocity else ()))
-    faults = _missing(wanted, header)
+
+    def column(name: str) -> int:
+        return (header.find([name]) or 0) if header.has(name) else len(header.names)
+
+    def share(group: Names) -> float:
+        return sum(map(header.has, group)) / len(group)
+
+    def nearest(groups: Iterable[Names]) -> Names:
+        return max(groups, key=share)  # the first of equals
+
+    angles = tuple(sorted(nearest(ANGLES), key=column))
+    matrix, quaternion = nearest(MATRICES), nearest(QUATERNIONS)
+    in_order = tuple(sorted(quaternion, key=column))
+    if _scalar_last(in_order) is not None or quaternion not in NAMED_QUATERNIONS:
+        quaternion = in_order
+    is_matrix = share(matrix) >= share(quaternion)
+    rates = nearest([*(tuple(f.format(a) for a in angles) for f in RATES), _NUMBERED_RATES])
+    omega = nearest(OMEGAS)
+    attitude = {"matrix": matrix} if is_matrix else {"quaternion": quaternion}
+    parts: dict[str, Names] = {"angles": angles, **attitude}
+    velocity = {"rates": rates, "omega": omega}
+    alone = {part: group for part, group in velocity.items() if share(group) == 1}
+    if len(alone) == 2:
+        parts, alone = parts | velocity, {}
+    faults = _missing([name for group in parts.values() for name in group], header)
     if faults:
         faults.append("--columns names the columns in order, if their names are others")
-    if {_share(_nearest(groups, header), header) for groups in (MATRICES, QUATERNIONS)} == {1.0}:
+    if share(matrix) == share(quaternion) == 1:
         faults.append("both a matrix and a quaternion are named; leave one out")
     if faults:
         raise SampleError(faults)
-    used = tuple(header.find([name]) or 0 for name in wanted)
-    factors = [*_factors(header, used[:3], ""), *[1.0] * len(attitude)]
-    for part in (used[-6:-3], used[-3:]) if has_velocity else ():
-        factors += _factors(header, part, "/s")
-    changed = [header.names[k] for k, factor in zip(used, factors, strict=True) if factor != 1]
+    places = {part: tuple(map(column, group)) for part, group in parts.items()}
+    factors: list[float] = []
+    for part, columns in places.items():
+        factors += _factors(header, columns, "/s" if part in velocity else "", part in attitude)
+    used = [header.names[k] for columns in places.values() for k in columns]
+    changed = [name for name, factor in zip(used, factors, strict=True) if factor != 1]
+    lacking = {"rates": "an angular velocity", "omega": "rates of the angles"}
     return Columns(
-        used,
+        places,
         names=angles,
-        scalar_last=_scalar_last(attitude),
+        scalar_last=None if is_matrix else _scalar_last(quaternion),
         factors=tuple(factors) if changed else (),
         converted=tuple(changed),
-        unused=_unused(header, rates if has_rates else (), omega if has_omega else ()),
+        unused="".join(
+            f"{', '.join(header.names[column(name)] for name in group)}, since there are no "
+            f"columns for {lacking[part]}"
+            for part, group in alone.items()
+        ),
     )
 
 
-def _unused(header: ColumnNames, rates: Names, omega: Names) -> str:
-    """Columns that say nothing without their counterpart, and what that would be."""
-    if bool(rates) == bool(omega):
-        return ""
-    columns = [header.names[header.find([name]) or 0] for name in (*rates, *omega)]
-    lacking = "an angular velocity" if rates else "rates of the angles"
-    return f"{', '.join(columns)}, since there are no columns for {lacking}"
-
-
-def _factors(header: ColumnNames, columns: Sequence[int], per: str) -> list[float]:
-    """To radians if a unit is a multiple of them, and else to degrees: (columns,)."""
+def _factors(
+    header: ColumnNames, columns: Sequence[int], per: str, is_attitude: bool
+) -> list[float]:
+    """To radians if a unit is a multiple of them, and else to degrees; 1 for an attitude."""
+    if is_attitude:
+        return [1.0] * len(columns)
     stated = [header.unit(column).casefold() for column in columns]
     in_radians = any(unit.lstrip("numµ").startswith("rad") for unit in stated)
     unit = ("rad" if in_radians else "deg") + per
     factors = [header.factor(column, unit) or 1.0 for column in columns]
     return [1.0 if abs(factor - 1) < 1e-15 else factor for factor in factors]
-
-
-def _attitude(header: ColumnNames) -> Names:
-    """The names of the matrix or of the quaternion, whichever is there more fully."""
-    matrix, quaternion = _nearest(MATRICES, header), _nearest(QUATERNIONS, header)
-    if _share(matrix, header) >= _share(quaternion, header):
-        return matrix
-    in_file = tuple(sorted(quaternion, key=_order(header)))
-    if quaternion in NAMED_QUATERNIONS and _scalar_last(in_file) is None:
-        return quaternion
-    return in_file
 
 
 def _scalar_last(names: Names) -> bool | None:
@@ -284,26 +282,6 @@ def _scalar_last(names: Names) -> bool | None:
         if names in ((scalar, *vector), (*vector, scalar)):
             return names[-1] == scalar
     return None
-
-
-def _order(header: ColumnNames) -> Callable[[str], int]:
-    """Sorts by the position in the file; missing names come last."""
-    return lambda name: (header.find([name]) or 0) if header.has(name) else len(header.names)
-
-
-def _nearest(groups: Iterable[Names], header: ColumnNames) -> Names:
-    """The group of which the largest share is there; the first of equals."""
-    return max(groups, key=lambda group: _share(group, header))
-
-
-def _share(group: Names, header: ColumnNames) -> float:
-    return sum(map(header.has, group)) / len(group)
-
-
-def _rates_of(angles: Names, header: ColumnNames) -> Names:
-    """The names of the rates in this header: of each angle, or numbered."""
-    groups = [tuple(form.format(angle) for angle in angles) for form in RATES]
-    return _nearest([*groups, _NUMBERED_RATES], header)
 
 
 def _missing(wanted: Sequence[str], header: ColumnNames) -> list[str]:
@@ -321,13 +299,6 @@ def _missing(wanted: Sequence[str], header: ColumnNames) -> list[str]:
         rest = rest.replace(", ".join(MATRICES[0]), "r11, ..., r33 or qw, qx, qy, qz")
         faults.append(f"no column {rest} among {header.listed}")
     return faults
-
-
-BLOCK = 16384  # rows that are in memory at once
-SPREAD = 64  # rows that are looked at first
-_THREE = ((3,),)
-_SHAPES: dict[str, tuple[tuple[int, ...], ...]] = {"angles": _THREE, "matrix": ((3, 3), (9,))}
-_SHAPES |= {"quaternion": ((4,),), "rates": _THREE, "omega": _THREE}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -349,8 +320,8 @@ class SampleSource:
 
     def blocks(self) -> Iterator[SampleBlock]:
         """All rows."""
-        for chunk in self.reader.batches(self.columns.used, BLOCK):
-            yield self._block(chunk)
+        for batch in self.reader.batches(self.columns.used, BLOCK):
+            yield self._block(batch)
 
     def spread(self) -> SampleBlock:
         """A few rows from all over the data."""
@@ -359,8 +330,7 @@ class SampleSource:
     def _block(self, batch: Batch) -> SampleBlock:
         if self.drops_missing:
             batch = batch.at(np.asarray(~np.isnan(batch.table).any(axis=1)))
-        table = np.asarray(batch.table, float) * (self.columns.factors or 1.0)
-        return SampleBlock(batch.rows, table, batch.share)
+        return self.columns.split(batch)
 
 
 def from_file(
@@ -382,30 +352,28 @@ def from_file(
     return SampleSource(reader=reader, columns=columns, drops_missing=drops_missing)
 
 
-def from_arrays(given: Mapping[str, Any], names: Sequence[str] = ANGLE_NAMES) -> SampleSource:
+def from_arrays(parts: Mapping[str, Any], names: Sequence[str] = ANGLE_NAMES) -> SampleSource:
     """Samples from Python; raises SampleError for shapes that do not belong together.
 
     A table with names of columns is read as a file with this header.
     """
-    labelled = [name for name, value in given.items() if names_of(value)]
-    if labelled == ["angles"] and all(given[name] is None for name in given if name != "angles"):
-        table = ArrayTable(given["angles"])
+    labelled = [name for name, value in parts.items() if names_of(value)]
+    present = {name: value for name, value in parts.items() if value is not None}
+    if labelled == ["angles"] == [*present]:
+        table = ArrayTable(parts["angles"])
         return SampleSource(reader=table, columns=by_name(table.names or ()))
     if labelled:
-        raise SampleError(
-            [
-                f"{name}: its columns have names; expected an array without names, or one table "
-                "with the columns of all parts, as the only argument"
-                for name in labelled
-            ]
+        expected = (
+            "its columns have names; expected an array without names, or one table "
+            "with the columns of all parts, as the only argument"
         )
+        raise SampleError([f"{name}: {expected}" for name in labelled])
     arrays: dict[str, NDArray[Any]] = {}
     faults: list[str] = []
-    for name, value in given.items():
-        if value is not None:
-            array, fault = _shaped(name, value)
-            arrays[name] = array
-            faults += fault
+    for name, value in present.items():
+        array, fault = _shaped(name, value)
+        arrays[name] = array
+        faults += fault
     faults += parts_missing(set(arrays))
     counts = {name: len(array) for name, array in arrays.items() if array.ndim}
     if not faults and len(set(counts.values())) > 1:
@@ -415,10 +383,9 @@ def from_arrays(given: Mapping[str, Any], names: Sequence[str] = ANGLE_NAMES) ->
         faults.append(f"expected three different names of angles, got {', '.join(names)}")
     if faults or not min(counts.values()):
         raise SampleError(faults or ["no samples"])
-    width = 13 if "quaternion" in arrays else 18
-    columns = replace(by_width(width - 6 * ("omega" not in arrays)), names=tuple(names))
-    order = [arrays[name] for name in _SHAPES if name in arrays]
-    return SampleSource(reader=ArrayTable(*order), columns=columns)
+    order = [name for name in SIZES if name in arrays]
+    columns = replace(by_width(sum(SIZES[name] for name in order)), names=tuple(names))
+    return SampleSource(reader=ArrayTable(*(arrays[name] for name in order)), columns=columns)
 
 
 def _shaped(name: str, value: ArrayLike) -> tuple[NDArray[Any], list[str]]:
@@ -433,11 +400,11 @@ def _shaped(name: str, value: ArrayLike) -> tuple[NDArray[Any], list[str]]:
         return array, [f"{name}: expected real numbers, got {array.dtype}"]
     if np.ma.is_masked(array):
         return array, [f"{name}: masked entries; leave their samples out"]
-    shapes = _SHAPES[name]
-    if array.shape in shapes:
-        return array.reshape(1, -1), []
-    if array.shape[1:] in shapes:
-        return array.reshape(len(array), int(np.prod(array.shape[1:]))), []
+    shapes: list[tuple[int, ...]] = [(3, 3)] if name == "matrix" else []
+    shapes += [(SIZES[name],)]
+    for rows in (array[None], array):
+        if rows.shape[1:] in shapes:
+            return rows.reshape(len(rows), SIZES[name]), []
     expected = " or ".join(str(("n", *shape)).replace("'", "") for shape in shapes)
     return array, [f"{name}: expected the shape {expected}, got {array.shape}"]
 
