@@ -82,8 +82,13 @@ def _findings(record: Path) -> Iterator[tuple[Path, str, str]]:
         path = record.with_name(name)
         problem, note = difference(path, text), ""
         if name == f"{record.stem}.{CERTIFICATE}" and path.is_file():
-            refused, note = _proved_in(record)
-            problem = refused or problem
+            try:
+                proved, reasons = verify(load(record))
+            except BROKEN as error:
+                problem = f"{record.name} is refused: {error}"
+            else:
+                note = f"\n  proved: {', '.join(proved) or 'nothing'}"
+                note += f"\n  not proved: {', '.join(reasons) or 'nothing'}"
         yield path, problem, note
     path = record.with_suffix(f".{CERTIFICATE}")
     if path.name not in fresh.files and path.exists():
@@ -101,16 +106,6 @@ def _damage(record: Path) -> str:
     except (ValueError, RecursionError):
         return "cannot be read: not valid JSON; derive it again"
     return "not the record of a derivation"
-
-
-def _proved_in(record: Path) -> tuple[str, str]:
-    """Why the independent checker refuses a record, or what it proves and what it does not."""
-    try:
-        proved, reasons = verify(load(record))
-    except BROKEN as error:
-        return f"{record.name} is refused: {error}", ""
-    note = f"\n  proved: {', '.join(proved) or 'nothing'}"
-    return "", f"{note}\n  not proved: {', '.join(reasons) or 'nothing'}"
 
 
 def difference(path: Path, expected: str) -> str:

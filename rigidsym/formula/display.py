@@ -100,18 +100,15 @@ def _displayed(equation: Equation, letters: Letters, width: float, pen: SheetPen
     else:
         inside = setter.display(equation, width - BOX)
         shown = inside._replace(text=pen.boxed(inside.text), width=inside.width + BOX)
-    return shown._replace(is_broken=_is_broken(shown, equation, width))
-
-
-def _is_broken(shown: Display, equation: Equation, width: float) -> bool:
+    is_broken = shown.width > width
     if equation.matrix is None and equation.scalar is None:
-        return False
-    if shown.lines == 1 or shown.width > width:
-        return shown.width > width
-    lines = min(len(equation.sides), 2)
-    if equation.matrix is not None:
-        lines = len(listed_entries(equation.names, equation.matrix))
-    return shown.lines > lines
+        is_broken = False
+    elif shown.lines > 1 and not is_broken:
+        usual = min(len(equation.sides), 2)
+        if equation.matrix is not None:
+            usual = len(listed_entries(equation.names, equation.matrix))
+        is_broken = shown.lines > usual
+    return shown._replace(is_broken=is_broken)
 
 
 @lru_cache(maxsize=512)

@@ -103,7 +103,15 @@ class LatexPen(SheetPen):
         lines = [" & ".join(high[e.height >= Height.TALL] + e.text for e in row) for row in rows]
         text = lines[0]
         for (above, below), line in zip(pairwise(rows), lines[1:], strict=True):
-            text += self.row_end.format(_distance(above, below)) + line
+            upper, lower = (max(entry.height for entry in cells) for cells in (above, below))
+            # points: dots want some air, fractions more, and roots in them most
+            if max(upper, lower) == Height.RATE:
+                distance = 5
+            elif upper:
+                distance = 13 if Height.ROOTED in (upper, lower) else 10
+            else:
+                distance = 7 if lower else 2
+            text += self.row_end.format(distance) + line
         return _environment("pmatrix", text)
 
     def spelt_big(self, sign: str, below: str, above: str) -> str:
@@ -142,16 +150,6 @@ class MarkdownPen(LatexPen):
 
 def _braced(script: str) -> str:
     return script if len(script) == 1 else f"{{{script}}}"
-
-
-def _distance(above: Sequence[Piece], below: Sequence[Piece]) -> int:
-    """Points between two rows: dots want some air, fractions more, and roots in them most."""
-    upper, lower = (max(entry.height for entry in line) for line in (above, below))
-    if max(upper, lower) == Height.RATE:
-        return 5
-    if upper:
-        return 13 if Height.ROOTED in (upper, lower) else 10
-    return 7 if lower else 2
 
 
 def _environment(name: str, inside: str) -> str:

@@ -160,21 +160,16 @@ def _factor_key(factor: sp.Expr, letters: Letters) -> Key:
         return (Rank.NUMBER, base.sort_key())
     if not exponent.is_Integer:
         return (Rank.ROOT, base.sort_key())
-    return (*_base_key(base, letters), exponent)
-
-
-def _base_key(base: sp.Expr, letters: Letters) -> Key:
     if base.is_NumberSymbol:
-        return (Rank.UNIVERSAL, base.sort_key())
-    if base.func in FUNCTIONS:
-        return (Rank.FUNCTION, _angle_key(base.args[0], letters), _FUNCTION_ORDER[base.func])
-    if is_application(base):
-        return (Rank.FUNCTION, _angle_key(base.args[0], letters), len(FUNCTIONS))
+        return (Rank.UNIVERSAL, base.sort_key(), exponent)
+    if base.func in FUNCTIONS or is_application(base):
+        function = _FUNCTION_ORDER.get(base.func, len(FUNCTIONS))
+        return (Rank.FUNCTION, _angle_key(base.args[0], letters), function, exponent)
     place = letters.places.get(base)
     if place is None:
-        return (Rank.CONSTANT, not _MASS.fullmatch(str(base)), base.sort_key())
+        return (Rank.CONSTANT, not _MASS.fullmatch(str(base)), base.sort_key(), exponent)
     order, index = place
-    return (Rank.RATE if order else Rank.COORDINATE, -order, index)
+    return (Rank.RATE if order else Rank.COORDINATE, -order, index, exponent)
 
 
 def _angle_key(angle: sp.Expr, letters: Letters) -> Key:

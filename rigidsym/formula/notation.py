@@ -80,7 +80,11 @@ def _applied(node: tree.Formula, notation: Notation) -> tree.Formula:
         case tree.Power(tree.Symbol(dots=dots), exponent) if dots and notation.rates == "fraction":
             return tree.Power(tree.Bracket(_applied(node.base, notation)), exponent)
         case tree.Fraction(above, tree.Row((tree.Differential("∂"), by))):
-            below = tree.Row((tree.Differential("∂"), _on_a_line(_applied(by, notation))))
+            by = _applied(by, notation)
+            if isinstance(by, tree.Rate):  # (dq/dt): a fraction within one would be hard to read
+                d = tree.Differential()
+                by = tree.Bracket(tree.Row((d, by.of, tree.Sign("/"), d, tree.Symbol("t"))))
+            below = tree.Row((tree.Differential("∂"), by))
             return tree.Fraction(_applied(above, notation), below)
     changed = {field.name: _within(getattr(node, field.name), notation) for field in fields(node)}
     return replace(node, **changed)
@@ -109,17 +113,6 @@ def _symbol(symbol: tree.Symbol, notation: Notation) -> tree.Formula:
     if notation.rates == "fraction" and symbol.dots:
         return tree.Rate(replace(symbol, dots=0), symbol.dots)
     return symbol
-
-
-def _on_a_line(below: tree.Formula) -> tree.Formula:
-    """A rate below ∂, as (dq/dt): a fraction within a fraction would be hard to read."""
-    if not isinstance(below, tree.Rate):
-        return below
-    return tree.Bracket(
-        tree.Row(
-            (tree.Differential(), below.of, tree.Sign("/"), tree.Differential(), tree.Symbol("t"))
-        )
-    )
 
 
 DEFAULT = Notation()  # in which formulas are composed

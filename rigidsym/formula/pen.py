@@ -135,7 +135,14 @@ class Pen:
                 is_alone = all(isinstance(p, _NO_FACTORS) and p != _TIMES for p in beside)
                 pieces.append(self.node(part) if is_alone else self.factor(part))
             before = part
-        return self.glued(pieces, _binding(node.parts))
+        signs = {part.character for part in node.parts if isinstance(part, tree.Sign)}
+        if len(node.parts) == 2 and isinstance(node.parts[0], tree.Differential):
+            binding = Binding.CALL
+        elif signs - {"/"}:
+            binding = Binding.SUM
+        else:
+            binding = Binding.QUOTIENT if signs else Binding.PRODUCT
+        return self.glued(pieces, binding)
 
     def indices(self, index: tree.Formula) -> Piece:
         """An index, whose parts stand close together, and whose fractions on one line."""
@@ -195,15 +202,6 @@ def _on_a_line(index: tree.Formula) -> tree.Formula:
         case tree.Row(parts):
             return tree.row(*map(_on_a_line, parts))
     return index
-
-
-def _binding(parts: Sequence[tree.Formula]) -> Binding:
-    if len(parts) == 2 and isinstance(parts[0], tree.Differential):
-        return Binding.CALL
-    signs = {part.character for part in parts if isinstance(part, tree.Sign)}
-    if signs - {"/"}:
-        return Binding.SUM
-    return Binding.QUOTIENT if signs else Binding.PRODUCT
 
 
 def break_lines(piece: Piece, width: float, indent: float, blank: float = 0.0) -> list[Segment]:

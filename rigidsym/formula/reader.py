@@ -219,7 +219,12 @@ class _TexReader:
                 raise self.error()
             return replace(inside, dots=inside.dots + _DOTS[token])
         if token in (r"\frac", r"\tfrac"):
-            return _quotient(self._argument(), self._argument())
+            above, below = self._argument(), self._argument()
+            by_time = tree.row(tree.Differential(), tree.Symbol("t"))
+            match above:
+                case tree.Row((tree.Differential("d"), *differentiated)) if below == by_time:
+                    return tree.Rate(tree.row(*differentiated))
+            return tree.Fraction(above, below)
         if token == r"\sqrt":
             return tree.Radical(self._argument())
         letter = greek_letter(token[1:])
@@ -262,15 +267,6 @@ def _faced(inside: tree.Formula, face: tree.Face) -> tree.Formula:
         case tree.Symbol():
             return replace(inside, face=face)
     return inside
-
-
-def _quotient(above: tree.Formula, below: tree.Formula) -> tree.Formula:
-    """A fraction, or the derivative with respect to time."""
-    by_time = tree.row(tree.Differential(), tree.Symbol("t"))
-    match above:
-        case tree.Row((tree.Differential("d"), *differentiated)) if below == by_time:
-            return tree.Rate(tree.row(*differentiated))
-    return tree.Fraction(above, below)
 
 
 _VARIANTS = {"varphi": "φ", "vartheta": "ϑ", "varepsilon": "ε", "varrho": "ϱ", "varsigma": "ς"}

@@ -164,7 +164,13 @@ class _ScalarWalk:
         if node.is_Pow:
             return self._power(node)
         if node.func in FUNCTIONS:
-            return self._call(node)
+            angle = node.args[0]
+            number, rest = angle.as_coeff_Mul()
+            argument = self.expression(angle)
+            # a number and a name need no brackets: sin 2θ
+            if not (number.is_Integer and number.is_positive and _is_name(rest)):
+                argument = _at_least(Bound.NUMBER, argument)
+            return tree.FunctionCall(FUNCTIONS[node.func], argument)
         if is_application(node):
             arguments = [self.expression(argument) for argument in node.args]
             return tree.FunctionCall(
@@ -192,7 +198,9 @@ class _ScalarWalk:
         below = [sp.Pow(f.base, -f.exp) for f in factors if _is_reciprocal(f)]
         above = [factor for factor in factors if not _is_reciprocal(factor)]
         if below or (len(above) == 1 and self._goes_above(above[0])):
-            return self._quotient(_scaled(coefficient.p, above), _scaled(coefficient.q, below))
+            numerator = self._many(_scaled(coefficient.p, above))
+            denominator = _scaled(coefficient.q, below)
+            return tree.Fraction(numerator, self._many(denominator)) if denominator else numerator
         roots = [factor for factor in above if _is_root(factor)]
         others = [factor for factor in above if not _is_root(factor)]
         return self._many(_scaled(sp.Mul(coefficient, *roots), others))  # √2/2 is one number
@@ -204,10 +212,6 @@ class _ScalarWalk:
             self.letters.places.get(factor, NO_RATE)[0]
         )
         return (is_name and not is_dotted) or _is_root(factor)
-
-    def _quotient(self, above: Sequence[sp.Expr], below: Sequence[sp.Expr]) -> tree.Formula:
-        numerator = self._many(above)
-        return tree.Fraction(numerator, self._many(below)) if below else numerator
 
     def _many(self, factors: Sequence[sp.Expr]) -> tree.Formula:
         """The product of factors in order; a single factor is not bracketed."""
@@ -231,15 +235,11 @@ class _ScalarWalk:
             assert isinstance(call, tree.FunctionCall)
             return replace(call, exponent=int(exponent))
         whole = _at_least(Bound.NAME, self.expression(base))
-        raised = tree.Numeral(str(exponent.p)) if exponent.is_Integer else _on_a_line(exponent)
-        return tree.Power(whole, raised)
-
-    def _call(self, node: sp.Function) -> tree.FunctionCall:
-        angle = node.args[0]
-        argument = self.expression(angle)
-        if not _is_multiple(angle):
-            argument = _at_least(Bound.NUMBER, argument)
-        return tree.FunctionCall(FUNCTIONS[node.func], argument)
+        if exponent.is_Integer:
+            return tree.Power(whole, tree.Numeral(str(exponent.p)))
+        above, below = (tree.Numeral(str(n)) for n in (abs(exponent.p), exponent.q))
+        sign = (tree.MINUS,) if exponent.is_negative else ()
+        return tree.Power(whole, tree.Row((*sign, above, tree.Sign("/"), below)))
 
 
 def _rational(number: sp.Rational) -> tree.Formula:
@@ -250,23 +250,13 @@ def _rational(number: sp.Rational) -> tree.Formula:
     return tree.Fraction(tree.Numeral(str(number.p)), tree.Numeral(str(number.q)))
 
 
-def _on_a_line(exponent: sp.Rational) -> tree.Formula:
-    sign = (tree.MINUS,) if exponent.is_negative else ()
-    return tree.Row(
-        (*sign, tree.Numeral(str(abs(exponent.p))), tree.Sign("/"), tree.Numeral(str(exponent.q)))
-    )
-
-
-def _bound(formula: tree.Formula) -> Bound:
-    if isinstance(formula, tree.Row):
-        signed = any(isinstance(part, tree.Sign) for part in formula.parts)
-        return Bound.SUM if signed else Bound.PRODUCT
-    return _BOUND.get(type(formula), Bound.NAME)
-
-
 def _at_least(bound: Bound, formula: tree.Formula) -> tree.Formula:
     """The formula, in brackets where it is held together less tightly."""
-    return formula if _bound(formula) >= bound else tree.Bracket(formula)
+    own = _BOUND.get(type(formula), Bound.NAME)
+    if isinstance(formula, tree.Row):
+        is_sum = any(isinstance(part, tree.Sign) for part in formula.parts)
+        own = Bound.SUM if is_sum else Bound.PRODUCT
+    return formula if own >= bound else tree.Bracket(formula)
 
 
 def _scaled(number: sp.Expr, factors: Sequence[sp.Expr]) -> list[sp.Expr]:
@@ -285,12 +275,6 @@ def _is_name(node: sp.Expr) -> bool:
 def _is_root(node: sp.Expr) -> bool:
     """Whether a node is the root of a number, which goes above the line: √2/2."""
     return bool(node.is_Pow and node.base.is_Number and node.exp == sp.Rational(1, 2))
-
-
-def _is_multiple(angle: sp.Expr) -> bool:
-    """Whether an angle is written as a number and a name: 2θ."""
-    number, rest = angle.as_coeff_Mul()
-    return bool(number.is_Integer and number.is_positive and _is_name(rest))
 
 
 Names = Mapping[sp.Expr, sp.Symbol]

@@ -6,8 +6,9 @@ the terms; the pens (LaTeX, Markdown, MathML, Unicode) choose spaces and the siz
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import product
 from typing import Any, Literal
 
 Face = Literal["italic", "bold", "arrow", "upright", "sans"]
@@ -212,14 +213,8 @@ def indexed(symbol: Formula, shape: tuple[int, ...]) -> tuple[Formula, ...]:
     """The symbol with the index of each entry, in light face; (a₁, a₂, a₃) lists its own."""
     if isinstance(symbol, Bracket) and isinstance(symbol.inside, Row):
         return tuple(part for part in symbol.inside.parts if not isinstance(part, Sign))
-    return tuple(_indexed(symbol, index) for index in _indices(shape))
-
-
-def _indices(shape: tuple[int, ...]) -> Iterator[str]:
-    if len(shape) == 1:
-        return (str(row + 1) for row in range(shape[0]))
-    rows, columns = shape
-    return (f"{row + 1}{column + 1}" for row in range(rows) for column in range(columns))
+    places = product(*(range(1, count + 1) for count in shape))
+    return tuple(_indexed(symbol, "".join(map(str, place))) for place in places)
 
 
 def _indexed(symbol: Formula, index: str) -> Formula:

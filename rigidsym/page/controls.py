@@ -79,7 +79,12 @@ def controls_of(
             elif argument.name == second == "omega_body":
                 limits, name = _Range(_RATES[k], 3.0, argument.units[k]), OMEGA_COMPONENTS[k]
             elif argument.name == second:
-                limits = _rate(argument, k, model)
+                unit = argument.units[k]
+                if period_of(model.coordinates[k], model):
+                    limits = _Range(_ANGLE_RATES[k % len(_ANGLE_RATES)], 180.0, "°/s", pi / 180)
+                else:
+                    reach = 3.0 if unit == "rad/s" else 2.0
+                    limits = _Range(_RATES[k % len(_RATES)], reach, unit)
             elif argument.name == "parameters" and symbol in constants:
                 value = constants[symbol]
                 limits = _Range(value, max(2.0, 2 * value), argument.units[k])
@@ -124,13 +129,6 @@ def _coordinate(
         size = 1.0 if unit == "rad" else 0.5
         return _Range(size * _VECTOR[model.vector.index(q)], reach, unit)
     return _Range(_SCALAR if model.vector else _NUMBERS[k % len(_NUMBERS)], reach, unit)
-
-
-def _rate(argument: Argument, k: int, model: RotationModel) -> _Range:
-    if period_of(model.coordinates[k], model):
-        return _Range(_ANGLE_RATES[k % len(_ANGLE_RATES)], 180.0, "°/s", pi / 180)
-    unit = argument.units[k]
-    return _Range(_RATES[k % len(_RATES)], 3.0 if unit == "rad/s" else 2.0, unit)
 
 
 def constants_of(body: RigidBody | None) -> dict[sp.Symbol, float]:

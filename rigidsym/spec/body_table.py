@@ -68,7 +68,12 @@ def read_body(
     kind = next((kind for kind in _KINDS if kind in data), None)
     if kind is None:
         return None
-    declared = _declared(parameters, place.at("parameters"))
+    declared = {}
+    for key, entry in parameters.items():
+        about = {name: value for name, value in (entry or {}).items() if value is not None}
+        with place.at("parameters").at(key).noting():
+            symbol = check_name(key)
+            declared[symbol] = Parameter(symbol=sp.Symbol(symbol), **about)
     known = _Parameters({*_words(data), *declared}, declared)
     table = _Table(data, own, known)
     options: dict[str, Any] = {"name": name, "allow": allow}
@@ -84,17 +89,6 @@ def read_body(
             **options,
         )
     return None
-
-
-def _declared(parameters: Mapping[str, Data], place: Place) -> dict[str, Parameter]:
-    """The parameters of the table [parameters]."""
-    declared = {}
-    for key, entry in parameters.items():
-        about = {key: value for key, value in (entry or {}).items() if value is not None}
-        with place.at(key).noting():
-            name = check_name(key)
-            declared[name] = Parameter(symbol=sp.Symbol(name), **about)
-    return declared
 
 
 @dataclass

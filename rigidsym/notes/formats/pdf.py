@@ -75,7 +75,14 @@ def typeset(tex: str, *, timeout: float = TIMEOUT) -> Typeset:
             output = _run(folder, timeout, "-g")
         pdf = source.with_suffix(".pdf")
         if not pdf.is_file():
-            _require_packages(log)
+            if package := _NOT_FOUND.search(log):
+                name = package[1]
+                usual = ("texlive-latex-recommended", Path(name).stem)
+                debian, tex_live = _PACKAGES.get(name, usual)
+                raise MissingTool(
+                    f"a PDF needs {name}, which TeX does not find; on Debian: apt install "
+                    f"{debian}, with TeX Live: tlmgr install {tex_live}"
+                )
             last_lines = "\n".join(log.splitlines()[-_LOG_LINES:])
             raise ToolFailed(f"TeX made no PDF; the end of its log:\n{last_lines}")
         return Typeset(pdf=pdf.read_bytes(), warnings=tuple(_WARNING.findall(log)))
@@ -84,17 +91,6 @@ def typeset(tex: str, *, timeout: float = TIMEOUT) -> Typeset:
 def missing_programs() -> tuple[str, ...]:
     """The programs that typesetting needs and that are not on the search path."""
     return tuple(program for program in PROGRAMS if shutil.which(program) is None)
-
-
-def _require_packages(log: str) -> None:
-    missing = _NOT_FOUND.search(log)
-    if missing:
-        name = missing[1]
-        debian, tex_live = _PACKAGES.get(name, ("texlive-latex-recommended", Path(name).stem))
-        raise MissingTool(
-            f"a PDF needs {name}, which TeX does not find; on Debian: apt install {debian}, with "
-            f"TeX Live: tlmgr install {tex_live}"
-        )
 
 
 def _run(folder: str, timeout: float, *options: str) -> str:
