@@ -29,6 +29,7 @@ def offer(name: str, known: Iterable[str]) -> str:
 
     known = list(known)
     near = get_close_matches(name, known, n=2) if len(name) <= _LONGEST else []
+    near = near or [other for other in known if name and other.startswith(name)][:2]
     if near:
         return f"did you mean {' or '.join(near)}?"
     if len(known) <= _FEW:

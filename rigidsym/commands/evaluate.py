@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from rigidsym.commands.command import command as make, flag, names, numbers
+from rigidsym.commands.command import command as make, flag, message, names, numbers
 from rigidsym.commands.options import ROTATION, of_rotation
 from rigidsym.data.columns import counted
 from rigidsym.errors import ModelError
@@ -91,3 +91,5 @@ def command(rotation: str, file: Path, **options: Any) -> None:
         )
     shown = f"{result.path}: {counted(result.rows, 'row')}; {', '.join(result.columns)}"
     click.echo(shown, err=str(out) == "-")
+    if result.inputs:
+        message(f"columns without a unit are read as {', '.join(result.inputs)}")

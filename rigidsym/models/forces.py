@@ -183,11 +183,14 @@ class Forces:
             raise ModelError(f"the potential {shown} depends on rates; expected V(q, t)")
         if self.potential.free_symbols and not self.potential.has(*model.coordinates):
             names = [as_typed(q) for q in model.coordinates]
-            same = sorted({s.name for s in self.potential.free_symbols} & {*names})
+            letters = sorted(s.name for s in self.potential.free_symbols)
+            same = [n for n in letters if n in names]
+            near = [c for n in letters for c in get_close_matches(n, names, n=1) if not same]
             raise ModelError(
                 f"the potential {as_typed(self.potential)} depends on none of the coordinates "
                 + ", ".join(names)
                 + "".join(f"; {n} is a constant in it, expected a text or {n}(t)" for n in same[:1])
+                + "".join(f"; did you mean {n}?" for n in near[:1])
             )
         moving = (e for part in self.parts for e in (*part.velocity, *part.inertia))
         for expression in moving:

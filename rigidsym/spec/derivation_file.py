@@ -117,7 +117,8 @@ def _toml(text: str, source: str) -> dict[str, Any]:
         if length > _LONGEST_LINE
     ]
     if len(text) > _MOST_CHARACTERS:
-        faults = [Fault(f"a file of {len(text)} characters; expected at most {_MOST_CHARACTERS}")]
+        size = f"a file of {len(text)} characters, which is no derivation file"
+        faults = [Fault(f"{size}; expected at most {_MOST_CHARACTERS}")]
     if faults:
         raise SpecError(source, faults)
     try:

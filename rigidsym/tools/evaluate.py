@@ -40,6 +40,7 @@ class Evaluated:
     path: Path
     rows: int
     columns: tuple[str, ...]
+    inputs: tuple[str, ...]  # what was read from columns that state no unit: phi [rad]
 
 
 def evaluate(
@@ -126,9 +127,15 @@ def evaluate(
             if progress is not None:
                 progress(batch.share)
 
+    plain = [not (header and header.unit(column)) for column in used]
+    read = [
+        _title(*component, degrees=degrees)
+        for component, is_plain in zip(components, plain, strict=True)
+        if is_plain
+    ]
     titles = (*kept.values(), *(_title(*result, degrees=degrees) for result in results))
     count = write_table(where, titles, table.dtype, computed(), stream)
-    return Evaluated(path=where, rows=count, columns=titles)
+    return Evaluated(path=where, rows=count, columns=titles, inputs=tuple(read))
 
 
 def _scaled(table: Numbers, factors: Sequence[float]) -> Numbers:
@@ -280,5 +287,5 @@ def _kept(header: ColumnNames | None, name: str) -> tuple[int, str]:
     if header is None:
         raise DataError("--keep needs names of columns; --columns gives them")
     if (column := header.find([name])) is None:
-        raise DataError(f"no column {name} among {header.listed}")
+        raise DataError(f"no column {name}; {offer(name, header.names)}")
     return column, header.names[column]

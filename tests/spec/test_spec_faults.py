@@ -54,7 +54,10 @@ def test_every_fault_is_named_with_its_path(answered):
         ),
         ("a = " + "[" * 990, "lists or tables nested too deeply to be read"),
         ("\n#" + "a" * 1000, "line 2 has 1001 characters; expected at most 1000"),
-        ("\n" * 50_001, "a file of 50001 characters; expected at most 50000"),
+        (
+            "\n" * 50_001,
+            "a file of 50001 characters, which is no derivation file; expected at most 50000",
+        ),
     ],
     ids=["characters", "nested", "line", "file"],
 )

@@ -169,7 +169,7 @@ def test_an_ending_that_nobody_writes_is_exit_code_2(tmp_path, name, found):
         (VELOCITY, {"given": {"phi": 1.0}}, "expected numbers for all of phi, theta, psi, or"),
         (VELOCITY, {"given": {"alpha": 1.0}}, "alpha is not an input"),
         (VELOCITY, {"keep": ("time",)}, "--keep needs names of columns; --columns gives"),
-        (VELOCITY, {"keep": ("time",), "columns": NAMES}, "no column time among phi, theta"),
+        (VELOCITY, {"keep": ("time",), "columns": NAMES}, "no column time; known: phi, theta"),
     ],
 )
 def test_a_request_that_no_file_satisfies_is_refused(

@@ -90,7 +90,7 @@ TARGETS: dict[str, Target] = {  # the default first
 def check_target(target: str) -> None:
     """Raises KernelError, naming the known targets, if this is none of them."""
     if target not in TARGETS:
-        raise KernelError(f"no target {target!r}; there is {', '.join(TARGETS)}")
+        raise KernelError(f"no target {target!r}; {offer(target, TARGETS)}")
 
 
 def check_options(target: str, options: Mapping[str, str | bool]) -> None:
