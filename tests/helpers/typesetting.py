@@ -26,16 +26,6 @@ def bound_together(notes: list[str]) -> str:
     return preamble + BEGIN + "\n\\newpage\\setcounter{section}{0}\n".join(bodies) + END
 
 
-UNPACKED = r"\pdfcompresslevel=0 \pdfobjcompresslevel=0 "
-
-
-def pages_of(latex: str) -> int:
-    """The number of pages of a document that compiles without a warning."""
-    made = typeset(latex.replace("{article}", "{article}" + UNPACKED))
-    assert made.warnings == ()
-    return len(re.findall(rb"/Type\s*/Page\b(?!s)", made.pdf))
-
-
 _COUNTED = re.compile(
     r"\\setcounter\{equation\}\{(\d+)\}|\\(?:begin\{resultof\}|numbered)\{[^:}]*:(\w+)\}"
 )

@@ -1,19 +1,25 @@
-"""What the notes say of rotations, quaternions and vectors is true of the models."""
+"""What the notes say of rotations and bodies is true of the models."""
 
 from __future__ import annotations
 
-from itertools import pairwise
+from functools import cache
 
 import numpy as np
 import pytest
 import sympy as sp
 
 import rigidsym as rs
+from rigidsym.mechanics.quantities.mass import OF_BODY_ALONE
+from rigidsym.mechanics.quantities.table import POINT
+from rigidsym.models.body import given_inertia
 from rigidsym.models.rotation import TIME
-from rigidsym.notes.facts.rotation import axes_of_turns
-from rigidsym.notes.letters import letters_of
-from rigidsym.pipeline import motion_of, read, read_file
-from rigidsym.system import resources
+from rigidsym.motion import Motion
+from rigidsym.notes.document import Equation, Figure
+from rigidsym.notes.figure.body_drawing import body_drawing
+from rigidsym.notes.figure.body_mesh import HOLE
+from rigidsym.notes.formats.terminal import show
+from rigidsym.notes.named_body import in_names
+from rigidsym.pipeline import motion_of, read_spec
 
 COEFFICIENTS = {  # of v × x′ and v × (v × x′), for the length n of the vector
     "rotation_vector": lambda n: (np.sin(n) / n, (1 - np.cos(n)) / n**2),
@@ -80,67 +86,117 @@ def test_a_turn_whose_axis_moves_has_the_angular_velocity_and_the_rates_of_the_n
     np.testing.assert_allclose(found.ravel(), [*expected, e @ omega], atol=1e-14)
 
 
-@pytest.mark.parametrize("name", ["quaternion", "unit_quaternion", "cayley_klein", "axis_angle"])
-def test_the_note_of_each_says_how_it_turns_a_vector(name):
-    document = rs.derive(name, "rotation_matrix").note().document
-    texts = [equation.sides[0].text for equation in document.displays if equation.sides]
-    assert "x" in texts
-    assert ("q̇" in texts) is (name != "axis_angle")
+DRILLED = """
+[rotation]
+sequence = "ZXZ"
+[output]
+{quantities}
+[[body.parts]]
+shape = "box"
+sides = ["2*a", "b", "b/2"]
+density = "rho"
+[[body.parts]]
+shape = "cylinder"
+radius = "b/4"
+height = "b"
+density = "rho"
+at = [{at}, 0]
+hole = true
+"""
 
 
-def test_extrinsic_rotations_are_the_intrinsic_ones_in_reverse_order():
-    (fixed,) = rs.EulerAngles("xyz").convention
-    (moving,) = rs.EulerAngles("ZYX", ("psi", "theta", "phi")).convention
-    _, _, equivalent = fixed.partition("Equivalently, i")
-    assert moving == f"I{equivalent}"
+@cache
+def drilled(at: str = "0, 0", quantities: str = "") -> Motion:
+    text = DRILLED.format(at=at, quantities=quantities)
+    return motion_of(read_spec(text, source="drilled.toml", name="drilled"))
 
 
-def test_a_chain_adds_its_axes_as_the_factors_before_carry_them_along():
-    motion = rs.derive("z(a) x(b) z(c) x(d) y(e) z(f)")
-    axes = axes_of_turns(motion.model, letters_of(motion.arguments))
-    assert [axis.text for axis in axes] == ["n₁", *(f"P{a} n{b}" for a, b in pairwise("₁₂₃₄₅₆"))]
+@cache
+def cone(*only: str) -> Motion:
+    return rs.derive("ZXZ", only, body=rs.solid("cone"))
 
 
-SHIPPED = resources.names("derivations", ".toml")
-EXCHANGED = r"Aerospace texts write $\psi$ for the yaw and $\phi$ for the roll."
-READ_AND_MENDED = {  # by file or rotation: what its note says, and what it must not say
-    "z(a) x(b) z(c) x(d) y(e) z(f)": (
-        (r"first $a$ about $z$", r"Each factor $\mathbf{T} _k$ is the rotation by $\theta _k$"),
-        ("Rotation k", "where they are not determined", r"\dot{q}_1"),
-    ),
-    "lecture": (
-        (
-            r"I' _{11}\thinspace {\Omega' _1}^2",
-            r"L' _{R,1} = I' _{11}\thinspace \Omega' _1",
-            "only through its second moments",
-            "entries (3,2), (1,3) and (2,1)",
-            "# Kinetic energy, inertia tensor and angular momentum of a rigid body",
-        ),
-        ("might have mattered", "below the diagonal", "The motion of a rigid body"),
-    ),
-    "heavy_symmetric_top": (
-        (
-            r"If $A \cos\theta$ is 0, there is one rate only:",
-            "every axis perpendicular to $z$",
-            "stays between the circles",
-        ),
-        ("every axis across", "in the time shown"),
-    ),
-    "kovalevskaya_top": (
-        ("in the time shown", "E. Husson, Recherche des intégrales", "S. L. Ziglin, Branching"),
-        ("stays between the circles",),
-    ),
-    "free_body": (("where $a$, $b$ and $c$ are positive, or two of them are negative,",), ()),
-    "ZYX": ((EXCHANGED,), ()),
-    "aerospace": ((), ("Aerospace texts write",)),
-    "XYZ": ((), ("Aerospace texts write",)),
-}
+def equation(motion: Motion, label: str) -> Equation:
+    return next(e for e in motion.note().document.equations if e.label == label)
 
 
-@pytest.mark.parametrize("name", READ_AND_MENDED)
-def test_sentences_that_readers_found_wrong_are_right(name):
-    (spec,) = read_file(name).singles() if name in SHIPPED else (read(name),)
-    said = motion_of(spec).note(style=spec.style).markdown()
-    right, wrong = READ_AND_MENDED[name]
-    assert [words for words in right if words not in said] == []
-    assert [words for words in wrong if words in said] == []
+def test_what_is_shown_in_names_has_the_value_that_was_derived():
+    derived = drilled()
+    shown, moments = in_names(derived)
+    offset = zip(sp.symbols("d_x:z"), sp.Matrix(POINT) - derived.body.centre, strict=True)
+    values = {sp.Symbol("M"): derived.body.mass, **dict(moments), **dict(offset)}
+    rng = np.random.default_rng(1)
+    symbols = {s for argument in derived.arguments for s in argument.symbols}
+    numbers = {s: sp.Float(x) for s, x in zip(symbols, rng.uniform(0.3, 0.7, 99), strict=False)}
+    order = sorted(symbols, key=lambda s: -sp.count_ops(s))  # rates before coordinates
+    replaced = 0
+    for before, after in zip(derived.steps, shown.steps, strict=True):
+        replaced += before.expression != after.expression
+        rest = after.expression.xreplace(values) - before.expression
+        for symbol in order:
+            rest = rest.xreplace({symbol: numbers[symbol]})
+        assert max(map(abs, rest)) < 1e-12
+    assert replaced > 8
+
+
+def test_letters_for_entries_need_no_moments_in_closed_form():
+    """Equal products of inertia leave moments in closed form, which I₁₂ and I₁₃ do not."""
+    mass, length = sp.symbols("M D")
+    row = [2 * length, -length * mass, -length * mass]
+    inertia = sp.Matrix([row, [row[1], row[0], 0], [row[1], 0, row[0]]])
+    body = given_inertia(inertia, mass=mass, allow=True)
+    motion = rs.derive("ZXZ", only=("inertia_tensor", "inertia_ellipsoid"), body=body)
+    shown, moments = in_names(motion)
+    assert [step.quantity.name for step in shown.steps] == [s.quantity.name for s in motion.steps]
+    assert moments == ()
+
+
+def test_components_of_the_angular_velocity_keep_their_names():
+    """E_R = ½ I′₁₁ Ω′₁² + ..., and no k is another name of Ω′₁."""
+    quantities = ("angular_velocity_body", "inertia_tensor", "rotational_energy")
+    motion = rs.derive("ZXZ", quantities, body=rs.general_inertia())
+    energy = equation(motion, "rotational_energy")
+    names = motion.argument("omega_body").symbols
+    assert energy.scalar.free_symbols >= set(names)
+    omega = dict(zip(names, motion.angular_velocity_body, strict=True))
+    expected = motion.step("rotational_energy").expression[0]
+    assert sp.expand(energy.scalar.xreplace(omega) - expected) == 0
+
+
+def test_a_body_alone_has_a_note_and_a_text_without_a_rotation():
+    document = cone("body").note().document
+    labels = {equation.label for equation in document.equations}
+    assert "inertia_tensor" in labels
+    assert labels <= set(OF_BODY_ALONE)
+    assert [section.title for section in document.sections] == ["The body"]
+    assert any(isinstance(block, Figure) for block in document.sections[0].blocks)
+    assert "Intrinsic rotations" not in show(cone("body"))
+    assert "Intrinsic rotations" in show(cone())
+
+
+def test_the_body_is_drawn_from_the_back_with_its_holes_and_its_principal_axes():
+    drawing, is_principal = body_drawing(drilled())
+    assert is_principal
+    assert [label.symbol.text for label in drawing.labels] == ["x′", "y′", "z′"]
+    holes = [max(facet.color) <= max(HOLE) for facet in drawing.facets]
+    assert any(holes)
+    assert not all(holes)
+    for x, y in (np.array(facet.points).T for facet in drawing.facets):
+        assert np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)) > 0  # each is seen from outside
+    (row,) = (line for line in drilled().note().markdown().splitlines() if "(hole)" in line)
+    assert row.split("|")[2].startswith(" −")
+
+
+def test_an_axis_that_is_no_coordinate_axis_is_named_after_its_moment():
+    drawing, is_principal = body_drawing(drilled('"a/2", "b/8"', 'quantities = ["body"]'))
+    assert not is_principal
+    assert [label.symbol.text for label in drawing.labels] == ["I₁", "I₂", "I₃"]
+
+
+def test_an_angle_that_the_inertia_does_not_hold_is_chosen_for_the_drawing():
+    """A cylinder that is turned about its own axis"""
+    part = '{ shape = "cylinder", radius = 0.5, density = 2, turned = "y(beta) z(alpha)" }'
+    rod = '{ shape = "rod", length = 2, mass = 1.5, turned = "y(beta) z(theta)" }'
+    text = f'[rotation]\nsequence = "zxz"\n[body]\nparts = [{part}, {rod}]\n'
+    motion = motion_of(read_spec(text, source="turned.toml", name="turned"))
+    assert "drawn for" in motion.note().markdown()

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
-from itertools import combinations, pairwise
-from math import cos, hypot, pi, radians
+from functools import cache
+from itertools import combinations
+from math import cos, hypot, pi
 
 import numpy as np
 import pytest
@@ -12,7 +13,8 @@ import sympy as sp
 from hypothesis import given, strategies as st
 
 import rigidsym as rs
-from rigidsym.formula.reader import formula, text_of
+from rigidsym.errors import ModelError
+from rigidsym.formula.reader import decimal, text_of
 from rigidsym.formula.tree import Symbol
 from rigidsym.mechanics.quantities.table import arguments_of
 from rigidsym.models.library import rotation_from
@@ -20,21 +22,23 @@ from rigidsym.models.parametrisations import EulerAngles, axis_turn, chain
 from rigidsym.models.rotation import Citation, RotationModel, Turn, time_function
 from rigidsym.models.solids import shaped
 from rigidsym.notes.facts.rotation import RotationFacts
-from rigidsym.notes.figure.camera import STANDARD, camera, turned, unit
+from rigidsym.notes.figure import motion_picture
+from rigidsym.notes.figure.camera import STANDARD, turned, unit
+from rigidsym.notes.figure.chart import Range, circle, on_ellipsoid
 from rigidsym.notes.figure.drawing import (
     Box,
     Drawing,
-    Ellipse,
     Label,
     Stroke,
-    beyond,
     boxes,
-    labelled,
     segments_of,
 )
+from rigidsym.notes.figure.motion_picture import ExampleMotion
+from rigidsym.notes.figure.phase_portrait import phase_portrait
 from rigidsym.notes.figure.scene import scene_of
 from rigidsym.notes.formats.drawings import svg, tikz
 from rigidsym.notes.letters import letters_of
+from rigidsym.pipeline import motion_of, read
 
 LETTERS = "zxyzxy"  # one more turn than is drawn
 
@@ -77,9 +81,6 @@ def drawing(request: pytest.FixtureRequest) -> Drawing:
     return drawn(CHAINS.get(request.param) or EulerAngles(request.param)).drawing
 
 
-# --- what is in the picture
-
-
 def test_labels_touch_nothing_and_stand_near_what_they_name(drawing):
     segments = segments_of(drawing.strokes)
     for label, box in zip(drawing.labels, boxes(drawing.labels), strict=True):
@@ -100,41 +101,6 @@ def test_lines_are_dashed_at_the_back_and_do_not_run_together(drawing):
     tips = [s.points[-1] for s in drawing.strokes if s.has_arrow and s.kind != "turn"]
     for (a, b), (c, d) in combinations(tips, 2):
         assert hypot(a - c, b - d) > 0.1
-
-
-def test_many_turns_are_drawn_without_circles_and_with_their_axes_in_one_direction():
-    strokes = drawn(CHAINS["four oblique"]).drawing.strokes
-    assert not any(s.is_hidden for s in strokes)
-    assert all(s.points[0] == (0, 0) for s in strokes if s.kind == "node")
-    labels = [label.symbol for label in drawn(CHAINS["chain zxyz"]).drawing.labels]
-    assert {formula("N_1"), formula("N_2")} <= {*labels}
-
-
-@pytest.mark.parametrize(("sequence", "angles"), [("ZXZ", "φθψ"), ("zyx", "ψθφ")])
-def test_both_frames_the_nodes_and_three_arcs_are_shown(sequence, angles):
-    said = {kind: [] for kind in ("space", "body", "node", "turn")}
-    for label in drawn(EulerAngles(sequence)).drawing.labels:
-        said[label.kind].append(label.symbol.text)
-    assert said == {
-        "space": ["x", "y", "z"],
-        "body": ["x′", "y′", "z′"],
-        "node": ["N"],
-        "turn": [*angles],
-    }
-
-
-def test_the_words_below_say_what_each_turn_does():
-    zxz, zyx = drawn(EulerAngles("ZXZ")), drawn(EulerAngles("ZYX"))
-    assert text_of(zxz.description) == (
-        "The rotation by φ about z takes x to N. The rotation by θ about N takes z to z′. "
-        "The rotation by ψ about z′ takes N to x′."
-    )
-    # an axis that is drawn nowhere
-    assert "The rotation by θ about N takes the rotated x to x′." in text_of(zyx.description)
-    one = drawn(CHAINS["chain z"])
-    assert "z = z′" in [label.symbol.text for label in one.drawing.labels]
-    assert text_of(one.description) == "The rotation by a about z = z′ takes x to x′."
-    assert "the axis N of a rotation" in text_of(drawn(CHAINS["oblique"]).caption)
 
 
 @pytest.mark.parametrize(
@@ -178,9 +144,6 @@ def test_the_z_axis_of_an_aircraft_points_down_and_others_up():
         assert ("points down" in text_of(figure.caption)) is (sign < 0)
 
 
-# --- the pens
-
-
 def test_the_pens_draw_all_of_it_inside_the_box(drawing):
     in_tex = tikz(drawing)
     in_html = svg(drawing, title="T", description="D", name="f")
@@ -206,15 +169,6 @@ def test_words_in_a_picture_are_escaped():
     assert "&lt;t&gt;</title>" in written
 
 
-def test_the_axes_in_tikz_have_names_that_can_be_used():
-    text = tikz(drawn(EulerAngles("ZXZ")).drawing)
-    names = re.findall(r"\\coordinate \((.*?)\)", text)
-    assert names == ["O", "x", "y", "z", "x'", "y'", "z'", "N"]
-    assert r"\draw[space, ->] (O) -- (x);" in text
-
-
-# --- geometry
-
 coordinates = st.floats(-2, 2, allow_nan=False)
 points = st.tuples(coordinates, coordinates)
 
@@ -229,16 +183,6 @@ def test_a_turn_keeps_lengths_and_its_axis(vector, angle):
     assert turned(x, z, pi / 2) == pytest.approx(y)  # right-handed
 
 
-@pytest.mark.parametrize(("azimuth", "elevation"), [(0, 0), (75, -40)])
-def test_a_camera_keeps_the_third_axis_upright(azimuth, elevation):
-    for z_down in (False, True):
-        view = camera(azimuth, elevation, z_down=z_down)
-        across, up = view.project(np.array([0.0, 0.0, -1.0 if z_down else 1.0]))
-        assert across == pytest.approx(0)
-        assert up == pytest.approx(cos(radians(elevation)))
-        assert np.cross(view.right, view.up) == pytest.approx(view.toward)
-
-
 @given(points, points)
 def test_a_segment_crosses_a_box_if_one_of_its_points_is_inside(start, end):
     box = Box((0.1, -0.2), 0.7, 0.4)
@@ -249,14 +193,6 @@ def test_a_segment_crosses_a_box_if_one_of_its_points_is_inside(start, end):
     assert box.crossings(segment) >= inside
     if not box.grown(0.02).crossings(segment):
         assert not inside
-
-
-def test_a_label_that_has_no_free_place_takes_the_least_bad():
-    hatch = [Stroke(kind="guide", points=((x / 20, -3.0), (x / 20, 3.0))) for x in range(-60, 61)]
-    labels = labelled([("space", Symbol("x"), beyond([(0, 0), (1, 0)]))], hatch)
-    ((label, box),) = zip(labels, boxes(labels), strict=True)
-    assert 0 < box.crossings(segments_of(hatch)) <= 3  # it is about as wide as two gaps
-    assert hypot(*label.place) < 2
 
 
 @pytest.mark.parametrize("name", ["vector", "oblique", "chain zxyzx", "words"])
@@ -271,14 +207,118 @@ def test_the_angle_drawn_is_the_angle_of_the_turn(name):
         assert arc.side == pytest.approx(turned(arc.start, arc.axis, pi / 2))
 
 
-def test_an_ellipse_begins_and_ends_at_its_angles():
-    arc = Ellipse(centre=(1.0, 0.0), u=(2.0, 0.0), v=(0.0, 1.0), start=0.0, end=pi / 2)
-    assert np.array(arc.points)[[0, -1]] == pytest.approx(np.array([(3, 0), (1, 1)]))
-    assert all(hypot(a - c, b - d) < 0.3 for (a, b), (c, d) in pairwise(arc.points))
-
-
 def test_a_turn_that_is_none_and_a_distant_body_are_drawn():
     cone = shaped("cone", sp.symbols("a h"), mass=sp.Symbol("M"))
     body = rs.body_of(rs.Composite(parts=(rs.Part(what=cone, at=sp.ImmutableMatrix([99, 0, 0])),)))
     motion = rs.derive("z(k*v) x(pi/3-pi/3) [1,2,3](point)", "rotation_matrix", body=body)
     assert "<svg" in motion.note(with_kernels=False).html()
+
+
+A_PENDULUM = {
+    "model": "x(theta)",
+    "body": rs.principal_moments(*sp.symbols("A B C")),
+    "potential": "-m*g*l*cos(theta)",
+}
+NUMBERS = {"A": 1, "B": 1, "C": 1, "m": 1, "g": 10, "l": 1}
+FIRST = {"parameters": NUMBERS, "initial": {"theta": 0.5}, "time": 2}
+
+
+@cache
+def shipped(name: str) -> rs.Motion:
+    return motion_of(read(name))
+
+
+def picture_of(motion: rs.Motion):
+    return motion.note(with_kernels=False).document.figures[-1]
+
+
+def caption_of(motion: rs.Motion) -> str:
+    return "".join(s if isinstance(s, str) else s.text for s in picture_of(motion).caption)
+
+
+@pytest.mark.parametrize("name", ["heavy_symmetric_top", "free_body"])
+def test_the_motion_drawn_is_the_motion_simulated(name):
+    motion = shipped(name)
+    example = motion.forces.examples[0]
+    simulated = motion.simulate(example.initial, example.parameters, example.time, samples=401)
+    drawn = ExampleMotion(motion, motion.forces, example)
+    q = drawn.states[:, : simulated.q.shape[1]]
+    assert np.abs(q - simulated.q).max() < 3e-3 * np.ptp(simulated.q)
+    assert np.abs(drawn.omega - simulated.angular_velocity_body).max() < 0.05
+
+
+def test_each_curve_of_the_phase_portrait_has_one_energy():
+    """For constants of 1, V = cos θ + (p_φ − p_ψ cos θ)²/(2 sin² θ)"""
+    motion = shipped("heavy_symmetric_top")
+    portrait = phase_portrait(motion, letters_of(motion.arguments, model=motion.model))
+    p_phi, p_psi = map(float, portrait.momenta.values())
+    _, *curves = (s for s in portrait.drawing.strokes if s.kind != "space")  # after the mark
+    ticks = {label.symbol.text: label.place for label in portrait.drawing.labels}
+    assert len(curves) == 3
+    # from the numbers beside the axes
+    across, up = ticks["2"][0] - ticks["1"][0], (ticks["5"][1] - ticks["0"][1]) / 5
+    for curve in (np.array(stroke.points) for stroke in curves):
+        theta = 1 + (curve[:, 0] - ticks["1"][0]) / across
+        rate = (curve[:, 1] - ticks["0"][1]) / up
+        potential = np.cos(theta) + (p_phi - p_psi * np.cos(theta)) ** 2 / (2 * np.sin(theta) ** 2)
+        energy = rate**2 / 2 + potential
+        assert np.ptp(energy) < 0.005 * np.ptp(rate) ** 2
+
+
+def test_captions_tell_parameters_and_initial_values_in_common_and_apart():
+    two = rs.derive(**A_PENDULUM, examples=[FIRST, {"initial": {"theta": 3}}])
+    assert caption_of(two).endswith(
+        "in SI units and radians; all other initial values are 0. "
+        "From left to right: θ = 0.5 and θ = 3."
+    )
+    curves = [s for s in picture_of(two).drawing.strokes if s.kind == "body"]
+    assert len(curves) == 2  # without a trace, each motion is drawn over the time
+
+
+def test_what_is_behind_a_surface_is_dashed():
+    """From above, the farther half of a level circle is higher in the picture."""
+    level = on_ellipsoid([circle(STANDARD[2], 0.3)], [], np.ones(3), [])
+    farther, nearer = (
+        [y for s in level.strokes if s.kind == "body" and s.is_hidden == h for _, y in s.points]
+        for h in (True, False)
+    )
+    assert np.mean(farther) > np.mean(nearer)
+
+
+def test_numbers_and_ticks():
+    for value, text in ((-0.5, "−0.5"), (1e-5, "10⁻⁵"), (-2.5e7, "−2.5·10⁷"), (123456, "123456")):
+        assert decimal(value).text == text
+    ticks = Range.of([0, 2e-9]).ticks  # of a small range, they differ
+    assert list(ticks) == pytest.approx([0, 5e-10, 1e-9, 1.5e-9, 2e-9], rel=1e-9)
+
+
+def test_an_example_takes_from_the_first_what_it_does_not_name():
+    motion = rs.derive(**A_PENDULUM, examples=[FIRST, {"initial": {"theta_dot": 1}}])
+    assert motion.forces.examples[1] == (NUMBERS, {"theta": 0.5, "theta_dot": 1}, 2)
+
+
+@pytest.mark.parametrize(
+    ("example", "message"),
+    [
+        ({"initial": {"thta": 1}, "time": 1}, "thta; did you mean theta?"),
+        ({"initial": {"theta": 1}}, "a time > 0"),
+        ({"initial": {"theta": float("nan")}, "time": 1}, "finite numbers"),
+        ({"parameters": {"A": "1"}, "time": 1}, "finite numbers"),
+        ({"parameters": NUMBERS | {"G": 1}, "time": 1}, "unknown parameter G; known: A, B"),
+        ({"start": {"theta": 1}, "time": 1}, "start; expected parameters, initial, time"),
+    ],
+)
+def test_an_example_that_is_none_is_refused(example, message):
+    with pytest.raises(ModelError, match=message):
+        rs.derive(**A_PENDULUM, examples=[example])
+
+
+def test_a_motion_without_its_constants_or_too_fast_is_not_drawn(monkeypatch):
+    monkeypatch.setattr(motion_picture, "_MOST_STEPS", 4)
+    fast = {"parameters": NUMBERS | {"g": 1e9}, "initial": {"theta": 1}, "time": 1e3}
+    for example, message in (
+        ({"parameters": {"A": 1}, "time": 1}, "lacks values of g, l, m$"),
+        (fast, "cannot be drawn"),
+    ):
+        with pytest.raises(ModelError, match=message):
+            rs.derive(**A_PENDULUM, examples=[example]).note()

@@ -1,163 +1,324 @@
-"""Formulas as people read them: exact forms, the order of factors and terms, no ambiguity."""
+"""What every pen prints has the value that was meant, keeps its form, and breaks between terms."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
+from dataclasses import replace
+from random import Random
 
 import pytest
 import sympy as sp
 from sympy.physics.vector import dynamicsymbols
 
-import rigidsym as rs
-from helpers.printing import latex, text
-from rigidsym.errors import AlgebraError
-from rigidsym.formula.latex_pen import LatexPen
-from rigidsym.formula.letters import Letters
-from rigidsym.formula.mathml_pen import MathmlPen
-from rigidsym.formula.pen import Segment, break_lines
+from helpers.reading import Formula as Reader, latex_of
+from helpers.witness import mp, number
+from rigidsym.formula import sheet_pen
+from rigidsym.formula.display import Equation, display
+from rigidsym.formula.latex_pen import LatexPen, MarkdownPen
+from rigidsym.formula.letters import Letters, VectorLength
+from rigidsym.formula.mathml_pen import MathmlPen, math
+from rigidsym.formula.notation import Notation
+from rigidsym.formula.pen import Height, break_lines
 from rigidsym.formula.reader import formula
-from rigidsym.formula.scalars import factored, listed_entries
+from rigidsym.formula.scalars import factored, formula_of, listed_entries
+from rigidsym.formula.sheet_pen import Aligned, SheetPen
+from rigidsym.formula.tree import (
+    Bracket,
+    Formula,
+    Fraction,
+    Power,
+    Rate,
+    Sign,
+    Symbol,
+    row,
+)
 from rigidsym.formula.unicode_pen import UnicodePen, columns
 from rigidsym.mechanics.quantities.table import arguments_of
 from rigidsym.models.parametrisations import EulerAngles
 from rigidsym.notes.letters import letters_of
 
-phi, theta, psi = dynamicsymbols("phi theta psi")
-phi_dot, theta_dot, psi_dot = dynamicsymbols("phi theta psi", 1)
-phi_ddot, theta_ddot = dynamicsymbols("phi theta", 2)
-omega = sp.symbols("Omega_1:4")
-omega_body = sp.symbols("Omega_body_1:4")
-A, m, moment = sp.symbols("A m_1 moment")
-sin, cos, tan, cot = sp.sin, sp.cos, sp.tan, sp.cot
-
+ANGLES = dynamicsymbols("phi theta psi")
+RATES = [sp.diff(angle, "t", order) for order in (1, 2) for angle in ANGLES]
+OMEGA = [*sp.symbols("Omega_1:4"), *sp.symbols("Omega_body_1:4")]
+CONSTANTS = sp.symbols("A m_1 h alpha0")
+FUNCTIONS = (sp.sin, sp.cos, sp.tan, sp.cot)
 LETTERS = letters_of(arguments_of(EulerAngles("ZXZ")))
-
-
-@pytest.mark.parametrize(
-    ("expression", "kind"),
-    [(sp.Integral(theta, phi), "Integral"), (A**m, "Pow"), (sp.Matrix([1]), "Matrix")],
-)
-def test_a_node_without_a_form_is_named(expression, kind):
-    with pytest.raises(AlgebraError, match=rf"no printed form for .* of type \w*{kind}"):
-        latex(expression, LETTERS)
-
-
-# --- laws ---
-
-
-def _entries(motion: rs.Motion) -> Iterator[tuple[sp.Expr, str, Letters]]:
-    letters = letters_of(motion.arguments)
-    for step in motion.steps:
-        for entry in step.expression:
-            yield entry, text(entry, letters), letters
-
-
-def test_no_sum_starts_with_a_minus_if_it_has_a_positive_term(motion):
-    for entry, _, letters in _entries(motion):
-        for node in sp.preorder_traversal(entry):
-            if node.is_Add and text(node, letters).startswith("−"):
-                assert all(term.as_coeff_Mul()[0] < 0 for term in node.args), node
-
-
-# Macros that LaTeX, math-core and MathJax know.
-MACROS = {
-    *(r"\sin", r"\cos", r"\tan", r"\cot", r"\frac", r"\left", r"\right", r"\dot", r"\ddot"),
-    *(r"\phi", r"\theta", r"\psi", r"\Omega"),
+PENS: dict[str, SheetPen] = {"latex": LatexPen(), "mathml": MathmlPen()}
+NAMES = {  # as the reader calls them
+    **dict(zip(ANGLES, ("phi", "theta", "psi"), strict=True)),
+    **{
+        r: f"{d} {a}"
+        for r, (d, a) in zip(
+            RATES, [(d, a) for d in ("dot", "ddot") for a in ("phi", "theta", "psi")], strict=True
+        )
+    },
+    **{
+        w: f"Omega{p}_{k}"
+        for w, (p, k) in zip(OMEGA, [(p, k) for p in ("", "'") for k in "123"], strict=True)
+    },
+    **dict(zip(CONSTANTS, ("A", "m_1", "h", "alpha_0"), strict=True)),
 }
+VALUES = {symbol: mp.mpf(7 * k % 19 + 3) / 13 for k, symbol in enumerate(NAMES)}
+KNOWN = {NAMES[symbol]: value for symbol, value in VALUES.items()} | {"pi": +mp.pi}
 
 
-def test_formulas_use_only_macros_that_every_printer_knows(motion):
-    letters = letters_of(motion.arguments)
-    for entry, _, _ in _entries(motion):
-        assert set(re.findall(r"\\[A-Za-z]+", latex(entry, letters))) <= MACROS
+def random_scalar(rng: Random, depth: int) -> sp.Expr:
+    """A sum, product, quotient, power, root or function of such, down to names and numbers."""
+    kind = rng.random()
+    if depth == 0 or kind < 0.1:
+        return rng.choice(
+            [*ANGLES, *RATES, *OMEGA, *CONSTANTS, sp.pi, *map(sp.Integer, (2, 3, 10))]
+        )
+    parts = [random_scalar(rng, depth - 1) for _ in range(rng.randint(2, 3))]
+    if kind < 0.35:
+        return sp.Add(*(rng.choice((1, -1, 2, sp.Rational(-3, 2))) * part for part in parts))
+    if kind < 0.6:
+        return rng.choice((1, -1, 3, sp.Rational(1, 2), sp.sqrt(2))) * sp.Mul(*parts)
+    if kind < 0.7:
+        return parts[0] / parts[1]
+    if kind < 0.85:
+        return parts[0] ** rng.choice((2, 3, -1, -2, 10, sp.Rational(3, 2), sp.Rational(-1, 2)))
+    if kind < 0.9:
+        return sp.sqrt(parts[0] ** 2 + 1)
+    angle = rng.choice((parts[0], rng.choice((1, 2, sp.Rational(1, 2))) * rng.choice(ANGLES)))
+    if angle.is_number:
+        angle += rng.choice(ANGLES)
+    return rng.choice(FUNCTIONS)(angle) ** rng.choice((1, 1, 2, -1))
 
 
-# --- breaking ---
+SCALARS = [random_scalar(Random(f"scalar:{k}"), 1 + k % 4) for k in range(240)]
 
-LONG = (
-    r"\sin\psi\,(\ddot{\phi}\sin\theta + \dot{\theta}\,(\dot{\phi}\cos\theta - \dot{\psi}))"
-    r" + \cos\psi\,(\ddot{\theta} + \dot{\phi}\,\dot{\psi}\sin\theta)"
-    r" - \frac{\dot{\phi}}{1 + \cos\theta}"
+
+phi, theta, psi = ANGLES
+phi_dot, theta_dot, psi_dot, phi_ddot, theta_ddot, _ = RATES
+omega, omega_body = OMEGA[:3], OMEGA[3:]
+A, m, moment = sp.symbols("A m_1 moment")
+sin, cos, tan, cot = FUNCTIONS
+READABLE = (  # what depends on the order of factors and terms, on signs and on brackets
+    *(sp.Integer(0), -sp.Rational(1, 2), sp.pi / 2, -3 * sp.pi / 4, m, 2 * moment),
+    *(sin(psi) * phi_dot * sin(theta), cos(theta) * sin(theta), phi_dot * theta_dot * A * 2),
+    *(theta_dot**2 * phi_ddot, sin(phi) * omega[1], sin(psi) * (phi_dot + psi_dot)),
+    *(phi_dot * sp.exp(theta), psi_dot - phi_dot * sin(theta), phi_dot * cos(theta) + psi_dot),
+    *(-phi_dot - psi_dot, theta_dot * psi_dot + phi_ddot, 1 - cos(theta)),
+    cot(theta) * (omega[1] * cos(phi) - omega[0] * sin(phi)) + omega[2],
+    sin(psi) * (phi_ddot * sin(theta) + theta_dot * (phi_dot * cos(theta) - psi_dot)),
+    *(A * sin(theta) ** 2, phi_dot**2 / 2, omega_body[0] ** 2, (A + m) ** 2, m * A, sp.sqrt(A)),
+    *(1 / sp.sqrt(A + m), A ** sp.Rational(3, 2), 1 / sin(theta), -cos(phi) / sin(theta)),
+    *(phi_dot / (2 * sin(theta)), sin(phi) ** 2 / (1 + cos(psi))),
+    (omega[0] * sin(phi) - omega[1] * cos(phi)) / sin(theta),
+    *(phi_dot * (A + 1 / sin(theta)), sin(2 * theta), cos(theta / 2), sin(phi + psi) ** 2),
+    *(cos(sp.exp(theta)) * theta_dot, tan(A * theta), sin(moment)),
+    *(m * phi_dot**2 + A * phi_dot, m * (phi_dot + psi_dot) ** 2 + A * (phi_dot + psi_dot)),
+    *(m * sp.sqrt(phi_dot + psi_dot) + A * (1 + theta), (-A - m) * (-theta_dot - phi_dot)),
+    *((-A - m) * (-theta_dot - phi_dot) * (-1 - theta), tan(psi) - sin(phi) * cos(theta) ** 2 * A),
 )
 
 
-def lines_of(typed: str, width: float, indent: float = 2) -> list[Segment]:
-    return break_lines(UnicodePen().write(formula(typed)), width, indent, UnicodePen.blank)
+def read(text: str) -> object:
+    return Reader(text, KNOWN).value()
+
+
+@pytest.mark.parametrize("pen", PENS)
+def test_a_printed_scalar_is_read_as_the_value_that_it_has(pen):
+    for scalar in SCALARS:
+        printed = PENS[pen].write(formula_of(scalar, LETTERS)).text
+        text = latex_of(math(printed, "")) if pen == "mathml" else printed
+        expected = number(scalar, dict(VALUES))
+        assert mp.fabs(read(text) - expected) <= mp.mpf(10) ** -30 * (1 + mp.fabs(expected)), (
+            printed
+        )
+
+
+BASES = ("a + b", r"a\,b", r"\cos\tau", r"\frac{a}{b}", "x^2")  # each in brackets
+
+
+def forms() -> Iterator[tuple[str, Formula]]:
+    """Formulas with every kind of node, beside random scalars."""
+    typed = (
+        r"\mathbf{R}' = \boldsymbol{\Omega}\,\mathbf{R}",
+        r"\mathbf{C}(\boldsymbol{\Omega}')^\mathsf{T}\,\dot{\mathbf{q}}",
+        r"\mathbf{W}'^{-1}_{12} + \mathbf{L}_R + \mathbf{e}^\perp_i",
+        r"\boldsymbol{\Omega}'^2 + {\Omega'_1}^2 + \dot{\Omega}'_2 + \ddot{\varphi}^2",
+        r"\sum_{i=1}^n m_i\,\mathbf{r}_i + \int_0^{2 \pi} f\,du + \sum_i a_i + \int x\,dm",
+        r"\begin{pmatrix} a & \frac{b}{2} \\ \dot{c} & \sqrt{\frac{d}{e}} \\ 0 & 1 \end{pmatrix}",
+        r"\begin{pmatrix} \dot{a} \\ \dot{b} \\ c \\ d \end{pmatrix}",
+        r"\begin{pmatrix} a \\ \frac{b}{2} \\ \frac{c}{2} \\ d \end{pmatrix}",
+        r"\frac{\partial \mathbf{R}}{\partial \theta} \pm a \le b \Leftrightarrow c \in d, e; f",
+        r"|\mathbf{v}|^2 + |\frac{a}{b}| + [a, b] + \det\mathbf{W} + \exp(\frac{a}{2})^2",
+        r"\sin^2(\frac{\theta}{2} + \varphi) + \operatorname{my_f}(x)",
+        r"a \cdot b \times c \qquad \mathit{length}_2 + \mathit{yaw} \text{ if } x \ldots",
+        r"\Gamma + \epsilon + h + k + \dot{h} + \dot{\beta} + \dot{m} + \dot{\mathbf{B}}",
+        r"\dot{M}' + \ddot{\mathbf{d}}'",
+        r"x_{\frac{1}{2}} + x_{(\frac{a}{b})} + I_{12} + \mathbf{I}'_P",
+        r"\boldsymbol{\varphi} + \mathbf{h} + \mathsf{T} + \mathrm{Ti} + a < b",
+    )
+    yield from ((text, formula(text)) for text in typed)
+    yield from (("power", formula("#1^2", formula(base))) for base in BASES)
+    phi, turn = formula(r"\varphi"), formula(r"\dot{\varphi}")
+    heading, both = Symbol("heading", dots=1), formula("a + b")
+    yield from (
+        ("rate", Rate(phi)),
+        ("second rate", Rate(Symbol("R", "bold"), 2)),
+        ("rate of a bracket", Rate(Bracket(both))),
+        ("rate squared", Power(Bracket(Rate(phi)), formula("2"))),
+        ("rate in a bracket", row(formula("a"), Bracket(row(Rate(phi), Sign("+"), turn)))),
+        ("square of a fraction", Power(Bracket(Fraction(phi, turn)), formula("2"))),
+        ("square of a prime", Power(Symbol("b", prime="′"), formula("2"))),
+        ("power of a row", Power(both, formula("2"))),
+        ("power of a root", Power(formula(r"\sqrt{a}"), formula("10"))),
+        ("superscript", Symbol("Ω", "bold", prime="ᴮ", index=formula("1"))),
+        ("superscript squared", Power(Symbol("Ω", prime="ᴮ"), formula("2"))),
+        ("arrow", Symbol("d", "arrow", dots=1)),
+        ("word with dots", heading),
+        ("word of two letters", Symbol("ab")),
+        ("unit", Symbol("&", "italic")),
+        ("macro", Symbol("φ", macro=r"\varphi")),
+        ("double dots", row(Symbol("M", dots=2), Symbol("x", dots=2), Symbol("Ω", "bold", 2, "′"))),
+    )
+    yield from ((str(scalar), formula_of(scalar, LETTERS)) for scalar in SCALARS[:40])
+    yield from ((str(scalar), formula_of(scalar, LETTERS)) for scalar in READABLE)
+    names = letters_of(arguments_of(EulerAngles("ZYX", ("heading", "phi_1", "q2"))))
+    heading, indexed, q = dynamicsymbols("heading phi_1 q2", 1)
+    for rate in (indexed, q, heading, heading.diff(), heading**2 * CONSTANTS[0] / 2, heading / 2):
+        yield f"{rate} of angles with names", formula_of(rate, names)
+    yield "a sine of the time", formula_of(sp.sin(sp.Symbol("t")) ** 2, LETTERS)
+    by_fraction = Notation(rates="fraction", vectors="arrow", body="superscript")
+    letters = letters_of(arguments_of(EulerAngles("ZXZ")), by_fraction)
+    for scalar in (
+        CONSTANTS[0] / 2,
+        ANGLES[1] / 2,
+        RATES[0] / 2,
+        3 * RATES[0] ** 2 * RATES[3],
+        (RATES[1] + OMEGA[4]) ** 2 / 2,
+    ):
+        yield f"{scalar} by fractions", formula_of(scalar, letters)
+    x, y, z = components = tuple(map(sp.Function, "xyz"))
+    components = tuple(part(sp.Symbol("t")) for part in (x, y, z))
+    length = VectorLength(components, *sp.symbols("n n_dot"), "n")
+    square = sum(part**2 for part in components)
+    for scalar in (
+        square,
+        1 - 2 * square,
+        sp.sin(sp.sqrt(square)),
+        sum(components),
+        sp.diff(square, "t"),
+        square + components[0] ** 2,
+        components[0] ** 2 + 2 * components[1] ** 2 + components[2] ** 2,
+    ):
+        yield (
+            f"{scalar} with a length",
+            formula_of(scalar, Letters(names=length.names, length=length)),
+        )
+
+
+def test_the_forms_of_the_pens_are_as_they_were(golden):
+    lines = []
+    for name, tree in forms():
+        lines.append(name)
+        for pen in (
+            LatexPen(),
+            LatexPen(short=True),
+            LatexPen(loose=True),
+            MarkdownPen(),
+            MathmlPen(),
+            UnicodePen(),
+        ):
+            written = pen.write(tree).text.replace("\n", "⏎")
+            if f"    {written}" not in lines[-6:]:
+                lines.append(f"    {written}")
+    golden("notes/formulas.txt", "\n".join(lines) + "\n")
+
+
+def test_lines_below_one_another_are_aligned_at_their_signs(golden):
+    rows = (
+        Aligned("a", "b + c", "="),
+        Aligned("", "d", "=", 0, Height.TALL),
+        Aligned("", "+ e", "", 2),
+        Aligned("f", "g"),
+    )
+    texts = [
+        f"{type(pen).__name__}, high: {is_high}\n{written}\n"
+        for pen in (LatexPen(), MarkdownPen(), MathmlPen())
+        for is_high in (False, True)
+        for written in (
+            pen.aligned(rows, is_high),
+            pen.gathered([pen.continued("a", 0), pen.continued("b", 3)], is_high),
+        )
+    ]
+    golden("notes/rows.txt", "\n".join(texts))
+
+
+@pytest.mark.parametrize("pen", PENS.values(), ids=list(PENS))
+def test_widths_add_up(pen):
+    def width(markup: str) -> float:
+        return pen.write(formula(markup)).width
+
+    both, upper, lower = (
+        width(rf"\begin{{pmatrix}} {rows} \end{{pmatrix}}")
+        for rows in (r"a & b+c \\ a+b+c & d", "a & b+c", "a+b+c & d")
+    )
+    assert both == pytest.approx(upper + width("a+b+c") - width("a"))
+    assert both == pytest.approx(lower + width("b+c") - width("d"))
+    script = sheet_pen.SCRIPT
+    for markup, expected in (
+        (r"\begin{pmatrix} a \end{pmatrix}", width("a") + sheet_pen.TALL_BRACKETS),
+        (r"\sqrt{a}", width("a") + sheet_pen.ROOT),
+        ("12", 2 * width("1")),
+        ("a'", width("a") + sheet_pen.PRIME),
+        ("a_b", width("a") + script * width("b")),
+        ("a^b", width("a") + script * width("b")),
+        (r"\sin^2 a", width(r"\sin a") + script * width("2")),
+        (r"\frac{c}{a + b}", width("a + b") + sheet_pen.FRACTION),
+        ("(a)^2", width("a") + 2 * sheet_pen.BRACKET + script * width("2")),
+    ):
+        assert width(markup) == pytest.approx(expected), markup
+    rate = Rate(formula(r"\varphi"))
+    alone, small = pen.write(rate).width, replace(pen, small=True).write(rate).width
+    assert small == pytest.approx(script * alone)
+    sides = 2 * (sheet_pen.BRACKET + sheet_pen.LARGE["large"])
+    assert pen.write(Bracket(rate)).width == pytest.approx(alone + sides)
+
+
+def test_a_listing_over_pages_has_the_lines_that_it_has_in_one_display():
+    """Entries at their signs, and definitions each in the middle."""
+    value = sum(sp.Symbol(f"a_{k}") * sp.sin(theta) for k in range(40))
+    matrix = sp.ImmutableMatrix([value, value + 1])
+    names = (formula("k_1"), formula("k_2"))
+    for sides, is_aligned in (((formula(r"\mathbf{w}"),), True), ((), False)):
+        equation = Equation(sides=sides, matrix=matrix, entries=names)
+        shown = display(equation, LETTERS, 30.0)
+        assert (shown.are_aligned, shown.lines > 4) == (is_aligned, True)
+        assert shown.joined(LatexPen()) in shown.text
+        assert ("&" in shown.text) == is_aligned
+
+
+BRACKET = r"a\,(b + c\,(d + e + f + g))"
+BRACKET_OF_WORD = r"a\,(b + \mathit{ccc}\,(d + e + f))"
+QUOTIENT = r"\frac{4\,(a + b)}{(1 + n^2)^2}"
 
 
 @pytest.mark.parametrize(
-    ("width", "lines"),
+    ("typed", "width", "indent", "lines"),
     [
-        (
-            70,
-            [
-                "sin ψ (φ̈ sin θ + θ̇ (φ̇ cos θ − ψ̇)) + cos ψ (θ̈ + φ̇ ψ̇ sin θ)",
-                "− φ̇/(1 + cos θ)",
-            ],
-        ),
-        (
-            30,
-            [
-                "sin ψ (φ̈ sin θ",
-                "+ θ̇ (φ̇ cos θ − ψ̇))",
-                "+ cos ψ (θ̈ + φ̇ ψ̇ sin θ)",
-                "− φ̇/(1 + cos θ)",
-            ],
-        ),
+        (r"a + b\,(c + d)", 13, 0, ["a + b (c + d)"]),
+        (r"a + b\,(c + d)", 11, 0, ["a", "+ b (c + d)"]),
+        (r"a + b\,(c + d)", 10, 0, ["a", "+ b (c", "+ d)"]),
+        ("a + b + c", 5, 0, ["a + b", "+ c"]),
+        # each open bracket costs the next lines an indent
+        (BRACKET, 14, 0, ["a (b", "+ c (d + e + f", "+ g))"]),
+        (BRACKET, 14, 2, ["a (b", "+ c (d + e", "+ f + g))"]),
+        (BRACKET_OF_WORD, 14, 2, ["a (b", "+ ccc (d + e", "+ f))"]),
+        (BRACKET_OF_WORD, 14, 3, ["a (b", "+ ccc (d", "+ e + f))"]),
+        # a divisor is broken only if nothing else can be
+        (QUOTIENT, 16, 0, ["4(a", "+ b)/(1 + n²)²"]),
+        (r"\frac{4 a}{1 + n^2}", 8, 0, ["4a/(1", "+ n²)"]),
+        (r"\dot{\phi}\,(\mathit{abc} + \ddot{\theta})", 9, 0, ["φ̇ (abc", "+ θ̈)"]),
     ],
 )
-def test_lines_break_before_signs_in_the_outermost_bracket(width, lines):
-    broken = lines_of(LONG, width)
+def test_lines_break_before_signs_in_the_outermost_bracket(typed, width, indent, lines):
+    broken = break_lines(UnicodePen().write(formula(typed)), width, indent, UnicodePen.blank)
     assert [line.text for line in broken] == lines
-    assert [line.width for line in broken] == list(map(columns, lines))
-    assert [line.level for line in lines_of(LONG, 30)] == [0, 1, 0, 0]
-
-
-def test_a_line_may_be_as_wide_as_there_is_room():
-    for width, lines in (
-        (13, ["a + b (c + d)"]),
-        (11, ["a", "+ b (c + d)"]),
-        (10, ["a", "+ b (c", "+ d)"]),
-    ):
-        assert [line.text for line in lines_of(r"a + b\,(c + d)", width, 0)] == lines
-    assert [line.text for line in lines_of("a + b + c", 5, 0)] == ["a + b", "+ c"]
-
-
-def test_lines_lose_their_indent_for_each_bracket_that_is_open():
-    for inside, indent, lines in (
-        (r"c\,(d + e + f + g)", 0, ["a (b", "+ c (d + e + f", "+ g))"]),
-        (r"c\,(d + e + f + g)", 2, ["a (b", "+ c (d + e", "+ f + g))"]),
-        (r"\mathit{ccc}\,(d + e + f)", 2, ["a (b", "+ ccc (d + e", "+ f))"]),
-        (r"\mathit{ccc}\,(d + e)", 2, ["a (b", "+ ccc (d + e))"]),
-        (r"\mathit{ccc}\,(d + e + f)", 3, ["a (b", "+ ccc (d", "+ e + f))"]),
-    ):
-        found = lines_of(rf"a\,(b + {inside})", 14, indent)
-        assert [line.text for line in found] == lines
-
-
-def test_a_divisor_is_broken_where_nothing_else_can_be():
-    quotient = r"\frac{4\,(a + b)}{(1 + n^2)^2}"
-    assert [line.text for line in lines_of(quotient, 16, 0)] == ["4(a", "+ b)/(1 + n²)²"]
-    quotient = r"\frac{4 a}{1 + n^2}"
-    assert [line.text for line in lines_of(quotient, 8, 0)] == ["4a/(1", "+ n²)"]
-    for below in ("1 + n^2", "(1 + n^2)^2"):  # one bracket is open, written or not
-        lines = lines_of(rf"\frac{{4 a}}{{{below}}}", 8, 0)
-        assert [line.level for line in lines] == [0, 1], below
-
-
-def test_fractions_and_stretched_brackets_are_never_broken_in_a_note():
-    quotient = LatexPen().write(formula(r"\frac{a + b}{c} + (d + e + \frac{f}{g})"))
-    lines = break_lines(quotient, 1, 1)
-    assert [line.text for line in lines] == [
-        r"\frac{a + b}{c}",
-        r"+ \left(d + e + \frac{f}{g}\right)",
-    ]
-
-
-@pytest.mark.parametrize(("word", "width"), [("φ̇", 1), ("abc", 3), ("Ω̇′₁", 3), ("中", 2)])
-def test_columns_of_a_terminal(word, width):
-    assert columns(word) == width
+    assert [line.width for line in broken] == [*map(columns, lines)]
 
 
 def test_no_line_ends_between_left_and_right():
@@ -166,11 +327,7 @@ def test_no_line_ends_between_left_and_right():
     for width in range(4, 40, 4):
         for line in break_lines(LatexPen().write(typed), float(width), 2.0):
             assert line.text.count(r"\left") == line.text.count(r"\right")
-        loose = break_lines(LatexPen(loose=True).write(typed), float(width), 2.0)
-        assert not any(r"\left" in line.text for line in loose)
 
-
-# --- what stands before a matrix, and which of its entries are listed
 
 x, y, z, d = sp.symbols("x y z d")
 half = sp.Rational(1, 2)
@@ -180,25 +337,14 @@ half = sp.Rational(1, 2)
     ("entries", "factor", "rest"),
     [
         ([x / 2, y], half, [x, 2 * y]),
-        ([x * y, x * z, 0], x, [y, z, 0]),
-        ([x**2 * y, x**3 * z + x**2 * y], x**2, [y, x * z + y]),
+        ([x**2 * y, x**3 * z + x**2 * y, 0], x**2, [y, x * z + y, 0]),
         ([2 * x / d, 4 * y / d], 2 / d, [x, 2 * y]),
         ([half, x / 3], half / 3, [3, 2 * x]),
         ([1 - 2 * y**2 / d, 2 * x * y / d], 1 / d, [d - 2 * y**2, 2 * x * y]),
-        ([x / d + y / d, x / d], 1 / d, [x + y, x]),
         ([half * x + half * y * (1 + z), half * x], half, [x + y * (1 + z), x]),
+        ([(11 + sp.sqrt(13)) * x * y, 22 * x * y], x * y, [11 + sp.sqrt(13), 22]),
         # as short as they can be
-        *(
-            (entries, 1, entries)
-            for entries in (
-                [2 * x, 4 * y],
-                [2 * sp.sqrt(x), 4 * y],
-                [x, 0],
-                [x / y, y],
-                [1 + x / y, 2 + z / y],
-                [x / d + y, x, y],
-            )
-        ),
+        *((entries, 1, entries) for entries in ([2 * x, 4 * y], [x, 0], [x / d + y, x, y])),
     ],
 )
 def test_a_common_factor_or_divisor_stands_before_the_matrix(entries, factor, rest):
@@ -212,26 +358,5 @@ def test_entries_that_are_equal_by_symmetry_are_listed_once():
     listed = [(name.text, value) for name, value in listed_entries(names, tensor)]
     twice = [("I₁₁", a), ("I₁₂ = I₂₁", b), ("I₁₃ = I₃₁", c), ("I₂₂", d), ("I₂₃ = I₃₂", e)]
     assert listed == [*twice, ("I₃₃", f)]
-    other = tensor + sp.ImmutableMatrix(3, 3, lambda i, j: 1 if i < j else 0)
-    assert [name.text for name, _ in listed_entries(names, other)] == [n.text for n in names]
-
-
-def test_the_root_of_a_number_stands_above_the_line():
-    root = sp.sqrt(2) / 2
-    for expression, as_latex, as_text in (
-        (root * A, r"\frac{\sqrt{2}}{2}\,A", "(√2/2) A"),
-        (3 * sp.sqrt(2) * sin(theta) * A, r"3 \sqrt{2}\,A \sin\theta", "3√2 A sin θ"),
-        (root * A / m, r"\frac{\sqrt{2}\,A}{2 m_1}", "√2 A/(2m₁)"),
-        (-root, r"-\frac{\sqrt{2}}{2}", "−√2/2"),
-    ):
-        assert (latex(expression, LETTERS), text(expression, LETTERS)) == (as_latex, as_text)
-
-
-def test_typed_formulas_and_prompts():
-    parts = [formula(letter) for letter in "abcdefghij"]
-    assert formula("#10 + #1", *parts) == formula("j + a")
-    assert repr(formula(r"\mathbf{R}\,\mathbf{\Omega}'")) == "<R Ω′>"
-    assert [formula(rf"p_{{\{name}}}").text for name in ("phi", "theta")] == ["p_φ", "p_θ"]
-    integral, total = (MathmlPen().write(formula(rf"\{s}_i^n")).text for s in ("int", "sum"))
-    assert "<msubsup>" in integral
-    assert "<munderover>" in total
+    other = sp.ImmutableMatrix(3, 3, range(9))
+    assert len([*listed_entries(names, other)]) == 9
