@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 
 import numpy as np
 import pytest
 
-from helpers.command import ROOT, call
+from helpers.command import call
 from helpers.conventions import GENERIC, attitude, sample
 from rigidsym.tools.identify.readings import VELOCITIES, Reading
 
@@ -88,31 +86,3 @@ def test_no_fit_is_an_answer_with_exit_code_1(tmp_path):
     data = json.loads(call(*words, "--json", cwd=tmp_path, status=1).stdout)
     assert (data["fits"], data["answers"]) == (False, [])
     assert data["nearest"]["residual_rad"] == pytest.approx(np.radians(0.5))
-
-
-@pytest.mark.parametrize(
-    ("words", "status", "message"),
-    [
-        (("log.csv", "--angles", "1,2,3"), 2, "expected a file, or --angles"),
-        (("nowhere.csv",), 2, "does not exist"),
-        (("log.csv",), 3, "the samples cannot be read\n  no column roll: did you mean rol?"),
-    ],
-)
-def test_bad_input_is_told_at_once(tmp_path, words, status, message):
-    (tmp_path / "log.csv").write_text("rol,pitch,yaw\n1,2,3\n")
-    done = call("identify", *words, cwd=tmp_path, status=status)
-    assert message in done.stderr
-    assert done.stdout == ""
-
-
-def test_orientations_alone_need_no_sympy():
-    words = options(sample(Reading(sequence="ZYX"), GENERIC[False]))
-    probe = (
-        "import sys\nfrom rigidsym.commands.cli import commands\n"
-        f"commands.main({['identify', *words]}, standalone_mode=False)\n"
-        "print('sympy' in sys.modules)"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", probe], cwd=ROOT, capture_output=True, text=True, check=True
-    )
-    assert done.stdout.splitlines()[-1] == "False"

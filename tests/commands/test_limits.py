@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
 import signal
-import threading
+from pathlib import Path
 from time import sleep
 
 import pytest
@@ -13,9 +14,10 @@ from click.testing import CliRunner
 import rigidsym as rs
 from helpers.command import call
 from rigidsym.commands.cli import commands
-from rigidsym.errors import LimitReached, RequestError
+from rigidsym.errors import Fault, LimitReached, RequestError, SpecError
 from rigidsym.notes.formats.record import SCHEMA, SCHEMA_VERSION
-from rigidsym.system.processes import time_limit
+from rigidsym.system import processes
+from rigidsym.system.processes import in_processes, time_limit
 
 NINE = [[f"r{i}{j}" for j in "123"] for i in "123"]
 UNIT = [
@@ -45,56 +47,17 @@ def test_a_time_limit_holds_in_python():
         sleep(60)
     with pytest.raises(LimitReached):
         rs.derive("z(a) x(b) z(c) x(d) z(e) x(f) z(g) x(h)", timeout=0.01)
+    with pytest.raises(RequestError, match="expected a positive number of seconds"):
+        rs.derive("ZXZ", timeout=float("nan"))
     assert rs.derive("z(a)", timeout=60).is_proved
     assert signal.getitimer(signal.ITIMER_REAL) == (0.0, 0.0)
 
 
-@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
-def test_a_stop_that_a_finalizer_loses_is_made_again():
-    class Slow:
-        def __del__(self):
-            sleep(0.2)
-
-    def lose_a_stop_and_go_on():
-        with time_limit(0.1):
-            slow = Slow()
-            del slow
-            sleep(60)
-
-    with pytest.raises(LimitReached):
-        lose_a_stop_and_go_on()
-
-
-@pytest.mark.parametrize("seconds", [0, -1, float("nan")])
-def test_a_time_limit_is_positive(seconds):
-    with pytest.raises(RequestError, match="expected a positive number of seconds"):
-        rs.derive("ZXZ", timeout=seconds)
-
-
-def test_a_time_limit_needs_the_main_thread():
-    caught = []
-
-    def work() -> None:
-        with pytest.raises(RequestError, match="only in the main thread") as error:
-            rs.derive("ZXZ", timeout=9)
-        caught.append(error)
-
-    thread = threading.Thread(target=work)
-    thread.start()
-    thread.join()
-    assert caught
-
-
-LONG = " + ".join(f"a*b**{k}" for k in range(60))
 UNBOUNDED = {
     "roots of roots": '[rotation]\nsequence = "z(sqrt(sqrt(a+b)+c)) x(sqrt(sqrt(d)+1))"',
-    "nine entries that are bound": ENDLESS,
     "forty turns": f'[rotation]\nsequence = "{" ".join(f"z(a{k})" for k in range(1, 41))}"',
-    "derivatives": '[rotation]\nsequence = "z(u) x(v) y(w) x(s)"\n[body]\nshape = "cone"\n'
-    '[output]\nderivatives = ["kinetic_energy by q"]',
     "a map of degree 60": '[body]\nshape = "given"\nbounds = [[0, 1], [0, 1], [0, 1]]\n'
     'place = ["x**20*y**20*z**20", "y", "z"]',
-    "long entries": f'[body]\ninertia = [["{LONG}", "0", "D"], ["0", "C", "0"], ["D", "0", "B"]]',
 }
 
 
@@ -107,24 +70,8 @@ def test_work_without_end_is_stopped(tmp_path, monkeypatch, work):
     assert [path.name for path in tmp_path.iterdir()] == ["top.toml"]
 
 
-@pytest.mark.parametrize(
-    "turns",
-    [
-        "z(a) [1,2,3](b) y(c) [1,2,3](d) x(e)",
-        "z(-u1) [-1,2,3](u2+u4) [1,3,3](u2) y(2*pi/5) y(3*u4) [0,-2,-2](-u2)",
-        "z(a+b+c+d+e1+f+g+h+k+l+m) x(a)",
-    ],
-)
-def test_chains_are_derived_in_time(turns):
-    assert rs.derive(turns, timeout=60).is_proved  # once 81 s, more than 240 s and without end
-
-
-@pytest.mark.parametrize(
-    "rotations",
-    [[{"sequence": "z(sqrt(sqrt(a+b)+c)) x(sqrt(sqrt(d)+1))"}], [{"sequence": "ZXZ"}] * 20_000],
-    ids=["of roots of roots", "of many rotations"],
-)
-def test_a_check_is_stopped_too(tmp_path, rotations):
+def test_a_check_is_stopped_too(tmp_path):
+    rotations = [{"sequence": "ZXZ"}] * 20_000
     request = {"name": "top", "rotations": rotations, "kernels": [], "note": ["tex"]}
     record = {"schema": SCHEMA, "schema_version": SCHEMA_VERSION, "request": request}
     (tmp_path / "top.json").write_text(json.dumps(record))
@@ -132,21 +79,10 @@ def test_a_check_is_stopped_too(tmp_path, rotations):
     assert isinstance(done.exception, LimitReached), done.output
 
 
-def test_want_of_memory_is_a_message(tmp_path, monkeypatch):
-    def starved(**_: object) -> None:
-        raise MemoryError
-
-    monkeypatch.setattr(commands, "main", starved)
-    assert call("list", cwd=tmp_path, status=1).stderr == "rigidsym: out of memory\n"
-
-
 @pytest.mark.parametrize(
     "arguments",
     [
         ("derive", "Z\x1b[2JX"),
-        ("derive", "ZXZ", "--only", "\x1b]0;title\x07"),
-        ("derive", "ZXZ", "--derivative", "\x1b[2J:q"),
-        ("derive", "ZXZ", "--angles", "\x1b[2J,b,c"),
         ("run", "\x1b[2J.toml"),
         ("\x1b[2J",),
         ("eval", "ZXZ", "\x1b[2J.csv", "--out", "a.npy"),
@@ -157,3 +93,67 @@ def test_no_message_commands_a_terminal(tmp_path, arguments):
     done = call(*arguments, cwd=tmp_path, status=status)
     assert "\x1b" not in done.stdout + done.stderr
     assert "\\x1b" in done.stderr or "\\u001b" in done.stderr
+
+
+FOUR = '[rotation]\nsequence = ["ZXZ", "xyz", "ZYX", "zxz"]\n[output]\nnote = ["html", "page"]\n'
+
+
+def run_of_four(folder, cores, monkeypatch) -> tuple[str, dict[str, bytes]]:
+    """What is printed, and all files written."""
+    monkeypatch.setattr(processes, "cores", lambda: cores)
+    monkeypatch.chdir(folder)
+    done = CliRunner().invoke(commands, ["run", "four.toml", "--out", str(cores)])
+    assert done.exit_code == 0, done.output
+    files = {path.name: path.read_bytes() for path in Path(str(cores)).rglob("*.*")}
+    return done.output.replace(f"{cores}/", "OUT/"), files
+
+
+def test_two_processes_write_what_one_writes(tmp_path: Path, monkeypatch):
+    (tmp_path / "four.toml").write_text(FOUR, encoding="utf-8")
+    one, two = (run_of_four(tmp_path, cores, monkeypatch) for cores in (1, 2))
+    assert len(one[1]) == 4 * 4
+    assert one == two
+
+
+def inverse(number: int) -> int:
+    if number == 5:
+        raise SpecError("five", [Fault(message="five has none")])
+    return -number
+
+
+@pytest.mark.parametrize("cores", [1, 3])
+def test_results_come_in_order_and_errors_where_they_arise(cores: int, monkeypatch):
+    monkeypatch.setattr(processes, "cores", lambda: cores)
+
+    found = in_processes(inverse, range(8))
+    assert [next(found) for _ in range(5)] == [0, -1, -2, -3, -4]
+    with pytest.raises(SpecError, match="five has none") as caught:
+        next(found)
+    assert caught.value.faults == (Fault(message="five has none"),)
+    assert list(in_processes(inverse, range(5))) == [0, -1, -2, -3, -4]
+    assert list(in_processes(inverse, [])) == []
+
+
+def test_a_run_that_stops_says_how_much_is_kept(tmp_path: Path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    text = FOUR + 'quantities = ["rotation_matrix"]\nkernels = []\n'
+    Path("four.toml").write_text(text.replace('"html", "page"', '"md"'), encoding="utf-8")
+    command = ["run", "four.toml"]
+    assert CliRunner().invoke(commands, command).exit_code == 0
+    Path("out/euler_zyx_intrinsic/euler_zyx_intrinsic.md").write_text("mine", encoding="utf-8")
+    done = CliRunner().invoke(commands, command)
+    assert "2 of 4 derivations are finished and kept in out" in done.output
+
+
+HERE = os.getpid()
+
+
+def upper(item: str) -> str:
+    if item == "c" and os.getpid() != HERE:
+        os._exit(1)
+    return item.upper()
+
+
+def test_the_work_of_a_process_that_was_killed_is_done_again(monkeypatch):
+    monkeypatch.setattr(processes, "cores", lambda: 2)
+    assert "".join(in_processes(upper, "abcdef")) == "ABCDEF"

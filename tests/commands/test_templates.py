@@ -9,10 +9,9 @@ from click.testing import CliRunner
 
 from helpers.motions import derived
 from rigidsym.commands.cli import commands
-from rigidsym.errors import LimitReached, ModelError, TemplateFault
+from rigidsym.errors import LimitReached, TemplateFault
 from rigidsym.system import resources
 from rigidsym.system.processes import time_limit
-from rigidsym.system.resources import SandboxedTemplates
 
 NAME = "euler_zxz_intrinsic"
 
@@ -21,15 +20,6 @@ def html_with(folder: Path, template: str) -> str:
     (folder / "note.html.jinja").write_text(template, encoding="utf-8")
     with resources.overridden_by(folder):
         return derived("ZXZ").note().html()
-
-
-def test_an_own_template_stands_in_for_the_shipped_one(tmp_path: Path):
-    assert html_with(tmp_path, "<h1>{{ title }}</h1>") == "<h1>Euler angles ZXZ, intrinsic</h1>"
-    assert derived("ZXZ").note().html().startswith("<!DOCTYPE html>")
-
-
-def test_an_own_template_that_was_changed_is_read_again(tmp_path: Path):
-    assert [html_with(tmp_path, text) for text in ("one", "two")] == ["one", "two"]
 
 
 @pytest.mark.parametrize(
@@ -56,20 +46,6 @@ def test_a_template_without_end_is_stopped_by_the_time_limit(tmp_path: Path):
     loop = "{% for a in range(99999) %}"
     with pytest.raises(LimitReached), time_limit(0.3):
         html_with(tmp_path, loop * 2 + "{% endfor %}" * 2)
-
-
-def test_a_template_that_is_no_text_is_named(tmp_path: Path):
-    (tmp_path / "note.html.jinja").write_bytes(b"\xff")
-    with resources.overridden_by(tmp_path), pytest.raises(TemplateFault, match="UTF-8"):
-        derived("ZXZ").note().html()
-
-
-def test_a_folder_without_templates_is_an_error(tmp_path: Path):
-    with pytest.raises(TemplateFault, match="contains no template; `rigidsym templates"):
-        resources.overridden_by(tmp_path).__enter__()
-
-
-# --- sentences ---
 
 
 def test_a_lecturer_changes_one_sentence(tmp_path: Path):
@@ -188,17 +164,6 @@ def test_a_part_that_there_is_not_is_named(tmp_path: Path, text, says):
     assert f"mine.md.jinja, line 3: {says}" in str(caught.value)
 
 
-def test_a_reference_to_an_equation_that_is_left_out_is_named(tmp_path: Path):
-    own(tmp_path, "en/mine.md.jinja", '# One\n\nSee {{ reference("spin_matrix") }}.\n')
-    with resources.overridden_by(tmp_path):
-        note = derived("ZXZ").note(style="mine")
-    with pytest.raises(ModelError, match="refers to the equation of spin_matrix"):
-        note.markdown()
-
-
-# --- commands ---
-
-
 def test_templates_are_copied_out_and_used_again(tmp_path: Path):
     run = CliRunner()
     done = run.invoke(commands, ["templates", str(tmp_path / "own")])
@@ -218,33 +183,3 @@ def test_templates_are_copied_out_and_used_again(tmp_path: Path):
     checked = run.invoke(commands, ["check", str(folder), "--templates", str(tmp_path / "own")])
     assert checked.exit_code == 0, checked.output
     assert run.invoke(commands, ["check", str(folder)]).exit_code == 1
-
-
-def test_copying_out_overwrites_nothing(tmp_path: Path):
-    (tmp_path / "note.tex.jinja").write_text("mine", encoding="utf-8")
-    done = CliRunner().invoke(commands, ["templates", str(tmp_path)])
-    assert done.exit_code != 0
-    assert [file.name for file in tmp_path.iterdir()] == ["note.tex.jinja"]
-    assert (tmp_path / "note.tex.jinja").read_text("utf-8") == "mine"
-
-
-def test_templates_are_compiled_once_for_all_processes_and_again_after_a_change(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def rendered(text: str) -> str:
-        return SandboxedTemplates(lambda name: (text, name)).get_template("a.jinja").render(x=1)
-
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    first = rendered("{{ x }} once")
-    monkeypatch.setattr(SandboxedTemplates, "compile", None)
-    assert rendered("{{ x }} once") == first == "1 once"
-    monkeypatch.undo()
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    assert rendered("{{ x }} twice") == "1 twice"
-
-
-def test_templates_need_no_cache_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (tmp_path / "rigidsym").write_text("a file where the folder would be")
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    made = SandboxedTemplates(lambda name: ("{{ x }}", name))
-    assert made.get_template("a.jinja").render(x=1) == "1"

@@ -12,10 +12,12 @@ import json
 import os
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 import tomllib
 from contextlib import redirect_stdout
+from dataclasses import replace
 from io import StringIO
 from pathlib import Path
 from typing import Any
@@ -139,14 +141,16 @@ def test_every_page_is_in_the_contents():
     assert pages - {"index"} == named
 
 
-# the schema of derivation files
+def of_docs(name: str):
+    """A module of the documentation."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(str(DOCS))
+        return importlib.import_module(name)
 
 
 @pytest.fixture(scope="module")
 def schema():
-    with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(str(DOCS))
-        return importlib.import_module("schema").schema()
+    return of_docs("schema").schema()
 
 
 def test_the_schema_is_that_of_the_code(schema, request):
@@ -185,33 +189,50 @@ def test_the_schema_refuses_what_the_reader_refuses(text, schema):
         jsonschema.validate(tomllib.loads(text), schema)
 
 
-# the gallery
-
-
-@pytest.fixture
-def gallery(tmp_path, monkeypatch):
-    monkeypatch.syspath_prepend(str(DOCS))
-    module = importlib.import_module("gallery")
-    monkeypatch.setattr(module, "BUILT", tmp_path)
-    monkeypatch.setattr(module, "ENTRIES", tmp_path / "entries")
-    return module
-
-
-@pytest.mark.campaign
-def test_the_gallery_writes_the_files_of_an_item(gallery, tmp_path):
-    item = gallery.Item("ZXZ")
-    derived = item.entry()
-    name = item.write(pdf=False)
-    endings = {".html", "_page.html", ".tex", ".py", ".c", ".h", ".mjs", ".json"}
-    written = {path.name.removeprefix(name) for path in (tmp_path / "gallery" / name).iterdir()}
-    assert written >= endings
-    assert item.entry().startswith(derived.strip())
-    assert derived.count("<svg") == 1
-    assert "<mi>θ</mi>" in derived
-
-
-def test_the_gallery_has_every_rotation_solid_and_shipped_file(gallery):
-    found = {item.name for item in gallery.everything()}
+def test_the_gallery_has_every_rotation_solid_and_shipped_file():
+    found = {item.name for item in of_docs("gallery").everything()}
     shipped = {path.stem for path in ROOT.glob("derivations/*.toml")}
     assert found >= {*EULER_SEQUENCES, *PARAMETRISATIONS, *PRESETS, *SHAPES} - {"tetrahedron"}
     assert found >= shipped - {"euler_all", "euler_zxz"}  # those are conventions
+
+
+@pytest.mark.campaign
+def test_broken_links_are_found(tmp_path):
+    (tmp_path / "a.html").write_text('<a href="b.html#here">b</a> <a href="c.html">c</a>')
+    (tmp_path / "b.html").write_text("<p id=there>")
+    assert list(of_docs("check").broken_links(tmp_path)) == [
+        "a.html: no place b.html#here",
+        "a.html: no file c.html",
+    ]
+
+
+@pytest.mark.campaign
+def test_the_speller_knows_every_word_of_the_texts():
+    if shutil.which("hunspell") is None:
+        pytest.skip("hunspell is not installed")
+    check = of_docs("check")
+    assert list(check.misspelt(check.texts())) == []
+
+
+@pytest.fixture(scope="module")
+def literature():
+    return of_docs("literature")
+
+
+@pytest.mark.campaign
+def test_every_verdict_on_the_literature_is_that_of_the_prover_and_every_repair_is_proved(
+    literature,
+):
+    for decision in literature.decisions():
+        assert decision.verdict == decision.claim.verdict, decision.claim.title
+        assert decision.is_repaired or decision.verdict != "wrong", decision.claim.title
+
+
+@pytest.mark.campaign
+def test_a_changed_sign_is_found(literature):
+    claim = next(c for c in literature.claims() if c.place == "eq. (2.14)")
+    changed = claim.printed.replace("C(e)*sin", "-C(e)*sin").replace("+ -", "- ")
+    decision = literature.decide(replace(claim, printed=changed))
+    assert decision.verdict == "wrong"
+    assert not decision.is_repaired
+    assert any(decision.residual)

@@ -10,7 +10,7 @@ import sympy as sp
 
 import rigidsym as rs
 from rigidsym.algebra.integrate import Integrator
-from rigidsym.errors import BodyError, DerivationError
+from rigidsym.errors import DerivationError
 from rigidsym.mechanics.body import BodyValues
 from rigidsym.mechanics.kinematics.vector_forms import FORMS
 from rigidsym.mechanics.mass.moments import moments_of
@@ -18,8 +18,6 @@ from rigidsym.models.body import Solid
 
 PACKAGE = Path(rs.__file__).parent
 DOOR = PACKAGE / "mechanics" / "prove.py"
-a, R = sp.symbols("a R")
-u, v = sp.symbols("u v")
 
 
 def exact_proofs(source: str) -> list[int]:
@@ -42,30 +40,19 @@ def test_only_the_door_constructs_exact_proofs():
     assert [path for path, lines in found.items() if lines] == [DOOR]
 
 
-@pytest.mark.parametrize(
-    "source",
-    [
-        'Proof(claim=c, status="exact")',
-        "Proof(claim=c, status=status)",
-        "derivation.Proof(**found)",
-        'replace(proof, status="exact")',
-    ],
-)
-def test_a_second_door_would_be_seen(source):
-    assert exact_proofs(source) == [1]
+def test_a_second_door_would_be_seen():
+    for source in ("derivation.Proof(**given)", 'replace(proof, status="exact")'):
+        assert exact_proofs(source) == [1]
 
 
-@pytest.mark.parametrize(
-    "quantity", ["angular_velocity_space", "rotation_matrix", "rates_from_angular_velocity_body"]
-)
-def test_a_wrong_coefficient_of_a_vector_form_is_refused(monkeypatch, quantity):
+def test_a_wrong_coefficient_of_a_vector_form_is_refused(monkeypatch):
     form = FORMS["quaternion", 3]
     wrong = {
         name: (values[0] + 1, *values[1:]) for name, values in form._asdict().items() if values
     }
     monkeypatch.setitem(FORMS, ("quaternion", 3), form._replace(**wrong))
     with pytest.raises(DerivationError, match=r"in terms of v.* is false"):
-        rs.derive("gibbs_vector", [quantity])
+        rs.derive("gibbs_vector", ["angular_velocity_space"])
 
 
 def test_a_wrong_shift_of_an_inertia_tensor_is_refused(monkeypatch):
@@ -77,44 +64,19 @@ def test_a_wrong_shift_of_an_inertia_tensor_is_refused(monkeypatch):
 
 def test_a_wrong_antiderivative_is_refused(monkeypatch):
     right = Integrator.antiderivative
+    a, u, v = sp.symbols("a u v")
+    disc = Solid(
+        title="disc",
+        coordinates=(u, v),
+        place=sp.ImmutableMatrix([u * sp.cos(v), u * sp.sin(v), 0]),
+        bounds=((sp.S.Zero, a), (sp.S.Zero, 2 * sp.pi)),
+        element=u,
+        density=sp.S.One,
+    )
 
     def wrong(self, element):
         return right(self, element) + self.ring.generator(self.ring.index[self.variable])
 
     monkeypatch.setattr(Integrator, "antiderivative", wrong)
     with pytest.raises(DerivationError, match="for every integral is false"):
-        moments_of(torus_shell(a * (R + a * sp.cos(v)), density=sp.Symbol("sigma")))
-
-
-def torus_shell(element: sp.Expr, density: sp.Expr) -> Solid:
-    distance = R + a * sp.cos(v)
-    return Solid(
-        title="torus shell",
-        coordinates=(u, v),
-        place=sp.ImmutableMatrix([distance * sp.cos(u), distance * sp.sin(u), a * sp.sin(v)]),
-        bounds=((sp.S.Zero, 2 * sp.pi),) * 2,
-        element=element,
-        density=density,
-    )
-
-
-def test_an_element_with_the_wrong_sign_is_refused():
-    with pytest.raises(BodyError, match="is negative"):
-        moments_of(disc(-u))
-
-
-def test_an_element_is_exact_only_if_its_sign_is_known():
-    assert [proof.status for proof in moments_of(disc(u)).proofs] == ["exact", "exact"]
-    unsure, integrals = moments_of(torus_shell(a * (R + a * sp.cos(v)), sp.S.One)).proofs
-    assert (unsure.status, integrals.status) == ("unproved", "exact")
-
-
-def disc(element: sp.Expr) -> Solid:
-    return Solid(
-        title="disc",
-        coordinates=(u, v),
-        place=sp.ImmutableMatrix([u * sp.cos(v), u * sp.sin(v), 0]),
-        bounds=((sp.S.Zero, a), (sp.S.Zero, 2 * sp.pi)),
-        element=element,
-        density=sp.S.One,
-    )
+        moments_of(disc)

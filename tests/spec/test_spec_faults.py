@@ -18,8 +18,6 @@ from rigidsym.errors import RigidsymError, SpecError
 from rigidsym.pipeline import integrated, output_of, read_file, read_record, read_spec
 from rigidsym.spec.derivation_spec import DerivationSpec
 
-SHIPPED = Path(__file__).resolve().parents[2] / "derivations"
-
 
 def read(text: str, name: str = "top") -> DerivationSpec:
     return read_spec(dedent(text), source="top.toml", name=name)
@@ -44,25 +42,16 @@ def test_every_fault_is_named_with_its_path(answered):
     answered("spec/faults.txt", answer)
 
 
-@pytest.mark.parametrize(
-    ("text", "fault"),
-    [
-        (
-            f'[rotation]\nsequence = "{"z" * 901}"',
-            'rotation.sequence: expected a sequence such as "ZXZ", turns such as '
-            '"z(phi) x(theta)", or a name, got 901 characters',
-        ),
+def test_a_file_has_bounds():
+    for text, fault in (
         ("a = " + "[" * 990, "lists or tables nested too deeply to be read"),
         ("\n#" + "a" * 1000, "line 2 has 1001 characters; expected at most 1000"),
         (
             "\n" * 50_001,
             "a file of 50001 characters, which is no derivation file; expected at most 50000",
         ),
-    ],
-    ids=["characters", "nested", "line", "file"],
-)
-def test_a_file_has_bounds(text, fault):
-    assert faults(text) == [fault]
+    ):
+        assert faults(text) == [fault]
 
 
 A_NAME = "expected a lower-case letter, then lower-case letters, digits or underscores, got "
@@ -72,35 +61,18 @@ A_NAME = "expected a lower-case letter, then lower-case letters, digits or under
     ("name", "fault"),
     [
         ("My File", f'{A_NAME}"My File"'),
-        ("1st", f'{A_NAME}"1st"'),
-        ("", f'{A_NAME}""'),
         ("lambda", "lambda is a reserved word of Python or Windows"),
         ("aux", "aux is a reserved word of Python or Windows"),
         ("numpy", "numpy.py would hide the Python module of this name"),
-        ("random", "random.py would hide the Python module of this name"),
     ],
 )  # fmt: skip
 def test_the_name_of_the_file_names_folder_and_module(name, fault):
     assert faults(ZXZ, name) == [f"the file name is the name of the derivation: {fault}"]
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
-        "\n".join([".".join(["a"] * 450) + " = 1"] * 50),
-        "\n".join(f"k{place} = 1" for place in range(5000)),
-        "x" * 1_000_000,
-        "\n" * 1_000_000,
-        "[[rotation]]\n" * 3000,
-        ZXZ + "[output]\nquantities = [\n" + '"rotation_matrxi",\n' * 500 + "]",
-    ],
-    ids=["dots", "keys", "one line", "lines", "tables", "typing errors"],
-)
-def test_large_files_are_refused_at_once(text):
-    assert faults(text)  # read to its end, some of it would take minutes
-
-
-# junk
+def test_large_files_are_refused_at_once():
+    for text in ("\n".join([".".join(["a"] * 450) + " = 1"] * 50), "[[rotation]]\n" * 3000):
+        assert faults(text)  # read to its end, it would take minutes
 
 
 def is_read_or_refused(read_it, *arguments) -> None:
@@ -146,44 +118,20 @@ json_values = st.recursive(
 )
 
 
+rotations = st.fixed_dictionaries({"sequence": st.just("ZXZ") | json_values}) | json_values
+
+
 @settings(max_examples=100, deadline=timedelta(seconds=10))
 @given(
     st.fixed_dictionaries(
-        {},
-        optional={
-            "name": st.just("top") | json_values,
-            "title": json_values,
-            "rotations": st.lists(
-                st.fixed_dictionaries({"sequence": st.just("ZXZ") | json_values}) | json_values
-            ),
-            "quantities": json_values,
-            "note": st.just(["tex"]) | json_values,
-        },
+        {"name": st.just("top"), "rotations": st.lists(rotations)},
+        optional={"title": json_values, "note": json_values},
     )
     | json_values
 )
 def test_any_data_is_read_or_refused(data):
     is_read_or_refused(read_record, data)
 
-
-PINCHED = """\
-[rotation]
-matrix = [["cos(phi)", "-sin(phi)", "0"], ["sin(phi)", "cos(phi)", "0"], ["0", "0", "1"]]
-coordinates = ["phi"]
-constraints = ["(b - a**2)**2 + (a - 3)**2 + c**2"]
-example = { a = 3, b = "9", c = 0 }
-"""
-
-
-def test_a_point_of_constraints_is_read_and_kept():
-    spec = read(PINCHED)
-    (model,) = spec.models
-    assert {str(name): value for name, value in model.example} == {"a": 3, "b": 9, "c": 0}
-    again = read_record(spec.to_data())
-    assert again.models == spec.models
-
-
-# records and files of strangers
 
 ODD = [None, True, -1, 1e999, 10**30, "", "\x00", [], {}, [[]], [["numpy"]], {"numpy": 1}, [None]]
 KEYS = ("name", "rotations", "quantities", "note", "theory", "notation", "body", "sequence")
@@ -212,17 +160,10 @@ def test_a_record_with_an_odd_request_is_answered(tmp_path, record, key):
             is_answered(tmp_path / "a.json", json.dumps(changed))
 
 
-@pytest.mark.parametrize(
-    "content",
-    [
-        '{"a":' * 3000 + "1" + "}" * 3000,
-        "[" * 100_000,
-        '{"schema": "rigidsym.derivation", "schema_version": ' + "9" * 5000 + "}",
-    ],
-    ids=["deep", "open", "long number"],
-)
-def test_a_record_that_is_hard_to_read_is_answered(tmp_path, content):
-    is_answered(tmp_path / "a.json", content)
+def test_a_record_that_is_hard_to_read_is_answered(tmp_path):
+    version = '{"schema": "rigidsym.derivation", "schema_version": ' + "9" * 5000 + "}"
+    for content in ("[" * 100_000, version):
+        is_answered(tmp_path / "a.json", content)
 
 
 def test_a_record_names_no_files():
@@ -256,9 +197,3 @@ def test_an_impossible_body_is_reported_with_its_line():
     spec = read_spec(text.replace('"sphere"\n[[', '"sphere"\nmass = 1.0\n[['), source="a", name="a")
     with pytest.raises(SpecError, match=r"body\.parts: .*the mass is -1 kg"):
         integrated(spec)
-
-
-def test_reading_integrates_nothing():
-    spec = read_file("composite_body")
-    assert not hasattr(spec.body, "inertia")
-    assert hasattr(integrated(spec).body, "inertia")
