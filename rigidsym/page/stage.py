@@ -95,11 +95,7 @@ def _rays(model: RotationModel, scene: Scene | None, letters: Letters) -> Iterat
 
 
 def _ray(kind: str, name: Formula, frame: int, direction: Vector | None) -> dict[str, Any]:
-    return {"kind": kind, "name": label(name), "frame": frame, "direction": _listed(direction)}
-
-
-def _listed(vector: Vector | None) -> list[float] | None:
-    return None if vector is None else vector.tolist()
+    return {"kind": kind, "name": label(name), "frame": frame, "direction": direction}
 
 
 def _turns(model: RotationModel, scene: Scene | None, letters: Letters) -> Iterator[dict[str, Any]]:
@@ -109,7 +105,7 @@ def _turns(model: RotationModel, scene: Scene | None, letters: Letters) -> Itera
     for turn, start, radius in zip(turns, starts, RADII, strict=False):
         rate = formula_of(generators.rate_of(turn.angle), letters) if model.turns else NOTHING
         name = label(formula_of(turn.angle, letters))
-        yield {"name": name, "rate_name": label(rate), "start": _listed(start), "radius": radius}
+        yield {"name": name, "rate_name": label(rate), "start": start, "radius": radius}
     if not turns:
         yield {"name": "", "rate_name": "", "start": None, "radius": RADII[0]}
 

@@ -13,13 +13,21 @@ from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.mass.bodies import in_numbers
-from rigidsym.notes.figure.body_mesh import Color, Shape, area_of, lengths_of, own_shape
-from rigidsym.notes.figure.camera import STANDARD, Vector, camera, unit
+from rigidsym.notes.figure.body_mesh import (
+    Color,
+    Shape,
+    Vector,
+    area_of,
+    lengths_of,
+    own_shape,
+    unit,
+)
+from rigidsym.notes.figure.camera import Point, camera
 from rigidsym.notes.figure.drawing import Drawing, Facet, Named, Stroke, beyond, labelled
 from rigidsym.notes.figure.scene import BODY
 
-_VIEW = camera(35, 24)
-_LIGHT = unit(-0.36 * _VIEW.right + 0.48 * _VIEW.up + 0.8 * _VIEW.toward)
+_RIGHT, _UP, _TOWARD = np.array(camera(35, 24))
+_LIGHT = unit(-0.36 * _RIGHT + 0.48 * _UP + 0.8 * _TOWARD)
 _FLAT = 1e-6  # a length off a plane that does not count
 _REACH = 1.3  # of an axis from the centre of mass
 _BEYOND = 0.3  # at least this is seen of it
@@ -37,7 +45,7 @@ def body_drawing(derivation: Derivation) -> tuple[Drawing, bool] | None:
     if body is None or not shape:
         return None
     is_principal = body.inertia.is_diagonal()
-    names, axes = (BODY, STANDARD) if is_principal else (_MOMENTS, _principal_axes(derivation))
+    names, axes = (BODY, np.eye(3)) if is_principal else (_MOMENTS, _principal_axes(derivation))
     exits = [_exit(shape, axis) for axis in axes]
     inner = [_stroke(0 * axis, at * axis) for at, axis in zip(exits, axes, strict=True)]
     outer = [
@@ -48,7 +56,7 @@ def body_drawing(derivation: Derivation) -> tuple[Drawing, bool] | None:
         ("space", name, beyond(((0.0, 0.0), stroke.points[-1])))
         for name, stroke in zip(names, outer, strict=False)
     ]
-    behind = [s for s, axis in zip(outer, axes, strict=True) if _VIEW.depth(axis) < 0]
+    behind = [s for s, axis in zip(outer, axes, strict=True) if _TOWARD @ axis < 0]
     drawing = Drawing(
         strokes=(*inner, *(stroke for stroke in outer if stroke not in behind)),
         labels=labelled(named, (*inner, *outer)),
@@ -77,9 +85,13 @@ def _principal_axes(derivation: Derivation) -> Sequence[Vector]:
 
 
 def _stroke(start: Vector, end: Vector, name: Formula | None = None) -> Stroke:
-    points = (_VIEW.project(start), _VIEW.project(end))
+    points = (_projected(start), _projected(end))
     inside = name is None
     return Stroke(kind="space", points=points, name=name, is_hidden=inside, has_arrow=not inside)
+
+
+def _projected(a: Vector) -> Point:
+    return (float(_RIGHT @ a), float(_UP @ a))
 
 
 def _exit(shape: Shape, axis: Vector) -> float:
@@ -110,10 +122,10 @@ def _facets(shape: Shape) -> Iterator[Facet]:
     """The faces that are seen, the farthest first, shaded by the light from the upper left."""
     parts = [_Part(face.corners, unit(area_of(face.corners)), face.color) for face in shape]
     for corners, normal, color in _from_the_back(parts):
-        if _VIEW.depth(normal) > _FLAT:
+        if _TOWARD @ normal > _FLAT:
             bright = 0.62 + 0.38 * max(0.0, float(normal @ _LIGHT))
             red, green, blue = (round(part * bright) for part in color)
-            yield Facet(points=tuple(map(_VIEW.project, corners)), color=(red, green, blue))
+            yield Facet(points=tuple(map(_projected, corners)), color=(red, green, blue))
 
 
 def _from_the_back(parts: Sequence[_Part]) -> Iterator[_Part]:
@@ -141,7 +153,7 @@ def _from_the_back(parts: Sequence[_Part]) -> Iterator[_Part]:
                     corners = np.array([*_cut(part.corners, side * heights)])
                     if len(corners) > 2:
                         place.append(part._replace(corners=corners))
-        near, far = (front, back) if _VIEW.depth(plane.normal) > 0 else (back, front)
+        near, far = (front, back) if _TOWARD @ plane.normal > 0 else (back, front)
         waiting += [(near, False), (here, True), (far, False)]
 
 

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import sympy as sp
+from numpy.typing import NDArray
 
 from rigidsym.algebra.evaluate import Floats, evaluate
 from rigidsym.models.body import (
@@ -26,8 +27,8 @@ from rigidsym.models.body import (
     RigidBody,
     Solid,
 )
-from rigidsym.notes.figure.camera import STANDARD, Vector, unit
 
+Vector = NDArray[Any]  # (3,), or more than one of them: (n, 3)
 Color = tuple[int, int, int]
 BLUE, GOLD, GREY = (58, 110, 190), (226, 182, 74), (176, 182, 190)
 RED, BRONZE, HOLE = (204, 72, 58), (196, 146, 56), (52, 54, 60)
@@ -277,6 +278,10 @@ def _tiles(grid: Vector) -> Iterator[Vector]:
             yield corners
 
 
+def unit(a: Vector) -> Vector:
+    return a / np.linalg.norm(a)
+
+
 def area_of(corners: Vector) -> Vector:
     """Twice the area of a polygon, as a vector along its normal."""
     edges = corners[1:] - corners[0]
@@ -288,7 +293,7 @@ def _tube(line: Vector) -> Iterator[Vector]:
     is_open = np.abs(line[0] - line[-1]).max() > 1e-9
     for k, (start, end) in enumerate(pairwise(line)):
         along = unit(end - start)
-        u = unit(np.cross(along, STANDARD[0 if abs(along[0]) < 0.8 else 1]))
+        u = unit(np.cross(along, np.eye(3)[0 if abs(along[0]) < 0.8 else 1]))
         v = np.cross(along, u)
         around = _THICK * np.array([u + v, v - u, -u - v, u - v, u + v])
         yield from _tiles(np.array([start + around, end + around])[:, ::-1])

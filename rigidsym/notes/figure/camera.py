@@ -1,41 +1,60 @@
-"""Vectors (3,), frames (3, 3) with an axis a row, and the camera that projects onto the page."""
+"""Vectors in plain floats, and the camera that projects them onto the page.
+
+Plain floats, since a figure has a dozen vectors: importing NumPy for them would take longer than
+deriving the rotation.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from math import cos, radians, sin
-from typing import Any, NamedTuple
+from math import cos, hypot, radians, sin
+from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
-Vector = NDArray[Any]
+Vector = tuple[float, float, float]
 Point = tuple[float, float]
+Frame = tuple[Vector, Vector, Vector]  # three orthonormal axes
 
-STANDARD = np.eye(3)
+STANDARD: Frame = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+
+def dot(a: Vector, b: Vector) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def cross(a: Vector, b: Vector) -> Vector:
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def combined(factors: Sequence[float], vectors: Sequence[Vector]) -> Vector:
+    """The linear combination Σ c_k v_k; of the axes of a frame, a vector from its components."""
+    pairs = list(zip(factors, vectors, strict=True))
+    x, y, z = (sum(c * v[k] for c, v in pairs) for k in range(3))
+    return (x, y, z)
 
 
 def unit(a: Vector) -> Vector:
-    return a / np.linalg.norm(a)
+    return combined((1 / hypot(*a),), (a,))
 
 
 def turned(a: Vector, axis: Vector, angle: float) -> Vector:
     """The vector rotated right-handedly about a unit axis, by an angle in radians (Rodrigues)."""
-    along = (1 - cos(angle)) * (axis @ a)
-    return cos(angle) * a + sin(angle) * np.cross(axis, a) + along * axis
+    along = (1 - cos(angle)) * dot(axis, a)
+    return combined((cos(angle), sin(angle), along), (a, cross(axis, a), axis))
 
 
-def frames(axes: Sequence[Vector], angles: Sequence[float]) -> Iterator[Vector]:
+def frames(axes: Sequence[Vector], angles: Sequence[float]) -> Iterator[Frame]:
     """The frame of space, and the frame after each turn; axes have components before the turn."""
     frame = STANDARD
     yield frame
     for axis, angle in zip(axes, angles, strict=True):
-        frame = np.array([turned(a, axis @ frame, angle) for a in frame])
+        about = combined(axis, frame)
+        x, y, z = (turned(a, about, angle) for a in frame)
+        frame = (x, y, z)
         yield frame
 
 
 def is_same(a: Vector, b: Vector) -> bool:
-    return bool(np.abs(a - b).max() < 1e-6)
+    return max(abs(p - q) for p, q in zip(a, b, strict=True)) < 1e-6
 
 
 class Camera(NamedTuple):
@@ -46,23 +65,19 @@ class Camera(NamedTuple):
     toward: Vector  # from the origin to the viewer
 
     def project(self, a: Vector) -> Point:
-        return (float(self.right @ a), float(self.up @ a))
-
-    def nearer(self, times: float) -> Camera:
-        """The camera that shows everything so many times as large."""
-        return self._replace(right=times * self.right, up=times * self.up)
+        return (dot(self.right, a), dot(self.up, a))
 
     def depth(self, a: Vector) -> float:
         """Distance from the picture plane toward the viewer; negative behind the origin."""
-        return float(self.toward @ a)
+        return dot(self.toward, a)
 
 
-def camera(azimuth: float, elevation: float, *, z_down: bool = False) -> Camera:
+def camera(azimuth: float, elevation: float, *, z_down: bool = False, scale: float = 1.0) -> Camera:
     """The camera of a viewer at this azimuth and elevation, in degrees.
 
     Where z points down, the viewer is above the ground all the same, at a negative z.
     """
     a, e, up = radians(azimuth), radians(elevation), -1 if z_down else 1
-    toward = np.array([cos(e) * cos(a), cos(e) * sin(a), up * sin(e)])
-    right = np.array([-up * sin(a), up * cos(a), 0.0])
-    return Camera(right, np.cross(toward, right), toward)
+    toward = (cos(e) * cos(a), cos(e) * sin(a), up * sin(e))
+    right = (-up * sin(a) * scale, up * cos(a) * scale, 0.0)
+    return Camera(right, cross(toward, right), toward)

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from rigidsym.formula.reader import decimal
 from rigidsym.formula.tree import Formula
-from rigidsym.notes.figure.camera import STANDARD, Point, Vector, camera, unit
+from rigidsym.notes.figure.body_mesh import Vector, unit
+from rigidsym.notes.figure.camera import Point, camera
 from rigidsym.notes.figure.drawing import (
     TYPE_SIZE,
     Drawing,
@@ -30,7 +31,7 @@ _TICK = 0.05  # its length
 _GAP = 0.3  # between drawings in a row
 _DOT = 0.035  # half the width of a mark
 _FINEST = 0.012  # between the points of a curve
-_EYE = camera(azimuth=55, elevation=26)
+_RIGHT, _UP, _TOWARD = np.array(camera(azimuth=55, elevation=26))
 _RADIUS = 0.88  # of the largest semi-axis of an ellipsoid
 _REACH = 1.35  # of its axes
 _SIDES = 72  # of the polygon that a circle is
@@ -118,7 +119,7 @@ def on_ellipsoid(
     strokes += [part for line in circles for part in surface.parts("guide", line)]
     labels = []
     for name, k in axes:
-        foot, tip, beyond_it = (surface.at(r * STANDARD[k]) for r in (1.0, _REACH, _REACH + 0.16))
+        foot, tip, beyond_it = (surface.at(r * np.eye(3)[k]) for r in (1.0, _REACH, _REACH + 0.16))
         strokes.append(Stroke("space", (_point(foot), _point(tip)), has_arrow=True))
         labels.append(Label("space", name, _point(beyond_it)))
     for path in paths:
@@ -135,12 +136,12 @@ class _Surface(NamedTuple):
 
     def at(self, points: Vector) -> Curve:
         """Points (..., 3) in the picture."""
-        return (_RADIUS * self.size * points) @ np.array([_EYE.right, _EYE.up]).T
+        return (_RADIUS * self.size * points) @ np.array([_RIGHT, _UP]).T
 
     @property
     def toward(self) -> Vector:
         """The normal of the plane, in the unit sphere, of what is seen edge on."""
-        return unit(_EYE.toward / self.size)
+        return unit(_TOWARD / self.size)
 
     def parts(self, kind: Kind, path: Vector) -> Iterator[Stroke]:
         """The path in pieces, each in front or behind; they share their ends."""
@@ -158,7 +159,7 @@ class _Surface(NamedTuple):
 
 def circle(normal: Vector, height: float) -> Vector:
     """The circle (n, 3) of the unit sphere at this height along a normal."""
-    across = unit(np.cross(normal, STANDARD[np.abs(normal).argmin()]))
+    across = unit(np.cross(normal, np.eye(3)[np.abs(normal).argmin()]))
     frame = np.array([normal, across, np.cross(normal, across)])
     radius = max(0.0, 1 - height * height) ** 0.5
     turns = (2 * pi * k / _SIDES for k in range(_SIDES + 1))

@@ -8,16 +8,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 from math import acos, atan2, ceil, cos, hypot, pi, radians, sin, tau
-from typing import Any, NamedTuple
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import NamedTuple
 
 from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.tree import Formula
 from rigidsym.formula.unicode_pen import UnicodePen
-from rigidsym.notes.figure.camera import Camera, Point, Vector, is_same
+from rigidsym.notes.figure.camera import Camera, Point, Vector, combined, dot, is_same
 from rigidsym.notes.figure.scene import Arc, Kind, Posed
+
+Segment = tuple[Point, Point]
 
 TYPE_SIZE = 0.15  # one em, in units of the drawing
 AXIS = 1.35  # lengths of the axes drawn
@@ -81,14 +80,27 @@ class Box(NamedTuple):
         is_beside = abs(x - a) >= self.half_width + other.half_width
         return not is_beside and abs(y - b) < self.half_height + other.half_height
 
-    def crossings(self, segments: NDArray[Any]) -> int:
-        """How many segments (n, 2, 2) have a point inside (the test of Liang and Barsky)."""
-        start, change = segments[:, 0] - self.centre, segments[:, 1] - segments[:, 0]
-        half = np.array([self.half_width, self.half_height])
-        with np.errstate(divide="ignore", invalid="ignore"):  # a segment along an edge
-            ends = (-half - start) / change, (half - start) / change
-        enters, leaves = np.fmin(*ends).max(axis=-1), np.fmax(*ends).min(axis=-1)
-        return int((np.fmax(enters, 0.0) <= np.fmin(leaves, 1.0)).sum())
+    def crossings(self, segments: Iterable[Segment]) -> int:
+        """How many segments have a point inside (the test of Liang and Barsky)."""
+        (x, y), half_width, half_height = self
+        left, right, below, above = x - half_width, x + half_width, y - half_height, y + half_height
+        count = 0
+        for (x0, y0), (x1, y1) in segments:
+            # most segments are on one side of the box, which this line tells faster
+            if (
+                max(x0, x1) < left
+                or min(x0, x1) > right
+                or max(y0, y1) < below
+                or min(y0, y1) > above
+            ):
+                continue
+            enters, leaves = 0.0, 1.0  # fractions of the way along the segment
+            for low, high, start, end in ((left, right, x0, x1), (below, above, y0, y1)):
+                if start != end:  # else it is between these two sides, as the line above tells
+                    ends = (low - start) / (end - start), (high - start) / (end - start)
+                    enters, leaves = max(enters, min(ends)), min(leaves, max(ends))
+            count += enters <= leaves
+        return count
 
 
 class Label(NamedTuple):
@@ -157,7 +169,8 @@ def drawn(scene: Posed, seen: Camera) -> Drawing:
         arcs.append(Stroke(kind="turn", points=ellipse.points, arc=ellipse, has_arrow=True))
         named.append(("turn", arc.turn.name, beside(ellipse.points)))
     for ray in scene.rays:
-        end = seen.project((AXIS if ray.kind in ("space", "body") else NODE) * ray.direction)
+        length = AXIS if ray.kind in ("space", "body") else NODE
+        end = seen.project(combined((length,), (ray.direction,)))
         is_line = ray is scene.line_of_nodes
         points = ((-end[0], -end[1]) if is_line else (0.0, 0.0), end)
         axes.append(Stroke(kind=ray.kind, points=points, name=ray.name, has_arrow=not is_line))
@@ -172,7 +185,7 @@ def drawn(scene: Posed, seen: Camera) -> Drawing:
 
 def _ellipse(arc: Arc, seen: Camera, radius: float, start: float, end: float) -> Ellipse:
     """Part of the circle that a point of the line describes."""
-    u, v = seen.project(radius * arc.start), seen.project(radius * arc.side)
+    u, v = (seen.project(combined((radius,), (side,))) for side in (arc.start, arc.side))
     return Ellipse(centre=seen.project(arc.centre), u=u, v=v, start=start, end=end)
 
 
@@ -200,7 +213,7 @@ def _guides(scene: Posed, seen: Camera) -> Iterator[Stroke]:
     drawn: list[Vector] = []
     for arc in scene.arcs:
         for end in (arc.before, arc.after):
-            is_known = scene.named(end) is not None and abs(arc.axis @ end) < 1e-6
+            is_known = scene.named(end) is not None and abs(dot(arc.axis, end)) < 1e-6
             if not is_known and not any(is_same(end, other) for other in drawn):
                 drawn.append(end)
                 line = (seen.project(arc.centre), seen.project(end))
@@ -238,13 +251,12 @@ def labelled(named: Iterable[Named], strokes: Sequence[Stroke]) -> tuple[Label, 
     return tuple(labels)
 
 
-def segments_of(strokes: Iterable[Stroke]) -> NDArray[Any]:
-    """The segments of all strokes, (n, 2, 2)."""
-    return np.array([pair for s in strokes for pair in pairwise(s.points)]).reshape(-1, 2, 2)
+def segments_of(strokes: Iterable[Stroke]) -> list[Segment]:
+    return [segment for stroke in strokes for segment in pairwise(stroke.points)]
 
 
 def _free(
-    half_width: float, places: Sequence[Place], segments: NDArray[Any], taken: Sequence[Box]
+    half_width: float, places: Sequence[Place], segments: Sequence[Segment], taken: Sequence[Box]
 ) -> Box:
     """The first place where nothing is touched, or else the one where the least is."""
     best, least = None, len(segments) + len(taken) + 1

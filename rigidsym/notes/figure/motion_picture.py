@@ -21,7 +21,6 @@ from rigidsym.formula.scalars import formula_of
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.models.forces import OMEGA_BODY, OMEGA_COMPONENTS, Example, Forces, initial_values
 from rigidsym.models.rotation import TIME
-from rigidsym.notes.figure.camera import STANDARD
 from rigidsym.notes.figure.chart import chart, circle, in_a_row, on_ellipsoid
 from rigidsym.notes.figure.drawing import Drawing
 from rigidsym.notes.figure.scene import BODY
@@ -225,7 +224,7 @@ def _polhodes(motions: Sequence[ExampleMotion], letters: Letters) -> Drawing:
     roots = np.sqrt(motions[0].over_time([*motions[0].inertia.diagonal()])[0])
     paths = [roots * motion.omega for motion in motions if motion.is_turning]
     paths = [path / np.linalg.norm(path, axis=1, keepdims=True) for path in paths]
-    circles = [circle(axis, 0.0) for axis in STANDARD]
+    circles = [circle(axis, 0.0) for axis in np.eye(3)]
     axes = [(letters.notation.applied(name), k) for k, name in enumerate(BODY)]
     return on_ellipsoid(paths, circles, roots.min() / roots, axes)
 
@@ -235,5 +234,5 @@ def _axis(motion: ExampleMotion) -> Drawing:
     path = motion.over_time([*motion.derivation.model.matrix.col(2)])
     low, high = path[:, 2].min(), path[:, 2].max()
     bounds = [low] if high - low < _LOW else [low, high]
-    circles = [circle(STANDARD[2], height) for height in (0.0, *bounds)]
+    circles = [circle(np.eye(3)[2], height) for height in (0.0, *bounds)]
     return on_ellipsoid([path], circles, np.ones(3), [(formula("z"), 2)])

@@ -15,7 +15,6 @@ from itertools import combinations
 from math import hypot, radians, sin
 from typing import Literal, NamedTuple
 
-import numpy as np
 import sympy as sp
 
 from rigidsym.formula.letters import Letters
@@ -26,8 +25,12 @@ from rigidsym.models.rotation import AXES, RotationModel, Turn
 from rigidsym.notes.figure.camera import (
     STANDARD,
     Camera,
+    Point,
     Vector,
     camera,
+    combined,
+    cross,
+    dot,
     frames,
     is_same,
     unit,
@@ -87,15 +90,15 @@ class Arc(NamedTuple):
     @property
     def centre(self) -> Vector:
         """The foot of the perpendicular from the end of the line to the axis."""
-        return (self.before @ self.axis) * self.axis
+        return combined((dot(self.before, self.axis),), (self.axis,))
 
     @property
     def start(self) -> Vector:
-        return self.before - self.centre
+        return combined((1.0, -1.0), (self.before, self.centre))
 
     @property
     def side(self) -> Vector:
-        return np.cross(self.axis, self.before)
+        return cross(self.axis, self.before)
 
 
 class View(NamedTuple):
@@ -108,8 +111,8 @@ class View(NamedTuple):
 
     @property
     def camera(self) -> Camera:
-        seen = camera(self.azimuth, self.elevation, z_down=self.z_down)
-        return seen.nearer(_MANY_NEARER) if len(self.angles) > _MANY else seen
+        scale = _MANY_NEARER if len(self.angles) > _MANY else 1.0
+        return camera(self.azimuth, self.elevation, z_down=self.z_down, scale=scale)
 
 
 class Posed(NamedTuple):
@@ -144,9 +147,15 @@ class Scene:
     def posed(self, angles: Sequence[float]) -> Posed:
         """The scene at these angles, in radians."""
         bases = list(frames([turn.axis for turn in self.turns], angles))
-        rays = (r._replace(direction=r.direction @ bases[r.frame]) for r in self.rays)
+        rays = (r._replace(direction=combined(r.direction, bases[r.frame])) for r in self.rays)
         arcs = (
-            Arc(turn, turn.axis @ before, angle, turn.start @ before, turn.start @ after)
+            Arc(
+                turn,
+                combined(turn.axis, before),
+                angle,
+                combined(turn.start, before),
+                combined(turn.start, after),
+            )
             for turn, angle, before, after in zip(
                 self.turns, angles, bases, bases[1:], strict=False
             )
@@ -170,16 +179,18 @@ class Scene:
         if posed.line_of_nodes:
             x, y = seen.project(posed.line_of_nodes.direction)
             ends.append((-x, -y))
-        first, second = np.array([*combinations(ends, 2)]).swapaxes(0, 1)
-        lengths = np.hypot(*first.T) * np.hypot(*second.T) + 1e-9
-        sines = np.abs(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]) / lengths
-        is_acute = (first * second).sum(axis=1) >= 0
-        return min(
-            np.hypot(*(first - second).T).min(),
-            min(hypot(*end) for end in ends),
-            2 * sines.min(where=is_acute, initial=1.0),
-            min(1.5 * abs(sin(arc.angle) * seen.depth(arc.axis)) for arc in posed.arcs),
-        )
+        openings = [1.5 * abs(sin(arc.angle) * seen.depth(arc.axis)) for arc in posed.arcs]
+        lengths = [hypot(*end) for end in ends]
+        return min(*openings, *lengths, *(_separation(*pair) for pair in combinations(ends, 2)))
+
+
+def _separation(one: Point, other: Point) -> float:
+    """The distance of two ends, or twice the sine of an acute angle between them if it is less."""
+    (a, b), (x, y) = one, other
+    distance = hypot(a - x, b - y)
+    if a * x + b * y < 0:
+        return distance
+    return min(distance, 2 * abs(a * y - b * x) / (hypot(a, b) * hypot(x, y) + 1e-9))
 
 
 def _merged(rays: Iterator[Ray]) -> Iterator[Ray]:
@@ -205,12 +216,12 @@ def scene_of(model: RotationModel, letters: Letters) -> Scene | None:
     are_numbers = all(part.is_number for turn in turns for part in turn.direction)
     if not (1 <= len(turns) <= MOST_TURNS and are_numbers):
         return None
-    axes = [unit(np.array([*turn.direction], float)) for turn in turns]
+    axes = [unit(_floats(turn)) for turn in turns]
     drawn = []
     for k, (turn, axis, radius) in enumerate(zip(turns, axes, RADII, strict=False)):
         # the line that is carried along: the axis of the next turn, or of the one before
         lines = [*(axes[k + 1 : k + 2] or axes[:k][-1:]), *STANDARD]
-        start = next((line for line in lines if abs(line @ axis) < 0.75), STANDARD[0])
+        start = next((line for line in lines if abs(dot(line, axis)) < 0.75), STANDARD[0])
         names = (n for n, other in zip(_SPACE, STANDARD, strict=True) if is_same(start, other))
         name = formula_of(turn.angle, letters)
         drawn.append(Rotary(axis, start, radius, name, next(names, "axis")))
@@ -220,6 +231,11 @@ def scene_of(model: RotationModel, letters: Letters) -> Scene | None:
         fixed=tuple(float(turn.angle) if turn.angle.is_number else None for turn in turns),
         z_down=model.z_down,
     )
+
+
+def _floats(turn: Turn) -> Vector:
+    x, y, z = map(float, turn.direction)
+    return (x, y, z)
 
 
 def turns_of(model: RotationModel) -> tuple[Turn, ...]:
