@@ -44,11 +44,10 @@ def exactly(table: np.ndarray) -> tuple[mpmath.mpf, np.ndarray, np.ndarray]:
 @pytest.mark.parametrize(
     "table",
     [
-        rows(far=1e8),  # a body of a metre, a hundred thousand kilometres away
         rows(far=1e12),  # where the centre of mass is rounded to 0.1 mm
         np.vstack([[1e-3, 0, 0, 0], rows(far=1e9)]),  # the first particle is an outlier
     ],
-    ids=["far", "farther", "outlier first"],
+    ids=["far", "outlier first"],
 )
 def test_a_cloud_loses_nothing_that_the_data_hold(table):
     mass, centre, inertia = exactly(table)
@@ -60,15 +59,6 @@ def test_a_cloud_loses_nothing_that_the_data_hold(table):
     assert abs(found.mass - mass) <= bound * float(mass)
     assert max(abs(found.centre - centre)) <= EPS * float(max(abs(centre))) + bound * size
     assert max(abs((found.inertia - inertia).ravel())) <= bound * float(max(abs(inertia.ravel())))
-
-
-@pytest.mark.parametrize(("order", "kind"), [("C", "<f8"), ("F", ">f8"), ("C", "<f4")])
-def test_an_npy_file_is_the_array(tmp_path, order, kind):
-    table = np.asarray(rows(20_000).astype(kind), order=order)
-    np.save(tmp_path / "cloud.npy", table)
-    found, plain = inertia_of(tmp_path / "cloud.npy"), inertia_of(table.astype(float))
-    assert found.count == len(table)
-    assert (found.inertia == plain.inertia).all()
 
 
 def test_columns_by_name_in_every_format(tmp_path):
@@ -91,33 +81,14 @@ def test_columns_by_name_in_every_format(tmp_path):
         assert (inertia_of(tmp_path / file).inertia == expected).all(), file
 
 
-@pytest.mark.parametrize(
-    "content",
-    [
-        "root:x:0:0:root:/root:/bin/bash\n",
-        "machine host login me\n",
-        "user 12 34\n",
-        "x,y,z,m\nalice,secret,21,31\n",
-    ],
-)
-def test_a_file_of_something_else_is_described_and_not_quoted(tmp_path, content):
+def test_a_file_of_something_else_is_described_and_not_quoted(tmp_path):
+    content = "root:x:0:0:root:/root:/bin/bash\n"
     (tmp_path / "cloud.txt").write_text(content * 3)
     with pytest.raises(BodyError) as error:
         inertia_of(tmp_path / "cloud.txt")
     said = str(error.value).removeprefix(str(tmp_path / "cloud.txt"))
     assert not {*re.split(r"[:,\s]+", content)} - {*"xyzm", ""} & {*re.split(r"[^\w/]+", said)}
     assert f"{len(content) * 3} bytes without a column named x" in said or "field 1 is not" in said
-
-
-def test_what_is_no_file_of_numbers_is_a_body_error(tmp_path):
-    for file in ("cloud.npy", "cloud.parquet"):
-        (tmp_path / file).write_bytes(b"")
-        with pytest.raises(BodyError, match=file):
-            inertia_of(tmp_path / file)
-    columns = {"x": ["one"], "y": [0.0], "z": [0.0]}
-    pl.DataFrame(columns).write_parquet(tmp_path / "cloud.parquet")
-    with pytest.raises(BodyError, match="no numbers in the columns x"):
-        inertia_of(tmp_path / "cloud.parquet")
 
 
 def test_units_are_converted_and_a_negative_mass_may_be_allowed(tmp_path):
@@ -136,22 +107,12 @@ def with_entry(row: int, column: int, value: float) -> np.ndarray:
 @pytest.mark.parametrize(
     ("table", "fault"),
     [
-        (
-            with_entry(7, 2, np.nan),
-            r"particle 7, counted from 0: expected finite numbers, got mass",
-        ),
         (with_entry(7, 0, np.inf), r"particle 7, counted from 0"),
         (with_entry(7, 0, -1.0), "particle 7, counted from 0: expected a mass that is not neg"),
-        (rows(20) * (-1, 1, 1, 1), r"expected a mass that is not negative, got mass -"),
         (rows(20) * (0, 1, 1, 1), r"the total mass is 0 kg; expected a positive mass"),
-        (np.tile([1e308, 0, 0, 0], (3, 1)), r"the total mass is inf kg; expected a positive mass"),
         (rows(20)[:0], r"expected at least one particle, got none"),
         (rows(20)[:, :2], r"expected 3 columns \(x, y, z\) or 4 \(m, x, y, z\), got 2"),
         (rows(20) * (1, 1e200, 1, 1), r"too large for double precision"),
-        (
-            np.array([("lead",)], dtype=[("material", "U4")]),
-            r"no field of the structured array holds numbers",
-        ),
         (rows(20).ravel(), r"expected numbers of shape \(rows, columns\), got float64 of"),
     ],
 )
@@ -163,15 +124,12 @@ def test_what_is_no_cloud_is_refused(table, fault):
 @pytest.mark.parametrize(
     ("text", "fault"),
     [
-        ("m,x,y,z\n1,0,0,0\n1,0,zero,0\n", "line 3"),
         ("m,x,y,z\n1,0,0,0\n1,0,0\n", "line 3: 3 fields, expected 4"),
         ("m,x,y\n1,0,0\n", r"cloud\.csv: no column z among m, x, y"),
         (
             "m,x,y,z\n1,0,0,0\n\n# -\n-2,0,0,0\n",
             r"csv, line 5: expected a mass that .* got mass -2",
         ),
-        ("m,x,y,z\n1,0,0,0\n\n1,0,nan,0\n", r"csv, line 4: expected finite numbers, got mass 1"),
-        ("m,x,y,z,z\n1,0,0,0,0\n", "two columns are named z"),
         ("x,y,z,masse\n0,0,0,1\n", r"column m or mass among x, y, z, masse; is masse the mass"),
     ],
 )
@@ -181,17 +139,12 @@ def test_a_wrong_line_of_text_is_named(tmp_path, text, fault):
         inertia_of(tmp_path / "cloud.csv")
 
 
-# principal axes
-
-
 @pytest.mark.parametrize(
     ("inertia", "sentence"),
     [
-        (np.diag([3.0, 1.0, 2.0]), ""),
         (rows(3)[:, 1:] @ rows(3)[:, 1:].T + np.eye(3) * 9, ""),
         (np.eye(3) * 2, "All principal moments are equal"),
         (np.diag([1.0, 1.0, 1.5]), "The first two principal moments are equal"),
-        (np.diag([1.0, 1.5, 1.5]), "The last two principal moments are equal"),
     ],
 )
 def test_principal_axes_are_right_handed_and_diagonalise(inertia, sentence):
@@ -204,12 +157,8 @@ def test_principal_axes_are_right_handed_and_diagonalise(inertia, sentence):
     assert bool(found.repeated) == bool(sentence)
 
 
-# meshes
-
 MESHES = {
     "box": trimesh.creation.box(extents=(1, 2, 3)),
-    "cylinder": trimesh.creation.cylinder(radius=0.5, height=2, sections=48),
-    "sphere": trimesh.creation.icosphere(subdivisions=2),
     "ring": trimesh.creation.annulus(r_min=0.4, r_max=1.0, height=0.3),
 }
 TURN = trimesh.transformations.euler_matrix(0.3, 0.5, 0.7)
@@ -217,7 +166,7 @@ TURN = trimesh.transformations.euler_matrix(0.3, 0.5, 0.7)
 
 @pytest.mark.parametrize(
     ("name", "ending"),
-    [("box", "stl"), ("box", "obj"), ("box", "ply"), ("ring", "stl"), ("sphere", "ply")],
+    [("box", "obj"), ("ring", "stl"), ("ring", "ply")],
 )
 def test_meshes_agree_with_trimesh(tmp_path, name, ending):
     mesh = MESHES[name].copy()
@@ -265,20 +214,6 @@ def test_open_torn_and_inverted_meshes_are_refused():
     assert mesh_inertia(Mesh(vertices=box.vertices, faces=box.faces[1:]), mass=1.0, allow=True)
 
 
-def test_files_that_hold_no_mesh_are_refused(tmp_path):
-    (tmp_path / "empty.stl").write_text("solid nothing\nendsolid nothing\n")
-    with pytest.raises(BodyError, match=r"empty\.stl"):
-        read_mesh_file(tmp_path / "empty.stl")
-    MESHES["box"].export(tmp_path / "box.stl")
-    with pytest.raises(BodyError, match=r"vertex \d is not finite"):
-        read_mesh_file(tmp_path / "box.stl", scale=np.inf)
-    with pytest.raises(BodyError, match="no such mesh"):
-        read_mesh_file(tmp_path / "none.stl")
-
-
-# the command
-
-
 def test_the_command_shows_and_prints_as_json(tmp_path):
     np.save(tmp_path / "cloud.npy", rows())
     shown = CliRunner().invoke(commands, ["inertia", str(tmp_path / "cloud.npy")])
@@ -287,7 +222,7 @@ def test_the_command_shows_and_prints_as_json(tmp_path):
     in_jupyter = inertia_of(tmp_path / "cloud.npy")._repr_mimebundle_()
     assert in_jupyter["text/plain"] in shown.output
     assert "principal axes as columns, right-handed" in shown.output
-    MESHES["sphere"].export(tmp_path / "ball.stl")
+    MESHES["ring"].export(tmp_path / "ball.stl")
     ball = [str(tmp_path / "ball.stl"), "--density", "1000", "--json"]
     assert '"principal_moments"' in CliRunner().invoke(commands, ["inertia", *ball]).output
 
@@ -296,15 +231,13 @@ def test_the_command_shows_and_prints_as_json(tmp_path):
     ("file", "options", "message"),
     [
         ("cloud.csv", ["--density", "3"], "is a file of particles; --density is for meshes"),
-        ("cloud.csv", ["--scale", "0.001"], "is a file of particles; --scale is for meshes"),
         ("ball.stl", ["--columns", "x,y,z"], "is a mesh; --columns is for particles"),
-        ("ball.stl", [], "is a mesh: expected --mass or --density"),
         ("ball.stl", ["--mass", "-2"], "'--mass': -2.0 is not in the range x>0"),
     ],
 )
 def test_an_option_that_does_not_fit_is_refused(tmp_path, file, options, message):
     (tmp_path / "cloud.csv").write_text("m,x,y,z\n1,0,0,0\n2,1,0,0\n")
-    MESHES["sphere"].export(tmp_path / "ball.stl")
+    MESHES["ring"].export(tmp_path / "ball.stl")
     done = CliRunner().invoke(commands, ["inertia", str(tmp_path / file), *options])
     assert done.exit_code == 2
     assert message in done.output
