@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from rigidsym.mechanics.conversions.conversions import Conversions
     from rigidsym.notes.formats.jupyter import EquationPrinter
     from rigidsym.notes.note import Note
-    from rigidsym.simulation.ensemble import Ensemble
     from rigidsym.simulation.trajectory import Trajectory
 
 QUANTITIES = NAMES
@@ -148,21 +147,6 @@ class Motion(Derivation):
         from rigidsym.simulation.solver import simulate
 
         return simulate(self, initial, parameters, t_end, **options)
-
-    def simulate_many(
-        self,
-        initial: Mapping[str, Any],
-        parameters: Mapping[str, Any],
-        t_end: float,
-        **options: Any,
-    ) -> Ensemble:
-        """Many motions at once: values of `initial` and `parameters` may be arrays, (m,).
-
-        For the options see `rigidsym.simulation.ensemble.simulate_ensemble`.
-        """
-        from rigidsym.simulation.ensemble import simulate_ensemble
-
-        return simulate_ensemble(self, initial, parameters, t_end, **options)
 
     def page(
         self,

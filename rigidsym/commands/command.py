@@ -22,13 +22,17 @@ else:  # generic from click 8.2 on
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 Options = Mapping[str, Any]  # the values of a command's options, by name
 
+_MANY = (
+    "integrate `state_derivative` of the kernels, which takes arrays of states and parameters, as "
+    "in docs/howto/simulate.md"
+)
 _REMOVED = {  # options that left: what to use instead
     "--degrees": "functions take radians; convert angles with np.radians and np.degrees, or a log "
     "with `eval --degrees`",
-    "--ensemble": "--grid varies initial values and parameters; in Python, `simulate_many` takes "
-    "arrays of any values",
+    "--ensemble": _MANY,
     "--fragment": "write a template with the sections that you need, chosen by --style NAME",
     "--frames": "write the names into a template, chosen by --style NAME",
+    "--grid": _MANY,
     "--language": "a language is a folder of templates, chosen by --style LANGUAGE/NAME",
     "--memory": "limit the memory of the shell with `ulimit -v`",
     "--method": "an integrator is chosen by `rigidsym simulate --method`",
@@ -37,8 +41,8 @@ _REMOVED = {  # options that left: what to use instead
     "--only": "--quantity names the quantities",
     "--quantity": "--only names the quantities",
     "--scheduler": "use dask.array.apply_gufunc with a kernel, as in docs/howto/cluster.md",
-    "--seed": "--grid varies initial values and parameters over a range",
-    "--spread": "--grid varies initial values and parameters over a range",
+    "--seed": _MANY,
+    "--spread": _MANY,
 }
 POSITIVE = click.FloatRange(min=0, min_open=True)
 

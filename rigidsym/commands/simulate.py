@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -23,30 +22,9 @@ from rigidsym.system.files import whole_file, write_text
 from rigidsym.system.processes import bar
 
 if TYPE_CHECKING:
-    from rigidsym.simulation.ensemble import Ensemble
     from rigidsym.simulation.trajectory import Trajectory
 
 _ARCHIVE = ".npz"
-
-
-def _grid(context: click.Context, _: object, axes: Sequence[str]) -> dict[str, Any]:
-    """Values by name, each axis of the grid as NAME=FROM:TO:COUNT; every combination of them."""
-    values = {}
-    for text in axes:
-        name, _, numbers = text.partition("=")
-        if name in values:
-            raise click.UsageError(f"--grid gives {name} twice", context)
-        try:
-            first, last, count = numbers.split(":")
-            values[name] = np.linspace(float(first), float(last), int(count))
-            if not values[name].size:
-                raise ValueError
-        except ValueError:
-            raise click.UsageError(
-                f"--grid {text}: expected NAME=FROM:TO:COUNT, as in theta=0.1:1.2:50", context
-            ) from None
-    points = np.meshgrid(*values.values(), indexing="ij")
-    return {name: each.ravel() for name, each in zip(values, points, strict=True)}
 
 
 @make(
@@ -80,15 +58,9 @@ def _grid(context: click.Context, _: object, axes: Sequence[str]) -> dict[str, A
     click.option(
         "--samples",
         type=click.IntRange(2),
-        help="Number of output times.  [default: 1001; 101 for a grid]",
-    ),
-    click.option(
-        "--grid",
-        multiple=True,
-        callback=_grid,
-        metavar="NAME=FROM:TO:COUNT",
-        help="Simulate COUNT values of an initial value or parameter; if repeated, every "
-        "combination.",
+        default=1001,
+        show_default=True,
+        help="Number of output times.",
     ),
     file("--out", help="Write the motion: .csv, .npy, .npz or .parquet."),
     file("--plot", help="Draw the motion: .png, .svg or .pdf."),
@@ -102,42 +74,27 @@ def command(source: str, **options: Any) -> None:
     integral drifts. If the integration stops early, the motion up to that time is written, and the
     exit code is 1.
     """
-    out, plot, animate, grid = (options[name] for name in ("out", "plot", "animate", "grid"))
+    out, plot, animate = (options[name] for name in ("out", "plot", "animate"))
     if out is not None:
         check_ending(out, _ARCHIVE)
     for path, endings in ((plot, PICTURES), (animate, (".html",))):
         if path is not None:
             check_picture(path, endings)
-    if grid and (plot is not None or animate is not None):
-        raise click.UsageError("--plot and --animate show one motion, not a grid")
-    if grid and options["method"] != METHODS[0]:
-        raise click.UsageError("a grid has its own integrator; leave --method out")
     motion = _motion(source, is_page=animate is not None)
     examples = motion.forces.examples if motion.forces else ()
     example = examples[0] if examples else Example({}, {}, 10.0)
     initial = dict(options["initial"] or example.initial)
     constants = {**example.parameters, **dict(options["constants"])}
     t_end = example.time if options["t_end"] is None else options["t_end"]
-    result: Any  # a Trajectory, or the Ensemble of a grid
     with bar(motion.name) as progress:
-        if grid:
-            names = {name for a in motion.arguments if a.name == "parameters" for name in a.names}
-            constants |= {name: values for name, values in grid.items() if name in names}
-            initial |= {name: values for name, values in grid.items() if name not in names}
-            first, count = motion.argument("q").names[0], len(next(iter(grid.values())))
-            initial[first] = np.broadcast_to(initial.get(first, 0.0), count)
-            samples = options["samples"] or 101
-            many = motion.simulate_many
-            result = many(initial, constants, t_end, samples=samples, progress=progress)
-        else:
-            result = motion.simulate(
-                initial,
-                constants,
-                t_end,
-                samples=options["samples"] or 1001,
-                method=options["method"],
-                progress=progress,
-            )
+        result = motion.simulate(
+            initial,
+            constants,
+            t_end,
+            samples=options["samples"],
+            method=options["method"],
+            progress=progress,
+        )
     click.echo(result.report())
     if out is not None:
         _write(result, out)
@@ -170,14 +127,12 @@ def _motion(source: str, *, is_page: bool) -> Motion:
     return motion
 
 
-def _write(result: Trajectory | Ensemble, out: Path) -> None:
-    """The times and states in a table, or with arrays of more axes in an archive of NumPy."""
+def _write(result: Trajectory, out: Path) -> None:
+    """The times and states in a table, or with the rotation matrices in an archive of NumPy."""
     columns = result.columns()
     if out.suffix == _ARCHIVE:
-        others = ("t", "states", "rotation_matrix")
-        whole: dict[str, Any] = {n: getattr(result, n) for n in others if hasattr(result, n)}
         with whole_file(out) as archive:
-            np.savez(archive, **columns | whole)
+            np.savez(archive, **columns, rotation_matrix=result.rotation_matrix)
     else:
         rows = np.column_stack([*columns.values()])
         write_table(out, tuple(columns), rows.dtype, [(rows, ())])

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from rigidsym.errors import BodyError, ModelError, QuantityError, offer
+from rigidsym.errors import ModelError, QuantityError, offer
 from rigidsym.kernels.module import generate
 from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.derive import derive
@@ -58,11 +58,9 @@ class Problem:
         derivation: Derivation,
         initial: Mapping[str, Any],
         parameters: Mapping[str, float],
-        *,
-        called: str = "the motion",
     ) -> None:
         """Raises ModelError for names that are missing or unknown, and for an impossible body."""
-        self.derivation, self.called = derivation, called
+        self.derivation = derivation
         self.model, self.forces = derivation.model, derivation.forces or Forces()
         self.names = {a.name: a.names for a in derivation.arguments}
         self.coordinates = self.names["q"]
@@ -76,8 +74,8 @@ class Problem:
         self.kernels: ModuleType = generate(
             self._functions, "numpy", conversions=self.is_alone
         ).load()
-        self.start = self.state_of(initial)
-        self.check_rotations(self.start[None])
+        self.start = self._state(initial)
+        self._check_rotation(self.start)
 
     @cached_property
     def _functions(self) -> Derivation:
@@ -119,23 +117,19 @@ class Problem:
         functions = {step.quantity.name: step}
         return generate(replace(self.derivation.select(()), functions=functions)).load()
 
-    def check_rotations(self, states: Array) -> None:
-        """Raises ModelError for the first of the states, (m, k), whose R is no rotation."""
-        rotation = self.rotation(states)
-        error = np.abs(rotation @ np.swapaxes(rotation, 1, 2) - np.eye(3)).max(axis=(1, 2))
+    def _check_rotation(self, state: Array) -> None:
+        """Raises ModelError for a state (k,) whose R is no rotation."""
+        rotation = self.rotation(state)
+        errors = [np.abs(rotation @ rotation.T - np.eye(3)).max()]
         if self.model.constraints:
             bounds = sp.ImmutableMatrix(self.model.constraints)
             functions = self._loaded(self._step("bounds", bounds, ("q",), shape="matrix"))
             inputs = [self.parameters] if "parameters" in self.names else []
-            off = functions.bounds(states[:, : self.count], *inputs)
-            error = np.maximum(error, np.abs(off).max(axis=(1, 2)))
-        for k in np.flatnonzero(error > _UNIT)[:1]:
-            which = f"motion {k + 1} of {len(states)}: " if len(states) > 1 else ""
-            q = zip(self.coordinates, states[k].tolist(), strict=False)
+            errors.append(np.abs(functions.bounds(state[: self.count], *inputs)).max())
+        if max(errors) > _UNIT:
+            q = zip(self.coordinates, state.tolist(), strict=False)
             values = ", ".join(f"{name} = {value:.15g}" for name, value in q)
-            raise ModelError(
-                f"{self.derivation.name}: {which}no rotation has the coordinates {values}"
-            )
+            raise ModelError(f"{self.derivation.name}: no rotation has the coordinates {values}")
 
     def _parameters(self, parameters: Mapping[str, float]) -> list[float]:
         constants = self.names.get("parameters", ())
@@ -163,37 +157,10 @@ class Problem:
         )
         return values
 
-    def parameters_of(self, members: int, parameters: Mapping[str, Any]) -> Array:
-        """The parameters of many motions, (members, p), from numbers and arrays by name."""
-        values = (parameters.get(name, 1.0) for name in self.names["parameters"])
-        return _stacked([np.broadcast_to(value, members) for value in values])
+    def _state(self, initial: Mapping[str, Any]) -> Array:
+        """The state at t = 0, (k,), from coordinates and rates by name or the angular velocity.
 
-    def check_bodies(self, members: int, parameters: Mapping[str, Any]) -> None:
-        """Raises BodyError for the first of many bodies, of arrays, that cannot be."""
-        body = self.derivation.body
-        assert body is not None
-        varied = [p for p in body.parameters if np.ndim(parameters.get(p.symbol.name, 1.0))]
-        if not varied:
-            return
-        doubtful = np.zeros(members, bool)
-        for name in (p.symbol.name for p in varied if p.positive):
-            doubtful |= ~(np.broadcast_to(parameters[name], members) > 0)
-        if body.inertia.free_symbols:
-            step = self._step("inertia", body.inertia, (), shape="matrix")
-            tensors = self._loaded(step).inertia(self.parameters_of(members, parameters))
-            a, b, c = np.linalg.eigvalsh(tensors).T
-            doubtful |= ~((a >= 0) & (c <= a + b))
-        for k in np.flatnonzero(doubtful):  # the limits of rounding are those of one body
-            try:
-                self._parameters({n: v[k] if np.ndim(v) else v for n, v in parameters.items()})
-            except BodyError as error:
-                raise BodyError(f"motion {k + 1} of {members}: {error}") from None
-
-    def state_of(self, initial: Mapping[str, Any]) -> Array:
-        """The state at t = 0, (..., k), from coordinates and rates by name or the angular velocity.
-
-        Values that are arrays broadcast; those that are omitted are 0, and without any coordinate
-        R = 1.
+        What is omitted is 0, and without any coordinate R = 1.
         """
         rates = self.names["q_dot"]
         known = (*self.coordinates, *rates, OMEGA, *OMEGA_COMPONENTS)
@@ -205,22 +172,20 @@ class Problem:
         if turning and not initial.keys().isdisjoint(rates):
             raise ModelError(f"initial values: expected rates or {OMEGA}, not both")
         values = initial_values(self.model, {n: v for n, v in initial.items() if n != OMEGA})
-        q = _stacked([values[name] for name in self.coordinates])
+        q = np.array([values[name] for name in self.coordinates], float)
         if not turning:
-            velocity = _stacked([values[name] for name in rates])
+            velocity = np.array([values[name] for name in rates], float)
             if self.is_euler:
                 velocity = self.kernels.angular_velocity_body(q, velocity, *self.angles)
         else:
             velocity = np.asarray(initial.get(OMEGA, [0.0] * 3), float)
-            if velocity.shape[-1:] != (3,):
+            if velocity.shape != (3,):
                 raise ModelError(f"{OMEGA}: expected three components, got {initial[OMEGA]}")
             if OMEGA not in initial:
-                velocity = _stacked([values[name] for name in OMEGA_COMPONENTS])
+                velocity = np.array([values[name] for name in OMEGA_COMPONENTS], float)
             if not self.is_euler:
                 velocity = self._rates_at_start(q, velocity)
-        many = np.broadcast_shapes(q.shape[:-1], velocity.shape[:-1])
-        parts = [np.broadcast_to(part, (*many, part.shape[-1])) for part in (q, velocity)]
-        return np.concatenate(parts, axis=-1)
+        return np.concatenate([q, velocity])
 
     def _rates_at_start(self, q: Array, omega: Array) -> Array:
         solved = getattr(self.kernels, "rates_from_angular_velocity_body", None)
@@ -229,11 +194,9 @@ class Problem:
                 f"{self.derivation.name}: the rates do not follow from {OMEGA}; expected rates"
             )
         rates = np.asarray(solved(q, omega, *self.angles))
-        lost = np.flatnonzero(~np.isfinite(rates).all(axis=-1))
-        if len(lost):
-            which = f"motion {lost[0] + 1} of {len(rates)}" if rates.ndim > 1 else self.called
+        if not np.isfinite(rates).all():
             raise ModelError(
-                f"{self.derivation.name}: {which} starts at a pole of the coordinates, "
+                f"{self.derivation.name}: the motion starts at a pole of the coordinates, "
                 f"where the rates do not follow from {OMEGA}; expected rates, or a rotation "
                 "without this pole, such as unit_quaternion"
             )
@@ -250,17 +213,6 @@ class Problem:
         """The derivative of one state."""
         inputs = (t, *y.tolist(), *(self.parameters if self._takes_parameters else ()))
         return np.array(self.kernels.state_derivative_scalar(*inputs))
-
-    @cached_property
-    def _slopes_of_many(self) -> ModuleType:
-        if not self.is_quaternion:
-            return self.kernels
-        return self._loaded(self.slopes_step)
-
-    def slopes_of_many(self, t: float, y: Array, constants: Array) -> Array:
-        """The derivative of states (m, k), with parameters of all (p,) or of each (m, p)."""
-        inputs = (t, y, constants) if self._takes_parameters else (t, y)
-        return np.asarray(self._slopes_of_many.state_derivative(*inputs))
 
     @property
     def _takes_parameters(self) -> bool:
@@ -388,22 +340,22 @@ class Problem:
             q_dot=self.rates(q, omega) if self.is_euler else states[:, self.count :],
             angular_velocity_body=omega,
             rotation_matrix=self.rotation(states),
-            first_integrals=self.integrals(t, states, self.parameters),
+            first_integrals=self._integrals(t, states),
             inertia=self.inertia,
             is_in_angles={*self.model.coordinate_units} == {"rad"},
             ended=ended,
             remarks=tuple(remarks),
         )
 
-    def integrals(self, t: Array, states: Array, constants: Any) -> dict[str, Array]:
-        """The first integrals by name; times broadcast with the states but for their last axis."""
+    def _integrals(self, t: Array, states: Array) -> dict[str, Array]:
+        """The first integrals by name, (n,) each."""
         names = [integral.name for integral in self.derivation.first_integrals]
         if not names:
             return {}
-        known = {"y": states, "t": t, "parameters": constants}
+        arguments = {"y": states, "t": t, "parameters": self.parameters}
         inputs = self.derivation.step("first_integrals").quantity.inputs
-        values = np.asarray(self.kernels.first_integrals(*map(known.get, inputs)))
-        return {name: values[..., k] for k, name in enumerate(names)}
+        values = np.asarray(self.kernels.first_integrals(*map(arguments.get, inputs)))
+        return dict(zip(names, values.T, strict=True))
 
 
 def _has_limits(torque: sp.ImmutableMatrix, divisor: sp.Expr, model: RotationModel) -> bool:
@@ -436,11 +388,6 @@ def _divisors(value: sp.Expr) -> Iterator[sp.Expr]:
             yield sp.cos(node.args[0])
         elif isinstance(node, sp.cot | sp.csc):
             yield sp.sin(node.args[0])
-
-
-def _stacked(values: Sequence[Any]) -> Array:
-    """Numbers or arrays as the components of one array."""
-    return np.stack(np.broadcast_arrays(*values), axis=-1).astype(float)
 
 
 def _check_finite(what: str, values: Mapping[str, Any]) -> None:

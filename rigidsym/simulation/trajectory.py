@@ -40,9 +40,18 @@ class Trajectory:
 
     @property
     def changes(self) -> Mapping[str, Array]:
-        """The relative change of each first integral, (n,); NaN at a pole, where rates are."""
-        momentum = self.inertia @ self.angular_velocity_body[0]
-        return relative_changes(self.first_integrals, np.array(np.linalg.norm(momentum)))
+        """The relative change of each first integral, (n,); NaN at a pole, where rates are.
+
+        A momentum may begin at 0, so its size is taken to be at least |L| at the beginning.
+        """
+        momentum = np.linalg.norm(self.inertia @ self.angular_velocity_body[0])
+        changes = {}
+        for name, values in self.first_integrals.items():
+            size = abs(values[0])
+            if "momentum_" in name and "squared" not in name:
+                size = max(size, momentum)
+            changes[name] = np.abs(values - values[0]) / (size or 1.0)
+        return changes
 
     @property
     def drift(self) -> Mapping[str, float]:
@@ -72,20 +81,6 @@ class Trajectory:
     def plot(self, path: str | Path) -> Path:
         """Draw the motion into a PNG, SVG or PDF file. Needs Matplotlib."""
         return save_plot(Path(path), self)
-
-
-def relative_changes(integrals: Mapping[str, Array], momentum: Array) -> dict[str, Array]:
-    """Of values over time, (n, ...), by name; `momentum` is |L| at the beginning, (...).
-
-    A momentum may begin at 0, so its size is taken to be at least |L|.
-    """
-    changes = {}
-    for name, values in integrals.items():
-        size = np.abs(values[0])
-        if "momentum_" in name and "squared" not in name:
-            size = np.maximum(size, momentum)
-        changes[name] = np.abs(values - values[0]) / np.where(size == 0, 1.0, size)
-    return changes
 
 
 # --- pictures

@@ -245,7 +245,7 @@ def test_an_option_that_does_not_fit_is_refused(tmp_path, file, options, message
 
 @pytest.mark.parametrize(
     "module",
-    ["data.mass", "tools.identify.identification", "simulation.solver", "simulation.ensemble"],
+    ["data.mass", "tools.identify.identification", "simulation.solver"],
 )
 def test_the_examples_in_docstrings_run(module):
     failed, attempted = doctest.testmod(importlib.import_module(f"rigidsym.{module}"))
