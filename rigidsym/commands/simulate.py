@@ -132,7 +132,7 @@ def _write(result: Trajectory, out: Path) -> None:
     columns = result.columns()
     if out.suffix == _ARCHIVE:
         with whole_file(out) as archive:
-            np.savez(archive, **columns, rotation_matrix=result.rotation_matrix)
+            np.savez(archive, **{**columns, "rotation_matrix": result.rotation_matrix})
     else:
         rows = np.column_stack([*columns.values()])
         write_table(out, tuple(columns), rows.dtype, [(rows, ())])

@@ -1,6 +1,6 @@
 """Bodies as data: distributions of mass, and what follows of them: mass, centre, inertia tensor.
 
-A distribution is particles, a solid, a polyhedron, or a composition of parts.
+A distribution is particles, a solid, or a composition of parts.
 """
 
 from __future__ import annotations
@@ -91,43 +91,6 @@ class Solid:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Polyhedron:
-    """A solid of uniform density, bounded by plane faces.
-
-    A face is a list of its corners, counterclockwise as seen from outside.
-    """
-
-    vertices: tuple[sp.ImmutableMatrix, ...]  # (3, 1) each
-    faces: tuple[tuple[int, ...], ...]
-    mass: sp.Expr | None = None
-    density: sp.Expr | None = None
-
-    def __post_init__(self) -> None:
-        if (self.mass is None) == (self.density is None):
-            raise BodyError("polyhedron: expected either the mass or the density")
-        edges: dict[tuple[int, int], int] = {}
-        for place, face in enumerate(self.faces):
-            if len(face) < 3 or len(set(face)) != len(face):
-                raise BodyError(f"face {place}: expected three or more different corners")
-            if not all(0 <= corner < len(self.vertices) for corner in face):
-                raise BodyError(
-                    f"face {place}: corners are numbered from 0 to {len(self.vertices) - 1}"
-                )
-            for edge in zip(face, (*face[1:], face[0]), strict=True):
-                if edge in edges:
-                    raise BodyError(
-                        f"faces {edges[edge]} and {place} go along the edge {edge[0]}–{edge[1]} in "
-                        "the same direction; one of them is turned over"
-                    )
-                edges[edge] = place
-        for (start, end), place in edges.items():
-            if (end, start) not in edges:
-                raise BodyError(
-                    f"the surface is open: the edge {start}–{end} of face {place} has no other face"
-                )
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
 class Part:
     """A part of a composite body: turned about its origin, then moved by `at`."""
 
@@ -183,11 +146,10 @@ class Known:
     outline: Outline = field(default_factory=Outline)
 
 
-Distribution = Particles | Solid | Polyhedron | Composite | Known
+Distribution = Particles | Solid | Composite | Known
 KEYS: Mapping[type, str] = {  # of a [body] table, and of its parts
     Particles: "particles",
     Solid: "shape",
-    Polyhedron: "shape",
     Composite: "parts",
     Known: "inertia",
 }

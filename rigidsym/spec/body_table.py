@@ -44,7 +44,6 @@ _OTHER_KEYS = {  # that go with a kind, or with a shape
     "mesh": (*_OF_MASS, "scale"),
     "particles": ("columns",),
     "given": ("coordinates", "place", "bounds", "element", *_OF_MASS),
-    "polyhedron": ("vertices", "faces", *_OF_MASS),
 } | {
     shape: (*_OF_MASS, *(length.key for length in entry.lengths)) for shape, entry in SHAPES.items()
 }
@@ -232,8 +231,7 @@ def _distribution(table: _Table, kind: str) -> distribution.Distribution:
     if kind == "inertia":
         return _known(table)
     name = table.data["shape"]
-    special = {"given": _given, "polyhedron": _polyhedron}
-    return special[name](table) if name in special else _shape(table, name)
+    return _given(table) if name == "given" else _shape(table, name)
 
 
 def _shape(table: _Table, name: str) -> distribution.Distribution:
@@ -270,16 +268,6 @@ def _given(table: _Table) -> distribution.Distribution:
         place=sp.ImmutableMatrix(table.read("place", _AXES) if is_mapped else coordinates),
         bounds=tuple((low, high) for low, high in bounds),
         element=table.read("element", "element") if "element" in data else None,
-        **table.mass_or_density(),
-    )
-
-
-def _polyhedron(table: _Table) -> distribution.Distribution:
-    corners = range(len(table.data.get("vertices") or []))
-    vertices = table.read("vertices", [[f"{axis}_{k}" for axis in _AXES] for k in corners])
-    return distribution.Polyhedron(
-        vertices=tuple(map(sp.ImmutableMatrix, vertices)),
-        faces=tuple(tuple(face or ()) for face in table.required("faces") or ()),
         **table.mass_or_density(),
     )
 

@@ -54,7 +54,7 @@ def schema_of(kind: str) -> Schema:
         choice = {"type": "string", "enum": [*names], "description": f"by default {names[0]}"}
         definitions["notation"]["properties"][key] = choice
     enums: dict[str, Iterable[Any]] = {
-        "shapes": (*SHAPES, "polyhedron", "given"),
+        "shapes": (*SHAPES, "given"),
         "quantities": QUANTITIES,
         "kernels": TARGETS,
         "note": NOTES,

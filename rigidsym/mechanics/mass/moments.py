@@ -6,16 +6,15 @@ is tr(J) 1 − J of the second moments J (lecture, section 2.2).
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache, lru_cache, singledispatch
-from itertools import pairwise, product
-from typing import Any
+from functools import lru_cache, singledispatch
+from itertools import product
 
 import sympy as sp
 from sympy.polys.rings import PolyElement
 
-from rigidsym.algebra.codec import Codec, codec_for
+from rigidsym.algebra.codec import Codec
 from rigidsym.algebra.integrate import Integrator, integration_codec
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.present import Rationals, presenter_for
@@ -30,7 +29,6 @@ from rigidsym.models.body import (
     Known,
     Part,
     Particles,
-    Polyhedron,
     Solid,
 )
 
@@ -149,31 +147,20 @@ def _(solid: Solid) -> Moments:
     products = [codec.ring.dot([(place[i], place[j])]) for i, j in _PAIRS]
     weighted = (codec.ring.dot([(weight, each)]) for each in (*place, *products))
     integrals = [work.integral(weight), *map(work.integral, weighted)]
-    return _weighed(
-        codec,
-        solid,
-        Quotient.whole(codec.ring, constant),
-        integrals,
+    if not integrals[0]:
+        raise BodyError("the solid has no volume, area or length")
+    uniform = Quotient.whole(codec.ring, constant)
+    if solid.mass is not None:
+        uniform = Quotient(codec.ring, codec.encode(solid.mass), integrals[0])
+    mass, *others = (Quotient.whole(codec.ring, integral) * uniform for integral in integrals)
+    return _presented(
+        Rationals(codec),
+        mass,
+        others[:3],
+        others[3:],
         element=presenter_for(codec).element(measure),
         proofs=(*proofs, work.antiderivatives()),
     )
-
-
-def _weighed(
-    codec: Codec,
-    body: Solid | Polyhedron,
-    density: Quotient,
-    integrals: Sequence[PolyElement],
-    **more: Any,
-) -> Moments:
-    """∫ dm, ∫ x dm and ∫ x xᵀ dm from the integrals for a density of one."""
-    volume, ring = integrals[0], codec.ring
-    if not volume:
-        raise BodyError("the solid has no volume, area or length")
-    if body.mass is not None:
-        density = Quotient(ring, codec.encode(body.mass), volume)
-    mass, *others = (Quotient.whole(ring, integral) * density for integral in integrals)
-    return _presented(Rationals(codec), mass, others[:3], others[3:], **more)
 
 
 class _Integrals:
@@ -260,65 +247,6 @@ class _Integrals:
             below, above = low.xreplace(inside), high.xreplace(inside)
             inside[coordinate] = below + (above - below) * sp.Rational(k, 7)
         return inside
-
-
-@cache
-def _simplex() -> tuple[sp.Expr, sp.Expr, sp.Expr, sp.Expr]:
-    """∫ 1, ∫ u, ∫ u² and ∫ u v over the unit simplex, integrated."""
-    u, v, w = sp.symbols("u v w")
-    unit = moments_of(
-        Solid(
-            title="simplex",
-            coordinates=(u, v, w),
-            place=sp.ImmutableMatrix([u, v, w]),
-            bounds=((sp.S.Zero, sp.S.One), (sp.S.Zero, 1 - u), (sp.S.Zero, 1 - u - v)),
-            density=sp.S.One,
-        )
-    )
-    return unit.mass, unit.first[0], unit.second[0, 0], unit.second[0, 1]
-
-
-@moments_of.register
-def _(given: Polyhedron) -> Moments:
-    """Sums over tetrahedra between the origin and each face; those outside count negative."""
-    size, single, square, mixed = _simplex()
-    extra = [e for e in (given.mass, given.density) if e is not None]
-    codec = codec_for([*(e for p in given.vertices for e in p), *extra, size, square])
-    ring = codec.ring
-    corners = [tuple(codec.encode(e) for e in vertex) for vertex in given.vertices]
-    volume, first, second = ring.zero, [ring.zero] * 3, [ring.zero] * len(_PAIRS)
-    for triangle in _triangles(given, codec, corners):
-        six = RingMatrix.of(ring, triangle).det()
-        volume += six * codec.encode(size)
-        total = [ring.total(p[i] for p in triangle) for i in range(3)]
-        first = [f + six * t * codec.encode(single) for f, t in zip(first, total, strict=True)]
-        for place, (i, j) in enumerate(_PAIRS):
-            own = ring.dot([(p[i], p[j]) for p in triangle])
-            both = ring.dot([(total[i], total[j])])
-            inside = own * codec.encode(square - mixed) + both * codec.encode(mixed)
-            second[place] += ring.dot([(six, inside)])
-    value = codec.decode(volume)
-    if value.is_number and value < 0:
-        raise BodyError(
-            f"the surface is inside out: its volume is {float(value):.6g} m³; flip its faces"
-        )
-    density = Quotient.whole(ring, ring.one)
-    if given.density is not None:
-        density = codec.encode_quotient(given.density)
-    return _weighed(codec, given, density, [volume, *map(ring.reduce, first), *second])
-
-
-def _triangles(
-    given: Polyhedron, codec: Codec, corners: Sequence[tuple[PolyElement, ...]]
-) -> Iterable[list[tuple[PolyElement, ...]]]:
-    """Each face as triangles about its first corner; raises BodyError if it is not plane."""
-    for number, face in enumerate(given.faces):
-        first, *others = (corners[k] for k in face)
-        sides = [tuple(a - b for a, b in zip(p, first, strict=True)) for p in others]
-        for place, side in enumerate(sides[2:], start=3):
-            if RingMatrix.of(codec.ring, [sides[0], sides[1], side]).det():
-                raise BodyError(f"face {number}: corner {face[place]} is not in its plane")
-        yield from ([first, a, b] for a, b in pairwise(others))
 
 
 def _presented(

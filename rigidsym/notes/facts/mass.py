@@ -25,7 +25,6 @@ from rigidsym.models.body import (
     Part,
     Particle,
     Particles,
-    Polyhedron,
     RigidBody,
     Solid,
 )
@@ -38,7 +37,6 @@ from rigidsym.notes.words import number, unit_in_words
 _KINDS = {
     Particles: "particles",
     Composite: "composite",
-    Polyhedron: "polyhedron",
     Known: "measured",
 }
 
@@ -174,10 +172,6 @@ class MassFacts:
     def particles(self) -> tuple[Particle, ...]:
         distribution = self.body.distribution
         return tuple(distribution.particles) if isinstance(distribution, Particles) else ()
-
-    @property
-    def has_plane_faces(self) -> bool:
-        return isinstance(self.body.distribution, Polyhedron)
 
     @property
     def solids(self) -> list[SolidFacts]:

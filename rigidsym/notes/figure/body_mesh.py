@@ -23,7 +23,6 @@ from rigidsym.models.body import (
     Distribution,
     Known,
     Particles,
-    Polyhedron,
     RigidBody,
     Solid,
 )
@@ -153,8 +152,6 @@ def _constants(what: Distribution) -> set[sp.Basic]:
         match leaf.what:
             case Particles():
                 symbols |= {s for p in leaf.what.particles for s in p.position.free_symbols}
-            case Polyhedron():
-                symbols |= {s for vertex in leaf.what.vertices for s in vertex.free_symbols}
             case Solid():
                 bounds = sp.Tuple(*(sp.Tuple(*pair) for pair in leaf.what.bounds))
                 symbols |= leaf.what.place.free_symbols | bounds.free_symbols
@@ -176,8 +173,6 @@ def _points(what: Distribution, numbers: Numbers) -> Iterator[Vector]:
         match leaf.what:
             case Particles():
                 points = _columns([p.position for p in leaf.what.particles], numbers)
-            case Polyhedron():
-                points = _columns(leaf.what.vertices, numbers)
             case Solid():
                 shares = np.ix_(*[[0.0, 0.5, 1.0]] * len(leaf.what.coordinates))
                 points = _map(leaf.what, numbers, *shares).reshape(-1, 3)
@@ -192,9 +187,6 @@ def _faces(leaf: _Leaf, numbers: Numbers, unit: float) -> Iterator[Face]:
         case Particles():
             centres = _columns([p.position for p in leaf.what.particles], numbers) / unit
             faces = [centre + _PARTICLE * face for centre in centres for face in _OCTAHEDRON]
-        case Polyhedron():
-            corners = _columns(leaf.what.vertices, numbers) / unit
-            faces = [corners[[*face]] for face in leaf.what.faces]
         case Solid():
             faces = [*_of_solid(leaf.what, numbers, unit)]
         case Known():
