@@ -131,8 +131,9 @@ def _write(result: Trajectory, out: Path) -> None:
     """The times and states in a table, or with the rotation matrices in an archive of NumPy."""
     columns = result.columns()
     if out.suffix == _ARCHIVE:
+        arrays: dict[str, Any] = {**columns, "rotation_matrix": result.rotation_matrix}
         with whole_file(out) as archive:
-            np.savez(archive, **{**columns, "rotation_matrix": result.rotation_matrix})
+            np.savez(archive, **arrays)
     else:
         rows = np.column_stack([*columns.values()])
         write_table(out, tuple(columns), rows.dtype, [(rows, ())])
