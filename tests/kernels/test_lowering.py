@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import math
-import re
 import shutil
 import subprocess
-from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -15,7 +12,6 @@ import sympy as sp
 from hypothesis import given, settings, strategies as st
 
 import rigidsym as rs
-from helpers.motions import derived
 from helpers.node import load
 from helpers.target_modules import EVERY
 from rigidsym.algebra.stable_forms import Stumpff
@@ -38,7 +34,6 @@ from rigidsym.kernels.lowering.lower import MARGIN, lower
 from rigidsym.kernels.lowering.naming import Names, identifier
 from rigidsym.kernels.lowering.rounding import guarded
 from rigidsym.kernels.lowering.schedule import narrowed, write
-from rigidsym.kernels.targets import TARGETS
 from rigidsym.kernels.targets.infix import infix
 from rigidsym.kernels.targets.remarks import count
 from rigidsym.mechanics.conversions.function import Where
@@ -99,45 +94,30 @@ def expressions_of(motion: rs.Motion, kernel: str) -> list[sp.Expr]:
     return list(motion.step(kernel).expression)
 
 
-def test_assignments_put_back_are_the_derivation(motion):
+def test_kernels_are_exact_single_and_short(motion):
+    """Put back, and in narrow lines; each sine once, and no more operations than SymPy finds."""
     for kernel in lower(motion).kernels:
-        values = {
+        plain = [without_quotients(e) for e in expressions_of(motion, kernel.name)]
+        symbols = {
             name: symbol
             for argument in kernel.arguments
             for name, symbol in zip(
                 argument.components, motion.argument(argument.name).symbols, strict=True
             )
         }
-        found = restored(kernel.assignments, kernel.outputs, values)
-        for output, entry in zip(found, expressions_of(motion, kernel.name), strict=True):
-            assert sp.expand(output - without_quotients(entry)) == 0
-
-
-def test_narrow_lines_change_nothing(motion):
-    for kernel in lower(motion).kernels:
         narrow = narrowed(kernel, lambda e: infix(e, SAME), line=45, output=30)
-        assert count(narrow.values) == count(kernel.values)
-        symbols = {name: sp.Symbol(name) for name in kernel.components}
-        before = restored(kernel.assignments, kernel.outputs, dict(symbols))
-        after = restored(narrow.assignments, narrow.outputs, dict(symbols))
-        assert [sp.expand(x - y) for x, y in zip(before, after, strict=True)] == [0] * len(before)
-
-
-def test_sine_and_cosine_are_taken_once_and_only_where_needed(motion):
-    for kernel in lower(motion).kernels:
+        for form in (kernel, narrow):
+            outputs = restored(form.assignments, form.outputs, dict(symbols))
+            assert [sp.expand(x - y) for x, y in zip(outputs, plain, strict=True)] == [0] * len(
+                plain
+            )
         calls = [a.value for a in kernel.assignments if isinstance(a.value, Call)]
         assert len(calls) == len(set(calls))
-        used = {name for a in kernel.assignments for name in ir.names_in(a.value)}
-        used |= {name for output in kernel.outputs for name in ir.names_in(output)}
+        used = {name for value in kernel.values for name in ir.names_in(value)}
         assert {a.name for a in kernel.assignments} <= used
-
-
-def test_no_more_operations_than_sympy_finds(motion):
-    for kernel in lower(motion).kernels:
-        entries = [without_quotients(e) for e in expressions_of(motion, kernel.name)]
-        shared, left = sp.cse(entries, order="none")
-        theirs = sum(sp.count_ops(e) for e in (*(e for _, e in shared), *left))
-        assert count(kernel.values).total() <= theirs, kernel.name
+        shared, rest = sp.cse(plain, order="none")
+        theirs = sum(sp.count_ops(e) for e in (*(e for _, e in shared), *rest))
+        assert count(narrow.values).total() == count(kernel.values).total() <= theirs, kernel.name
 
 
 total, part, small, root, twice, one, same, again = sp.symbols(
@@ -261,21 +241,6 @@ def test_divisors_are_guarded_where_they_can_vanish(golden):
     golden("kernels/guarded.txt", "\n".join(lines) + "\n")
 
 
-@pytest.mark.parametrize(("length", "name"), [(20, f"sin_{'a' * 20}"), (21, "sin_0")])
-def test_a_sine_has_the_name_of_its_argument_unless_that_is_long(length, name):
-    angle = sp.Symbol("a" * length)
-    reader = Reader("test", {angle: angle.name})
-    (call,), _ = write(reader.graph, [reader.weighted(sp.sin(angle))], Names([angle.name]))
-    assert call.name == name
-
-
-def test_a_sum_within_a_sum_is_taken_apart_if_nothing_else_uses_it():
-    reader = Reader("test", INPUTS, {sp.Symbol("e"): A - B})
-    weighted = [reader.weighted(C - 3 * sp.Symbol("e"))]
-    _, (output,) = write(reader.graph, weighted, Names(INPUTS.values()))
-    assert infix(output, SAME) == "3.0 * b + c - 3.0 * a"
-
-
 @pytest.mark.parametrize(
     ("value", "name"), [(sp.exp(A) * B, "exp(a) (exp)"), (sp.Symbol("e"), "e (Symbol)")]
 )
@@ -302,7 +267,7 @@ EXPRESSIONS = st.recursive(
 
 
 @given(st.lists(EXPRESSIONS, min_size=1, max_size=5))
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=60, deadline=None)
 def test_lowering_is_exact_for_any_sum_of_products_and_quotients(expressions):
     assignments, outputs = lower_all(expressions)
     values = {symbol.name: symbol for symbol in INPUTS}
@@ -313,104 +278,37 @@ def test_lowering_is_exact_for_any_sum_of_products_and_quotients(expressions):
 a, b, c = Name("a"), Name("b"), Name("c")
 
 
-def test_operations_are_counted_as_written():
-    expressions = [
-        Negative(Product((a, b))),
-        Sum((a, Negative(b), a)),
-        Product((Sum((a, b)),), (a, b)),
-        Sum((Negative(a), Negative(b))),
-        Call("sqrt", a),
-    ]
-    counts = {"roots": 1, "multiplications": 2, "divisions": 1, "additions": 4, "negations": 2}
-    assert {kind: n for kind, n in count(expressions).items() if n} == counts
+AREA = Assignment("x0", Product((a, b)))
+NOT_SINGLE = [
+    ((), "area: x0 is used before it is defined"),
+    ((AREA, AREA), "area: x0 is defined twice"),
+    ((Assignment("a", b), AREA), "area: a is defined twice"),
+    ((Assignment("x0", Product((a, Call("sin", b)))),), "area: sin is called inside an expression"),
+]
 
 
-KERNEL = ir.Kernel(
-    name="area",
-    arguments=(
-        ir.KernelArgument(name="q", components=("a", "b"), units=("m", "m"), about="sides"),
-    ),
-    assignments=(Assignment("x0", Product((Name("a"), Name("b")))),),
-    outputs=(Name("x0"),),
-    shape=(1,),
-    equation=1,
-    symbol="S",
-    definition="a b",
-    about="area",
-    unit="m^2",
-)
+@pytest.mark.parametrize(("assignments", "message"), NOT_SINGLE)
+def test_a_kernel_that_is_not_single_assignment_is_refused(assignments, message):
+    sides = ir.KernelArgument(name="q", components=("a", "b"), units=("m", "m"), about="")
+    parts = {"name": "area", "arguments": (sides,), "outputs": (Name("x0"),)}
+    with pytest.raises(KernelError, match=f"^{message}$"):
+        ir.Kernel(**parts, assignments=assignments, shape=())
+    with pytest.raises(KernelError, match=r"^area: shape \(2,\) needs 2 outputs, got 1$"):
+        ir.Kernel(**parts, assignments=(AREA,), shape=(2,))
 
 
 @pytest.mark.parametrize(
-    ("changes", "message"),
+    ("name", "value"),
     [
-        ({"shape": (2,)}, "area: shape (2,) needs 2 outputs, got 1"),
-        ({"assignments": ()}, "area: x0 is used before it is defined"),
-        ({"assignments": (*KERNEL.assignments, *KERNEL.assignments)}, "area: x0 is defined twice"),
-        ({"assignments": (Assignment("a", Name("b")),)}, "area: a is defined twice"),
-        (
-            {"outputs": (Product((Name("a"), Call("sin", Name("b")))),)},
-            "area: sin is called inside an expression",
-        ),
+        ("ZYX", "abs_cos_theta"),
+        ("rotation_vector", "2.0 * abs_c2_x0"),
+        ("z(phi) x(theta) [1,1,0](psi)", "0.5 * abs_x0"),
     ],
 )
-def test_a_kernel_that_is_not_single_assignment_is_refused(changes, message):
-    with pytest.raises(KernelError) as caught:
-        replace(KERNEL, **changes)
-    assert str(caught.value) == message
-
-
-def test_what_reaches_a_divisor_is_delicate():
-    quotient = Product((Name("a"),), (Name("x1"),))
-    kernel = replace(
-        KERNEL,
-        assignments=(
-            Assignment("x0", Product((Name("a"), Name("a")))),
-            Assignment("x1", Product((Name("x0"), Number(Fraction(2))))),
-            Assignment("x2", Product((Name("b"), Name("b")))),
-        ),
-        outputs=(Sum((quotient, Name("x2"))),),
-    )
-    assert kernel.divisors == (Name("x1"),)
-    assert kernel.delicate == {"x1", "x0", "a"}
-    rounded = Assignment("x1", Sum((Name("x0"), Number(Fraction(1)))))
-    summed = replace(kernel, assignments=(kernel.assignments[0], rounded, kernel.assignments[2]))
-    assert summed.delicate == {"x1"}  # a sum has a rounding of its own
-
-
-SKEW = "z(phi) x(theta) [1,1,0](psi)"
-
-
-def kernel_of(program: ir.Program, name: str) -> ir.Kernel:
-    return next(kernel_of for kernel_of in program.kernels if kernel_of.name == name)
-
-
-def test_quantities_come_in_the_order_of_their_equations_and_the_margin_last():
-    program = lower(derived("ZXZ"))
-    assert program.name == "euler_zxz_intrinsic"
-    assert [k.equation for k in program.kernels] == [*range(1, 14), None]
-    assert [k.name for k in program.kernels][-1] == MARGIN
-    matrix = kernel_of(program, "rotation_matrix")
-    assert (matrix.shape, matrix.symbol, matrix.unit) == ((3, 3), "R", "")
-    assert [a.name for a in matrix.arguments] == ["q"]
-    assert program.arguments[0].components == ("phi", "theta", "psi")
-
-
-@pytest.mark.parametrize(
-    ("name", "value", "symbol", "end"),
-    [
-        ("ZYX", "abs_cos_theta", "|det W|", "; 1 at most, 0 at one"),
-        ("ZXZ", "abs_sin_theta", "|det W|", "; 1 at most, 0 at one"),
-        ("rotation_vector", "2.0 * abs_c2_x0", "|det W|", "; 1 at most, 0 at one"),
-        (SKEW, "0.5 * abs_x0", "|det W|", "; 0 at one"),
-    ],
-)
-def test_the_margin_is_scaled_to_one_if_its_largest_value_is_known(name, value, symbol, end):
-    motion = derive(rotation_from(name), only=["inverse_rate_matrix_space"])
-    found = kernel_of(lower(motion), MARGIN)
-    assert (found.symbol, found.shape, infix(found.outputs[0])) == (symbol, (), value)
-    assert found.about == f"how far the coordinates are from a singular orientation{end}"
-    assert [a.name for a in found.arguments] == ["q"]
+def test_the_margin_is_scaled_to_one_if_its_largest_value_is_known(name, value):
+    program = lower(derive(rotation_from(name), only=["inverse_rate_matrix_space"]))
+    assert program.kernels[-1].name == MARGIN
+    assert infix(program.kernels[-1].outputs[0]) == value
 
 
 OVER = Compare("<", Sum((a, b)), c)
@@ -420,8 +318,6 @@ OVER = Compare("<", Sum((a, b)), c)
     ("tree", "text"),
     [
         (Call("atan2", a, b), "atan2(a, b)"),
-        (Number(math.nan), "nan"),
-        (Number(0.1), "0.1"),
         (Number(Fraction(1, 3)), "1.0 / 3.0"),
         (OVER, "a + b < c"),
         (Compare("==", OVER, c), "(a + b < c) == c"),
@@ -431,7 +327,6 @@ OVER = Compare("<", Sum((a, b)), c)
         (Guarded(a, b), "or_nan(a, b)"),
         (Product((a,), (b,)), "a / b"),
         (Product((a,), (b, c)), "a / (b * c)"),
-        (Product((a,), (Product((b,), (c,)),)), "a / (b / c)"),
         (Product((a,), (Product((b,), (c,)), c)), "a / (b / c * c)"),
         (Product((a, Sum((b, c)))), "a * (b + c)"),
         (Sum((a, Negative(Sum((b, c))))), "a - (b + c)"),
@@ -444,38 +339,12 @@ def test_a_tree_gets_the_brackets_it_needs_and_no_others(tree, text):
     assert infix(tree) == text
 
 
-def test_a_target_has_its_own_words():
-    words = {"sin": "Math.sin", "nan": "NaN", "choice": "{0} ? {1} : {2}", "==": "==="}
-    assert infix(Call("sin", a), words) == "Math.sin(a)"
-    assert infix(Number(math.nan), words) == "NaN"
-    assert infix(Choice(Compare("==", a, b), a, b), words) == "a === b ? a : b"
-    assert infix(Number(Fraction(1, 2)), number=lambda value: f"{value}f") == "0.5f"
-
-
-@pytest.mark.parametrize(
-    ("text", "name"),
-    [
-        ("phi", "phi"),
-        ("θ", "θ"),
-        ("ϕ", "φ"),
-        (r"\theta'", "theta"),
-        ("2nd angle", "v2nd_angle"),
-        ("__init__", "init"),
-        ("_", "v"),
-    ],
-)
-def test_names_become_identifiers(text, name):
-    assert identifier(text) == name
-
-
-def test_names_are_given_once():
+def test_names_become_identifiers_that_are_given_once():
+    texts = {"phi": "phi", "θ": "θ", "ϕ": "φ", r"\theta'": "theta", "2nd": "v2nd", "_": "v"}
+    assert {text: identifier(text) for text in texts} == texts
     names = Names(["lambda", "x0"])
-    assert [names.fresh(n) for n in ("lambda", "phi", "phi", "lambda")] == [
-        "lambda_",
-        "phi",
-        "phi_",
-        "lambda__",
-    ]
+    fresh = [names.fresh(n) for n in ("lambda", "phi", "phi", "lambda")]
+    assert fresh == ["lambda_", "phi", "phi_", "lambda__"]
     assert [names.numbered("x"), names.numbered("x")] == ["x1", "x2"]
 
 
@@ -501,18 +370,9 @@ def test_words_of_languages_are_renamed_so_that_every_module_loads(names, target
     np.testing.assert_allclose(found, plain.angular_velocity_body(*given), rtol=1e-6)
 
 
-def test_words_of_languages_are_renamed_alike_in_every_target():
-    motion = rs.derive(rs.EulerAngles("ZXZ", angles=("lambda", "eps", "y0")))
-    program = lower(motion)
-    assert program.arguments[0].components == ("lambda_", "eps", "y0_")
-    for target in TARGETS:
-        source = " ".join(motion.kernels(target).files.values())
-        assert all(re.search(rf"\b{name}\b", source) for name in ("lambda_", "eps_", "y0_"))
-
-
 @pytest.mark.skipif(not shutil.which("g++"), reason="no g++")
 def test_a_c_header_is_taken_by_cpp_beside_cmath(tmp_path):
-    for names in WORDS:
+    for names in (WORDS[1], WORDS[4]):
         motion = rs.derive(rs.EulerAngles("ZXZ", angles=names), only=["rotation_matrix"])
         header = motion.kernels("c", conversions=True).write(tmp_path).with_suffix(".h")
         source = tmp_path / "use.cpp"

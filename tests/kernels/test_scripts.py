@@ -14,41 +14,15 @@ import pytest
 from numpy.testing import assert_allclose
 
 import rigidsym as rs
-from helpers import node
 from helpers.motions import derived
 from helpers.node import load
-from helpers.target_modules import inputs as inputs_of, module, turned_by
+from helpers.target_modules import inputs, module, turned_by
 from rigidsym.errors import KernelError
-from rigidsym.kernels.ir import Kernel, KernelArgument, Name, Negative
-from rigidsym.kernels.targets import javascript
-from rigidsym.motion import derive
 
 NAME = "euler_zxz_intrinsic"
 
 
 pytestmark = [pytest.mark.usefixtures("node"), pytest.mark.usefixtures("double")]
-
-
-@cache
-def motion_of(rotation: str) -> rs.Motion:
-    return derive(rotation)
-
-
-def given(motion: rs.Motion, inputs: tuple[str, ...], count: int = 2) -> list[np.ndarray]:
-    rng = np.random.default_rng(7)
-    return [rng.uniform(-3, 3, (count, len(motion.argument(name).symbols))) for name in inputs]
-
-
-def test_functions_of_the_length_pass_through_zero_and_over_the_switch():
-    motion = motion_of("rotation_vector")
-    kernels, known = load(motion.kernels("javascript")), motion.kernels().load()
-    lengths = np.array([0.0, 1e-12, 1e-3, 1.0, 1.93, 1.94, 2.78, 2.79, 3.99, 4.01, 6.0])
-    q = lengths[:, None] * np.array([2.0, -1.0, 2.0]) / 3
-    rates = [0.3, -0.5, 0.7]
-    for name in ("angular_velocity_body", "angular_acceleration_space"):
-        arrays = [q, rates, rates][: 2 + name.startswith("angular_acc")]
-        found, expected = getattr(kernels, name)(*arrays), getattr(known, name)(*arrays)
-        np.testing.assert_allclose(found, expected, rtol=0, atol=20 * 2.0**-52)
 
 
 BATCHES = """
@@ -73,11 +47,9 @@ console.log(JSON.stringify([
   same(velocity(q, [1, 2, 3]).slice(3, 6), kernels.angular_velocity_body(q.slice(3, 6), [1, 2, 3])),
   velocity(new Float64Array(0), [1, 2, 3]).length,
   said(() => turned(new Float64Array(7))),
-  said(() => turned(undefined)),
   said(() => turned(q, new Float64Array(9))),
   said(() => velocity(q, q.slice(0, 6))),
   said(() => kernels.quaternion(["1", "2", "3"])),
-  said(() => kernels.quaternion("123")),
   said(() => kernels.from_rotation_matrix([[1, 0, 0], [0, 1, 0], [0, 0, null]])),
   said(() => turned([0, 0, 0, 0, undefined, 0])),
 ]));
@@ -94,11 +66,9 @@ def test_many_orientations_are_flat_arrays(tmp_path: Path):
     assert json.loads(done.stdout) == [
         *(True, True, True, 0, True, True, 0),
         "RangeError: q: expected rows of 3 numbers, got 7 numbers",
-        "RangeError: q: expected rows of 3 numbers, got undefined numbers",
         "RangeError: out: expected 1000 rows of 9 numbers, got 9 numbers",
         "RangeError: q_dot: expected 1000 rows or one, got 2",
         "TypeError: q: expected numbers, got string at 0",  # + would join them
-        "TypeError: q: expected numbers, got string at 0",
         "TypeError: matrix: expected numbers, got null at 8",
         "TypeError: q: expected numbers, got undefined at 4",
     ]
@@ -114,15 +84,6 @@ def test_text_in_a_title_stays_in_its_comment():
     assert np.allclose(found, motion.kernels().load().rotation_matrix(q), atol=1e-14)
 
 
-def test_a_component_may_be_called_as_its_vector_is():
-    vector = KernelArgument(name="q", components=("q",), units=("rad",), about="")
-    kernel = Kernel(
-        name="minus", arguments=(vector,), assignments=(), outputs=(Negative(Name("q")),), shape=()
-    )
-    made = node.module("made", javascript.bare([kernel]))
-    assert made.minus([2.0]) == -2.0
-
-
 def test_every_function_is_declared_for_typescript(tmp_path: Path):
     asked = {"angular_velocity_body": "q"}
     kernels = derived("ZXZ").kernels("javascript", conversions=True, derivatives=asked)
@@ -133,13 +94,10 @@ def test_every_function_is_declared_for_typescript(tmp_path: Path):
     assert declared == written
     assert "export function rotation_matrix(q: Vector): number[][];" in types
     assert kernels.write(tmp_path / "mine.mjs") == tmp_path / "mine.mjs"
-
-
-def test_python_does_not_load_it():
     with pytest.raises(
         KernelError, match=f"{NAME}.mjs runs in browsers and in Node, not in Python"
     ):
-        derived("ZXZ").kernels("javascript").load()
+        kernels.load()
 
 
 @cache
@@ -147,16 +105,9 @@ def functions(name: str = "ZXZ"):
     return rs.derive(name).kernels("jax").load()
 
 
-FEW_EPS = 64 * 2.0**-52  # 4 eps were measured
-
-
-def inputs(name: str, leading: tuple[int, ...] = (7,)) -> list[np.ndarray]:
-    return inputs_of("ZXZ", name, leading)
-
-
 @pytest.mark.campaign
 def test_jit_vmap_and_grad_apply():
-    q, q_dot = inputs("angular_velocity_body", (5,))
+    q, q_dot = inputs("ZXZ", "angular_velocity_body", (5,))
     function = functions().angular_velocity_body
     expected = function(q, q_dot)
     assert_allclose(jax.jit(function)(q, q_dot), expected, atol=1e-14)
@@ -167,46 +118,36 @@ def test_jit_vmap_and_grad_apply():
 
 
 @pytest.mark.campaign
-@pytest.mark.parametrize("name", ["ZXZ", "rotation_vector", "unit_quaternion"])
 @pytest.mark.parametrize("size", [1e-3, 0.0])
-def test_the_tangent_of_the_matrix_is_its_rate(name, size):
+def test_the_tangent_of_the_matrix_is_its_rate(size):
     """At a rotation vector of zero, too, where its formulas are 0/0."""
-    kernels = functions(name)
-    rng = np.random.default_rng(2)
-    count = len(derived("ZXZ").argument("q").names) + (name == "unit_quaternion")
-    q, q_dot = size * rng.normal(size=count), rng.normal(size=count)
-    if name == "unit_quaternion":
-        q = np.array([1.0, 0.0, 0.0, 0.0])
+    kernels = functions("rotation_vector")
+    q, q_dot = np.random.default_rng(2).normal(size=(2, 3)) * [[size], [1.0]]
     _, tangent = jax.jvp(kernels.rotation_matrix, (q,), (q_dot,))
     assert_allclose(tangent, kernels.rotation_rate(q, q_dot), atol=1e-14)
-    if size:
-        return
     second = jax.jacrev(jax.jacfwd(kernels.angular_velocity_space))(q, q_dot)
     assert np.isfinite(second).all()
 
 
 def test_types_are_those_of_jax():
-    q = inputs("rotation_matrix")[0].astype(np.float32)
+    q = inputs("ZXZ", "rotation_matrix")[0].astype(np.float32)
     matrix = functions().rotation_matrix
     assert matrix(q).dtype == np.float32
-    assert functions().spin_matrix(q, q).dtype == np.float32
     assert functions().spin_matrix(q, q.astype(float)).dtype == np.float64
-    assert matrix([0, 1, 2]).dtype == np.float64
     jax.config.update("jax_enable_x64", False)
     assert matrix([0, 1, 2]).dtype == np.float32
-    assert_allclose(matrix(q), module().rotation_matrix(q), atol=FEW_EPS * 2**29)
+    assert_allclose(matrix(q), module().rotation_matrix(q), atol=1e-5)
 
 
-def test_arguments_that_are_refused():
-    message = r"^q: got shape \(4,\); expected \(\.\.\., 3\), the last axis phi, theta, psi$"
-    with pytest.raises(ValueError, match=message):
-        functions().rotation_matrix(np.zeros(4))
-    with pytest.raises(TypeError, match=r"^q: got dtype complex128; expected floats$"):
-        functions().rotation_matrix(np.zeros(3, complex))
-    foreign = np.dtype(float).newbyteorder()
-    with pytest.raises(TypeError, match=f"^q: JAX takes no array of {foreign}"):
-        functions().rotation_matrix(np.zeros(3, foreign))
-    with pytest.raises(TypeError, match=r"^q: JAX takes no array of str$"):
-        functions().rotation_matrix("abc")
-    with pytest.raises(TypeError, match=r"^q: JAX takes no masked array$"):
-        functions().rotation_matrix(np.ma.masked_all(3))
+JAX_REFUSES = [
+    (np.zeros(4), r"q: got shape \(4,\); expected \(\.\.\., 3\), the last axis phi, theta, psi"),
+    (np.zeros(3, complex), "q: got dtype complex128; expected floats"),
+    ("abc", "q: JAX takes no array of str"),
+    (np.ma.masked_all(3), "q: JAX takes no masked array"),
+]
+
+
+@pytest.mark.parametrize(("q", "message"), JAX_REFUSES)
+def test_arguments_that_are_refused(q, message):
+    with pytest.raises((TypeError, ValueError), match=f"^{message}$"):
+        functions().rotation_matrix(q)

@@ -75,7 +75,7 @@ def test_at_a_pole_what_is_divided_is_nan_and_nothing_else(sequence, name, dtype
             assert np.isfinite(found.ravel()[~expected]).all()
 
 
-DISTANCES = [sign * 10.0**-power for power in range(1, 16) for sign in (1, -1)]
+DISTANCES = [sign * 10.0**-power for power in range(1, 16, 2) for sign in (1, -1)]
 
 
 @pytest.mark.parametrize("dtype", DTYPES)
@@ -112,26 +112,20 @@ def test_the_margin_is_the_size_of_the_determinant(sequence, dtype):
     for middle in angles:
         arguments = [np.array([0.3, middle, -0.7], dtype)]
         matrix = truth(derived(sequence), "rate_matrix_space", arguments)
-        exact = abs(mp.det(square(matrix)))
+        exact = abs(mp.det(mp.matrix([matrix[k : k + 3] for k in (0, 3, 6)])))
         for found in both(kernels(sequence), MARGIN, arguments):
             assert found.shape == ()
             assert abs(mp.mpf(float(found)) - exact) <= 30 * eps * exact
             assert 0 <= found <= 1
 
 
-def square(entries: list):
-    return mp.matrix([entries[:3], entries[3:6], entries[6:]])
-
-
 def test_the_margin_is_one_far_away_and_small_at_a_pole():
     assert kernels("ZYX").singularity_margin([0.1, 0.0, 0.2]) == 1
-    assert kernels("ZYX").singularity_margin([0.1, np.pi / 2, 0.2]) < 1e-16
     margins = kernels("rotation_vector").singularity_margin
     assert margins([0.0, 0.0, 0.0]) == 1
     assert margins([0.0, 2 * np.pi, 0.0]) < 1e-30
     assert margins(np.zeros((2, 5, 3))).shape == (2, 5)
-    skew = derive(rotation_from("z(phi) x(theta) [1,1,0](psi)")).kernels().load()
-    assert skew.singularity_margin([0.1, 0.0, 0.2]) == pytest.approx(np.sqrt(0.5))
+    assert not hasattr(kernels("gibbs_vector"), "singularity_margin")  # its rates never fail
 
 
 def test_the_margin_of_a_long_chain_takes_constants_that_only_its_axes_hold():
@@ -152,7 +146,7 @@ def scale_of(name: str, rate, second, norm_of_inverse: float) -> float:
 
 SWITCHES = [float(series_of(order).switch) ** 0.5 for order in (3, 4, 5)]
 SIDES = [switch * side for switch in SWITCHES for side in (1 - 1e-6, 1 + 1e-6)]
-LENGTHS = [0, 1e-30, 1e-8, 1e-4, 1e-2, 0.1, 1, *SIDES, np.pi, 5, 6, 6.2, 6.28, 6.29, 9, 20]
+LENGTHS = [0, 1e-30, 1e-8, 1e-2, 1, *SIDES, np.pi, 6.28, 6.29, 9, 20]
 
 
 @pytest.mark.parametrize("dtype", DTYPES)
@@ -183,68 +177,46 @@ def test_the_rotation_vector_is_accurate_at_every_length(length, dtype):
 
 
 @pytest.mark.parametrize("dtype", DTYPES)
-@pytest.mark.parametrize("turns", [1, 2, 3])
+@pytest.mark.parametrize("turns", [1, 3])
 def test_at_whole_turns_the_rates_of_the_rotation_vector_are_nan(turns, dtype):
     length = 2 * np.pi * turns
     for axis in ([0, 0, 1.0], [0.6, -0.8, 0], [2 / 3, 1 / 3, -2 / 3]):
         v = (length * np.array(axis)).astype(dtype)
         for name in INVERSES:
-            for found in both(kernels("rotation_vector"), name, arguments_of(name, v, dtype)):
-                assert np.isnan(found).any()
-    near = v * dtype(1 + 1e-3)
-    for name in INVERSES:
-        for found in both(kernels("rotation_vector"), name, arguments_of(name, near, dtype)):
-            assert np.isfinite(found).all()
+            for q, is_lost in ((v, True), (v * dtype(1 + 1e-3), False)):
+                for found in both(kernels("rotation_vector"), name, arguments_of(name, q, dtype)):
+                    assert np.isnan(found).any() == is_lost
 
 
-# Other divisors.
-
-
-@pytest.mark.parametrize("dtype", DTYPES)
-def test_the_axis_is_undetermined_without_a_turn(dtype):
-    functions = kernels("axis_angle")
-    for angle in (0.0, 2 * np.pi, -2 * np.pi, 4 * np.pi):
-        for name in INVERSES:
-            q = [0.6, 0.0, 0.8, angle]
-            for found in both(functions, name, arguments_of(name, q, dtype)):
-                assert np.isnan(found).any()
-                assert np.isfinite(found[3]).all()  # the rate of the angle is Ω along the axis
-
-
-@pytest.mark.parametrize("angle", [1e-12, 1e-6, 1e-3, 0.1, 1.0, 3.0, 6.2, 6.283])
-def test_the_rates_of_axis_and_angle_keep_their_digits(angle):
-    """½ cot(φ/2) has them where sin φ/(1 − cos φ) loses them."""
+@pytest.mark.parametrize("angle", [0.0, 2 * np.pi, 1e-12, 1e-3, 1.0, 6.283])
+def test_the_axis_is_undetermined_without_a_turn_and_accurate_beside_it(angle):
+    """½ cot(φ/2) has the digits that sin φ/(1 − cos φ) loses."""
     functions, motion = kernels("axis_angle"), derive(rotation_from("axis_angle"))
     for name in INVERSES:
         given = arguments_of(name, [0.6, 0.0, 0.8, angle], float)
         for found in both(functions, name, given):
-            assert worst(found, truth(motion, name, given)) <= 64 * 2.0**-52
+            if angle % (2 * np.pi) == 0:
+                assert np.isnan(found).any()
+                assert np.isfinite(found[3]).all()  # the rate of the angle is Ω along the axis
+            else:
+                assert worst(found, truth(motion, name, given)) <= 64 * 2.0**-52
 
 
 @pytest.mark.parametrize(
-    ("dtype", "size"),
-    [(np.float64, size) for size in (0.0, 1e-200, 1e-160, 1e-150)]
-    + [(np.float32, size) for size in (0.0, 1e-30, 1e-21, 1e-17)],
+    ("dtype", "sizes"),
+    [(np.float64, (0.0, 1e-200, 1e-150)), (np.float32, (0.0, 1e-30, 1e-17))],
 )
-def test_a_quaternion_that_is_zero_or_underflows_is_no_rotation(dtype, size):
-    q = (size * np.array([0.5, 0.5, -0.5, 0.5])).astype(dtype)
-    for found in both(kernels("quaternion"), "rotation_matrix", [q]):
-        assert np.isnan(found).all()
+def test_a_quaternion_that_is_zero_or_underflows_is_no_rotation(dtype, sizes):
+    for size in sizes:
+        q = (size * np.array([0.5, 0.5, -0.5, 0.5])).astype(dtype)
+        for found in both(kernels("quaternion"), "rotation_matrix", [q]):
+            assert np.isnan(found).all()
 
 
-def test_a_gimbal_that_locks_gives_nan():
+@pytest.mark.parametrize("name", INVERSES)
+def test_a_gimbal_that_locks_gives_nan(name):
     """Four turns: at ψ = π/2 and θ = 0 three of the axes lie in a plane with the fourth."""
     functions = kernels("z(phi) x(theta) z(psi) y(delta)")
-    for name in INVERSES:
-        for found in both(functions, name, arguments_of(name, [0.2, 0, np.pi / 2, 0.4], float)):
-            assert np.isnan(found).any()
-        for found in both(functions, name, arguments_of(name, [0.2, 0.1, 1.0, 0.4], float)):
-            assert np.isfinite(found).all()
-
-
-@pytest.mark.parametrize("name", ["gibbs_vector", "modified_rodrigues"])
-def test_no_margin_where_the_rates_never_fail(name):
-    found = derive(rotation_from(name)).singularities
-    assert found.is_solved
-    assert not found.points
-    assert not hasattr(kernels(name), "singularity_margin")
+    for theta, psi, is_locked in ((0.0, np.pi / 2, True), (0.1, 1.0, False)):
+        for found in both(functions, name, arguments_of(name, [0.2, theta, psi, 0.4], float)):
+            assert np.isnan(found).any() == is_locked

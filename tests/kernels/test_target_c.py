@@ -91,47 +91,26 @@ def run(*command: str, cwd) -> str:
 
 
 @pytest.mark.campaign
-@pytest.mark.parametrize("compiler", COMPILERS)
-def test_compilers_have_nothing_to_say(sources, tmp_path, compiler):
-    # gcc warns of more while it optimises, clang of all while it reads
-    how = ("-O1", "-c", "-o", "gcc.o") if compiler == "gcc" else ("-fsyntax-only",)
-    for rotation in ROTATIONS:
-        name = rs.derive(rotation, only=["rotation_matrix"]).name
-        run(compiler, *STRICT, *how, f"{name}.c", cwd=sources)
-    for rotation in (*ROTATIONS, "direction_cosines", "z(phi) [a,b,c](beta)"):
-        alone = rs.derive(rotation, only=["rotation_matrix"])
-        source = alone.kernels("c", conversions=True).write(tmp_path)
-        run(compiler, *STRICT, "-fsyntax-only", source.name, cwd=tmp_path)
-
-
-@pytest.mark.campaign
 @pytest.mark.skipif(not shutil.which("gcc"), reason="no gcc")
-@pytest.mark.parametrize("contract", ["off", "fast"])
-def test_sine_and_cosine_keep_two_eps_of_their_size_at_any_angle(sources, contract):
-    made = sources / f"{contract}.so"
-    flags = ("-std=c99", "-O2", "-fPIC", "-shared", f"-ffp-contract={contract}", "-march=native")
+def test_sine_and_cosine_keep_two_eps_where_the_compiler_contracts(sources):
+    made = sources / "fast.so"
+    flags = ("-std=c99", "-O2", "-fPIC", "-shared", "-ffp-contract=fast", "-march=native")
     run("gcc", *flags, f"{NAME}.c", "-o", str(made), "-lm", cwd=sources)
-    library = ctypes.CDLL(str(made))
     random = np.random.default_rng(2)
     for dtype, suffix, most in ((np.float64, "", 300), (np.float32, "f", 37)):
+        function = getattr(ctypes.CDLL(str(made)), f"{NAME}_rotation_matrix{suffix}")
+        sizes = 10.0 ** random.uniform(-6, most, 150)
         angles = np.concatenate(
-            [
-                random.choice([-1.0, 1.0], 150) * 10.0 ** random.uniform(-6, most, 150),
-                np.arange(-40, 40) * np.pi / 2,
-                random.uniform(-1e4, 1e4, 80),
-                random.uniform(-4e6, 4e6, 80),
-            ]
-        ).astype(dtype)
-        q, matrix = np.zeros((len(angles), 3), dtype), np.zeros((len(angles), 9), dtype)
-        q[:, 1] = angles
-        function = getattr(library, f"{NAME}_rotation_matrix{suffix}")
-        for row, out in zip(q, matrix, strict=True):
-            function(ctypes.c_void_p(row.ctypes.data), ctypes.c_void_p(out.ctypes.data))
-        with mp.workdps(400):
-            for angle, row in zip(angles.tolist(), matrix.tolist(), strict=True):
-                for found, truth in ((row[7], mp.sin(angle)), (row[8], mp.cos(angle))):
-                    limit = 2 * float(np.finfo(dtype).eps) * abs(truth)
-                    assert abs(found - truth) <= limit, angle
+            [sizes, np.arange(-40, 40) * np.pi / 2, random.uniform(-4e6, 0, 80)]
+        )
+        for angle in angles.astype(dtype):
+            q, matrix = np.array([0, angle, 0], dtype), np.zeros(9, dtype)
+            function(ctypes.c_void_p(q.ctypes.data), ctypes.c_void_p(matrix.ctypes.data))
+            with mp.workdps(400):
+                for entry, truth in zip(
+                    matrix[7:].tolist(), mp.cos_sin(mp.mpf(float(angle)))[::-1], strict=True
+                ):
+                    assert abs(entry - truth) <= 2 * float(np.finfo(dtype).eps) * abs(truth), angle
 
 
 @pytest.mark.campaign
@@ -257,7 +236,6 @@ REFUSED = {
         "-ffast-math",
         "-Ofast",
         "-funsafe-math-optimizations",
-        "-fassociative-math -fno-signed-zeros -fno-trapping-math",
         "-freciprocal-math",
         "-ffinite-math-only",
     ),
@@ -277,44 +255,33 @@ def test_modes_that_change_values_are_refused(tmp_path, compiler):
 
 @pytest.fixture(scope="module")
 def both():
-    motion = rs.derive("ZXZ", only=["angular_velocity_body", "rotation_matrix"])
+    motion = rs.derive("ZXZ", only=["rotation_matrix"])
     return motion.kernels("c").load(), motion.kernels().load()
 
 
 @pytest.mark.parametrize(
     "out",
-    [
-        np.empty((5, 3, 3)),
-        np.empty((5, 3, 3), order="F"),
-        np.empty((5, 3, 6))[..., ::2],
-        np.empty((5, 6, 3))[:, ::2],
-        np.empty((10, 3, 3))[::-2],
-    ],
-    ids=["rows", "columns", "entries apart", "rows apart", "backwards"],
+    [np.empty((5, 3, 3), order="F"), np.empty((5, 6, 3))[:, ::2], np.empty((10, 3, 3))[::-2]],
+    ids=["columns", "rows apart", "backwards"],
 )
 def test_a_matrix_fills_an_out_of_any_strides(both, out):
-    compiled, _ = both
     q = np.random.default_rng(4).uniform(-3, 3, (5, 3))
-    assert compiled.rotation_matrix(q, out=out) is out
-    np.testing.assert_array_equal(out, compiled.rotation_matrix(q))
+    assert both[0].rotation_matrix(q, out=out) is out
+    np.testing.assert_array_equal(out, both[0].rotation_matrix(q))
 
 
-def test_a_number_and_one_row_serve_all_orientations_without_preparation():
-    """The right-hand side of many tops, whose time and constants are the same."""
+def test_one_time_and_one_row_of_constants_serve_many_tops():
     a, c = sp.symbols("A C")
     body = rs.principal_moments(a, a, c)
     motion = rs.derive("ZXZ", ["state_derivative"], body=body, potential="m*g*l*cos(theta)")
-    compiled, count = motion.kernels("c").load(), 70
+    derivative, count = motion.kernels("c").load().state_derivative, 70
     y = np.random.default_rng(6).uniform(0.3, 3, (count, 6))
     constants = np.linspace(1, 2, len(motion.argument("parameters").names))
-    rows = np.tile(constants, (count, 1))
-    for time in (0.5, np.float64(0.5), np.array(0.5), np.full(count, 0.5)):
-        expected = compiled.state_derivative(np.full(count, 0.5), y, rows)
-        assert compiled._compiled.state_derivative(time, y, constants, None) is not None
-        np.testing.assert_array_equal(compiled.state_derivative(time, y, constants), expected)
-        found = compiled.state_derivative(time, y, constants, threads=2)  # prepared in Python
-        np.testing.assert_array_equal(found, expected)
-    single = compiled.state_derivative(0.5, y.astype(np.float32), constants.astype(np.float32))
+    expected = derivative(np.full(count, 0.5), y, np.tile(constants, (count, 1)))
+    for time in (0.5, np.array(0.5), np.full(count, 0.5)):
+        np.testing.assert_array_equal(derivative(time, y, constants), expected)
+        np.testing.assert_array_equal(derivative(time, y, constants, threads=2), expected)
+    single = derivative(0.5, y.astype(np.float32), constants.astype(np.float32))
     assert single.dtype == np.float64  # a plain number is one
 
 
@@ -322,33 +289,29 @@ def test_the_memory_of_a_large_result_is_used_again_when_nobody_refers_to_it(bot
     compiled, plain = both
     q = np.random.default_rng(5).uniform(-3, 3, (480_000, 3))  # 35 MB of matrices
     first, second = compiled.rotation_matrix(q), compiled.rotation_matrix(-q)
-    assert not np.shares_memory(first, second)
     some, place = first[1000:1005], first.ctypes.data
     del first
     third = compiled.rotation_matrix(q[::-1])
     assert not np.shares_memory(some, third)
     np.testing.assert_allclose(some, plain.rotation_matrix(q[1000:1005]), atol=1e-14)
     np.testing.assert_allclose(second[-3:], plain.rotation_matrix(-q[-3:]), atol=1e-14)
-    np.testing.assert_allclose(third[:3], plain.rotation_matrix(q[:-4:-1]), atol=1e-14)
     del some
-    for threads in (1, 2):
-        again = compiled.rotation_matrix(q, threads=threads)
-        assert again.ctypes.data == place or not sys.platform.startswith("linux")
-        assert again.flags.writeable
-        np.testing.assert_array_equal(again[::-1][:50], third[:50])
-        del again
+    again = compiled.rotation_matrix(q, threads=2)
+    assert again.ctypes.data == place or not sys.platform.startswith("linux")
+    np.testing.assert_array_equal(again[::-1][:50], third[:50])
 
 
-def test_a_source_is_compiled_once_and_kept_in_the_cache(tmp_path, monkeypatch):
+def test_a_source_is_compiled_once_with_a_cache_and_without_one(tmp_path, monkeypatch):
+    (tmp_path / "file").write_text("", encoding="utf-8")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
+    module = rs.derive("x(phi)", only=["rotation_matrix"]).kernels("c").load()
+    assert module.rotation_matrix([0.0]).tolist() == np.eye(3).tolist()
+    kernels = rs.derive("y(phi)", only=["rotation_matrix"]).kernels("c")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    kernels = rs.derive("ZXZ", only=["rotation_matrix"]).kernels("c")
-    first = kernels.load()
+    kernels.load()
     (kept,) = (tmp_path / "rigidsym" / "kernels").iterdir()
     monkeypatch.setattr(c_build, "compile_library", None)  # nothing is compiled any more
-    again = kernels.load()
-    assert again.__file__ == str(kept / f"{NAME}_c.py")
-    q = [0.1, 0.2, 0.3]
-    np.testing.assert_array_equal(first.rotation_matrix(q), again.rotation_matrix(q))
+    assert kernels.load().__file__ == str(kept / "chain_y_c.py")
 
 
 @pytest.mark.skipif(not shutil.which("gcc"), reason="no gcc")
@@ -361,13 +324,6 @@ def test_it_needs_nothing_and_keeps_nothing(sources):
     (tile,) = re.findall(r"TILE = (\d+)", text)
     header = (sources / f"{NAME}.h").read_text(encoding="utf-8").replace("\n * ", " ")
     assert f"keeps {tile} orientations" in header
-
-
-def test_without_a_cache_folder_modules_are_built_all_the_same(tmp_path, monkeypatch):
-    (tmp_path / "file").write_text("", encoding="utf-8")
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
-    module = rs.derive("x(phi)", only=["rotation_matrix"]).kernels("c").load()
-    assert module.rotation_matrix([0.0]).tolist() == np.eye(3).tolist()
 
 
 SOME = ("rotation_matrix", "angular_velocity_body", "inverse_rate_matrix_body")
@@ -403,26 +359,12 @@ def test_compilers_are_silent_and_results_are_those_of_numpy(tmp_path, rotation,
         np.testing.assert_allclose(out, expected, rtol=0, atol=most, err_msg=name)
 
 
-FILE = """\
-[rotation]
-sequence = "ZYX"
-[output]
-quantities = ["rotation_matrix"]
-kernels = ["c"]
-note = []
-[output.c]
-lean = "double"
-"""
-
-
-def test_a_file_and_the_command_line_ask_for_it(tmp_path):
-    (tmp_path / "euler_zyx_intrinsic.toml").write_text(FILE)
-    call("run", "euler_zyx_intrinsic.toml", "--out", "a", cwd=tmp_path)
-    call("derive", "ZYX", "--only", "rotation_matrix", "--lean", "--out", "b", cwd=tmp_path)
-    for ending in (".c", ".h"):
-        name = f"euler_zyx_intrinsic/euler_zyx_intrinsic{ending}"
-        assert len({(tmp_path / out / name).read_text() for out in "ab"}) == 1
-    assert "changed" not in call("check", "a", cwd=tmp_path).stdout
+def test_the_command_line_asks_for_lean_c_which_python_does_not_build(tmp_path):
+    command = ("derive", "ZYX", "--only", "rotation_matrix", "--lean", "--out", "a")
+    call(*command, cwd=tmp_path)
     source = "a/euler_zyx_intrinsic/euler_zyx_intrinsic.c"
+    lean = rs.derive("ZYX", only="rotation_matrix").kernels("c", lean="double").source
+    assert (tmp_path / source).read_text("utf-8") == lean
+    assert "changed" not in call("check", "a", cwd=tmp_path).stdout
     refused = call("build", source, cwd=tmp_path, status=2)
     assert "derive --target c writes it, without --lean" in refused.stderr

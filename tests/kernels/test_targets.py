@@ -73,51 +73,51 @@ def test_kinematics_keep_four_eps_at_angles_of_every_size(target):
 
 
 @pytest.mark.parametrize("target", EVERY)
-def test_large_angles_are_right(target):
-    source = np.random.default_rng(11)
-    q = np.concatenate([source.uniform(-s, s, (6, 3)) for s in (1e6, 1e15, 1e22, 1e300)])
-    with mp.workdps(400):
-        found = rows_of("ZXZ", target, "rotation_matrix", [q])
-        assert worst_error(found, exact("ZXZ", "rotation_matrix", [q])) <= FOUR
-
-
-@pytest.mark.parametrize("target", EVERY)
 def test_sines_are_within_what_the_bounds_rest_on(target):
     source = np.random.default_rng(12)
-    angles = np.concatenate([source.uniform(-s, s, 150) for s in (4.0, 1e4, 1e15)])
-    for dtype in types(target):
-        q = angles.astype(dtype)[:, np.newaxis]
-        found = rows_of("x(phi)", target, "rotation_matrix", [q])[:, [4, 7]]
-        truth = [mp.cos_sin(mp.mpf(float(angle))) for angle in q[:, 0]]
-        assert worst_error(found, truth, np.ones(len(q))) <= SINE
+    with mp.workdps(400):
+        for dtype, sizes in zip(
+            types(target), ((4.0, 1e4, 1e15, 1e22, 1e300), (4.0, 1e4, 1e30)), strict=False
+        ):
+            q = np.concatenate([source.uniform(-s, s, (100, 1)) for s in sizes]).astype(dtype)
+            found = rows_of("x(phi)", target, "rotation_matrix", [q])[:, [4, 7]]
+            truth = [mp.cos_sin(mp.mpf(float(angle))) for angle in q[:, 0]]
+            assert worst_error(found, truth, np.ones(len(q))) <= SINE
+
+
+LENGTHS = [0.0, 1e-12, 1e-3, 1.0, 1.93, 1.94, 2.78, 2.79, 3.99, 4.01, 6.0]  # beside each switch
+
+
+@pytest.mark.parametrize("target", [each for each in EVERY if each.values != ("numpy",)])
+def test_functions_of_the_length_pass_through_zero_and_over_their_switches(target):
+    q = np.outer(LENGTHS, [2 / 3, -1 / 3, 2 / 3])
+    rate = np.tile([0.3, -0.5, 0.7], (len(q), 1))
+    arrays = {"rotation_matrix": [q], "angular_acceleration_body": [q, rate, rate]}
+    for name, given in arrays.items():
+        found, expected = (rows_of("rotation_vector", t, name, given) for t in (target, "numpy"))
+        np.testing.assert_allclose(found, expected, rtol=0, atol=20 * 2.0**-52)
 
 
 @pytest.mark.parametrize("target", EVERY)
 def test_what_depends_on_nan_or_an_infinite_angle_is_nan_and_nothing_else_is(target):
     for name in ("rotation_matrix", "angular_velocity_body", "rates_from_angular_velocity_body"):
         step = motion("ZXZ").step(name)
-        vectors = step.quantity.inputs
         cases = [
-            (vector, place, bad)
-            for vector in vectors
-            for place in range(3)
+            (place, component, symbol, bad)
+            for place, vector in enumerate(step.quantity.inputs)
+            for component, symbol in enumerate(motion("ZXZ").argument(vector).symbols)
             for bad in ((np.nan, np.inf, -np.inf) if vector == "q" else (np.nan,))
         ]
         arrays = [np.repeat(array, len(cases) + 1, axis=0) for array in inputs("ZXZ", name, (1,))]
-        for row, (vector, place, bad) in enumerate(cases):
-            arrays[vectors.index(vector)][row, place] = bad
+        for row, (place, component, _, bad) in enumerate(cases):
+            arrays[place][row, component] = bad
         found = rows_of("ZXZ", target, name, arrays)
         assert np.isfinite(found[-1]).all()
-        for values, (vector, place, bad) in zip(found, cases, strict=False):
-            symbol = motion("ZXZ").argument(vector).symbols[place]
-            depends = [holds(entry, symbol) for entry in step.expression]
-            assert np.isnan(values[depends]).all(), (name, symbol, bad)
-
-
-def holds(entry: sp.Expr, symbol: sp.Expr) -> bool:
-    """Whether an input stands in an expression; a coordinate does not stand in its rate."""
-    plain = {rate: sp.Dummy() for rate in entry.atoms(sp.Derivative) - {symbol}}
-    return entry.xreplace(plain).has(symbol)
+        for values, (_, _, symbol, _) in zip(found, cases, strict=False):
+            rates = step.expression.atoms(sp.Derivative) - {symbol}  # no φ stands in φ̇
+            others = {rate: sp.Dummy() for rate in rates}
+            depends = [entry.xreplace(others).has(symbol) for entry in step.expression]
+            assert np.isnan(values[depends]).all(), (name, symbol)
 
 
 @pytest.mark.parametrize("target", EVERY)
@@ -135,7 +135,7 @@ def test_at_a_pole_rates_are_nan_and_the_margin_is_zero(target):
 @pytest.mark.parametrize("target", ARRAYS)
 @pytest.mark.parametrize("rotation", ["ZXZ", "rotation_vector"])
 def test_a_batch_is_its_orientations_one_by_one(rotation, target):
-    for leading in ((), (0,), (1,), (63,), (64,), (65,), (2, 0, 3), (3, 70)):
+    for leading in ((), (0,), (1,), (64,), (65,), (2, 0, 3), (3, 70)):
         for name in names(rotation, target)[::2]:
             function = getattr(module(rotation, target), name)
             arrays = inputs(rotation, name, leading)
@@ -165,18 +165,11 @@ def every_second(array: np.ndarray) -> np.ndarray:
     return view
 
 
-def read_only(array: np.ndarray) -> np.ndarray:
-    array.flags.writeable = False
-    return array
-
-
 LAYOUTS = {
     "rows": np.asarray,
-    "columns": np.asfortranarray,
     "every second": every_second,
-    "read-only": read_only,
+    "read-only": lambda a: np.frombuffer(a.tobytes()).reshape(a.shape),
     "backwards": lambda a: a[::-1].copy()[::-1],
-    "components backwards": lambda a: a[..., ::-1].copy()[..., ::-1],
     "one row": lambda a: a[:1],
     "one": lambda a: a[0],
     "three axes": lambda a: a.reshape(len(a), 1, -1),
@@ -258,25 +251,7 @@ def test_the_cache_keeps_the_packages_that_were_used_last(tmp_path, monkeypatch)
     assert sorted(path.read_text()[-1] for path in folder.glob("*/one.py")) == ["1", "2"]
 
 
-@pytest.mark.parametrize("target", TARGETS)
-def test_what_is_written_is_data_with_names_of_its_own(target, tmp_path):
-    kernels = motion("ZXZ").kernels(target)
-    assert pickle.loads(pickle.dumps(kernels)) == kernels
-    path = kernels.write(tmp_path)
-    assert path.read_text(encoding="utf-8") == kernels.source
-    assert sorted(file.name for file in tmp_path.iterdir()) == sorted(kernels.files)
-    others = {name for other in TARGETS if other != target for name in _files(other)}
-    assert others.isdisjoint(kernels.files)
-
-
-def _files(target):
-    return motion("ZXZ").kernels(target).files
-
-
-@pytest.mark.parametrize(
-    ("target", "hidden"),
-    [("c", None), ("jax", "jax.numpy"), ("numba", "numba")],
-)
+@pytest.mark.parametrize(("target", "hidden"), [("c", None), ("jax", "jax.numpy")])
 def test_without_its_tools_a_target_is_written_and_loading_ends_in_code_4(
     target, hidden, monkeypatch
 ):
@@ -285,9 +260,8 @@ def test_without_its_tools_a_target_is_written_and_loading_ends_in_code_4(
     if hidden is not None:
         monkeypatch.setitem(sys.modules, hidden, None)
     monkeypatch.setattr("rigidsym.kernels.targets.find_spec", lambda _: None)
-    kernels = motion("ZXZ").kernels(target)
     with pytest.raises(RigidsymError) as raised:
-        kernels.load()
+        motion("ZXZ").kernels(target).load()
     assert raised.value.exit_code == 4
     assert TARGETS[target].missing
     assert TARGETS[target].missing in inventory()
@@ -301,10 +275,8 @@ def test_far_angles_and_poles_change_no_bit_of_other_rows_in_numba():
     q[:3] = [[1.0, 1e9, 2.0], [1.0, 0.0, 2.0], [np.nan, np.nan, 1.0]]
     found = rates(q, omega)
     np.testing.assert_array_equal(found[3:], others)
-    for dtype in (np.float64, np.float32):
-        three = q[:3].astype(dtype), omega[:3].astype(dtype)
-        expected = module("ZXZ", "numpy").rates_from_angular_velocity_body(*three)
-        np.testing.assert_allclose(rates(*three), expected, rtol=64 * np.finfo(dtype).eps)
+    expected = module("ZXZ", "numpy").rates_from_angular_velocity_body(q[:3], omega[:3])
+    np.testing.assert_allclose(found[:3], expected, rtol=1e-14)
 
 
 @pytest.mark.skipif(bool(TARGETS["numba"].missing), reason=TARGETS["numba"].missing)
