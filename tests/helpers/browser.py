@@ -5,42 +5,21 @@ from __future__ import annotations
 import fcntl
 import json
 import os
-import re
 import select
 import subprocess
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from importlib.util import find_spec
-from itertools import groupby
 from pathlib import Path
 from typing import Any
 
 CHROMIUM = (
-    "chromium",
-    "--headless",
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-dev-shm-usage",
-    "--disable-background-networking",
-    "--host-resolver-rules=MAP * ~NOTFOUND",
+    *("chromium", "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage"),
+    *("--disable-background-networking", "--host-resolver-rules=MAP * ~NOTFOUND"),
     "--remote-debugging-pipe",  # the protocol on file descriptors 3 and 4
 )
 _PATIENCE = 60.0  # seconds, for an answer that never comes
-_POLICY = re.compile(r'<meta http-equiv="Content-Security-Policy"[^>]*>')  # images are to load
-_MEASURES = """
-(() => {
-  const root = document.documentElement;
-  const shown = [...root.querySelectorAll(".formula, .scroll")].filter((box) => box.offsetParent);
-  const wide = shown.filter((box) => box.scrollWidth > box.clientWidth + 1);
-  return {
-    page_width: root.scrollWidth,
-    formulas: shown.length,
-    wide: wide.map((box) => box.textContent.slice(0, 80)),
-  };
-})()
-"""
 _AXE = """
 axe.run().then((found) => found.violations.map((fault) =>
   `${fault.id}: ${fault.help}: ${fault.nodes.map((n) => n.html).join(" ")}`))
@@ -172,33 +151,3 @@ def chromium(folder: Path) -> Iterator[Page]:
         os.close(read)
         run.terminate()
         run.wait(30)
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Seen:
-    """What Chromium made of one page at one width."""
-
-    width: int
-    page_width: int  # more than `width` if the page has to be scrolled sideways
-    formulas: int
-    wide: list[str]  # what has to be scrolled inside its box
-    faults: list[str]  # what axe found
-
-
-def look_at(
-    pages: Sequence[tuple[str, int]], folder: Path, *, with_axe: bool = False
-) -> list[Seen]:
-    """Each page, given as HTML, at its width in pixels. Fails on a message in the console."""
-    seen = []
-    with chromium(folder) as tab:
-        for html, same in groupby(pages, lambda page: page[0]):
-            file = folder / "page.html"
-            file.write_text(_POLICY.sub("", html), encoding="utf-8")
-            widths = [width for _, width in same]  # loaded once for all of them
-            tab.open(file, widths[0])
-            for width in widths:
-                tab.resize(width)
-                measures = tab.run(_MEASURES)
-                seen.append(Seen(width=width, faults=tab.faults() if with_axe else [], **measures))
-            assert tab.complaints == []
-    return seen

@@ -28,7 +28,6 @@ from click.testing import CliRunner
 
 from helpers.command import ROOT
 from rigidsym.commands.cli import commands
-from rigidsym.kernels.targets import TARGETS
 from rigidsym.models.library import PARAMETRISATIONS, PRESETS
 from rigidsym.models.parametrisations import EULER_SEQUENCES
 from rigidsym.models.solids import SHAPES
@@ -172,15 +171,6 @@ FILES |= {
 @pytest.mark.parametrize("name", FILES)
 def test_the_schema_takes_what_the_reader_takes(name, schema):
     jsonschema.validate(tomllib.loads(FILES[name]), schema)
-
-
-def test_the_schema_has_the_options_of_every_target(schema):
-    for target, entry in TARGETS.items():
-        if not entry.options:
-            continue
-        keys = schema["properties"]["output"]["properties"][target]["properties"]
-        defaults = {key: keys[key].get("default", keys[key].get("enum", [None])[0]) for key in keys}
-        assert defaults == {key: values[0] for key, values in entry.options.items()}
 
 
 @pytest.mark.parametrize("text", ["rotation = 3", "[rotation]\nsequenc = 'ZXZ'", "[notation]"])

@@ -108,9 +108,6 @@ SEARCHES = {
 TEXT_READERS = {"eval", "exec", "compile", "parse_expr", "parse_latex", "lambdify"}
 
 
-# rooms and arrows
-
-
 def test_imports_run_one_way():
     assert {part_of(module) for module in PATHS} - {""} == set(ORDER)
     assert {pair for pair in arrows() if ORDER.index(pair[1]) > ORDER.index(pair[0])} == set()
@@ -128,8 +125,6 @@ def test_kernels_and_notes_know_nothing_of_one_another_nor_the_representation_of
     assert not arrows() & {("kernels", "notes"), ("notes", "kernels")}
     assert not [name for name in imports()["kernels.ir"] if "targets" in name]
 
-
-# sizes
 
 BUDGETS = {  # what was reached; who makes the house smaller lowers them
     "files": 200,
@@ -163,9 +158,6 @@ def lines_of_code(text: str) -> int:
         ):
             lines.difference_update(range(node.body[0].lineno, (node.body[0].end_lineno or 0) + 1))
     return len(lines)
-
-
-# what is called
 
 
 def test_nothing_is_searched_for():
@@ -215,9 +207,6 @@ def test_names_of_the_package_are_found_on_first_use():
         assert name in dir(rigidsym)
     with pytest.raises(AttributeError, match="'rigidsym' has no attribute 'simplify'"):
         rigidsym.simplify  # noqa: B018
-
-
-# tests
 
 
 TESTS = Path(__file__).resolve().parents[1]

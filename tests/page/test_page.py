@@ -92,18 +92,6 @@ def test_the_notation_is_that_of_the_motion():
     assert "Ω" not in re.sub(r"<script.*?</script>", "", page, flags=re.DOTALL)
 
 
-def test_the_command_writes_one_page_which_check_knows(tmp_path: Path):
-    file = tmp_path / "mine.toml"
-    file.write_text('[rotation]\nsequence = "z(phi)"\n[output]\nnote = ["page"]\nkernels = []\n')
-    path = tmp_path / "mine" / "mine_page.html"
-    done = call("page", str(file), "--out", ".", cwd=tmp_path)
-    assert done.stdout.strip() == "mine/mine_page.html"
-    assert {file.suffix for file in path.parent.iterdir()} == {".html", ".json"}
-    call("check", ".", cwd=tmp_path)
-    path.write_text(path.read_text(encoding="utf-8") + "\n", encoding="utf-8")
-    assert "mine_page.html: differs" in call("check", ".", cwd=tmp_path, status=1).stdout
-
-
 @pytest.mark.usefixtures("java")
 def test_every_page_is_valid(tmp_path: Path):
     assert faults_of((*shipped_pages().values(), *map(page_of, SOME), odd_page()), tmp_path) == ""

@@ -11,7 +11,7 @@ import pytest
 
 from rigidsym.errors import SpecError
 from rigidsym.models.library import rotation_from, rotation_given
-from rigidsym.models.parametrisations import EULER_SEQUENCES, EulerAngles
+from rigidsym.models.parametrisations import EulerAngles
 from rigidsym.pipeline import read_file, read_record, read_spec
 from rigidsym.spec.derivation_spec import DerivationSpec
 from rigidsym.system import resources
@@ -21,9 +21,6 @@ SHIPPED = Path(__file__).resolve().parents[2] / "derivations"
 
 def read(text: str, name: str = "top") -> DerivationSpec:
     return read_spec(dedent(text), source="top.toml", name=name)
-
-
-# what a file says
 
 
 def test_a_full_file():
@@ -98,9 +95,6 @@ def test_a_byte_order_mark_and_other_line_ends_do_no_harm():
     assert read("\ufeff" + plain.replace("\n", "\r\n")) == read(plain)
 
 
-# files
-
-
 def test_files_are_read_by_path_or_shipped_name():
     assert read_file("euler_zxz") == read_file(str(SHIPPED / "euler_zxz.toml"))
 
@@ -130,23 +124,12 @@ def test_files_that_are_no_text(tmp_path, content, fault):
         read_file("euler_xzx")
 
 
-# the shipped files
-
-
 @pytest.mark.parametrize("name", resources.names("derivations", ".toml"))
 def test_shipped_files_are_good_and_explained(name):
     spec = read_file(name)
     assert spec.title
     assert (SHIPPED / f"{name}.toml").read_text(encoding="utf-8").startswith("# ")
     assert read_record(spec.to_data()) == spec
-
-
-def test_the_shipped_list_has_all_sequences():
-    names = {EulerAngles(sequence).name for sequence in EULER_SEQUENCES}
-    assert {single.name for single in read_file("euler_all").singles()} == names
-
-
-# specifications in Python
 
 
 def test_a_specification_checks_itself():
@@ -161,9 +144,6 @@ def test_a_specification_checks_itself():
         DerivationSpec(name="numpy", models=(model,))
     with pytest.raises(SpecError, match="models: expected at least one rotation"):
         DerivationSpec(name="top", models=())
-
-
-# as plain data
 
 
 def test_wrong_data_has_every_fault_at_once():
