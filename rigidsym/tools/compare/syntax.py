@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 GRAMMARS = {
     ".py": "python",
     **dict.fromkeys((".c", ".h"), "cpp"),  # C is read as C++: headers do not tell which it is
-    **dict.fromkeys((".cc", ".cpp", ".cxx", ".hpp", ".ino", ".inl"), "cpp"),
+    **dict.fromkeys((".cc", ".cpp", ".cxx", ".hh", ".hpp", ".hxx", ".ino", ".inl"), "cpp"),
+    **dict.fromkeys((".cu", ".cuh"), "cpp"),  # of CUDA, only the launch of a kernel is no C++
     **dict.fromkeys((".js", ".mjs", ".jsx"), "javascript"),
     **{".m": "matlab", ".ts": "typescript", ".rs": "rust", ".java": "java"},
     ".cs": "c_sharp",
