@@ -23,7 +23,6 @@ from rigidsym.tools.identify.turns import (
     Array,
     ReadingTable,
     angular_velocities,
-    as_given,
 )
 
 FLOOR = 1e-6  # the least tolerance, since data may have been in single precision
@@ -250,27 +249,13 @@ def _scale(block: SampleBlock) -> float:
     return next((length for length in lengths if length), 1.0)
 
 
-class _Candidates:
-    """Readings whose orientations, and whose Ω, are each computed once."""
-
-    def __init__(self, readings: Sequence[Reading]) -> None:
-        self.readings = tuple(readings)
-        orientations = list(dict.fromkeys(reading.orientation for reading in readings))
-        velocities = list(dict.fromkeys(r.velocity for r in readings if r.velocity))
-        self._table, self._velocities = ReadingTable(orientations), velocities
-        numbers = {reading: number for number, reading in enumerate(orientations)}
-        self._orientation = np.array([numbers[reading.orientation] for reading in readings])
-        self._velocity = [velocities.index(r.velocity) for r in readings if r.velocity]
-
-    def residuals(self, block: SampleBlock, scale: float) -> tuple[Array, Array]:
-        """Angles to the data in radians, and |difference of Ω| over the scale: (n, readings)."""
-        angles = self._table.residuals(block.angles, block.orientation())[:, self._orientation]
-        if block.rates is None or block.omega is None:
-            return angles, np.zeros_like(angles)
-        omega = angular_velocities(self._table.readings, block.angles, block.rates)
-        difference = as_given(omega, self._velocities) - block.omega[:, None, None]
-        off = np.linalg.norm(difference, axis=-1) / scale
-        return angles, off[:, self._orientation, self._velocity]
+def _residuals(table: ReadingTable, block: SampleBlock, scale: float) -> tuple[Array, Array]:
+    """Angles to the data in radians, and |difference of Ω| over the scale: (n, readings)."""
+    angles = table.residuals(block.angles, block.orientation())
+    if block.rates is None or block.omega is None:
+        return angles, np.zeros_like(angles)
+    omega = angular_velocities(table.readings, block.angles, block.rates)
+    return angles, np.linalg.norm(omega - block.omega[:, None], axis=-1) / scale
 
 
 @cache
@@ -303,8 +288,8 @@ def _with_velocities(
     """Each reading of the orientation with every reading of Ω that fits, or with the nearest."""
     if block.omega is None or not orientations:
         return list(orientations)
-    candidates = _Candidates([replace(r, velocity=v) for r in orientations for v in VELOCITIES])
-    worst = candidates.residuals(block, scale)[1].max(axis=0)
+    candidates = ReadingTable([replace(r, velocity=v) for r in orientations for v in VELOCITIES])
+    worst = _residuals(candidates, block, scale)[1].max(axis=0)
     chosen = np.flatnonzero(worst <= tolerance) if tolerance is not None else [worst.argmin()]
     return [candidates.readings[k] for k in chosen]
 
@@ -313,7 +298,7 @@ class _Tally:
     """The largest residuals so far of each candidate."""
 
     def __init__(self, readings: Sequence[Reading], tolerance: Tolerance, scale: float) -> None:
-        self._candidates = _Candidates(readings)
+        self._candidates = ReadingTable(readings)
         self._allowed = tolerance.of(np.array([reading.degrees for reading in readings]))
         self._allowed_velocity, self._scale = tolerance.velocity, scale
         self._angle, self._velocity = np.zeros((2, len(readings)))
@@ -328,7 +313,7 @@ class _Tally:
         self._samples += len(block)
 
     def _add(self, block: SampleBlock) -> None:
-        angles, velocities = self._candidates.residuals(block, self._scale)
+        angles, velocities = _residuals(self._candidates, block, self._scale)
         shares = np.maximum(angles / self._allowed, velocities / self._allowed_velocity)
         self._fitting += (shares <= 1).sum(axis=0)
         self._angle = np.maximum(self._angle, angles.max(axis=0))

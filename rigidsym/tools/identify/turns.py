@@ -9,7 +9,7 @@ from types import ModuleType
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidsym.tools.identify.readings import RADIANS_PER_DEGREE, Reading, Velocity
+from rigidsym.tools.identify.readings import RADIANS_PER_DEGREE, Reading
 
 Array = NDArray[np.float64]
 _AXES = "XYZ"
@@ -124,28 +124,21 @@ def _kernels(sequence: str) -> ModuleType:
 
 
 def angular_velocities(readings: Sequence[Reading], angles: Array, rates: Array) -> Array:
-    """Ω and Ω′ of the rotation R of each reading, in the unit of the rates.
+    """Ω as the data have it under each reading, which has a velocity: (n, readings, 3).
 
-    `angles` and `rates` (n, 3) are columns of the data; the result is (n, readings, 2, 3), space
-    components first.
+    `angles` and `rates` (n, 3) are columns of the data.
     """
-    turns = [reading.intrinsic() for reading in readings]
-    columns = np.array([turn.columns for turn in turns])
-    signs = np.array([turn.signs for turn in turns])
-    factors = np.array([[turn.factor] for turn in turns])
-    sequences = np.array([turn.sequence for turn in turns])
-    q, q_dot = angles[:, columns] * (signs * factors), rates[:, columns] * signs
-    omega = np.empty((len(angles), len(turns), 2, 3))
-    for sequence in dict.fromkeys(sequences.tolist()):
-        here = sequences == sequence
-        for k, frame in enumerate(_FRAMES):
-            kernel = getattr(_kernels(sequence), f"angular_velocity_{frame}")
-            omega[:, here, k] = kernel(q[:, here], q_dot[:, here])
+    kernels: dict[tuple[str, str], list[int]] = {}
+    for k, reading in enumerate(readings):
+        assert reading.velocity
+        kernels.setdefault((reading.intrinsic().sequence, reading.velocity.frame), []).append(k)
+    omega = np.empty((len(angles), len(readings), 3))
+    for (sequence, frame), places in kernels.items():
+        turns = [readings[k].intrinsic() for k in places]
+        columns, signs = ([getattr(t, name) for t in turns] for name in ("columns", "signs"))
+        units = np.array([[t.factor] for t in turns])
+        factors = np.array([[t.velocity.factor if t.velocity else 1.0] for t in turns])
+        kernel = getattr(_kernels(sequence), f"angular_velocity_{frame}")
+        q, q_dot = angles[:, columns] * (signs * units), rates[:, columns] * signs
+        omega[:, places] = kernel(q, q_dot) * factors
     return omega
-
-
-def as_given(omega: Array, velocities: Sequence[Velocity]) -> Array:
-    """Ω as the data have it under each reading of Ω: (..., 2, 3) to (..., v, 3)."""
-    frames = [_FRAMES.index(velocity.frame) for velocity in velocities]
-    factors = np.array([[velocity.factor] for velocity in velocities])
-    return np.asarray(omega[..., frames, :] * factors)
