@@ -6,6 +6,7 @@ Both are made from `rigidsym/spec/keys.toml`, by which the reader checks a file.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from copy import deepcopy
 from typing import Any
 
 from rigidsym.spec.schema import schema_of
@@ -14,7 +15,7 @@ Schema = dict[str, Any]
 
 
 def schema() -> Schema:
-    found = schema_of("file")
+    found = deepcopy(schema_of("file"))  # which keeps its hints for the reader of files
     for table in (found, *found["properties"].values()):
         table.pop("hints", None)
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **found}

@@ -145,9 +145,15 @@ def constants_of(body: RigidBody | None) -> dict[sp.Symbol, float]:
 @lru_cache(maxsize=64)
 def period_of(symbol: sp.Expr, model: RotationModel) -> float:
     """After how many radians R is as before; 0 if the symbol is no angle in R."""
-    waves = {wave: sp.Dummy() for wave in model.matrix.atoms(sp.sin, sp.cos)}
-    slopes = [wave.args[0].diff(symbol) for wave in waves if wave.has(symbol)]
-    is_outside = model.matrix.xreplace(waves).has(symbol)
-    if not slopes or is_outside or not all(slope.is_Rational for slope in slopes):
+    angles, rest = _waves_in(model)
+    slopes = [angle.diff(symbol) for angle in angles if angle.has(symbol)]
+    if not slopes or rest.has(symbol) or not all(slope.is_Rational for slope in slopes):
         return 0.0
     return 2 * pi * lcm(*(int(slope.q) for slope in slopes))
+
+
+@lru_cache(maxsize=16)
+def _waves_in(model: RotationModel) -> tuple[list[sp.Expr], sp.Matrix]:
+    """The arguments of the sines and cosines in R, and R with a letter for each of these."""
+    waves = {wave: sp.Dummy() for wave in model.matrix.atoms(sp.sin, sp.cos)}
+    return [wave.args[0] for wave in waves], model.matrix.xreplace(waves)

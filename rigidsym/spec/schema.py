@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import tomllib
 from collections.abc import Iterable, Mapping
+from functools import cache
 from math import isfinite
 from pathlib import Path
 from typing import Any
@@ -41,6 +42,7 @@ _NOUNS = {  # in singular and plural
 _LARGEST = 1e300  # sums and products of numbers in a file stay finite
 
 
+@cache
 def schema_of(kind: str) -> Schema:
     """The schema of a "file", or of the request in a "record"."""
     text = Path(__file__).with_name("keys.toml").read_text(encoding="utf-8")

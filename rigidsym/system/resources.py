@@ -38,6 +38,7 @@ NOTES = "templates/notes"  # those that users may replace
 _HOMES = (_PACKAGE / "_data", _PACKAGE.parent)
 
 
+@cache
 def folder(kind: str) -> Path:
     """The folder of one kind: "templates", "templates/notes" or "derivations".
 
@@ -103,16 +104,24 @@ def template(name: str) -> tuple[str, str]:
     FileNotFoundError if there is none and for a name that leads out of the folder, and
     UnicodeDecodeError if it is not text.
     """
+    kind, shipped = _located(name)
+    own = _OWN.get() if kind == NOTES and shipped == name else None
+    if own is not None and (own / name).is_file():
+        return (own / name).read_text(encoding="utf-8"), str(own / name)
+    return _shipped(kind, shipped)
+
+
+@cache  # Jinja2 asks for each template whenever it is used, a thousand times for 24 notes
+def _located(name: str) -> tuple[str, str]:
+    """The folder of a template and its name there."""
     path = Path(name)
     if path.is_absolute() or ".." in path.parts:
         raise FileNotFoundError(f"{name} is not the name of a file among the templates")
-    is_of_notes = len(path.parts) == 1 or not (folder("templates") / path.parts[0]).is_dir()
-    if path.parts[0] == _SHIPPED:
-        return _shipped(NOTES, Path(*path.parts[1:]).as_posix())
-    own = _OWN.get() if is_of_notes else None
-    if own is not None and (own / name).is_file():
-        return (own / name).read_text(encoding="utf-8"), str(own / name)
-    return _shipped(NOTES if is_of_notes else "templates", name)
+    first, *rest = path.parts
+    if first == _SHIPPED:
+        return NOTES, Path(*rest).as_posix()
+    is_of_notes = not rest or not (folder("templates") / first).is_dir()
+    return NOTES if is_of_notes else "templates", name
 
 
 class SandboxedTemplates(ImmutableSandboxedEnvironment):

@@ -84,7 +84,7 @@ def drawing(request: pytest.FixtureRequest) -> Drawing:
 def test_labels_touch_nothing_and_stand_near_what_they_name(drawing):
     segments = segments_of(drawing.strokes)
     for label, box in zip(drawing.labels, boxes(drawing.labels), strict=True):
-        assert box.crossings(segments) == 0, label
+        assert not box.crossings(segments), label
         ends = [p for s in drawing.strokes if s.kind == label.kind for p in s.points]
         x, y = label.place
         assert min(hypot(x - a, y - b) for a, b in ends) < (
@@ -189,10 +189,8 @@ def test_a_segment_crosses_a_box_if_one_of_its_points_is_inside(start, end):
     along = np.linspace(start, end, 201)
     inside = (np.abs(along - box.centre) < (0.699, 0.399)).all(axis=1).any()
     segment = [(start, end)]
-    assert box.grown(0.02).crossings(segment) >= inside
-    assert box.crossings(segment) >= inside
-    if not box.grown(0.02).crossings(segment):
-        assert not inside
+    assert box.crossings(segment) or not inside
+    assert box.grown(0.02).crossings(segment) or not inside
 
 
 @pytest.mark.parametrize("name", ["vector", "oblique", "chain zxyzx", "words"])

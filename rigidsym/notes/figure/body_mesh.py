@@ -6,7 +6,7 @@ those that shrink to lines and those that meet, as at the angles 0 and 2π.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice, pairwise, permutations, product
 from typing import Any, NamedTuple
@@ -121,10 +121,11 @@ class _Leaf(NamedTuple):
     turned: sp.ImmutableMatrix = UPRIGHT
     color: Color = BLUE
 
-    def moved(self, points: Vector, numbers: Numbers, unit: float = 1.0) -> Vector:
-        """Points (n, 3) in the axes of the whole; `unit` is the unit of length."""
-        turned = _floats(self.turned.xreplace(numbers))
-        return _floats(self.at.xreplace(numbers)) / unit + points @ turned.reshape(3, 3).T
+    def moved(self, polygons: Iterable[Vector], numbers: Numbers, unit: float) -> Iterator[Vector]:
+        """Each array of points (n, 3) in the axes of the whole; `unit` is the unit of length."""
+        turned = _floats(self.turned.xreplace(numbers)).reshape(3, 3)
+        at = _floats(self.at.xreplace(numbers)) / unit
+        return (at + points @ turned.T for points in polygons)
 
 
 def _leaves(what: Distribution, leaf: _Leaf | None = None) -> Iterator[_Leaf]:
@@ -179,7 +180,7 @@ def _points(what: Distribution, numbers: Numbers) -> Iterator[Vector]:
             case Known():
                 points = np.array(leaf.what.outline.corners)
         if len(points):
-            yield leaf.moved(points, numbers)
+            yield from leaf.moved([points], numbers, 1.0)
 
 
 def _faces(leaf: _Leaf, numbers: Numbers, unit: float) -> Iterator[Face]:
@@ -192,7 +193,7 @@ def _faces(leaf: _Leaf, numbers: Numbers, unit: float) -> Iterator[Face]:
         case Known():
             corners = np.array(leaf.what.outline.corners) / unit
             faces = [corners[[*face]] for face in leaf.what.outline.faces]
-    return (Face(leaf.moved(face, numbers, unit), leaf.color) for face in faces)
+    return (Face(corners, leaf.color) for corners in leaf.moved(faces, numbers, unit))
 
 
 # A solid

@@ -80,27 +80,25 @@ class Box(NamedTuple):
         is_beside = abs(x - a) >= self.half_width + other.half_width
         return not is_beside and abs(y - b) < self.half_height + other.half_height
 
-    def crossings(self, segments: Iterable[Segment]) -> int:
-        """How many segments have a point inside (the test of Liang and Barsky)."""
+    def crossings(self, segments: Iterable[Segment]) -> list[Segment]:
+        """The segments that have a point inside (the test of Liang and Barsky)."""
         (x, y), half_width, half_height = self
         left, right, below, above = x - half_width, x + half_width, y - half_height, y + half_height
-        count = 0
-        for (x0, y0), (x1, y1) in segments:
-            # most segments are on one side of the box, which this line tells faster
-            if (
-                max(x0, x1) < left
-                or min(x0, x1) > right
-                or max(y0, y1) < below
-                or min(y0, y1) > above
-            ):
+        inside = []
+        for segment in segments:
+            (x0, y0), (x1, y1) = segment
+            if (x0 < left and x1 < left) or (x0 > right and x1 > right):
+                continue  # most segments are to one side of the box
+            if (y0 < below and y1 < below) or (y0 > above and y1 > above):
                 continue
             enters, leaves = 0.0, 1.0  # fractions of the way along the segment
             for low, high, start, end in ((left, right, x0, x1), (below, above, y0, y1)):
-                if start != end:  # else it is between these two sides, as the line above tells
+                if start != end:  # else it is between these two sides, or it would be left out
                     ends = (low - start) / (end - start), (high - start) / (end - start)
                     enters, leaves = max(enters, min(ends)), min(leaves, max(ends))
-            count += enters <= leaves
-        return count
+            if enters <= leaves:
+                inside.append(segment)
+        return inside
 
 
 class Label(NamedTuple):
@@ -260,17 +258,26 @@ def _free(
 ) -> Box:
     """The first place where nothing is touched, or else the one where the least is."""
     best, least = None, len(segments) + len(taken) + 1
+    near = _field(half_width, places).crossings(segments)
     for gap in _GAPS:
         for start, direction in places:
             box = Box(_shifted(half_width, start, direction, gap), half_width, _HALF_HEIGHT)
             grown = box.grown(_MARGIN)
-            touched = grown.crossings(segments) + sum(map(grown.meets, taken))
+            touched = len(grown.crossings(near)) + sum(map(grown.meets, taken))
             if touched < least:
                 best, least = box, touched
             if touched == 0:
                 return box
     assert best is not None
     return best
+
+
+def _field(half_width: float, places: Sequence[Place]) -> Box:
+    """What holds the label at any of its places, so that lines outside it need no second look."""
+    xs, ys = zip(*(start for start, _ in places), strict=True)
+    centre = ((min(xs) + max(xs)) / 2, (min(ys) + max(ys)) / 2)
+    reach = _GAPS[-1] + 2 * hypot(half_width, _HALF_HEIGHT) + _MARGIN
+    return Box(centre, (max(xs) - min(xs)) / 2, (max(ys) - min(ys)) / 2).grown(reach)
 
 
 def _shifted(half_width: float, start: Point, direction: float, gap: float) -> Point:
