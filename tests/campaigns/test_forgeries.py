@@ -355,7 +355,7 @@ def test_there_are_sixty_forgeries():
 def test_double_keys_are_refused(tmp_path):
     path = tmp_path / "a.json"
     path.write_text(json.dumps(record_of("ZXZ")).replace('"title"', '"title": "", "title"', 1))
-    with pytest.raises(checker.Refused, match="a key is there twice"):
+    with pytest.raises(checker.Refused, match="a name is there twice"):
         checker.load(path)
 
 

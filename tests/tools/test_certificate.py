@@ -112,7 +112,7 @@ def test_a_rate_matrix_that_holds_rates_is_refused():
     changed = copy.deepcopy(record_of("ZXZ"))
     row = ["cos(theta) + psi_dot/phi_dot", "0", "0"]
     printed(changed, "rate_matrix_body")["expression"][2] = row
-    with pytest.raises(ValueError, match="phi_dot must not be in"):
+    with pytest.raises(ValueError, match="_dot must not be in"):
         checker.verify(changed)
 
 
@@ -151,12 +151,12 @@ def test_an_expression_in_another_language_is_refused(text):
     [
         ("sqrt(2)*sqrt(6)", "2*sqrt(3)", True),
         ("1/(1 + sqrt(2) + sqrt(3))", "1/2 + sqrt(2)/4 - sqrt(6)/4", True),
-        ("sqrt(8/9)", "2*sqrt(2)/3", True),
+        ("1/sqrt(8)", "sqrt(2)/4", True),
         ("sqrt(2) + sqrt(3)", "sqrt(10)", False),
         ("cos(2*phi)", "1 - 2*sin(phi)**2", True),
         ("sin(phi - theta/2)", "sin(phi)*cos(theta/2) - cos(phi)*sin(theta/2)", True),
         ("tan(phi)*cot(phi)", "1", True),
-        ("cos(phi*theta)", "cos(theta*phi)", True),
+        ("sin(1)**2 + cos(theta + 1)**2", "1 - cos(1)**2 + cos(1 + theta)**2", True),
         ("cos(2*phi)", "1 - sin(phi)**2", False),
         ("cos(theta + 1)", "cos(theta)", False),
     ],
@@ -166,7 +166,7 @@ def test_roots_and_sums_of_angles_are_exact(one, two, is_true):
     row = printed(changed, "rotation_matrix")["expression"][0]
     row[0] = f"{row[0]} + {one} - ({two})"
     if is_true:
-        checker.verify(changed)
+        assert checker.verify(changed)[1] == {}
     else:
         with pytest.raises(checker.Refused, match="rotation_matrix: entry 1 is false"):
             checker.verify(changed)
@@ -265,7 +265,7 @@ def test_a_hamiltonian_in_the_rates_is_refused():
     # the energy itself would satisfy H(q, p(q, q̇)) = E(q, q̇)
     changed = copy.deepcopy(of_motion("top"))
     printed(changed, "hamiltonian")["expression"] = printed(changed, "energy")["expression"]
-    with pytest.raises(ValueError, match="phi_dot must not be in"):
+    with pytest.raises(ValueError, match="_dot must not be in"):
         checker.verify(changed)
 
 
@@ -355,7 +355,7 @@ def test_the_files_are_written_and_checked(tmp_path):
     text = path.read_text()
     for before, after, message in (
         ("-sin(phi)*sin(psi)", "sin(phi)*sin(psi)", "rotation_matrix: entry 1 is false"),
-        ('"title"', '"title": "", "title"', "a key is there twice"),
+        ('"title"', '"title": "", "title"', "a name is there twice"),
     ):
         path.write_text(text.replace(before, after, 1))
         done = subprocess.run(alone, cwd=tmp_path, capture_output=True, text=True, check=False)

@@ -25,7 +25,7 @@ from rigidsym.tools.certificate.checker import (
     BROKEN,
     OMEGA,
     PRINCIPAL,
-    Names,
+    Record,
     Tree,
     names_in,
     parts_of,
@@ -151,7 +151,7 @@ class _Section:
         self.record, self.claims, self.stated = record, claims, stated
         if not claims:
             raise Unstated
-        self.names, self.printed = Names(record), printed_in(record)
+        self.names, self.printed = Record(record), printed_in(record)
         inside = set().union(*map(names_in, self.trees(*claims)))
         definitions = self.names.definitions.items()
         self.definitions = {name: text for name, text in definitions if name in inside}
@@ -189,7 +189,7 @@ class _Section:
         second = self.real(parts[1], at, other)
         if kind == "-" and parts[0] == ("number", 0):
             return f"(- {second})"
-        if kind == "/" and not names_in(parts[1]) - {*self.names.constant}:
+        if kind == "/" and not names_in(parts[1]) - {*self.names.constants, "pi"}:
             return f"({first} * / {second})"  # a constant factor, whose derivative is short
         return f"({first} {kind} {second})"
 
@@ -251,7 +251,7 @@ class _Section:
             kind, forms = turn_of(turn)
             trees = [*map(tree_of, forms)]
             *axis, cosine, sine = (self.real(tree, "s") for tree in trees)
-            is_fixed = not names_in(("", *trees[:3])) - {*self.names.constant}
+            is_fixed = not names_in(("", *trees[:3])) - {*self.names.constants, "pi"}
             if kind in ("x", "y", "z"):
                 angle = trees[3][1]
                 function, rate = self.real(angle, "s"), self._rate(angle)
@@ -281,7 +281,7 @@ class _Section:
     def _rate(self, angle: Tree) -> str:
         """The rate of a sum of multiples of coordinates."""
         kind, *parts = angle
-        if kind == "number" or (kind == "name" and parts[0] in self.names.constant):
+        if kind == "number" or (kind == "name" and parts[0] in (*self.names.constants, "pi")):
             return "0"
         if kind == "name":
             return self.name(f"{parts[0]}_dot")
@@ -300,8 +300,8 @@ class _Section:
         yield "Require Import Reals Lra Rotation."
         yield "Open Scope R_scope."
         yield "Section Claims."
-        if names.constant != ["pi"]:
-            yield f"Variables {' '.join(self.letter(n) for n in names.constant if n != 'pi')} : R."
+        if names.constants:
+            yield f"Variables {' '.join(map(self.letter, names.constants))} : R."
         yield f"Variables {' '.join(q)} : R -> R. (* coordinates, functions of time *)"
         yield f"Variables {' '.join(rates)} : R -> R. (* their derivatives *)"
         for one, two in zip(q, rates, strict=True):
@@ -518,7 +518,7 @@ class _Section:
     @property
     def seconds(self) -> tuple[str, str]:
         """Letters for the derivatives of the rates, and hypotheses that say what they are."""
-        letters = [*map(self.letter, self.names.second)]
+        letters = [*map(self.letter, self.names.seconds)]
         pairs = zip(map(self.letter, self.names.rates), letters, strict=True)
         premises = (f"derivable_pt_lim {rate} t {second} -> " for rate, second in pairs)
         return f" {' '.join(letters)}", "".join(premises)
