@@ -230,7 +230,9 @@ class RigidBody:
                 raise BodyError(
                     f"{self.name}: the mass is {float(mass):g} kg; expected a positive number"
                 )
-            self._check_moments()
+            inertia = self.in_numbers(self.inertia)
+            if all(entry.is_number for entry in inertia):
+                check_moments(self.name, inertia.tolist())
 
     def sentences(self, *, about_fixed_point: bool) -> tuple[str, ...]:
         """The body in plain sentences, to follow the convention of its rotation."""
@@ -274,37 +276,6 @@ class RigidBody:
                     f"I_{places[1]} = {format(float(value), 'g') if value.is_Float else value}"
                 )
 
-    def _check_moments(self) -> None:
-        """Raises BodyError for a matrix of numbers that no body has, with the amount.
-
-        For a mass distribution that is nowhere negative, the moments are not negative and no moment
-        is larger than the sum of the other two, since Ix + Iy − Iz = 2 Σ m z² (L. D. Landau and
-        E. M. Lifshitz, Mechanics, section 32). A matrix with symbols left in it is not checked.
-        """
-        inertia = self.in_numbers(self.inertia)
-        if not all(entry.is_number for entry in inertia):
-            return
-        import numpy as np
-
-        numbers = np.array(inertia.tolist(), dtype=float)
-        if not np.isfinite(numbers).all():
-            raise BodyError(
-                f"{self.name}: the inertia tensor holds NaN or infinity: {numbers.tolist()}"
-            )
-        low, middle, high = map(float, np.linalg.eigvalsh(numbers))
-        slack = _ROUNDING * max(-low, high)
-        if low < -slack:
-            raise BodyError(
-                f"{self.name}: the inertia tensor is not positive: its smallest principal moment "
-                f"is {low:.6g} kg m²"
-            )
-        if low + middle < high - slack:
-            raise BodyError(
-                f"{self.name}: no body has the principal moments {low:.6g}, {middle:.6g}, "
-                f"{high:.6g} kg m²: the largest exceeds the sum of the others by "
-                f"{high - low - middle:.6g} kg m²"
-            )
-
     def _repr_latex_(self) -> str:
         """What Jupyter shows: the mass, the centre and the inertia tensor about it."""
         mass, centre, inertia = map(sp.latex, (self.mass, self.centre, self.inertia))
@@ -315,6 +286,33 @@ class RigidBody:
 
     def __str__(self) -> str:
         return self.name
+
+
+def check_moments(name: str, inertia: Sequence[Sequence[Any]]) -> None:
+    """Raises BodyError for an inertia tensor in numbers, (3, 3), that no body has, with the amount.
+
+    For a mass distribution that is nowhere negative, the moments are not negative and no moment
+    is larger than the sum of the other two, since Ix + Iy − Iz = 2 Σ m z² (L. D. Landau and
+    E. M. Lifshitz, Mechanics, section 32).
+    """
+    import numpy as np
+
+    numbers = np.array(inertia, dtype=float)
+    if not np.isfinite(numbers).all():
+        raise BodyError(f"{name}: the inertia tensor holds NaN or infinity: {numbers.tolist()}")
+    low, middle, high = map(float, np.linalg.eigvalsh(numbers))
+    slack = _ROUNDING * max(-low, high)
+    if low < -slack:
+        raise BodyError(
+            f"{name}: the inertia tensor is not positive: its smallest principal moment "
+            f"is {low:.6g} kg m²"
+        )
+    if low + middle < high - slack:
+        raise BodyError(
+            f"{name}: no body has the principal moments {low:.6g}, {middle:.6g}, "
+            f"{high:.6g} kg m²: the largest exceeds the sum of the others by "
+            f"{high - low - middle:.6g} kg m²"
+        )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
+from rigidsym.algebra.evaluate import Floats, Unknown, evaluate
 from rigidsym.errors import ModelError, QuantityError, offer
 from rigidsym.kernels.module import generate
 from rigidsym.mechanics.derivation import Derivation, Step
@@ -26,12 +27,15 @@ from rigidsym.mechanics.derive import derive
 from rigidsym.mechanics.dynamics.euler import EulerEquations
 from rigidsym.mechanics.dynamics.lagrange import is_bound
 from rigidsym.mechanics.quantities.dynamics import EULER_QUANTITIES, FLOW_QUANTITIES
+from rigidsym.models.body import RigidBody, check_moments
 from rigidsym.models.forces import OMEGA, OMEGA_COMPONENTS, Forces, initial_values
 from rigidsym.models.rotation import RotationModel, as_typed
 from rigidsym.simulation.trajectory import Array, Trajectory
 
 # from which a motion is computed
 NEEDED = ("rotation_matrix", "angular_velocity_body", "state_derivative", "first_integrals")
+_GRAVITY = "m/s^2"  # the unit by which the acceleration in a weight is known
+_ORIENTATIONS = 12  # at which a weight is told from other potentials; c has three components
 _UNIT = 1e-9  # by which the entries of R Rᵀ − 1 may be off at the start
 
 
@@ -151,11 +155,41 @@ class Problem:
         _check_finite("parameters", parameters)
         values = [float(parameters.get(name, 1.0)) for name in constants]
         by_name = dict(zip(constants, values, strict=True))
-        replace(  # with values for its parameters, a body checks its moments
-            body,
-            parameters=tuple(replace(p, value=by_name[p.symbol.name]) for p in body.parameters),
-        )
+        described = (replace(p, value=by_name[p.symbol.name]) for p in body.parameters)
+        body = replace(body, parameters=tuple(described))  # which checks its moments
+        if not body.allow and body.distribution is None and not self.forces.parts:
+            self._check_about_centre(body)
         return values
+
+    def _check_about_centre(self, body: RigidBody) -> None:
+        """Raises BodyError for moments about the fixed point that leave no body about its centre.
+
+        A weight, V = m g c·e with the third axis e of space in the axes of the body, tells the
+        centre of mass c; about it the tensor is less by m (|c|² 1 − c cᵀ). The potential is
+        evaluated at some orientations: it is a weight if one c serves for all.
+        """
+        gravity = [body.values[p.symbol] for p in body.parameters if p.unit == _GRAVITY]
+        mass = body.in_numbers(body.mass)
+        if len(gravity) != 1 or not gravity[0] or not mass.is_number:
+            return
+        orientations = np.random.default_rng(1).uniform(-1, 1, (self.count, _ORIENTATIONS))
+        values = dict(zip(self.model.coordinates, orientations, strict=True))
+        values |= {symbol: float(value) for symbol, value in body.values.items()}
+        # a text that no weight is may hold the time, or a function that has no number
+        with suppress(Unknown):
+            height, *vertical = (
+                np.broadcast_to(evaluate(e, Floats(np), values), _ORIENTATIONS)
+                for e in (self.forces.potential, *self.model.matrix.row(2))
+            )
+            height = height / float(mass * gravity[0])
+            axis = np.stack(vertical, axis=1)
+            centre = np.linalg.lstsq(axis, height)[0].round(12)  # m
+            if np.abs(axis @ centre - height).max() <= _UNIT * np.abs(height).max():
+                moved = centre @ centre * np.eye(3) - np.outer(centre, centre)
+                inertia = np.array(body.in_numbers(body.inertia).tolist(), float)
+                at = ", ".join(f"{part:.6g}" for part in centre)
+                where = f"{body.name}, about its centre of mass at ({at}) m"
+                check_moments(where, inertia - float(mass) * moved)
 
     def _state(self, initial: Mapping[str, Any]) -> Array:
         """The state at t = 0, (k,), from coordinates and rates by name or the angular velocity.
