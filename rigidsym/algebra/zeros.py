@@ -307,18 +307,24 @@ class Solver:
         return sums[angle.cosine], sums[angle.sine]
 
     def _of_one(self, factor: PolyElement, angle: _Angle) -> list[Root] | None:
-        """Roots of a linear or quadratic polynomial in one sine or one cosine, with numbers."""
+        """Roots of a polynomial in one sine or one cosine, with numbers.
+
+        Above the second degree only Sturm's theorem is asked, whether there are none.
+        """
         element = self._ring.reduce(factor)
         expressions = [generator.expression for generator in self._ring.generators]
         used = {k for m in element for k, power in enumerate(m) if power}
         moving = [k for k in used if not expressions[k].is_number]
-        if len(moving) != 1 or max(m[moving[0]] for m in element) > 2:
+        if len(moving) != 1:
             return None
         (place,), x = moving, sp.Dummy("x")
         values = [sp.S.Zero]  # of a sine or cosine itself, the commonest
         if len(element) > 1:
-            polynomial = self._codec.decode(element).xreplace({expressions[place]: x})
-            values = [value for value in sp.roots(polynomial, x) if value.is_real]
+            polynomial = sp.Poly(self._codec.decode(element).xreplace({expressions[place]: x}), x)
+            if polynomial.degree() > 2:
+                is_rational = all(number.is_Rational for number in polynomial.all_coeffs())
+                return [] if is_rational and not polynomial.count_roots(-1, 1) else None
+            values = [value for value in sp.roots(polynomial) if value.is_real]
         roots: dict[Root, None] = {}
         for value in values:
             if abs(value) > 1:

@@ -66,6 +66,12 @@ def test_zeros_of_a_sum_of_two_angles_name_one_by_the_other(function, angle):
 
 def test_a_polynomial_that_is_not_solved_says_so():
     assert zeros(sin(phi) - sin(theta)) == ([], False)
+    assert zeros(cos(phi) ** 3 + 2 * cos(phi) + 1) == ([], False)
+
+
+@pytest.mark.parametrize("expression", [cos(phi) ** 3 + 3, cos(phi) ** 4 + cos(phi) + 2])
+def test_no_zeros_of_a_higher_degree_are_known_by_sturms_theorem(expression):
+    assert zeros(expression) == ([], True)
 
 
 def test_singular_orientations_of_turns_by_sums_and_multiples_are_listed():
