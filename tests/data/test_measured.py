@@ -82,13 +82,10 @@ def test_columns_by_name_in_every_format(tmp_path):
 
 
 def test_a_file_of_something_else_is_described_and_not_quoted(tmp_path):
-    content = "root:x:0:0:root:/root:/bin/bash\n"
-    (tmp_path / "cloud.txt").write_text(content * 3)
-    with pytest.raises(BodyError) as error:
+    (tmp_path / "cloud.txt").write_text("secret:x:0:0:words:/bin/bash\n")
+    with pytest.raises(BodyError, match=r"\d+ bytes without a column named x") as error:
         inertia_of(tmp_path / "cloud.txt")
-    said = str(error.value).removeprefix(str(tmp_path / "cloud.txt"))
-    assert not {*re.split(r"[:,\s]+", content)} - {*"xyzm", ""} & {*re.split(r"[^\w/]+", said)}
-    assert f"{len(content) * 3} bytes without a column named x" in said or "field 1 is not" in said
+    assert not re.search("secret|words", str(error.value))
 
 
 def test_units_are_converted_and_a_negative_mass_may_be_allowed(tmp_path):
@@ -98,20 +95,12 @@ def test_units_are_converted_and_a_negative_mass_may_be_allowed(tmp_path):
     assert "-0" not in found.text().replace("-0.", "")
 
 
-def with_entry(row: int, column: int, value: float) -> np.ndarray:
-    table = rows(20)
-    table[row, column] = value
-    return table
-
-
 @pytest.mark.parametrize(
     ("table", "fault"),
     [
-        (with_entry(7, 0, np.inf), r"particle 7, counted from 0"),
-        (with_entry(7, 0, -1.0), "particle 7, counted from 0: expected a mass that is not neg"),
+        (np.vstack([rows(7), [np.inf, 0, 0, 0]]), r"particle 7, counted from 0"),
         (rows(20) * (0, 1, 1, 1), r"the total mass is 0 kg; expected a positive mass"),
         (rows(20)[:0], r"expected at least one particle, got none"),
-        (rows(20)[:, :2], r"expected 3 columns \(x, y, z\) or 4 \(m, x, y, z\), got 2"),
         (rows(20) * (1, 1e200, 1, 1), r"too large for double precision"),
         (rows(20).ravel(), r"expected numbers of shape \(rows, columns\), got float64 of"),
     ],
@@ -164,10 +153,7 @@ MESHES = {
 TURN = trimesh.transformations.euler_matrix(0.3, 0.5, 0.7)
 
 
-@pytest.mark.parametrize(
-    ("name", "ending"),
-    [("box", "obj"), ("ring", "stl"), ("ring", "ply")],
-)
+@pytest.mark.parametrize(("name", "ending"), [("box", "obj"), ("ring", "stl"), ("ring", "ply")])
 def test_meshes_agree_with_trimesh(tmp_path, name, ending):
     mesh = MESHES[name].copy()
     mesh.apply_transform(TURN)
@@ -209,8 +195,6 @@ def test_open_torn_and_inverted_meshes_are_refused():
         mesh_inertia(flat, mass=1.0)
     with pytest.raises(BodyError, match="expected either the mass or the density"):
         mesh_inertia(box)
-    with pytest.raises(BodyError, match="the density is -1 kg/m³; expected a positive number"):
-        mesh_inertia(box, density=-1.0)
     assert mesh_inertia(Mesh(vertices=box.vertices, faces=box.faces[1:]), mass=1.0, allow=True)
 
 
@@ -225,22 +209,6 @@ def test_the_command_shows_and_prints_as_json(tmp_path):
     MESHES["ring"].export(tmp_path / "ball.stl")
     ball = [str(tmp_path / "ball.stl"), "--density", "1000", "--json"]
     assert '"principal_moments"' in CliRunner().invoke(commands, ["inertia", *ball]).output
-
-
-@pytest.mark.parametrize(
-    ("file", "options", "message"),
-    [
-        ("cloud.csv", ["--density", "3"], "is a file of particles; --density is for meshes"),
-        ("ball.stl", ["--columns", "x,y,z"], "is a mesh; --columns is for particles"),
-        ("ball.stl", ["--mass", "-2"], "'--mass': -2.0 is not in the range x>0"),
-    ],
-)
-def test_an_option_that_does_not_fit_is_refused(tmp_path, file, options, message):
-    (tmp_path / "cloud.csv").write_text("m,x,y,z\n1,0,0,0\n2,1,0,0\n")
-    MESHES["ring"].export(tmp_path / "ball.stl")
-    done = CliRunner().invoke(commands, ["inertia", str(tmp_path / file), *options])
-    assert done.exit_code == 2
-    assert message in done.output
 
 
 @pytest.mark.parametrize(

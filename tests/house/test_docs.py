@@ -60,7 +60,7 @@ class Reader:
         self.output = found.getvalue()
 
     def sh(self, text: str) -> None:
-        if "pip install" in text:  # the set-up, which test_readme runs
+        if "pip install" in text:  # the set-up, which test_packaging runs
             assert text in (ROOT / "README.md").read_text(encoding="utf-8")
             text = text.split(" && ")[-1].replace(".venv/bin/", "")
             if not text.startswith("rigidsym"):

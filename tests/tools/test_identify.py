@@ -182,17 +182,6 @@ def test_noise_needs_a_tolerance_and_is_named_without():
     assert holds(answer, reading)
 
 
-def test_one_outlier_is_named_with_its_place():
-    reading = Reading(sequence="ZYX", degrees=True)
-    angles = np.random.default_rng(11).uniform(-80, 80, (1000, 3))
-    matrix = rotation(reading, angles).as_matrix()
-    angles[700] += 5
-    found = rs.identify(angles, matrix=matrix)
-    assert holds(found.nearest, reading)
-    assert (found.nearest.fitting, found.nearest.worst) == (999, "sample 701")
-    assert "999 of 1000 samples fit" in found.text()
-
-
 def results_of(statements: str, reading: Reading) -> dict[str, np.ndarray]:
     """What the statements leave behind."""
     names = {"np": np, "angles": np.array(GENERIC[reading.degrees]), "rates": np.array(RATES)}
