@@ -1,7 +1,7 @@
 """Formulas of the literature: read from `docs/literature/*.toml`, and decided by the prover.
 
-A file is one source. A formula gives the printed expression and ours, in the language of scalars
-and matrices that `rigidsym compare` reads, in which the quantities of a derivation are names.
+A file is one source. A formula gives the printed expression and ours, as Python with exact numbers,
+lists for matrices and entries that count from 1. The quantities of a derivation are names in it.
 Whether both are equal is decided by `rigidsym.mechanics.prove.identity`; nothing else makes a
 verdict.
 """
@@ -24,7 +24,8 @@ from rigidsym.formula.tree import Words
 from rigidsym.mechanics.prove import identity
 from rigidsym.models.library import rotation_from
 from rigidsym.models.rotation import TIME
-from rigidsym.tools.compare.program import formula_matrix
+from rigidsym.text.bounds import FUNCTIONS
+from rigidsym.tools.compare.language import OF_MATRICES
 
 FOLDER = Path(__file__).parent / "literature"
 TOPICS = {
@@ -182,8 +183,39 @@ class Names:
 
 def value(text: str, names: Mapping[str, Any]) -> Any:
     """The value of an expression: a scalar, or a matrix with more than one entry."""
-    matrix = formula_matrix(text, names, _FUNCTIONS)
-    return matrix[0] if matrix.shape == (1, 1) else matrix
+    tree = ast.fix_missing_locations(_Exact().visit(ast.parse(text.strip(), mode="eval")))
+    functions = {**FUNCTIONS, **OF_MATRICES, **_FUNCTIONS, "one": lambda n: sp.eye(int(n))}
+    result = eval(compile(tree, text, "eval"), {"__builtins__": {}} | functions | dict(names))
+    is_scalar = isinstance(result, sp.MatrixBase) and result.shape == (1, 1)
+    return result[0] if is_scalar else result
+
+
+class _Exact(ast.NodeTransformer):
+    """Numbers of SymPy, matrices for lists, and indices from 1."""
+
+    def visit_Constant(self, node: ast.Constant) -> ast.expr:
+        return (
+            node
+            if isinstance(node.value, str)
+            else _applied("number", ast.Constant(str(node.value)))
+        )
+
+    def visit_List(self, node: ast.List) -> ast.expr:
+        rows = [row.elts if isinstance(row, ast.List) else [row] for row in node.elts]
+        cells = [ast.List([self.visit(cell) for cell in row], ast.Load()) for row in rows]
+        return _applied("matrix", ast.List(cells, ast.Load()))
+
+    def visit_Subscript(self, node: ast.Subscript) -> ast.expr:
+        indices = node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]
+        return _applied("entry", self.visit(node.value), *indices)
+
+
+def _applied(name: str, *arguments: ast.expr) -> ast.expr:
+    return ast.Call(ast.Name(name, ast.Load()), [*arguments], [])
+
+
+def _entry(matrix: sp.MatrixBase, *indices: int) -> sp.Expr:
+    return matrix[tuple(index - 1 for index in indices)]
 
 
 def _texts(given: Any) -> Iterator[str]:
@@ -218,7 +250,13 @@ def _turn(name: str, *coordinates: Any) -> sp.Matrix:
     return sp.Matrix(model.matrix).xreplace(dict(zip(model.coordinates, values, strict=True)))
 
 
-_FUNCTIONS: dict[str, Callable[..., Any]] = {"R": _turn, "derivative": sp.diff}
+_FUNCTIONS: dict[str, Callable[..., Any]] = {
+    "R": _turn,
+    "derivative": sp.diff,
+    "number": sp.Rational,
+    "matrix": sp.Matrix,
+    "entry": _entry,
+}
 
 
 # Pages

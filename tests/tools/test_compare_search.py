@@ -212,7 +212,7 @@ def test_a_declaration_in_c_may_hold_several_names(tmp_path):
     ("text", "expected"),
     [
         ("R << cos(a), -sin(a), 0, sin(a), cos(a), 0, 0, 0, 1;\nS = R;", [(1, "R")]),
-        ("p = cos(a)*x - sin(a)*y;\nq = sin(a)*x + cos(a)*y;\nr = z;", [(3, "p, q, r")]),
+        ("p = cos(a)*x - sin(a)*y;\nq = sin(a)*x + cos(a)*y;\nr = z;", [(1, "p, q, r")]),
         (
             "m[0] = cos(a); m[1] = sin(a); m[2] = 0;\nm[0] = sin(b); m[1] = cos(b); m[2] = 1;",
             [(1, "m"), (2, "m")],  # written anew
@@ -225,7 +225,7 @@ def test_a_declaration_in_c_may_hold_several_names(tmp_path):
 )
 def test_streams_components_and_entries_are_followed(text, expected):
     body = f"void f() {{ {text} }}"
-    assert [(each.line, each.name) for each in formulas(body, ".cpp") if each.matrix] == expected
+    assert [(each.line, each.name) for each in formulas(body, ".cpp") if each.forms] == expected
 
 
 def test_a_wrong_entry_of_a_matrix_filled_entry_by_entry_is_named(tmp_path):
@@ -289,7 +289,7 @@ HOSTILE = (
 @pytest.mark.parametrize("text", HOSTILE, ids=range(len(HOSTILE)))
 def test_hostile_files_are_passed_over(text):
     for suffix in (".py", ".cpp", ".m"):
-        assert [each for each in formulas(text, suffix) if each.matrix] == []
+        assert [each for each in formulas(text, suffix) if each.forms] == []
 
 
 def test_two_wrong_entries_of_a_printed_rotation_matrix_are_found():
@@ -554,9 +554,11 @@ def test_a_fault_of_the_baseline_is_accepted_wherever_its_lines_move(tmp_path):
 
 def test_what_cannot_be_read_is_listed_with_its_reason(tmp_path):
     file = tmp_path / "a.py"
-    file.write_text("def f(a, flip):\n    s = sin(a)\n    if flip: s = -s\n    return [[s, 1]]\n")
+    rows = "[[c, -s, 0], [s, c, 0], [0, 0, 1]]"
+    text = f"def f(a, flip):\n    c, s = cos(a), sin(a)\n    if flip: s = -s\n    return {rows}\n"
+    file.write_text(text)
     done = run(str(file), "--why")
-    assert "a.py:4: returned: not read, since s depends on the condition in line 3" in done.stderr
+    assert "a.py:4: returned: not read, since s in line 3 cannot be read" in done.stderr
 
 
 def test_names_that_unpack_a_vector_are_names(tmp_path):
@@ -693,3 +695,34 @@ void h(int order) {
 """
     found = [str(each.comparison.found) for each in found_in(tmp_path, "a.cpp", branches)]
     assert found == [f"euler_angles of {axes}" for axes in ("xyz", "xyz", "XYZ", "XZY")]
+
+
+def test_a_fault_is_at_the_line_of_its_entry_and_counts_once(tmp_path):
+    file = tmp_path / "a.py"
+    file.write_text("""import numpy as np
+def f(a, b):
+    s, c = np.sin, np.cos
+    R = np.array([
+        [c(a)*c(b), -s(a), c(a)*s(b)],
+        [s(a)*c(b), c(a), s(a)*s(b)],
+        [s(b), 0, c(b)],
+    ])
+    return np.asarray(R)
+""")
+    (found,) = found_in(tmp_path, "a.py", file.read_text())
+    assert (found.line, found.formula.line) == (7, 4)
+    annotation = run(str(file), "--format", "github").stdout
+    assert annotation.startswith(f"::error file={file},line=7::{file}:7: R: close to")
+
+
+def test_a_name_that_gets_another_value_is_another_input(tmp_path):
+    """The vector before and after it is normalised are not taken for one another."""
+    text = """
+def f(x, y, z, w):
+    a = 1 - 2*(y*y + z*z)
+    y = measured()
+    return [[a, 2*(x*y - w*z), 2*(x*z + w*y)],
+            [2*(x*y + w*z), 1 - 2*(x*x + z*z), 2*(y*z - w*x)],
+            [2*(x*z - w*y), 2*(y*z + w*x), 1 - 2*(x*x + y*y)]]
+"""
+    assert found_in(tmp_path, "a.py", text) == []

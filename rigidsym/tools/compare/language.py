@@ -1,12 +1,12 @@
 """What formulas consist of, in every language: operations, functions and names.
 
-Values are `Sized` expressions and matrices of SymPy, bounded as in `rigidsym.text.bounds`.
+Values are expressions and matrices of SymPy, bounded as in `rigidsym.text.bounds`.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection
 from functools import reduce, wraps
 from typing import Any
 
@@ -19,28 +19,26 @@ _LARGEST = 20  # rows or columns
 _LARGEST_INVERSE = 4
 _MOST_PARTS = 50_000  # of the entries of a matrix
 _LONGEST_NUMBER = 40  # digits
-MINUS = Sized.number(sp.S.NegativeOne)
 
 
 def as_matrix(value: Any) -> sp.ImmutableMatrix:
     """A scalar is 1x1."""
-    return sp.ImmutableMatrix(value if isinstance(value, sp.MatrixBase) else [[_plain(value)]])
+    return sp.ImmutableMatrix(value if isinstance(value, sp.MatrixBase) else [[value]])
 
 
-def _plain(value: Any) -> Any:
-    return value.expression if isinstance(value, Sized) else value
+def _bounded(value: Any) -> Any:
+    """A value; raises ExpressionError if it is too large."""
+    if not isinstance(value, sp.MatrixBase):
+        return sp.sympify(value)
+    if max(value.shape) > _LARGEST:
+        raise ExpressionError(f"a matrix of {value.shape}; expected at most {_LARGEST} rows")
+    if sum(1 for entry in value for _ in sp.preorder_traversal(entry)) > _MOST_PARTS:
+        raise ExpressionError("too large: a matrix with too many terms")
+    return sp.ImmutableMatrix(value)
 
 
-def sized(value: Any) -> Any:
-    """A result that may be large, with its size; raises ExpressionError if it is too large."""
-    if isinstance(value, sp.MatrixBase):
-        if max(value.shape) > _LARGEST:
-            raise ExpressionError(f"a matrix of {value.shape}; expected at most {_LARGEST} rows")
-        if sum(1 for entry in value for _ in sp.preorder_traversal(entry)) > _MOST_PARTS:
-            raise ExpressionError("too large: a matrix with too many terms")
-        return sp.ImmutableMatrix(value)
-    expression = sp.sympify(value)
-    return Sized.atom(expression, bits=longest_number(expression) or 1)
+def _sized(value: sp.Expr) -> Sized:
+    return Sized.atom(value, bits=longest_number(value) or 1)
 
 
 def cross_matrix(vector: sp.MatrixBase) -> sp.Matrix:
@@ -66,7 +64,7 @@ OF_MATRICES: dict[str, Callable[..., Any]] = {
     "outer": lambda a, b: a * b.T,
     "diag": lambda *entries: sp.diag(*entries),
     "trace": lambda matrix: matrix.trace(),
-    "inv": lambda matrix: combined("**", matrix, MINUS),
+    "inv": lambda matrix: combined("**", matrix, sp.S.NegativeOne),
 }
 SPELLINGS = {f + end: f for f in FUNCTIONS for end in "fFl"} | {  # of functions in programs
     **{"power": "pow", "powf": "pow", "powi": "pow", "square": "sq", "SQ": "sq", "fabs": "abs"},
@@ -97,65 +95,66 @@ def _of_fitting_sizes(function: Callable[..., Any]) -> Callable[..., Any]:
 @_of_fitting_sizes
 def combined(operator: str, left: Any, right: Any) -> Any:
     """left + right, and so on, of expressions and matrices; % is the product entry by entry."""
-    if isinstance(left, Sized) and isinstance(right, Sized):
-        return operate("*" if operator in "@%" else operator, left, right, 1)
-    one, other = _plain(left), _plain(right)
+    matrices = [isinstance(value, sp.MatrixBase) for value in (left, right)]
+    if not any(matrices):
+        sign = "*" if operator in "@%" else operator
+        return operate(sign, _sized(left), _sized(right), 1).expression
     match operator:
-        case "%" if Sized not in (type(left), type(right)):
-            return sized(sp.matrix_multiply_elementwise(sp.Matrix(one), sp.Matrix(other)))
+        case "%" if all(matrices):
+            return _bounded(sp.matrix_multiply_elementwise(sp.Matrix(left), sp.Matrix(right)))
         case "+":
-            return sized(one + other)
+            return _bounded(left + right)
         case "-":
-            return sized(one - other)
+            return _bounded(left - right)
         case "*" | "@" | "%":
-            product = one * other
+            product = left * right
             is_scalar = isinstance(product, sp.MatrixBase) and product.shape == (1, 1)
-            return sized(product[0] if is_scalar else product)
-        case "/" if isinstance(right, Sized) and other != 0:
-            return sized(one / other)
-        case "**" if other == -1 and max(one.shape) <= _LARGEST_INVERSE:
-            return sized(one.adjugate() / one.det(method="berkowitz"))
-        case "**" if other in range(1, 9):
-            return reduce(lambda a, b: sized(a * b), [one] * int(other))
+            return _bounded(product[0] if is_scalar else product)
+        case "/" if not matrices[1] and right != 0:
+            return _bounded(left / right)
+        case "**" if right == -1 and max(left.shape) <= _LARGEST_INVERSE:
+            return _bounded(left.adjugate() / left.det(method="berkowitz"))
+        case "**" if right in range(1, 9):
+            return reduce(lambda a, b: _bounded(a * b), [left] * int(right))
     raise ExpressionError("this operation is not defined for matrices")
 
 
 @_of_fitting_sizes
-def called(name: str, values: list[Any], functions: Mapping[str, Any] | None = None) -> Any:
-    """A function of expressions and matrices: its own, or one of `functions`."""
-    own = OF_MATRICES | dict(functions or {})
-    if len(values) == 1 and isinstance(values[0], Sized) and name not in (functions or ()):
+def called(name: str, values: list[Any]) -> Any:
+    """A function of expressions and matrices."""
+    if len(values) == 1 and not isinstance(values[0], sp.MatrixBase):
         name = _SHORT.get(name, name)
     if name in ("sind", "cosd", "tand"):
         return called(name[:-1], [called("deg2rad", values)])
     if name in ("deg2rad", "rad2deg"):
-        return combined("*", Sized.atom(sp.pi / 180 if name == "deg2rad" else 180 / sp.pi), *values)
+        return combined("*", sp.pi / 180 if name == "deg2rad" else 180 / sp.pi, *values)
     if name in ("pow", "sq"):
-        exponent = values[1] if name == "pow" else Sized.number(sp.Integer(2))
-        return combined("**", values[0], exponent)
-    if name in own:
-        return sized(own[name](*map(_plain, values)))
+        return combined("**", values[0], values[1] if name == "pow" else sp.Integer(2))
+    if name in OF_MATRICES:
+        return _bounded(OF_MATRICES[name](*values))
     if name not in FUNCTIONS:
-        raise ExpressionError(f"{name!r} is not a function; {offer(name, [*FUNCTIONS, *own])}")
-    if len(values) != 1 + (name == "atan2") or not all(isinstance(v, Sized) for v in values):
+        hint = offer(name, [*FUNCTIONS, *OF_MATRICES])
+        raise ExpressionError(f"{name!r} is not a function; {hint}")
+    is_matrix = any(isinstance(value, sp.MatrixBase) for value in values)
+    if len(values) != 1 + (name == "atan2") or is_matrix:
         raise ExpressionError(f"{name}: wrong arguments")
-    return apply(name, values, 1)
+    return apply(name, [_sized(value) for value in values], 1).expression
 
 
 @_of_fitting_sizes
 def rows(parts: list[Any]) -> sp.ImmutableMatrix:
     """A column of scalars, or rows; a list inside the list is a row."""
-    if all(isinstance(part, Sized) for part in parts):
-        return sized(sp.Matrix([part.expression for part in parts]))
+    if not any(isinstance(part, sp.MatrixBase) for part in parts):
+        return _bounded(sp.Matrix(parts))
     matrices = (as_matrix(part) for part in parts)
-    return sized(sp.Matrix.vstack(*(row.T if row.cols == 1 else row for row in matrices)))
+    return _bounded(sp.Matrix.vstack(*(row.T if row.cols == 1 else row for row in matrices)))
 
 
-def number(text: str) -> Sized:
+def number(text: str) -> sp.Rational:
     """A number in decimal digits."""
     if len(text) > _LONGEST_NUMBER or not re.fullmatch(r"[\d.]+([eE][+-]?\d\d?)?", text):
         raise ExpressionError(f"a number of more than {_LONGEST_NUMBER} digits")
-    return Sized.number(sp.Rational(text))
+    return sp.Rational(text)
 
 
 _SHORTENED = re.compile(r"(sin|cos|tan|[sctv])_?([A-Za-z0-9]\w*|)")
@@ -173,8 +172,7 @@ def spelled_out(matrix: sp.MatrixBase, computed: Collection[sp.Symbol] = ()) -> 
     """
     letters_of: dict[str, dict[str, sp.Symbol]] = {}
     for symbol in sorted(matrix.free_symbols - set(computed), key=str):
-        match = _SHORTENED.fullmatch(symbol.name)
-        if match:
+        if match := _SHORTENED.fullmatch(symbol.name):
             letters_of.setdefault(match[2], {})[match[1][0]] = symbol
     values: dict[sp.Symbol, sp.Expr] = {}
     for stem, letters in letters_of.items():

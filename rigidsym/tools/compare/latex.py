@@ -11,11 +11,10 @@ from typing import Any
 import sympy as sp
 
 from rigidsym.errors import ExpressionError
-from rigidsym.text.bounds import FUNCTIONS, Sized
+from rigidsym.text.bounds import FUNCTIONS
 from rigidsym.text.names import GREEK_LETTERS, spelled
 from rigidsym.tools.compare.language import (
     CONSTANTS,
-    MINUS,
     SPELLINGS,
     as_matrix,
     called,
@@ -110,7 +109,7 @@ class _TexWalk:
                 raise ExpressionError(f"unexpected {self.next()!r} in LaTeX")
             term = self._product(end)
             if total is None:
-                total = combined("*", MINUS, term) if operator == "-" else term
+                total = -term if operator == "-" else term
             else:
                 total = combined(operator, total, term)
         if end and not self.take(end):
@@ -162,7 +161,7 @@ class _TexWalk:
         if re.fullmatch(f"[{_MARKS}]", token):
             return self.matrices[ord(self.tokens.pop()) - _FIRST]
         name = self._name()
-        return Sized.atom(CONSTANTS.get(name, sp.Symbol(name, real=True)))
+        return CONSTANTS.get(name, sp.Symbol(name, real=True))
 
     def _name(self) -> str:
         """A letter or a word, with its dots and its index."""

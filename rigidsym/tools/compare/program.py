@@ -1,17 +1,17 @@
 """The formulas of a program: an abstract interpreter over its syntax tree.
 
-It runs each function with symbols in place of numbers, and keeps the value of each name: an
-expression, a matrix, or the reason why the value is unreadable. A condition or a loop makes every
-name unreadable that it may change. A new name for an unreadable or a long value becomes an input of
-the formulas after it. A formula is therefore only read if the program computes the same.
-`nodes.toml` gives the meaning of each type of node. Programs are parsed, never run.
+It runs each function with symbols in place of numbers, and keeps the value of each name, an
+expression or a matrix. A long value gets a symbol of its own, and so does one that cannot be read,
+or that a condition or a loop may change. A formula is therefore right for every value of what is
+not read, and says which that is. `nodes.toml` gives the meaning of each type of node. Programs are
+parsed, never run.
 """
 
 from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import product
 from typing import TYPE_CHECKING, Any
@@ -19,22 +19,20 @@ from typing import TYPE_CHECKING, Any
 import sympy as sp
 
 from rigidsym.errors import ExpressionError, offer
-from rigidsym.text.bounds import FUNCTIONS, Sized
+from rigidsym.text.bounds import FUNCTIONS
 from rigidsym.text.names import spelled
 from rigidsym.tools.compare.language import (
     CONSTANTS,
-    MINUS,
     OF_MATRICES,
     as_matrix,
     called,
     combined,
     number,
     rows,
-    sized,
     spelled_out,
 )
 from rigidsym.tools.compare.latex import tex_value
-from rigidsym.tools.compare.quantities import ELEMENT, stem_of
+from rigidsym.tools.compare.quantities import stem_of
 from rigidsym.tools.compare.syntax import (
     EXPRESSIONS,
     PARTS,
@@ -70,7 +68,7 @@ _MOST_FORMULAS = 1_000  # of a file
 _MOST_STEPS = 20_000  # expressions of a file: what takes some ten seconds
 _MOST_NODES = 400_000  # of a file: a generated megabyte is not worth reading
 _MOST_CHARACTERS = 20_000  # of a formula
-_LONG_IN_LONG = 3  # names for long values that use other such names
+_LONG_IN_LONG = 3  # symbols for long values that use other such symbols
 _MOST_PARTS = 2_000  # of a matrix
 _INLINED = 3  # calls of functions of the same file inside one another
 
@@ -84,25 +82,8 @@ _BY_COLUMNS = re.compile(r"from_?col|^f?mat3x?3?$|column_stack|hstack|^c_$", re.
 _HARMLESS = re.compile(
     r"print|disp|log|assert|plot|show|append|push|test|check|expect", re.IGNORECASE
 )
-_ROW = re.compile(r"(?P<stem>(?:.*\.)?)(?P<row>[abc])\.(?P<column>[xyz])")  # Matrix3 of ArduPilot
-_FLAT_NAME = re.compile(r"(.*m)(\d\d?)")
 _AXES = {"x": 0, "y": 1, "z": 2, "X": 0, "Y": 1, "Z": 2}
-_LARGE = r"(?:1(?:\.0*)?f?|0?\.9{2,}\d*f?)"  # what a sine exceeds at the poles only
-_POLE = re.compile(
-    rf"(?P<abs>(?:\w+(?:\.|::))?f?absf?\()?(?P<name>[\w.>\[\]-]+)\)?(?P<sign>[<>])=?(?P<minus>-?){_LARGE}"
-)
-_NULL = re.compile(
-    r"(?P<name>\w+)(?P<sign>[=!]==?|[<>]=?)(?:0(?:\.0*)?f?|\d(?:\.\d*)?e-\d+f?|\w*(?:EPS|eps)\w*)"
-)
-_SATURATED = re.compile(rf"(\w+)[<>]=?-?{_LARGE}\?-?{_LARGE}:\1")
-_BOOLEANS = {"0": False, "false": False, "False": False, "1": True, "true": True, "True": True}
-_NOT_NULL = re.compile(r"\w+(?:!=|isnot)(?:nullptr|NULL|null|None)")
-_CLAMPS = re.compile(r"clip|clamp|constrain|math_constrain|clampf", re.IGNORECASE)
-_TRIPLES = (
-    *(("roll", "pitch", "yaw"), ("phi", "theta", "psi"), ("alpha", "beta", "gamma")),
-    *(("x", "y", "z"), ("rx", "ry", "rz"), ("heading", "attitude", "bank")),
-    ("angle1", "angle2", "angle3"),
-)
+_CLAMPS = re.compile(r"clip|clamp|constrain", re.IGNORECASE)
 _TRIGONOMETRIC = (sp.sin, sp.cos, sp.tan)
 _INVERSE = (sp.atan2, sp.asin, sp.acos, sp.atan)
 _DEGREE = 180 / sp.pi
@@ -111,22 +92,57 @@ _ELEMENTWISE = {".*": "%", "./": "/", ".^": "**", "^": "**"}  # MATLAB
 _FLAT = {9: (3, 3), 12: (4, 3), 16: (4, 4)}
 _OF_NUMBERS = {*FUNCTIONS, "pow", "sq", "sind", "cosd", "tand", "deg2rad", "rad2deg"}
 _NO_ENTRIES = WORDS["cast"] | WORDS["zeros"] | WORDS["unit"] | WORDS["pair"] | WORDS["column"]
+_RETURNED, _ARGUMENT = "returned", "argument"  # in place of a name
+
+# Conditions that hold always or never. A sine is 1 at the poles only, a length is never 0, and
+# what a null pointer points to is not written.
+_LARGE = r"(?:1(?:\.0*)?f?|0?\.9{2,}\d*f?)"
+_POLE = re.compile(
+    rf"(?P<abs>(?:\w+(?:\.|::))?f?absf?\()?(?P<name>[\w.>\[\]-]+)\)?(?P<sign>[<>])=?(?P<minus>-?){_LARGE}"
+)
+_NULL = re.compile(
+    r"(?P<name>\w+)(?P<sign>[=!]==?|[<>]=?)(?:0(?:\.0*)?f?|\d(?:\.\d*)?e-\d+f?|\w*(?:EPS|eps)\w*)"
+)
+_SATURATED = re.compile(rf"(\w+)[<>]=?-?{_LARGE}\?-?{_LARGE}:\1")  # s > 1 ? 1 : s
+_NOT_NULL = re.compile(r"\w+(?:!=|isnot)(?:nullptr|NULL|null|None)")
+_BOOLEANS = {"0": False, "false": False, "False": False, "1": True, "true": True, "True": True}
+
+# Scalars that are one vector or matrix: a stem and an index, if all indices are there
+_ANGLES = "roll pitch yaw|phi theta psi|alpha beta gamma|x y z|rx ry rz|heading attitude bank"
+_TRIPLES = [line.split() for line in (*_ANGLES.split("|"), "angle1 angle2 angle3")]
+_GROUPS = {
+    "matrix": re.compile(r"(?P<stem>.*?)_?(?P<index>[0-3]_?[0-3])"),
+    "rows": re.compile(r"(?P<stem>.*?)(?P<index>[abc]\.[xyz])"),  # Matrix3 of ArduPilot
+    "flat": re.compile(r"(?P<stem>.*m)(?P<index>\d\d?)"),
+    "vector": re.compile(r"(?P<stem>.*?)(?P<index>[wxyzWXYZ0-4])"),
+    "rates": re.compile(r"(?P<stem>)(?P<index>[pqrPQR])"),
+}
+_COMPLETE = [frozenset(word) for word in ("xyz", "wxyz", "012", "123", "0123", "1234", "pqr")]
+_COMPLETE += [
+    frozenset(map("".join, product(*pair)))
+    for pair in (("012", "012"), ("123", "123"), ("abc", "xyz"))
+]
+_FLAT_INDICES = [str(4 * i + j) for i in range(3) for j in range(3)]  # of sixteen entries
 
 
 class _Unreadable(ExpressionError):
     """A part of a program that cannot be followed."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Formula:
     """A matrix or vector of a program, or the reason why it is not read."""
 
-    line: int
+    line: int  # where it begins
     name: str
-    matrix: sp.ImmutableMatrix | None
+    forms: tuple[sp.ImmutableMatrix, ...] = ()  # in terms of the inputs, and of long values
     reason: str = ""
-    whole: sp.ImmutableMatrix | None = None  # with names for long values replaced by these values
     unread: tuple[tuple[str, int], ...] = ()  # names in it whose values are not read, and lines
+    lines: Mapping[tuple[int, int], int] = field(default_factory=dict, compare=False)  # of entries
+
+    @property
+    def is_named(self) -> bool:
+        return self.name not in (_RETURNED, _ARGUMENT)
 
 
 def _unflattened(matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
@@ -142,16 +158,17 @@ class _Grid:
     line: int
     name: str
     entries: dict[tuple[int, ...], sp.Expr]
+    lines: dict[tuple[int, ...], int] = field(default_factory=dict)  # of the entries
     is_whole: bool = False  # assigned at once
 
     @classmethod
     def of(cls, line: int, matrix: sp.MatrixBase, name: str = "") -> _Grid:
         matrix = _unflattened(matrix)
-        places = ((i, j) for i in range(matrix.rows) for j in range(matrix.cols))
+        places = product(range(matrix.rows), range(matrix.cols))
         return cls(line, name, {place: matrix[place] for place in places}, is_whole=True)
 
     def copy(self) -> _Grid:
-        return _Grid(self.line, self.name, dict(self.entries), self.is_whole)
+        return _Grid(self.line, self.name, dict(self.entries), dict(self.lines), self.is_whole)
 
     def matrix(self) -> sp.ImmutableMatrix | None:
         """The matrix, if no entry is missing."""
@@ -164,12 +181,22 @@ class _Grid:
         entries = [self.entries[index] for index in grid]
         return _unflattened(sp.ImmutableMatrix(height, width, entries))
 
+    def places(self) -> dict[tuple[int, int], int]:
+        """The line of each entry of the matrix."""
+        matrix = self.matrix()
+        width = matrix.cols if matrix is not None else 1
+        return {
+            divmod(k, width): self.lines[index]
+            for k, index in enumerate(sorted(self.entries))
+            if index in self.lines
+        }
+
 
 @dataclass
 class _State:
-    """The values of all names at one place of a function; a text says why a value is unreadable."""
+    """The values of all names at one place of a function."""
 
-    values: dict[str, sp.Expr | _Grid | str] = field(default_factory=dict)
+    values: dict[str, sp.Expr | _Grid] = field(default_factory=dict)
     is_over: bool = False  # after a return
 
     def copy(self) -> _State:
@@ -184,10 +211,8 @@ class _Program:
     suffix: str
     functions: Mapping[str, Node] = field(default_factory=dict)
     is_numpy: bool = False  # * is the product entry by entry
-    steps: Counter[str] = field(default_factory=Counter)  # expressions that were read
     is_formula: bool = False  # a formula on its own, with the functions of `language`
-    names: Mapping[str, Any] | None = None  # the only names that a formula may use
-    own: Mapping[str, Callable[..., Any]] = field(default_factory=dict)  # functions of a formula
+    steps: Counter[str] = field(default_factory=Counter)  # expressions that were read
 
 
 def program_formulas(text: str, suffix: str) -> list[Formula]:
@@ -199,28 +224,24 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
     by_name = {name: node for node in functions if (name := function_name(node))}
     is_numpy = suffix == ".py" and bool(_NUMPY.search(text)) and not _MATRICES.search(text)
     program = _Program(suffix, by_name, is_numpy)
-    formulas: dict[tuple[int, str, Any], Formula] = {}
+    formulas: dict[Any, Formula] = {}
     for scope in (root, *functions):
         interpreter = _Interpreter(program)
         try:
-            interpreter.formulas_of(scope)
+            interpreter.run_scope(scope)
         except RecursionError:  # SymPy, in a sum that a program nests in itself
             reason = "expressions are nested too deeply"
-            interpreter.formulas.append(Formula(line_of(scope), "", None, reason))
+            interpreter.formulas.append(Formula(line=line_of(scope), name="", reason=reason))
+        named = {each.forms for each in interpreter.formulas if each.forms and each.is_named}
         for formula in interpreter.formulas:
-            formulas.setdefault((formula.line, formula.name, formula.matrix), formula)
+            if formula.is_named or formula.forms not in named:  # a fault counts once
+                formulas.setdefault((formula.line, formula.name, formula.forms), formula)
     return sorted(formulas.values(), key=lambda each: each.line)
 
 
-def formula_matrix(
-    text: str,
-    names: Mapping[str, Any] | None = None,
-    functions: Mapping[str, Callable[..., Any]] | None = None,
-) -> sp.ImmutableMatrix:
+def formula_matrix(text: str) -> sp.ImmutableMatrix:
     """The matrix of a single formula in Python, C, MATLAB or LaTeX; a scalar is 1x1.
 
-    In Python, `names` are the only names allowed, expressions or matrices with entries counted
-    from 1, and `functions` of SymPy's expressions and matrices are known besides the usual ones.
     Raises ExpressionError for a text in none of these languages, and for one that is too long.
     """
     if len(text) > _MOST_CHARACTERS:
@@ -233,9 +254,7 @@ def formula_matrix(
     for suffix in (".cpp",) if "{" in text else (".py", ".m", ".cpp"):
         value = _assigned_value(text, suffix)
         if value is not None:
-            program = _Program(
-                suffix, is_numpy=is_numpy, is_formula=True, names=names, own=functions or {}
-            )
+            program = _Program(suffix, is_numpy=is_numpy, is_formula=True)
             matrix = as_matrix(_Interpreter(program).read(value))
             return _unflattened(matrix) if "{" in text else matrix  # float R[9] = {...}
     missing = re.search(r"[)\]]\s*(\w+)", text)
@@ -270,23 +289,21 @@ class _Interpreter:
         self.program = program
         self.inlined = inlined
         self.is_matlab = program.suffix == ".m"
-        self.first = 1 if self.is_matlab or program.is_formula else 0  # of indices
         self.state = _State()
         self.formulas: list[Formula] = []
         self.paths: dict[str, str] = {}  # name: its path in the program
         self.inputs: set[str] = set()  # names that were read before anything was assigned
-        self.cut: dict[str, sp.Expr | None] = {}  # names that stand for values, if these are read
-        self.components: set[str] = set()  # names for components of a value
-        self.lines: dict[str, int] = {}  # where a name was first assigned
+        self.definitions: dict[sp.Symbol, sp.Expr | None] = {}  # what symbols stand for, if read
+        self.components: set[Any] = set()  # symbols of components of a value, which are inputs
+        self.later: dict[tuple[sp.Expr, str], sp.Dummy] = {}  # entries of an array assigned anew
+        self.lines: dict[str, int] = {}  # where a name was assigned
+        self.groups: dict[tuple[str, str], dict[str, str]] = {}  # names by (kind, stem) and index
+        self.emitted: set[tuple[Any, ...]] = set()  # kind, stem and values of a group
+        self.aliases: dict[str, str] = {}  # functions by another name
         self.untracked: set[str] = set()
-        self.scalars: list[tuple[str, sp.Expr]] = []  # the last ones assigned in a row
-        self.runs: list[tuple[int, tuple[str, ...], tuple[sp.Expr, ...]]] = []
         self.result: Any = None
         self.results = 0
         self.depth = 0
-        for name, value in (program.names or {}).items():
-            is_matrix = isinstance(value, sp.MatrixBase)
-            self.state.values[name] = _Grid.of(0, value) if is_matrix else value
 
     def unreadable(self, node: Node, reason: str = "is not understood") -> _Unreadable:
         text = re.sub(r"\s+", " ", text_of(node))
@@ -296,35 +313,24 @@ class _Interpreter:
 
     # Statements
 
-    def formulas_of(self, scope: Node) -> list[Formula]:
-        """Run a function, or the whole file; the formulas in it."""
+    def run_scope(self, scope: Node) -> None:
+        """Run a function, or the whole file, and collect the formulas in it."""
         self.untracked = {n for n, is_late in self._writes(scope.named_children) if is_late}
         is_function = scope.type in PARTS["function"]
         body = (part(scope, "body") or child(scope, "block")) if is_function else scope
         if is_function:
             self.inputs |= set(map(self.name_of, parameters(scope)))
         if body is None:
-            return []
+            return
         if is_function and not body.type.endswith(("block", "statement", "body")):
             self._return(body)  # the expression of an arrow
-        else:
-            self.run(body)
-            last = children(body)[-1:] if self.program.suffix == ".rs" else []
-            if last and not last[0].type.endswith(("statement", "declaration")):
-                self._return(last[0])
+            return
+        self.run(body)
+        last = children(body)[-1:] if self.program.suffix == ".rs" else []
+        if last and not last[0].type.endswith(("statement", "declaration")):
+            self._return(last[0])
         if not self.state.is_over:
-            self._emit()
-            self._emit_groups()
-        long = {sp.Symbol(k, real=True): v for k, v in self.cut.items() if v is not None}
-        for line, names, first in self.runs:
-            column = []
-            for name, value in zip(names, first, strict=True):
-                last_value = self.state.values.get(name)
-                if isinstance(last_value, sp.Expr) and last_value != sp.Symbol(name, real=True):
-                    value = last_value.xreplace(long)
-                column.append(value)
-            self._add(line, ", ".join(names), sp.ImmutableMatrix(column))
-        return self.formulas
+            self._emit_all()
 
     def run(self, node: Node) -> None:
         """One statement, or all statements in a block."""
@@ -333,12 +339,10 @@ class _Interpreter:
             return
         self.depth += 1
         if self.depth > _DEEPEST_BLOCK:
-            self._forget([node], f"it changes in line {line_of(node)}, which is nested too deeply")
+            self._forget(node)
         elif node.type in STATEMENTS:
             getattr(self, STATEMENTS[node.type])(node)
         else:
-            if not node.type.endswith(("statement", "declaration")):
-                self.scalars = []
             for each in children(node):
                 self.run(each)
         self.depth -= 1
@@ -349,7 +353,7 @@ class _Interpreter:
             right = next(iter(children(node)[1:]), None)
         if left is None or right is None:
             if left is not None and node.type == "assignment_expression":
-                self._drop(left, self.unreadable(node))
+                self._drop(left)
         elif (sign := operator(node)).endswith("=") and sign != "=":  # C: a += b
             self._update(node)
         else:
@@ -360,24 +364,37 @@ class _Interpreter:
 
     def _assign(self, left: Node, right: Node) -> None:
         names = targets(left)
+        values = [right] if left in names else children(right)
+        functions = [self._function_named(each) for each in values]
+        if all(functions) and len(names) == len(values):  # s, c = np.sin, np.cos
+            self.aliases |= dict(zip(map(text_of, names), functions, strict=True))
         try:
             value = self.value(right)
             if left in names:
                 self._store(left, value)
                 return
-            matrix = value.matrix() if isinstance(value, _Grid) else None
-            if isinstance(value, sp.Function) and len(value.free_symbols) == 1:  # c, s, t = cos(v)
-                (vector,) = value.free_symbols
-                parts = (sp.Symbol(f"{vector}_{k}", real=True) for k in range(len(names)))
-                matrix = sp.ImmutableMatrix([value.xreplace({vector: part}) for part in parts])
-            if matrix is None or len(matrix) != len(names) or 1 not in matrix.shape:
-                raise self.unreadable(right)  # w, x, y, z = q
-            for name, entry in zip(names, matrix, strict=True):
+            for name, entry in zip(names, self._unpacked(value, right, len(names)), strict=True):
                 self._store(name, entry)
-        except ExpressionError as error:
-            self._drop(left, error)
-            self.components |= set() if left in names else set(map(self.written, names))
-            self.scalars = []
+        except ExpressionError:
+            self._drop(left, is_input=left not in names)
+
+    def _function_named(self, node: Node) -> str:
+        """The function of numbers that a path names, as in np.sin; "" for anything else."""
+        place = place_of(node)
+        name = function_word(place.path.rpartition(".")[2]) if place else ""
+        is_value = place is None or place.indices or self.name_of(place.path) in self.state.values
+        return name if name in FUNCTIONS and not is_value else ""
+
+    def _unpacked(self, value: sp.Expr | _Grid, node: Node, count: int) -> Sequence[sp.Expr]:
+        """The components of w, x, y, z = q, and of c, s, t = cos(v)."""
+        if isinstance(value, sp.Function) and len(value.free_symbols) == 1:
+            (vector,) = value.free_symbols
+            parts = (sp.Symbol(f"{vector}_{k}", real=True) for k in range(count))
+            return [value.xreplace({vector: part}) for part in parts]
+        matrix = value.matrix() if isinstance(value, _Grid) else None
+        if matrix is None or len(matrix) != count or 1 not in matrix.shape:
+            raise self.unreadable(node)
+        return list(matrix)
 
     def _store(self, left: Node, value: sp.Expr | _Grid) -> None:
         """An assignment to a name, a member, or an entry."""
@@ -400,20 +417,29 @@ class _Interpreter:
         elif self.program.suffix not in _SHARING:
             value = value.copy()
         self.state.values[name] = value
-        self.scalars = []
 
     def _store_scalar(self, name: str, value: sp.Expr, line: int) -> None:
-        self.lines.setdefault(name, line)
+        if name not in self.lines:
+            self._join_groups(name)
+        self.lines[name] = line
         value = self._renamed(name, value)
-        if _is_short(value) or name in self.inputs or name in self.cut:
-            self.state.values[name] = value
-        else:
-            self._cut(name, value)
-        self.scalars = [*self.scalars, (name, value)][-4:]
-        for last in (self.scalars[-3:], self.scalars[-4:]):
-            names, values = zip(*last, strict=True)
-            if len(names) >= 3 and _are_components(names):
-                self.runs.append((line, names, values))
+        is_first = name not in self.inputs and name not in self.state.values
+        is_long = (
+            value.is_Add
+            or value.is_number
+            or not all(
+                isinstance(function, _TRIGONOMETRIC) for function in value.atoms(sp.Function)
+            )
+        )
+        self.state.values[name] = self._symbol_for(name, value) if is_first and is_long else value
+
+    def _symbol_for(self, name: str, value: sp.Expr | None) -> sp.Symbol:
+        """A symbol for a long value, or for one that is not read (None)."""
+        symbol = sp.Symbol(name, real=True)
+        if symbol in self.definitions or name in self.inputs:
+            symbol = sp.Dummy(name, real=True)
+        self.definitions[symbol] = value
+        return symbol
 
     def _renamed(self, name: str, value: sp.Expr) -> sp.Expr:
         """The name itself for its value in another unit, or divided by the length of its vector."""
@@ -421,34 +447,36 @@ class _Interpreter:
         if not isinstance(own, sp.Expr) or own.is_number or not value.is_Mul:
             return value
         ratio = value / own
-        unread = [n for n in map(str, ratio.free_symbols) if self.cut.get(n, own) is None]
-        if unread and len(ratio.free_symbols) == 1 and name not in unread:  # q0 *= recipNorm
-            self._cut(name, None)
-            return sp.Symbol(name, real=True)
-        for _ in range(_LONG_IN_LONG):
-            ratio = ratio.xreplace({s: self.cut.get(str(s)) or s for s in ratio.free_symbols})
+        is_read = all(self.definitions.get(s, s) is not None for s in ratio.free_symbols)
+        if not is_read and len(ratio.free_symbols) == 1 and own not in ratio.free_symbols:
+            return self._symbol_for(name, None)  # q0 *= recipNorm
+        ratio = self._expanded(ratio)
         is_unit = ratio.is_number and any(abs(ratio * c - 1) < 1e-3 for c in (_DEGREE, 1 / _DEGREE))
         is_divided = _is_length(1 / ratio) and own.free_symbols <= ratio.free_symbols
         return own if is_unit or is_divided else value
 
-    def _cut(self, name: str, value: sp.Expr | None) -> None:
-        """A new name for a long or an unreadable value is an input of the formulas after it."""
-        self.cut[name] = value
-        self.state.values[name] = sp.Symbol(name, real=True)
+    def _expanded(self, value: Any) -> Any:
+        """An expression or a matrix with long values in place of their symbols."""
+        for _ in range(_LONG_IN_LONG):
+            parts = {s: v for s in value.free_symbols if (v := self.definitions.get(s)) is not None}
+            value = value.xreplace(parts)
+        return value
 
     def _store_entry(
         self, left: Node, base: str, place: tuple[int, ...], value: sp.Expr | _Grid
     ) -> None:
         grid = self.state.values.get(base)
-        if isinstance(grid, str):
-            return
         if isinstance(value, _Grid):
             raise self.unreadable(left, "is a block that is assigned")
-        if isinstance(grid, _Grid) and not grid.is_whole and len(grid.entries) > 1:
-            is_anew = place == next(iter(grid.entries)) and grid.matrix() is not None
-            if is_anew:
-                self._emit([base])
-            grid = None if is_anew else grid
+        if (
+            isinstance(grid, _Grid)
+            and not grid.is_whole
+            and len(grid.entries) > 1
+            and place == next(iter(grid.entries))
+            and grid.matrix() is not None
+        ):
+            self._emit([base])  # it is filled anew
+            grid = None
         if not isinstance(grid, _Grid):
             grid = _Grid(line_of(left), base, {})
             self.state.values[base] = grid
@@ -456,7 +484,7 @@ class _Interpreter:
             place = (place[0], 0)
         if grid.is_whole and place not in grid.entries:
             raise self.unreadable(left, "is an entry outside of the matrix")
-        grid.entries[place] = value
+        grid.entries[place], grid.lines[place] = value, line_of(left)
 
     def _update(self, node: Node) -> None:
         """a += b, or a++."""
@@ -473,31 +501,34 @@ class _Interpreter:
                 grid.entries = value.entries  # also of other names for this matrix
             else:
                 self._store(left, value)
-        except ExpressionError as error:
-            self._drop(left, error)
+        except ExpressionError:
+            self._drop(left)
 
-    def _drop(self, left: Node, reason: object) -> None:
-        """The value is unreadable: the name is a new input, an entry unreadable."""
+    def _drop(self, left: Node, *, is_input: bool = False) -> None:
+        """The value of a name, or of the array of an entry, is not read.
+
+        `is_input`: components of a value, such as w, x, y, z = q.as_quat(), are inputs.
+        """
         for target in targets(left):
-            name = self.written(target)
-            if name and self.index(target) is None:
-                self.lines[name] = line_of(target)
-                self._cut(name, None)
-            elif name:
-                self._spoil(name, str(reason))
+            if name := self.written(target):
+                self._become_unread(name, target)
+                if is_input:
+                    self.components.add(self.state.values[name])
 
-    def _spoil(self, name: str, reason: str) -> None:
-        """A name, and all others for the same matrix, become unreadable."""
+    def _become_unread(self, name: str, node: Node) -> None:
+        """A name, and all others for the same matrix, get new symbols in place of their values."""
+        self._emit_groups(name)
         grid = self.state.values.get(name)
-        for other, value in self.state.values.items():
-            if value is grid and isinstance(grid, _Grid):
-                self.state.values[other] = reason
-        self.state.values[name] = reason
+        same = [n for n, value in self.state.values.items() if value is grid]
+        for each in same if isinstance(grid, _Grid) else [name]:
+            self.lines[each] = line_of(node)
+            self.state.values[each] = self._symbol_for(each, None)
 
-    def _forget(self, nodes: Sequence[Node], reason: str, *, only_used: bool = False) -> None:
-        for name, _ in self._writes(nodes):
-            if not only_used or name in self.state.values or name in self.inputs:
-                self._spoil(name, reason)
+    def _forget(self, node: Node) -> None:
+        """All names that are written to in a statement become unread, if they have been used."""
+        for name in {name for name, _ in self._writes([node])}:
+            if name in self.state.values or name in self.inputs:
+                self._become_unread(name, node)
 
     def _writes(self, nodes: Sequence[Node]) -> Iterator[tuple[str, bool]]:
         """Names that are written to, and whether by an inner function or expression.
@@ -540,30 +571,23 @@ class _Interpreter:
     def _branches(self, node: Node) -> None:
         """if, elif, else."""
         first = part(node, "consequence") or child(node, "block")
-        branches: list[tuple[Node | None, Node]] = []
-        if first is not None:
-            branches.append((part(node, "condition"), first))
         alternatives = [c for c in node.named_children if c.type in PARTS["elif"]]
-        branches += [(part(c, "condition"), c) for c in alternatives]
         other = child(node, "else_clause") or part(node, "alternative")
-        if other is not None and other.type not in PARTS["elif"]:
-            branches.append((None, other))
+        if other is not None and other.type in PARTS["elif"]:
+            other = None
+        blocks = [(part(node, "condition"), first)]
+        blocks += [(part(c, "condition"), c) for c in alternatives]
         possible, is_sure = [], False
-        for condition, block in branches:
+        for condition, block in (*blocks, (None, other)):
             constant = self._truth(condition)
-            if constant is not False:
-                possible.append(block)
-            if condition is None or constant:
-                is_sure = True
+            possible += [block] if block is not None and constant is not False else []
+            is_sure = block is not None and (condition is None or bool(constant))
+            if is_sure:
                 break
         self._either(possible, node, is_sure=is_sure)
 
     def _truth(self, condition: Node | None) -> bool | None:
-        """Whether a condition always holds, or never does; None if that depends.
-
-        A sine is never 1 outside of the poles, a length never 0, and what a null pointer points
-        to is not written.
-        """
+        """Whether a condition always holds, or never does; None if that depends."""
         text = re.sub(r"\s", "", text_of(condition))
         text = text[1:-1] if text.startswith("(") and text.endswith(")") else text
         if match := _POLE.fullmatch(text):
@@ -571,27 +595,25 @@ class _Interpreter:
             is_computed = "[" in name or (name in self.state.values and name not in self.inputs)
             if match["abs"] or is_computed or "." in match["name"]:
                 return (match["sign"] == ">") == bool(match["minus"])
-        if (match := _NULL.fullmatch(text)) and _is_length(self.cut.get(match["name"])):
-            return match["sign"][0] in "!>"
+        if match := _NULL.fullmatch(text):
+            length = self.state.values.get(match["name"])
+            if _is_length(self.definitions.get(length, length)):
+                return match["sign"][0] in "!>"
         return True if _NOT_NULL.fullmatch(text) else _BOOLEANS.get(text)
 
     def _choice(self, node: Node) -> None:
         """switch, match."""
         cases = [each for each in below(children(node)) if each.type in PARTS["case"]]
-        before = self.state.values.keys() | self.inputs
         self._either(cases, node, ends_at_break=True)
-        for name, _ in self._writes([node]):  # a break inside of a case ends it early
-            if name in before:
-                self._spoil(name, f"{name} depends on the condition in line {line_of(node)}")
+        self._forget(node)  # a break inside of a case ends it early
 
     def _loop(self, node: Node) -> None:
         """A loop may run many times or never: what changes in it is unreadable at its start."""
-        reason = f"it changes in the loop in line {line_of(node)}"
         before = self.state.copy()
-        self._forget([node], reason, only_used=True)
+        self._forget(node)
         header = part(node, "left", "initializer", "pattern")
         if header is not None and node.type != "for_statement":
-            self._drop(header, reason)
+            self._drop(header)
         body = part(node, "body") or child(node, "block") or node
         self._either([body], node, before=before, ends_at_break=True)
 
@@ -609,10 +631,11 @@ class _Interpreter:
         ends_at_break: bool = False,
     ) -> None:
         """Run each block from the same state, and merge: differing values are unreadable."""
+        self._emit_groups()
         start, before = self.state, before or self.state
         paths = [] if is_sure else [before]
         for block in blocks:
-            self.state, self.scalars = start.copy(), []
+            self.state = start.copy()
             condition = part(block, "condition") if block.type in PARTS["elif"] else None
             is_simple = block.type in STATEMENTS and block != node
             for each in [block] if is_simple else children(block):
@@ -622,24 +645,13 @@ class _Interpreter:
             self._emit_groups()
             self.state.is_over &= not ends_at_break  # a break ends only the loop or the choice
             paths.append(self.state)
-        self.scalars = []
         alive = [path for path in paths if not path.is_over]
         self.state = (alive or [before])[0].copy()
         self.state.is_over = not alive
         for name in {name for path in alive for name in path.values}:
             ends = [path.values.get(name) for path in alive]
-            if all(_same(ends[0], value) for value in ends[1:]):
-                continue
-            is_new = name not in before.values and name not in self.inputs | self.cut.keys()
-            own = sp.Symbol(name, real=True)
-            values = [own if value is None and not is_new else value for value in ends]
-            is_other = all(isinstance(v, sp.Expr) and (v - values[0]).is_number for v in values)
-            is_other |= all(isinstance(value, sp.Symbol) for value in values)
-            if is_other or (is_new and not any(isinstance(value, _Grid) for value in ends)):
-                self.lines[name] = line_of(node)  # phi, or phi[0]: whichever, it is an input
-                self._cut(name, None)
-            else:
-                self.state.values[name] = f"{name} depends on the condition in line {line_of(node)}"
+            if not all(_same(ends[0], value) for value in ends[1:]):
+                self._become_unread(name, node)
 
     def _end(self, node: Node) -> None:
         """return, break, raise."""
@@ -652,13 +664,13 @@ class _Interpreter:
             try:
                 self.result = self.value(node)
                 if isinstance(self.result, _Grid) and place_of(node) is None:
-                    self._add(line_of(node), "returned", self.result.matrix())
+                    self._add(_RETURNED, self.result)
             except ExpressionError as error:
                 self.result = None
                 if _MAY_BE_MATRIX.search(text_of(node)):
-                    self.formulas.append(Formula(line_of(node), "returned", None, str(error)))
-        self._emit()
-        self._emit_groups()
+                    unread = Formula(line=line_of(node), name=_RETURNED, reason=str(error))
+                    self.formulas.append(unread)
+        self._emit_all()
         self.state.is_over = True
 
     def _call_statement(self, node: Node) -> None:
@@ -682,18 +694,17 @@ class _Interpreter:
         for argument in call.arguments:  # list.append(np.array(...))
             if argument.type in PARTS["list"] or EXPRESSIONS.get(argument.type) == "_call":
                 try:
-                    matrix = as_matrix(self.read(argument))
-                    self._add(line_of(argument), "argument", matrix)
+                    value = self.value(argument)
                 except ExpressionError:
                     continue
+                if isinstance(value, _Grid):
+                    self._add(_ARGUMENT, value)
         if not _HARMLESS.search(call.path):
             for name in self._reached(node):
                 if name in self.state.values or name in self.inputs:
-                    self._emit(
-                        [name] if getattr(self.state.values.get(name), "is_whole", 0) else []
-                    )
-                    reason = f"{name} may be changed by {call.path}() in line {line_of(node)}"
-                    self._spoil(name, reason)
+                    grid = self.state.values.get(name)
+                    self._emit([name] if isinstance(grid, _Grid) and grid.is_whole else [])
+                    self._become_unread(name, node)
 
     def _reached(self, node: Node) -> set[str]:
         """Names that a call, or a stream, may change: its object, matrices, and &name."""
@@ -724,81 +735,113 @@ class _Interpreter:
             return
         try:
             values = rows([self.read(each) for each in (right, *others)])
-            self._store(left, _Grid.of(line_of(node), values))
-        except ExpressionError as error:
-            self._drop(left, error)
+            grid = _Grid.of(line_of(node), values)
+            grid.lines = self._lines_of([right, *others], grid)
+            self._store(left, grid)
+        except ExpressionError:
+            self._drop(left)
 
     # Formulas
 
-    def _emit(self, names: Iterable[str] | None = None) -> None:
-        """The matrices of some names, or of all, have their final values."""
-        for name in self.state.values if names is None else names:
+    def _emit_all(self) -> None:
+        """All matrices, and scalars that are one, at the end of a path."""
+        self._emit(self.state.values)
+        self._emit_groups()
+
+    def _emit(self, names: Iterable[str]) -> None:
+        """The matrices of some names have their final values."""
+        for name in names:
             grid = self.state.values.get(name)
             if isinstance(grid, _Grid) and grid.name:  # not the result of a helper
-                self._add(grid.line, grid.name, grid.matrix())
+                self._add(grid.name, grid)
 
-    def _emit_groups(self) -> None:
-        """Scalars that are three angles or nine entries, at the end of a path."""
-        angles: dict[
-            tuple[str, str], tuple[str, sp.Expr]
-        ] = {}  # roll, pitch and yaw are one vector
-        flat: dict[str, dict[int, tuple[sp.Expr, int]]] = {}  # m0 to m15: one in a row
-        grids: dict[str, _Grid] = {}  # m00 to m22, m11 to m33, and a.x to c.z: one matrix
-        for name, held in self.state.values.items():
-            value = self.cut.get(name) if held == sp.Symbol(name, real=True) else held
-            if not isinstance(value, sp.Expr):
+    def _join_groups(self, name: str) -> None:
+        """A scalar may be a component of a vector, or an entry of a matrix."""
+        path = self.paths.get(name, name)
+        for kind, pattern in _GROUPS.items():
+            if match := pattern.fullmatch(path if kind == "rows" else name):
+                index = re.sub(r"[._]", "", match["index"]).lower()
+                self.groups.setdefault((kind, match["stem"]), {})[index] = name
+        if stem_of(name):
+            self.groups.setdefault(("derivatives", ""), {})[name] = name
+        base, _, last = path.rpartition(".")
+        word = re.sub(r"^_+|_?(val|rad|angle)?_*$", "", last.lower())
+        for triple in _TRIPLES:
+            if word in triple:
+                self.groups.setdefault(("angles", f"{base} {triple[0]}"), {})[word] = name
+
+    def _emit_groups(self, changed: str | None = None) -> None:
+        """Scalars that are one vector or matrix, all or those with a name that will change."""
+        for (kind, stem), members in self.groups.items():
+            if changed not in (None, *members.values()):
                 continue
-            path = self.paths.get(name, name)
-            if value.has(*_INVERSE):
-                base, _, last = path.rpartition(".")
-                angles[base, re.sub(r"^_+|_?(val|rad|angle)?_*$", "", last.lower())] = name, value
-            if match := _ROW.fullmatch(path) or ELEMENT.fullmatch(name):
-                place = (int(match["row"], 36) % 10, int(match["column"], 36))
-                grid = _Grid(self.lines.get(name, 1), match["stem"], {})
-                grids.setdefault(match["stem"], grid).entries[place] = value
-            if match := _FLAT_NAME.fullmatch(name):
-                flat.setdefault(match[1], {})[int(match[2])] = value, self.lines.get(name, 1)
-        for base, triple in product({base for base, _ in angles}, _TRIPLES):
-            three = [angles[base, each] for each in triple if (base, each) in angles]
-            if len(three) == 3:
-                names, column = zip(*three, strict=True)
-                self._add(self.lines.get(names[0], 1), ", ".join(names), sp.ImmutableMatrix(column))
-        for stem, entries in flat.items():
-            if {0, 1, 2, 4, 5, 6, 8, 9, 10} <= entries.keys() <= {*range(16)}:
-                block = [entries[4 * i + j][0] for i in range(3) for j in range(3)]
-                self._add(entries[0][1], stem, sp.ImmutableMatrix(3, 3, block))
-        for stem, grid in grids.items():
-            if len(grid.entries) == 9:
-                self._add(grid.line, stem.strip("._") or "elements", grid.matrix())
+            is_known = members.keys() in _COMPLETE if kind in _GROUPS else len(members) in (3, 4)
+            order = sorted(members) if kind in ("matrix", "rows") else [*members]
+            scalars = {
+                n
+                for (k, _), m in self.groups.items()
+                if (k, *m) == ("vector", "w")
+                for n in m.values()
+            }
+            if kind == "vector" and [*members] == [*"xyz"] and len(scalars) == 1:  # v.x beside w
+                members, order = {**members, "w": scalars.pop()}, [*"wxyz"]
+            if kind == "angles":
+                order = sorted(
+                    members, key=next(t for t in _TRIPLES if t[0] == stem.split()[-1]).index
+                )
+            if kind == "flat" and members.keys() >= {*_FLAT_INDICES}:
+                order, is_known = _FLAT_INDICES, True
+            values = [self.state.values.get(members[index]) for index in order]
+            column = [
+                self.definitions.get(v, v) if isinstance(v, sp.Expr) else None for v in values
+            ]
+            are_angles = all(isinstance(v, sp.Expr) and v.has(*_INVERSE) for v in column)
+            is_triple = are_angles and members.keys() == {*"xyz"}
+            is_other = (kind == "angles" and not are_angles) or (kind == "vector" and is_triple)
+            if not is_known or None in column or is_other:
+                continue
+            names = [members[index] for index in order]
+            if (key := (kind, stem, *column)) in self.emitted:
+                continue
+            self.emitted.add(key)
+            grid = _Grid.of(self.lines[names[0]], sp.ImmutableMatrix(column))
+            lines = zip(sorted(grid.entries), names, strict=True)
+            grid.lines = {place: self.lines[name] for place, name in lines}
+            self._add(", ".join(names) if len(names) < 9 else stem.strip("._") or "elements", grid)
 
-    def _add(self, line: int, name: str, matrix: sp.ImmutableMatrix | None) -> None:
+    def _add(self, name: str, grid: _Grid) -> None:
+        matrix = grid.matrix()
         if matrix is None or self.program.steps["formulas"] >= _MOST_FORMULAS:
             return
         self.program.steps["formulas"] += 1
-        values = {sp.Symbol(k, real=True): v for k, v in self.cut.items() if v is not None}
-        whole: sp.ImmutableMatrix | None = matrix
-        for _ in range(_LONG_IN_LONG):
-            if whole is not None:
-                whole = whole.xreplace(values)
-                parts = sum(1 for entry in whole for _ in sp.preorder_traversal(entry))
-                whole = whole if parts <= _MOST_PARTS else None
-        computed = {sp.Symbol(each, real=True) for each in self.cut}
-        unread = tuple(
-            (symbol.name, self.lines.get(symbol.name, line))
-            for symbol in sorted((whole or matrix).free_symbols & computed, key=str)
-            if self.cut[symbol.name] is None and symbol.name not in self.components
-        )
-        bases = {
-            re.sub(r"(?:_\d+)+$", "", s.name) for s in (whole or matrix).free_symbols - computed
+        whole = self._expanded(matrix)
+        if sum(1 for entry in whole for _ in sp.preorder_traversal(entry)) > _MOST_PARTS:
+            whole = matrix
+        symbols = whole.free_symbols
+        computed = symbols & self.definitions.keys()
+        bases = {re.sub(r"(?:_\d+)+$", "", s.name) for s in symbols - computed}
+        of_bases = {b: s for b in bases if isinstance(s := self.state.values.get(b), sp.Symbol)}
+        unread = {s.name for s in computed - self.components if self.definitions[s] is None}
+        unread |= {
+            b
+            for b, s in of_bases.items()
+            if self.definitions.get(s, s) is None and s not in self.components
         }
-        unread += tuple(
-            (b, self.lines.get(b, line))
-            for b in sorted(bases & self.cut.keys())
-            if b not in self.components
-        )
-        whole = spelled_out(whole, computed) if whole is not None and whole != matrix else None
+        names = {s.name for s in symbols if not isinstance(s, sp.Dummy)}
+        plain = {  # symbols of a name's later values as plain symbols
+            s: sp.Symbol(s.name + "_new" * (s.name in names), real=True)
+            for s in (matrix.free_symbols | symbols)
+            if isinstance(s, sp.Dummy)
+        }
+        forms = [spelled_out(m, self.definitions).xreplace(plain) for m in (whole, matrix)]
         self.formulas.append(
-            Formula(line, name, spelled_out(matrix, computed), whole=whole, unread=unread)
+            Formula(
+                line=grid.line,
+                name=name,
+                forms=tuple(dict.fromkeys(forms)),
+                unread=tuple((n, self.lines.get(n, grid.line)) for n in sorted(unread)),
+                lines=grid.places(),
+            )
         )
 
     # Expressions
@@ -806,13 +849,40 @@ class _Interpreter:
     def value(self, node: Node) -> sp.Expr | _Grid:
         """An expression, or a matrix that may be shared; raises ExpressionError."""
         place = place_of(node)
-        held = self.state.values.get(self.name_of(place.path)) if place else None
+        value = self.state.values.get(self.name_of(place.path)) if place else None
         is_name = place is not None and not place.indices
-        return held if is_name and isinstance(held, _Grid) else self._valued(node, self.read(node))
+        return (
+            value if is_name and isinstance(value, _Grid) else self._valued(node, self.read(node))
+        )
 
     def _valued(self, node: Node, value: Any) -> sp.Expr | _Grid:
         matrix = as_matrix(value)
-        return matrix[0] if len(matrix) == 1 else _Grid.of(line_of(node), matrix)
+        if len(matrix) == 1:
+            return matrix[0]
+        grid = _Grid.of(line_of(node), matrix)
+        if node.end_point[0] > node.start_point[0] and not self.program.is_formula:
+            grid.lines = self._lines_of([node], grid)
+        return grid
+
+    def _lines_of(self, nodes: Sequence[Node], grid: _Grid) -> dict[tuple[int, ...], int]:
+        """The lines of the entries of a matrix that is written out."""
+        leaves = [*nodes]
+        while len(leaves) < len(grid.entries):
+            parts = [call_of(n).arguments if _is_call(n) else children(n) for n in leaves]
+            if not all(n.type in PARTS["list"] or _is_call(n) for n in leaves):
+                return {}
+            leaves = [leaf for each in parts for leaf in each]
+        try:
+            values = [self.read(leaf) for leaf in leaves]
+        except ExpressionError:
+            return {}
+        lines = {}
+        for k, place in enumerate(grid.entries):  # by rows; a transpose has them in another order
+            order = [*values[k : k + 1], *values]
+            if grid.entries[place] in order:
+                index = order.index(grid.entries[place])
+                lines[place] = line_of(leaves[index - 1 if index else k])
+        return lines
 
     def read(self, node: Node) -> Any:
         """The value of an expression; raises ExpressionError if it is not understood."""
@@ -827,7 +897,7 @@ class _Interpreter:
             if digits:
                 text = digits[2].replace("_", "")
                 value = number(text if text.isdigit() else repr(float(text)))
-                return combined("*", MINUS, value) if digits[1] else value
+                return -value if digits[1] else value
             return getattr(self, EXPRESSIONS.get(node.type, "_named"))(node)
         except _Unreadable:
             raise
@@ -842,22 +912,20 @@ class _Interpreter:
         return self.read(part(node, "value") or children(node)[-1])
 
     def _list(self, node: Node) -> Any:
-        if not 0 < len(children(node)) <= _LONGEST_LIST:
+        parts = children(node)
+        if not 0 < len(parts) <= _LONGEST_LIST:
             raise self.unreadable(node)
-        values = [self.read(each) for each in children(node)]
+        values = [self.read(each) for each in parts]
         return (
-            values[0]
-            if children(node)[0].type == "initializer_pair" and len(values) == 1
-            else rows(values)
+            values[0] if len(values) == 1 and parts[0].type == "initializer_pair" else rows(values)
         )
 
     def _record(self, node: Node) -> Any:
         """{w: a, x: b, y: c, z: d} of JavaScript, and Quaternion { x: a, ... } of Rust."""
-        outer = part(node, "body") or node
-        pairs = [(text_of(part(c, "key", "field")), part(c, "value")) for c in children(outer)]
-        if "".join(key for key, _ in pairs) not in ("xyz", "wxyz", "xyzw"):
+        pairs = children(part(node, "body") or node)
+        if "".join(text_of(part(c, "key", "field")) for c in pairs) not in ("xyz", "wxyz", "xyzw"):
             raise self.unreadable(node)
-        return rows([self.read(value or node) for _, value in pairs])
+        return rows([self.read(part(c, "value") or node) for c in pairs])
 
     def _matlab_matrix(self, node: Node) -> Any:
         lines = [as_matrix(self.read(row)) for row in children(node) if row.type == "row"]
@@ -867,12 +935,7 @@ class _Interpreter:
         cells = [as_matrix(self.read(cell)) for cell in children(node)]
         if len({cell.rows for cell in cells}) != 1:
             raise self.unreadable(node)
-        return sized(sp.Matrix.hstack(*cells))
-
-    def _text(self, node: Node) -> Any:
-        if not self.program.own:
-            raise self.unreadable(node)
-        return text_of(node).strip("\"'")
+        return sp.ImmutableMatrix(sp.Matrix.hstack(*cells))
 
     def _transposed(self, node: Node) -> Any:
         return as_matrix(self.read(children(node)[0])).T
@@ -881,42 +944,30 @@ class _Interpreter:
         if operator(node) not in ("+", "-"):
             return self._named(node)
         value = self.read(children(node)[-1])
-        return value if operator(node) == "+" else combined("*", MINUS, value)
+        return value if operator(node) == "+" else -value
 
     def _binary(self, node: Node) -> Any:
         left, right = children(node)[0], children(node)[-1]
-        sign = self._operation(node, operator(node))
-        return combined(sign, self.read(left), self.read(right))
+        return combined(self._operation(node, operator(node)), self.read(left), self.read(right))
 
     def _operation(self, node: Node, sign: str) -> str:
         if self.is_matlab:
             sign = _ELEMENTWISE.get(sign, sign)
-        if sign not in (*_OPERATORS, "%" if self.is_matlab or self.program.names else "*"):
+        if sign not in (*_OPERATORS, "%" if self.is_matlab else "*"):
             raise self.unreadable(node)
         return "%" if sign == "*" and self.program.is_numpy else sign
 
     def _conditional(self, node: Node) -> Any:
-        if self.program.suffix == ".py":
-            first, condition, other = children(node)
-        else:
-            parts = (part(node, f) for f in ("consequence", "condition", "alternative"))
-            first, condition, other = (each or node for each in parts)
+        parts = children(node)
+        if self.program.suffix != ".py":
+            fields = (part(node, f) for f in ("consequence", "condition", "alternative"))
+            parts = [each or node for each in fields]
         if match := _SATURATED.fullmatch(re.sub(r"\s|\.0f?", "", text_of(node))):
             return self._symbol(node, self.name_of(match[1]))
-        constant = self._truth(condition)
+        constant = self._truth(parts[1])
         if constant is None:
-            raise self.unreadable(condition, "is a condition that decides on it")
-        return self.read(first if constant else other)
-
-    def _subscript(self, node: Node) -> Any:
-        if self.index(node) is None and self.program.is_formula and part(node, "value"):
-            matrix = self._valued(node, self.read(part(node, "value") or node))
-            indices = [text_of(c) for c in node.named_children[1:]]
-            if isinstance(matrix, _Grid) and all(map(str.isdecimal, indices)):
-                value = matrix.entries.get(tuple(int(n) - self.first for n in indices))
-                if value is not None:
-                    return sized(value)
-        return self._named(node)
+            raise self.unreadable(parts[1], "is a condition that decides on it")
+        return self.read(parts[0] if constant else parts[2])
 
     def index(self, node: Node) -> tuple[str, tuple[int, ...]] | None:
         """The matrix and the indices, from 0, of m[0][1], m(0, 1), m.at(0, 1)."""
@@ -926,7 +977,7 @@ class _Interpreter:
         base, name = self.name_of(place.path), place.path.rpartition(".")[2]
         if place.is_called:
             is_function = name in self.program.functions and not self.is_matlab
-            name = function_word(name)
+            name = self._word(name)
             words = name in _OF_NUMBERS or name in OF_MATRICES or name in _NO_ENTRIES
             if is_function or words or len(place.indices) > 2:
                 return None
@@ -935,39 +986,34 @@ class _Interpreter:
             is_axis = text in ("X", "Y", "Z") and text not in self.inputs | self.state.values.keys()
             if not is_axis and (not text.isdecimal() or len(text) > 2):
                 return None
-            indices.append(_AXES[text] if is_axis else int(text) - self.first)
-        is_input = not isinstance(self.state.values.get(base), _Grid)
-        if self.program.is_formula and is_input:  # an index is a part of the name
-            indices = [n + self.first - self.is_matlab for n in indices]
+            indices.append(_AXES[text] if is_axis else int(text) - self.is_matlab)
         return (base, tuple(indices)) if min(indices) >= 0 else None
 
     def _entry(self, node: Node, base: str, place: tuple[int, ...]) -> Any:
         grid = self.state.values.get(base)
-        if isinstance(grid, str):
-            raise _Unreadable(grid)
         if isinstance(grid, _Grid):
             value = grid.entries.get((*place, 0), grid.entries.get(place))
             if value is None:
                 raise self.unreadable(node, "has no value")
-            return sized(value)
+            return value
         self.inputs.add(base)
-        return self._symbol(node, "_".join([base, *(str(n + self.is_matlab) for n in place)]))
+        name = "_".join([base, *(str(n + self.is_matlab) for n in place)])
+        if isinstance(grid, sp.Dummy) and name not in self.state.values:
+            return self.later.setdefault((grid, name), sp.Dummy(name, real=True))
+        return self._symbol(node, name)
 
     def _symbol(self, node: Node, name: str) -> Any:
         """The value of a name; an input if nothing was assigned."""
-        held = self.state.values.get(name)
+        value = self.state.values.get(name)
         if name in self.untracked:
             raise self.unreadable(node, "is changed inside an expression or an inner function")
-        if isinstance(held, str):
-            raise _Unreadable(held if held.startswith((f"{name} ", "`")) else f"{name}: {held}")
-        if held is None:
-            if self.program.names is not None:
-                raise ExpressionError(f"unknown name {name!r}; {offer(name, self.program.names)}")
+        if value is None:
             self.inputs.add(name)
-        value = held.matrix() if isinstance(held, _Grid) else held
-        if value is None and held is not None:
+            return sp.Symbol(name, real=True)
+        value = value.matrix() if isinstance(value, _Grid) else value
+        if value is None:
             raise self.unreadable(node, "has entries without values")
-        return Sized.atom(sp.Symbol(name, real=True)) if value is None else sized(value)
+        return value
 
     def _named(self, node: Node) -> Any:
         """A name, an entry, or a component."""
@@ -979,7 +1025,7 @@ class _Interpreter:
             raise self.unreadable(node)
         base, _, member = place.path.rpartition(".")
         if member in CONSTANTS:
-            return Sized.atom(CONSTANTS[member])
+            return CONSTANTS[member]
         grid = self.state.values.get(self.name_of(base)) if base else None
         if isinstance(grid, _Grid) and member in _AXES and len(grid.entries) == 3:
             return self._entry(node, self.name_of(base), (_AXES[member],))
@@ -1001,37 +1047,39 @@ class _Interpreter:
 
     # Calls
 
+    def _word(self, name: str) -> str:
+        return self.aliases.get(name) or function_word(name)
+
     def _call(self, node: Node) -> Any:
         """A function of numbers, a method of a matrix, a constructor, or a function of the file."""
         place = place_of(node)
         if self.index(node) is not None or (place is not None and not place.indices):  # q.w()
             return self._named(node)
         call = call_of(node)
-        name, nodes = function_word(call.name), call.arguments
-        held = self.state.values.get(self.name_of(call.base)) if call.base else None
-        is_value = call.base == "?" or isinstance(held, _Grid)
+        name, nodes = self._word(call.name), call.arguments
+        own = self.state.values.get(self.name_of(call.base)) if call.base else None
         is_of_number = name in _OF_NUMBERS and len(nodes) < 1 + (name in ("pow", "atan2"))
         is_same = name in WORDS["same"] | WORDS["pair"] and not nodes
-        is_method = call.owner is not None and (is_value or is_of_number or is_same)
-        if is_method and call.owner is not None:
+        is_value = call.base == "?" or isinstance(own, _Grid)
+        is_method = is_value or is_of_number or is_same
+        if call.owner is not None and is_method:
             nodes = [call.owner, *nodes]
         is_listed = bool(nodes) and (len(nodes) == 1 or nodes[0].type in PARTS["list"])
         is_letter = name in [*"cstCST"] and len(nodes) == 1
         in_formula = self.program.is_formula and (name in OF_MATRICES or is_letter)
         if name in ("asin", "acos") and nodes:
             nodes = [_unclamped(nodes[0])]
-        if (name in _OF_NUMBERS or in_formula or name in self.program.own) and nodes:
-            return called(name, [self.read(each) for each in nodes], self.program.own)
+        if (name in _OF_NUMBERS or in_formula) and nodes:
+            return called(name, [self.read(each) for each in nodes])
         if name in WORDS["pair"] and len(nodes) == 1:
             return rows([called(each, [self.read(nodes[0])]) for each in ("sin", "cos")])
         if name in WORDS["number"] and not call.arguments:  # T::zero()
-            return number(str(int("one" in name.lower())))
+            return sp.Integer("one" in name.lower())
         if name in WORDS["column"] and len(call.arguments) == 1 and call.base not in ("", "?"):
             index = text_of(call.arguments[0])
             places = [(k, index) if name == "col" else (index, k) for k in range(3)]
-            return rows(
-                [self._symbol(node, f"{self.name_of(call.base)}_{i}_{j}") for i, j in places]
-            )
+            base = self.name_of(call.base)
+            return rows([self._symbol(node, f"{base}_{i}_{j}") for i, j in places])
         if name in WORDS["transpose"] and len(nodes) == 1:
             return as_matrix(self.read(nodes[0])).T
         is_reordered = any(text_of(option).startswith("order") for option in call.options)
@@ -1051,18 +1099,17 @@ class _Interpreter:
         is_vector = count in (3, 4) and bool(_VECTOR_NAME.search(call.path))
         is_matrix = count in (3, 9, 16) and bool(_MATRIX_NAME.search(call.path))
         if name in self.program.functions and call.base in ("", "self", "this"):
-            if not (is_vector or is_matrix):
-                return self._inline(node, name, nodes)
             try:
                 return self._inline(node, name, nodes)
-            except ExpressionError:  # a constructor
-                pass
-        if not (is_vector or is_matrix):
-            if self.program.is_formula and call.owner is None:
-                hint = offer(name, [*FUNCTIONS, *OF_MATRICES, *self.program.own])
-                raise ExpressionError(f"{name!r} is not a function; {hint}")
-            raise self.unreadable(node)
-        return rows([self.read(each) for each in call.arguments])
+            except ExpressionError:
+                if not (is_vector or is_matrix):  # a constructor
+                    raise
+        if is_vector or is_matrix:
+            return rows([self.read(each) for each in call.arguments])
+        if self.program.is_formula and call.owner is None:
+            hint = offer(name, [*FUNCTIONS, *OF_MATRICES])
+            raise ExpressionError(f"{name!r} is not a function; {hint}")
+        raise self.unreadable(node)
 
     def _filled(self, node: Node, call: Call) -> Any:
         """zeros(3, 3), Matrix3d::Identity()."""
@@ -1096,27 +1143,26 @@ class _Interpreter:
         for each, argument in zip(names, nodes, strict=True):
             value = self.value(argument)
             inner.state.values[each] = value.copy() if isinstance(value, _Grid) else value
-        inner.formulas_of(function)
+        inner.run_scope(function)
         result = inner.result.matrix() if isinstance(inner.result, _Grid) else inner.result
-        if (
-            inner.results != 1
-            or result is None
-            or inner.inputs - set(names)
-            or None in inner.cut.values()
-        ):
+        is_closed = not inner.inputs - set(names) and None not in inner.definitions.values()
+        if inner.results != 1 or result is None or not is_closed:
             raise self.unreadable(node)
-        for _ in range(_LONG_IN_LONG):
-            result = result.xreplace({sp.Symbol(k, real=True): v for k, v in inner.cut.items()})
-        return sized(result)
+        return inner._expanded(result)
+
+
+def _is_call(node: Node) -> bool:
+    return EXPRESSIONS.get(node.type) == "_call"
 
 
 def _unclamped(node: Node) -> Node:
     """x of clamp(x, -1, 1): the arc sine of any other number does not exist."""
-    if EXPRESSIONS.get(node.type) != "_call":
+    if not _is_call(node):
         return node
     call = call_of(node)
-    nodes = [call.owner, *call.arguments] if call.owner and len(call.arguments) == 2 else None
-    nodes = nodes or call.arguments
+    nodes = call.arguments
+    if call.owner is not None and len(nodes) == 2:
+        nodes = [call.owner, *nodes]
     bounds = [re.sub(r"\.0*|[\sfF]|T\(|\)|static_cast<\w+>\(", "", text_of(a)) for a in nodes[1:]]
     return nodes[0] if bounds == ["-1", "1"] and _CLAMPS.search(call.name) else node
 
@@ -1140,22 +1186,3 @@ def _same(one: Any, other: Any) -> bool:
     if isinstance(one, _Grid) and isinstance(other, _Grid):
         return one.entries == other.entries
     return type(one) is type(other) and bool(one == other)
-
-
-def _is_short(value: sp.Expr) -> bool:
-    """Whether a name may stand for this: cos(phi), 2*q0, x[3], but no number and no sum."""
-    return (
-        not value.is_Add
-        and not value.is_number
-        and all(isinstance(function, _TRIGONOMETRIC) for function in value.atoms(sp.Function))
-    )
-
-
-def _are_components(names: Sequence[str]) -> bool:
-    """Whether scalars in a row are one vector: rates, or components of an angular velocity."""
-    if tuple(names) in (("p", "q", "r"), ("P", "Q", "R")):
-        return True
-    last = "".join(name[-1].lower() for name in names)
-    is_vector = last in ("xyz", "wxyz", "xyzw") or last in ("012", "123", "0123", "1234")
-    same = len({name[:-1] for name in names if name[-1] not in "wW"}) == 1
-    return (is_vector and same) or all(map(stem_of, names))

@@ -32,19 +32,30 @@ class FormulaInFile:
     comparison: Comparison | None = None
     reason: str = ""
 
+    @property
+    def line(self) -> int:
+        """The line of the first wrong entry if it is known, else the line where it begins."""
+        repairs = self.comparison.repairs if self.comparison else ()
+        places = [(each.place[0] - 1, each.place[1] - 1) for each in repairs if each.place]
+        lines = self.formula.lines
+        return next((lines[place] for place in places if place in lines), self.formula.line)
+
     def __str__(self) -> str:
         name = f"{self.formula.name}: " if self.formula.name else ""
         text = self.comparison.text() if self.comparison else f"not read, since {self.reason}"
-        if self.formula.unread:
-            places = (f"{computed} in line {line}" for computed, line in self.formula.unread)
-            text += f"; not read: {', '.join(places)}"
-        return f"{self.path}:{self.formula.line}: {name}{text}"
+        if self.formula.unread and self.comparison:
+            text += f"; not read: {_in_lines(self.formula.unread)}"
+        return f"{self.path}:{self.line}: {name}{text}"
 
     def record(self) -> dict[str, Any]:
         """For JSON."""
-        place = {"path": str(self.path), "line": self.formula.line, "name": self.formula.name}
+        place = {"path": str(self.path), "line": self.line, "name": self.formula.name}
         place |= {"unread": dict(self.formula.unread)}
         return place | (self.comparison.record() if self.comparison else {})
+
+
+def _in_lines(unread: Sequence[tuple[str, int]]) -> str:
+    return ", ".join(f"{name} in line {line}" for name, line in unread)
 
 
 def source_files(paths: Sequence[Path]) -> Iterator[Path]:
@@ -79,19 +90,20 @@ def search(path: Path) -> Iterator[FormulaInFile]:
     """The formulas of a file that are a known quantity or close to one, and unreadable ones."""
     text = path.read_text(encoding="utf-8", errors="replace")
     for formula in formulas(text, path.suffix):
-        if formula.matrix is None:
-            yield FormulaInFile(path, formula, reason=formula.reason)
-            continue
-        whole = formula.whole or formula.matrix
-        try:
-            comparison = _identified(whole)
-            if comparison.found is None and formula.whole:  # a long value may be an angle
-                comparison = _identified(formula.matrix)
-        except (ExpressionError, RecursionError) as error:  # a function without values
-            yield FormulaInFile(path, formula, reason=str(error))
-            continue
-        if comparison.found is not None or comparison.is_reflection:
-            yield FormulaInFile(path, formula, comparison)
+        reason, comparison = formula.reason, None
+        for form in formula.forms:  # a long value may be an angle
+            try:
+                comparison = _identified(form)
+            except (ExpressionError, RecursionError) as error:  # a function without values
+                reason = str(error)
+                break
+            if comparison.found is not None:
+                break
+        else:
+            if formula.unread:
+                reason = f"{_in_lines(formula.unread)} cannot be read"
+        if reason or (comparison and (comparison.found is not None or comparison.is_reflection)):
+            yield FormulaInFile(path, formula, None if reason else comparison, reason)
 
 
 @lru_cache(maxsize=1024)  # programs repeat themselves
@@ -102,12 +114,9 @@ def _identified(matrix: sp.ImmutableMatrix) -> Comparison:
 def formulas(text: str, suffix: str) -> Iterator[Formula]:
     """The matrices and vectors that may be one of kinematics, and those that cannot be read."""
     for formula in program_formulas(text, suffix):
-        if formula.matrix is None:
-            yield formula
-            continue
-        matrix, whole = _block(formula.matrix), formula.whole and _block(formula.whole)
-        if _may_be_known(matrix) or (whole and _may_be_known(whole)):
-            yield replace(formula, matrix=matrix, whole=whole)
+        forms = tuple(filter(_may_be_known, map(_block, formula.forms)))
+        if forms or formula.reason:
+            yield replace(formula, forms=forms)
 
 
 def disappointment(
@@ -145,10 +154,9 @@ def _may_be_known(matrix: sp.ImmutableMatrix) -> bool:
         return True
     if matrix.shape not in ((3, 3), (3, 1), (4, 1), (4, 3), (3, 4), (4, 4)):
         return False
-    count = sum(entry.has(*_TRIGONOMETRIC) for entry in matrix)
-    if count:
-        return count >= (2 if matrix.cols == 1 else 4)
     varied = sum(not entry.is_number for entry in matrix)
+    if matrix.has(*_TRIGONOMETRIC):
+        return varied >= (2 if matrix.cols == 1 else 4)
     if matrix.shape == (3, 1):  # an angular velocity, or rates, without sines
         return varied == 3 and len(matrix.free_symbols) >= 6
     return len(matrix.free_symbols) >= 3 and varied >= (4 if matrix.cols == 1 else 6)
