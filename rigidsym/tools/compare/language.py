@@ -146,8 +146,12 @@ def rows(parts: list[Any]) -> sp.ImmutableMatrix:
     """A column of scalars, or rows; a list inside the list is a row."""
     if not any(isinstance(part, sp.MatrixBase) for part in parts):
         return _bounded(sp.Matrix(parts))
-    matrices = (as_matrix(part) for part in parts)
-    return _bounded(sp.Matrix.vstack(*(row.T if row.cols == 1 else row for row in matrices)))
+    matrices = [as_matrix(part) for part in parts]
+    matrices = [row.T if row.cols == 1 else row for row in matrices]
+    if len({row.cols for row in matrices}) > 1:
+        lengths = " and ".join(str(row.cols) for row in matrices)
+        raise ExpressionError(f"rows of {lengths} entries; expected rows of equal length")
+    return _bounded(sp.Matrix.vstack(*matrices))
 
 
 def number(text: str) -> sp.Rational:

@@ -1,27 +1,16 @@
-r"""Formulas in LaTeX, read from left to right with the signs of multiplication put in.
+r"""Formulas in LaTeX, translated into Python from left to right.
 
-tex_value(r"\dot\phi \sin^2\theta")     phi_dot*sin(theta)**2
+python_of(r"\dot\phi \sin^2\theta")     phi_dot*sin(theta)**(2)
 """
 
 from __future__ import annotations
 
 import re
-from typing import Any
-
-import sympy as sp
 
 from rigidsym.errors import ExpressionError
 from rigidsym.text.bounds import FUNCTIONS
 from rigidsym.text.names import GREEK_LETTERS, spelled
-from rigidsym.tools.compare.language import (
-    CONSTANTS,
-    SPELLINGS,
-    as_matrix,
-    called,
-    combined,
-    number,
-    rows,
-)
+from rigidsym.tools.compare.language import SPELLINGS
 
 _FIRST = 0xE000  # a matrix stands in a formula as a letter of the private use area
 _MARKS = "\ue000-\uf8ff"
@@ -43,7 +32,6 @@ _MATRIX = re.compile(r"\\begin\{([pbB]?matrix|array)\}(?:\{[lcr| ]*\})?(.*?)\\en
 _COMMENT = re.compile(r"(?<!\\)%[^\n]*")
 _END = re.compile(r"(?<!\\),|\\q?quad(?![A-Za-z])|\\\\")  # of a side with a matrix
 _PUNCTUATION = re.compile(r"(?:\\[,;:! ]|[\s.,;])+$")
-_TRANSPOSED = sp.Symbol("T", real=True)
 _BRACKETS = {"(": ")", "[": "]", "{": "}"}
 _DOTS = {r"\dot": "_dot", r"\ddot": "_ddot"}
 _LETTERS = set(map(spelled, GREEK_LETTERS))
@@ -52,22 +40,22 @@ _ANGLES = {r"\phi", r"\varphi", r"\theta", r"\vartheta", r"\psi", r"\alpha", r"\
 _SHORT = {"c": "cos", "C": "cos", "s": "sin", "S": "sin"}  # c\theta
 
 
-def tex_value(text: str) -> Any:
+def python_of(text: str) -> str:
     """The last side of an equation; if a side contains a matrix, the last such side."""
     if mark := re.search(f"[{_MARKS}]", text):
         raise ExpressionError(f"unexpected {mark[0]!r} in LaTeX")
-    matrices: list[sp.ImmutableMatrix] = []
+    matrices: dict[int, str] = {}
 
     def kept(match: re.Match[str]) -> str:
         lines = [line for line in re.split(r"\\\\(?:\[[^\]]*\])?", match[2]) if line.strip()]
-        cells = [[_TexWalk(cell, matrices).sum() for cell in line.split("&")] for line in lines]
-        matrices.append(rows([rows(line) for line in cells]))
-        return chr(_FIRST + len(matrices) - 1)
+        cells = (", ".join(_Walk(cell).sum() for cell in line.split("&")) for line in lines)
+        matrices[_FIRST + len(matrices)] = f"[{', '.join(f'[{row}]' for row in cells)}]"
+        return chr(max(matrices))
 
     sides = _MATRIX.sub(kept, _STYLED_SCRIPT.sub("", _COMMENT.sub("", text))).split("=")
     side = next((s for s in reversed(sides) if re.search(f"[{_MARKS}]", s)), sides[-1])
     side = _END.split(side)[0] if matrices else side
-    return _TexWalk(_PUNCTUATION.sub("", side), matrices).sum()
+    return _Walk(_PUNCTUATION.sub("", side)).sum().translate(matrices)
 
 
 def _styled(match: re.Match[str]) -> str:
@@ -78,16 +66,15 @@ def _styled(match: re.Match[str]) -> str:
     return f"{_QUOTE}{word}{_QUOTE}" if len(word) > 1 and word[0] != "\\" else f"{word} "
 
 
-class _TexWalk:
+class _Walk:
     """One entry of a matrix, or a formula in which letters stand for matrices."""
 
-    def __init__(self, text: str, matrices: list[sp.ImmutableMatrix]) -> None:
+    def __init__(self, text: str) -> None:
         tokens = list(_TEX_TOKEN.finditer(_LAYOUT.sub(" ", _STYLED.sub(_styled, text))))
         for match in tokens:
             if match["other"]:
                 raise ExpressionError(f"unexpected {match['other']!r} in LaTeX")
         self.tokens = [match[0] for match in tokens][::-1]
-        self.matrices = matrices
         self.depth = 0
 
     def next(self) -> str:
@@ -97,71 +84,50 @@ class _TexWalk:
         """The next token if it is an expected one, else nothing."""
         return self.tokens.pop() if self.next() in expected and self.tokens else ""
 
-    def sum(self, end: str = "") -> Any:
+    def sum(self, end: str = "") -> str:
         """Up to the bracket `end`, or to the end."""
         self.depth += 1
         if self.depth > _DEEPEST:
             raise ExpressionError("operations are nested too deeply")
-        total: Any = None
-        while total is None or self.next() not in ("", end):
-            operator = self.take("+", "-")
-            if total is not None and not operator:
-                raise ExpressionError(f"unexpected {self.next()!r} in LaTeX")
-            term = self._product(end)
-            if total is None:
-                total = -term if operator == "-" else term
-            else:
-                total = combined(operator, total, term)
+        total = self.take("+", "-") + self._power()
+        while self.next() not in ("", end):
+            sign = self.take("+", "-", r"\cdot", "*", "/")  # none between factors
+            total += {r"\cdot": "*", "": "*"}.get(sign, sign) + self._power()
         if end and not self.take(end):
             raise ExpressionError(f"expected {end} in LaTeX")
         self.depth -= 1
         return total
 
-    def _product(self, end: str) -> Any:
-        value = self._power()
-        while self.next() not in ("", end, "+", "-"):
-            operator = self.take(r"\cdot", "*", "/")
-            factor = self._power()
-            value = combined("/" if operator == "/" else "*", value, factor)
-        return value
-
-    def _power(self) -> Any:
+    def _power(self) -> str:
         base = self._atom()
         while self.take("^"):
             power = self._argument()
-            letter = as_matrix(power)[0]
-            is_transposed = isinstance(base, sp.MatrixBase) and letter == _TRANSPOSED
-            base = as_matrix(base).T if is_transposed else combined("**", base, power)
+            base = f"({base}).T" if power.strip("()") == "T" else f"{base}**({power})"
         return base
 
-    def _argument(self) -> Any:
+    def _argument(self) -> str:
         """A group in braces, or one token."""
-        if self.take("{"):
-            return self.sum("}")
-        if self.next().isdigit():  # \frac12
-            digits = self.tokens.pop()
-            self.tokens += [digits[1:]] * (len(digits) > 1)
-            return number(digits[0])
-        return self._atom()
+        if not self.next().isdigit():  # \frac12
+            return self._atom()
+        digits = self.tokens.pop()
+        self.tokens += [digits[1:]] * (len(digits) > 1)
+        return digits[0]
 
-    def _atom(self) -> Any:
+    def _atom(self) -> str:
         token = self.next()
         if token in _BRACKETS:
-            return self.sum(_BRACKETS[self.tokens.pop()])
+            return f"({self.sum(_BRACKETS[self.tokens.pop()])})"
         if self.take(r"\frac", r"\tfrac", r"\dfrac"):
-            return combined("/", self._argument(), self._argument())
+            return f"({self._argument()}/{self._argument()})"
         if token[:1] == "\\" and (name := SPELLINGS.get(token[1:], token[1:])) in FUNCTIONS:
             self.tokens.pop()
             return self._call(name)
         if token in _SHORT and self.tokens[-2:-1] and self.tokens[-2] in _ANGLES:
             self.tokens.pop()
-            return called(_SHORT[token], [self._atom()])
-        if token[:1].isdigit():
-            return number(self.tokens.pop())
-        if re.fullmatch(f"[{_MARKS}]", token):
-            return self.matrices[ord(self.tokens.pop()) - _FIRST]
-        name = self._name()
-        return CONSTANTS.get(name, sp.Symbol(name, real=True))
+            return f"{_SHORT[token]}({self._atom()})"
+        is_number = token[:1].isdigit() or re.fullmatch(f"[{_MARKS}]", token)
+        name = self.tokens.pop() if is_number else self._name()
+        return "λ" if name == "lambda" else name  # a keyword of Python
 
     def _name(self) -> str:
         """A letter or a word, with its dots and its index."""
@@ -173,10 +139,10 @@ class _TexWalk:
                 raise ExpressionError("expected } in LaTeX")
             return name + self._script() + _DOTS[token]
         if token[:1] == _QUOTE:
-            word = spelled(token.strip(_QUOTE))
+            name = spelled(token.strip(_QUOTE))
             if self.next() in ("(", "["):
-                raise ExpressionError(f"{word} is not a function that is known")
-            return word + self._script()
+                raise ExpressionError(f"{name} is not a function that is known")
+            return name + self._script()
         name = spelled(_GREEK.get(token, token.lstrip("\\")))
         is_command = token[:1] == "\\"
         if not name.isalpha() or (is_command and name not in _LETTERS and token not in _GREEK):
@@ -200,16 +166,13 @@ class _TexWalk:
             raise ExpressionError(f"unexpected index {index!r} in LaTeX")
         return f"_{index}"
 
-    def _call(self, function: str) -> Any:
-        power: Any = None
-        if self.take("^"):
-            power = self._argument()
-            if as_matrix(power)[0] == -1:
-                function, power = f"a{function}", None
+    def _call(self, function: str) -> str:
+        power = self._argument() if self.take("^") else ""
+        if power.strip("()") == "-1":
+            function, power = f"a{function}", ""
         is_number = self.next().isdigit()
         argument = self._argument() if function == "sqrt" else self._power()
         while is_number and self.next()[:1] == "\\" and self.next() != r"\cdot":  # \sin 2\theta
             is_number = False
-            argument = combined("*", argument, self._power())
-        value = called(function, [argument])
-        return value if power is None else combined("**", value, power)
+            argument += f"*{self._power()}"
+        return f"{function}({argument})" + f"**({power})" * bool(power)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from itertools import chain, islice, product
+from itertools import chain, product
 from typing import Any
 
 import numpy as np
@@ -108,13 +108,6 @@ class Reading:
         is_right = np.asarray(self.agreement.all(axis=(1, 2)))
         return bool(is_right[:NEAR_POINTS].all()) and not is_right.all()
 
-    @property
-    def is_whole(self) -> bool:
-        """Whether a transpose, a sign or a factor of all entries makes them right."""
-        numbers = self.own
-        changes = (numbers.transpose(0, 2, 1), -numbers, 2 * numbers, numbers / 2)
-        return any(self.agrees(changed) for changed in changes)
-
 
 @dataclass(frozen=True, kw_only=True)
 class Comparison:
@@ -170,10 +163,14 @@ class Comparison:
         symbols = self.formula.free_symbols
         called, own = self._called(), [*found.coordinates] if found else []
         stems = {name: stem_of(called.get(f"{name}_dot", "")) for name in own}
-        in_order = [called.get(name) or stems[name] or name for name in own]
+        theirs = {name: called.get(name) or stems[name] for name in own}
+        equations = [f"{name} = {other}" for name, other in theirs.items() if other]
+        calls = f" in ({', '.join(theirs.values())})"
+        if not all(theirs.values()):  # the quantity does not depend on some coordinate
+            calls = f" with {', '.join(equations)}" if equations else ""
         facts: dict[str, Any] = {each.name: getattr(self, each.name) for each in fields(self)}
         facts |= {
-            "calls": f" in ({', '.join(in_order)})" if in_order != own else "",
+            "calls": calls if any(name != other for name, other in theirs.items() if other) else "",
             "points": POINTS,
             "is_as_asked": found and asked and str(asked) == str(found),
             "shape": in_words(self.formula.shape),
@@ -198,30 +195,20 @@ def in_words(shape: tuple[int, int]) -> str:
 
 def against(formula: sp.ImmutableMatrix, goal: KnownQuantity) -> Comparison:
     """Compare with one quantity, under all meanings of its names."""
-    unknown = Comparison(formula=formula, asked=goal)
-    meanings = [
-        Reading.of(formula, goal, names) for names in readings(formula, goal, in_own_names=True)
-    ]
-    for reading in meanings:
-        if reading.is_equal:
-            return _proved(reading, (), goal)
-    if is_orthogonal(formula, -1) and not any(each.is_whole for each in meanings):
-        return replace(unknown, is_reflection=True)
-    for reading in meanings:  # before repairs: no change makes it right for all angles
-        if reading.is_right_for_some:
-            return _right_for_some(reading, goal)
-    for reading in meanings:
-        if repair := next(whole_repairs(reading), None):
-            return _proved(reading, (repair,), goal)
-    as_it_stands = identified(formula, only_equal=True)
+    names = readings(formula, goal, in_own_names=True)
+    meanings = [Reading.of(formula, goal, each) for each in names]
+    decided = _decided(formula, meanings, goal)
+    if decided:
+        return decided
+    own = identified(formula, only_equal=True)
     nearest = max(meanings, key=lambda each: each.share, default=None)
     if nearest and (repairs := entry_repairs(nearest)):
-        return replace(_proved(nearest, repairs, goal), as_it_stands=as_it_stands.found)
-    if as_it_stands.found:
-        words = f"this is {as_it_stands.found.described}"
-        repair = Repair(kind="convention", words=words, formula=formula, goal=as_it_stands.found)
-        return replace(as_it_stands, asked=goal, repairs=(repair,))
-    return unknown
+        return replace(_proved(nearest, repairs, goal), as_it_stands=own.found)
+    if own.found:
+        words = f"this is {own.found.described}"
+        repair = Repair(kind="convention", words=words, formula=formula, goal=own.found)
+        return replace(own, asked=goal, repairs=(repair,))
+    return Comparison(formula=formula, asked=goal)
 
 
 def identified(
@@ -231,47 +218,65 @@ def identified(
 
     In a program, a transpose, a sign or a factor of the whole formula may be meant.
     """
+    meanings: list[Reading] = []
+    for reading in _all_readings(formula):
+        if reading.is_equal:
+            return _proved(reading, (), None)
+        meanings.append(reading)
     unknown = Comparison(formula=formula, asked=None)
-    all_readings: list[Reading] = []
-    has_own_names = any(is_in_own_names(formula, goal) for goal in catalogue(formula))
-    for in_own_names in (True, False) if has_own_names else (False,):
-        for reading in _all_readings(formula, in_own_names=in_own_names):
-            if reading.is_equal:
-                return _proved(reading, (), None)
-            all_readings.append(reading)
     if only_equal:
         return unknown
-    if (turned := _in_other_senses(formula)) is not None:
-        return turned
-    is_mirror = is_orthogonal(formula, -1)
-    whole = None
-    if is_mirror or (not is_in_program and not are_angles(formula)):
-        whole = next((each for each in all_readings if each.is_whole), None)
-    if is_mirror and not whole:
-        return replace(unknown, is_reflection=True)
-    some = next((each for each in all_readings if each.is_right_for_some), None)
-    if some and not are_angles(formula):
-        return _right_for_some(some, None)
-    if whole and not is_in_program:
-        return _proved(whole, tuple(islice(whole_repairs(whole), 1)), None)
-    for reading in sorted(all_readings, key=lambda each: -each.share)[:_NEAREST]:
+    decided = _in_other_senses(formula) or _decided(
+        formula, meanings, None, is_in_program=is_in_program
+    )
+    if decided:
+        return decided
+    for reading in sorted(meanings, key=lambda each: -each.share)[:_NEAREST]:
         repairs = entry_repairs(reading) if reading.share >= _NEAR else ()
         if 0 < len(repairs) <= _MOST_REPAIRS and all(r.kind != "entry" for r in repairs):
             return _proved(reading, repairs, None)
     return unknown
 
 
-def _all_readings(formula: sp.ImmutableMatrix, *, in_own_names: bool) -> Iterator[Reading]:
-    """A formula beside all quantities of the catalogue, in all ways of writing them."""
-    plain: dict[Any, list[Reading]] = {}  # Euler angles of all orders have the same inputs
-    for goal in catalogue(formula):
-        model = goal.motion.model
-        inputs = (tuple(goal.inputs.items()), goal.uses, model.vector, model.constraints)
-        if inputs not in plain:
-            names = readings(formula, goal, in_own_names=in_own_names)
-            plain[inputs] = [Reading.of(formula, goal, each) for each in names]
-        for way in goal.arrangements if plain[inputs] else ():
-            yield from (replace(each, goal=way) for each in plain[inputs])
+def _decided(
+    formula: sp.ImmutableMatrix,
+    meanings: Sequence[Reading],
+    asked: KnownQuantity | None,
+    *,
+    is_in_program: bool = False,
+) -> Comparison | None:
+    """What is known without a look at single entries."""
+    if equal := next((each for each in meanings if each.is_equal), None):
+        return _proved(equal, (), asked)
+    is_mirror, of_angles = is_orthogonal(formula, -1), are_angles(formula)
+    wholes: Iterator[tuple[Reading, Repair]] = iter(())
+    if is_mirror or not (is_in_program or of_angles):
+        wholes = ((m, r) for m in meanings for r in whole_repairs(m, asked))
+    whole = next(wholes, None)
+    if is_mirror and not whole:
+        return Comparison(formula=formula, asked=asked, is_reflection=True)
+    some = next((each for each in meanings if each.is_right_for_some), None)
+    if some and not of_angles:  # before repairs: no change makes it right for all angles
+        return _right_for_some(some, asked)
+    return _proved(whole[0], whole[1:], asked) if whole and not is_in_program else None
+
+
+def _all_readings(formula: sp.ImmutableMatrix) -> Iterator[Reading]:
+    """A formula beside all quantities of the catalogue, in all ways of writing them.
+
+    Names that are those of a quantity are read as such first.
+    """
+    has_own_names = any(is_in_own_names(formula, goal) for goal in catalogue(formula))
+    for in_own_names in (True, False) if has_own_names else (False,):
+        plain: dict[Any, list[Reading]] = {}  # Euler angles of all orders have the same inputs
+        for goal in catalogue(formula):
+            model = goal.motion.model
+            inputs = (tuple(goal.inputs.items()), goal.uses, model.vector, model.constraints)
+            if inputs not in plain:
+                names = readings(formula, goal, in_own_names=in_own_names)
+                plain[inputs] = [Reading.of(formula, goal, each) for each in names]
+            for way in goal.arrangements if plain[inputs] else ():
+                yield from (replace(each, goal=way) for each in plain[inputs])
 
 
 def _in_other_senses(formula: sp.ImmutableMatrix) -> Comparison | None:
@@ -281,12 +286,13 @@ def _in_other_senses(formula: sp.ImmutableMatrix) -> Comparison | None:
         return None
     if formula.shape != (4, 1) and not is_orthogonal(formula, 1):
         return None
-    for senses in islice(product((1, -1), repeat=len(angles)), 1, None):
+    all_senses = sorted(product((1, -1), repeat=len(angles)), key=lambda s: s.count(-1))
+    for senses in all_senses[1:]:
         turned = {s: sense * s for s, sense in zip(angles, senses, strict=True)}
         comparison = identified(formula.xreplace(turned), only_equal=True)
         if comparison.found is not None and comparison.found.quantity in _TURNS:
             opposite = " and ".join(str(s) for s in angles if turned[s] != s)
-            words = f"with the opposite sense of {opposite}"
+            words = f"with the opposite sense of {opposite} (a convention, or wrong signs)"
             arrangement = ", ".join(filter(None, (comparison.arrangement, words)))
             found = replace(comparison.found, arrangement=arrangement)
             return replace(comparison, formula=formula, found=found)
@@ -296,29 +302,20 @@ def _in_other_senses(formula: sp.ImmutableMatrix) -> Comparison | None:
 def _right_for_some(reading: Reading, asked: KnownQuantity | None) -> Comparison:
     """With the first point where the formula is wrong."""
     place = int(reading.agreement.all(axis=(1, 2)).argmin())
-    called = {meant: str(name) for name, meant in reading.names.items()}
-    point = ", ".join(
-        f"{called.get(symbol, name)} = {reading.goal.points[symbol][place]:.4g}"
-        for name, symbol in reading.goal.coordinates.items()
-    )
+    points = ((name, reading.values[name][place]) for name in sorted(reading.names, key=str))
     return Comparison(
         formula=reading.formula,
         asked=asked,
         found=reading.goal,
         names=reading.names,
-        counterexample=point,
+        counterexample=", ".join(f"{name} = {value:.4g}" for name, value in points),
     )
 
 
 def _proved(reading: Reading, repairs: Sequence[Repair], asked: KnownQuantity | None) -> Comparison:
     """The comparison, with the proof that the repaired formula is what was found."""
-    found = repairs[0].goal if repairs else reading.goal
-    changed = reading.formula.as_mutable()
-    for repair in repairs:
-        if repair.after is None or repair.place is None:
-            changed = repair.formula
-            break
-        changed[repair.place[0] - 1, repair.place[1] - 1] = repair.after
+    last = repairs[-1] if repairs else None
+    found, changed = (last.goal, last.formula) if last else (reading.goal, reading.formula)
     comparison = Comparison(
         formula=reading.formula,
         asked=asked,
@@ -329,7 +326,7 @@ def _proved(reading: Reading, repairs: Sequence[Repair], asked: KnownQuantity | 
     if found.quantity == ANGLES:  # no expressions of the ring
         return comparison
     try:
-        theirs = sp.ImmutableMatrix(changed).xreplace(dict(reading.names))
+        theirs = changed.xreplace(dict(reading.names))
         return replace(comparison, is_proved=found.motion.equality(theirs, found.matrix).is_exact)
     except DerivationError:  # it is false, although the numbers agree
         return Comparison(formula=reading.formula, asked=asked)
@@ -340,21 +337,21 @@ def _proved(reading: Reading, repairs: Sequence[Repair], asked: KnownQuantity | 
 # Small changes
 
 
-def whole_repairs(reading: Reading) -> Iterator[Repair]:
+def whole_repairs(reading: Reading, asked: KnownQuantity | None) -> Iterator[Repair]:
     """A change of all entries together, or another quantity of the rotation, that fits."""
     formula, goal = reading.formula, reading.goal
     passive = " (passive)" if goal.quantity == "rotation_matrix" else ""
-    for kind, words, changed in (
-        ("transpose", f"the formula is the transpose{passive}", formula.T),
-        ("sign", "all signs are the other way round", -formula),
-        ("factor", "a factor 2 is missing", 2 * formula),
-        ("factor", "a factor 1/2 is missing", formula / 2),
-    ):
-        if reading.agrees(reading.numbers(changed)):
-            yield Repair(kind=kind, words=words, formula=changed, goal=goal)
-    for kind, other in _relatives(goal):
-        if reading.agrees(reading.numbers(formula), other):
-            yield Repair(kind=kind, words=f"this is {other}", formula=formula, goal=other)
+    changes = [
+        ("transpose", f"the formula is the transpose{passive}", formula.T, goal),
+        ("sign", "all signs are the other way round", -formula, goal),
+        ("factor", "a factor 2 is missing", 2 * formula, goal),
+        ("factor", "a factor 1/2 is missing", formula / 2, goal),
+    ]
+    relatives = _relatives(goal) if asked else ()
+    changes += [(kind, f"this is {other}", formula, other) for kind, other in relatives]
+    for kind, words, changed, other in changes:
+        if reading.agrees(reading.numbers(changed), other):
+            yield Repair(kind=kind, words=words, formula=changed, goal=other)
 
 
 def _relatives(goal: KnownQuantity) -> Iterator[tuple[str, KnownQuantity]]:
@@ -379,24 +376,40 @@ def _relatives(goal: KnownQuantity) -> Iterator[tuple[str, KnownQuantity]]:
 
 
 def entry_repairs(reading: Reading) -> tuple[Repair, ...]:
-    """One change in each wrong entry; () if there are none, or too many."""
-    if reading.formula.shape != reading.goal.matrix.shape:
+    """One change in each wrong entry, one after the other; () if there are too many."""
+    formula, goal = reading.formula, reading.goal
+    if formula.shape != goal.matrix.shape:
         return ()
     wrong = [(int(i), int(j)) for i, j in np.argwhere(~reading.agreement.all(axis=0))]
     if len(wrong) == 2:
         one, two = wrong
-        changed = reading.formula.as_mutable()
+        changed = formula.as_mutable()
         changed[one], changed[two] = changed[two], changed[one]
         if reading.agrees(reading.numbers(changed)):
             words = f"entries {_from1(one)} and {_from1(two)} are exchanged"
-            fixed = sp.ImmutableMatrix(changed)
-            place = _from1(one)
-            return (
-                Repair(kind="exchange", words=words, formula=fixed, goal=reading.goal, place=place),
-            )
-    if not 0 < len(wrong) <= min(_MOST_ENTRIES, max(1, len(reading.formula) // 3)):
+            fixed, place = sp.ImmutableMatrix(changed), _from1(one)
+            return (Repair(kind="exchange", words=words, formula=fixed, goal=goal, place=place),)
+    if not 0 < len(wrong) <= min(_MOST_ENTRIES, max(1, len(formula) // 3)):
         return ()
-    return tuple(_entry(reading, place) for place in wrong)
+    repairs: list[Repair] = []
+    for place in wrong:
+        changed = (repairs[-1].formula if repairs else formula).as_mutable()
+        before = formula[place]
+        kind, changed[place] = _entry(reading, place)
+        where = _from1(place) if formula.cols > 1 else place[0] + 1
+        words = f"entry {where}: {before} should be {changed[place]}"
+        words += f" ({_WORDS[kind]})" if kind in _WORDS else ""
+        repair = Repair(
+            kind=kind,
+            words=words,
+            formula=sp.ImmutableMatrix(changed),
+            goal=goal,
+            place=_from1(place),
+            before=before,
+            after=changed[place],
+        )
+        repairs.append(repair)
+    return tuple(repairs)
 
 
 def _from1(place: tuple[int, int]) -> tuple[int, int]:
@@ -404,40 +417,23 @@ def _from1(place: tuple[int, int]) -> tuple[int, int]:
     return place[0] + 1, place[1] + 1
 
 
-def _entry(reading: Reading, place: tuple[int, int]) -> Repair:
+def _entry(reading: Reading, place: tuple[int, int]) -> tuple[str, sp.Expr]:
     """The smallest change of an entry; the entry of the target if no small one is enough."""
-    formula, goal, before = reading.formula, reading.goal, reading.formula[place]
+    goal, before = reading.goal, reading.formula[place]
     wanted = goal.values[:, [place[0]], [place[1]]][:, None]
     groups = [  # names that may be taken for one another: those of one argument
         [symbol for symbol, meant in reading.names.items() if meant in symbols]
         for symbols in goal.inputs.values()
     ]
-    derived = [symbol for symbol, meant in reading.names.items() if meant.args and meant.is_Add]
-    changes = variants(before, [*groups, derived]) if before.count_ops() <= _MOST_OPERATIONS else ()
-    back = {meant: symbol for symbol, meant in reading.names.items()}
-    kind, after = "entry", goal.matrix[place].xreplace(back)
-    for variant in sorted(
+    groups.append([symbol for symbol, meant in reading.names.items() if meant.is_Add])
+    changes = variants(before, groups) if before.count_ops() <= _MOST_OPERATIONS else ()
+    for kind, after in sorted(
         set(changes), key=lambda v: (KINDS.index(v[0]), v[1].count_ops(), str(v[1]))
     ):
-        if near(reading.numbers(sp.Matrix([[variant[1]]])), wanted).all():
-            kind, after = variant
-            break
-    changed = formula.as_mutable()
-    changed[place] = after
-    words = (
-        f"entry {_from1(place) if formula.cols > 1 else place[0] + 1}: {before} should be {after}"
-    )
-    if kind != "entry":
-        words += f" ({_WORDS[kind]})"
-    return Repair(
-        kind=kind,
-        words=words,
-        formula=sp.ImmutableMatrix(changed),
-        goal=goal,
-        place=_from1(place),
-        before=before,
-        after=after,
-    )
+        if near(reading.numbers(sp.Matrix([[after]])), wanted).all():
+            return kind, after
+    back = {meant: symbol for symbol, meant in reading.names.items()}
+    return "entry", goal.matrix[place].xreplace(back)
 
 
 _WORDS = {

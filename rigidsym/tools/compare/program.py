@@ -31,7 +31,7 @@ from rigidsym.tools.compare.language import (
     rows,
     spelled_out,
 )
-from rigidsym.tools.compare.latex import tex_value
+from rigidsym.tools.compare.latex import python_of
 from rigidsym.tools.compare.quantities import stem_of
 from rigidsym.tools.compare.syntax import (
     EXPRESSIONS,
@@ -249,7 +249,7 @@ def formula_matrix(text: str) -> sp.ImmutableMatrix:
             f"a formula of {len(text)} characters; expected at most {_MOST_CHARACTERS}"
         )
     if re.search(r"\\[A-Za-z]", text):
-        return as_matrix(tex_value(text))
+        text = python_of(text)
     is_numpy = bool(re.search(r"\b(?:np|numpy|jnp)\.(?:array|asarray)\b", text))
     for suffix in (".cpp",) if "{" in text else (".py", ".m", ".cpp"):
         value = _assigned_value(text, suffix)

@@ -123,7 +123,8 @@ class KnownQuantity:
             return _conventions()
         ways = list(self.other_ways)
         if self.quantity == "rotation_matrix":
-            ways = [(PASSIVE, self.matrix.T)]
+            other = ", or by the opposite angle" if len(self.motion.model.turns) == 1 else ""
+            ways = [(f"{PASSIVE}{other}", self.matrix.T)]
         elif 4 in self.matrix.shape and self.rotation:
             factors = ("", "twice", "half")[: 3 if self.matrix.rows == 3 else 2]
             if self.quantity == QUATERNION:
