@@ -15,7 +15,6 @@ from .models.library import rotation_from as rotation_from
 from .models.parametrisations import (
     EULER_SEQUENCES as EULER_SEQUENCES,
     AxisAngle as AxisAngle,
-    CayleyKlein as CayleyKlein,
     DirectionCosines as DirectionCosines,
     EulerAngles as EulerAngles,
     GibbsVector as GibbsVector,

@@ -78,9 +78,6 @@ PARAMETRISATIONS: Mapping[str, Entry] = {
     "modified_rodrigues": Entry(
         parametrisations.ModifiedRodrigues, "1 + (8 C(s)² + 4 (1 − s·s) C(s))/(1 + s·s)²"
     ),
-    "cayley_klein": Entry(
-        parametrisations.CayleyKlein, "the unit quaternion (a, d, c, b), α = a + i b, β = c + i d"
-    ),
     "direction_cosines": Entry(
         parametrisations.DirectionCosines, "its nine entries, with R Rᵀ = 1 and det R = 1"
     ),
@@ -122,6 +119,9 @@ LONGEST = 900  # characters of a sequence or of turns
 _AT_REST = re.compile(r".*\D0")  # a name that ends in 0: alpha0, b_0; not a_10
 _SHOWN = 40  # characters of a wrong text that a message repeats
 ALIASES = {"mrp": "modified_rodrigues", "quat": "quaternion", "rotvec": "rotation_vector"}
+_REMOVED = {
+    "cayley_klein": "take unit_quaternion: α = w + i z and β = y + i x are Cayley's and Klein's"
+}
 _A_ROTATION = 'a sequence such as "ZXZ", turns such as "z(phi) x(theta)", or a name'
 
 
@@ -266,6 +266,8 @@ def _sequence(text: str) -> str:
 
 
 def _meant(text: str) -> str:
+    if text in _REMOVED:
+        return _REMOVED[text]
     turns = re.findall(r"([xyz]) +(\w+)", text)
     if turns and " ".join(f"{axis} {angle}" for axis, angle in turns) == " ".join(text.split()):
         return f"did you mean {' '.join(f'{axis}({angle})' for axis, angle in turns)}?"

@@ -319,33 +319,6 @@ def UnitQuaternion(
     )
 
 
-def CayleyKlein(
-    names: Sequence[str] = ("a", "b", "c", "d"), *, passive: bool = False
-) -> RotationModel:
-    """The Cayley-Klein parameters α = a + i b and β = c + i d with |α|² + |β|² = 1.
-
-    With the Pauli matrices, Q = ((α, β), (−β*, α*)) = w 1 + i (x σ₁ + y σ₂ + z σ₃) belongs to the
-    unit quaternion w = a, z = b, y = c, x = d. Raises ModelError for bad names.
-    """
-    a, b, c, d = coordinates = _coordinates(names, 4)
-    shown = [lettered(q.func.__name__) for q in coordinates]
-    return _model(
-        "cayley_klein",
-        "Cayley-Klein parameters",
-        "The parameters are α = {} + i {} and β = {} + i {}, with |α|² + |β|² = 1; the unit "
-        "quaternion is ".format(*shown)
-        + f"{_in_parts((a, d, c, b))}, scalar first.",
-        (a, b, c, d),
-        rotation_of((a, d, c, b)),
-        _GOLDSTEIN,
-        passive=passive,
-        constraints=(_square((a, b, c, d)) - 1,),
-        example=unit_example(coordinates),
-        definition="unit_quaternion({0}, {3}, {2}, {1})",
-        vector=(d, c, b),
-    )
-
-
 def AxisAngle(
     names: Sequence[str] = ("e1", "e2", "e3", "phi"), *, passive: bool = False
 ) -> RotationModel:

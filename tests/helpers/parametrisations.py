@@ -72,24 +72,6 @@ def by_cayley(vector: list[Any]) -> Any:
     return mp.inverse(mp.eye(3) - hat(vector)) * (mp.eye(3) + hat(vector))
 
 
-def unitary(q: list[Any]) -> Any:
-    """R from the Cayley-Klein matrix U: the components of U σ·x U*, by traces."""
-    a, b, c, d = q
-    u = mp.matrix([[mp.mpc(a, b), mp.mpc(c, d)], [mp.mpc(-c, d), mp.mpc(a, -b)]])
-    pauli = [
-        mp.matrix([[0, 1], [1, 0]]),
-        mp.matrix([[0, mp.mpc(0, -1)], [mp.mpc(0, 1), 0]]),
-        mp.matrix([[1, 0], [0, -1]]),
-    ]
-    result = mp.matrix(3, 3)
-    for row in range(3):
-        for column in range(3):
-            image = u.H * pauli[column] * u
-            product = pauli[row] * image
-            result[row, column] = mp.re(product[0, 0] + product[1, 1]) / 2
-    return result
-
-
 def normalised(values: list[Any], size: int) -> list[Any]:
     """The first `size` values made a unit vector, the others as they are."""
     length = mp.sqrt(sum(value**2 for value in values[:size]))
@@ -114,7 +96,6 @@ WITNESSES: dict[str, tuple[Curve, Build]] = {
     "rotation_vector": (nearly_straight(3), lambda q: mp.expm(hat(q))),
     "gibbs_vector": (nearly_straight(3), by_cayley),
     "modified_rodrigues": (nearly_straight(3), lambda q: by_cayley(q) ** 2),
-    "cayley_klein": (lambda t: normalised(nearly_straight(4)(t), 4), unitary),
     "direction_cosines": (
         lambda t: list(rotation("ZYX", nearly_straight(3)(t))),
         lambda q: mp.matrix([q[:3], q[3:6], q[6:]]),

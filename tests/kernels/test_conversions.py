@@ -332,7 +332,6 @@ def test_a_start_at_a_pole_takes_the_angles_of_the_first_sample_away_from_it():
 AXIS = np.array([0.36, -0.48, 0.8])
 PATHS = {  # coordinates of turns about one axis, from their angles
     "quaternion": lambda a: np.hstack([np.cos(a / 2), AXIS * np.sin(a / 2)]),
-    "cayley_klein": lambda a: np.hstack([np.cos(a / 2), AXIS[::-1] * np.sin(a / 2)]),
     "rotation_vector": lambda a: AXIS * a,
     "axis_angle": lambda a: np.hstack([AXIS + 0 * a, a]),
     "modified_rodrigues": lambda a: AXIS * np.tan(a / 4),

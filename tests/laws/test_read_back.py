@@ -20,17 +20,17 @@ from rigidsym.models.library import rotation_from
 
 VECTORS = {  # as the notes call it, its components, and those whose length is n
     "quaternion": ("v", "q_1 q_2 q_3", "q_0 q_1 q_2 q_3"),
-    "cayley_klein": ("v", "d c b", "d c b"),
+    "unit_quaternion": ("v", "q_1 q_2 q_3", "q_0 q_1 q_2 q_3"),
     "axis_angle": ("e", "e_1 e_2 e_3", "e_1 e_2 e_3"),
     "rotation_vector": ("v", "v_1 v_2 v_3", "v_1 v_2 v_3"),
 }
-UNIT = {"cayley_klein": 4, "axis_angle": 3}  # coordinates of length one
+UNIT = {"unit_quaternion": 4, "axis_angle": 3}  # coordinates of length one
 ROTATIONS = (  # one of each kind
     *(
         "ZXZ",
         "xyz",
         "quaternion",
-        "cayley_klein",
+        "unit_quaternion",
         "axis_angle",
         "rotation_vector",
         "z(phi) x(theta) [0,b,c](psi)",
@@ -164,7 +164,7 @@ def _distance(one: Any, two: Any) -> Any:
 printed = cache(Printed)
 
 
-@pytest.mark.parametrize("text", ["ZXZ", "cayley_klein", "z(phi) x(theta) [0,b,c](psi)"])
+@pytest.mark.parametrize("text", ["ZXZ", "unit_quaternion", "z(phi) x(theta) [0,b,c](psi)"])
 def test_each_equation_in_latex(text):
     one = printed(text)
     for name in one.expected:

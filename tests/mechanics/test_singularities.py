@@ -77,7 +77,7 @@ def by_differences(text: str, q: Array) -> Array:
 
 def allowed(text: str, q: Array) -> Array:
     """An orthonormal basis, in columns, of the rates that keep to the constraints."""
-    if text in ("unit_quaternion", "cayley_klein"):
+    if text == "unit_quaternion":
         normals = q[None, :]
     elif text == "axis_angle":
         normals = np.array([[*q[:3], 0.0]])
@@ -104,7 +104,7 @@ def somewhere(text: str, seed: int = 0) -> Array:
     if text == "direction_cosines":
         return Rotation.random(rng=random).as_matrix().ravel()
     q = random.uniform(-2, 2, size)
-    bound = {"unit_quaternion": 4, "cayley_klein": 4, "axis_angle": 3}.get(text, 0)
+    bound = {"unit_quaternion": 4, "axis_angle": 3}.get(text, 0)
     q[:bound] /= np.linalg.norm(q[:bound]) if bound else 1
     return q
 

@@ -93,7 +93,7 @@ def test_the_scalar_stands_last_on_request(name):
     assert "scalar last" in last.title
 
 
-@pytest.mark.parametrize("text", ["ZXZ", "cayley_klein", *PRESETS, *CHAINS[3:8]])
+@pytest.mark.parametrize("text", ["ZXZ", "unit_quaternion", *PRESETS, *CHAINS[3:8]])
 def test_what_was_asked_for_can_be_asked_for_again(text):
     spec = spec_for(text, passive=True)
     assert read_record(spec.to_data()) == spec

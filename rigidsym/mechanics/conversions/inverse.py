@@ -256,17 +256,6 @@ def _unit_quaternion(q: Vector) -> Form:
     return q, (_equal([square(q)], [sp.S.One], r"\q\cdot\q = 1"),), unit
 
 
-def _cayley_klein(q: Vector) -> Form:
-    a, b, c, d = q
-
-    def back(values: NamedValues, quaternion: Vector) -> Vector:
-        w, x, y, z = unit(values, quaternion)
-        return w, z, y, x
-
-    is_unit = _equal([square(q)], [sp.S.One], r"|\alpha|^2 + |\beta|^2 = 1")
-    return (a, d, c, b), (is_unit,), back
-
-
 def _axis_angle(q: Vector) -> Form:
     *axis, angle = q
     half = sp.sin(angle / 2)
@@ -338,11 +327,10 @@ def _direction_cosines(_: Vector) -> Form:
     return (), (), back
 
 
-BOTH_SIGNS = ("quaternion", "unit_quaternion", "cayley_klein")  # rules in which p and −p differ
+BOTH_SIGNS = ("quaternion", "unit_quaternion")  # rules in which p and −p differ
 _FORMS: dict[str, tuple[Callable[..., RotationModel], int, Callable[[Vector], Form]]] = {
     "quaternion": (parametrisations.Quaternion, 4, _quaternion),
     "unit_quaternion": (parametrisations.UnitQuaternion, 4, _unit_quaternion),
-    "cayley_klein": (parametrisations.CayleyKlein, 4, _cayley_klein),
     "axis_angle": (parametrisations.AxisAngle, 4, _axis_angle),
     "rotation_vector": (parametrisations.RotationVector, 3, _rotation_vector),
     "gibbs_vector": (parametrisations.GibbsVector, 3, _gibbs_vector),

@@ -36,7 +36,7 @@ from rigidsym.notes.words import symbols_of, unit_in_words, with_symbols
 
 PROPER = ("precession", "nutation", "spin")
 TAIT_BRYAN = ("yaw", "pitch", "roll")
-_QUATERNIONS = ("quaternion", "unit_quaternion", "cayley_klein")
+_QUATERNIONS = ("quaternion", "unit_quaternion")
 _VECTORS = ("axis_angle", "rotation_vector", "gibbs_vector", "modified_rodrigues")
 _TURN_ANGLES = ("beta", "chi", "delta", "epsilon")  # one that no coordinate is called by is taken
 _MOST_WRITTEN = 3  # axes that are written out
@@ -189,7 +189,7 @@ class RotationFacts:
 
     @property
     def alpha(self) -> Formula:
-        """The angle of the rotation; α may be a parameter of Cayley and Klein."""
+        """The angle of the rotation; α may be a coordinate."""
         return formula(r"\gamma" if "α" in self.model.convention[0] else r"\alpha")
 
     @property
