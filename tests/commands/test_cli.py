@@ -190,19 +190,16 @@ example = { c = "3/5", s = "4/5" }
 """
 
 
-def test_a_matrix_of_ones_own_is_derived_and_proved(tmp_path):
-    (tmp_path / "own.toml").write_text(BOUND)
-    done = call("run", "own.toml", "--json", cwd=tmp_path)
-    assert json.loads(done.stdout)["is_proved"] is True
-    call("check", "out", cwd=tmp_path)
-
-
-def test_a_matrix_that_is_no_rotation_is_refused_with_what_is_left(tmp_path):
-    text = BOUND.replace('"-s"', '"s"')
-    (tmp_path / "own.toml").write_text(text)
+def test_a_matrix_of_ones_own_is_proved_or_refused_with_what_is_left(tmp_path):
+    file = tmp_path / "own.toml"
+    file.write_text(BOUND.replace('"-s"', '"s"'))
     done = call("run", "own.toml", cwd=tmp_path, status=1)
     assert "own: not a rotation, since R Rᵀ = 1 fails; left over:" in done.stderr
     assert not Path(tmp_path, "out").exists()
+    file.write_text(BOUND)
+    done = call("run", "own.toml", "--json", cwd=tmp_path)
+    assert json.loads(done.stdout)["is_proved"] is True
+    call("check", "out", cwd=tmp_path)
 
 
 NAMES = commands.list_commands(None)
@@ -261,27 +258,13 @@ def test_the_list_has_every_quantity_and_straight_columns():
     shipped = lines[lines.index("Shipped derivations (rigidsym run NAME)") + 1 :]
     titles = {re.match(r"  \S+ +", line).end() for line in shipped}
     assert len(titles) == 1
-    for part in (
-        "ZXZ  R = Rz(φ) Rx(θ) Rz(ψ)\n",
-        "rotation_vector or rotvec  R = ",
-        "numpy  ",
-        "euler_all ",
-    ):
+    for part in ("ZXZ  R = Rz(φ) Rx(θ) Rz(ψ)\n", "rotation_vector or rotvec  R = ", "numpy  "):
         assert f"  {part}" in inventory()
 
 
-CONVERSIONS = """
-[rotation]
-sequence = "{}"
-[output]
-quantities = ["rotation_matrix"]
-note = ["tex"]
-{}
-"""
-
-
 def test_a_file_asks_for_conversions():
-    spec = read_spec(CONVERSIONS.format("ZXZ", "conversions = true"), source="a.toml", name="a")
+    text = '[rotation]\nsequence = "ZXZ"\n[output]\nnote = ["tex"]\nconversions = true\n'
+    spec = read_spec(text, source="a.toml", name="a")
     assert spec.conversions
     assert read_record(spec.to_data()) == spec
     files = output_of(spec).files
