@@ -219,3 +219,18 @@ def test_the_examples_in_docstrings_run(module):
     failed, attempted = doctest.testmod(importlib.import_module(f"rigidsym.{module}"))
     assert attempted
     assert not failed
+
+
+@pytest.mark.parametrize(
+    ("file", "options", "message"),
+    [
+        ("cloud.csv", ["--density", "3"], "is a file of particles; --density is for meshes"),
+        ("ring.stl", ["--columns", "x,y,z"], "is a mesh; --columns is for particles"),
+        ("ring.stl", [], "is a mesh: expected --mass or --density"),
+    ],
+)
+def test_an_option_that_does_not_fit_is_refused(tmp_path, file, options, message):
+    (tmp_path / "cloud.csv").write_text("m,x,y,z\n1,0,0,0\n2,1,0,0\n")
+    MESHES["ring"].export(tmp_path / "ring.stl")
+    done = CliRunner().invoke(commands, ["inertia", str(tmp_path / file), *options])
+    assert (done.exit_code, message in done.output) == (2, True)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from functools import cache
 from itertools import combinations
 from math import cos, hypot, pi
 
@@ -13,6 +12,7 @@ import sympy as sp
 from hypothesis import given, strategies as st
 
 import rigidsym as rs
+from helpers.pages import motion_of
 from rigidsym.errors import ModelError
 from rigidsym.formula.reader import decimal, text_of
 from rigidsym.formula.tree import Symbol
@@ -38,7 +38,6 @@ from rigidsym.notes.figure.phase_portrait import phase_portrait
 from rigidsym.notes.figure.scene import scene_of
 from rigidsym.notes.formats.drawings import svg, tikz
 from rigidsym.notes.letters import letters_of
-from rigidsym.pipeline import motion_of, read
 
 LETTERS = "zxyzxy"  # one more turn than is drawn
 
@@ -221,11 +220,6 @@ NUMBERS = {"A": 1, "B": 1, "C": 1, "m": 1, "g": 10, "l": 1}
 FIRST = {"parameters": NUMBERS, "initial": {"theta": 0.5}, "time": 2}
 
 
-@cache
-def shipped(name: str) -> rs.Motion:
-    return motion_of(read(name))
-
-
 def picture_of(motion: rs.Motion):
     return motion.note(with_kernels=False).document.figures[-1]
 
@@ -236,7 +230,7 @@ def caption_of(motion: rs.Motion) -> str:
 
 @pytest.mark.parametrize("name", ["heavy_symmetric_top", "free_body"])
 def test_the_motion_drawn_is_the_motion_simulated(name):
-    motion = shipped(name)
+    motion = motion_of(name)
     example = motion.forces.examples[0]
     simulated = motion.simulate(example.initial, example.parameters, example.time, samples=401)
     drawn = ExampleMotion(motion, motion.forces, example)
@@ -247,7 +241,7 @@ def test_the_motion_drawn_is_the_motion_simulated(name):
 
 def test_each_curve_of_the_phase_portrait_has_one_energy():
     """For constants of 1, V = cos θ + (p_φ − p_ψ cos θ)²/(2 sin² θ)"""
-    motion = shipped("heavy_symmetric_top")
+    motion = motion_of("heavy_symmetric_top")
     portrait = phase_portrait(motion, letters_of(motion.arguments, model=motion.model))
     p_phi, p_psi = map(float, portrait.momenta.values())
     _, *curves = (s for s in portrait.drawing.strokes if s.kind != "space")  # after the mark

@@ -13,6 +13,7 @@ from click.testing import CliRunner
 
 import rigidsym as rs
 from helpers.motions import derived
+from helpers.pages import motion_of
 from helpers.typesetting import bound_together
 from rigidsym.commands import cli
 from rigidsym.errors import ModelError
@@ -29,7 +30,7 @@ from rigidsym.notes.facts.singular import PointFacts
 from rigidsym.notes.formats.pdf import typeset
 from rigidsym.notes.formats.terminal import show
 from rigidsym.notes.note import STYLES, note
-from rigidsym.pipeline import motion_of, output_of, read_file, read_spec
+from rigidsym.pipeline import output_of, read_spec
 
 ZXZ = "euler_zxz_intrinsic"
 
@@ -77,8 +78,7 @@ def test_notes_of_every_kind(golden, kind):
     elif kind == "cone":
         motion = rs.derive("ZXZ", body=rs.solid("cone"))
     elif kind in FILES:
-        (spec,) = read_file(kind).singles()
-        motion = motion_of(spec)
+        motion = motion_of(kind)
     else:
         motion = rs.derive(KINDS[kind])
     golden(f"notes/kinds/{kind}.md", note(motion, style="audit").markdown())
