@@ -128,14 +128,6 @@ def test_the_margin_is_one_far_away_and_small_at_a_pole():
     assert not hasattr(kernels("gibbs_vector"), "singularity_margin")  # its rates never fail
 
 
-def test_the_margin_of_a_long_chain_takes_constants_that_only_its_axes_hold():
-    kernels = derive("z(p0) x(a) y(b) z(c) x(d) y(e)").kernels("numpy").load()
-    q, parameters = np.array([0.3, -0.7, 1.1, 0.2, -2.0]), np.array([0.4])
-    rates = kernels.rate_matrix_body(q)
-    size = np.sqrt(np.linalg.det(rates @ rates.T))
-    np.testing.assert_allclose(kernels.singularity_margin(q, parameters), size, rtol=1e-14)
-
-
 def scale_of(name: str, rate, second, norm_of_inverse: float) -> float:
     """What errors are relative to: the sizes of what is multiplied, of order one where R is."""
     if "acceleration" in name:
@@ -176,18 +168,6 @@ def test_the_rotation_vector_is_accurate_at_every_length(length, dtype):
                 assert error <= 40 * eps * spread, (name, error / eps, spread)
 
 
-@pytest.mark.parametrize("dtype", DTYPES)
-@pytest.mark.parametrize("turns", [1, 3])
-def test_at_whole_turns_the_rates_of_the_rotation_vector_are_nan(turns, dtype):
-    length = 2 * np.pi * turns
-    for axis in ([0, 0, 1.0], [0.6, -0.8, 0], [2 / 3, 1 / 3, -2 / 3]):
-        v = (length * np.array(axis)).astype(dtype)
-        for name in INVERSES:
-            for q, is_lost in ((v, True), (v * dtype(1 + 1e-3), False)):
-                for found in both(kernels("rotation_vector"), name, arguments_of(name, q, dtype)):
-                    assert np.isnan(found).any() == is_lost
-
-
 @pytest.mark.parametrize("angle", [0.0, 2 * np.pi, 1e-12, 1e-3, 1.0, 6.283])
 def test_the_axis_is_undetermined_without_a_turn_and_accurate_beside_it(angle):
     """½ cot(φ/2) has the digits that sin φ/(1 − cos φ) loses."""
@@ -211,12 +191,3 @@ def test_a_quaternion_that_is_zero_or_underflows_is_no_rotation(dtype, sizes):
         q = (size * np.array([0.5, 0.5, -0.5, 0.5])).astype(dtype)
         for found in both(kernels("quaternion"), "rotation_matrix", [q]):
             assert np.isnan(found).all()
-
-
-@pytest.mark.parametrize("name", INVERSES)
-def test_a_gimbal_that_locks_gives_nan(name):
-    """Four turns: at ψ = π/2 and θ = 0 three of the axes lie in a plane with the fourth."""
-    functions = kernels("z(phi) x(theta) z(psi) y(delta)")
-    for theta, psi, is_locked in ((0.0, np.pi / 2, True), (0.1, 1.0, False)):
-        for found in both(functions, name, arguments_of(name, [0.2, theta, psi, 0.4], float)):
-            assert np.isnan(found).any() == is_locked

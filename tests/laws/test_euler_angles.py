@@ -15,14 +15,6 @@ every_case = pytest.mark.parametrize("m", [m for m in MOVING if m.text in CONVEN
 in_both_frames = pytest.mark.parametrize("frame", FRAMES)
 
 
-@every_case
-@in_both_frames
-def test_rates_from_a_velocity_speak_of_the_velocity_only(m: Moving, frame: str):
-    given = m.motion.argument(f"omega_{frame}").symbols
-    formula = m.motion.step(f"rates_from_angular_velocity_{frame}").expression
-    assert formula.free_symbols <= {*given, sp.Symbol("t")}
-
-
 # Singular angles
 
 

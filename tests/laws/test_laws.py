@@ -22,11 +22,6 @@ every_rotation = pytest.mark.parametrize("m", MOVING, ids=repr)
 in_both_frames = pytest.mark.parametrize("frame", ["space", "body"])
 
 
-def test_the_catalogue_holds_all_24_conventions():
-    axes = {a + b + c for a in "xyz" for b in "xyz" for c in "xyz" if a != b != c}
-    assert set(EULER_SEQUENCES) == axes | {sequence.upper() for sequence in axes}
-
-
 @every_rotation
 def test_every_step_is_proved(m: Moving):
     assert m.motion.is_proved

@@ -44,17 +44,6 @@ def printed(convention: str, quantity: str, path: Path):
     return evaluate(getattr(motion(convention), quantity), values_along(ANGLES, path))
 
 
-def turning(convention: str, path: Path):
-    """R along a path, as a function of time."""
-    return lambda t: rotation(convention, path.at(t))
-
-
-def velocity(convention: str, path: Path):
-    """Ω in space components, from the numerical derivative of R."""
-    function = turning(convention, path)
-    return unhat(derivative(function) * function(0).T)
-
-
 @every_convention
 def test_scipy_has_the_same_rotation(convention):
     for path in PATHS:
@@ -64,16 +53,11 @@ def test_scipy_has_the_same_rotation(convention):
         assert np.abs(ours - theirs).max() <= DOUBLE
 
 
-def turned_frames(convention: str) -> tuple[ReferenceFrame, ReferenceFrame]:
-    """A space frame, and a body frame turned by sympy.physics.vector."""
-    space = ReferenceFrame("N")
-    manner = "Body" if convention.isupper() else "Space"
-    return space, space.orientnew("B", manner, ANGLES, convention.upper())
-
-
 @every_convention
 def test_sympy_has_the_same_rotation_and_velocities(convention):
-    space, body = turned_frames(convention)
+    space = ReferenceFrame("N")
+    manner = "Body" if convention.isupper() else "Space"
+    body = space.orientnew("B", manner, ANGLES, convention.upper())
     omega = body.ang_vel_in(space)
     theirs = {
         "rotation_matrix": space.dcm(body),
@@ -103,20 +87,13 @@ def test_sympy_solves_for_the_same_rates(convention):
         assert agree(evaluate(ours, values), evaluate(theirs, values))
 
 
-def test_coordinates_are_those_of_dynamicsymbols():
-    q = motion("ZXZ").argument("q").symbols
-    q_dot = motion("ZXZ").argument("q_dot").symbols
-    q_ddot = motion("ZXZ").argument("q_ddot").symbols
-    assert list(q) == ANGLES
-    assert list(q_dot) == dynamicsymbols("phi theta psi", 1)
-    assert list(q_ddot) == dynamicsymbols("phi theta psi", 2)
-
-
 def test_a_wrong_convention_is_seen_by_each_witness():
     """The witnesses tell the conventions apart, so that their agreement says something."""
     (path,) = paths(1, seed=3)
-    seen = [rotation(convention, path.q) for convention in CONVENTIONS]
-    velocities = [velocity(convention, path) for convention in CONVENTIONS]
-    for some in (seen, velocities):
+    curves = [lambda t, c=convention: rotation(c, path.at(t)) for convention in CONVENTIONS]
+    for some in (
+        [R(0) for R in curves],
+        [unhat(derivative(R) * R(0).T) for R in curves],
+    ):
         for k, one in enumerate(some):
             assert not any(agree(one, other) for other in some[:k])

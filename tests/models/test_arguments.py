@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
 import sympy as sp
 from sympy.physics.vector import dynamicsymbols
@@ -14,7 +13,6 @@ from rigidsym.models.library import rotation_given, turned_by
 from rigidsym.notes.problems import sheets_of
 
 a, b = sp.symbols("a b")
-MASKED = np.ma.masked_array([1.0, 2.0, 3.0], mask=[0, 0, 1])
 IDENTITY = [["1", "0", "0"], ["0", "1", "0"], ["0", "0", "1"]]
 M = Parameter(symbol=a, about="mass", unit="kg")
 NO_NUMBER = Parameter(symbol=a, positive=False, value=float("nan"))
@@ -40,43 +38,30 @@ def dynamics(rotation: str = "z(theta)", **acting: object) -> rs.Motion:
 @pytest.mark.parametrize(
     ("make", "said"),
     [
-        (lambda: rs.solid("sphere", radius=-1, density=a), "radius is -1 m; expected a positive"),
-        (lambda: rs.solid("box", sides=[1, -1, 1]), "sides is -1 m"),
-        (lambda: rs.solid("hollow_cylinder", inner_radius=2, outer_radius=1), "less than inner"),
         (lambda: rs.solid("sphere", radius="r"), "expected a SymPy expression, got 'r'"),
-        (lambda: rs.solid(3), "no shape 3"),
         (lambda: rs.solid("box", sides=[1, 2]), "box: expected a, b, c, got 2 lengths"),
         (lambda: rs.Turn(axis="u", angle=a), "'u' is not an axis: expected x, y, z"),
         (lambda: rs.Turn(axis="z", angle="a"), "angle of a turn: expected a SymPy expression"),
         (lambda: rs.EulerAngles(3), "expected a sequence such as 'ZXZ', got 3"),
-        (lambda: rs.EulerAngles("ZYX", angles=None), "three different names, got None"),
         (lambda: rs.EulerAngles("ZYX", angles=(1, 2, 3)), "expected a name in quotes, got 1"),
         (lambda: rs.chain("z(a) x(b)"), "for a text use rs.rotation_from('z(a) x(b)')"),
-        (lambda: rs.solid("sphere", radius=1j, density=a), "is not a length"),
-        (lambda: rs.chain(None), "expected a list of rs.Turn, got None"),
         (lambda: rs.given(sp.eye(3), name="mine", coordinates="a"), "is not a function of t"),
         (lambda: rs.derive("ZXZ", timeout="1"), "expected a positive number of seconds, got '1'"),
         (lambda: rs.identify("abc", matrix=sp.eye(3)), "angles: expected real numbers"),
-        (lambda: rs.identify(MASKED, matrix=np.eye(3)), "angles: masked entries"),
         (lambda: rs.chain([1]), "expected a list of rs.Turn, got [1]"),
         (lambda: rs.given(IDENTITY, name="mine"), "expected a SymPy expression, got '1'"),
         (lambda: rs.given(None, name="mine"), "expected a"),
         (lambda: rs.principal_moments("A", "B", "C"), "expected a SymPy expression, got 'A'"),
-        (lambda: rs.principal_moments(1.0, 2.0, 2.5), "exact work needs a fraction"),
-        (lambda: rs.AxisAngle(names=3), "different names, got 3"),
         (lambda: rs.rotation_from(3), "expected a sequence"),
         (lambda: rs.body_of(3), "expected a distribution of mass"),
         (lambda: rs.Particles(particles=[3]), "expected an rs.Particle, got 3"),
         (lambda: rs.Particle(mass=1, position=[1, 2]), "three components, got 2"),
-        (lambda: rs.derive("ZXZ", only="weight"), "no quantity 'weight'"),
-        (lambda: rs.derive("ZXZ", only="mass"), "no quantity mass; it needs a body"),
         (lambda: sheets_of("tops", count=1, variant=1), "no problems on 'tops'"),
         (lambda: rs.chain([]), "a chain needs at least one turn, such as z(phi)"),
         (
             lambda: rs.Turn(axis="u", angle=a, components=(1, 0)),
             "an axis has three components, got 2",
         ),
-        (lambda: rs.given(sp.eye(3) * sp.I, name="mine", coordinates=[q]), "contains the number i"),
         (
             lambda: rotation_given(IDENTITY[:2], name="mine", coordinates=["a"]),
             "three rows of three",
@@ -99,22 +84,17 @@ def dynamics(rotation: str = "z(theta)", **acting: object) -> rs.Motion:
             "expected the inertia tensor of shape (3, 3), got (2, 2)",
         ),
         (lambda: body(parameters=[M, M]), "own: a parameter is named twice"),
-        (lambda: body(mass=a * sp.I, parameters=[M]), "is not a real constant"),
         (lambda: body(mass=a * b, parameters=[M]), "own: b is not among the parameters"),
         (lambda: body(inertia=sp.diag(a, 1, 1), parameters=[NO_NUMBER]), "holds NaN or infinity"),
         (lambda: rs.derive(rs.given(MANY_TURNS, name="mine")), "expected multiples up to 100"),
         (lambda: dynamics(body=NEEDLE), "the mass matrix has no inverse; expected coordinates"),
         (lambda: dynamics("ZXZ", body=POINT, method="euler"), "the inertia tensor has no inverse"),
         (lambda: dynamics("z(a) x(b)", method="euler"), "coordinates whose rates follow from"),
-        (lambda: dynamics(forces={"x": 1}), "a force on x, which is not a coordinate"),
         (lambda: dynamics(torque=[1]), "torque: expected three components, got 1"),
         (lambda: dynamics(method="newton"), "no method 'newton'"),
-        (lambda: dynamics(potential="k"), "depends on none of the coordinates theta"),
         (lambda: dynamics(parts=[{"mass": 1}]), "a part with mass; expected rotation and"),
-        (lambda: dynamics(parts=[{"mass": 1, "velocity": [1]}]), "or three components of velocity"),
         (lambda: dynamics(parts=[TURNED]), "a part turns by psi, which is not a coordinate"),
         (lambda: dynamics(examples=[{"mass": 1}]), "an example: unknown key mass; exp"),
-        (lambda: dynamics(examples=[{"initial": 1}]), "parameters and initial values by name"),
         (lambda: dynamics(examples=[{"initial": {"x": 1}}]), "unknown initial value x"),
         (lambda: dynamics(examples=[{"time": 0}]), "finite numbers, and a time > 0 in seconds"),
         (lambda: dynamics(examples=[{"time": 1, "parameters": {"k": 1}}]), "unknown parameter k"),
@@ -132,29 +112,24 @@ def test_an_argument_of_the_wrong_type_is_a_type_error_that_says_what_was_expect
         rs.derive(**{"model": "ZXZ", **arguments})
 
 
-def test_symbols_may_name_angles():
-    named = rs.EulerAngles("ZYX", angles=sp.symbols("a b c"))
-    assert named == rs.EulerAngles("ZYX", angles=("a", "b", "c"))
-
-
 def test_without_coordinates_of_no_rotation_all_are_zero():
     assert no_rotation(rs.rotation_from("x(pi/2) z(a)")) == {"a": 0.0}
     assert no_rotation(rs.rotation_from("quaternion")) == {"w": 1.0, "x": 0.0, "y": 0.0, "z": 0.0}
 
 
-def test_numbers_describe_a_solid():
+def test_arguments_of_other_kinds_that_mean_the_same():
+    named = rs.EulerAngles("ZYX", angles=sp.symbols("a b c"))
+    assert named == rs.EulerAngles("ZYX", angles=("a", "b", "c"))
     ball = rs.solid("sphere", radius=1, mass=2)
-    assert ball.mass == 2
-    assert ball.inertia == sp.diag(*[sp.Rational(4, 5)] * 3)
+    assert (ball.mass, ball.inertia) == (2, sp.diag(*[sp.Rational(4, 5)] * 3))
 
 
-@pytest.mark.parametrize("shown", [rs.rotation_from("z(a)"), rs.EulerAngles("ZXZ", passive=True)])
-def test_a_rotation_shows_itself_in_jupyter(shown):
-    assert shown._repr_latex_().startswith(r"$$\mathbf{A}" if shown.passive else r"$$\mathbf{R}")
-    assert repr(shown) == f"<RotationModel {shown}: {shown.title}>"
-
-
-def test_a_body_shows_itself_in_jupyter():
+def test_a_rotation_and_a_body_show_themselves_in_jupyter():
+    for shown, letter in (
+        (rs.rotation_from("z(a)"), "R"),
+        (rs.EulerAngles("ZXZ", passive=True), "A"),
+    ):
+        assert shown._repr_latex_().startswith(rf"$$\mathbf{{{letter}}}")
+        assert repr(shown) == f"<RotationModel {shown}: {shown.title}>"
     cone = rs.solid("cone")
     assert sp.latex(cone.centre) in cone._repr_latex_()
-    assert str(cone) == cone.name

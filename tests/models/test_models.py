@@ -9,32 +9,24 @@ import sympy as sp
 from sympy import pi
 from sympy.physics.vector import dynamicsymbols
 
-from helpers.samples import ONE, TIME, chain, model, phi
+from helpers.samples import ONE, chain, model, phi
 from helpers.witness import CONVENTIONS
 from rigidsym.errors import ModelError
 from rigidsym.models.parametrisations import (
-    AXIS_SEQUENCES,
     EULER_SEQUENCES,
     EulerAngles,
     axis_turn,
     chain as chain_of,
 )
-from rigidsym.models.rotation import AXES, Turn, elementary, hat
+from rigidsym.models.rotation import AXES, Turn, elementary
 
 
 class TestCatalogue:
-    def test_all_conventions(self):
-        assert set(EULER_SEQUENCES) == set(CONVENTIONS)
-        assert len(EULER_SEQUENCES) == len(set(EULER_SEQUENCES)) == 24
-        assert len(AXIS_SEQUENCES) == 12
-
     def test_names_are_their_own(self):
+        assert set(EULER_SEQUENCES) == set(CONVENTIONS)
         names = {EulerAngles(c, passive=p).name for c in CONVENTIONS for p in (False, True)}
         assert len(names) == 48
-        for convention, manner in (("ZXZ", "intrinsic"), ("zyx", "extrinsic")):
-            assert EulerAngles(convention).name == f"euler_{convention.lower()}_{manner}"
-            assert manner in EulerAngles(convention).title
-            assert manner in EulerAngles(convention).convention[0].lower()
+        assert {"euler_zxz_intrinsic", "euler_zyx_extrinsic"} <= names
 
     def test_angles_are_taken_in_the_order_of_the_turns(self):
         for convention in ("ZYX", "zyx"):
@@ -47,13 +39,9 @@ class TestCatalogue:
         ("sequence", "part"),
         [
             ("ZZX", "consecutive axes must differ"),
-            ("zxx", "consecutive axes must differ"),
             ("133", "consecutive axes must differ: 3 follows 3; did you mean 323 or 313?"),
             ("ZxZ", "do not mix"),
-            ("3x3", "'3x3'"),
             ("ZX", "expected three axes"),
-            ("ZXZX", "expected three axes"),
-            ("ABC", "expected three axes"),
             ("414", "expected three axes"),
             ("", "expected three axes"),
         ],
@@ -62,13 +50,6 @@ class TestCatalogue:
         with pytest.raises(ModelError, match="is not an Euler sequence") as caught:
             EulerAngles(sequence)
         assert part in str(caught.value)
-
-    @pytest.mark.parametrize(
-        "angles", [("a", "b"), ("a", "b", "b"), ("a", "b", "c", "d"), ("a", "b", "1c"), ()]
-    )
-    def test_what_does_not_name_three_angles_is_refused(self, angles):
-        with pytest.raises(ModelError):
-            EulerAngles("ZXZ", angles=angles)
 
 
 class TestElementary:
@@ -81,22 +62,16 @@ class TestElementary:
         assert quarter * unit[others[0]] == unit[others[1]]
         assert quarter * unit[others[1]] == -unit[others[0]]
 
-    def test_hat_is_the_cross_product(self):
-        first, second = sp.Matrix(sp.symbols("a1:4")), sp.Matrix(sp.symbols("b1:4"))
-        assert hat(first) * second == first.cross(second)
-
 
 class TestChecks:
     @pytest.mark.parametrize(
         ("change", "message"),
         [
             ({"name": "Upper"}, "'Upper' cannot name a model"),
-            ({"name": "1st"}, "'1st' cannot name a model"),
             ({"matrix": sp.ImmutableMatrix(sp.eye(2))}, "a rotation matrix is 3x3, got (2, 2)"),
             ({"coordinates": ()}, "needs at least one coordinate"),
             ({"coordinates": (phi, phi)}, "phi(t) is named twice"),
             ({"coordinates": (sp.Symbol("phi"),)}, "phi is not a function of t"),
-            ({"coordinates": (phi.diff(TIME),)}, "is not a function of t"),
             ({"units": ("rad", "m")}, "1 coordinates, but 2 units"),
             ({"turns": (Turn(axis="x", angle=phi),)}, "not the product of its turns, Rx(φ)"),
             (

@@ -12,7 +12,6 @@ from scipy.integrate import solve_ivp
 import rigidsym as rs
 from helpers.command import call
 from rigidsym.errors import LimitReached
-from rigidsym.pipeline import motion_of, read
 from rigidsym.simulation.problem import NEEDED, Problem
 
 A, B, C = sp.symbols("A B C")
@@ -88,13 +87,10 @@ def test_a_pole_has_rates_for_some_angular_velocities_only():
         (REST | {"angular_velocity_body_1": 1}, TOP, 1.0, "expected rates or angular_velocity_bo"),
         (REST | {"theta": 1}, {"A": 1}, 1.0, "missing parameters: C, g, l, m"),
         (REST | {"theta": 1, "chi": 1}, TOP, 1.0, "unknown initial values: chi"),
-        (REST | {"theta": 1}, TOP, float("nan"), "expected a positive number of seconds"),
         ({"phi": 0, "theta": 0, "psi": 0, "angular_velocity_body": [1, 2, 3]}, TOP, 1.0, "a pole"),
-        ({"phi": 0, "theta": 1, "psi": 0, "angular_velocity_body": 1}, TOP, 1.0, "three compon"),
         (REST | {"theta": 1}, TOP | {"C": 9.0}, 1.0, "principal moments"),
         (REST | {"theta": 1}, TOP, -1.0, "expected a positive number of seconds"),
         (REST | {"theta": float("nan")}, TOP, 1.0, "theta is nan; expected a finite number"),
-        (REST | {"theta": 1}, TOP | {"A": "x"}, 1.0, "parameters: A is x; expected a finite numb"),
         (REST | {"theta": 1, "theta_dot": 1e200}, TOP, 1.0, "give no finite rates at t = 0 s"),
     ],
 )
@@ -120,83 +116,64 @@ def test_the_examples_that_are_shipped_have_a_body(tmp_path):
         call("simulate", name, "--time=0.01", "--samples=2", cwd=tmp_path)
 
 
-def test_what_cannot_be_simulated_is_said(tmp_path):
-    with pytest.raises(rs.RigidsymError, match="no method 'euler'; known: DOP853"):
-        top().simulate(REST, TOP, 1.0, method="euler")
-    with pytest.raises(rs.RigidsymError, match="expected a positive number of seconds"):
-        top().simulate(REST, TOP, 0.0)
+def test_what_cannot_be_simulated_is_said():
+    start = REST | {"theta": 1}
+    for kind, options, message in (
+        (rs.RigidsymError, {"method": "euler"}, "no method 'euler'; known: DOP853"),
+        (rs.RigidsymError, {"method": "exact"}, "expected a free body"),
+        (LimitReached, {"timeout": 0.2}, r"stopped after 0\.2 s"),
+    ):
+        with pytest.raises(kind, match=message):
+            top().simulate(start | {"psi_dot": 1e4}, TOP, 1e4, **options)
     with pytest.raises(rs.RigidsymError, match="has no equations of motion"):
         rs.derive("ZXZ", ("angular_velocity_body",)).simulate({}, {}, 1.0)
-    given = ["simulate", "dual_spin_satellite", "--time=1e9", "--animate=disc.html"]  # for ever
-    refused = call(*given, cwd=tmp_path, status=2)
-    assert "there is no live page of this motion" in refused.stderr
-
-
-def test_a_state_in_which_the_equations_of_motion_fail_is_refused_at_once():
-    """Several bodies do not move with a quaternion, which would pass the pole"""
-    satellite = motion_of(read("dual_spin_satellite"))
-    values = {"A": 100, "B": 120, "C": 90, "J_1": 10, "J_3": 15, "u": 0.5}
-    with pytest.raises(rs.RigidsymError, match="give no finite rates at t = 0 s"):
-        satellite.simulate(REST | {"sigma_dot": 3.0}, values, 1.0)
 
 
 def test_a_free_body_goes_through_a_pole_of_its_coordinates():
     values, seen = {"A": 1, "C": 0.5}, []
-    start = REST | {"theta": 1e-3, "theta_dot": -1.0}
+    start = {"theta": 1e-3, "theta_dot": -1.0}  # what is omitted is zero
     found = free().simulate(start, values, 1.0, samples=5, progress=seen.append)
     assert "near a pole of the coordinates" in found.report()
     theta = 1e-3 - found.t
     third = np.stack([0 * theta, -np.sin(theta), np.cos(theta)], axis=1)
     assert np.abs(found.rotation_matrix[:, :, 2] - third).max() < 1e-9
     assert 0.9 < seen[-1] <= 1
+    at_rest = free().simulate({"theta": 1}, values, 1.0, samples=3, method="exact")
+    assert np.ptp(at_rest.rotation_matrix, axis=0).max() == 0
 
 
-def test_a_body_at_rest_stays_where_it_is():
-    found = free().simulate(REST | {"theta": 1}, {"A": 1, "C": 2}, 1.0, samples=3, method="exact")
-    assert np.ptp(found.rotation_matrix, axis=0).max() == 0
-
-
-def test_the_command_writes_a_table_and_a_picture(tmp_path):
-    out, plot = tmp_path / "top.csv", tmp_path / "top.svg"
-    sets = [f"--set={name}={value}" for name, value in TOP.items()]
-    options = ["--initial=theta=0.5", "--initial=psi_dot=20", "--time=1", "--samples=50"]
-    given = ["simulate", "heavy_symmetric_top", *sets, *options]
-    done = call(*given, "--out", str(out), "--plot", str(plot), cwd=tmp_path)
+def test_the_command_writes_a_table_a_picture_and_a_page(tmp_path):
+    first = call("simulate", "heavy_symmetric_top", "--out=top.csv", cwd=tmp_path)
+    assert "from 0 to 7 s" in first.stdout  # as the first example of the file
+    table = np.genfromtxt(tmp_path / "top.csv", delimiter=",", names=True)
+    assert (table["theta"][0], table["psi_dot"][0], table["phi_dot"][0]) == (0.9, 12, 0)
+    own = ["--initial=theta=0.5", "--initial=psi_dot=20", "--set=C=0.6", "--time=1"]
+    given = ["simulate", "heavy_symmetric_top", *own]
+    done = call(*given, "--samples=50", "--out=top.csv", "--plot=top.svg", cwd=tmp_path)
     assert "momentum_psi  drift" in done.stdout
-    table = np.genfromtxt(out, delimiter=",", names=True)
-    assert table.shape == (50,)
-    assert table["theta"][0] == 0.5
+    table = np.genfromtxt(tmp_path / "top.csv", delimiter=",", names=True)
+    assert (table["t"][-1], table["theta"][0], table["psi_dot"][0]) == (1, 0.5, 20)
     assert table["angular_velocity_body_3"][0] == pytest.approx(20)
-    assert plot.read_text(encoding="utf-8").startswith("<?xml")
+    assert (tmp_path / "top.svg").read_text(encoding="utf-8").startswith("<?xml")
+    call(*given, "--animate=top.html", cwd=tmp_path)
+    page = (tmp_path / "top.html").read_text(encoding="utf-8")
+    assert f'"start":{np.degrees(0.5)}'[:14] in page
     turning = [f"--initial=angular_velocity_body_{k}={k}" for k in (1, 2)]
     moments = ["--set=A=1", "--set=B=2", "--set=C=2.5"]
     free = ["simulate", "free_body", "--method=exact", "--time=1", *moments, *turning]
-    done = call(*free, "--plot=free.png", "--samples=3", cwd=tmp_path)
-    assert "angular_momentum_squared  drift" in done.stdout
-    assert (tmp_path / "free.png").read_bytes().startswith(b"\x89PNG")
-    done = call(*given, "--animate=top.html", cwd=tmp_path)
-    page = (tmp_path / "top.html").read_text(encoding="utf-8")
-    assert f'"start":{np.degrees(0.5)}'[:14] in page
-    assert f'"start":{TOP["A"]}' in page
     call(*free, "--animate=free.html", cwd=tmp_path)
     page = (tmp_path / "free.html").read_text(encoding="utf-8")
     for place, start in enumerate(("1", "2")):  # rad/s, which Euler's equations change
         assert f'{{"kind":"omega_body","place":{place},"start":{start}.' in page
-    wrong = call(*free, "--animate=free.gif", cwd=tmp_path, status=2)
-    assert "free.gif: expected a file that ends in .html" in wrong.stderr
-    wrong = call("simulate", "heavy_symmetric_top", "--set", "A", cwd=tmp_path, status=2)
-    assert "expected NAME=NUMBER" in wrong.stderr
-
-
-def test_the_command_begins_with_the_first_example_of_the_file(tmp_path):
-    done = call("simulate", "heavy_symmetric_top", "--out=top.csv", cwd=tmp_path)
-    assert "from 0 to 7 s" in done.stdout
-    table = np.genfromtxt(tmp_path / "top.csv", delimiter=",", names=True)
-    assert (table["theta"][0], table["psi_dot"][0], table["phi_dot"][0]) == (0.9, 12, 0)
-    given = ["--initial=theta=0.5", "--time=1", "--set=C=0.6", "--out=own.csv"]
-    call("simulate", "heavy_symmetric_top", *given, cwd=tmp_path)
-    table = np.genfromtxt(tmp_path / "own.csv", delimiter=",", names=True)
-    assert (table["t"][-1], table["theta"][0], table["psi_dot"][0]) == (1, 0.5, 0)
+    for wrong, message in (
+        ([*free, "--animate=free.gif"], "free.gif: expected a file that ends in .html"),
+        (["simulate", "heavy_symmetric_top", "--set", "A"], "expected NAME=NUMBER"),
+        (
+            ["simulate", "dual_spin_satellite", "--time=1e9", "--animate=disc.html"],
+            "there is no live page of this motion",  # which would take for ever
+        ),
+    ):
+        assert message in call(*wrong, cwd=tmp_path, status=2).stderr
 
 
 # --- motions that reach a pole of their coordinates, against Newton and Euler in R and Ω′
@@ -217,7 +194,7 @@ def newton_euler(moments, torque, omega, times):
     return y[:, 9:], y[:, :9].reshape(-1, 3, 3)
 
 
-@pytest.mark.parametrize("rotation", ["rotation_vector", "gibbs_vector", "ZXZ", "ZYX"])
+@pytest.mark.parametrize("rotation", ["rotation_vector", "ZXZ"])
 def test_a_heavy_body_is_carried_through_the_poles_of_its_coordinates(rotation):
     """V = k R₃₃, about the fixed point: N′ = −k e₃′ × Rᵀ e₃"""
     model = rs.derive(rotation, "rotation_matrix").model
@@ -242,8 +219,7 @@ def test_a_heavy_body_is_carried_through_the_poles_of_its_coordinates(rotation):
 DAMPED = {"phi": "-k*phi_dot", "theta": "-k*theta_dot", "psi": "-k*psi_dot"}
 
 
-@pytest.mark.parametrize("chosen", [(), NEEDED], ids=["all", "those of the command"])
-@pytest.mark.parametrize("method", ["DOP853", "Radau"])
+@pytest.mark.parametrize(("method", "chosen"), [("DOP853", NEEDED), ("Radau", ())])
 def test_a_pole_at_which_a_force_has_no_limit_ends_the_motion_with_the_time_and_the_reason(
     method, chosen
 ):
@@ -311,29 +287,6 @@ def test_two_links_are_solved_for_their_accelerations_in_numbers():
 LINKS = {"l": 0.4, "m": 1.5, "g": 9.81, "J": 0.01}
 
 
-def test_moments_of_parts_that_do_not_matter_are_not_asked_for():
-    """A frame that turns about one of its axes only"""
-    part = {"rotation": "z(phi)", "principal_moments": ["O_1", "O_2", "O_3"]}
-    body = rs.principal_moments(A, A, C)
-    motion = rs.derive("z(phi) x(theta)", body=body, parts=[part])
-    found = motion.simulate({"theta": 1, "phi_dot": 1}, {"A": 1, "C": 2, "O_3": 1}, 0.1, samples=3)
-    assert {*found.drift} == {"energy", "momentum_phi"}
-
-
-def test_what_the_initial_values_omit_is_zero():
-    whole = top().simulate(REST | {"theta": 1, "psi_dot": 3}, TOP, 0.5, samples=3)
-    assert np.array_equal(
-        top().simulate({"theta": 1, "psi_dot": 3}, TOP, 0.5, samples=3).q, whole.q
-    )
-    named = top().simulate({"theta": 1, "angular_velocity_body_3": 3}, TOP, 0.5, samples=3)
-    assert named.q == pytest.approx(whole.q)
-
-
-def test_a_simulation_has_a_time_limit():
-    with pytest.raises(LimitReached, match=r"stopped after 0\.2 s"):
-        top().simulate({"theta": 1, "psi_dot": 1e4}, TOP, 1e4, timeout=0.2)
-
-
 BLOWN_UP = """[rotation]
 sequence = "ZXZ"
 angles = ["phi", "theta", "psi"]
@@ -354,16 +307,6 @@ def test_a_motion_without_end_is_written_as_far_as_it_goes(tmp_path):
     assert "the integration stopped at t = 0.2" in done.stderr
     table = np.genfromtxt(tmp_path / "out.csv", delimiter=",", names=True)
     assert 1 < table.size < 200
-
-
-def test_a_force_that_depends_on_rates_is_the_same_in_both_forms():
-    free = {"body": rs.principal_moments(*sp.symbols("A A C")), "potential": "k*cos(theta)"}
-    found = []
-    for method in ("lagrange", "euler"):
-        motion = rs.derive("ZXZ", **free, forces={"psi": "-k*psi_dot*phi_dot"}, method=method)
-        start = REST | {"theta": 0.8, "psi_dot": 3, "phi_dot": 0.5}
-        found.append(motion.simulate(start, {"A": 1, "C": 0.7, "k": 0.4}, 2.0, samples=3))
-    assert found[0].q == pytest.approx(found[1].q, rel=1e-8)
 
 
 def test_what_was_computed_before_an_integrator_fails_is_kept():

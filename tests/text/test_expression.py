@@ -12,6 +12,7 @@ from rigidsym.errors import ExpressionError
 from rigidsym.models.rotation import time_function
 from rigidsym.text.bounds import FUNCTIONS
 from rigidsym.text.expression import MOST_CHARACTERS, parse_expression, parse_turns
+from rigidsym.text.names import GREEK_LETTERS, check_name, spelled
 
 PHI, THETA, LAMBDA = (time_function(name) for name in ("phi", "theta", "lambda"))
 M, G = sp.symbols("m g", positive=True)
@@ -42,26 +43,19 @@ def outcome(text: str, read=in_names) -> tuple[object, ExpressionError | None]:
         ("phi", PHI),
         ("  phi\n\t+ g ", PHI + G),
         ("φ + ϕ", 2 * PHI),
-        ("lambda - λ", sp.Integer(0)),
         ("0.1", sp.Rational(1, 10)),
         ("1e-3", sp.Rational(1, 1000)),
-        (".5E2", sp.Integer(50)),
         ("2.", sp.Integer(2)),
-        ("007", sp.Integer(7)),
-        ("1/3", sp.Rational(1, 3)),
         ("0.5*m*g*cos(theta)", M * G * sp.cos(THETA) / 2),
         ("-phi**2", -(PHI**2)),
         ("2**-1", sp.Rational(1, 2)),
         ("2**3**2", sp.Integer(512)),
         ("phi**0.5", sp.sqrt(PHI)),
         ("phi - g - m", PHI - G - M),
-        ("phi / g / m", PHI / G / M),
-        ("phi*(g + m)", PHI * (G + M)),
         ("+-+phi", -PHI),
         ("sin(pi/2 + 0)", sp.Integer(1)),
         ("atan2(1, -1)", 3 * sp.pi / 4),
         ("sqrt(m**2)", M),
-        ("abs(-m)", M),
         ("csc(phi)*sec(phi)", 1 / (sp.sin(PHI) * sp.cos(PHI))),
         ("exp(-phi)", sp.exp(-PHI)),
     ],
@@ -82,11 +76,8 @@ HOSTILE = (
     "__import__('os')",
     "().__class__",
     "phi.__class__",
-    "open(phi)",
-    "eval(phi)",
     "(lambda: 0)()",
     "[x for x in phi]",
-    "f'{phi}'",
     "(phi := 2)",
     "phi < g",
     "phi\x00",
@@ -97,41 +88,29 @@ HOSTILE = (
 )
 
 
-@pytest.mark.parametrize("text", HOSTILE)
-def test_code_is_refused(text):
-    refused(text)
-
-
 TOO_LARGE = (
     "9**9**9**9",
-    "(((2**64)**64)**64)**64",
     "*".join(["9**64"] * 300),
-    "((phi**64)**64)**64",
     "(phi + theta + m + g + 1)**64",
     "*".join(["(phi + theta + m + g)"] * 80),
     "exp(10**30*log(2))",
-    "exp(m*10**30*log(2))",
     "sin(exp(10**30))",
-    "tan(exp(1e40))",
     "cosh(cosh(123456789012345678901234567890))",
-    "sin(tanh(exp(theta - 123456789012345678901234567890)))",
     "cos(sinh(exp(theta**64)))",
     "sqrt(123456789012345678901234567891*theta)",
     "1e41",
     "1e-99999999999999999999",
     "1" * 41,
-    "0." + "1" * 41,
     "(" * 51 + "phi" + ")" * 51,
     "-" * (MOST_CHARACTERS - 3) + "phi",
-    "2**-" * 499 + "1",
     "phi+" * MOST_CHARACTERS,
     "9" * 1_000_000,
     "(" * 1_000_000,
 )
 
 
-@pytest.mark.parametrize("text", TOO_LARGE, ids=lambda text: text[:20])
-def test_what_would_take_for_ever_is_refused_at_once(text):
+@pytest.mark.parametrize("text", [*HOSTILE, *TOO_LARGE], ids=lambda text: text[:20])
+def test_code_and_what_would_take_for_ever_are_refused_at_once(text):
     assert len(refused(text).message) < 200  # taken as it is, it would not come to an end
 
 
@@ -158,7 +137,7 @@ def compound(inner):
     return operation | power | call | inner.map("-{}".format)
 
 
-@settings(max_examples=300, deadline=timedelta(seconds=10))
+@settings(max_examples=120, deadline=timedelta(seconds=10))
 @given(st.recursive(leaves, compound, max_leaves=12))
 def test_a_well_formed_text_is_an_expression_or_refused(text):
     value, error = outcome(text)
@@ -171,7 +150,7 @@ def test_a_well_formed_text_is_an_expression_or_refused(text):
         assert len(error.message) < 200
 
 
-@settings(max_examples=300, deadline=timedelta(seconds=10))
+@settings(max_examples=120, deadline=timedelta(seconds=10))
 @given(
     st.text(max_size=60)
     | st.text(alphabet="phisncot0123456789.e+-*/(), φλ\n", max_size=60)
@@ -184,3 +163,58 @@ def test_a_well_formed_text_is_an_expression_or_refused(text):
 def test_junk_is_refused_with_its_place(text):
     for _, error in (outcome(text), outcome(text, parse_turns)):
         assert error is None or 1 <= error.column <= len(text) + 1
+
+
+TURNS = {
+    " z(phi)*x( θ )\n*  z(psi) ": (("z", "phi"), ("x", "θ"), ("z", "psi")),
+    "z(a)x(b)": (("z", "a"), ("x", "b")),
+    "y (2*(a + b))": (("y", "2*(a + b)"),),
+}
+A_TURN = "expected a turn: x(...), y(...), z(...) or [1,1,0](...), found"
+NO_TURNS = [
+    ("", 1, f"{A_TURN} the end"),
+    ("z", 1, f"{A_TURN} 'z'"),
+    ("z(a) w(b)", 6, f"{A_TURN} 'w'"),
+    ("z(a) *", 7, "expected a turn after *, found the end"),
+    ("z(a) x( )", 9, "expected an angle, found ')'"),
+    ("z((a)", 2, "unclosed ("),
+    ("z(a" * 1000, 1, f"a text of 3000 characters; expected at most {MOST_CHARACTERS}"),
+]
+
+
+def test_turns_are_read_left_to_right_and_refused_with_their_column():
+    for text, turns in TURNS.items():
+        assert tuple(turn[:2] for turn in parse_turns(text)) == turns
+        assert all(text[column - 1 :].startswith(angle) for _, angle, column in parse_turns(text))
+    for text, column, message in NO_TURNS:
+        with pytest.raises(ExpressionError) as caught:
+            parse_turns(text)
+        assert (caught.value.column, caught.value.message) == (column, message)
+
+
+NAMES_TAKEN = {"φ1": "phi1", "ϕ": "phi", "θ_1": "theta_1", "λ": "lambda", "\u00b5": "mu", "i": "i"}
+FORM = "expected a letter (Latin or Greek), then letters, digits and single underscores"
+NAMES_REFUSED = {
+    **dict.fromkeys(("a b", "_a", "a__b", "1a", "Α", "é", "𝐱", "phi\n"), FORM),
+    "π": "pi is the number π",
+    "t": "t is the time",
+    "sin": "sin is a function",
+    "q": "q is a name that the generated functions use",
+    "φddot": "a name that ends in dot reads as a rate",
+    "Omega_body_1": "it is a component of the angular velocity",
+    "omega_space": "it is a component of the angular velocity",
+}
+
+
+def test_names_of_coordinates():
+    assert {text: check_name(text) for text in NAMES_TAKEN} == NAMES_TAKEN
+    for text, fault in NAMES_REFUSED.items():
+        with pytest.raises(ExpressionError) as caught:
+            check_name(text)
+        assert caught.value.message == f"{text!r} is not a valid name: {fault}"
+    for text in ("", "a" * 41):
+        with pytest.raises(ExpressionError, match=r"^expected a name of 1 to 40 letters, got "):
+            check_name(text)
+    for letter in GREEK_LETTERS:
+        if spelled(letter) != "pi":
+            assert parse_expression(letter, {spelled(letter): M}) == M
