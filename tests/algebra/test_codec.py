@@ -7,7 +7,7 @@ import re
 import pytest
 import sympy as sp
 from hypothesis import given, settings, strategies as st
-from sympy import Rational, cos, cot, csc, pi, sec, sin, sqrt, tan
+from sympy import Rational, cos, cot, csc, pi, sin, sqrt, tan
 
 from helpers.witness import TOLERANCE, mp, number, paths, values_along
 from rigidsym.algebra.codec import codec_for
@@ -175,67 +175,3 @@ def test_a_ring_that_may_not_know_all_relations_says_so(expression):
     """Roots of related numbers and expressions may depend on one another unseen."""
     assert not codec_for([expression]).ring.complete
     assert codec_for([sin(a), 1 / (1 + u**2), m * x, tan(a / 2)]).ring.complete
-
-
-RINGS: list[tuple[list[sp.Expr], dict[str, object]]] = [
-    ([expression], {})
-    for expression in (
-        m / 2,
-        sp.pi * k + x,
-        sqrt(6) + sqrt(12) * x,
-        2 ** Rational(1, 4) + sqrt(2) * m,
-        2 ** Rational(1, 4) + 3 ** Rational(1, 6) + sqrt(3),
-        sp.I * x,
-        1 / (1 + x**2),
-        sqrt(1 + x**2) + 1 / sqrt(x**2 + y**2),
-        (x + y) ** Rational(-3, 2),
-        tan(a) + sec(2 * a),
-        cot(a) * csc(b),
-        sin(2 * a) * cos(a / 3) + cos(b / 2),
-        sin(-3 * a) + cos(a - 2 * b),
-        sin(a + pi / 4) + cos(b - pi / 3),
-        sin(pi / 5 + k),
-        cos(m * a) + sin(k),
-        sin(a * b) + sin(a**2),
-        sp.exp(x) + sp.Abs(y) + TIME,
-        sp.cosh(x) ** 2,
-        x**m + m**x,
-        a.diff(TIME) * b.diff(TIME, 2),
-        sin(a.diff(TIME)),
-    )
-]
-RINGS += [
-    ([sin(a) * x], {"order": 0}),
-    ([sin(a) * x / y], {"order": 1}),
-    ([sp.exp(sin(a))], {"order": 2}),
-    ([x, y], {"constraints": [x**2 + y**2 - 1]}),
-    ([x, m], {"constraints": [2 * x - m, m**2 - 3], "order": 1}),
-    ([sin(a), x], {"constraints": [x - sin(a)]}),
-]
-
-
-def ring_in_words(expressions: list[sp.Expr], options: dict[str, object]) -> list[str]:
-    """The generators of a ring, its relations and derivatives, and the expressions in it."""
-    try:
-        codec = codec_for(expressions, **options)
-        encoded = [codec.encode_quotient(expression) for expression in expressions]
-    except AlgebraError as error:
-        return [str(error)]
-    ring = codec.ring
-    names = [gen.expression for gen in ring.generators]
-    return [
-        f"generators over {ring.polynomials.domain}: {', '.join(map(str, names))}",
-        f"opaque: {', '.join(str(gen.expression) for gen in ring.generators if gen.opaque)}",
-        *(f"0 = {relation}" for relation in ring.relations),
-        *(f"d/dt {names[g]} = {codec.decode(rate)}" for g, rate in ring.derivatives.items()),
-        *(f"{codec.decode(e.numerator)} over {codec.decode(e.denominator)}" for e in encoded),
-        f"angles: {codec.angle_pairs}",
-    ]
-
-
-def test_rings_are_as_they_were(golden):
-    lines = []
-    for expressions, options in RINGS:
-        lines.append(f"{expressions} {options or ''}".strip())
-        lines += [f"    {line}" for line in ring_in_words(expressions, options)]
-    golden("notes/rings.txt", "\n".join(lines) + "\n")

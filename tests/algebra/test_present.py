@@ -47,6 +47,8 @@ FOLDED = [
     ((m**2 - 1) / (m - 1), m + 1),
     (m * sin(a) / (m * cos(a) + m), sin(a) / (cos(a) + 1)),
     (cos(a) * cos(b) - sin(a) * sin(b), cos(a + b)),
+    (cos(a) * cos(b) + sin(a) * sin(b), cos(a - b)),
+    (sin(a) * cos(b) + cos(a) * sin(b), sin(a + b)),
     (2 * m * (sin(a) * cos(b) - cos(a) * sin(b)), 2 * m * sin(a - b)),
     (cos(a) * cos(b) - 2 * sin(a) * sin(b), cos(a) * cos(b) - 2 * sin(a) * sin(b)),
 ]

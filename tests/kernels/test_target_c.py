@@ -173,14 +173,6 @@ def test_rows_stand_where_they_belong(sources, compiler, way):
                     assert np.array_equal(found[:count, :9], expected[start : start + count])
                     assert (found[count:] == 7).all()
                     assert (found[:, 9:] == 7).all()
-                for height in (count, 112, 113):
-                    columns = np.full((10, height), 7.0, dtype)
-                    given, filled = (ctypes.c_void_p(a.ctypes.data) for a in (q[start:], columns))
-                    steps, across = (map(ctypes.c_ssize_t, pair) for pair in ((3, 1), (1, height)))
-                    many(ctypes.c_size_t(count), given, *steps, filled, *across)
-                    assert np.array_equal(columns[:9, :count].T, expected[start : start + count])
-                    assert (columns[:9, count:] == 7).all()
-                    assert (columns[9] == 7).all()
 
 
 @pytest.mark.campaign
