@@ -103,6 +103,7 @@ def test_a_body_is_drawn_in_its_shape_or_with_its_moments():
     assert re.findall(r'id="parameters-(\d)-number"', cone) == ["0"]  # M
     assert 'id="parameters-2-number" step="any" value="0.5"' in top  # C of its first example
     assert "body" in carried(cone)
+    assert "body" in carried(page_of("ZYX"))  # an aircraft
     assert ("body" in carried(free), carried(free)["moments"]) == (False, None)
     assert min(z for _, _, z in carried(top)["body"]["points"]) == 0  # on its tip
     body = rs.principal_moments(1, sp.Rational(7, 5), 2)
