@@ -78,6 +78,20 @@ def fits(label: Label, finding: FormulaInFile) -> bool:
     return kind.removesuffix("_body").removesuffix("_space") == label.kind
 
 
+def matched(
+    labels: list[Label], recognised: list[FormulaInFile]
+) -> list[tuple[Label, FormulaInFile | None]]:
+    """Each label with its finding; of several that fit, the nearest pairs first."""
+    places = ((i, j) for i in range(len(labels)) for j in range(len(recognised)))
+    fitting = [(i, j) for i, j in places if fits(labels[i], recognised[j])]
+    fitting.sort(key=lambda pair: abs(labels[pair[0]].line - recognised[pair[1]].formula.line))
+    pairs: dict[int, int] = {}
+    for i, j in fitting:
+        if i not in pairs and j not in pairs.values():
+            pairs[i] = j
+    return [(label, recognised[pairs[i]] if i in pairs else None) for i, label in enumerate(labels)]
+
+
 def mutants(expression: sp.Expr) -> Iterator[sp.Expr]:
     """One change each: a sign, sine for cosine, another name, a factor, arguments exchanged."""
     names = sorted(expression.free_symbols, key=str)
@@ -135,11 +149,9 @@ def main() -> int:
         if options.only not in name:
             continue
         open_findings = findings(path, text)
-        for label in labels:
+        for label, finding in matched(labels, open_findings):
             keys = (label.kind, Path(path).suffix)
             all_labels.update(keys)
-            near = sorted(open_findings, key=lambda each: abs(each.formula.line - label.line))
-            finding = next((each for each in near if fits(label, each)), None)
             if finding is None:
                 print(f"missed: {name} {path}:{label.line} {label.kind}", flush=True)
                 continue
