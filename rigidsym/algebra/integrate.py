@@ -14,6 +14,7 @@ import sympy as sp
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import Codec, codec_for
+from rigidsym.algebra.ring import split
 from rigidsym.errors import AlgebraError
 
 Bounds = tuple[sp.Expr, sp.Expr]
@@ -71,11 +72,10 @@ class Integrator:
         """F with ∂F/∂u = element, for an element in normal form."""
         self._refuse_others(element)
         places = (self._place, *(self._pair or ()))  # of u, sin u and cos u
-        parts = []
-        for monomial, coefficient in element.items():
-            rest = tuple(0 if place in places else power for place, power in enumerate(monomial))
-            n, a, b = ([monomial[place] for place in places] + [0, 0])[:3]
-            parts.append(self._basis(n, a, b).mul_term((rest, coefficient)))
+        parts = (
+            self._basis(*powers, *[0] * (3 - len(powers))) * part
+            for powers, part in split(element, places).items()
+        )
         return self.ring.reduce(self.ring.total(parts))
 
     def between(self, antiderivative: PolyElement, bounds: Bounds) -> PolyElement:

@@ -33,7 +33,7 @@ from sympy.polys.rings import PolyElement
 from rigidsym.algebra.codec import Codec, codec_for
 from rigidsym.algebra.generators import is_sum_of
 from rigidsym.algebra.matrix import RingMatrix, Row
-from rigidsym.algebra.ring import Monomial, Quotient, shortest
+from rigidsym.algebra.ring import Monomial, Quotient, shortest, split
 from rigidsym.errors import AlgebraError
 
 _SHORT_SUM = 12  # terms of a divisor that is factored, since that is done once for many entries
@@ -142,13 +142,10 @@ class Presenter:
     def _over_one(self, element: PolyElement) -> Iterator[sp.Expr]:
         """Terms that are divided by different powers of one sum, over the highest of them."""
         for place, divisor in self._sums_below.items():
-            above: dict[int, PolyElement] = {}  # power of the generator: what it multiplies
-            for monomial, coefficient in element.items():
-                part = above.setdefault(monomial[place], self.ring.polynomials.zero)
-                part[(*monomial[:place], 0, *monomial[place + 1 :])] = coefficient
+            above = split(element, [place])
             if len(above) > 1:
-                highest = max(above)
-                parts = (part * divisor ** (highest - power) for power, part in above.items())
+                (highest,) = max(above)
+                parts = (part * divisor ** (highest - power) for (power,), part in above.items())
                 whole = reduce(add, parts)
                 if len(whole) <= len(element) + _MORE_TERMS:
                     number = _leading_number(whole)

@@ -283,6 +283,17 @@ class _NormalForms(dict[Monomial, Terms | None]):
         return None
 
 
+def split(element: PolyElement, places: Sequence[int]) -> dict[Monomial, PolyElement]:
+    """{powers of the generators at some places: what these powers multiply in the element}."""
+    parts: dict[Monomial, Terms] = {}
+    for monomial, coefficient in element.items():
+        rest = list(monomial)
+        for place in places:
+            rest[place] = 0
+        parts.setdefault(tuple(monomial[k] for k in places), {})[tuple(rest)] = coefficient
+    return {powers: element.new(terms) for powers, terms in parts.items()}
+
+
 def _powers(monomial: Monomial) -> list[tuple[int, int]]:
     """(place, power) of the generators that occur."""
     return [(place, power) for place, power in enumerate(monomial) if power]

@@ -17,6 +17,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from functools import cache, lru_cache
 from math import factorial
+from operator import mul
 from typing import Any, NamedTuple
 
 import sympy as sp
@@ -25,7 +26,7 @@ from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import Codec, codec_for
 from rigidsym.algebra.present import presenter_for
-from rigidsym.algebra.ring import Quotient
+from rigidsym.algebra.ring import Quotient, split
 from rigidsym.errors import AlgebraError
 
 _EPS = Fraction(1, 2**52)  # of float64; a shorter type needs no more terms
@@ -319,18 +320,13 @@ class Rewriter:
     def _parts(self, element: PolyElement) -> Parts | None:
         """Split by powers of cos rn = c₀, sin rn = rn c₁, 1/n²; None for an odd power of n."""
         norm, parts = self._norm, dict[tuple[Orders, int], PolyElement]()
-        for monomial, coefficient in element.items():
-            sines, cosines = monomial[norm.sine], monomial[norm.cosine]
-            power = -sines - sum(monomial[place] * k for place, k in norm.powers.items())
+        places = (norm.sine, norm.cosine, *norm.powers)
+        for (sines, cosines, *others), before in split(element, places).items():
+            power = -sines - sum(map(mul, others, norm.powers.values()))
             if power % 2:
                 return None
-            rest = list(monomial)
-            for place in (norm.sine, norm.cosine, *norm.powers):
-                rest[place] = 0
             key = (0,) * cosines + (1,) * sines, power // 2
-            before = parts.get(key, self.codec.ring.zero)
-            term = coefficient * self._number(sines)
-            parts[key] = before + element.ring.term_new(tuple(rest), term)
+            _gather(parts, key, before * self._number(sines))
         return parts
 
 

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
+from math import prod
 from typing import Any, NamedTuple
 
 import sympy as sp
@@ -23,7 +24,7 @@ from sympy.polys.rings import PolyElement
 from rigidsym.algebra.codec import Codec
 from rigidsym.algebra.generators import TIME, angle_of, combination, is_identically_zero
 from rigidsym.algebra.matrix import RingMatrix
-from rigidsym.algebra.ring import Monomial, shortest
+from rigidsym.algebra.ring import shortest, split
 from rigidsym.errors import AlgebraError
 
 
@@ -63,24 +64,11 @@ class _Angle(NamedTuple):
 
 def substituted(element: PolyElement, zero: Zero) -> PolyElement:
     """The element at a zero, not in normal form."""
-    becomes = [pair for root in zero for pair in root.becomes]
-    if all(isinstance(value, int) for _, value in becomes):  # most often, and quickly
-        terms: dict[Monomial, Any] = {}
-        for monomial, coefficient in element.items():
-            rest = list(monomial)
-            for place, value in becomes:
-                coefficient *= value ** rest[place]
-                rest[place] = 0
-            terms[tuple(rest)] = terms.get(tuple(rest), 0) + coefficient
-        return element.new({monomial: c for monomial, c in terms.items() if c})
-    result = element.ring.zero
-    for monomial, coefficient in element.items():
-        powers, factor = list(monomial), element.ring.one
-        for place, value in becomes:
-            factor *= value ** powers[place]
-            powers[place] = 0
-        result += element.ring.term_new(tuple(powers), coefficient) * factor
-    return result
+    values = dict(pair for root in zero for pair in root.becomes)
+    total = element.ring.zero
+    for powers, part in split(element, [*values]).items():
+        total += part * prod(map(pow, values.values(), powers))
+    return total
 
 
 @lru_cache(maxsize=256)
@@ -297,14 +285,10 @@ class Solver:
         self, factor: PolyElement, angle: _Angle
     ) -> tuple[PolyElement, PolyElement] | None:
         """A and B of A cos + B sin, which may hold other coordinates; None for any other factor."""
-        sums = {angle.cosine: self._ring.zero, angle.sine: self._ring.zero}
-        for monomial, coefficient in factor.items():
-            if monomial[angle.cosine] + monomial[angle.sine] != 1:
-                return None
-            place = angle.cosine if monomial[angle.cosine] else angle.sine
-            rest = (*monomial[:place], 0, *monomial[place + 1 :])
-            sums[place] += factor.ring.term_new(rest, coefficient)
-        return sums[angle.cosine], sums[angle.sine]
+        parts = split(factor, (angle.cosine, angle.sine))
+        if not parts.keys() <= {(1, 0), (0, 1)}:
+            return None
+        return parts.get((1, 0), self._ring.zero), parts.get((0, 1), self._ring.zero)
 
     def _of_one(self, factor: PolyElement, angle: _Angle) -> list[Root] | None:
         """Roots of a polynomial in one sine or one cosine, with numbers.

@@ -9,13 +9,14 @@ that agree for the generic summand agree for every body, of however many particl
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from math import prod
 
 import sympy as sp
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import Codec
 from rigidsym.algebra.matrix import RingMatrix
-from rigidsym.algebra.ring import Monomial
+from rigidsym.algebra.ring import split
 from rigidsym.errors import AlgebraError
 
 MASS = sp.Symbol("m_i")
@@ -33,29 +34,22 @@ class ParticleSums:
         self._own = [self.ring.index[expression] for expression in own]
         self._mass = self.ring.index[MASS]
         self._known = {
-            self._part(monomial): codec.encode(value)
+            powers: codec.encode(value)
             for summand, value in known.items()
-            for monomial in codec.encode(summand)
+            for powers in split(codec.encode(summand), self._own)
         }
-
-    def _part(self, monomial: Monomial) -> Monomial:
-        """The powers in a monomial that belong to the particle."""
-        return tuple(monomial[place] for place in self._own)
 
     def of(self, summand: PolyElement) -> PolyElement:
         """The sum of a summand, in normal form; raises AlgebraError where m is no factor of it."""
         result = self.ring.zero
-        for monomial, coefficient in self.ring.reduce(summand).items():
-            if monomial[self._mass] != 1:
+        for powers, part in split(self.ring.reduce(summand), self._own).items():
+            own = dict(zip(self._own, powers, strict=True))
+            if own[self._mass] != 1:
                 raise AlgebraError("a summand without the mass of the particle has no sum here")
-            known = self._known.get(self._part(monomial))
-            if known is None:
-                result += self.ring.polynomials.term_new(monomial, coefficient)
-                continue
-            rest = list(monomial)
-            for place in self._own:
-                rest[place] = 0
-            result += known.mul_term((tuple(rest), coefficient))
+            total = self._known.get(powers)
+            if total is None:
+                total = prod(self.ring.generator(place) ** power for place, power in own.items())
+            result += total * part
         return self.ring.reduce(result)
 
     def of_matrix(self, summands: RingMatrix) -> RingMatrix:

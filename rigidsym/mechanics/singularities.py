@@ -6,7 +6,6 @@ Of a long chain of turns only the determinant of W Wᵀ is given, in the names o
 from __future__ import annotations
 
 import operator
-from collections.abc import Sequence
 from functools import reduce
 
 import sympy as sp
@@ -83,7 +82,11 @@ class _Study:
         shown = list(map(self.present.element, minors))
         is_solved = found.is_solved
         if any(place.is_length for point in points for place in point.places):
-            is_solved = is_solved and self._is_regular_at_zero(shown)
+            # whether a minor is not zero at zero coordinates, by its form in Stumpff functions
+            rewriter = rewriter_for(found.codec)
+            forms = map(rewriter.rewritten, shown) if rewriter else ()
+            is_regular = any(form is not None and at_zero(form) != 0 for form in forms)
+            is_solved = is_solved and is_regular
         return Singularities(
             rank=rank,
             measure=measure,
@@ -92,12 +95,6 @@ class _Study:
             points=tuple(points),
             is_solved=is_solved,
         )
-
-    def _is_regular_at_zero(self, minors: Sequence[sp.Expr]) -> bool:
-        """Whether a minor is not zero at zero coordinates, by its form in Stumpff functions."""
-        rewriter = rewriter_for(self.falling.codec)
-        forms = (rewriter.rewritten(minor) for minor in minors) if rewriter else ()
-        return any(form is not None and bool(at_zero(form) != 0) for form in forms)
 
     def _point(self, stratum: Stratum) -> Singularity:
         zero, there, full = stratum

@@ -245,12 +245,9 @@ class Problem:
 
     def slopes(self, t: float, y: Array) -> Array:
         """The derivative of one state."""
-        inputs = (t, *y.tolist(), *(self.parameters if self._takes_parameters else ()))
+        takes_parameters = "parameters" in self.slopes_step.quantity.inputs
+        inputs = (t, *y.tolist(), *(self.parameters if takes_parameters else ()))
         return np.array(self.kernels.state_derivative_scalar(*inputs))
-
-    @property
-    def _takes_parameters(self) -> bool:
-        return "parameters" in self.slopes_step.quantity.inputs
 
     def is_near_pole(self, y: Array, limit: float) -> bool:
         """Whether the singularity margin of the coordinates, if there is one, is small."""

@@ -106,7 +106,7 @@ class Composition(Values):
     _v, _v_dot = sp.symbols("v_1:4"), sp.symbols("dv_1:4")
 
     def __init__(
-        self, turn: Turn, conditions: Conditions, *, passive: bool, comes_first: bool
+        self, turn: Turn, conditions: Conditions, passive: bool, comes_first: bool
     ) -> None:
         self._turn, self._conditions, self._comes_first = turn, conditions, comes_first
         self._is_passive = passive
@@ -218,12 +218,7 @@ class Composition(Values):
         return self._proofs[key]
 
 
-@cache
-def _composition(
-    turn: Turn, conditions: Conditions, passive: bool, comes_first: bool
-) -> Composition:
-    """Kept, since the same few axes occur in all chains."""
-    return Composition(turn, conditions, passive=passive, comes_first=comes_first)
+composed = cache(Composition)  # kept, since the same few axes occur in all chains
 
 
 def kinds_of(turns: Iterable[Turn], model: RotationModel) -> tuple[tuple[Turn, Conditions], ...]:
@@ -519,14 +514,14 @@ class Chain(Names, Workspace):
                 inverts = self._inverts(quantity.frame.name, law.claim)
                 proofs.append(consequence(inverts, law.claim))
             else:
-                composed = [each.proof(owner, law) for each in self._compositions]
+                proved = [each.proof(owner, law) for each in self._compositions]
                 # the definitions as they are printed are the compositions, if they differ in form
                 for group, (_, value) in self._named.items():
                     pairs = zip(self.opened(group), value, strict=True)
                     differences = [printed - entry for printed, entry in pairs if printed != entry]
                     if differences:
-                        composed.append(self.vanish(differences, law.claim))
-                proofs.append(consequence(composed, law.claim))
+                        proved.append(self.vanish(differences, law.claim))
+                proofs.append(consequence(proved, law.claim))
         return tuple(proofs)
 
     @cached_property
@@ -534,7 +529,7 @@ class Chain(Names, Workspace):
         """Each kind of turn before and behind any rotation."""
         kinds = kinds_of(self.model.turns, self.model)
         return tuple(
-            _composition(turn, conditions, self.model.passive, comes_first)
+            composed(turn, conditions, self.model.passive, comes_first)
             for turn, conditions in kinds
             for comes_first in (True, False)
         )

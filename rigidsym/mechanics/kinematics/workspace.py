@@ -254,8 +254,15 @@ class Values(Workspace):
     def inverse(self, frame: str) -> Inverse | None:
         """The right inverse of the rate matrix of a frame; None if it has none."""
         if frame not in self._inverses:
-            entries = self._entry_rates(frame)
-            self._inverses[frame] = entries or self.rate_matrix(frame).right_inverse(self.bound)
+            ring, rotation = self.codec.ring, self.rotation
+            if tuple(self.model.matrix) == self.model.coordinates:
+                # the coordinates are the entries of R: columns are dR/dt of unit velocities
+                skew = [hat(RingMatrix.column(ring, e)) for e in self.one.rows]
+                rates = [s @ rotation if frame == "space" else rotation @ s for s in skew]
+                rows = tuple(rate.entries for rate in rates)
+                self._inverses[frame] = RingMatrix(ring, rows).T, ring.one
+            else:
+                self._inverses[frame] = self.rate_matrix(frame).right_inverse(self.bound)
         return self._inverses[frame]
 
     def rates(self, frame: str) -> Inverse | None:
@@ -271,15 +278,6 @@ class Values(Workspace):
     ) -> RingMatrix:
         """W (above/below) − goal, times the divisor."""
         return self.rate_matrix(frame) @ above - goal.scale(below)
-
-    def _entry_rates(self, frame: str) -> Inverse | None:
-        """The columns dR/dt of unit angular velocities, where the coordinates are R's entries."""
-        if tuple(self.model.matrix) != self.model.coordinates:
-            return None
-        ring, rotation = self.codec.ring, self.rotation
-        operators = [hat(RingMatrix.column(ring, e)) for e in self.one.rows]
-        rates = [skew @ rotation if frame == "space" else rotation @ skew for skew in operators]
-        return RingMatrix(ring, tuple(rate.entries for rate in rates)).T, ring.one
 
     @cached_property
     def bound(self) -> RingMatrix | None:
