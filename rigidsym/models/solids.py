@@ -1,12 +1,14 @@
-"""The shipped solids as data: a map, bounds and, for lines and surfaces, an element, as texts.
+"""The shipped solids: a map, bounds and, for lines and surfaces, an element, as texts.
 
-Moments of inertia are not stored; all are integrated.
+They are the entries of solids.toml. Moments of inertia are not stored; all are integrated.
 """
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Mapping, Sequence
 from math import inf
+from pathlib import Path
 from typing import NamedTuple
 
 import sympy as sp
@@ -46,126 +48,20 @@ class Shape(NamedTuple):
         return tuple(name for length in self.lengths for name in length.names)
 
 
-_RADIUS, _HEIGHT = Length("radius", ("a",), "radius"), Length("height", ("h",), "height")
-_RADII = (
-    Length("inner_radius", ("a",), "inner radius"),
-    Length("outer_radius", ("b",), "outer radius"),
-)
-_HOLLOW = (("outer_radius", "inner_radius"),)
-_SIDES = Length("sides", ("a", "b", "c"), "side")
-_CORNERS = "x_0 y_0 z_0 x_1 y_1 z_1 x_2 y_2 z_2 x_3 y_3 z_3"
-_ABOUT_Z = "centred, about the z-axis"
-_ROUND = "u*cos(v), u*sin(v), w"  # u from the z-axis
-_BALL = "u*sin(v)*cos(w), u*sin(v)*sin(w), u*cos(v)"  # v from the z-axis
+def _shapes() -> dict[str, Shape]:
+    """The entries of solids.toml by their names."""
+    text = Path(__file__).with_name("solids.toml").read_text(encoding="utf-8")
+    shapes = {}
+    for name, entry in tomllib.loads(text).items():
+        lengths = (
+            Length(key, tuple(names.split()), about) for key, names, about in entry["lengths"]
+        )
+        larger = map(tuple, entry.get("larger", ()))
+        shapes[name] = Shape(**entry | {"lengths": tuple(lengths), "larger": tuple(larger)})
+    return shapes
 
-SHAPES: Mapping[str, Shape] = {
-    "box": Shape(
-        "Box",
-        "centred, sides along x, y and z",
-        (_SIDES,),
-        "u, v, w",
-        "-a/2..a/2, -b/2..b/2, -c/2..c/2",
-    ),
-    "plate": Shape(
-        "Rectangular plate",
-        "thin, centred, sides along x and y",
-        (Length("sides", ("a", "b"), "side"),),
-        "u, v, 0",
-        "-a/2..a/2, -b/2..b/2",
-        "1",
-    ),
-    "rod": Shape(
-        "Rod",
-        "thin, centred, along z",
-        (Length("length", ("l",), "length"),),
-        "0, 0, u",
-        "-l/2..l/2",
-        "1",
-    ),
-    "disc": Shape(
-        "Disc", f"thin, {_ABOUT_Z}", (_RADIUS,), "u*cos(v), u*sin(v), 0", "0..a, 0..2*pi", "u"
-    ),
-    "ring": Shape("Ring", f"thin, {_ABOUT_Z}", (_RADIUS,), "a*cos(u), a*sin(u), 0", "0..2*pi", "a"),
-    "cylinder": Shape(
-        "Solid cylinder", _ABOUT_Z, (_RADIUS, _HEIGHT), _ROUND, "0..a, 0..2*pi, -h/2..h/2"
-    ),
-    "hollow_cylinder": Shape(
-        "Hollow cylinder",
-        _ABOUT_Z,
-        (*_RADII, _HEIGHT),
-        _ROUND,
-        "a..b, 0..2*pi, -h/2..h/2",
-        larger=_HOLLOW,
-    ),
-    "tube": Shape(
-        "Cylindrical shell",
-        f"thin, open, {_ABOUT_Z}",
-        (_RADIUS, _HEIGHT),
-        "a*cos(u), a*sin(u), v",
-        "0..2*pi, -h/2..h/2",
-        "a",
-    ),
-    "cone": Shape(
-        "Solid cone",
-        "base in the plane z = 0, apex on the z-axis at z = height",
-        (_RADIUS, _HEIGHT),
-        "a*u*(1 - w)*cos(v), a*u*(1 - w)*sin(v), h*w",
-        "0..1, 0..2*pi, 0..1",
-    ),
-    "frustum": Shape(
-        "Frustum of a cone",
-        "base in the plane z = 0, top at z = height, about the z-axis",
-        (_RADIUS, Length("top_radius", ("b",), "radius of the top"), _HEIGHT),
-        "u*(a + (b - a)*w)*cos(v), u*(a + (b - a)*w)*sin(v), h*w",
-        "0..1, 0..2*pi, 0..1",
-    ),
-    "sphere": Shape("Solid sphere", "centred", (_RADIUS,), _BALL, "0..a, 0..pi, 0..2*pi"),
-    "hollow_sphere": Shape(
-        "Hollow sphere", "centred", _RADII, _BALL, "a..b, 0..pi, 0..2*pi", larger=_HOLLOW
-    ),
-    "hemisphere": Shape(
-        "Solid hemisphere",
-        "base in the plane z = 0, above it",
-        (_RADIUS,),
-        _BALL,
-        "0..a, 0..pi/2, 0..2*pi",
-    ),
-    "shell": Shape(
-        "Spherical shell",
-        "thin, centred",
-        (_RADIUS,),
-        "a*sin(u)*cos(v), a*sin(u)*sin(v), a*cos(u)",
-        "0..pi, 0..2*pi",
-        "a**2*sin(u)",
-    ),
-    "ellipsoid": Shape(
-        "Solid ellipsoid",
-        "centred, semi-axes along x, y and z",
-        (Length("semi_axes", ("a", "b", "c"), "semi-axis"),),
-        "a*u*sin(v)*cos(w), b*u*sin(v)*sin(w), c*u*cos(v)",
-        "0..1, 0..pi, 0..2*pi",
-    ),
-    "torus": Shape(
-        "Solid torus",
-        _ABOUT_Z,
-        (
-            Length("radius", ("a",), "radius of the circle in the tube"),
-            Length("tube_radius", ("b",), "radius of the tube"),
-        ),
-        "(a + u*cos(w))*cos(v), (a + u*cos(w))*sin(v), u*sin(w)",
-        "0..b, 0..2*pi, 0..2*pi",
-        larger=(("radius", "tube_radius"),),
-    ),
-    "tetrahedron": Shape(
-        "Tetrahedron",
-        "by its four corners",
-        (Length("corners", tuple(_CORNERS.split()), "coordinate of a corner"),),
-        "x_0 + u*(x_1 - x_0) + v*(x_2 - x_0) + w*(x_3 - x_0), "
-        "y_0 + u*(y_1 - y_0) + v*(y_2 - y_0) + w*(y_3 - y_0), "
-        "z_0 + u*(z_1 - z_0) + v*(z_2 - z_0) + w*(z_3 - z_0)",
-        "0..1, 0..1 - u, 0..1 - u - v",
-    ),
-}
+
+SHAPES: Mapping[str, Shape] = _shapes()
 
 
 def shape_of(name: str) -> Shape:
