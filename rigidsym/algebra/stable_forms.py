@@ -52,7 +52,10 @@ class Series(NamedTuple):
 @cache
 def series_of(order: int) -> Series:
     """The series of c_k, k ≥ 3, with its switch and its bounds, derived."""
-    switch, closed = _switch(order)
+    switch = _STEP  # the least from which on the closed form keeps its bound
+    while switch < _FURTHEST and _closed_error(order, switch) > _CLOSED:
+        switch += _STEP
+    closed = _closed_error(order, switch)
     value = _enclosed(order, switch)[0]
     terms = taylor(order)
     left_out = (abs(term) * switch**place / value for place, term in enumerate(terms))
@@ -83,18 +86,6 @@ def closed_form(order: int, angle: sp.Expr) -> sp.Expr:
     first = taylor(order - 2)[0]
     start = sp.Rational(first.numerator, first.denominator)
     return (start - closed_form(order - 2, angle)) / angle**2
-
-
-@cache
-def _switch(order: int) -> tuple[Fraction, Fraction]:
-    """The least x from which on the closed form keeps its bound, and its error there in eps."""
-    x = _STEP
-    while x < _FURTHEST:
-        error = _closed_error(order, x)
-        if error <= _CLOSED:
-            return x, error
-        x += _STEP
-    return x, _closed_error(order, x)
 
 
 def _closed_error(order: int, x: Fraction) -> Fraction:

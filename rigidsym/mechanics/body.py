@@ -214,11 +214,8 @@ class BodyValues(Values):
 
     def sum(self, summand: RingMatrix) -> RingMatrix:
         """Σ m of a summand."""
-        return self._sums.of_matrix(summand.scale(self.codec.encode(particles.MASS)))
-
-    @cached_property
-    def _sums(self) -> particles.ParticleSums:
-        return particles.sums_of_body(self.codec, self.body.mass, self.body.inertia)
+        sums = particles.sums_of_body(self.codec, self.body.mass, self.body.inertia)
+        return sums.of_matrix(summand.scale(self.codec.encode(particles.MASS)))
 
     @staticmethod
     def square(vector: RingMatrix) -> RingMatrix:

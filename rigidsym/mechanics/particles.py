@@ -9,6 +9,7 @@ that agree for the generic summand agree for every body, of however many particl
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from functools import lru_cache
 from math import prod
 
 import sympy as sp
@@ -57,6 +58,7 @@ class ParticleSums:
         return summands.map(self.of)
 
 
+@lru_cache(maxsize=32)
 def sums_of_body(codec: Codec, mass: sp.Expr, inertia: sp.ImmutableMatrix) -> ParticleSums:
     """The sums of a body's particles about its centre of mass, in body components.
 

@@ -6,7 +6,6 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from difflib import get_close_matches
-from functools import partial
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -23,7 +22,6 @@ from rigidsym.models.parametrisations import (
     axis_turn,
     chain,
     direction,
-    euler_sequence,
     given,
 )
 from rigidsym.models.rotation import (
@@ -159,11 +157,20 @@ def rotation_from(
             **options, **({"scalar_last": True} if scalar_last else {}), passive=passive
         )
     elif preset:
-        model = _preset(name, preset, preset.names if names is None else names, passive)
-    else:
-        return EulerAngles(
-            _sequence(text), DEFAULT_ANGLES if names is None else names, passive=passive
+        angles = preset.names if names is None else names
+        model = replace(
+            EulerAngles(preset.sequence, angles, passive=preset.passive != passive),
+            name=name + ("_transposed" if passive else ""),
+            title=preset.about[0].upper() + preset.about[1:] + (", transposed" if passive else ""),
+            source=preset.source,
+            z_down=preset.z_down,
         )
+    else:
+        letters = text.translate(DIGITS)
+        if len(letters) != 3 or not set(letters.lower()) <= {*AXES}:
+            shown = text if len(text) <= _SHOWN else text[:_SHOWN] + "…"
+            raise ModelError(f"{shown!r} is not a rotation\n{_meant(text)}")
+        return EulerAngles(text, DEFAULT_ANGLES if names is None else names, passive=passive)
     if model.request and not preset:
         return model  # Euler angles know what asks for them
     asked = {
@@ -256,15 +263,6 @@ def request_of(model: RotationModel) -> Mapping[str, Any]:
     raise ModelError(f"{model.name} was made in Python; no derivation file can ask for it")
 
 
-def _sequence(text: str) -> str:
-    """The Euler sequence in a text; for any other text, what it may have meant."""
-    letters = text.translate(DIGITS)
-    if len(letters) == 3 and set(letters.lower()) <= {"x", "y", "z"}:
-        return euler_sequence(text)
-    shown = text if len(text) <= _SHOWN else text[:_SHOWN] + "…"
-    raise ModelError(f"{shown!r} is not a rotation\n{_meant(text)}")
-
-
 def _meant(text: str) -> str:
     if text in _REMOVED:
         return _REMOVED[text]
@@ -280,24 +278,18 @@ def _meant(text: str) -> str:
     return f"expected {_A_ROTATION} (`rigidsym list`)"
 
 
-def _preset(name: str, preset: Preset, names: Sequence[str], passive: bool) -> RotationModel:
-    """The Euler angles under a name of their own; `passive` turns their presentation over."""
-    return replace(
-        EulerAngles(preset.sequence, names, passive=preset.passive != passive),
-        name=name + ("_transposed" if passive else ""),
-        title=preset.about[0].upper() + preset.about[1:] + (", transposed" if passive else ""),
-        source=preset.source,
-        z_down=preset.z_down,
-    )
-
-
 def _turned(
     text: str, names: Sequence[str] | None, constants: Sequence[str], passive: bool
 ) -> RotationModel:
     if names is not None:
         raise ModelError(f"{text} names its angles itself; leave the other names out")
+
+    def symbol(name: str) -> sp.Expr:
+        plain = check_name(name)
+        is_fixed = plain in constants or _AT_REST.fullmatch(plain)
+        return sp.Symbol(plain) if is_fixed else time_function(plain)
+
     try:
-        symbol = partial(_symbol, constants=constants)
         turns = [_turn(*turn, symbol) for turn in parse_turns(text)]
     except ExpressionError as error:
         raise ExpressionError(f"column {error.column}: {error.message}") from None
@@ -323,9 +315,3 @@ def _turn(axis: str, angle: str, column: int, symbol: Callable[[str], sp.Expr]) 
     exact = [_read(part, {}) for part in parts]
     turn = axis_turn(direction(exact), value)
     return replace(turn, axis=f"[{','.join(part.strip() for part in parts)}]")
-
-
-def _symbol(name: str, constants: Sequence[str]) -> sp.Expr:
-    plain = check_name(name)
-    is_fixed = plain in constants or _AT_REST.fullmatch(plain)
-    return sp.Symbol(plain) if is_fixed else time_function(plain)

@@ -168,10 +168,15 @@ def chain(
     constraints = tuple(dict.fromkeys(c for c in units if not is_identically_zero(c)))
     letters = "".join(turn.axis if turn.axis in AXES else "u" for turn in turns)
     product = " ".join(map(str, turns))
+    steps = [f"{turn.angle_text} about {turn.axis}" for turn in turns]
+    convention = f"One turn: {steps[0]}."
+    if len(steps) > 1:
+        moved = "each about an axis that the turns before it have moved"
+        convention = f"{_counted(turns)}, {moved}: first {', then '.join(steps)}."
     return RotationModel(
         name=name or f"chain_{letters}" + ("_passive" if passive else ""),
         title=title or f"{_counted(turns)} {product}" + (", passive" if passive else ""),
-        convention=(_in_words(turns),),
+        convention=(convention,),
         coordinates=coordinates,
         matrix=product_of(tuple(turns)),
         turns=tuple(turns),
@@ -199,14 +204,6 @@ def axes_example(
         for number, (symbol, part) in zip(numbers, unit_example(symbols, variant), strict=True):
             values[symbol] = sp.sqrt(rest / number) * part
     return tuple(values.items())
-
-
-def _in_words(turns: Sequence[Turn]) -> str:
-    steps = [f"{turn.angle_text} about {turn.axis}" for turn in turns]
-    if len(steps) == 1:
-        return f"One turn: {steps[0]}."
-    moved = "each about an axis that the turns before it have moved"
-    return f"{_counted(turns)}, {moved}: first {', then '.join(steps)}."
 
 
 def _counted(turns: Sequence[Turn]) -> str:

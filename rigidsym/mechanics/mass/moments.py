@@ -231,22 +231,18 @@ class _Integrals:
         point = {s: sp.Rational(7 + k, 5 + 3 * k) for k, s in enumerate(free)}
         count = len(self.solid.coordinates)
         sevenths = [(k,) * count for k in (3, 4, 5)] if free else product((1, 3, 6), repeat=count)
-        signs = {sp.sign(expression.xreplace(self._inside(point, k)).evalf()) for k in sevenths}
+        signs = set()
+        for shares in sevenths:
+            inside = dict(point)  # a place within the bounds, the coordinates one after the other
+            pairs = zip(self.solid.coordinates, self.solid.bounds, shares, strict=True)
+            for coordinate, (low, high), k in pairs:
+                below, above = low.xreplace(inside), high.xreplace(inside)
+                inside[coordinate] = below + (above - below) * sp.Rational(k, 7)
+            signs.add(sp.sign(expression.xreplace(inside).evalf()))
         signs.discard(sp.S.Zero)
         if len(signs) > 1:
             raise BodyError(f"{self.solid.title}: the map folds over: its determinant changes sign")
         return int(signs.pop()) if signs else 1
-
-    def _inside(
-        self, point: dict[sp.Symbol, sp.Expr], sevenths: Sequence[int]
-    ) -> dict[sp.Symbol, sp.Expr]:
-        """A place within the bounds, the coordinates one after the other."""
-        inside = dict(point)
-        pairs = zip(self.solid.coordinates, self.solid.bounds, sevenths, strict=True)
-        for coordinate, (low, high), k in pairs:
-            below, above = low.xreplace(inside), high.xreplace(inside)
-            inside[coordinate] = below + (above - below) * sp.Rational(k, 7)
-        return inside
 
 
 def _presented(
