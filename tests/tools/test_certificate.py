@@ -291,6 +291,25 @@ def test_another_cause_of_the_motion_is_refused(name, place, value):
         checker.verify(changed)
 
 
+def test_a_tensor_that_is_not_symmetric_is_refused():
+    # it is printed as it is described, so that nothing else is false
+    changed = copy.deepcopy(of_motion("box"))
+    changed["quantities"] = [printed(changed, "inertia_tensor")]
+    changed["body"]["inertia"] = changed["quantities"][0]["expression"]
+    checker.verify(changed)
+    changed["body"]["inertia"][0][1] = changed["body"]["inertia"][0][0]
+    with pytest.raises(checker.Refused, match="the inertia tensor is not symmetric"):
+        checker.verify(changed)
+
+
+def test_accelerations_without_the_lagrangian_have_no_theorem():
+    body = rs.principal_moments(A, A, C)
+    motion = rs.derive("ZXZ", [*BASIC[:2], "accelerations"], body=body, potential="cos(theta)")
+    certificate = certificate_of(plain(record(motion, {})))
+    assert "accelerations" in certificate.uncovered
+    assert certificate.claims == [*BASIC[:2]]
+
+
 def times(factor: str, rows: list[list[str]], column: int) -> None:
     for row in rows:
         row[column] = f"{factor}*({row[column]})"

@@ -216,6 +216,8 @@ class _Section:
 
     def trees(self, *names: str) -> list[Tree]:
         """All that is printed of some quantities, with the definitions that they need."""
+        if not {*names} <= {*self.printed}:
+            raise Unstated
         texts, trees = [self.printed[name] for name in names], dict[Tree, None]()
         while texts:
             text = texts.pop()

@@ -36,6 +36,7 @@ PLACE, VELOCITY, AXIS = ["X", "Y", "Z"], ["X_dot", "Y_dot", "Z_dot"], ["n_x", "n
 ABOUT, TORQUE = ["p_x", "p_y", "p_z"], ["torque_1", "torque_2", "torque_3"]
 LETTERS = *PLACE, *VELOCITY, *AXIS, *ABOUT, *TORQUE, *OMEGA["space"], *OMEGA["body"], "pi"
 PRINCIPAL = "principal_axes", "principal_moments"
+DESCRIBED = "matrix", "mass", "centre", "inertia", "potential", "forces", "torque"
 ROTATION = "R is a rotation"
 UNITS = {"rotation_matrix": "", "rotation_rate": "1/s", "spin_matrix": "rad/s"}
 UNITS |= {"angular_velocity": "rad/s", "angular_acceleration": "rad/s^2"}
@@ -321,9 +322,10 @@ class Record:
         self.refuse_words()
         self.spheres = [*map(self.sphere, self.rotation["conditions"])]
         without_twins([(name, "") for sphere in self.spheres for name in sphere])
-        turns = [texts for _, texts in self.turns]
-        texts = [*self.printed.values(), *self.definitions.values(), *turns]
-        self.trees = [*map(tree_of, texts_in([*texts, self.rotation.get("matrix", [])]))]
+        parts = [self.rotation, content.get("body", {}), content.get("motion", {})]
+        texts = [part[name] for part in parts for name in DESCRIBED if name in part]
+        texts += [*self.printed.values(), *self.definitions.values()]
+        self.trees = [*map(tree_of, texts_in([*texts, *(forms for _, forms in self.turns)]))]
         self.refuse_degrees()
 
     def refuse_words(self) -> None:
