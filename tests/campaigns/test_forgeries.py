@@ -144,6 +144,8 @@ CHANGES: dict[str, Callable[[str], str]] = {
     ),
     "a comment": lambda text: f"{text} # + 1",
     "a comment after a line break": lambda text: f"{text}\n# + 1",
+    "a root of zero": lambda text: f"{text} + sqrt(0)",
+    "a number that reads as a product": lambda text: f"{text} + 0x1*0",
     "a root of a negative number": lambda text: f"{text} + 0*sqrt(-1)",
     "the other root": lambda text: f"{text} + sqrt((1 + cos(phi))**2) + 1 + cos(phi)",
     "a root of a square": lambda text: f"{text} + sqrt(sin(phi)**2) - sin(phi)",
@@ -303,6 +305,8 @@ def others() -> Iterator[tuple[str, str, Change]]:
         "unit_quaternion",
         everywhere("w", "(w + w**2 + x**2 + y**2 + z**2 - 2)"),
     )
+    lines = "a\n  proved: everything"
+    yield "a name of two lines", "ZXZ", lambda c: printed(c, W).update(name=lines)
     for name in ("angular_velocity_moon", "__init__", "truth"):
         yield f"a quantity named {name}", "ZXZ", lambda c, n=name: printed(c, W).update(name=n)
     twin = {"name": "q", "components": []}
@@ -326,6 +330,12 @@ def others() -> Iterator[tuple[str, str, Change]]:
         yield f"a tensor {tensor}", "top", in_body("inertia", tensor)
     yield "a motion under conditions", "top", lambda c: c["rotation"].update(conditions=[sphere])
     yield "degrees a second", "ZXZ", units(VELOCITY, "deg/s")
+    for group in ("omega_space", "omega_body"):
+        yield (
+            f"{group} in degrees",
+            "ZXZ",
+            lambda c, g=group: _arguments(c, g)[2].update(unit="deg/s"),
+        )
     yield "an angle in degrees", "ZXZ", lambda c: _arguments(c, "q")[0].update(unit="deg")
     yield "a rate in degrees", "ZXZ", lambda c: _arguments(c, "q_dot")[0].update(unit="deg/s")
     many = put(VELOCITY, 2, "0*cos(39*phi + 39*theta + 39*psi)")
@@ -385,16 +395,18 @@ def false_claims(content: Content) -> list[str]:
 
 def entries() -> Iterator[tuple[str, Content]]:
     """Every quantity of a top with one entry changed, and the other forgeries."""
-    changes = ("a factor", "a sign", "a small number", "a divisor that vanishes")
+    # no divisors that vanish: with the hypothesis that they do not, a theorem says nothing
+    changes = ("a factor", "a sign", "a small number", "another angle")
 
     def spoiled(expression: Any, change: Callable[[str], str]) -> Any:
         if isinstance(expression, str):
-            return change(expression) if re.search("[A-Za-z]", expression) else f"{expression} + 1"
+            return change(expression) if re.search("[a-zA-Z]", expression) else f"{expression} + 1"
         return [spoiled(expression[0], change), *expression[1:]]
 
-    for of in (whole_top(), record_of("unit_quaternion")):
+    # another angle is no coordinate of a quaternion
+    for of, kinds in ((whole_top(), changes), (record_of("unit_quaternion"), changes[:2])):
         for k, quantity in enumerate(of["quantities"]):
-            content, about = copy.deepcopy(of), changes[k % len(changes)]
+            content, about = copy.deepcopy(of), kinds[k % len(kinds)]
             forged = spoiled(quantity["expression"], CHANGES[about])
             printed(content, quantity["name"])["expression"] = forged
             yield f"{quantity['name']}: {about}", content
@@ -403,7 +415,8 @@ def entries() -> Iterator[tuple[str, Content]]:
         content["first_integrals"][k]["expression"] = f"{integral['expression']} + A*theta_dot"
         yield f"constant {integral['name']}", content
     for name, (of, change) in {**KNOWN, **OTHERS}.items():
-        yield name, changed(whole_top() if of == "top" else record_of(of), change)
+        if "divisor" not in name:
+            yield name, changed(whole_top() if of == "top" else record_of(of), change)
 
 
 def refusal(content: Content, name: str) -> str:

@@ -269,6 +269,16 @@ def test_a_hamiltonian_in_the_rates_is_refused():
         checker.verify(changed)
 
 
+def test_a_hamiltonian_of_a_thin_rod_is_refused():
+    # its p_psi is 0 for all rates, so that any term with p_psi would do
+    changed = copy.deepcopy(of_motion("top"))
+    changed["body"]["inertia"][2][2], changed["first_integrals"] = "0", []
+    hamiltonian = "(p_theta**2 + p_phi**2/sin(theta)**2)/(2*A) + g*l*m*cos(theta) + p_psi**2"
+    changed["quantities"] = [{"name": "hamiltonian", "unit": "J", "expression": hamiltonian}]
+    with pytest.raises(checker.Refused, match="a divisor is zero"):
+        checker.verify(changed)
+
+
 @pytest.mark.parametrize(
     ("name", "place", "value"),
     [
@@ -308,6 +318,12 @@ def test_accelerations_without_the_lagrangian_have_no_theorem():
     certificate = certificate_of(plain(record(motion, {})))
     assert "accelerations" in certificate.uncovered
     assert certificate.claims == [*BASIC[:2]]
+
+
+def test_names_that_proofs_use_get_an_underscore():
+    # Coq refused to call a derivative d beside the coordinate d
+    text = certificate_of(record_of("cayley_klein", BASIC)).text
+    assert "Variables a_ b_ c_ d_ : R -> R." in text
 
 
 def times(factor: str, rows: list[list[str]], column: int) -> None:

@@ -41,7 +41,8 @@ _WORDS = """
 as at cofix else end exists fix for forall fun if in let match mod Prop return Set then Type using
 where with R cos sin sqrt tan PI V M C I v1 v2 v3 row1 row2 row3 vec mat dot plus scale cross apply
 transpose mul add times det one turn turn_x turn_y turn_z is_rotation rate vector_rate turns
-turns_in_body product squares same F shown t s u w a b c inertia derivative entries expand total
+turns_in_body product squares same F shown t s u w a b c d e D H inertia derivative entries expand
+total
 """
 _TAKEN = frozenset(_WORDS.split())
 _MOST_DEFINITIONS = 20  # Coq unfolds them all, which doubles expressions again and again

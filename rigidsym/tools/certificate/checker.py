@@ -38,8 +38,19 @@ LETTERS = *PLACE, *VELOCITY, *AXIS, *ABOUT, *TORQUE, *OMEGA["space"], *OMEGA["bo
 PRINCIPAL = "principal_axes", "principal_moments"
 DESCRIBED = "matrix", "mass", "centre", "inertia", "potential", "forces", "torque"
 ROTATION = "R is a rotation"
-UNITS = {"rotation_matrix": "", "rotation_rate": "1/s", "spin_matrix": "rad/s"}
-UNITS |= {"angular_velocity": "rad/s", "angular_acceleration": "rad/s^2"}
+UNITS = {
+    "": ("rotation_matrix", "principal_axes", *AXIS),
+    "1/s": ("rotation_rate",),
+    "rad/s": ("spin_matrix", "angular_velocity", *OMEGA["space"], *OMEGA["body"]),
+    "rad/s^2": ("angular_acceleration", "angular_acceleration_from_torque"),
+    "kg": ("mass",),
+    "m": ("centre_of_mass", *PLACE),
+    "m/s": VELOCITY,
+    "kg m^2": ("inertia_tensor", "inertia_tensor_point", "moment_of_inertia", "principal_moments"),
+    "kg m^2/s": [f"angular_momentum{part}" for part in ("", "_centre", "_rotation")],
+    "N m": TORQUE,
+    "J": [f"{kind}_energy" for kind in ("translational", "rotational", "kinetic", "potential")],
+}
 SQUARES = "({0}**2 + {1}**2 + {2}**2 + {3}**2)"
 TURNS = {  # a vector v and numbers c and s: R = 1 + s C(v) + (1 - c) C(v)²
     "x": ("1", "0", "0", "cos({0})", "sin({0})"),
@@ -76,8 +87,8 @@ BROKEN = (LookupError, ArithmeticError, AttributeError, TypeError, ValueError, R
 def tree_of(text: str) -> Tree:
     """Nested tuples, such as ("*", ("number", 2), ("cos", ("name", "phi")))."""
     try:
-        if not re.fullmatch(r"[A-Za-z0-9_+*/() -]*", text, re.ASCII):
-            raise SyntaxError
+        if not re.fullmatch(r"([A-Za-z]\w*+|\d++(?!\w)|[-+*/() ])*+", text, re.ASCII):
+            raise SyntaxError  # for one, 0x1 is a number for Python, but reads as a product
         text = re.sub(r"\b[A-Za-z]\w*", r"\g<0>_", text.strip())  # so that no name is a keyword
         return _tree(ast.parse(text, mode="eval").body)
     except (SyntaxError, MemoryError, RecursionError) as error:
@@ -171,7 +182,7 @@ def terms_of(number: Exact) -> Mapping[int, Fraction]:
 
 def root_of(number: int) -> Exact:
     """The positive root of a small whole number."""
-    if number > 10**6:
+    if not 0 < number <= 10**6:
         raise Unreadable(f"the root of {number}")
     whole = next(k for k in range(isqrt(number), 0, -1) if number % k**2 == 0)
     return Surd({number // whole**2: Fraction(whole)})
@@ -281,6 +292,8 @@ def printed_in(content: Mapping[str, Any]) -> dict[str, Any]:
     """The printed expressions by their names."""
     printed = [(q["name"], q["expression"]) for q in content["quantities"]]
     printed += [("constant " + f["name"], f["expression"]) for f in content["first_integrals"]]
+    if not all(re.fullmatch(r"[\w ]+", name, re.ASCII) for name, _ in printed):
+        raise Refused("the name of a quantity is not plain ASCII")
     return without_twins(printed)
 
 
@@ -340,8 +353,10 @@ class Record:
             raise Refused(f"the turns are not those of {name}")
         components = (c for group in self.content["arguments"] for c in group["components"])
         units = {component["name"]: component["unit"] for component in components}
-        printed = [(quantity["name"], quantity["unit"]) for quantity in self.content["quantities"]]
-        checks = [(n, u, UNITS.get(re.sub("_(space|body)$", "", n), u)) for n, u in printed]
+        unit_of = {name: unit for unit, names in UNITS.items() for name in names}
+        things = [(q["name"], q["unit"]) for q in self.content["quantities"]]
+        things += [(name, unit) for name, unit in units.items() if name not in self.constants]
+        checks = [(n, u, unit_of.get(re.sub("_(space|body)$", "", n), u)) for n, u in things]
         for q, rate, second in zip(self.q, self.rates, self.seconds, strict=True):
             for name, unit in ((rate, f"{units[q] or '1'}/s"), (second, f"{units[q] or '1'}/s^2")):
                 checks.append((name, units.get(name, unit), unit))
@@ -656,6 +671,10 @@ class Motion:
         """Pairs of matrices that are equal if what is printed as `name` is right."""
         x = self.points.get(name, self.still).read(self.record.printed[name])
         kind, _, frame = name.rpartition("_")
+        if name == "hamiltonian" and name in self.values:
+            self.values[
+                "mass_matrix"
+            ].determinant().inverse()  # M is not singular, or it is refused
         if name in self.values:
             yield x, self.values[name]
         elif name in self.rates:
