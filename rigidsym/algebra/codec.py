@@ -40,31 +40,31 @@ def codec_for(
     that ask for the same generators share one ring, with all that it remembers.
     Raises AlgebraError for an expression that no ring of this kind can hold.
     """
-    held_to = tuple(sp.sympify(constraint, strict=True) for constraint in constraints)
+    conditions = tuple(sp.sympify(constraint, strict=True) for constraint in constraints)
     needed = GeneratorSet(order)
-    for expression in dict.fromkeys((*expressions, *held_to)):
+    for expression in dict.fromkeys((*expressions, *conditions)):
         needed.collect(sp.sympify(expression, strict=True))
     needed.close()
     return _shared(
         tuple(needed.generators()),
         tuple(needed.fractions.items()),
-        held_to,
+        conditions,
         order,
-        needed.needs_fractions or bool(held_to),
+        needed.needs_fractions or bool(conditions),
     )
 
 
 @lru_cache(maxsize=32)
 def _shared(
-    found: tuple[tuple[sp.Expr, Kind], ...],
+    kinds: tuple[tuple[sp.Expr, Kind], ...],
     fractions: tuple[tuple[sp.Expr, sp.Rational], ...],
     constraints: tuple[sp.Expr, ...],
     order: int,
     has_fractions: bool,
 ) -> Codec:
-    generators = [Generator(expression=e, opaque=is_uncertain(e, kind)) for e, kind in found]
+    generators = [Generator(expression=e, opaque=is_uncertain(e, kind)) for e, kind in kinds]
     codec = Codec(Ring(generators, has_fractions=has_fractions), dict(fractions))
-    codec.settle(found, constraints, order)
+    codec.settle(kinds, constraints, order)
     return codec
 
 
@@ -74,23 +74,23 @@ class Codec:
     def __init__(self, ring: Ring, fractions: Combination) -> None:
         self.ring = ring
         self._fractions = fractions
-        self._known: dict[sp.Expr, Quotient] = {}
+        self._quotients: dict[sp.Expr, Quotient] = {}
         self._pairs: dict[sp.Expr, Pair] = {}
 
     def settle(
         self,
-        found: Sequence[tuple[sp.Expr, Kind]],
+        kinds: Sequence[tuple[sp.Expr, Kind]],
         constraints: Sequence[sp.Expr],
         order: int,
     ) -> None:
         """Give the ring its relations and derivatives, now that expressions can be read."""
-        relations = [r for e, kind in found if (r := self._relation(e, kind)) is not None]
-        relations += self._between_roots(found)
+        relations = [r for e, kind in kinds if (r := self._relation(e, kind)) is not None]
+        relations += self._between_roots(kinds)
         self._set_relations(relations)
         self.ring.set_derivatives(
             {
                 place: self.encode(rate_of(e))
-                for place, (e, _) in enumerate(found)
+                for place, (e, _) in enumerate(kinds)
                 if not is_highest(e, order)
             }
         )
@@ -106,7 +106,7 @@ class Codec:
 
     def _set_relations(self, relations: Iterable[PolyElement]) -> None:
         self.ring.set_relations(relations)
-        self._known.clear()  # what was read before is not in the new normal form
+        self._quotients.clear()  # what was read before is not in the new normal form
         self._pairs.clear()
 
     def _relation(self, expression: sp.Expr, kind: Kind) -> PolyElement | None:
@@ -124,10 +124,10 @@ class Codec:
             return gen**2 + cosine**2 - 1
         return None
 
-    def _between_roots(self, found: Sequence[tuple[sp.Expr, Kind]]) -> list[PolyElement]:
+    def _between_roots(self, kinds: Sequence[tuple[sp.Expr, Kind]]) -> list[PolyElement]:
         """What vanishes between roots of one base: (2^(1/4))² = 2^(1/2)."""
         ring = self.ring
-        roots = [e for e, kind in found if kind is Kind.RADICAL and e.is_Pow]
+        roots = [e for e, kind in kinds if kind is Kind.RADICAL and e.is_Pow]
         return [
             ring.generator(ring.index[deep]) ** int(deep.exp.q // shallow.exp.q)
             - ring.generator(ring.index[shallow])
@@ -155,9 +155,9 @@ class Codec:
         """Expressions as a column over the ring, (n, 1)."""
         return RingMatrix.column(self.ring, map(self.encode, expressions))
 
-    def matrix(self, given: sp.MatrixBase) -> RingMatrix:
+    def matrix(self, expressions: sp.MatrixBase) -> RingMatrix:
         """A matrix of expressions over the ring."""
-        return RingMatrix.of(self.ring, [map(self.encode, row) for row in given.tolist()])
+        return RingMatrix.of(self.ring, [map(self.encode, row) for row in expressions.tolist()])
 
     def decoded(self, matrix: RingMatrix) -> sp.ImmutableMatrix:
         """A matrix over the ring as expressions."""
@@ -168,10 +168,10 @@ class Codec:
 
         Raises AlgebraError for an expression with a part that the ring was not built for.
         """
-        known = self._known.get(expression)
-        if known is None:
-            known = self._known[expression] = self._walk(sp.sympify(expression, strict=True))
-        return known
+        value = self._quotients.get(expression)
+        if value is None:
+            value = self._quotients[expression] = self._walk(sp.sympify(expression, strict=True))
+        return value
 
     def _walk(self, expression: sp.Expr) -> Quotient:
         ring = self.ring
@@ -242,11 +242,9 @@ class Codec:
 
     def _cosine_sine(self, argument: sp.Expr) -> Pair:
         """Cosine and sine of a rational combination of angles, by addition."""
-        known = self._pairs.get(argument)
-        if known is not None:
-            return known
-        ring = self.ring
-        pair = ring.one, ring.zero
+        if argument in self._pairs:
+            return self._pairs[argument]
+        pair = self.ring.one, self.ring.zero
         for atom, coefficient in self._in_angles(argument).items():
             pair = self._added(pair, self._multiple(atom, coefficient))
         self._pairs[argument] = pair
@@ -259,10 +257,10 @@ class Codec:
             return terms
         atoms = {a for e in (argument, *self._fractions) for a in combination(e) if a is not sp.pi}
         own, wanted = coefficients(self._fractions, atoms), coefficients([argument], atoms)
-        found = wanted * own.T * (own * own.T).inv()
-        if found * own != wanted:
+        solution = wanted * own.T * (own * own.T).inv()
+        if solution * own != wanted:
             raise self._foreign(sp.sin(argument))
-        times = dict(zip((*self._fractions, sp.pi), (*found, terms.get(sp.pi, 0)), strict=True))
+        times = dict(zip((*self._fractions, sp.pi), (*solution, terms.get(sp.pi, 0)), strict=True))
         return {angle: coefficient for angle, coefficient in times.items() if coefficient}
 
     def _multiple(self, atom: sp.Expr, coefficient: sp.Rational) -> Pair:

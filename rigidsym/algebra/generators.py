@@ -39,8 +39,8 @@ def combination(argument: sp.Expr) -> Combination:
     for coefficient in terms.values():
         if not coefficient.is_Rational:
             raise not_exact(coefficient)
-    found = {atom: coefficient for atom, coefficient in terms.items() if coefficient}
-    return _without_zeros(found) if any(map(_has_root, found)) else found
+    combined = {atom: coefficient for atom, coefficient in terms.items() if coefficient}
+    return _without_zeros(combined) if any(map(_has_root, combined)) else combined
 
 
 def reduced(angle: sp.Expr) -> sp.Expr:
@@ -48,10 +48,10 @@ def reduced(angle: sp.Expr) -> sp.Expr:
     terms = sp.expand(angle).as_coefficients_dict()
     if not any(_is_quotient(term) or _has_root(term) for term in terms):
         return angle
-    found = combination(angle)
-    if found == {term: c for term, c in terms.items() if c}:
+    combined = combination(angle)
+    if combined == {term: c for term, c in terms.items() if c}:
         return angle
-    return sp.Add(*(coefficient * term for term, coefficient in found.items()))
+    return sp.Add(*(coefficient * term for term, coefficient in combined.items()))
 
 
 def is_sum_of(angle: sp.Expr, *parts: sp.Expr) -> bool:
@@ -247,10 +247,10 @@ class GeneratorSet:
 
     def generators(self) -> list[tuple[sp.Expr, Kind]]:
         """All generators in the order of their kinds, sines and cosines over common fractions."""
-        found = list(self.kinds.items())
+        generators = list(self.kinds.items())
         for atom, fraction in self.fractions.items():
-            found += _sine_and_cosine(atom, fraction)
-        return sorted(found, key=lambda pair: pair[1])
+            generators += _sine_and_cosine(atom, fraction)
+        return sorted(generators, key=lambda pair: pair[1])
 
     @cached_property
     def fractions(self) -> Combination:
@@ -259,10 +259,10 @@ class GeneratorSet:
         In the order of the rates of the atoms, where those were asked for, so that rotations of
         the same coordinates share a ring. To be read once all is collected.
         """
-        found = common_fractions(self._angles)
+        common = common_fractions(self._angles)
         places = {expression: place for place, expression in enumerate(self.kinds)}
-        in_order = sorted(found, key=lambda atom: places.get(rate_of(atom), len(places)))
-        return {atom: found[atom] for atom in in_order}
+        in_order = sorted(common, key=lambda atom: places.get(rate_of(atom), len(places)))
+        return {atom: common[atom] for atom in in_order}
 
     @property
     def needs_fractions(self) -> bool:

@@ -177,7 +177,7 @@ class Solver:
             if angle == length or set(combination(angle)) <= set(coordinates):
                 angles.append(_Angle(sine, cosine, fraction, angle, angle == length))
         self._angles = tuple(angles)
-        self._known: dict[PolyElement, list[Root] | None] = {}
+        self._of_factors: dict[PolyElement, list[Root] | None] = {}
         self.missing: set[sp.Expr] = set()  # roots of numbers that the ring would need for more
         self._constant = {
             place for place, gen in enumerate(self._ring.generators) if not gen.expression.has(TIME)
@@ -185,34 +185,34 @@ class Solver:
 
     def common(self, elements: Iterable[PolyElement]) -> tuple[list[Zero], bool]:
         """The common zeros of the elements, and whether all were found."""
-        found: dict[frozenset[Root], Zero] = {}
-        is_complete = self._search(list(elements), (), found)
-        zeros = [zero for key, zero in found.items() if not any(other < key for other in found)]
-        return sorted(zeros, key=lambda zero: sorted(root.order for root in zero)), is_complete
+        zeros: dict[frozenset[Root], Zero] = {}
+        is_complete = self._search(list(elements), (), zeros)
+        least = [zero for key, zero in zeros.items() if not any(other < key for other in zeros)]
+        return sorted(least, key=lambda zero: sorted(root.order for root in zero)), is_complete
 
     def is_never_zero(self, element: PolyElement) -> bool:
         """Whether the form of an element tells that it vanishes nowhere."""
         return element.is_ground or self._roots(shortest(self._ring, element)) == []
 
     def _search(
-        self, elements: Sequence[PolyElement], zero: Zero, found: dict[frozenset[Root], Zero]
+        self, elements: Sequence[PolyElement], zero: Zero, zeros: dict[frozenset[Root], Zero]
     ) -> bool:
         """Enter the common zeros that have the roots of `zero` already; whether these are all."""
         last = zero[-1:]
         there = (self._ring.reduce(substituted(e, last)) if last else e for e in elements)
-        left = list(dict.fromkeys(element for element in there if element))
-        if not left:
-            found[frozenset(zero)] = zero
+        remaining = list(dict.fromkeys(element for element in there if element))
+        if not remaining:
+            zeros[frozenset(zero)] = zero
             return True
-        if any(element.is_ground for element in left):
+        if any(element.is_ground for element in remaining):
             return True
-        left = list(dict.fromkeys(shortest(self._ring, element) for element in left))
-        solved = [roots for element in left if (roots := self._roots(element)) is not None]
+        remaining = list(dict.fromkeys(shortest(self._ring, element) for element in remaining))
+        solved = [roots for element in remaining if (roots := self._roots(element)) is not None]
         if not solved:
             return False
         is_complete = True
         for root in min(solved, key=len):
-            is_complete &= self._search(left, (*zero, root), found)
+            is_complete &= self._search(remaining, (*zero, root), zeros)
         return is_complete
 
     def _roots(self, element: PolyElement) -> list[Root] | None:
@@ -224,12 +224,12 @@ class Solver:
         else:
             factors = [factor for factor, _ in element.factor_list()[1]]
         for factor in factors:
-            if factor not in self._known:
-                self._known[factor] = self._roots_of_factor(factor)
-            found = self._known[factor]
-            if found is None:
+            if factor not in self._of_factors:
+                self._of_factors[factor] = self._roots_of_factor(factor)
+            of_factor = self._of_factors[factor]
+            if of_factor is None:
                 return None
-            roots.update(dict.fromkeys(found))
+            roots.update(dict.fromkeys(of_factor))
         return list(roots)
 
     def _roots_of_factor(self, factor: PolyElement) -> list[Root] | None:
