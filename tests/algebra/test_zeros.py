@@ -67,6 +67,8 @@ def test_zeros_of_a_sum_of_two_angles_name_one_by_the_other(function, angle):
 def test_a_polynomial_that_is_not_solved_says_so():
     assert zeros(sin(phi) - sin(theta)) == ([], False)
     assert zeros(cos(phi) ** 3 + 2 * cos(phi) + 1) == ([], False)
+    mixed = sin(phi) * cos(phi) + Rational(3, 5) * cos(phi) + Rational(4, 5) * sin(phi)
+    assert zeros(mixed) == ([], False)
 
 
 @pytest.mark.parametrize("expression", [cos(phi) ** 3 + 3, cos(phi) ** 4 + cos(phi) + 2])
