@@ -292,6 +292,12 @@ def test_hostile_files_are_passed_over(text):
         assert [each for each in formulas(text, suffix) if each.forms] == []
 
 
+def test_a_call_without_arguments_may_be_longer_than_a_line():
+    turn = "def turn():\n    return [[1, 0, 0], [0, 0, -1], [0, 1, 0]]\nR = turn(\n)\n"
+    rows = "[[cos(a), -sin(a), 0], [sin(a), cos(a), 0], [0, 0, 1]]"
+    assert [each.line for each in formulas(f"{turn}S = {rows}", ".py")] == [5]
+
+
 def test_two_wrong_entries_of_a_printed_rotation_matrix_are_found():
     (claim,) = tomllib.loads((ROOT / "docs/literature/docs_quad.toml").read_text())["formula"]
     found = rs.compare(claim["printed"], claim["rotation"], claim["ours"])

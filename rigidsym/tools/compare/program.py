@@ -869,7 +869,7 @@ class _Interpreter:
         leaves = [*nodes]
         while len(leaves) < len(grid.entries):
             parts = [call_of(n).arguments if _is_call(n) else children(n) for n in leaves]
-            if not all(n.type in PARTS["list"] or _is_call(n) for n in leaves):
+            if not leaves or not all(n.type in PARTS["list"] or _is_call(n) for n in leaves):
                 return {}
             leaves = [leaf for each in parts for leaf in each]
         try:
