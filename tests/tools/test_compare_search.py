@@ -47,22 +47,18 @@ def test_notations_are_read_as_one_language(text, read):
     assert formula_matrix(text) == expected
 
 
-@pytest.mark.parametrize("name", ["ZXZ", "xyz", "unit_quaternion"])
-def test_printed_latex_of_notes_is_read_back(name):
-    motion = rs.derive(name)
+def test_printed_latex_of_notes_is_read_back():
+    motion = rs.derive("ZXZ")
     for quantity in ("rate_matrix_body", "angular_velocity_space", "inverse_rate_matrix_space"):
-        text = motion.latex(quantity)
-        if "pmatrix" in text:
-            assert rs.compare(text, motion, quantity).is_equal, text
+        assert rs.compare(motion.latex(quantity), motion, quantity).is_equal
 
 
-@pytest.mark.parametrize("quantity", ["rotation_matrix", "angular_velocity_body"])
-def test_the_length_of_a_vector_is_called_n_as_in_notes(quantity):
-    motion = rs.derive("quaternion", quantity)
-    text = motion.latex(quantity)
+def test_the_length_of_a_vector_is_called_n_as_in_notes():
+    motion = rs.derive("quaternion", "rotation_matrix")
+    text = motion.latex("rotation_matrix")
     assert "n^2" in text
-    assert rs.compare(text, motion, quantity).is_proved
-    assert not rs.compare(text.replace("n^2", "n"), motion, quantity).is_equal
+    assert rs.compare(text, motion, "rotation_matrix").is_proved
+    assert not rs.compare(text.replace("n^2", "n"), motion, "rotation_matrix").is_equal
 
 
 @pytest.mark.parametrize(
@@ -83,28 +79,19 @@ def test_hostile_text_is_refused(text):
 ABOUT_X = r"\begin{bmatrix}1&0&0\\0&c\phi&-s\phi\\0&s\phi&c\phi\end{bmatrix}"
 ABOUT_Z = r"\begin{bmatrix}\cosψ&-\sin\psi&0\\ \sin\psi&\cos\psi&0\\0&0&1\end{bmatrix}"
 RATES = r"\begin{pmatrix}\dot\phi\\ \dot\theta\\ \dot\psi\end{pmatrix}"
-TO_BODY = r"[1&0&-s_\theta\\0&c_\phi&s_\phi c_\theta\\0&-s_\phi&c_\phi c_\theta]"
+TO_BODY = r"1&0&-s_\theta\\0&c_\phi&s_\phi c_\theta\\0&-s_\phi&c_\phi c_\theta"
+PRODUCTS = {
+    rf"\mathbf{{A}} = \left({ABOUT_Z}{ABOUT_X}\right)^\top.": "rotation_matrix of z(first) "
+    "x(second), transposed (passive, the direction cosine matrix)",
+    rf"{RATES} = \left[\begin{{array}}{{ccc}}{TO_BODY}\end{{array}}\right] {RATES}": "angular_"
+    "velocity_body of xyz",
+}
 
 
-@pytest.mark.parametrize(
-    ("text", "read"),
-    [
-        (f"R = {ABOUT_Z}{ABOUT_X}", "rotation_matrix of z(first) x(second)"),
-        (
-            rf"\mathbf{{A}} = \left({ABOUT_Z}{ABOUT_X}\right)^\top.",
-            "rotation_matrix of z(first) x(second), transposed (passive, the direction cosine "
-            "matrix)",
-        ),
-        (
-            rf"{RATES} = \left[\begin{{array}}{{ccc}}{TO_BODY[1:-1]}\end{{array}}\right] {RATES}",
-            "angular_velocity_body of xyz",
-        ),
-    ],
-)
+@pytest.mark.parametrize(("text", "read"), PRODUCTS.items(), ids=range(len(PRODUCTS)))
 def test_products_and_transposes_of_matrices_are_read_in_latex(text, read):
     found = rs.compare(text)
-    assert found.found.described == read
-    assert found.is_proved
+    assert (found.found.described, found.is_proved) == (read, True)
 
 
 @pytest.mark.parametrize(
@@ -178,19 +165,6 @@ def rot(roll, pitch):  # R = [[1, 2]]
     ]
 
 
-def test_quaternion_kinematics_is_found_in_c(tmp_path):
-    text = """
-void rate(float gx) { /* Madgwick */
-    qDot1 = 0.5f * (-q1 * gx - q2 * gy - q3 * gz);
-    qDot2 = 0.5f * (q0 * gx + q2 * gz - q3 * gy);
-    qDot3 = 0.5f * (q0 * gy - q1 * gz + q3 * gx);
-    qDot4 = 0.5f * (q0 * gz + q1 * gy - q2 * gx);
-}"""
-    (found,) = found_in(tmp_path, "a.c", text)
-    assert found.comparison.found.quantity == "rates_from_angular_velocity_body"
-    assert found.comparison.is_equal
-
-
 def test_a_declaration_in_c_may_hold_several_names(tmp_path):
     source = tmp_path / "dcm.c"
     source.write_text(
@@ -213,10 +187,6 @@ def test_a_declaration_in_c_may_hold_several_names(tmp_path):
     [
         ("R << cos(a), -sin(a), 0, sin(a), cos(a), 0, 0, 0, 1;\nS = R;", [(1, "R")]),
         ("p = cos(a)*x - sin(a)*y;\nq = sin(a)*x + cos(a)*y;\nr = z;", [(1, "p, q, r")]),
-        (
-            "m[0] = cos(a); m[1] = sin(a); m[2] = 0;\nm[0] = sin(b); m[1] = cos(b); m[2] = 1;",
-            [(1, "m"), (2, "m")],  # written anew
-        ),
         ("k[0] = cos(a); k[0][1] = sin(a);", []),
         ("n[0][0] = cos(a); n[1][1] = sin(a);", []),
         ("v << cos(a), sin(a), cos(b), sin(b), 1;", []),
@@ -228,27 +198,12 @@ def test_streams_components_and_entries_are_followed(text, expected):
     assert [(each.line, each.name) for each in formulas(body, ".cpp") if each.forms] == expected
 
 
-def test_a_wrong_entry_of_a_matrix_filled_entry_by_entry_is_named(tmp_path):
-    entries = {
-        "0][0": "1 - 2*(y*y + z*z)", "0][1": "2*(x*y - w*z)", "0][2": "2*(x*z + w*y)",
-        "1][0": "2*(x*y + w*z)", "1][1": "1 - 2*(x*x + z*z)", "1][2": "2*(y*z + w*x)",
-        "2][0": "2*(x*z - w*y)", "2][1": "2*(y*z + w*x)", "2][2": "1 - 2*(x*x + y*y)",
-    }  # fmt: skip
-    text = "\n".join(f"  m[{place}] = {entry};" for place, entry in entries.items())
-    (found,) = found_in(tmp_path, "a.cpp", text)
-    (repair,) = found.comparison.repairs
-    assert (repair.place, repair.kind, found.formula.line) == ((2, 3), "sign", 1)
-
-
 PUBLIC = {  # formula: (rotation, quantity, kind and entry of the error)
     # mugreenstein/AE-352-Final-Project, source/math.py, line 6
     "R = [cos(phi)*cos(psi)-cos(theta)*sin(phi)*sin(psi), -cos(psi)*sin(phi)-cos(phi)*cos(theta)"
     "*sin(psi), sin(theta)*sin(psi); cos(theta)*cos(psi)*sin(phi)+cos(phi)*sin(psi), cos(phi)*"
     "cos(psi)-sin(phi)*sin(psi), -cos(psi)*sin(theta); sin(phi)*sin(theta), cos(phi)*sin(theta), "
     "cos(theta)];": ("zxz", "rotation_matrix", ("product", (2, 2))),
-    # yzd0014/Matlab-Codes, EulerDot.m, line 4
-    "A=sym([1 0 -sin(beta);0 cos(alpha) sin(alpha)*cos(beta);0 -sin(alpha) cos(alpha)*cos(beta)]);":
-    ("xyz", "rate_matrix_body", None),
     # duncang/dmnl, functions/T_EulerRate2pqrbody.m
     "Ctheta = cos(T); Cphi = cos(P); Stheta = sin(T); Sphi = sin(P);\nM(1,1)=1;M(1,2)=0;M(1,3)="
     "-Stheta;M(2,1)=0;M(2,2)=Cphi;M(2,3)=Ctheta*Sphi;M(3,1)=0;M(3,2)=-Sphi;M(3,3)=Ctheta*Cphi;":
@@ -344,17 +299,9 @@ def test_a_folder_without_formulas_is_told_from_a_right_one(tmp_path):
     assert "expected at least 1 (--require)" in required.stderr
 
 
-@pytest.mark.parametrize(
-    ("given", "message"),
-    [
-        (["--rotation", "ZYX"], "a formula is compared with --quantity NAME of --rotation"),
-        (["--quantity", "rate_matrix_body"], "a formula is compared with --quantity NAME"),
-        (["--passive"], "without both, all known quantities are tried"),
-    ],
-)
-def test_half_of_what_is_compared_with_is_refused(given, message, tmp_path):
-    wrong = call("compare", "--formula", "[a, b, c]", *given, cwd=tmp_path, status=2)
-    assert message in wrong.stderr
+def test_half_of_what_is_compared_with_is_refused(tmp_path):
+    wrong = call("compare", "--formula", "[a, b, c]", "--rotation", "ZYX", cwd=tmp_path, status=2)
+    assert "a formula is compared with --quantity NAME of --rotation" in wrong.stderr
 
 
 TURN = "np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])"
@@ -419,16 +366,6 @@ def test_a_choice_may_end_at_any_break(tmp_path):
             "float R[9] = {c, -s, 0, s, c, 0, 0, 0, 1}; }"
         )
         assert len(found_in(tmp_path, "a.c", text)) == count
-
-
-def test_a_quaternion_with_the_other_sign_of_its_vector_is_transposed(tmp_path):
-    rows = (
-        "[[1-2*(y*y+z*z), 2*(x*y-w*z), 2*(x*z+w*y)], [2*(x*y+w*z), 1-2*(x*x+z*z), 2*(y*z-w*x)], "
-        "[2*(x*z-w*y), 2*(y*z+w*x), 1-2*(x*x+y*y)]]"
-    )
-    text = f"def f(w, x, y, z):\n    x, y, z = -x, -y, -z\n    return {rows}\n"
-    (found,) = found_in(tmp_path, "a.py", text)
-    assert "transposed" in str(found)
 
 
 LANGUAGES = {
@@ -567,12 +504,6 @@ def test_what_cannot_be_read_is_listed_with_its_reason(tmp_path):
     assert "a.py:4: returned: not read, since s in line 3 cannot be read" in done.stderr
 
 
-def test_names_that_unpack_a_vector_are_names(tmp_path):
-    text = f"def f(e):\n    a, b, c = e\n    return np.array({W_BODY})\n"
-    (found,) = found_in(tmp_path, "a.py", text)
-    assert str(found.comparison.found) == "rate_matrix_body of xyz"
-
-
 def test_a_transposed_rate_matrix_of_a_program_may_be_meant(tmp_path):
     transposed = "[[1, 0, 0], [0, cos(a), -sin(a)], [-sin(b), sin(a)*cos(b), cos(a)*cos(b)]]"
     assert [r.kind for r in rs.compare(transposed).repairs] == ["transpose"]
@@ -580,22 +511,15 @@ def test_a_transposed_rate_matrix_of_a_program_may_be_meant(tmp_path):
 
 
 def test_rates_in_arrays_are_read_in_c(tmp_path):
-    quaternion = "\n".join(
-        f"  w[{k}] = 2*(q[0]*qd[{k + 1}] - q[{k + 1}]*qd[0] - q[{a}]*qd[{b}] + q[{b}]*qd[{a}]);"
-        for k, (a, b) in enumerate([(2, 3), (3, 1), (1, 2)])
-    )
     angles = (
         "  w[0] = ed[0] - ed[2]*sin(e[1]);\n"
         "  w[1] = ed[1]*cos(e[0]) + ed[2]*sin(e[0])*cos(e[1]);\n"
         "  w[2] = ed[2]*cos(e[0])*cos(e[1]) - ed[1]*sin(e[0]);\n"
     )
     others = angles.replace("ed[", "u[")
-    text = "".join(f"void f(void) {{\n{body}\n}}\n" for body in (quaternion, angles, others))
+    text = "".join(f"void f(void) {{\n{body}\n}}\n" for body in (angles, others))
     found = [str(f.comparison.found) for f in found_in(tmp_path, "a.c", text)]
-    assert found == [
-        "angular_velocity_body of unit_quaternion",
-        *["angular_velocity_body of ZYX"] * 2,
-    ]
+    assert found == ["angular_velocity_body of ZYX"] * 2
 
 
 # Euler angles from a matrix or a quaternion

@@ -13,7 +13,7 @@ import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import product
+from itertools import islice, product
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
@@ -65,9 +65,10 @@ _DEEPEST = 60  # nested nodes of an expression; formulas of real programs have f
 _DEEPEST_BLOCK = 40
 _LONGEST_LIST = 64
 _MOST_FORMULAS = 1_000  # of a file
-_MOST_STEPS = 20_000  # expressions of a file: what takes some ten seconds
+_MOST_STEPS = 12_000  # expressions of a file: what takes some ten seconds
 _MOST_NODES = 400_000  # of a file: a generated megabyte is not worth reading
 _MOST_CHARACTERS = 20_000  # of a formula
+_LONGEST = 40  # parts of a value without a symbol of its own
 _LONG_IN_LONG = 3  # symbols for long values that use other such symbols
 _MOST_PARTS = 2_000  # of a matrix
 _INLINED = 3  # calls of functions of the same file inside one another
@@ -84,7 +85,7 @@ _HARMLESS = re.compile(
 )
 _AXES = {"x": 0, "y": 1, "z": 2, "X": 0, "Y": 1, "Z": 2}
 _CLAMPS = re.compile(r"clip|clamp|constrain", re.IGNORECASE)
-_TRIGONOMETRIC = (sp.sin, sp.cos, sp.tan)
+_SHORT = (sp.sin, sp.cos, sp.tan)  # functions in values that get no symbol
 _INVERSE = (sp.atan2, sp.asin, sp.acos, sp.atan)
 _DEGREE = 180 / sp.pi
 _OPERATORS = ("+", "-", "*", "/", "**", "@")
@@ -217,9 +218,12 @@ class _Program:
 
 def program_formulas(text: str, suffix: str) -> list[Formula]:
     """All matrices and vectors of a program, in the order of its lines."""
-    root = parsed(text, suffix)
+    try:
+        root = parsed(text, suffix)
+    except ExpressionError as error:
+        return [Formula(line=1, name="", reason=str(error))]
     if root.descendant_count > _MOST_NODES:
-        return []
+        return [Formula(line=1, name="", reason="the file is too long")]
     functions = [node for node in below([root]) if node.type in PARTS["function"]]
     by_name = {name: node for node in functions if (name := function_name(node))}
     is_numpy = suffix == ".py" and bool(_NUMPY.search(text)) and not _MATRICES.search(text)
@@ -424,14 +428,10 @@ class _Interpreter:
         self.lines[name] = line
         value = self._renamed(name, value)
         is_first = name not in self.inputs and name not in self.state.values
-        is_long = (
-            value.is_Add
-            or value.is_number
-            or not all(
-                isinstance(function, _TRIGONOMETRIC) for function in value.atoms(sp.Function)
-            )
-        )
-        self.state.values[name] = self._symbol_for(name, value) if is_first and is_long else value
+        is_sum = value.is_Add or value.is_number or value.atoms(sp.Function) - value.atoms(*_SHORT)
+        is_long = _size(value) > _LONGEST
+        is_named = is_long or (is_first and is_sum)
+        self.state.values[name] = self._symbol_for(name, value) if is_named else value
 
     def _symbol_for(self, name: str, value: sp.Expr | None) -> sp.Symbol:
         """A symbol for a long value, or for one that is not read (None)."""
@@ -459,6 +459,8 @@ class _Interpreter:
         """An expression or a matrix with long values in place of their symbols."""
         for _ in range(_LONG_IN_LONG):
             parts = {s: v for s in value.free_symbols if (v := self.definitions.get(s)) is not None}
+            if _size(value) > _MOST_PARTS:
+                break
             value = value.xreplace(parts)
         return value
 
@@ -468,15 +470,6 @@ class _Interpreter:
         grid = self.state.values.get(base)
         if isinstance(value, _Grid):
             raise self.unreadable(left, "is a block that is assigned")
-        if (
-            isinstance(grid, _Grid)
-            and not grid.is_whole
-            and len(grid.entries) > 1
-            and place == next(iter(grid.entries))
-            and grid.matrix() is not None
-        ):
-            self._emit([base])  # it is filled anew
-            grid = None
         if not isinstance(grid, _Grid):
             grid = _Grid(line_of(left), base, {})
             self.state.values[base] = grid
@@ -815,7 +808,7 @@ class _Interpreter:
             return
         self.program.steps["formulas"] += 1
         whole = self._expanded(matrix)
-        if sum(1 for entry in whole for _ in sp.preorder_traversal(entry)) > _MOST_PARTS:
+        if _size(whole) > _MOST_PARTS:
             whole = matrix
         symbols = whole.free_symbols
         computed = symbols & self.definitions.keys()
@@ -1165,6 +1158,11 @@ def _unclamped(node: Node) -> Node:
         nodes = [call.owner, *nodes]
     bounds = [re.sub(r"\.0*|[\sfF]|T\(|\)|static_cast<\w+>\(", "", text_of(a)) for a in nodes[1:]]
     return nodes[0] if bounds == ["-1", "1"] and _CLAMPS.search(call.name) else node
+
+
+def _size(value: Any) -> int:
+    """The number of parts; that of a sum of sums of itself is exponential, and not counted out."""
+    return sum(1 for _ in islice(sp.preorder_traversal(value), _MOST_PARTS + 1))
 
 
 def _is_unfinished(value: Any) -> bool:

@@ -7,10 +7,11 @@ import tomllib
 from collections.abc import Iterable, Iterator
 from functools import cache
 from importlib import import_module
+from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from rigidsym.errors import MissingExtra
+from rigidsym.errors import ExpressionError, MissingExtra
 from rigidsym.text.names import spelled
 from rigidsym.tools.compare.language import ANGLE, SPELLINGS
 
@@ -38,6 +39,8 @@ PARTS, WORDS = (
     for title in ("parts", "words")
 )
 _LONGEST_PLACE = 120  # characters
+_CHUNK = 2_048  # bytes that the parser reads at once
+_MOST_STEPS = 50_000  # of the parser: a megabyte without errors takes half as many
 _NAME = r"[A-Za-z_]\w*"
 _PLACE = re.compile(
     rf"(?P<path>{_NAME}(?:\.{_NAME})*)(?P<indices>(?:\[[\w,.()*+:]+\]|\([\w,]+\))*)"
@@ -60,8 +63,19 @@ def _parser(grammar: str) -> Any:
 
 
 def parsed(text: str, suffix: str) -> Node:
-    """The root of the syntax tree of a file with this suffix; raises MissingExtra."""
-    root: Node = _parser(GRAMMARS[suffix]).parse(text.encode()).root_node
+    """The root of the syntax tree of a file with this suffix; raises MissingExtra.
+
+    Raises ExpressionError if it takes too long: recovery from syntax errors can be quadratic.
+    """
+    parser, data, steps = _parser(GRAMMARS[suffix]), text.encode(), count()
+    try:
+        root: Node = parser.parse(
+            lambda offset, _: data[offset : offset + _CHUNK],
+            progress_callback=lambda *_: next(steps) > _MOST_STEPS,
+        ).root_node
+    except ValueError:
+        parser.reset()
+        raise ExpressionError("the syntax errors of this file take too long to parse") from None
     return root
 
 
