@@ -12,6 +12,7 @@ from scipy.integrate import solve_ivp
 import rigidsym as rs
 from helpers.command import call
 from rigidsym.errors import LimitReached
+from rigidsym.models.body import Parameter
 from rigidsym.simulation.problem import NEEDED, Problem
 
 A, B, C = sp.symbols("A B C")
@@ -109,6 +110,18 @@ def test_moments_about_the_tip_leave_a_body_about_the_centre_of_mass(moment, sta
     done = call(*given, cwd=tmp_path, status=status)
     refusal = "about its centre of mass at (0, 0, 0.5) m: no body has the principal moments 0.24"
     assert (refusal in done.stderr) == bool(status)
+
+
+def test_only_a_weight_tells_the_centre_of_mass():
+    g, m = sp.symbols("g m")
+    known = [Parameter(symbol=g, unit="m/s^2")]
+    body = rs.principal_moments(A, A, C, mass=m, parameters=known)
+    values = TOP | {"A": 0.6}  # less than m l² + C/2 = 0.67
+    spring = rs.derive("ZXZ", body=body, potential="m*g*l*cos(theta)**2")
+    assert len(spring.simulate(REST | {"theta": 1}, values, 0.01, samples=2).t) == 2
+    weight = rs.derive("ZXZ", body=body, potential="m*g*l*cos(theta)")
+    with pytest.raises(rs.RigidsymError, match="about its centre of mass"):
+        weight.simulate(REST | {"theta": 1}, values, 0.01)
 
 
 def test_the_examples_that_are_shipped_have_a_body(tmp_path):
