@@ -421,11 +421,13 @@ def entries() -> Iterator[tuple[str, Content]]:
 
 def refusal(content: Content, name: str) -> str:
     """A theorem that Coq has to refuse, after the facts that its proof may use."""
-    before, theorem = theorems(content, [*checker.printed_in(content)]).text.split(
-        f"Theorem {name.replace(' ', '_')} ", 1
-    )
+    text = theorems(content, [*checker.printed_in(content)]).text
+    # Ω of a quaternion is the lemma that F turns with it, from which all else follows
+    is_lemma = name == VELOCITY and "turning ltac" in text
+    start = "Lemma step_1 " if is_lemma else f"Theorem {name.replace(' ', '_')} "
+    before, theorem = text.split(start, 1)
     facts = re.sub(r"Proof\. intros\..*?Qed\.", "Admitted.", before, flags=re.DOTALL)
-    claim, proof = theorem.split("Qed.", 1)[0].split("Proof. intros. ")
+    claim, proof = re.split(r"Proof\.(?: intros\.)?", theorem.split("Qed.", 1)[0])
     steps = proof.strip().removesuffix(".").replace(". ", "; ")
     return f"{facts}Theorem forged {claim}Proof. intros. Fail ({steps}). Abort.\nEnd Claims."
 
