@@ -310,6 +310,7 @@ def _table(title: str, found: Mapping[int, Turns]) -> Table:
     """Medians of all sides, and the ratios of ours to both peers with their spread."""
     measured = list(next(iter(found.values())))
     pairs = [(t, p) for t in ("numpy", "c", "numba") for p in (PEER, HEYOKA)]
+    pairs.append(("c", COPY))  # c cannot be flat over the sizes where a plain copy is not
     pairs = [(t, p) for t, p in pairs if t in measured and p in measured]
     columns = [Column("orientations", ",d"), *(Column(f"{side}, µs", ",.2f") for side in measured)]
     for target, peer in pairs:
