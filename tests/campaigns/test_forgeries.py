@@ -87,7 +87,56 @@ def with_rates_in_v(content: Content) -> None:
     content["motion"]["potential"] = "k*phi_dot*cos(theta)"
 
 
+def with_a_parameter_defined(content: Content) -> None:
+    """Gravity is said to act, and all is worked out without it."""
+    parameters = next(g for g in content["arguments"] if g["name"] == "parameters")
+    parameters["components"] = [c for c in parameters["components"] if c["name"] != "g"]
+    content["definitions"] = [{"name": "g", "expression": "0"}]
+    put("accelerations", 1, printed(content, "accelerations")["expression"][1])(content)
+
+
+def with_an_argument_defined(content: Content) -> None:
+    component = {"name": "K", "unit": "rad/s", "symbol": "K", "about": ""}
+    content["arguments"].append({"name": "gains", "components": [component]})
+    content["definitions"] = [{"name": "K", "expression": "0"}]
+    put(VELOCITY, 2, "phi_dot + psi_dot*cos(theta) + K")(content)
+
+
+def with_two_units(content: Content) -> None:
+    angles = copy.deepcopy(next(g for g in content["arguments"] if g["name"] == "q"))
+    content["arguments"].append(angles | {"name": "again"})
+    content["arguments"][0]["components"][0]["unit"] = "deg"
+
+
+def with_another_centre(content: Content) -> None:
+    content["body"]["centre"] = ["0", "0", "l"]
+
+
+def with_other_angles(content: Content) -> None:
+    content["rotation"]["turns"][0] = "z(0)"
+    everywhere("phi_dot", "0")(content)
+    everywhere("sin(phi)", "0")(content)
+    everywhere("cos(phi)", "1")(content)
+
+
+def with_a_moment_too_many(content: Content) -> None:
+    inertia = content["body"]["inertia"]
+    axes, moments = copy.deepcopy(content["quantities"][:2])
+    axes |= {"name": "principal_axes", "unit": "", "expression": [["1", "0", "0"]]}
+    axes["expression"] += [["0", "1", "0"], ["0", "0", "1"]]
+    moments |= {"name": "principal_moments", "unit": "kg m^2"}
+    moments["expression"] = [*(inertia[k][k] for k in range(3)), "17*A"]
+    content["quantities"] += [axes, moments]
+
+
 KNOWN: dict[str, tuple[str, Change]] = {
+    "a parameter of the body that is defined": ("top", with_a_parameter_defined),
+    "an argument that is defined": ("ZXZ", with_an_argument_defined),
+    "two units of one name": ("ZXZ", with_two_units),
+    "a centre beside the fixed point": ("top", with_another_centre),
+    "turns about other angles than the name says": ("ZXZ", with_other_angles),
+    "a principal moment too many": ("top", with_a_moment_too_many),
+    "a power of degree zero": ("ZXZ", put(VELOCITY, 2, "0*(phi**0)**900000000000")),
     "a rate with the other sign": ("ZXZ", everywhere("phi_dot", "(-phi_dot)")),
     "a comment that hides a rate": ("ZXZ", put(W, 2, 0, "cos(theta) + psi_dot/phi_dot # '")),
     "conditions that contradict each other": (

@@ -397,7 +397,7 @@ def test_the_files_are_written_and_checked(tmp_path):
         assert done.returncode == 1
         assert f"REFUSED: {message}" in done.stdout
     nothing = [*alone[:-1], "none"]
-    assert subprocess.run(nothing, cwd=tmp_path, check=False).returncode == 0
+    assert subprocess.run(nothing, cwd=tmp_path, check=False).returncode == 1
 
 
 @pytest.mark.usefixtures("coq")

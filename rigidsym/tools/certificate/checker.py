@@ -1,4 +1,4 @@
-"""Checks records of rigidsym without rigidsym: `python checker.py FOLDER...`
+"""Checks records of rigidsym without rigidsym: `python checker.py FOLDER|RECORD...`
 
 A record NAME.json describes a rotation, perhaps with a body and a potential, and prints
 expressions. This program works out the same quantities from their definitions, at a random point
@@ -109,7 +109,7 @@ def _tree(node: ast.AST) -> Tree:
         case ast.UnaryOp(op=ast.USub(), operand=operand):
             return ("-", ("number", 0), _tree(operand))
         case ast.BinOp(left=base, op=ast.Pow(), right=ast.Constant(value=int(power))) if (
-            type(power) is int
+            type(power) is int and power > 0
         ):
             return ("**", _tree(base), power)
         case ast.BinOp(left=one, op=operator, right=two) if type(operator) in OPERATORS:
@@ -267,6 +267,8 @@ class Matrix:
 
     def determinant(self) -> Number:
         first, *rest = self.rows
+        if len(first) != len(self.rows):
+            raise Refused("a matrix that is not square has no determinant")
         minors = (Matrix([row[:k] + row[k + 1 :] for row in rest]) for k in range(len(first)))
         signs = (MINUS if k % 2 else ONE for k in range(len(first)))
         terms = (a * s * m.determinant() for a, s, m in zip(first, signs, minors, strict=True))
@@ -331,12 +333,21 @@ class Record:
                 raise Refused(f"the name {name!r} is not plain ASCII")
             if own.count(name) + (name in {*self.momenta, *LETTERS, *ANGULAR, "sqrt"}) > 1:
                 raise Refused(f"the name {name!r} has two meanings")
+        body = content.get("body", {})
+        given = {*self.others, *(parameter["name"] for parameter in body.get("parameters", ()))}
+        if given.intersection(self.definitions):
+            raise Refused("a name that is given is defined as well")
+        about = {"inertia_tensor_point", "moment_of_inertia"}.intersection(self.printed)
+        if about and "hamiltonian" in self.printed and {*self.momenta}.intersection(ABOUT):
+            raise Refused("a momentum has the name of a place")
         self.turns = [turn_of(turn) for turn in self.rotation.get("turns", ())]
         self.refuse_words()
         self.spheres = [*map(self.sphere, self.rotation["conditions"])]
         without_twins([(name, "") for sphere in self.spheres for name in sphere])
-        parts = [self.rotation, content.get("body", {}), content.get("motion", {})]
+        parts = [self.rotation, body, content.get("motion", {})]
         texts = [part[name] for part in parts for name in DESCRIBED if name in part]
+        if any(names_in(tree_of(text)).intersection(self.definitions) for text in texts_in(texts)):
+            raise Refused("what a record describes holds a name that it defines")
         texts += [*self.printed.values(), *self.definitions.values()]
         self.trees = [*map(tree_of, texts_in([*texts, *(forms for _, forms in self.turns)]))]
         self.refuse_degrees()
@@ -348,11 +359,15 @@ class Record:
             raise Refused("a rotation has either turns or a matrix")
         if presentation not in ("active", "passive"):
             raise Refused(f"the presentation {presentation!r}")
-        spelled, axes = re.match("euler_([xyz]+)_(..)trinsic$", name), [k for k, _ in self.turns]
-        if spelled and axes != list(spelled[1][:: -1 if spelled[2] == "ex" else 1]):
-            raise Refused(f"the turns are not those of {name}")
-        components = (c for group in self.content["arguments"] for c in group["components"])
+        if spelled := re.match("euler_([xyz]+)_(..)trinsic$", name):
+            turns = [f"{axis}({q})" for axis, q in zip(spelled[1], self.q, strict=True)]
+            if self.rotation.get("turns") != (turns[::-1] if spelled[2] == "ex" else turns):
+                raise Refused(f"the turns are not those of {name}")
+        components = [c for group in self.content["arguments"] for c in group["components"]]
         units = {component["name"]: component["unit"] for component in components}
+        own = [c for c in components if c["name"] in {*self.q, *self.rates, *self.constants}]
+        if any(units[component["name"]] != component["unit"] for component in own):
+            raise Refused("a name has two units")
         unit_of = {name: unit for unit, names in UNITS.items() for name in names}
         things = [(q["name"], q["unit"]) for q in self.content["quantities"]]
         things += [(name, unit) for name, unit in units.items() if name not in self.constants]
@@ -602,6 +617,8 @@ class Motion:
         parts = (self.content["body"][part] for part in ("mass", "centre", "inertia"))
         mass, centre, inertia = map(self.point.only().read, parts)
         agree("the inertia tensor is not symmetric", [(inertia, inertia.T)])
+        if "motion" in self.content:  # about the fixed point, from which places are counted
+            agree("the centre of a body that turns about a fixed point", [(centre, centre * ZERO)])
         R, omega = self.R, self.omega["body"]
         momentum, energy = inertia * omega, omega.T * inertia * omega * HALF
         place, velocity, axis, about = map(self.still.read, (PLACE, VELOCITY, AXIS, ABOUT))
@@ -672,9 +689,7 @@ class Motion:
         x = self.points.get(name, self.still).read(self.record.printed[name])
         kind, _, frame = name.rpartition("_")
         if name == "hamiltonian" and name in self.values:
-            self.values[
-                "mass_matrix"
-            ].determinant().inverse()  # M is not singular, or it is refused
+            self.values["mass_matrix"].determinant().inverse()  # which refuses a singular M
         if name in self.values:
             yield x, self.values[name]
         elif name in self.rates:
@@ -691,7 +706,8 @@ class Motion:
             axes, moments = map(self.points[name].read, printed)
             yield axes * axes.T, IDENTITY
             yield Matrix([[axes.determinant()]]), Matrix([[ONE]])
-            scaled = Matrix(map(mul, row, moments.entries) for row in axes.rows)
+            pairs = [zip(row, moments.entries, strict=True) for row in axes.rows]
+            scaled = Matrix([one * two for one, two in pair] for pair in pairs)
             yield self.values["inertia_tensor"] * axes, scaled
         else:
             raise Unreadable(self.lack)
@@ -738,12 +754,18 @@ def load(path: Path) -> Any:
 
 
 if __name__ == "__main__":
-    status = 0
-    for path in sorted(path for folder in sys.argv[1:] for path in Path(folder).rglob("*.json")):
+    status = count = 0
+    places = [Path(argument) for argument in sys.argv[1:]]
+    files = [[*place.rglob("*.json")] if place.is_dir() else [place] for place in places]
+    for path in sorted(path for each in files for path in each):
         try:
             record = load(path)
-            if not isinstance(record, dict) or record.get("schema") != "rigidsym.derivation":
+            is_record = isinstance(record, dict) and record.get("schema") == "rigidsym.derivation"
+            if not is_record and path not in places:
                 continue
+            count += 1
+            if not is_record:
+                raise Refused("not the record of a derivation")
             proved, reasons = verify(record)
             print(f"{path}: R is {record['rotation']}")
             print(f"  proved: {', '.join(proved) or 'nothing'}")
@@ -752,4 +774,6 @@ if __name__ == "__main__":
         except (*BROKEN, OSError) as error:
             status = 1
             print(f"{path}: REFUSED: {error}")
-    sys.exit(status)
+    if not count:
+        print("REFUSED: there is no record of a derivation here")
+    sys.exit(status or int(not count))
