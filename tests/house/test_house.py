@@ -129,7 +129,7 @@ def test_kernels_and_notes_know_nothing_of_one_another_nor_the_representation_of
 BUDGETS = {  # what was reached; who makes the house smaller lowers them
     "files": 198,
     "lines of code": 29_100,
-    "lines of tests": 18_210,
+    "lines of tests": 18_220,
     "lines of benchmarks": 2_540,
 }
 
@@ -221,3 +221,8 @@ def test_tests_share_only_what_helpers_hold():
         names |= {node.module or "" for node in nodes if isinstance(node, ast.ImportFrom)}
         shared = {name.split(".")[0] for name in names} & own
         assert shared <= {"helpers"}, path
+
+
+def test_the_tests_that_ci_names_are_there():
+    for path, name in re.findall(r"(tests/\S+\.py)::(\w+)", (ROOT / ".ci/run").read_text("utf-8")):
+        assert f"def {name}(" in (ROOT / path).read_text("utf-8")
