@@ -184,3 +184,9 @@ def test_what_depends_on_nothing_has_no_function():
         output_of(spec)
     spec = read_spec(CONSTANT.format("kernels = []"), source="a.toml", name="a")
     assert list(output_of(spec).files) == ["a.tex", "a.json"]
+
+
+def test_a_tetrahedron_by_its_corners():
+    corners = '[["0", "0", "0"], ["a", "0", "0"], ["0", "b", "0"], ["0", "0", "c"]]'
+    body = body_in(f'[body]\nshape = "tetrahedron"\nmass = "m"\ncorners = {corners}')
+    assert list(body.centre) == [letter / 4 for letter in sp.symbols("a b c")]
