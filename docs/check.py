@@ -99,9 +99,10 @@ def inaccessible(site: Path, shown: Sequence[Path]) -> Iterator[str]:
     with TemporaryDirectory() as folder, chromium(Path(folder)) as tab:
         for number, path in enumerate(shown):
             html = self_contained(path)
+            html = _SIDEBARS.sub("", html) if number else html  # one look at the sidebar is enough
             file = Path(folder) / "page.html"
-            file.write_text(_SIDEBARS.sub("", html) if number else html, encoding="utf-8")
-            tab.open(file, WIDTH)  # the sidebar once is enough
+            file.write_text(html, encoding="utf-8")
+            tab.open(file, WIDTH)
             yield from (f"{path.relative_to(site)}: {fault}" for fault in tab.faults())
 
 

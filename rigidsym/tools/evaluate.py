@@ -40,7 +40,7 @@ class Evaluated:
     path: Path
     rows: int
     columns: tuple[str, ...]
-    inputs: tuple[str, ...]  # what was read from columns that state no unit: phi [rad]
+    inputs: tuple[str, ...]  # how columns that name no unit were read: phi [rad]
 
 
 def evaluate(
@@ -127,15 +127,14 @@ def evaluate(
             if progress is not None:
                 progress(batch.share)
 
-    plain = [not (header and header.unit(column)) for column in used]
-    read = [
-        _title(*component, degrees=degrees)
-        for component, is_plain in zip(components, plain, strict=True)
-        if is_plain
+    unstated = [
+        _title(name, unit, degrees=degrees)
+        for column, (name, unit) in zip(used, components, strict=True)
+        if header is None or (unit and not header.unit(column))
     ]
     titles = (*kept.values(), *(_title(*result, degrees=degrees) for result in results))
     count = write_table(where, titles, table.dtype, computed(), stream)
-    return Evaluated(path=where, rows=count, columns=titles, inputs=tuple(read))
+    return Evaluated(path=where, rows=count, columns=titles, inputs=tuple(unstated))
 
 
 def _scaled(table: Numbers, factors: Sequence[float]) -> Numbers:

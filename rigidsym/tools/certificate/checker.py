@@ -334,9 +334,9 @@ class Record:
             if own.count(name) + (name in {*self.momenta, *LETTERS, *ANGULAR, "sqrt"}) > 1:
                 raise Refused(f"the name {name!r} has two meanings")
         body = content.get("body", {})
-        given = {*self.others, *(parameter["name"] for parameter in body.get("parameters", ()))}
-        if given.intersection(self.definitions):
-            raise Refused("a name that is given is defined as well")
+        parameters = {parameter["name"] for parameter in body.get("parameters", ())}
+        if (parameters | self.others).intersection(self.definitions):
+            raise Refused("an argument or a parameter of the body is defined as well")
         about = {"inertia_tensor_point", "moment_of_inertia"}.intersection(self.printed)
         if about and "hamiltonian" in self.printed and {*self.momenta}.intersection(ABOUT):
             raise Refused("a momentum has the name of a place")
