@@ -79,7 +79,7 @@ class Motion(Derivation):
         """The functions in one language: `.source`, `.load()`, `.write(path)`.
 
         `conversions` adds conversions to and from the unit quaternion and the matrix, and
-        `unwrap`. `derivatives` adds functions that return a quantity and its derivative:
+        `unwrap`. `derivatives` adds functions that return the Jacobian of a quantity:
         {"angular_velocity_body": ("q", "q_dot")} adds `angular_velocity_body_jacobian_q` and
         `angular_velocity_body_jacobian_q_dot`.
         `options` depend on the target: `kernels("c", lean="double")` prints C for firmware.

@@ -214,7 +214,6 @@ class Kernel:
     about: str = ""  # words
     remarks: tuple[str, ...] = ()  # paragraphs
     unit: str = ""  # SI; "" for a pure number
-    parts: tuple[tuple[int, ...], ...] = ()  # shapes of the results that the outputs are, in order
 
     def __post_init__(self) -> None:
         if len(self.outputs) != prod(self.shape):
@@ -248,11 +247,6 @@ class Kernel:
     def components(self) -> tuple[str, ...]:
         """The names of all inputs, in the order of the arguments."""
         return tuple(name for argument in self.arguments for name in argument.components)
-
-    @property
-    def results(self) -> tuple[tuple[int, ...], ...]:
-        """The shapes of what it returns: of its value, or of a value and its derivative."""
-        return self.parts or (self.shape,)
 
     @cached_property
     def values(self) -> tuple[Expression, ...]:

@@ -41,8 +41,10 @@ static int rows_of_out(
     found->rows = leading ? shape[0] : 0;
     found->step = leading ? PyArray_STRIDE(array, 0) : 0;
     found->stride = axes > leading ? PyArray_STRIDE(array, axes - 1) : size;
-    if (axes == leading + 2 && PyArray_STRIDE(array, leading) != shape[axes - 1] * found->stride) {
-        return 0;
+    for (int k = leading + 1; k < axes; k++) {
+        if (PyArray_STRIDE(array, k - 1) != shape[k] * PyArray_STRIDE(array, k)) {
+            return 0;
+        }
     }
     return !(found->step % size) && !(found->stride % size);
 }
@@ -147,7 +149,7 @@ static PyObject *call(PyObject *self, PyObject *const *given, const Py_ssize_t m
     const struct kernel *kernel = &table[PyLong_AsLong(self)];
     const int count = kernel->arguments;
     Rows rows[MOST + 1];
-    npy_intp shape[3], leading = 0;
+    npy_intp shape[4], leading = 0;
     int axes = 0;
     const int first = PyFloat_Check(given[0]) && count > 1; /* the argument that tells the type */
     if (many != count + 1 || !PyArray_CheckExact(given[first])) {

@@ -7,10 +7,7 @@ def _exceptional(block, shape, *vectors):
 
 
 def _nested(values, shape):
-    """Numbers in the tuples of a shape, or of two shapes, one after the other."""
-    if shape and isinstance(shape[0], tuple):
-        place = prod(shape[0])
-        return _nested(values[:place], shape[0]), _nested(values[place:], shape[1])
+    """Numbers in the tuples of a shape."""
     for length in reversed(shape[1:]):
         values = tuple(zip(*[iter(values)] * length))
     return tuple(values) if shape else values[0]

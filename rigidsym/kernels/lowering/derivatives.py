@@ -1,28 +1,27 @@
 """Derivatives of quantities by a vector of inputs: which are asked for, and their expressions.
 
-The derivative is SymPy's, term by term and exact; nothing is searched for. A kernel of one gives
-the value first, then the derivative, from one pass of common subexpressions.
+The derivative is SymPy's, term by term and exact; nothing is searched for.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
-from itertools import product
+from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import sympy as sp
 
 from rigidsym.errors import KernelError
-from rigidsym.mechanics.derivation import Argument, Derivation, Step
+from rigidsym.formula.tree import Symbol
+from rigidsym.mechanics.derivation import Derivation, Quantity, Step
 
 _FREE = (
     "; bound components count as free, so that this is the derivative of the expression as "
     "written, not projected onto what binds them"
 )
 _TEXT = re.compile(r"(\w+)(?: by |:)(\w+)")
-_PRODUCT = re.compile(r".*[ :](jvp|vjp)")
 
 Asked = str | Iterable[str] | Mapping[str, str | Iterable[str]]
 
@@ -49,10 +48,10 @@ def read_request(text: str) -> DerivativeRequest:
     """
     words = _TEXT.fullmatch(text.strip())
     if words is None:
-        wanted = "expected a quantity and a vector, such as angular_velocity_body:q"
-        if _PRODUCT.fullmatch(text.strip()):
-            wanted = "multiply the Jacobian J by your vector instead: J @ v, or w @ J"
-        raise KernelError(f"no derivative {text!r}; {wanted}")
+        raise KernelError(
+            f"no derivative {text!r}; "
+            "expected a quantity and a vector, such as angular_velocity_body:q"
+        )
     return DerivativeRequest(quantity=words[1], vector=words[2])
 
 
@@ -69,64 +68,53 @@ def read_requests(asked: Asked) -> tuple[DerivativeRequest, ...]:
     return tuple(dict.fromkeys(map(read_request, asked)))
 
 
-class Derivative(NamedTuple):
-    """One derivative, ready to be lowered."""
+@dataclass(frozen=True, kw_only=True)
+class Jacobian(Step):
+    """The derivative of a quantity: an entry a row, and a component of the vector a column."""
 
-    request: DerivativeRequest
-    step: Step
-    vectors: tuple[Argument, ...]  # the inputs of the quantity
-    by: Argument  # what the derivative is taken by
-    is_bound: bool = False  # a constraint binds the components of the vector
+    of: tuple[int, ...]  # the shape of the quantity
 
-    @property
-    def parts(self) -> tuple[tuple[int, ...], ...]:
-        """The shapes of the value and of the derivative."""
-        return self.step.shape, (*self.step.shape, len(self.by.symbols))
-
-    @property
-    def about(self) -> str:
-        """The value and the derivative in words."""
-        jacobian = f"its Jacobian by {self.request.vector}, row by row"
-        return f"{self.step.quantity.about}; then {jacobian}{_FREE if self.is_bound else ''}"
-
-    def jacobian(self) -> list[sp.Expr]:
-        """Row by row: one row an entry of the quantity, one column a component of the vector.
-
-        Inputs are independent of each other, so that each stands for itself while they are
-        differentiated by: a rate does not follow its coordinate.
-        """
-        symbols = [symbol for vector in self.vectors for symbol in vector.symbols]
-        plain = {symbol: sp.Dummy() for symbol in symbols}
-        back = {dummy: symbol for symbol, dummy in plain.items()}
-        entries = [entry.xreplace(plain) for entry in self.step.expression]
-        by = [plain[symbol] for symbol in self.by.symbols]
-        return [sp.diff(entry, one).xreplace(back) for entry, one in product(entries, by)]
+    @cached_property
+    def shape(self) -> tuple[int, ...]:
+        """Shape of one value in kernels."""
+        return (*self.of, self.expression.cols)
 
 
 def derivatives_of(
     derivation: Derivation, requests: Iterable[DerivativeRequest]
-) -> Iterator[Derivative]:
+) -> Iterator[Jacobian]:
     """The derivatives that are asked for, ready to be lowered.
+
+    Inputs are independent of each other, so that each stands for itself while they are
+    differentiated by: a rate does not follow its coordinate.
 
     Raises QuantityError for a quantity that is not in the derivation, and KernelError for a
     vector that it does not take.
     """
     for request in requests:
         step = derivation.step(request.quantity)
-        inputs = step.quantity.inputs
-        if request.vector not in inputs:
-            only = " and ".join(inputs)
+        quantity, model = step.quantity, derivation.model
+        if request.vector not in quantity.inputs:
+            only = " and ".join(quantity.inputs)
             raise KernelError(f"{request}: {request.quantity} depends only on {only}")
-        by, model = derivation.argument(request.vector), derivation.model
+        by = derivation.argument(request.vector).symbols
+        inputs = [s for name in quantity.inputs for s in derivation.argument(name).symbols]
+        plain = {symbol: sp.Dummy() for symbol in inputs}
+        back = {dummy: symbol for symbol, dummy in plain.items()}
+        entries = derivation.spelled(step.expression).xreplace(plain)
+        slopes = sp.Matrix([[sp.diff(entry, plain[s]) for s in by] for entry in entries])
         # whether the vector, or the coordinates whose rates it holds, are bound by a constraint
-        is_rates = by.name in ("q_dot", "q_ddot")
-        symbols = set(model.coordinates) if is_rates else set(by.symbols)
-        is_pulled_back = model.pullback is not None and symbols.intersection(model.coordinates)
-        yield Derivative(
-            request=request,
-            step=replace(step, expression=derivation.spelled(step.expression)),
-            vectors=tuple(map(derivation.argument, inputs)),
-            by=by,
-            is_bound=bool(is_pulled_back)
-            or any(symbols.intersection(sp.preorder_traversal(c)) for c in model.constraints),
+        bound = {*model.coordinates} if request.vector in ("q_dot", "q_ddot") else {*by}
+        is_bound = model.pullback is not None and not bound.isdisjoint(model.coordinates)
+        is_bound |= any(not bound.isdisjoint(sp.preorder_traversal(c)) for c in model.constraints)
+        yield Jacobian(
+            quantity=Quantity(
+                name=request.name,
+                symbol=Symbol(f"∂{quantity.symbol.text}/∂{request.vector}"),
+                about=f"Jacobian of {quantity.about} by {request.vector}{_FREE * is_bound}",
+                inputs=quantity.inputs,
+                unit=quantity.unit,
+            ),
+            expression=slopes.xreplace(back).as_immutable(),
+            of=step.shape,
         )

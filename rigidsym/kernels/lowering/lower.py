@@ -18,7 +18,7 @@ import sympy as sp
 from rigidsym.algebra.stable_forms import Stumpff, at_zero, stable_forms
 from rigidsym.kernels import ir
 from rigidsym.kernels.lowering.cse import Graph, Reader, Weighted
-from rigidsym.kernels.lowering.derivatives import Derivative
+from rigidsym.kernels.lowering.derivatives import Jacobian
 from rigidsym.kernels.lowering.naming import Names
 from rigidsym.kernels.lowering.rounding import guarded
 from rigidsym.kernels.lowering.schedule import write
@@ -43,7 +43,7 @@ _SYMBOLS: Mapping[str, str] = {  # by the measure of singularity
 def lower(
     derivation: Derivation,
     reserved: Iterable[str] = (),
-    derivatives: Iterable[Derivative] = (),
+    derivatives: Iterable[Jacobian] = (),
     added: Converted = NO_CONVERSIONS,
 ) -> ir.Program:
     """The kernels of a derivation: its quantities in the order of equations, derivatives,
@@ -57,7 +57,7 @@ def lower(
     steps = (*derivation.steps, *derivation.functions.values())
     found = kernels.of_steps([step for step in steps if step.quantity.inputs])
     found += tuple(kernels.margin())
-    found += tuple(map(kernels.of_derivative, derivatives))
+    found += kernels.of_steps(tuple(derivatives))
     found += kernels.of_steps(added.steps)
     found += tuple(map(kernels.of_function, added.functions))
     used = {argument.name for kernel in found for argument in kernel.arguments}
@@ -131,21 +131,6 @@ class _Lowering:
                 unit=step.quantity.unit,
             )
             for step, entries in zip(steps, forms, strict=True)
-        )
-
-    def of_derivative(self, derivative: Derivative) -> ir.Kernel:
-        """The kernel of a value and its derivative, one after the other."""
-        step = derivative.step
-        (entries,) = self._stable([[*step.expression, *derivative.jacobian()]])
-        return self._kernel(
-            derivative.request.name,
-            derivative.vectors,
-            entries,
-            shape=(len(entries),),
-            symbol=f"{step.quantity.symbol.text} by {derivative.by.name}",
-            about=derivative.about,
-            unit=step.quantity.unit,
-            parts=derivative.parts,
         )
 
     def of_function(self, function: ConversionFunction) -> ir.Kernel:

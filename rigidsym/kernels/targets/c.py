@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from math import pi
-from textwrap import indent, wrap
+from textwrap import wrap
 from types import ModuleType
 
 from rigidsym.kernels.ir import (
@@ -169,16 +169,14 @@ def _called(kernel: Kernel) -> str:
     A matrix has no components on one axis, and is always prepared.
     """
     compiled = f"_compiled.{kernel.name}"
-    prepared = numpy.called("_apply", kernel, compiled)
+    prepared = numpy.called(kernel, compiled)
     if any(argument.is_matrix for argument in kernel.arguments):
         return prepared
     vectors = [*(argument.name for argument in kernel.arguments), "out"]
-    result = "both" if kernel.parts else "result"
     lines = [
         "    if threads == 1:",
-        bracketed(8, f"{result} = {compiled}(", vectors, ")"),
-        f"        if {result} is not None:",
-        indent(numpy.parted(kernel) if kernel.parts else f"    return {result}", " " * 8),
+        bracketed(8, f"result = {compiled}(", vectors, ")"),
+        "        if result is not None:\n            return result",
         prepared,
     ]
     return "\n".join(lines)

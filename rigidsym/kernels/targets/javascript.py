@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
-from math import prod
 from types import ModuleType
 
 from rigidsym.algebra.stable_forms import FIRST_SERIES, series_of, taylor
@@ -82,7 +81,7 @@ def _module(about: Sequence[remarks.Paragraph], kernels: Sequence[Kernel]) -> st
             has_series=last >= 0,
             has_divisors=has_guards,
             has_batches=bool(about),
-            has_matrices=any(len(shape) > 1 for k in kernels for shape in k.results),
+            has_matrices=any(len(shape) > 1 for shape in (k.shape for k in kernels)),
             takes_matrices=any(a.is_matrix for kernel in kernels for a in kernel.arguments),
         )
     )
@@ -101,9 +100,8 @@ def _declared(kernel: Kernel) -> Iterator[str]:
 
 
 def _kind(kernel: Kernel) -> str:
-    """The type of what is returned: number[][], or those of a value and its derivative."""
-    kinds = ["number" + "[]" * len(shape) for shape in kernel.results]
-    return f"[{', '.join(kinds)}]" if kernel.parts else kinds[0]
+    """The type of what is returned: number[][]."""
+    return "number" + "[]" * len(kernel.shape)
 
 
 def _show(expression: Expression) -> str:
@@ -128,13 +126,12 @@ def _function(kernel: Kernel) -> dict[str, object]:
         for k, name in enumerate(argument.components)
         if name in kernel.used
     ]
-    shapes = " and ".join(f"({', '.join(map(str, s))})" for s in kernel.results if s)
-    returns = f"{{{_kind(kernel)}}}" + (f" {shapes}" if shapes else "")
+    shape = f" ({', '.join(map(str, kernel.shape))})" if kernel.shape else ""
     about = remarks.about_kernel(
         "javascript/function.txt.jinja",
         kernel,
         vectors=list(zip(vectors, arguments, strict=True)),
-        returns=returns + (f" in {kernel.unit}" if kernel.unit else ""),
+        returns=f"{{{_kind(kernel)}}}{shape}" + (f" in {kernel.unit}" if kernel.unit else ""),
     )
     given = [f"  out[{_placed('at', k)}] = {_show(e)};" for k, e in enumerate(kernel.outputs)]
     return {
@@ -177,19 +174,11 @@ def _lines(kernel: Kernel) -> Iterator[str]:
 
 
 def _returned(kernel: Kernel) -> str:
-    """The result in the shape of the quantity, or both results of a derivative."""
-    if not kernel.parts:
-        return _shaped("values", kernel.shape)
-    first, second = kernel.parts
-    place = prod(first)
-    value = _shaped(f"values.slice(0, {place})", first) if first else "values[0]"
-    return f"[{value}, {_shaped(f'values.slice({place})', second)}]"
-
-
-def _shaped(values: str, shape: Sequence[int]) -> str:
-    if not shape:
-        return f"{values}[0]"
-    return values if len(shape) == 1 else f"_rows({values}, {shape[1]})"
+    """The result in the shape of the quantity."""
+    values = "values" if kernel.shape else "values[0]"
+    for size in reversed(kernel.shape[1:]):
+        values = f"_rows({values}, {size})"
+    return values
 
 
 def _entry(order: int) -> str:

@@ -12,7 +12,7 @@ from rigidsym.kernels.targets import python
 from rigidsym.kernels.targets.infix import infix
 from rigidsym.kernels.targets.python import WIDTH, bracketed, exploded
 
-RESERVED = python.RESERVED | {"jax", "jnp", "like", "parts", "both"}
+RESERVED = python.RESERVED | {"jax", "jnp", "like", "parts"}
 _DERIVATIVES = 2  # that functions of n = |v| have: each takes two functions c_k more
 _WORDS = {
     **{name: f"jnp.{name}" for name in FUNCTIONS},
@@ -68,6 +68,4 @@ def _body(kernel: Kernel) -> Iterator[str]:
     for name, value in kernel.statements:
         yield python.statement(4, name, value, _WORDS)
     entries = ["like", str(kernel.shape), *map(infix, kernel.outputs)]
-    yield bracketed(4, f"{'both =' if kernel.parts else 'return'} _together(", entries, ")")
-    if kernel.parts:
-        yield bracketed(4, "return _parted(", ["both", *map(str, kernel.parts)], ")")
+    yield bracketed(4, "return _together(", entries, ")")

@@ -31,14 +31,13 @@ def render(program: Program) -> dict[str, str]:
         given = ["_sin_cos", f"{2.0**-52!r}", *kernel.components]
         one = bracketed(4, f"values = _{kernel.name}(", given, ")")
         values = [f"values[{k}]" for k in range(len(kernel.outputs))]
+        twin = f"    return {numpy.nested(values, kernel.shape, 4, is_open=True)}"
         twins = [
-            "\n".join(["@_jit", head, about, one, numpy.returned(kernel, values, 4)]),
+            "\n".join(["@_jit", head, about, one, twin]),
             "\n".join(["@_inlined", core, *_body(kernel)]),
             "\n".join(["@_jit", *_rows(kernel)]),
         ]
-        numbers = f"{kernel.name}_scalar"
-        numbers = f"_in_a_row({numbers})" if kernel.parts else numbers
-        body = numpy.called("_apply", kernel, f"_{kernel.name}_rows", numbers)
+        body = numpy.called(kernel, f"_{kernel.name}_rows", f"{kernel.name}_scalar")
         functions.append(numpy.function(kernel, body, "\n\n\n".join(twins)))
     last = last_order(kernels)
     text = numpy.module_text(

@@ -47,10 +47,9 @@ def render(program: Program) -> dict[str, str]:
     functions = []
     for kernel in kernels:
         block, scalar = f"_{kernel.name}", f"{kernel.name}_scalar"
-        numbers = f"_in_a_row({scalar})" if kernel.parts else scalar
         twin = "\n".join([*twin_head(kernel), *_scalar_body(kernel)])
         twins = "\n\n\n".join((twin, "\n".join(_block(kernel))))
-        functions.append(function(kernel, called("_apply", kernel, block, numbers), twins))
+        functions.append(function(kernel, called(kernel, block, scalar), twins))
     text = module_text(
         program,
         TEMPLATE,
@@ -115,35 +114,25 @@ def function(kernel: Kernel, body: str, twins: str = "") -> dict[str, str]:
     }
 
 
-def called(helper: str, kernel: Kernel, *first: str) -> str:
-    """The body that passes the arguments on; several results are parts of one array."""
-    given = [*first, str(kernel.shape), "out", "threads", *python.passed(kernel, "np")]
-    if not kernel.parts:
-        return bracketed(4, f"return {helper}(", given, ")")
-    return "\n".join([bracketed(4, f"both = {helper}(", given, ")"), parted(kernel)])
-
-
-def parted(kernel: Kernel) -> str:
-    return bracketed(4, "return _parted(", ["both", *map(str, kernel.parts)], ")")
+def called(kernel: Kernel, *functions: str) -> str:
+    """The body that passes the arguments on."""
+    given = [*functions, str(kernel.shape), "out", "threads", *python.passed(kernel, "np")]
+    return bracketed(4, "return _apply(", given, ")")
 
 
 def twin_head(kernel: Kernel) -> tuple[str, str]:
     """The signature and the docstring of a function of plain floats."""
     floats = [f"{name}: float" for name in kernel.components]
-    each = list(map(_floats, kernel.results))
-    kind = each[0] if len(each) < 2 else f"tuple[{', '.join(each)}]"
-    if len(kind) > WIDTH - len(") -> :"):
-        kind = exploded(0, "tuple[", each, "]")
-    nesting = " and ".join(_NESTING[len(shape)] for shape in kernel.results)
+    nesting = _NESTING[len(kernel.shape)]
     about = docstring([f"`{kernel.name}` of one orientation; floats to {nesting}."], indent=4)
-    signature = bracketed(0, f"def {kernel.name}_scalar(", floats, f") -> {kind}:")
-    return signature, f'    """{about}"""'
+    tail = f") -> {_floats(kernel.shape)}:"
+    return bracketed(0, f"def {kernel.name}_scalar(", floats, tail), f'    """{about}"""'
 
 
 def fitted(kernel: Kernel) -> Kernel:
     """The kernel in lines that fit: a scalar twin's assignments and the rows of its outputs."""
-    depth = max(map(len, kernel.results)) + (1 if kernel.parts else 0)
-    return narrowed(kernel, infix, line=WIDTH - 8, output=WIDTH - 8 - 4 * depth - len(","))
+    output = WIDTH - 8 - 4 * len(kernel.shape) - len(",")
+    return narrowed(kernel, infix, line=WIDTH - 8, output=output)
 
 
 def _floats(shape: Sequence[int]) -> str:
@@ -162,23 +151,12 @@ def _scalar_body(kernel: Kernel) -> Iterator[str]:
         is_eps = isinstance(value, Call) and value.function == "eps"
         line = f"        {name} = {2.0**-52!r}"
         yield line if is_eps else python.statement(8, name, value, _OF_FLOATS)
-    yield returned(kernel, list(map(infix, kernel.outputs)), 8)
+    outputs = list(map(infix, kernel.outputs))
+    yield f"        return {nested(outputs, kernel.shape, 8, is_open=True)}"
     points = [nested(a.components, (len(a.components),), 12) for a in kernel.arguments]
-    given = [f"_{kernel.name}", str(kernel.parts or kernel.shape), *points]
+    given = [f"_{kernel.name}", str(kernel.shape), *points]
     yield "    except (ValueError, ZeroDivisionError):"
     yield bracketed(8, "return _exceptional(", given, ")")
-
-
-def returned(kernel: Kernel, outputs: Sequence[str], indent: int) -> str:
-    """The statement that returns the outputs in tuples of the shapes of the results."""
-    place, values, margin = 0, [], indent + 4 if kernel.parts else indent
-    for shape in kernel.results:
-        entries = outputs[place : place + prod(shape)]
-        values.append(nested(entries, shape, margin, is_open=not kernel.parts))
-        place += prod(shape)
-    if kernel.parts:
-        return exploded(indent, "return (", values, ")")
-    return f"{' ' * indent}return {values[0]}"
 
 
 def nested(

@@ -69,8 +69,7 @@ def signature(kernel: Kernel, *options: str) -> str:
     """Of a function of arrays, with types."""
     arrays = [f"{a.name}: ArrayLike" for a in kernel.arguments]
     given = [*arrays, *(["*", *options] if options else [])]
-    result = "tuple[Array, Array]" if kernel.parts else "Array"
-    return bracketed(0, f"def {kernel.name}(", given, f") -> {result}:")
+    return bracketed(0, f"def {kernel.name}(", given, ") -> Array:")
 
 
 def passed(kernel: Kernel, library: str) -> list[str]:
@@ -96,11 +95,11 @@ def module_text(
         components.append(line if len(line) <= WIDTH else wide)
     signatures = []  # as generalised ufuncs: "f": "(3),(3)->(3)",
     for kernel in kernels:
-        given, results = (
-            ",".join(f"({','.join(map(str, shape))})" for shape in shapes)
-            for shapes in ([a.shape for a in kernel.arguments], kernel.results)
+        *given, result = (
+            f"({','.join(map(str, shape))})"
+            for shape in (*(a.shape for a in kernel.arguments), kernel.shape)
         )
-        signatures.append(f'    "{kernel.name}": "{given}->{results}",')
+        signatures.append(f'    "{kernel.name}": "{",".join(given)}->{result}",')
     return (
         resources.environment()
         .get_template(template)
@@ -109,7 +108,6 @@ def module_text(
             exports="\n".join(f'    "{name}",' for name in sorted(names)),
             components="\n".join(components),
             signatures="\n".join(signatures),
-            has_parts=any(kernel.parts for kernel in kernels),
             has_guards=any(kernel.guards for kernel in kernels),
             has_series=last_order(kernels) >= 0,
             has_matrices=any(a.is_matrix for kernel in kernels for a in kernel.arguments),
@@ -136,8 +134,8 @@ def about_function(kernel: Kernel) -> str:
         names = names if len(names) <= MANY else (*names[:2], "...", names[-1])
         units = remarks.in_units(a.units)
         rows.append((a.name, _leading(a.shape), ", ".join(names) + units))
-    results = ", ".join(map(_leading, kernel.results))
-    rows.append(("returns", results, f"in {kernel.unit}" if kernel.unit else ""))
+    unit = f"in {kernel.unit}" if kernel.unit else ""
+    rows.append(("returns", _leading(kernel.shape), unit))
     template = "python/function.txt.jinja"
     return docstring(remarks.about_kernel(template, kernel, table=remarks.table(rows)), indent=4)
 
