@@ -1,15 +1,13 @@
 """A graph with its common parts -> assignments in order, and outputs, as people would write them.
 
 Factors stand in the order numbers, inputs, intermediate values, sines and cosines, sums; terms
-with a plus come before terms with a minus. What is too wide for one line of a page gets a name of
-its own (`narrowed`).
+with a plus come before terms with a minus.
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Sequence
-from dataclasses import replace
+from collections.abc import Sequence
 from fractions import Fraction
 
 from rigidsym.errors import KernelError
@@ -20,14 +18,11 @@ from rigidsym.kernels.ir import (
     Choice,
     Compare,
     Expression,
-    Kernel,
     Name,
     Negative,
     Number,
     Product,
     Sum,
-    parts,
-    rebuilt,
 )
 from rigidsym.kernels.lowering.cse import CHOICE, HELD, Graph, Weighted
 from rigidsym.kernels.lowering.naming import Names
@@ -232,71 +227,3 @@ def _split(expression: Expression) -> tuple[tuple[Expression, ...], tuple[Expres
     if not isinstance(expression, Product):
         return (expression,), ()
     return tuple(f for f in expression.factors if f != _ONE), expression.divisors
-
-
-_MANY_TERMS = 6  # a longer sum is cut in two, so that its terms need no names of their own
-
-
-def narrowed(
-    kernel: Kernel, show: Callable[[Expression], str], *, line: int, output: int
-) -> Kernel:
-    """The same kernel, the same operations, in lines that fit.
-
-    `show` is how the target writes an expression; an assignment takes at most `line` characters
-    and an output at most `output`. The widest part of a wide line is named first, of a sum of many
-    terms the first of them; an assignment of long names alone stays as wide as it is.
-    """
-    names = Names([*kernel.components, *(a.name for a in kernel.assignments)])
-    assignments: list[Assignment] = []
-
-    def assign(name: str, value: Expression) -> Name:
-        assignments.append(Assignment(name, shortened(value, line - len(f"{name} = "))))
-        return Name(name)
-
-    def shortened(expression: Expression, room: int) -> Expression:
-        while len(show(expression)) > room:
-            if isinstance(expression, Sum) and len(expression.terms) > _MANY_TERMS:
-                name = names.numbered("x")
-                terms, count = expression.terms, len(expression.terms) - 1
-                while count > 2 and len(show(Sum(terms[:count]))) > line - len(f"{name} = "):
-                    count -= 1
-                expression = Sum((assign(name, Sum(terms[:count])), *terms[count:]))
-                continue
-            wide = [part for part in _operands(expression) if isinstance(part, Sum | Product)]
-            if not wide:
-                break
-            widest = max(wide, key=lambda part: len(show(part)))
-            expression = _replaced(expression, widest, assign(names.numbered("x"), widest))
-        return expression
-
-    for assignment in kernel.assignments:
-        assign(*assignment)
-    outputs = []
-    for value in kernel.outputs:
-        short = shortened(value, output)
-        if not isinstance(short, Name) and len(show(short)) > output:
-            short = assign(names.numbered("x"), short)
-        outputs.append(short)
-    if (tuple(assignments), tuple(outputs)) == (kernel.assignments, kernel.outputs):
-        return kernel
-    return replace(kernel, assignments=tuple(assignments), outputs=tuple(outputs))
-
-
-def _operands(expression: Expression) -> tuple[Expression, ...]:
-    """The parts of an expression, without their signs."""
-    whole = expression.operand if isinstance(expression, Negative) else expression
-    each = [part for p in parts(whole) for part in (parts(p) if isinstance(p, Compare) else (p,))]
-    return tuple(p.operand if isinstance(p, Negative) else p for p in each)
-
-
-def _replaced(expression: Expression, old: Expression, new: Expression) -> Expression:
-    """The expression with one of its operands exchanged."""
-
-    def exchanged(part: Expression) -> Expression:
-        if part == old:
-            return new
-        return rebuilt(exchanged, part) if isinstance(part, Negative | Compare) else part
-
-    if isinstance(expression, Negative):
-        return Negative(_replaced(expression.operand, old, new))
-    return new if expression == old else rebuilt(exchanged, expression)

@@ -7,9 +7,8 @@ function a quantity, in one type, with the functions of <math.h>.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from math import pi
-from textwrap import wrap
 from types import ModuleType
 
 from rigidsym.kernels.ir import (
@@ -22,10 +21,9 @@ from rigidsym.kernels.ir import (
     functions_of,
     last_order,
 )
-from rigidsym.kernels.lowering.schedule import narrowed
 from rigidsym.kernels.lowering.trigonometry import two_over_pi
 from rigidsym.kernels.targets import numpy, remarks
-from rigidsym.kernels.targets.infix import infix
+from rigidsym.kernels.targets.infix import broken, infix
 from rigidsym.kernels.targets.precision import EITHER, PRECISIONS, Precision
 from rigidsym.kernels.targets.python import WIDTH, bracketed
 from rigidsym.system import resources
@@ -45,11 +43,7 @@ _WORDS = {"choice": "{0} ? {1} : {2}"}
 
 def render(program: Program, *, lean: str = "none") -> dict[str, str]:
     """The source, the header, and what makes a Python module of them."""
-    name, room = program.name, _WIDTH - len("    const double  = ;")
-    kernels = [
-        narrowed(kernel, lambda e: infix(e, _WORDS), line=room, output=room)
-        for kernel in program.kernels
-    ]
+    name, kernels = program.name, program.kernels
     precisions = [p for p in PRECISIONS if lean in ("none", p.real)]
     header = _header(program, kernels, precisions, is_lean=lean != "none")
     if lean != "none":
@@ -107,7 +101,9 @@ def _lean(program: Program, kernels: Sequence[Kernel], precision: Precision) -> 
         for name, value in kernel.statements:
             lines += _statement(kernel, name, value, precision, is_lean=True)
         lines += [f"out[{k}] = {_text(e, precision)};" for k, e in enumerate(kernel.outputs)]
-        functions.append({"signature": _signature(program, kernel, precision), "lines": lines})
+        functions.append(
+            {"signature": _signature(program, kernel, precision), "lines": _broken(lines)}
+        )
     last = last_order(kernels)
     return _rendered(
         "c/lean.c.jinja",
@@ -223,7 +219,7 @@ def _function(program: Program, kernel: Kernel) -> dict[str, object]:
         "arguments": arguments,
         "inputs": len(kernel.components),
         "outputs": len(kernel.outputs),
-        "lines": list(_side_by_side(kernel)),
+        "lines": _broken(_side_by_side(kernel)),
     }
 
 
@@ -231,14 +227,16 @@ def _side_by_side(kernel: Kernel) -> Iterator[str]:
     """Of a function of one row among others, whose components are `apart`."""
     components = enumerate(kernel.components)
     read = [f"{name} = {_entry('in', k)}" for k, name in components if name in kernel.used]
-    unbroken = ", ".join(item.replace(" ", "\xa0") for item in read)
-    text = f"    const {EITHER.real} {unbroken};"
-    for line in wrap(text, _WIDTH, subsequent_indent=" " * 8) if read else ():
-        yield line.replace("\xa0", " ").removeprefix("    ")
+    if read:
+        yield f"const {EITHER.real} {', '.join(read)};"
     for name, value in kernel.statements:
         yield from _statement(kernel, name, value, EITHER)
     for k, output in enumerate(kernel.outputs):
         yield f"{_entry('out', k)} = {_text(output, EITHER)};"
+
+
+def _broken(lines: Iterable[str]) -> list[str]:
+    return [broken(f"    {line}", _WIDTH, " " * 8).removeprefix("    ") for line in lines]
 
 
 def _statement(

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from fractions import Fraction
 from functools import lru_cache
 from math import isnan
+from textwrap import wrap
 from types import MappingProxyType
 
 from rigidsym.kernels.ir import (
@@ -23,6 +25,9 @@ from rigidsym.kernels.ir import (
 )
 
 _CHOICE, _SUM, _PRODUCT, _ATOM = range(4)  # how tightly a piece of text holds together
+
+# Spaces at which no line ends: within products and definitions, and behind operators and words.
+_UNBROKEN = re.compile(r" (?=[*/=])|(?<=[-+*/=<>?:]) |(?<=\bif) |(?<=\belse) ")
 
 Literal = Callable[[float], str]
 
@@ -103,3 +108,14 @@ def _text(expression: Expression, functions: Mapping[str, str], number: Literal)
 def _called(function: str, arguments: list[str]) -> str:
     listed = ", ".join(arguments)
     return function.format(listed) if "{}" in function else f"{function}({listed})"
+
+
+def broken(text: str, width: int, margin: str = "") -> str:
+    """The text in lines that begin with a term; `margin` is before all but the first."""
+    if len(text) <= width:
+        return text
+    glued = _UNBROKEN.sub("\xa0", text)
+    lines = wrap(
+        glued, width, subsequent_indent=margin, break_long_words=False, break_on_hyphens=False
+    )
+    return "\n".join(lines).replace("\xa0", " ")

@@ -23,9 +23,8 @@ from rigidsym.kernels.ir import (
     last_order,
 )
 from rigidsym.kernels.lowering.naming import Names
-from rigidsym.kernels.lowering.schedule import narrowed
 from rigidsym.kernels.targets import remarks
-from rigidsym.kernels.targets.infix import infix
+from rigidsym.kernels.targets.infix import broken, infix
 from rigidsym.system import resources
 from rigidsym.version import OWNERSHIP
 
@@ -111,8 +110,6 @@ def _show(expression: Expression) -> str:
 @lru_cache(maxsize=64)  # all pages compare with the same conventions
 def _function(kernel: Kernel) -> dict[str, object]:
     """The pieces of text that the template places."""
-    line, output = _WIDTH - len("  const ;"), _WIDTH - len("  out[at + 10] = ;")
-    kernel = narrowed(kernel, _show, line=line, output=output)
     names = Names([*kernel.components, *(a.name for a in kernel.assignments), "out", "at"])
     arguments = kernel.arguments
     vectors = [names.fresh(argument.name) for argument in arguments]
@@ -134,6 +131,7 @@ def _function(kernel: Kernel) -> dict[str, object]:
         returns=f"{{{_kind(kernel)}}}{shape}" + (f" in {kernel.unit}" if kernel.unit else ""),
     )
     given = [f"  out[{_placed('at', k)}] = {_show(e)};" for k, e in enumerate(kernel.outputs)]
+    lines = (broken(line, _WIDTH, " " * 4) for line in (*taken, *_lines(kernel), *given))
     return {
         "name": kernel.name,
         "about": _comment(about),
@@ -142,7 +140,7 @@ def _function(kernel: Kernel) -> dict[str, object]:
         "taken": ", ".join(f'_taken("{a.name}", {flat}, {n}), 0' for _, _, n, a, flat in each),
         "checked": ", ".join(f'["{a.name}", {vector}, {n}]' for vector, _, n, a, _ in each),
         "stepped": ", ".join(f"{vector}, i * steps[{k}]" for k, vector in enumerate(vectors)),
-        "body": "\n".join([*taken, *_lines(kernel), *given]),
+        "body": "\n".join(lines),
         "returned": _returned(kernel),
         "count": len(kernel.outputs),
     }

@@ -7,9 +7,8 @@ from types import ModuleType
 
 from rigidsym.kernels import loaded
 from rigidsym.kernels.ir import FUNCTIONS, Kernel, Program, functions_of, last_order
-from rigidsym.kernels.lowering.schedule import narrowed
 from rigidsym.kernels.targets import python
-from rigidsym.kernels.targets.infix import infix
+from rigidsym.kernels.targets.infix import broken, infix
 from rigidsym.kernels.targets.python import WIDTH, bracketed, exploded
 
 RESERVED = python.RESERVED | {"jax", "jnp", "like", "parts"}
@@ -23,10 +22,7 @@ _WORDS = {
 
 def render(program: Program) -> dict[str, str]:
     """The module."""
-    kernels = [
-        narrowed(kernel, infix, line=WIDTH - 4, output=WIDTH - 8 - len(","))
-        for kernel in program.kernels
-    ]
+    kernels = program.kernels
     functions = [
         {
             "signature": python.signature(kernel),
@@ -67,5 +63,6 @@ def _body(kernel: Kernel) -> Iterator[str]:
             yield line if len(line) <= WIDTH else wide
     for name, value in kernel.statements:
         yield python.statement(4, name, value, _WORDS)
-    entries = ["like", str(kernel.shape), *map(infix, kernel.outputs)]
+    outputs = (broken(infix(e), WIDTH - 12, " " * 12) for e in kernel.outputs)
+    entries = ["like", str(kernel.shape), *outputs]
     yield bracketed(4, "return _together(", entries, ")")

@@ -23,7 +23,7 @@ _WORDS = {"atan2": "_angle_of", "nan": "np.nan"}
 
 def render(program: Program) -> dict[str, str]:
     """The module."""
-    kernels = list(map(numpy.fitted, program.kernels))
+    kernels = program.kernels
     functions = []
     for kernel in kernels:
         head, about = numpy.twin_head(kernel)
@@ -81,7 +81,7 @@ def _body(kernel: Kernel) -> Iterator[str]:
                 yield f"    {name} = eps"
             case _:
                 yield python.statement(4, name, value, _WORDS)
-    outputs = list(map(infix, kernel.outputs))
+    outputs = numpy.outputs(kernel, 8)
     yield f"    return {numpy.nested(outputs, (len(outputs),), 4, is_open=True)}"
 
 

@@ -18,9 +18,8 @@ from rigidsym.kernels.ir import (
     last_order,
 )
 from rigidsym.kernels.lowering.naming import Names
-from rigidsym.kernels.lowering.schedule import narrowed
 from rigidsym.kernels.targets import python, remarks
-from rigidsym.kernels.targets.infix import infix
+from rigidsym.kernels.targets.infix import broken, infix
 from rigidsym.kernels.targets.python import WIDTH, bracketed, docstring, exploded, tuple_of
 
 TEMPLATE = "numpy/module.py.jinja"
@@ -40,7 +39,7 @@ _OF_ARRAYS = {
 
 def render(program: Program) -> dict[str, str]:
     """The module."""
-    kernels = list(map(fitted, program.kernels))
+    kernels = program.kernels
     of_math = functions_of(kernels).intersection(FUNCTIONS) - {"abs", "eps"}
     of_math |= {"sqrt", "tan"} if last_order(kernels) >= 0 else set()
     of_math |= {"nan"} if any(kernel.gives_nan for kernel in kernels) else set()
@@ -129,10 +128,9 @@ def twin_head(kernel: Kernel) -> tuple[str, str]:
     return bracketed(0, f"def {kernel.name}_scalar(", floats, tail), f'    """{about}"""'
 
 
-def fitted(kernel: Kernel) -> Kernel:
-    """The kernel in lines that fit: a scalar twin's assignments and the rows of its outputs."""
-    output = WIDTH - 8 - 4 * len(kernel.shape) - len(",")
-    return narrowed(kernel, infix, line=WIDTH - 8, output=output)
+def outputs(kernel: Kernel, margin: int) -> list[str]:
+    """The outputs in lines that fit, behind a margin."""
+    return [broken(infix(e), WIDTH - margin - 4, " " * (margin + 4)) for e in kernel.outputs]
 
 
 def _floats(shape: Sequence[int]) -> str:
@@ -151,8 +149,8 @@ def _scalar_body(kernel: Kernel) -> Iterator[str]:
         is_eps = isinstance(value, Call) and value.function == "eps"
         line = f"        {name} = {2.0**-52!r}"
         yield line if is_eps else python.statement(8, name, value, _OF_FLOATS)
-    outputs = list(map(infix, kernel.outputs))
-    yield f"        return {nested(outputs, kernel.shape, 8, is_open=True)}"
+    entries = outputs(kernel, 8 + 4 * len(kernel.shape))
+    yield f"        return {nested(entries, kernel.shape, 8, is_open=True)}"
     points = [nested(a.components, (len(a.components),), 12) for a in kernel.arguments]
     given = [f"_{kernel.name}", str(kernel.shape), *points]
     yield "    except (ValueError, ZeroDivisionError):"
@@ -164,13 +162,16 @@ def nested(
 ) -> str:
     """Numbers in the tuples of a shape; a row is in one line if it fits and is not to be open."""
     if not shape:
-        return items[0]
-    size = prod(shape[1:])
-    rows = [items[start : start + size] for start in range(0, len(items), size)]
-    entries = [nested(row, shape[1:], margin + 4) for row in rows]
+        (item,) = items
+        space = " " * margin
+        return f"(\n{space}    {item}\n{space})" if "\n" in item else item
+    entries, size = list(items), prod(shape[1:])
+    if len(shape) > 1:
+        rows = [items[start : start + size] for start in range(0, len(items), size)]
+        entries = [nested(row, shape[1:], margin + 4) for row in rows]
     line = tuple_of(entries)
     is_short = len(shape) == 1 and not is_open and len(line) <= WIDTH - margin - len(",")
-    if is_short or len(entries) == 1:
+    if is_short or (len(entries) == 1 and "\n" not in line):
         return line
     return exploded(margin, "(", entries, ")").lstrip()
 
@@ -197,13 +198,8 @@ def _block(kernel: Kernel) -> Iterator[str]:
             yield bracketed(4, f"{', '.join(both)} = _sin_cos(", given, ")")
         if call is not None and call.function == "cos" and name in kernel.delicate:
             yield bracketed(4, f"{name} = _sharp(", [name, call.argument.text], ")")
-    outputs = [
-        f"+{output.text}"
-        if isinstance(output, Name) and output.text in kernel.components
-        else infix(output)
-        for output in kernel.outputs
-    ]
-    yield f"    return {nested(outputs, (len(outputs),), 4, is_open=True)}"
+    entries = [f"+{e}" if e in kernel.components else e for e in outputs(kernel, 8)]
+    yield f"    return {nested(entries, (len(entries),), 4, is_open=True)}"
 
 
 def _unpacked(vector: str, components: Sequence[str], used: Container[str]) -> Iterator[str]:

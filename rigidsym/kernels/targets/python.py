@@ -1,6 +1,6 @@
 """Text that all Python modules share: for NumPy, Numba, JAX and compiled modules.
 
-It has the layout that `ruff format` gives it, so that no formatter need run.
+Signatures and calls have the layout that `ruff format` gives them.
 """
 
 from __future__ import annotations
@@ -9,9 +9,9 @@ import re
 from collections.abc import Mapping, Sequence
 
 from rigidsym.algebra.stable_forms import FIRST_SERIES, series_of, taylor
-from rigidsym.kernels.ir import FUNCTIONS, Call, Choice, Expression, Kernel, Program, last_order
+from rigidsym.kernels.ir import FUNCTIONS, Call, Expression, Kernel, Program, last_order
 from rigidsym.kernels.targets import remarks
-from rigidsym.kernels.targets.infix import infix
+from rigidsym.kernels.targets.infix import broken, infix
 from rigidsym.system import resources
 
 WIDTH = 88
@@ -19,8 +19,6 @@ MANY = 8  # components
 _UNWELCOME = ("l", "O", "I")  # linters refuse these names
 RESERVED = frozenset({*FUNCTIONS, *_UNWELCOME, "nan", "max", "min"})
 _CALL = re.compile(r"([A-Za-z_][\w.]*\()(.*)\)")
-_BEFORE_AN_OPERATOR = re.compile(r" (?=[-+*/] )")
-_BEFORE_A_WORD = re.compile(r" (?=if |else )")
 _QUOTES = '"""'
 
 
@@ -29,8 +27,7 @@ def statement(
 ) -> str:
     """One assignment, or that of all functions c_k of one square, which words["entire"] computes.
 
-    What is too wide for a line is broken in the brackets of its call, at its conditions, or before
-    each operator in brackets of its own.
+    What is too wide for a line is broken in the brackets of its call, or in brackets of its own.
     """
     if isinstance(value, dict):
         calls = sorted(value.items(), key=lambda named: named[1].order or 0)
@@ -45,14 +42,7 @@ def statement(
         return line
     if call := _CALL.fullmatch(text):
         return bracketed(indent, f"{name} = {call[1]}", call[2].split(", "), ")")
-    if isinstance(value, Choice):
-        pieces = _BEFORE_A_WORD.split(text)
-    elif "(" in text:
-        return line
-    else:
-        pieces = [text] if len(inner + text) <= WIDTH else _BEFORE_AN_OPERATOR.split(text)
-    body = "\n".join(inner + piece for piece in pieces)
-    return f"{margin}{name} = (\n{body}\n{margin})"
+    return f"{margin}{name} = (\n{broken(inner + text, WIDTH, inner)}\n{margin})"
 
 
 def series(kernels: Sequence[Kernel], *, more: int = 0) -> str:
