@@ -119,6 +119,14 @@ def with_other_angles(content: Content) -> None:
     everywhere("cos(phi)", "1")(content)
 
 
+def with_a_constant_angle_in_degrees(content: Content) -> None:
+    content["rotation"]["turns"][1], content["name"] = "x(a)", "chain"
+    content["quantities"] = [printed(content, "rotation_matrix")]
+    everywhere("theta", "a")(content)
+    unit = {"name": "a", "unit": "deg"}
+    content["arguments"] += [{"name": "parameters", "components": [unit]}]
+
+
 def with_a_moment_too_many(content: Content) -> None:
     inertia = content["body"]["inertia"]
     axes, moments = copy.deepcopy(content["quantities"][:2])
@@ -136,6 +144,12 @@ KNOWN: dict[str, tuple[str, Change]] = {
     "a centre beside the fixed point": ("top", with_another_centre),
     "turns about other angles than the name says": ("ZXZ", with_other_angles),
     "a principal moment too many": ("top", with_a_moment_too_many),
+    "a constant angle in degrees": ("ZXZ", with_a_constant_angle_in_degrees),
+    "a power that costs minutes": ("ZXZ", put(VELOCITY, 2, "0*cos(phi)**90000")),
+    "sums of 32,768 roots": (
+        "ZXZ",
+        put(VELOCITY, 2, f"0/({' + '.join(f'sqrt({p})' for p in sp.primerange(50))})"),
+    ),
     "a power of degree zero": ("ZXZ", put(VELOCITY, 2, "0*(phi**0)**900000000000")),
     "a rate with the other sign": ("ZXZ", everywhere("phi_dot", "(-phi_dot)")),
     "a comment that hides a rate": ("ZXZ", put(W, 2, 0, "cos(theta) + psi_dot/phi_dot # '")),

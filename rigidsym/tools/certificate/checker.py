@@ -28,7 +28,8 @@ from pathlib import Path
 from random import SystemRandom
 from typing import Any
 
-BITS, MOST_DEGREE, MOST_DIGITS, MOST_PARTS = 128, 100_000, 40, 12
+BITS, MOST_DEGREE, MOST_POWER = 128, 100_000, 60
+MOST_DIGITS, MOST_PARTS, MOST_ROOTS = 40, 12, 6
 ANGULAR = "cos", "sin", "tan", "cot"
 OPERATORS = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/"}
 OMEGA = {frame: [f"omega_{frame}_{k}" for k in (1, 2, 3)] for frame in ("space", "body")}
@@ -109,7 +110,7 @@ def _tree(node: ast.AST) -> Tree:
         case ast.UnaryOp(op=ast.USub(), operand=operand):
             return ("-", ("number", 0), _tree(operand))
         case ast.BinOp(left=base, op=ast.Pow(), right=ast.Constant(value=int(power))) if (
-            type(power) is int and power > 0
+            type(power) is int and 0 < power <= MOST_POWER
         ):
             return ("**", _tree(base), power)
         case ast.BinOp(left=one, op=operator, right=two) if type(operator) in OPERATORS:
@@ -266,13 +267,19 @@ class Matrix:
         return Matrix([[self.rows[2][1]], [self.rows[0][2]], [self.rows[1][0]]])
 
     def determinant(self) -> Number:
-        first, *rest = self.rows
-        if len(first) != len(self.rows):
+        """By elimination; zero where a column has no pivot, which is all that its readers ask."""
+        rows, product = self.rows, ONE
+        if any(len(row) != len(rows) for row in rows):
             raise Refused("a matrix that is not square has no determinant")
-        minors = (Matrix([row[:k] + row[k + 1 :] for row in rest]) for k in range(len(first)))
-        signs = (MINUS if k % 2 else ONE for k in range(len(first)))
-        terms = (a * s * m.determinant() for a, s, m in zip(first, signs, minors, strict=True))
-        return reduce(add, terms) if rest else first[0]
+        while rows:
+            place = next((k for k, row in enumerate(rows) if row[0].parts[0]), None)
+            if place is None:
+                return ZERO
+            pivot, *first = rows[place]
+            product *= pivot * MINUS if place % 2 else pivot
+            others = ((row[0] / pivot, row[1:]) for k, row in enumerate(rows) if k != place)
+            rows = [[b - f * a for a, b in zip(first, rest, strict=True)] for f, rest in others]
+        return product
 
 
 def dot(row: Sequence[Number], column: Sequence[Number]) -> Number:
@@ -377,7 +384,7 @@ class Record:
                 checks.append((name, units.get(name, unit), unit))
         for kind, (*_, sine) in self.turns:
             if kind in ("x", "y", "z", "axis_angle"):
-                angles = names_in(tree_of(sine)).intersection(self.q)
+                angles = names_in(tree_of(sine)).intersection({*self.q, *self.constants})
                 checks += [(name, units[name], "rad") for name in angles]
         for name, unit, expected in checks:
             if unit != expected:
@@ -419,9 +426,14 @@ class Record:
                 return (one + two, below + divisor) if kind == "*" else (one + divisor, below + two)
             return max(one + divisor, two + below), below + divisor
 
-        if any(max(degrees(tree)) > MOST_DEGREE for tree in self.trees):
+        of_turns = sum(max(degrees(tree_of(form))) for _, forms in self.turns for form in forms)
+        if max(of_turns, *(max(degrees(tree)) for tree in self.trees)) > MOST_DEGREE:
             raise Refused("the degree of an expression is too large")
-        angles = {part[1] for tree in self.trees for part in parts_of(tree) if part[0] in ANGULAR}
+        parts = [part for tree in self.trees for part in parts_of(tree)]
+        numbers = {part[1] for part in parts if part[0] == "sqrt" and part[1][0] == "number"}
+        if len(numbers) > MOST_ROOTS:  # whose products are as many as the subsets of their primes
+            raise Refused(f"there are roots of more than {MOST_ROOTS} different numbers")
+        angles = {part[1] for part in parts if part[0] in ANGULAR}
         divided = [part for angle in angles for part in parts_of(angle) if part[0] == "/"]
         self.parts = lcm(*(part[2][1] for part in divided if part[2][0] == "number"))
         if not 0 < self.parts <= MOST_PARTS:
