@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
-from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -43,12 +43,11 @@ class Call:
     package: str  # as it is installed
     setup: str  # what to import
     text: str  # the call, an expression
-    is_quaternion: bool = False  # what it returns; otherwise a matrix
 
     @property
     def takes(self) -> str:
         """ "a" for angles, "q" for a quaternion, "v" for a vector, or an axis and an angle."""
-        words = set(_words(self.text))
+        words = set(re.findall(r"\b[a-z]\w*", self.text))
         return "q" if "q" in words else "v" if words & {"v", "e", "t"} else "a"
 
     @property
@@ -75,173 +74,128 @@ class Call:
             names: dict[str, Any] = {"np": np}
             exec(self.setup, names)
             found = [_plain(eval(self.text, names | given)) for given in inputs]
-        return np.array(found, float).reshape((-1, 4) if self.is_quaternion else (-1, 3, 3))
+        results = np.array(found, float)
+        shape = (-1, 4) if results.size == 4 * len(inputs) else (-1, 3, 3)
+        return results.reshape(shape)
 
 
-_SPATIAL = "from scipy.spatial.transform import Rotation"
 _FRAMES = """
 from sympy.physics.vector import ReferenceFrame
 N = ReferenceFrame("N")
 body = lambda a, b, c: N.orientnew("B", "Body", (a, b, c), "XYZ")
 """
-_THREE = "import * as T from 'three'"
-CALLS = (
-    Call("scipy", _SPATIAL, 'Rotation.from_euler("xyz", [a, b, c]).as_matrix()'),
-    Call("scipy", _SPATIAL, 'Rotation.from_euler("ZXZ", [a, b, c]).as_matrix()'),
-    Call("scipy", _SPATIAL, 'Rotation.from_euler("xyz", [a, b, c]).as_quat()', True),
-    Call("scipy", _SPATIAL, "Rotation.from_quat(q).as_matrix()"),
-    Call("scipy", _SPATIAL, "Rotation.from_rotvec(v).as_matrix()"),
-    Call("sympy", "from sympy import *", 'Quaternion.from_euler([a, b, c], "xyz").args[:4]', True),
-    Call("sympy", "from sympy import *", "rot_axis3(c) * rot_axis2(b) * rot_axis1(a)"),
-    Call("sympy", "from sympy import *", "rot_ccw_axis3(c) * rot_ccw_axis2(b) * rot_ccw_axis1(a)"),
-    Call("sympy", "from sympy import *", "Quaternion(*q).to_rotation_matrix()"),
-    Call("sympy", _FRAMES, "N.dcm(body(a, b, c))"),
-    Call("sympy", _FRAMES, "body(a, b, c).dcm(N)"),
-    Call("transforms3d", "from transforms3d.euler import *", 'euler2mat(a, b, c, "sxyz")'),
-    Call("transforms3d", "from transforms3d.euler import *", 'euler2quat(a, b, c, "rzxz")', True),
-    Call("transforms3d", "from transforms3d.quaternions import *", "quat2mat(q)"),
-    Call("transforms3d", "from transforms3d.axangles import *", "axangle2mat(e, t)"),
-    Call(
-        "pytransform3d",
-        "from pytransform3d.rotations import *",
+_TEXTS = {  # of calls, by package and what to import
+    ("scipy", "from scipy.spatial.transform import Rotation"): (
+        'Rotation.from_euler("xyz", [a, b, c]).as_matrix()',
+        'Rotation.from_euler("ZXZ", [a, b, c]).as_matrix()',
+        'Rotation.from_euler("xyz", [a, b, c]).as_quat()',
+        "Rotation.from_quat(q).as_matrix()",
+        "Rotation.from_rotvec(v).as_matrix()",
+    ),
+    ("sympy", "from sympy import *"): (
+        'Quaternion.from_euler([a, b, c], "xyz").args[:4]',
+        "rot_axis3(c) * rot_axis2(b) * rot_axis1(a)",
+        "rot_ccw_axis3(c) * rot_ccw_axis2(b) * rot_ccw_axis1(a)",
+        "Quaternion(*q).to_rotation_matrix()",
+    ),
+    ("sympy", _FRAMES): (
+        "N.dcm(body(a, b, c))",
+        "body(a, b, c).dcm(N)",
+    ),
+    ("transforms3d", "from transforms3d.euler import *"): (
+        'euler2mat(a, b, c, "sxyz")',
+        'euler2quat(a, b, c, "rzxz")',
+    ),
+    ("transforms3d", "from transforms3d.quaternions import *"): ("quat2mat(q)",),
+    ("transforms3d", "from transforms3d.axangles import *"): ("axangle2mat(e, t)",),
+    ("pytransform3d", "from pytransform3d.rotations import *"): (
         "matrix_from_euler([a, b, c], 0, 1, 2, extrinsic=True)",
-    ),
-    Call(
-        "pytransform3d",
-        "from pytransform3d.rotations import *",
         "matrix_from_euler([a, b, c], 2, 0, 2, extrinsic=False)",
-    ),
-    Call("pytransform3d", "from pytransform3d.rotations import *", "matrix_from_quaternion(q)"),
-    Call(
-        "pytransform3d",
-        "from pytransform3d.rotations import *",
+        "matrix_from_quaternion(q)",
         "matrix_from_compact_axis_angle(v)",
     ),
-    Call("spatialmath-python", "from spatialmath.base import *", "rpy2r(a, b, c)"),
-    Call("spatialmath-python", "from spatialmath.base import *", 'rpy2r(a, b, c, order="xyz")'),
-    Call("spatialmath-python", "from spatialmath.base import *", "eul2r(a, b, c)"),
-    Call("spatialmath-python", "from spatialmath.base import *", "q2r(q)"),
-    Call("spatialmath-python", "from spatialmath.base import *", "angvec2r(t, e)"),
-    Call("trimesh", "from trimesh.transformations import *", "euler_matrix(a, b, c)[:3, :3]"),
-    Call(
-        "trimesh",
-        "from trimesh.transformations import *",
-        'quaternion_from_euler(a, b, c, "rzyx")',
-        True,
+    ("spatialmath-python", "from spatialmath.base import *"): (
+        "rpy2r(a, b, c)",
+        'rpy2r(a, b, c, order="xyz")',
+        "eul2r(a, b, c)",
+        "q2r(q)",
+        "angvec2r(t, e)",
     ),
-    Call("trimesh", "from trimesh.transformations import *", "quaternion_matrix(q)[:3, :3]"),
-    Call("trimesh", "from trimesh.transformations import *", "rotation_matrix(t, e)[:3, :3]"),
-    Call(
-        "transformations",
-        "from transformations import *",
+    ("trimesh", "from trimesh.transformations import *"): (
+        "euler_matrix(a, b, c)[:3, :3]",
+        'quaternion_from_euler(a, b, c, "rzyx")',
+        "quaternion_matrix(q)[:3, :3]",
+        "rotation_matrix(t, e)[:3, :3]",
+    ),
+    ("transformations", "from transformations import *"): (
         "quaternion_matrix(quaternion_from_euler(a, b, c))[:3, :3]",
     ),
-    Call(
-        "numpy-quaternion",
-        "import quaternion",
+    ("numpy-quaternion", "import quaternion"): (
         "quaternion.as_float_array(quaternion.from_euler_angles(a, b, c))",
-        True,
-    ),
-    Call(
-        "numpy-quaternion",
-        "import quaternion",
         "quaternion.as_rotation_matrix(quaternion.quaternion(*q))",
-    ),
-    Call(
-        "numpy-quaternion",
-        "import quaternion",
         "quaternion.as_rotation_matrix(quaternion.from_rotation_vector(v))",
     ),
-    Call(
-        "quaternionic",
-        "import quaternionic",
+    ("quaternionic", "import quaternionic"): (
         "quaternionic.array.from_euler_angles(a, b, c).ndarray",
-        True,
+        "quaternionic.array(q).to_rotation_matrix",
     ),
-    Call("quaternionic", "import quaternionic", "quaternionic.array(q).to_rotation_matrix"),
-    Call("pyquaternion", "from pyquaternion import Quaternion", "Quaternion(q).rotation_matrix"),
-    Call(
-        "pyquaternion",
-        "from pyquaternion import Quaternion",
+    ("pyquaternion", "from pyquaternion import Quaternion"): (
+        "Quaternion(q).rotation_matrix",
         "Quaternion(axis=e, angle=t).rotation_matrix",
     ),
-    Call(
-        "rowan",
-        "import rowan",
+    ("rowan", "import rowan"): (
         'rowan.from_euler(a, b, c, convention="zyx", axis_type="intrinsic")',
-        True,
+        "rowan.to_matrix(np.array(q))",
     ),
-    Call("rowan", "import rowan", "rowan.to_matrix(np.array(q))"),
-    Call("pyrr", "import pyrr", "pyrr.matrix33.create_from_eulers([a, b, c])"),
-    Call("pyrr", "import pyrr", "pyrr.matrix33.create_from_quaternion(np.array(q))"),
-    Call("navpy", "import navpy", "navpy.angle2dcm(a, b, c)"),
-    Call("navpy", "import navpy", "np.hstack(navpy.angle2quat(a, b, c))", True),
-    Call("PyGLM", "from pyglm import glm", "np.array(glm.mat3_cast(glm.quat(glm.vec3(a, b, c))))"),
-    Call("PyGLM", "from pyglm import glm", "np.array(glm.mat3_cast(glm.quat(*q)))"),
-    Call("jaxlie", "import jaxlie", "jaxlie.SO3.from_rpy_radians(a, b, c).as_matrix()"),
-    Call("jaxlie", "import jaxlie", "jaxlie.SO3(np.array(q)).as_matrix()"),
-    Call("jaxlie", "import jaxlie", "jaxlie.SO3.exp(np.array(v)).as_matrix()"),
-    Call("gtsam", "import gtsam", "gtsam.Rot3.RzRyRx(a, b, c).matrix()"),
-    Call("gtsam", "import gtsam", "gtsam.Rot3.Ypr(a, b, c).matrix()"),
-    Call("gtsam", "import gtsam", "gtsam.Rot3(*q).matrix()"),
-    Call("gtsam", "import gtsam", "gtsam.Rot3.Expmap(np.array(v)).matrix()"),
-    Call("ahrs", "import ahrs", "ahrs.Quaternion(rpy=np.array([a, b, c]))", True),
-    Call("ahrs", "import ahrs", "ahrs.DCM(rpy=[a, b, c])"),
-    Call("ahrs", "import ahrs", "ahrs.DCM(q=np.array(q))"),
-    Call(
-        "astropy",
-        "from astropy.coordinates.matrix_utilities import rotation_matrix",
+    ("pyrr", "import pyrr"): (
+        "pyrr.matrix33.create_from_eulers([a, b, c])",
+        "pyrr.matrix33.create_from_quaternion(np.array(q))",
+    ),
+    ("navpy", "import navpy"): (
+        "navpy.angle2dcm(a, b, c)",
+        "np.hstack(navpy.angle2quat(a, b, c))",
+    ),
+    ("PyGLM", "from pyglm import glm"): (
+        "np.array(glm.mat3_cast(glm.quat(glm.vec3(a, b, c))))",
+        "np.array(glm.mat3_cast(glm.quat(*q)))",
+    ),
+    ("jaxlie", "import jaxlie"): (
+        "jaxlie.SO3.from_rpy_radians(a, b, c).as_matrix()",
+        "jaxlie.SO3(np.array(q)).as_matrix()",
+        "jaxlie.SO3.exp(np.array(v)).as_matrix()",
+    ),
+    ("gtsam", "import gtsam"): (
+        "gtsam.Rot3.RzRyRx(a, b, c).matrix()",
+        "gtsam.Rot3.Ypr(a, b, c).matrix()",
+        "gtsam.Rot3(*q).matrix()",
+        "gtsam.Rot3.Expmap(np.array(v)).matrix()",
+    ),
+    ("ahrs", "import ahrs"): (
+        "ahrs.Quaternion(rpy=np.array([a, b, c]))",
+        "ahrs.DCM(rpy=[a, b, c])",
+        "ahrs.DCM(q=np.array(q))",
+    ),
+    ("astropy", "from astropy.coordinates.matrix_utilities import rotation_matrix"): (
         "rotation_matrix(np.degrees(t), e)",
     ),
-    Call(
-        "astropy",
-        "from astropy.modeling.rotations import RotationSequence3D",
+    ("astropy", "from astropy.modeling.rotations import RotationSequence3D"): (
         'np.array(RotationSequence3D(np.degrees([a, b, c]), "xyz")(*np.eye(3)))',
     ),
-    Call(
-        "three",
-        _THREE,
+    ("three", "import * as T from 'three'"): (
         "rows(new T.Matrix4().makeRotationFromEuler(new T.Euler(a, b, c)).elements, 4)",
-    ),
-    Call("three", _THREE, "new T.Quaternion().setFromEuler(new T.Euler(a, b, c, 'ZYX'))", True),
-    Call(
-        "three",
-        _THREE,
+        "new T.Quaternion().setFromEuler(new T.Euler(a, b, c, 'ZYX'))",
         "rows(new T.Matrix4().makeRotationFromQuaternion(new T.Quaternion(...q)).elements, 4)",
-    ),
-    Call(
-        "three",
-        _THREE,
         "rows(new T.Matrix4().makeRotationAxis(new T.Vector3(...e), t).elements, 4)",
     ),
-    Call(
-        "gl-matrix",
-        "import {mat3, quat} from 'gl-matrix'",
+    ("gl-matrix", "import {mat3, quat} from 'gl-matrix'"): (
         "quat.fromEuler(quat.create(), ...[a, b, c].map(x => x * 180 / Math.PI))",
-        True,
-    ),
-    Call(
-        "gl-matrix",
-        "import {mat3, quat} from 'gl-matrix'",
         "rows(mat3.fromQuat(mat3.create(), q), 3)",
     ),
-    Call(
-        "cannon-es",
-        "import {Quaternion} from 'cannon-es'",
+    ("cannon-es", "import {Quaternion} from 'cannon-es'"): (
         "new Quaternion().setFromEuler(a, b, c).toArray()",
-        True,
     ),
-)
-
-
-def _words(text: str) -> Iterator[str]:
-    word = ""
-    for letter in text + " ":
-        if letter.isidentifier() or (word and letter.isdigit()):
-            word += letter
-        elif word:
-            yield word
-            word = ""
+}
+CALLS = [Call(*imports, text) for imports, texts in _TEXTS.items() for text in texts]
 
 
 def _plain(value: Any) -> Any:
@@ -271,7 +225,7 @@ def row(call: Call) -> tuple[Cell, ...]:
     except (PackageNotFoundError, ImportError):
         return call.package, shown, "", "", "", ""
     for order, results in tried.items():
-        given = {"quaternion" if call.is_quaternion else "matrix": results}
+        given = {"matrix" if results.ndim == 3 else "quaternion": results}
         found = identify(ANGLES, names=("a", "b", "c"), tolerance=_TOLERANCE, **given)
         if not found.fits:
             continue

@@ -130,7 +130,7 @@ BUDGETS = {  # what was reached; who makes the house smaller lowers them
     "files": 198,
     "lines of code": 29_100,
     "lines of tests": 18_230,
-    "lines of benchmarks": 2_540,
+    "lines of benchmarks": 2_500,
 }
 
 
