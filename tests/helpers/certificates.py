@@ -6,13 +6,16 @@ import json
 import os
 import shutil
 import subprocess
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 import pytest
+import sympy as sp
 
 import rigidsym as rs
+from rigidsym.models.body import given_inertia
 from rigidsym.models.library import rotation_from
 from rigidsym.notes.formats.record import record
 from rigidsym.tools.certificate.certificate import DEFINITIONS, definitions
@@ -27,6 +30,64 @@ def plain(record: dict[str, Any]) -> dict[str, Any]:
 def record_of(text: str, quantities: tuple[str, ...] | None = None) -> dict[str, Any]:
     motion = rs.derive(rotation_from(text), *([quantities] if quantities else []))
     return plain(record(motion, {"rotations": [{"sequence": text}]}))
+
+
+OF_BODY = ("rotation_matrix", "inertia_tensor", "inertia_tensor_space", "moment_of_inertia")
+OF_BODY += ("radii_of_gyration", "kinetic_energy", "angular_momentum")
+OF_MOTION = ("potential_energy", "lagrangian", "energy", "generalised_momenta", "mass_matrix")
+OF_MOTION += ("bias_vector", "accelerations", "hamiltonian")
+PRINCIPAL = ("principal_moments", "principal_axes")
+A, B, C, M = sp.symbols("A B C M", positive=True)
+OF_TOP = ("rotation_matrix", "angular_velocity_body", "mass_matrix", "accelerations", "energy")
+
+
+def of_top(*names: str) -> rs.Motion:
+    body = rs.principal_moments(A, A, C)
+    return rs.derive("ZXZ", *([names] if names else []), body=body, potential="m*g*l*cos(theta)")
+
+
+NEEDS: dict[str, Callable[[], rs.Motion]] = {
+    "box": lambda: rs.derive("ZXZ", OF_BODY, body=rs.solid("box")),
+    "euler": lambda: rs.derive(
+        "ZXZ",
+        ["rotation_matrix", "angular_acceleration_from_torque"],
+        body=rs.principal_moments(A, B, C),
+        potential=0,
+    ),
+    "damped top": lambda: rs.derive(
+        "ZXZ",
+        [
+            "rotation_matrix",
+            "angular_velocity_body",
+            *OF_MOTION,
+            *PRINCIPAL,
+            "coriolis_matrix",
+            "inertia_ellipsoid",
+        ],
+        body=rs.principal_moments(A, A, C),
+        potential="m*g*l*cos(theta)",
+        forces={"psi": "-k*psi_dot"},
+    ),
+    "top": lambda: of_top(*OF_TOP),
+    "whole top": of_top,
+    "torque": lambda: rs.derive(
+        "ZYX",
+        ["angular_velocity_body", "accelerations"],
+        body=rs.principal_moments(A, A, C),
+        torque=["l*F", "0", "k*F"],
+    ),
+    # moments 6 and 6 ± 2√2 about axes that lie between those of the description
+    "oblique axes": lambda: rs.derive(
+        "ZXZ",
+        PRINCIPAL,
+        body=given_inertia(sp.Matrix([[6, -2, 0], [-2, 6, -2], [0, -2, 6]]), mass=M),
+    ),
+}
+
+
+@cache
+def of_motion(name: str) -> dict[str, Any]:
+    return plain(record(NEEDS[name](), {}))
 
 
 def printed(found: dict[str, Any], name: str) -> dict[str, Any]:
