@@ -11,10 +11,8 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
-from rigidsym.algebra.present import Rationals
-from rigidsym.algebra.ring import Quotient
 from rigidsym.errors import BodyError
-from rigidsym.mechanics.mass.moments import Moments, about_centre, moments_of
+from rigidsym.mechanics.mass.moments import about_centre, moments_of
 from rigidsym.models.body import (
     KEYS,
     BodyDescription,
@@ -83,7 +81,7 @@ def body_of(
         moments = moments_of(distribution)
         if moments.mass == 0:
             raise BodyError(f"{name}: the mass is zero; expected a positive mass")
-        centre, inertia = _central(moments)
+        centre, inertia = moments.central()
         kind = type(distribution).__name__
         known = distribution.title if isinstance(distribution, Solid) else _TITLES.get(kind, kind)
         return RigidBody(
@@ -92,7 +90,10 @@ def body_of(
             mass=moments.mass,
             inertia=inertia,
             centre=centre,
-            parameters=described(parameters, *((entry, "") for entry in moments.expressions)),
+            parameters=described(
+                parameters,
+                *((entry, "") for entry in (moments.mass, *moments.first, *moments.second)),
+            ),
             declared=tuple(parameters),
             allow=allow,
             distribution=distribution,
@@ -100,27 +101,6 @@ def body_of(
     except BodyError as error:
         place = error.place or (KEYS[type(distribution)],)
         raise BodyError(str(error), place=place) from error
-
-
-def _central(moments: Moments) -> tuple[sp.ImmutableMatrix, sp.ImmutableMatrix]:
-    """The centre c = S/M, (3, 1), and the inertia tensor tr(J) 1 − J about it, from J − M c cᵀ."""
-    field = Rationals.of(moments.expressions)
-    mass, second = field.read(moments.mass), field.read_matrix(moments.second)
-    inverse = mass.inverse()
-    centre = [field.write(field.read(entry) * inverse) for entry in moments.first]
-    # Without the mass in its divisor, as S/M has it before it is cancelled: to find the mass of a
-    # tetrahedron with twelve symbols in a moment of degree eight would take a minute.
-    c = [field.read(entry) for entry in centre]
-
-    def about_centre(i: int, j: int) -> Quotient:
-        return second[i][j] - mass * c[i] * c[j]
-
-    def entry(i: int, j: int) -> sp.Expr:
-        if i != j:
-            return field.write(-about_centre(i, j))
-        return field.write(field.total(about_centre(k, k) for k in range(3) if k != i))
-
-    return sp.ImmutableMatrix(centre), sp.ImmutableMatrix(3, 3, entry)
 
 
 def solid(
@@ -215,18 +195,17 @@ def in_parameters(body: RigidBody) -> RigidBody:
     def named(name: str, value: float, scale: float) -> sp.Expr:
         if abs(value) <= scale * _ROUNDING:
             return sp.S.Zero
-        symbol = sp.Symbol(name)
-        parameters[name] = Parameter(symbol=symbol, positive=value > 0, value=value)
-        return symbol
+        parameters[name] = Parameter(symbol=sp.Symbol(name), positive=value > 0, value=value)
+        return parameters[name].symbol
 
-    moments = [
-        named(f"I_{min(i, j)}{max(i, j)}", inertia[3 * (min(i, j) - 1) + max(i, j) - 1], largest)
-        for i in (1, 2, 3)
-        for j in (1, 2, 3)
-    ]
+    def moment(i: int, j: int) -> sp.Expr:
+        row, column = min(i, j), max(i, j)
+        return named(f"I_{row + 1}{column + 1}", inertia[3 * row + column], largest)
+
+    moments = sp.ImmutableMatrix(3, 3, moment)
     at = [named(name, v, size) for name, v in zip(("x_C", "y_C", "z_C"), centre, strict=True)]
     whole = given_inertia(
-        sp.ImmutableMatrix(3, 3, moments),
+        moments,
         mass=named("M", mass, 0),
         centre=sp.ImmutableMatrix(at),
         name=body.name,

@@ -1,12 +1,14 @@
-"""Mass, first and second moments of a distribution of mass, each integrated or summed, and proved.
+"""The moments of a distribution of mass in one matrix, integrated or summed, and proved.
 
-∫ dm, ∫ x dm and ∫ x xᵀ dm hold all that the motion of a rigid body depends on; the inertia tensor
-is tr(J) 1 − J of the second moments J (lecture, section 2.2).
+With X = (x, y, z, 1), the matrix ∫ X Xᵀ dm (4, 4) has the second moments J, the first moments and
+the mass, all that the motion of a rigid body depends on. A part that is turned by R and moved by d,
+X = G X′ with G = (R d; 0 1), contributes G (∫ X′ X′ᵀ dm) Gᵀ; a hole, the negative of it. The
+inertia tensor is tr(J) 1 − J (lecture, section 2.2).
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache, singledispatch
 from itertools import product
@@ -32,24 +34,62 @@ from rigidsym.models.body import (
     Solid,
 )
 
-_PAIRS = tuple((i, j) for i in range(3) for j in range(i, 3))
+_PAIRS = tuple((i, j) for i in range(4) for j in range(i, 4))
 _ANTIDERIVATIVES = formula(r"\frac{\partial F}{\partial u} = f \text{ for every integral}")
 _ELEMENT = formula(r"\frac{dA}{du\,dv} = \sqrt{\det\mathbf{J}^{\mathsf T}\mathbf{J}}")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Moments:
-    """∫ dm, ∫ x dm (3, 1) and ∫ x xᵀ dm (3, 3), in the axes of the distribution."""
+    """∫ X Xᵀ dm (4, 4) with X = (x, y, z, 1), in the axes of the distribution."""
 
-    mass: sp.Expr
-    first: sp.ImmutableMatrix
-    second: sp.ImmutableMatrix
+    matrix: sp.ImmutableMatrix
     element: sp.Expr | None = None  # of a solid: the integrand for a density of one
     proofs: tuple[Proof, ...] = ()
 
     @property
-    def expressions(self) -> tuple[sp.Expr, ...]:
-        return (self.mass, *self.first, *self.second)
+    def mass(self) -> sp.Expr:
+        return self.matrix[3, 3]
+
+    @property
+    def first(self) -> sp.ImmutableMatrix:
+        """∫ x dm, (3, 1)."""
+        return self.matrix[:3, 3]
+
+    @property
+    def second(self) -> sp.ImmutableMatrix:
+        """∫ x xᵀ dm, (3, 3)."""
+        return self.matrix[:3, :3]
+
+    def central(self) -> tuple[sp.ImmutableMatrix, sp.ImmutableMatrix]:
+        """The centre c = S/M, (3, 1), and the tensor about it, tr(J) 1 − J of J − M c cᵀ."""
+        field = Rationals.of(self.matrix)
+        mass, second = field.read(self.mass), field.read_matrix(self.second)
+        inverse = mass.inverse()
+        centre = [field.write(field.read(entry) * inverse) for entry in self.first]
+        # Without the mass in its divisor, as S/M has it before it is cancelled: to find the mass of
+        # a tetrahedron with twelve symbols in a moment of degree eight would take a minute.
+        c = [field.read(entry) for entry in centre]
+
+        def entry(i: int, j: int) -> sp.Expr:
+            if i != j:
+                return field.write(mass * c[i] * c[j] - second[i][j])
+            others = (k for k in range(3) if k != i)
+            return field.write(field.total(second[k][k] - mass * c[k] * c[k] for k in others))
+
+        return sp.ImmutableMatrix(centre), sp.ImmutableMatrix(3, 3, entry)
+
+
+def _moments(
+    field: Rationals,
+    entries: Iterable[Quotient],
+    element: sp.Expr | None = None,
+    proofs: tuple[Proof, ...] = (),
+) -> Moments:
+    """From the entries on and above the diagonal."""
+    upper = dict(zip(_PAIRS, map(field.write, entries), strict=True))
+    matrix = sp.ImmutableMatrix(4, 4, lambda i, j: upper[min(i, j), max(i, j)])
+    return Moments(matrix=matrix, element=element, proofs=proofs)
 
 
 @singledispatch
@@ -59,71 +99,51 @@ def moments_of(distribution: Distribution) -> Moments:
 
 
 @moments_of.register
-def _(given: Particles) -> Moments:
+def _(cloud: Particles) -> Moments:
     """Sums over the particles."""
-    field = Rationals.of(e for p in given.particles for e in (p.mass, *p.position))
-    masses = [field.read(p.mass) for p in given.particles]
-    places = [[field.read(e) for e in p.position] for p in given.particles]
+    field = Rationals.of(e for p in cloud.particles for e in (p.mass, *p.position))
+    masses = [field.read(p.mass) for p in cloud.particles]
+    places = [[field.read(e) for e in (*p.position, sp.S.One)] for p in cloud.particles]
     pairs = list(zip(masses, places, strict=True))
-    return _presented(
-        field,
-        field.total(masses),
-        [field.total([m * x[i] for m, x in pairs]) for i in range(3)],
-        [field.total([m * x[i] * x[j] for m, x in pairs]) for i, j in _PAIRS],
-    )
+    return _moments(field, (field.total(m * x[i] * x[j] for m, x in pairs) for i, j in _PAIRS))
 
 
 @moments_of.register
-def _(given: Known) -> Moments:
-    """What gives the known inertia tensor back: J = ½ tr(I) 1 − I about the centre."""
-    half = given.inertia.trace() / 2
-    about_centre = sp.eye(3) * half - given.inertia
-    second = about_centre + given.mass * given.centre * given.centre.T
-    return Moments(
-        mass=given.mass,
-        first=sp.ImmutableMatrix(given.mass * given.centre),
-        second=sp.ImmutableMatrix(second),
-    )
+def _(known: Known) -> Moments:
+    """The moments that give the inertia tensor back: J = ½ tr(I) 1 − I about the centre."""
+    place = sp.Matrix([*known.centre, 1])
+    about_centre = sp.eye(3) * known.inertia.trace() / 2 - known.inertia
+    matrix = sp.diag(about_centre, 0) + known.mass * place * place.T
+    return Moments(matrix=sp.ImmutableMatrix(matrix))
 
 
 @moments_of.register
-def _(given: Composite) -> Moments:
+def _(whole: Composite) -> Moments:
     """The parts, each turned, moved and added; a hole is taken away."""
-    found: list[Moments] = []
-    for place, part in enumerate(given.parts):
+    moments: list[Moments] = []
+    for k, part in enumerate(whole.parts):
         try:
-            found.append(moments_of(part.what))
+            moments.append(moments_of(part.what))
         except BodyError as error:
-            raise BodyError(str(error), place=("parts", place, *error.place)) from error
-    held = [e for m in found for e in m.expressions]
-    held += [e for part in given.parts for e in (*part.at, *part.turned)]
-    field = Rationals.of(held)
-    masses, firsts, seconds = [], [], []
-    for part, m in zip(given.parts, found, strict=True):
-        sign = -1 if part.hole else 1
-        mass, at, turn = sign * m.mass, part.at, part.turned
-        moved = turn * m.first
-        cross = moved * at.T
-        whole = sign * (turn * m.second * turn.T + cross + cross.T) + mass * at * at.T
-        masses.append(field.read(mass))
-        firsts.append([field.read(entry) for entry in sign * moved + mass * at])
-        seconds.append(field.read_matrix(whole))
-    return _presented(
+            raise BodyError(str(error), place=("parts", k, *error.place)) from error
+    held = [e for m in moments for e in m.matrix]
+    held += [e for part in whole.parts for e in (*part.at, *part.turned)]
+    field, matrices = Rationals.of(held), []
+    for part, m in zip(whole.parts, moments, strict=True):
+        place = sp.Matrix(part.turned).row_join(part.at).col_join(sp.Matrix([[0, 0, 0, 1]]))
+        matrices.append((-1 if part.hole else 1) * place * m.matrix * place.T)
+    return _moments(
         field,
-        field.total(masses),
-        [field.total([first[i] for first in firsts]) for i in range(3)],
-        [field.total([second[i][j] for second in seconds]) for i, j in _PAIRS],
-        proofs=tuple(dict.fromkeys(proof for m in found for proof in m.proofs)),
+        (field.total(field.read(matrix[pair]) for matrix in matrices) for pair in _PAIRS),
+        proofs=tuple(dict.fromkeys(proof for m in moments for proof in m.proofs)),
     )
 
 
 def about_centre(part: Part) -> tuple[sp.Expr, sp.Matrix, sp.Matrix]:
     """Mass, centre (in the axes of the whole) and tensor about it (in its own); less for a hole."""
     m, sign = moments_of(part.what), -1 if part.hole else 1
-    centre = m.first / m.mass
-    second = m.second - m.mass * centre * centre.T
-    own = second.trace() * sp.eye(3) - second
-    return sign * m.mass, part.turned * centre + part.at, sign * own
+    centre, inertia = m.central()
+    return sign * m.mass, part.turned * centre + part.at, sign * inertia
 
 
 @moments_of.register
@@ -137,29 +157,25 @@ def _(solid: Solid) -> Moments:
     held = [*solid.place, density, solid.element or sp.S.One]
     held += [] if solid.mass is None else [solid.mass]
     codec = integration_codec(held, solid.coordinates, solid.bounds)
-    work = _Integrals(codec, solid)
+    ring, work = codec.ring, _Integrals(codec, solid)
     measure, proofs = work.measure()
     if not measure:
         raise BodyError(f"{solid.title}: its points are in a plane, on a line, or all the same")
     constant, varying = work.split(measure)
-    weight = codec.ring.dot([(varying, codec.encode(density))])
-    place = [codec.encode(entry) for entry in solid.place]
-    products = [codec.ring.dot([(place[i], place[j])]) for i, j in _PAIRS]
-    weighted = (codec.ring.dot([(weight, each)]) for each in (*place, *products))
-    integrals = [work.integral(weight), *map(work.integral, weighted)]
-    if not integrals[0]:
+    weight = ring.dot([(varying, codec.encode(density))])
+    place = [codec.encode(entry) for entry in (*solid.place, sp.S.One)]
+    weighted = [ring.dot([(weight, entry)]) for entry in place]
+    integrals = [work.integral(ring.dot([(weighted[i], place[j])])) for i, j in _PAIRS]
+    if not integrals[-1]:
         raise BodyError("the solid has no volume, area or length")
-    uniform = Quotient.whole(codec.ring, constant)
+    uniform = Quotient.whole(ring, constant)
     if solid.mass is not None:
-        uniform = Quotient(codec.ring, codec.encode(solid.mass), integrals[0])
-    mass, *others = (Quotient.whole(codec.ring, integral) * uniform for integral in integrals)
-    return _presented(
+        uniform = Quotient(ring, codec.encode(solid.mass), integrals[-1])
+    return _moments(
         Rationals(codec),
-        mass,
-        others[:3],
-        others[3:],
-        element=presenter_for(codec).element(measure),
-        proofs=(*proofs, work.antiderivatives()),
+        (Quotient.whole(ring, integral) * uniform for integral in integrals),
+        presenter_for(codec).element(measure),
+        (*proofs, work.antiderivatives()),
     )
 
 
@@ -243,22 +259,3 @@ class _Integrals:
         if len(signs) > 1:
             raise BodyError(f"{self.solid.title}: the map folds over: its determinant changes sign")
         return int(signs.pop()) if signs else 1
-
-
-def _presented(
-    field: Rationals,
-    mass: Quotient,
-    first: Sequence[Quotient],
-    second: Sequence[Quotient],
-    *,
-    element: sp.Expr | None = None,
-    proofs: tuple[Proof, ...] = (),
-) -> Moments:
-    entries = dict(zip(_PAIRS, map(field.write, second), strict=True))
-    return Moments(
-        mass=field.write(mass),
-        first=sp.ImmutableMatrix([field.write(q) for q in first]),
-        second=sp.ImmutableMatrix(3, 3, lambda i, j: entries[min(i, j), max(i, j)]),
-        element=element,
-        proofs=proofs,
-    )
