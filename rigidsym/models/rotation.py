@@ -57,7 +57,7 @@ def _cited(place: str) -> Citation:
 
 
 _PLACES = """
-Diebel 5; Murray 2.4; Murray 4.3;
+Diebel 5; Murray 2.4;
 Goldstein 1.2; Goldstein 1.4; Goldstein 4.2; Goldstein 4.4; Goldstein 4.4 (4.46); Goldstein 4.9;
 Goldstein 5.2; Goldstein 5.3; Goldstein 5.5; Goldstein 5.7; Goldstein 8.1;
 Landau 8; Landau 31; Landau 32; Landau 32 (32.12); Landau 33; Landau 35

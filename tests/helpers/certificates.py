@@ -61,7 +61,6 @@ NEEDS: dict[str, Callable[[], rs.Motion]] = {
             "angular_velocity_body",
             *OF_MOTION,
             *PRINCIPAL,
-            "coriolis_matrix",
             "inertia_ellipsoid",
         ],
         body=rs.principal_moments(A, A, C),

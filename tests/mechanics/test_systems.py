@@ -125,16 +125,16 @@ def test_the_quadcopter_has_the_equations_that_sympy_finds():
     assert satisfied(shipped("quadcopter_attitude"), kinetic(space, body, (A, B, C)), q, forces)
 
 
-def test_the_coriolis_matrix_of_the_quadcopter_is_that_of_a_passive_system():
-    motion = shipped("quadcopter_attitude")
-    values = values_for(motion)
-    rates = mp.matrix([values[s] for s in motion.argument("q_dot").symbols])
-    coriolis = evaluate(motion.coriolis_matrix, values)
-    assert agree(coriolis * rates, evaluate(motion.bias_vector, values))
-    mass_rate = evaluate(sp.diff(sp.Matrix(motion.mass_matrix), T), values)
-    skew = mass_rate - 2 * coriolis
-    assert agree(skew, -skew.T)
+def test_a_tree_that_branches_has_the_equations_that_sympy_finds():
+    """A frame that turns by φ carries the body and, by the angle 2θ, another one."""
+    space, outer, body = frame(("z", PHI), ("x", THETA))
+    other = outer.orientnew("G", "Axis", [2 * THETA, outer.y])
+    branch = {"rotation": "z(phi) y(2*theta)", "principal_moments": ["J_1", "J_2", "J_3"]}
+    lagrangian = kinetic(space, body, (A, B, C)) + kinetic(space, other, sp.symbols("J_1:4"))
+    body = rs.principal_moments(A, B, C)
+    motion = rs.derive("z(phi) x(theta)", ["accelerations"], body=body, parts=[branch])
     assert motion.is_proved
+    assert satisfied(motion, lagrangian, [PHI, THETA])
 
 
 def test_kovalevskayas_integral_is_proved_and_a_wrong_one_refuted():

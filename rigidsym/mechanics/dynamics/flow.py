@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property, partial
 from math import prod
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import sympy as sp
 from sympy.polys.rings import PolyElement
@@ -22,10 +22,11 @@ from rigidsym.mechanics.derivation import (
     Argument,
     Consequence,
     FirstIntegral,
+    Proof,
     Quantity,
     Step,
 )
-from rigidsym.mechanics.dynamics.consequences import FreeBody
+from rigidsym.mechanics.dynamics.consequences import of_free_body
 from rigidsym.mechanics.kinematics.chain import Chain
 from rigidsym.mechanics.kinematics.workspace import Workspace
 from rigidsym.mechanics.quantities import dynamics as claims
@@ -131,7 +132,7 @@ class Flow(Workspace):
             turning = self.step(claims.angular_acceleration_from_torque)
             assert turning is not None
             slopes = turning.expression.xreplace(still)
-            yield from FreeBody(self.body.inertia, [*slopes], self.model.name).consequences()
+            yield from of_free_body(self.model.name, self.body.inertia, [*slopes])
 
     def in_state(self, value: sp.Expr) -> sp.Expr:
         """The value with Ω′ written in the state."""
@@ -169,6 +170,49 @@ class Flow(Workspace):
     @cached_property
     def free_turning(self) -> FreeTurning:
         return FreeTurning(self.model, self.body, self.arguments)
+
+
+class LagrangeForm(Flow):
+    """Lagrange's equations M q̈ + h = Q, of one body in its ring or of a tree in names."""
+
+    table = claims.DYNAMICS_QUANTITIES
+    second = "q_dot"
+    kinetic: sp.Expr  # T
+    momenta: Any  # p = ∂T/∂q̇
+
+    def __init__(self, model: RotationModel, body: RigidBody, forces: Forces, codec: Codec) -> None:
+        super().__init__(model, body, forces, codec)
+        self.q, self.rates = model.coordinates, self.arguments["q_dot"].symbols
+
+    @cached_property
+    def whole(self) -> sp.Expr:
+        """E = T + V."""
+        return self.kinetic + self.forces.potential
+
+    @property
+    def power(self) -> RingMatrix:
+        """Of the forces; 0 of gyroscopic ones as well."""
+        raise NotImplementedError
+
+    def energy_is_constant(self, claim: Formula) -> Proof:
+        """The proof, if nothing does work."""
+        raise NotImplementedError
+
+    def momentum_is_constant(self, k: int, claim: Formula) -> Proof | None:
+        """The proof for the k-th, if it is."""
+        raise NotImplementedError
+
+    def own_integrals(self) -> Iterator[FirstIntegral]:
+        """The energy, if nothing does work, and the momenta of coordinates that do not matter."""
+        if self.power.is_zero() and self.driving.is_zero():
+            proof = self.energy_is_constant(claims.is_constant(claims.ENERGY))
+            yield FirstIntegral("energy", claims.ENERGY, self.whole, proof)
+        momenta, symbols = self._printed(self.momenta), self.arguments["momenta"].notation
+        for k, q in enumerate(self.q):
+            constant = self.momentum_is_constant(k, claims.momentum_is_constant(k + 1))
+            if constant is not None:
+                name = f"momentum_{q.func.__name__}"
+                yield FirstIntegral(name, symbols[k], momenta[k], constant)
 
 
 class FreeTurning(Workspace):

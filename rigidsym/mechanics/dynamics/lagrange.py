@@ -22,14 +22,14 @@ from rigidsym.algebra.codec import codec_for
 from rigidsym.algebra.matrix import Inverse, RingMatrix
 from rigidsym.algebra.present import half_form, presenter_for
 from rigidsym.errors import ModelError
-from rigidsym.mechanics.derivation import Consequence, FirstIntegral
-from rigidsym.mechanics.dynamics.consequences import Reduced
+from rigidsym.formula.tree import Formula
+from rigidsym.mechanics.derivation import Consequence, Proof
+from rigidsym.mechanics.dynamics.consequences import OneDimension
 from rigidsym.mechanics.dynamics.euler import EulerEquations
-from rigidsym.mechanics.dynamics.flow import Flow, StateBlock, turned
+from rigidsym.mechanics.dynamics.flow import Flow, LagrangeForm, StateBlock, turned
 from rigidsym.mechanics.dynamics.tree import TreeEquations
 from rigidsym.mechanics.kinematics.chain import Chain
 from rigidsym.mechanics.kinematics.workspace import Values
-from rigidsym.mechanics.quantities import dynamics as claims
 from rigidsym.models.body import RigidBody
 from rigidsym.models.forces import OMEGA_BODY, Forces
 from rigidsym.models.rotation import TIME, RotationModel
@@ -61,31 +61,24 @@ def is_bound(model: RotationModel) -> bool:
     return bool(model.constraints) or model.pullback is not None or is_spare
 
 
-class LagrangeEquations(Flow):
-    """The steps of a rotation, a body and the forces on it, in Lagrange's form."""
-
-    table = claims.DYNAMICS_QUANTITIES
-    second = "q_dot"
+class LagrangeEquations(LagrangeForm):
+    """The steps of a rotation, a body and the forces on it, multiplied out over one ring."""
 
     def __init__(self, model: RotationModel, body: RigidBody, forces: Forces) -> None:
-        self.potential = forces.potential
-        self.rates = [sp.diff(q, TIME) for q in model.coordinates]
-        self.accelerations = [sp.diff(q, TIME, 2) for q in model.coordinates]
-        values = Values(model)
+        q, values = model.coordinates, Values(model)
+        rates, self.accelerations = ([sp.diff(x, TIME, n) for x in q] for n in (1, 2))
         self._jacobian = values.codec.decoded(values.rate_matrix("body"))
-        omega = self._jacobian * sp.Matrix(self.rates)
-        torque = sp.Matrix(forces.torque or [0, 0, 0])
+        omega = self._jacobian * sp.Matrix(rates)
         in_rates = dict(zip(OMEGA_BODY, omega, strict=True))
-        acting = self._jacobian.T * torque.xreplace(in_rates)
-        self.generalised = [
-            forces.generalised.get(q, sp.S.Zero).xreplace(in_rates) + part
-            for q, part in zip(model.coordinates, acting, strict=True)
+        torque = sp.Matrix(forces.torque or [0, 0, 0]).xreplace(in_rates)
+        self._generalised = [
+            forces.generalised.get(x, sp.S.Zero).xreplace(in_rates) + part
+            for x, part in zip(q, self._jacobian.T * torque, strict=True)
         ]
-        self.gradient = [sp.diff(self.potential, q) for q in model.coordinates]
-        entries = [*self._jacobian, *body.inertia, *omega, sp.Rational(1, 2), self.potential]
-        entries += [*self.gradient, *self.generalised, *self.rates]
-        entries += [*forces.first_integrals.values()]
-        entries += self.accelerations
+        self._gradient = [sp.diff(forces.potential, x) for x in q]
+        entries = [*self._jacobian, *body.inertia, *omega, sp.Rational(1, 2), forces.potential]
+        entries += [*self._gradient, *self._generalised, *rates]
+        entries += [*forces.first_integrals.values(), *self.accelerations]
         codec = codec_for([e for e in entries if e != 0], order=2)
         super().__init__(model, body, forces, codec)
         self.ring = codec.ring
@@ -96,13 +89,8 @@ class LagrangeEquations(Flow):
         last = {*rates, *(ring.index[a] for a in self.accelerations)}
         moving = [k for k in range(len(ring.generators)) if k not in last]
         parts = [(ring.partial(element, k), ring.dt(ring.generator(k))) for k in moving]
-        return RingMatrix.column(
-            ring,
-            [
-                ring.dot((part, ring.partial(rate, k)) for part, rate in parts if part)
-                for k in rates
-            ],
-        )
+        columns = ([(part, ring.partial(rate, k)) for part, rate in parts if part] for k in rates)
+        return RingMatrix.column(ring, map(ring.dot, columns))
 
     @cached_property
     def jacobian(self) -> RingMatrix:
@@ -116,6 +104,10 @@ class LagrangeEquations(Flow):
     @cached_property
     def q_dot(self) -> RingMatrix:
         return self.codec.column(self.rates)
+
+    @cached_property
+    def q_ddot(self) -> RingMatrix:
+        return self.codec.column(self.accelerations)
 
     @cached_property
     def omega(self) -> RingMatrix:
@@ -138,18 +130,23 @@ class LagrangeEquations(Flow):
         return self.jacobian.T @ (inner + turned(self.inertia, self.omega))
 
     @cached_property
-    def bias(self) -> RingMatrix:
-        return self.gyroscopic + self.codec.column(self.gradient)
+    def gradient(self) -> RingMatrix:
+        """∂V/∂q."""
+        return self.codec.column(self._gradient)
 
     @cached_property
-    def applied(self) -> RingMatrix:
-        """Q − ∂V/∂q."""
-        return self.codec.column(self.generalised) - self.codec.column(self.gradient)
+    def generalised(self) -> RingMatrix:
+        """Q."""
+        return self.codec.column(self._generalised)
+
+    @cached_property
+    def bias(self) -> RingMatrix:
+        return self.gyroscopic + self.gradient
 
     @cached_property
     def needed(self) -> RingMatrix:
         """Q − h."""
-        return self.codec.column(self.generalised) - self.bias
+        return self.generalised - self.bias
 
     @cached_property
     def solved(self) -> Inverse:
@@ -163,11 +160,12 @@ class LagrangeEquations(Flow):
             back, divisor, size = jacobian.adjugate(), jacobian.det(), tensor.det()
             slopes = jacobian.dt() @ self.q_dot
             inner = tensor.adjugate() @ turned(tensor, self.omega) + slopes.scale(size)
-            if self.applied.is_zero():
+            applied = self.generalised - self.gradient
+            if applied.is_zero():
                 above = back @ inner.scale(-self.ring.one)
                 below = self.ring.reduce(size * divisor)
             else:
-                torque = tensor.adjugate() @ (back.T @ self.applied)
+                torque = tensor.adjugate() @ (back.T @ applied)
                 above = back @ (torque - inner.scale(divisor))
                 below = self.ring.reduce(size * divisor * divisor)
         else:
@@ -183,7 +181,7 @@ class LagrangeEquations(Flow):
     @cached_property
     def blocks(self) -> tuple[StateBlock, StateBlock]:
         return (
-            StateBlock(self.model.coordinates, self.q_dot, self.ring.one),
+            StateBlock(self.q, self.q_dot, self.ring.one),
             StateBlock(self.rates, *self.solved),
         )
 
@@ -193,17 +191,9 @@ class LagrangeEquations(Flow):
         return half_form(self.present, self.inertia, self.omega)
 
     @cached_property
-    def whole(self) -> sp.Expr:
-        """E = T + V."""
-        return self.kinetic + self.potential
-
-    def _scalar(self, expression: sp.Expr) -> RingMatrix:
-        return self.codec.column([expression])
-
-    @cached_property
     def of_lagrange(self) -> RingMatrix:
         """d/dt ∂T/∂q̇ − ∂T/∂q − (M q̈ + h − ∂V/∂q)."""
-        turning = self.mass_matrix @ self.codec.column(self.accelerations)
+        turning = self.mass_matrix @ self.q_ddot
         return self.momenta.dt() - self._slopes - turning - self.gyroscopic
 
     @cached_property
@@ -217,29 +207,8 @@ class LagrangeEquations(Flow):
 
     def energy_rate(self, value: sp.Expr) -> RingMatrix:
         """dE/dt − q̇·(M q̈ + h) − ∂V/∂t."""
-        left = self.mass_matrix @ self.codec.column(self.accelerations) + self.bias  # M q̈ + h
-        return self._scalar(value).dt() - self.q_dot.T @ left - self.driving
-
-    @cached_property
-    def coriolis(self) -> RingMatrix:
-        """C q̇ = h − ∂V/∂q with the skew Ṁ − 2C, by Christoffel's symbols of M."""
-        places = range(len(self.rates))
-        half = self.ring.one / 2
-        slope = {(i, j): self.slopes(self.mass_matrix[i, j]) for i in places for j in places}
-        rows = [
-            [
-                self.ring.dot(
-                    (
-                        slope[i, j][k, 0] + slope[i, k][j, 0] - slope[j, k][i, 0],
-                        half * self.q_dot[k, 0],
-                    )
-                    for k in places
-                )
-                for j in places
-            ]
-            for i in places
-        ]
-        return RingMatrix.of(self.ring, rows)
+        moving = self.mass_matrix @ self.q_ddot + self.bias
+        return self.codec.column([value]).dt() - self.q_dot.T @ moving - self.driving
 
     @property
     def hamiltonian(self) -> sp.Expr:
@@ -250,85 +219,61 @@ class LagrangeEquations(Flow):
     def energy_by_momenta(self) -> RingMatrix:
         """(pᵀ M⁻¹ p − 2T) det M."""
         above = self.momenta.T @ self.mass_matrix.adjugate() @ self.momenta
-        return above - self._scalar(2 * self.kinetic).scale(self.mass_matrix.det())
+        return above - self.codec.column([2 * self.kinetic]).scale(self.mass_matrix.det())
 
     def _in_momenta(self, momenta: Sequence[sp.Expr]) -> sp.Expr:
         """½ pᵀ M⁻¹ p + V."""
-        entries = [*self._jacobian, *self.body.inertia, sp.Rational(1, 2), self.potential, *momenta]
+        potential = self.forces.potential
+        entries = [*self._jacobian, *self.body.inertia, sp.Rational(1, 2), potential, *momenta]
         codec = codec_for([entry for entry in entries if entry != 0], order=0)
         jacobian = codec.matrix(self._jacobian)
         own = jacobian.T @ codec.matrix(self.body.inertia) @ jacobian
         p = codec.column(momenta)
         twice = p.T @ own.adjugate() @ p
         half = presenter_for(codec).matrix(twice, codec.encode(sp.Integer(2)) * own.det())
-        return half[0] + self.potential
+        return half[0] + potential
 
     @cached_property
     def single(self) -> int | None:
         """The position of the only coordinate that moves if the others are ignorable."""
         constant = {integral.name for integral in self.own_integrals()}
-        names = [q.func.__name__ for q in self.model.coordinates]
-        moving = [k for k, name in enumerate(names) if f"momentum_{name}" not in constant]
-        if len(moving) != 1:
+        moving = [k for k, q in enumerate(self.q) if f"momentum_{q.func.__name__}" not in constant]
+        if len(moving) != 1 or len(self.q) == 1:
             return None
         (k,) = moving
-        others = [q for j, q in enumerate(self.model.coordinates) if j != k]
-        if self.potential.has(*others):  # it is written with them, though it does not depend
-            return None
-        is_apart = not any(self.mass_matrix[k, j] for j in range(len(names)) if j != k)
-        return k if is_apart and len(names) > 1 else None  # p_k = 0 means that it is at rest
+        others = [j for j in range(len(self.q)) if j != k]
+        if self.forces.potential.has(*(self.q[j] for j in others)):
+            return None  # it is written with them, though it does not depend on them
+        # p_k = 0 has to mean that it is at rest
+        return None if any(self.mass_matrix[k, j] for j in others) else k
 
     @cached_property
     def effective(self) -> sp.Expr:
-        momenta = self.arguments["momenta"].symbols
-        return self._in_momenta(
-            [sp.S.Zero if j == self.single else p for j, p in enumerate(momenta)]
-        )
+        """V_eff, the Hamiltonian with the only coordinate that moves at rest."""
+        momenta = enumerate(self.arguments["momenta"].symbols)
+        return self._in_momenta([sp.S.Zero if j == self.single else p for j, p in momenta])
 
     def consequences(self) -> Iterator[Consequence]:
         yield from super().consequences()
         k = self.single
-        if k is None or self.forces.leave_free(self.model) or not self.driving.is_zero():
-            return  # the free body is known; in a driving potential the energy is not constant
-        q = self.model.coordinates
-        momenta = self.present.matrix(self.momenta)
-        others = [j for j in range(len(q)) if j != k]
-        reduced = Reduced(
-            name=self.model.name,
-            coordinate=q[k],
-            ignorable=tuple(q[j] for j in others),
-            mass=self.present.matrix(self.mass_matrix)[k, k],
-            potential=self.effective,
-            symbols=tuple(self.arguments["momenta"].symbols[j] for j in others),
-            momenta=tuple(momenta[j] for j in others),
-            energy=self.whole,
-            acceleration=self.present.matrix(*self.solved)[k],
-        )
-        yield from reduced.consequences()
+        # the free body is known; in a driving potential the energy is not constant
+        if k is not None and not self.forces.leave_free(self.model) and self.driving.is_zero():
+            yield from OneDimension(self, k).consequences()
 
     def in_state(self, value: sp.Expr) -> sp.Expr:
         """Ω′ = W′ q̇."""
         return value.xreplace(dict(zip(OMEGA_BODY, self.present.matrix(self.omega), strict=True)))
 
-    def own_integrals(self) -> Iterator[FirstIntegral]:
-        power = self.q_dot.T @ self.codec.column(self.generalised)  # 0 of gyroscopic forces as well
-        if power.is_zero() and self.driving.is_zero():
-            residual = self.energy_rate(self.whole) + power
-            yield FirstIntegral(
-                name="energy",
-                symbol=claims.ENERGY,
-                expression=self.whole,
-                proof=self.prove.vanishes(residual, claims.is_constant(claims.ENERGY)),
-            )
-        momenta = self.present.matrix(self.momenta)
-        for k, q in enumerate(self.model.coordinates):
-            applied = RingMatrix.of(self.ring, [self.applied.rows[k]])
-            slope = RingMatrix.of(self.ring, [self._slopes.rows[k]])
-            if applied.is_zero() and slope.is_zero():
-                claim = claims.momentum_is_constant(k + 1)
-                yield FirstIntegral(
-                    name=f"momentum_{q.func.__name__}",
-                    symbol=self.arguments["momenta"].notation[k],
-                    expression=momenta[k],
-                    proof=self.prove.vanishes(slope + applied, claim),
-                )
+    @property
+    def power(self) -> RingMatrix:
+        return self.q_dot.T @ self.generalised
+
+    def energy_is_constant(self, claim: Formula) -> Proof:
+        return self.prove.vanishes(self.energy_rate(self.whole) + self.power, claim)
+
+    def momentum_is_constant(self, k: int, claim: Formula) -> Proof | None:
+        """If neither T nor what acts depends on the coordinate; they may not cancel each other."""
+        applied = self.generalised[k, 0] - self.gradient[k, 0]
+        if applied or self._slopes[k, 0]:
+            return None
+        return self.prove.vanishes(self.scalar(self._slopes[k, 0] + applied), claim)

@@ -18,21 +18,21 @@ dW/dt − ∂ω/∂q = W × ω. That is proved for a turn behind any rotation; b
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cache, cached_property
 from itertools import combinations
-from operator import mul
 from typing import Any, NamedTuple
 
 import sympy as sp
 
 from rigidsym.algebra.codec import codec_for
+from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.errors import Defect, ModelError
 from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Formula
-from rigidsym.mechanics.derivation import FirstIntegral, Proof, Quantity
-from rigidsym.mechanics.dynamics.flow import Flow
+from rigidsym.mechanics.derivation import Proof, Quantity
+from rigidsym.mechanics.dynamics.flow import LagrangeForm
 from rigidsym.mechanics.kinematics.chain import (
     Chain,
     Matrix,
@@ -48,7 +48,6 @@ from rigidsym.models.forces import OMEGA_BODY, Forces
 from rigidsym.models.rotation import TIME, RotationModel, Turn, as_typed
 
 _ZERO = sp.ImmutableMatrix(sp.zeros(3, 1))
-_NOTHING = sp.ImmutableMatrix(sp.zeros(3))
 
 
 @dataclass(eq=False)
@@ -57,23 +56,16 @@ class Joint:
 
     label: str
     turn: Turn
+    slopes: sp.ImmutableMatrix  # of its angle by the coordinates, (1, n)
     matrix: Matrix
     speed: sp.Expr
     omega: Vector
     before: Joint | None
-    inertia: sp.ImmutableMatrix = _NOTHING
-    carried: list[Joint] = field(default_factory=list)
+    inertia: sp.ImmutableMatrix = field(default_factory=lambda: sp.ImmutableMatrix.zeros(3, 3))
 
     @property
     def axis(self) -> sp.ImmutableMatrix:
         return sp.ImmutableMatrix(self.turn.direction)
-
-
-class Named(NamedTuple):
-    """A name, and its definition as it is printed."""
-
-    name: sp.Expr
-    meaning: sp.Expr
 
 
 class Particle(NamedTuple):
@@ -86,13 +78,21 @@ class Particle(NamedTuple):
     gained: Vector  # dv/dt for q̈ = 0
 
 
-class TreeEquations(Flow):
-    """The steps of bodies on joints and of particles, in Lagrange's form and in names."""
+class Solution(NamedTuple):
+    """M = L D Lᵀ, L y = Q − h and D Lᵀ q̈ = y, in names, or in their definitions."""
 
-    table = claims.DYNAMICS_QUANTITIES
-    second = "q_dot"
+    L: sp.Matrix
+    D: sp.Matrix
+    y: sp.Matrix
+    accelerations: sp.Matrix
+
+
+class TreeEquations(LagrangeForm):
+    """The steps of bodies on joints and of particles, in names."""
+
     lacking = ("state_jacobian", "error_state_jacobian")
     names: Chain
+    hamiltonian = single = None  # which are shorter multiplied out
 
     def __init__(self, model: RotationModel, body: RigidBody, forces: Forces, chain: Chain) -> None:
         """Raises ModelError for what is no product of turns, and for velocities of no position."""
@@ -102,12 +102,10 @@ class TreeEquations(Flow):
                 "(`simulate` shows how far a quantity drifts)"
             )
         self.names = chain
-        self.q = model.coordinates
-        self.rates = [sp.diff(q, TIME) for q in self.q]
-        self._at_rest = {sp.diff(q, TIME, 2): sp.S.Zero for q in self.q}
-        self.gradient = [sp.diff(forces.potential, q) for q in self.q]
+        self.gradient = [sp.diff(forces.potential, q) for q in model.coordinates]
         acting = [*self.gradient, *forces.generalised.values(), *forces.torque]
-        entries = [forces.potential, *acting, *self.rates, *OMEGA_BODY]
+        rates = [sp.diff(q, TIME) for q in model.coordinates]
+        entries = [forces.potential, *acting, *rates, *OMEGA_BODY]
         codec = codec_for([e for e in entries if e != 0], order=1)
         super().__init__(model, body, forces, codec)
         self.joints = self._joints()
@@ -133,40 +131,34 @@ class TreeEquations(Flow):
                     '"z(phi) x(theta)"'
                 )
             before = None
-            for count in range(1, len(model.turns) + 1):
+            for count, turn in enumerate(model.turns, start=1):
                 path = model.turns[:count]
                 if path not in joints:
-                    joints[path] = self._joint(len(joints), path[-1], before)
+                    joints[path] = self._joint(str(len(joints) + 1), turn, before)
                 before = joints[path]
             joints[model.turns].inertia += inertia
         return joints
 
-    def _joint(self, k: int, turn: Turn, before: Joint | None) -> Joint:
-        names, label = self.names, str(k + 1)
-        if k < names.count:  # the names that the kinematics of the body has
-            joint = Joint(
-                label, turn, names.turns[k], names.speeds[k], names.velocities_body[k + 1], before
-            )
-        else:
-            matrix = names.named(f"T{label}", turn.matrix)
-            speed = names.define(f"dtheta{label}", turn.rate)
-            own, other = sp.ImmutableMatrix(turn.direction) * speed, before and before.omega
-            omega = names.named(f"w{label}", velocity(matrix.T, own, other or _ZERO))
-            joint = Joint(label, turn, matrix, speed, omega, before)
-        if before is not None:
-            before.carried.append(joint)
-        return joint
+    def _joint(self, label: str, turn: Turn, before: Joint | None) -> Joint:
+        """In names, which for the turns of the body are those of its kinematics."""
+        matrix = self.names.named(f"T{label}", turn.matrix)
+        speed = self.names.define(f"dtheta{label}", turn.rate)
+        own = sp.ImmutableMatrix(turn.direction) * speed
+        omega = velocity(matrix.T, own, before.omega if before else _ZERO)
+        omega = self.names.named(f"w{label}", omega)
+        slopes = sp.ImmutableMatrix([[sp.diff(turn.angle, q) for q in self.q]])
+        return Joint(label, turn, slopes, matrix, speed, omega, before)
 
     def _particle(self, label: str, given: sp.ImmutableMatrix, mass: sp.Expr) -> Particle:
         """J and v by names; v = J q̇ has to be the rate of a position, ∂Jᵢ/∂qₖ = ∂Jₖ/∂qᵢ."""
-        slopes = sp.ImmutableMatrix(given.jacobian(self.rates))
+        slopes, rates = sp.ImmutableMatrix(given.jacobian(self.rates)), sp.Matrix(self.rates)
         text = ", ".join(map(as_typed, given))
-        if slopes.has(*self.rates) or any(given.xreplace(dict.fromkeys(self.rates, sp.S.Zero))):
+        if slopes.has(*rates) or any(given.xreplace(dict.fromkeys(rates, sp.S.Zero))):
             raise ModelError(f"the velocity ({text}) is not linear in the rates")
         turned = [
-            sp.diff(one, self.q[k]) - sp.diff(other, self.q[j])
+            entry
             for j, k in combinations(range(len(self.q)), 2)
-            for one, other in zip(slopes.col(j), slopes.col(k), strict=True)
+            for entry in slopes.col(j).diff(self.q[k]) - slopes.col(k).diff(self.q[j])
         ]
         codec = codec_for(turned, constraints=self.model.constraints, order=0)
         if not codec.column(turned).is_zero():
@@ -175,51 +167,43 @@ class TreeEquations(Flow):
                 "derivative of a position"
             )
         jacobian = self.names.named(f"J{label}", slopes)
-        gained = slopes.diff(TIME) * sp.Matrix(self.rates)
-        return Particle(
-            mass,
-            slopes,
-            jacobian,
-            self.names.named(f"v{label}", jacobian * sp.Matrix(self.rates)),
-            self.names.named(f"b{label}", gained),
-        )
+        v = self.names.named(f"v{label}", jacobian * rates)
+        gained = self.names.named(f"b{label}", slopes.diff(TIME) * rates)
+        return Particle(mass, slopes, jacobian, v, gained)
 
     # Sums over the tree
 
-    def _gathered(self, letter: str, own: Any, *, of_tensors: bool = False) -> dict[Joint, Any]:
-        """What all that a joint carries adds up to, in the axes of the joint."""
-        total: dict[Joint, Any] = {}
-        for joint in reversed(self.joints.values()):  # each after those that it carries
-            parts = [own(joint)]
-            for other in joint.carried:
-                back = other.matrix * total[other]
-                parts.append(back * other.matrix.T if of_tensors else back)
-            whole = sum(parts[1:], parts[0])
-            total[joint] = self.names.named(f"{letter}{joint.label}", whole)
+    def _carried(
+        self, letter: str, own: Callable[[Joint], Any], *, of_tensors: bool = False
+    ) -> dict[Joint, Any]:
+        """The sum over all that a joint carries, in the axes of the joint."""
+        total = {joint: own(joint) for joint in self.joints.values()}
+        for joint in reversed(total):  # each after those that it carries
+            total[joint] = self.names.named(f"{letter}{joint.label}", total[joint])
+            if joint.before:
+                back = joint.matrix * total[joint]
+                total[joint.before] += back * joint.matrix.T if of_tensors else back
         return total
 
-    def _along(self, values: Mapping[Joint, sp.Expr]) -> list[sp.Expr]:
-        """From values by angle to values by coordinate."""
-        return [
-            sp.Add(*(sp.diff(j.turn.angle, q) * value for j, value in values.items()))
-            for q in self.q
-        ]
+    def _by_coordinate(self, by_angle: Mapping[Joint, sp.Expr]) -> sp.Matrix:
+        """Values by coordinate, (n, 1), from values by angle."""
+        parts = (joint.slopes.T * value for joint, value in by_angle.items())
+        return sum(parts, sp.zeros(len(self.q), 1))
+
+    def _with_particles(self, total: sp.Matrix, value: Callable[[Particle], Any]) -> sp.Matrix:
+        """With Σ m Jᵀ of vectors or Jacobians."""
+        return sum((p.mass * (p.jacobian.T * value(p)) for p in self.particles), total)
 
     @cached_property
     def _momenta(self) -> dict[Joint, Vector]:
         """Hₖ."""
-        return self._gathered("H", lambda joint: joint.inertia * joint.omega)
+        return self._carried("H", lambda joint: joint.inertia * joint.omega)
 
     @cached_property
     def momenta(self) -> sp.ImmutableMatrix:
         """p = ∂T/∂q̇."""
-        parts = self._along({j: j.axis.dot(H) for j, H in self._momenta.items()})
-        return sp.ImmutableMatrix(
-            [
-                part + sp.Add(*(p.mass * p.jacobian.col(k).dot(p.velocity) for p in self.particles))
-                for k, part in enumerate(parts)
-            ]
-        )
+        turning = self._by_coordinate({j: j.axis.dot(H) for j, H in self._momenta.items()})
+        return sp.ImmutableMatrix(self._with_particles(turning, lambda p: p.velocity))
 
     def _felt(self, letter: str, joint: Joint, torque: sp.MatrixBase) -> dict[Joint, sp.Expr]:
         """What each joint up to this one feels of a torque, along its axis."""
@@ -234,15 +218,12 @@ class TreeEquations(Flow):
     @cached_property
     def mass_matrix(self) -> sp.ImmutableMatrix:
         total = sp.zeros(len(self.q))
-        composite = self._gathered("I", lambda joint: joint.inertia, of_tensors=True)
+        composite = self._carried("I", lambda joint: joint.inertia, of_tensors=True)
         for joint, tensor in composite.items():
             felt = self._felt("f", joint, tensor * joint.axis)
-            slopes = sp.Matrix([[sp.diff(joint.turn.angle, q) for q in self.q]])
-            part = slopes.T * sp.Matrix([self._along(felt)])
-            total += part + part.T - slopes.T * slopes * felt[joint]
-        for p in self.particles:
-            total += p.mass * p.jacobian.T * p.jacobian
-        names = self.names.named("M", total)
+            part = self._by_coordinate(felt) * joint.slopes
+            total += part + part.T - joint.slopes.T * joint.slopes * felt[joint]
+        names = self.names.named("M", self._with_particles(total, lambda p: p.jacobian))
         return sp.ImmutableMatrix(*names.shape, lambda i, j: names[min(i, j), max(i, j)])
 
     @cached_property
@@ -250,99 +231,80 @@ class TreeEquations(Flow):
         """h."""
         gained: dict[Joint, Vector] = {}
         for joint in self.joints.values():
-            slope = sp.diff(joint.turn.angle, TIME, 2).xreplace(self._at_rest)
+            own = joint.axis * joint.slopes.diff(TIME) * sp.Matrix(self.rates)
             before = gained[joint.before] if joint.before else _ZERO
             turned = joint.omega.cross(joint.axis) * joint.speed
-            value = acceleration(joint.matrix.T, joint.axis * slope, turned, before)
+            value = acceleration(joint.matrix.T, own, turned, before)
             gained[joint] = self.names.named(f"a{joint.label}", value)
 
         def torque(joint: Joint) -> sp.MatrixBase:
             turning = joint.omega.cross(joint.inertia * joint.omega)
             return joint.inertia * gained[joint] + turning
 
-        needed = self._gathered("N", torque)
-        parts = self._along({joint: joint.axis.dot(N) for joint, N in needed.items()})
+        needed = self._carried("N", torque)
+        total = self._by_coordinate({joint: joint.axis.dot(N) for joint, N in needed.items()})
+        total = self._with_particles(total, lambda p: p.gained) + sp.Matrix(self.gradient)
         return sp.ImmutableMatrix(
-            [
-                self.names.define(
-                    f"h{k + 1}",
-                    part
-                    + self.gradient[k]
-                    + sp.Add(*(p.mass * p.jacobian.col(k).dot(p.gained) for p in self.particles)),
-                )
-                for k, part in enumerate(parts)
-            ]
+            [self.names.define(f"h{k}", entry) for k, entry in enumerate(total, start=1)]
         )
 
     @cached_property
-    def generalised(self) -> list[sp.Expr]:
+    def generalised(self) -> sp.Matrix:
         """Q, with the torque on the body."""
-        at = self.joints[self.model.turns]
-        in_names = dict(zip(OMEGA_BODY, at.omega, strict=True))
-        given = [self.forces.generalised.get(q, sp.S.Zero).xreplace(in_names) for q in self.q]
-        if not self.forces.torque:
-            return given
-        torque = sp.ImmutableMatrix(self.forces.torque).xreplace(in_names)
-        felt = self._along(self._felt("Q", at, torque))
-        return [own + part for own, part in zip(given, felt, strict=True)]
+        body = self.joints[self.model.turns]
+        torque = sp.Matrix(self.forces.torque or _ZERO)
+        in_names = dict(zip(OMEGA_BODY, body.omega, strict=True))
+        felt = self._felt("Q", body, torque.xreplace(in_names)) if any(torque) else {}
+        given = sp.Matrix([self.forces.generalised.get(q, sp.S.Zero) for q in self.q])
+        return given.xreplace(in_names) + self._by_coordinate(felt)
 
     @cached_property
-    def factors(self) -> dict[tuple[int, int], Named]:
-        """L below the diagonal and D on it, with M = L D Lᵀ.
+    def _solved(self) -> tuple[Solution, Solution]:
+        """The names, and their definitions as they are printed.
 
         Raises ModelError if the mass matrix has no inverse.
         """
-        factors: dict[tuple[int, int], Named] = {}
-        for j in range(len(self.q)):
-            scaled = [factors[j, k].name * factors[k, k].name for k in range(j)]
-            for i in range(j, len(self.q)):
-                row = scaled if i == j else [factors[i, k].name for k in range(j)]
-                other = [factors[j, k].name for k in range(j)] if i == j else scaled
-                rest = self.mass_matrix[i, j] - sp.Add(*map(mul, row, other))
+        n = len(self.q)
+        names, meanings = (
+            Solution(sp.eye(n), sp.zeros(n), sp.zeros(n, 1), sp.zeros(n, 1)) for _ in range(2)
+        )
+        L, D, y, x = names
+
+        def define(which: int, at: tuple[int, int], name: str, value: sp.Expr) -> None:
+            symbol = self.names.define(name, value)
+            names[which][at] = symbol
+            meanings[which][at] = self.names.printed(symbol, value)
+
+        for j in range(n):
+            scaled = D[:j, :j] * L[j, :j].T
+            for i in range(j, n):
+                rest = self.mass_matrix[i, j] - (L[i, :j] * scaled)[0]
                 if i == j:
-                    factors[j, j] = self._call(f"D{j + 1}", rest)
+                    define(1, (j, j), f"D{j + 1}", rest)
                 else:
-                    factors[i, j] = self._call(f"L{i + 1}_{j + 1}", rest / factors[j, j].name)
-            if not self.names.is_nonzero(factors[j, j].name):
+                    define(0, (i, j), f"L{i + 1}_{j + 1}", rest / D[j, j])
+            if not self.names.is_nonzero(D[j, j]):
                 raise ModelError(
                     f"{self.model.name}: the mass matrix has no inverse; expected coordinates "
                     "that move the bodies in different ways"
                 )
-        return factors
+        for i in range(n):
+            rest = self.generalised[i] - self.bias[i] - (L[i, :i] * y[:i, :])[0]
+            define(2, (i, 0), f"y{i + 1}", rest)
+        for i in reversed(range(n)):
+            rest = (L[i + 1 :, i].T * x[i + 1 :, :])[0]
+            define(3, (i, 0), f"ddq{i + 1}", y[i] / D[i, i] - rest)
+        return names, meanings
 
-    def _call(self, name: str, value: sp.Expr) -> Named:
-        symbol = self.names.define(name, value)
-        return Named(symbol, self.names.printed(symbol, value))
-
-    @cached_property
-    def forward(self) -> list[Named]:
-        """y with L y = Q − h."""
-        y: list[Named] = []
-        for i in range(len(self.q)):
-            rest = sp.Add(*(self.factors[i, k].name * part.name for k, part in enumerate(y)))
-            y.append(self._call(f"y{i + 1}", self.generalised[i] - self.bias[i] - rest))
-        return y
-
-    @cached_property
-    def backward(self) -> list[Named]:
-        """q̈ with Lᵀ q̈ = D⁻¹ y, the last first."""
-        size, parts = len(self.q), dict[int, Named]()
-        for i in reversed(range(size)):
-            rest = sp.Add(*(self.factors[k, i].name * parts[k].name for k in range(i + 1, size)))
-            value = self.forward[i].name / self.factors[i, i].name - rest
-            parts[i] = self._call(f"ddq{i + 1}", value)
-        return [parts[i] for i in range(size)]
-
-    @cached_property
+    @property
     def solved(self) -> sp.ImmutableMatrix:
-        return sp.ImmutableMatrix([part.name for part in self.backward])
+        return sp.ImmutableMatrix(self._solved[0].accelerations)
 
     # What entries ask of a workspace
 
     @property
     def traits(self) -> frozenset[str]:
-        several = len(self.forces.parts) > 0
-        return frozenset(("tree", *(["parts"] if several else []), *self._shared_traits))
+        return frozenset(("tree", *self._shared_traits))
 
     @cached_property
     def kinetic(self) -> sp.Expr:
@@ -350,12 +312,6 @@ class TreeEquations(Flow):
         turning = [(j.omega.T * j.inertia * j.omega)[0] for j in self.joints.values()]
         moving = [p.mass * p.velocity.dot(p.velocity) for p in self.particles]
         return sp.Add(*turning, *moving) / 2
-
-    @cached_property
-    def whole(self) -> sp.Expr:
-        return self.kinetic + self.forces.potential
-
-    coriolis = hamiltonian = single = None  # which are shorter multiplied out
 
     @cached_property
     def state_derivative(self) -> sp.ImmutableMatrix:
@@ -383,97 +339,79 @@ class TreeEquations(Flow):
 
         The lemmas say nothing of the parts that the recursion names; raises Defect if one is wrong.
         """
+        import numpy as np  # for matrices of intervals
+
         turns = {joint.turn for joint in self.joints.values()}
         held = [e for turn in turns for e in (*turn.matrix.diff(TIME), *turn.matrix)]
         held += [e for p in self.particles for e in (*p.slopes.diff(TIME), *p.slopes, p.mass)]
         held += [e for joint in self.joints.values() for e in joint.inertia]
         named = [*self.mass_matrix, *self.bias, *self.momenta, self.kinetic]
         work = self.names.values_of([*named, *held, *self.rates, *self.gradient])
-        numbers = work.context.matrix
 
         def read(matrix: sp.MatrixBase) -> Any:
-            return numbers([[work(entry) for entry in row] for row in matrix.tolist()])
+            return np.array([[work(entry) for entry in row] for row in matrix.tolist()])
 
-        q_dot, gradient = (read(sp.Matrix(part)) for part in (self.rates, self.gradient))
-        mass, needed = numbers(len(self.q), len(self.q)), gradient
+        parts = []  # inertia, J, dJ/dt, and whether it turns
         for path, joint in self.joints.items():
-            if joint.inertia.is_zero_matrix:
-                continue
-            jacobian = rate = numbers(3, len(self.q))
-            for turn in path:
+            jacobian = rate = np.zeros((3, len(self.q)), int)
+            for k, turn in enumerate(path, start=1):
                 back, back_rate = read(turn.matrix.T), read(turn.matrix.T.diff(TIME))
-                slopes = sp.Matrix([[sp.diff(turn.angle, q) for q in self.q]])
-                column = sp.Matrix(turn.direction) * slopes
-                rate = back_rate * jacobian + back * rate + read(column.diff(TIME))
-                jacobian = back * jacobian + read(column)
-            tensor, omega = read(joint.inertia), jacobian * q_dot
-            (x, y, z), (a, b, c) = omega, tensor * omega
-            gyroscopic = numbers([y * c - z * b, z * a - x * c, x * b - y * a])
-            mass += jacobian.T * tensor * jacobian
-            needed += jacobian.T * (tensor * rate * q_dot + gyroscopic)
+                column = sp.Matrix(turn.direction) * self.joints[path[:k]].slopes
+                rate = back_rate @ jacobian + back @ rate + read(column.diff(TIME))
+                jacobian = back @ jacobian + read(column)
+            parts.append((read(joint.inertia), jacobian, rate, True))
         for p in self.particles:
-            jacobian, rate = read(p.slopes), read(p.slopes.diff(TIME))
-            mass += work(p.mass) * jacobian.T * jacobian
-            needed += work(p.mass) * jacobian.T * rate * q_dot
-        momenta = mass * q_dot
-        off = [*(mass - read(self.mass_matrix)), *(needed - read(self.bias))]
-        off += [*(momenta - read(self.momenta)), (q_dot.T * momenta)[0] - 2 * work(self.kinetic)]
-        if not all(0 in entry for entry in off):
+            slopes, one = (p.slopes, p.slopes.diff(TIME)), np.eye(3, dtype=int)
+            parts.append((one * work(p.mass), *map(read, slopes), False))
+        q_dot, mass, needed = read(sp.Matrix(self.rates)), 0, read(sp.Matrix(self.gradient))
+        for inertia, jacobian, rate, turns_too in parts:
+            omega, torque = jacobian @ q_dot, inertia @ rate @ q_dot
+            if turns_too:
+                torque = torque + np.cross(omega, inertia @ omega, axis=0)
+            mass = mass + jacobian.T @ inertia @ jacobian
+            needed = needed + jacobian.T @ torque
+        momenta = mass @ q_dot
+        off = [mass - read(self.mass_matrix), needed - read(self.bias)]
+        off += [momenta - read(self.momenta), q_dot.T @ momenta - 2 * work(self.kinetic)]
+        if not all(0 in entry for part in off for entry in part.flat):
             raise Defect(
                 f"{self.model.name}: the equations of motion are wrong at a point; this is a "
                 "defect of rigidsym, please report it"
             )
 
     def _solves(self, claim: Formula) -> Proof:
-        """The rows of M = L D Lᵀ, of L y = Q − h and of D Lᵀ q̈ = y, by the definitions."""
-        size, factors, y, solution = len(self.q), self.factors, self.forward, self.backward
-        residuals = []
-        for i in range(size):
-            for j in range(i + 1):
-                parts = [
-                    factors[i, k].name * factors[k, k].name * factors[j, k].name for k in range(j)
-                ]
-                last = factors[i, j].meaning * (factors[j, j].name if i != j else 1)
-                residuals.append(self.mass_matrix[i, j] - sp.Add(*parts, last))
-            below = (factors[i, k].name * y[k].name for k in range(i))
-            residuals.append(self.generalised[i] - self.bias[i] - sp.Add(y[i].meaning, *below))
-            above = (factors[k, i].name * solution[k].name for k in range(i + 1, size))
-            turned = factors[i, i].name * sp.Add(solution[i].meaning, *above)
-            residuals.append(turned - y[i].name)
+        """M = L D Lᵀ, L y = Q − h and D Lᵀ q̈ = y, each row with the definition of its own name."""
+        (L, D, y, x), (lower, diagonal, forward, backward) = self._solved
+        factors = self.mass_matrix - L * D * L.T + (L - lower) * D + D - diagonal
+        needed = self.generalised - sp.Matrix(self.bias)
+        residuals = [factors[i, j] for i in range(len(self.q)) for j in range(i + 1)]
+        residuals += [*(needed - L * y + y - forward), *(y - D * L.T * x + D * (x - backward))]
         return self.names.vanish(residuals, claim)
 
     # First integrals
 
-    def own_integrals(self) -> Iterator[FirstIntegral]:
-        """The energy, if nothing does work, and the momenta of coordinates that do not matter."""
-        torque = sp.Matrix(self.forces.torque or _ZERO)
-        forces = sp.Matrix([self.forces.generalised.get(q, sp.S.Zero) for q in self.q])
-        power = forces.dot(sp.Matrix(self.rates)) + torque.dot(sp.Matrix(OMEGA_BODY))
-        work = self.codec.column([power])
-        if work.is_zero() and self.driving.is_zero():
-            claim = claims.is_constant(claims.ENERGY)
-            proofs = [*self._lemmas, self.prove.vanishes(work, claim)]
-            yield FirstIntegral("energy", claims.ENERGY, self.whole, consequence(proofs, claim))
-        for k, q in enumerate(self.q):
-            claim = claims.momentum_is_constant(k + 1)
-            residual = self._slope_of_kinetic(k) + self.generalised[k] - self.gradient[k]
-            if self.names.is_nonzero(residual):
-                continue
-            for symbol, expression in reversed(self.names.definitions_of([residual])):
-                residual = residual.xreplace({symbol: expression})
-            proofs = [*self._lemmas, self.names.vanish([residual], claim)]
-            yield FirstIntegral(
-                name=f"momentum_{q.func.__name__}",
-                symbol=self.arguments["momenta"].notation[k],
-                expression=self.momenta[k],
-                proof=consequence(proofs, claim),
-            )
+    @property
+    def power(self) -> RingMatrix:
+        torque = zip(self.forces.torque, OMEGA_BODY, strict=False)
+        forces = ((self.forces.generalised.get(q, sp.S.Zero), sp.diff(q, TIME)) for q in self.q)
+        return self.codec.column([sp.Add(*(a * b for a, b in (*forces, *torque)))])
+
+    def energy_is_constant(self, claim: Formula) -> Proof:
+        return consequence([*self._lemmas, self.prove.vanishes(self.power, claim)], claim)
+
+    def momentum_is_constant(self, k: int, claim: Formula) -> Proof | None:
+        residual = self._slope_of_kinetic(k) + self.generalised[k] - self.gradient[k]
+        if self.names.is_nonzero(residual):
+            return None
+        for symbol, expression in reversed(self.names.definitions_of([residual])):
+            residual = residual.xreplace({symbol: expression})
+        return consequence([*self._lemmas, self.names.vanish([residual], claim)], claim)
 
     def _slope_of_kinetic(self, k: int) -> sp.Expr:
         """∂T/∂q."""
         parts = []
         for joint, momentum in self._momenta.items():
-            slope = sp.diff(joint.turn.angle, self.q[k])
+            slope = joint.slopes[k]
             parts.append(-slope * joint.axis.dot(joint.omega.cross(momentum)))
             parts.append(sp.diff(slope, TIME) * joint.axis.dot(momentum))
         parts += [p.mass * p.velocity.dot(p.slopes.col(k).diff(TIME)) for p in self.particles]

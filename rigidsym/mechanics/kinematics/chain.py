@@ -248,10 +248,12 @@ class Names:
         self._taken = plain | {constant.name for constant in model.constants}
 
     def define(self, name: str, value: sp.Expr) -> sp.Expr:
-        """A symbol for the value; a number, an input or a sine of one stays as it is."""
+        """A symbol for the value, the same each time; a number, an input or a sine of one stays."""
         plain = value.as_coeff_Mul()[1]
         if plain.is_Atom or plain.is_Function or plain.is_Derivative:
             return value
+        if self._meanings.get(sp.Symbol(name)) == value:
+            return sp.Symbol(name)
         while name in self._taken:
             name += "_"
         self._taken.add(name)

@@ -7,6 +7,7 @@ the energies of all `parts`, or what a turning frame adds.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import sympy as sp
@@ -21,12 +22,22 @@ EFFECTIVE = formula(r"V_{\mathrm{eff}}")
 ENERGY = formula("E")
 MOTION = "motion"  # section of the note
 DRIVING = formula(r"\frac{\partial V}{\partial t}")
-_PARTS, _TREE, _EULER = "parts", "tree", "euler"  # traits
-_FREE = "no_potential"
+_TREE, _EULER, _FREE = "tree", "euler", "no_potential"  # traits
 # of bodies on joints and of particles, by the angular velocities of the joints
 _TURNING = r"\tfrac{1}{2}\sum_k \w_k^T\,\I_k\,\w_k + \tfrac{1}{2}\sum_p m_p\,|\v_p|^2"
 _SPEEDS = r", \quad \w_k = \dot{\theta}_k\,\n_k + \T_k^T\,\w_{k-1}"
+_LAGRANGE = r"\frac{d}{dt}\frac{\partial {T}}{\partial\dot\q} - \frac{\partial {T}}{\partial\q} = "
 _ENERGY: dict[str, Any] = {"unit": "J", "shape": "scalar", "section": MOTION}
+
+
+def _of_kinetic(claim: str, residual: Callable[[Any, Any], Any], **tree: Any) -> dict[str, Any]:
+    """A law about the kinetic energy, T of a tree and E_R of one body, and what a tree changes."""
+    of_tree = law(tree.pop("of_tree", claim).replace("{T}", "T"), residual)
+    return {
+        "laws": (law(claim.replace("{T}", "E_R"), residual),),
+        "variants": (when(_TREE, laws=(of_tree,), **tree),),
+    }
+
 
 potential_energy = Quantity(
     **_ENERGY,
@@ -38,6 +49,20 @@ potential_energy = Quantity(
     variants=(when(_FREE, reason="no_potential"),),
 )
 
+
+def _energies(sign: str, **of_tree: str) -> tuple[Any, ...]:
+    """The kinetic energy of a body or a tree, and the potential energy if there is one."""
+    whole, plain = (
+        {"definition": formula(f"T{rest}"), "recursion": f"{_TURNING}{rest}{_SPEEDS}"}
+        for rest in (f" {sign} V", "")
+    )
+    return (
+        when(_FREE, definition=formula("E_R")),
+        when(_TREE, **whole, **of_tree),
+        when(_TREE, _FREE, **plain),
+    )
+
+
 lagrangian = Quantity(
     **_ENERGY,
     symbol=formula("L"),
@@ -48,26 +73,15 @@ lagrangian = Quantity(
     value=lambda k: k.kinetic - k.forces.potential,
     reason="fixed_point",
     is_result=True,
-    variants=(
-        when(_FREE, definition=formula("E_R")),
-        when(_PARTS, definition=formula("T - V"), reason="energies_of_parts"),
-        when(_PARTS, _FREE, definition=formula("T")),
-        when(_TREE, reason="energies_of_joints", recursion=f"{_TURNING} - V{_SPEEDS}"),
-        when(_TREE, _FREE, recursion=_TURNING + _SPEEDS),
-    ),
+    variants=_energies("-", reason="energies_of_joints"),
 )
 
 
-def power(symbols: str, *, is_driven: bool) -> Formula:
+def _has_power(symbols: str) -> tuple[Law, ...]:
     """dE/dt is the power of the forces, and ∂V/∂t."""
-    return formula(rf"\frac{{dE}}{{dt}} = {symbols}" + (" + #1" if is_driven else ""), DRIVING)
+    claim = formula(rf"\frac{{dE}}{{dt}} = {symbols}", DRIVING)
+    return (Law(claim, lambda k, x: k.energy_rate(x)),)
 
-
-def _has_power(symbols: str, *, is_driven: bool = False) -> tuple[Law, ...]:
-    return (Law(power(symbols, is_driven=is_driven), lambda k, x: k.energy_rate(x)),)
-
-
-_LAGRANGE_POWER, _EULER_POWER = r"\dot\q^T\,\Q", r"\Om'^T\,\N'"
 
 energy = Quantity(
     **_ENERGY,
@@ -76,32 +90,20 @@ energy = Quantity(
     inputs=("q", "q_dot"),
     definition=formula("E_R + V"),
     value=lambda k: k.whole,
-    laws=_has_power(_LAGRANGE_POWER),
+    laws=_has_power(r"\dot\q^T\,\Q"),
     reason="power_of_forces",
     variants=(
-        when("driven", laws=_has_power(_LAGRANGE_POWER, is_driven=True)),
-        when(_FREE, definition=formula("E_R")),
-        when(_PARTS, definition=formula("T + V")),
-        when(_PARTS, _FREE, definition=formula("T")),
-        when(_TREE, recursion=f"{_TURNING} + V{_SPEEDS}"),
-        when(_TREE, _FREE, recursion=_TURNING + _SPEEDS),
+        when("driven", laws=_has_power(r"\dot\q^T\,\Q + #1")),
+        *_energies("+"),
         when(
             _EULER,
             inputs=("q", "omega_body"),
-            laws=_has_power(_EULER_POWER),
+            laws=_has_power(r"\Om'^T\,\N'"),
             reason="power_of_torques",
         ),
-        when(_EULER, "driven", laws=_has_power(_EULER_POWER, is_driven=True)),
+        when(_EULER, "driven", laws=_has_power(r"\Om'^T\,\N' + #1")),
     ),
 )
-
-
-def _slopes(T: str) -> tuple[Law, ...]:
-    def residual(k: Any, x: Any) -> Any:
-        return k.codec.column([sp.diff(k.kinetic, rate) for rate in k.rates]) - x
-
-    return (law(rf"\p = \frac{{\partial {T}}}{{\partial\dot\q}}", residual),)
-
 
 generalised_momenta = Quantity(
     symbol=formula(r"\p"),
@@ -112,25 +114,17 @@ generalised_momenta = Quantity(
     definition=formula(r"\W'^T\I'\Om'"),
     source=SOURCES["Goldstein 8.1"],
     value=lambda k: k.momenta,
-    laws=_slopes("E_R"),
     reason="slopes_by_rates",
     section=MOTION,
-    variants=(
-        when(_PARTS, definition=formula(r"\frac{\partial T}{\partial\dot\q}"), laws=_slopes("T")),
-        when(
-            _TREE,
-            reason="carried_momentum",
-            recursion=r"\left(\n_k\cdot\H_k\right)_k, \quad "
-            r"\H_k = \I_k\,\w_k + \sum \T_{k+1}\,\H_{k+1}",
-        ),
+    **_of_kinetic(
+        r"\p = \frac{\partial {T}}{\partial\dot\q}",
+        lambda k, x: k.codec.column([sp.diff(k.kinetic, rate) for rate in k.rates]) - x,
+        definition=formula(r"\frac{\partial T}{\partial\dot\q}"),
+        reason="carried_momentum",
+        recursion=r"\left(\n_k\cdot\H_k\right)_k, \quad "
+        r"\H_k = \I_k\,\w_k + \sum \T_{k+1}\,\H_{k+1}",
     ),
 )
-
-
-def _form(T: str) -> tuple[Law, ...]:
-    claim = rf"\dot\q^T\M\dot\q = 2{T}"
-    return (law(claim, lambda k, x: k.q_dot.T @ x @ k.q_dot - k.codec.column([2 * k.kinetic])),)
-
 
 mass_matrix = Quantity(
     symbol=formula(r"\M"),
@@ -139,27 +133,17 @@ mass_matrix = Quantity(
     inputs=("q",),
     definition=formula(r"\W'^T\I'\W'"),
     value=lambda k: k.mass_matrix,
-    laws=_form("E_R"),
     reason="form_of_rates",
     section=MOTION,
-    variants=(
-        when(_PARTS, definition=formula(r"\sum \J^T\I\J"), laws=_form("T")),
-        when(
-            _TREE,
-            reason="composite_inertia",
-            recursion=r"\left(\n_i\cdot\T_{i+1}\ldots\T_j\,\J_j\,\n_j\right)_{i\le j}, \quad "
-            r"\J_k = \I_k + \sum \T_{k+1}\,\J_{k+1}\,\T_{k+1}^T",
-        ),
+    **_of_kinetic(
+        r"\dot\q^T\M\dot\q = 2{T}",
+        lambda k, x: k.q_dot.T @ x @ k.q_dot - k.codec.column([2 * k.kinetic]),
+        definition=formula(r"\sum \J^T\I\J"),
+        reason="composite_inertia",
+        recursion=r"\left(\n_i\cdot\T_{i+1}\ldots\T_j\,\J_j\,\n_j\right)_{i\le j}, \quad "
+        r"\J_k = \I_k + \sum \T_{k+1}\,\J_{k+1}\,\T_{k+1}^T",
     ),
 )
-
-
-def _rest(T: str, terms: str) -> tuple[Law, ...]:
-    # the terms of Lagrange's equations with the kinetic energy
-    by_rates = rf"\frac{{\partial {T}}}{{\partial\dot\q}}"
-    of_lagrange = rf"\frac{{d}}{{dt}}{by_rates} - \frac{{\partial {T}}}{{\partial\q}}"
-    return (law(f"{of_lagrange} = {terms}", lambda k, x: k.of_lagrange + k.bias - x),)
-
 
 bias_vector = Quantity(
     symbol=formula(r"\h"),
@@ -169,42 +153,17 @@ bias_vector = Quantity(
     shape="vector",
     source=SOURCES["Goldstein 1.4"],
     value=lambda k: k.bias,
-    laws=_rest("E_R", r"\W'^T\left(\I'\,\dot\Om' + \Om'\times\I'\,\Om'\right)"),
     reason="rest_of_lagrange",
     section=MOTION,
-    variants=(
-        when(_PARTS, laws=_rest("T", r"\M\ddot\q + \h - \frac{\partial V}{\partial\q}")),
-        when(
-            _TREE,
-            reason="recursion_of_torques",
-            recursion=r"\left(\n_k\cdot\N_k\right)_k + \frac{\partial V}{\partial\q}, \quad "
-            r"\N_k = \I_k\,\a_k + \w_k\times\I_k\,\w_k + \sum \T_{k+1}\,\N_{k+1}",
-        ),
+    **_of_kinetic(
+        _LAGRANGE + r"\W'^T\left(\I'\,\dot\Om' + \Om'\times\I'\,\Om'\right)",
+        lambda k, x: k.of_lagrange + k.bias - x,
+        of_tree=_LAGRANGE + r"\M\ddot\q + \h - \frac{\partial V}{\partial\q}",
+        reason="recursion_of_torques",
+        recursion=r"\left(\n_k\cdot\N_k\right)_k + \frac{\partial V}{\partial\q}, \quad "
+        r"\N_k = \I_k\,\a_k + \w_k\times\I_k\,\w_k + \sum \T_{k+1}\,\N_{k+1}",
     ),
 )
-
-coriolis_matrix = Quantity(
-    symbol=formula(r"\C"),
-    about="Coriolis matrix",
-    unit="kg m^2/s",
-    inputs=("q", "q_dot"),
-    source=SOURCES["Murray 4.3"],
-    value=lambda k: k.coriolis,
-    laws=(
-        law(
-            r"\C\dot\q = \h - \frac{\partial V}{\partial\q}",
-            lambda k, x: x @ k.q_dot - k.gyroscopic,
-        ),
-        law(
-            r"\left(\dot\M - 2\C\right) + \left(\dot\M - 2\C\right)^T = 0",
-            lambda k, x: k.mass_matrix.dt() + k.mass_matrix.dt().T - (x + x.T) - (x + x.T),
-        ),
-    ),
-    without="it is written only for one body with at most four turns",
-    reason="christoffel",
-    section=MOTION,
-)
-
 
 accelerations = Quantity(
     symbol=formula(r"\ddot\q"),
