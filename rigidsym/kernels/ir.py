@@ -7,7 +7,7 @@ and a guarded divisor.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -318,17 +318,6 @@ class Kernel:
         return frozenset(reached)
 
 
-def functions_of(kernels: Iterable[Kernel]) -> set[str]:
-    """The names of all functions that kernels call."""
-    return {call.function for kernel in kernels for call in kernel.calls.values()}
-
-
-def last_order(kernels: Iterable[Kernel]) -> int:
-    """The highest k of the functions c_k that are called; -1 if there are none."""
-    orders = (call.order for kernel in kernels for call in kernel.calls.values())
-    return max((order for order in orders if order is not None), default=-1)
-
-
 def _factors_in(expression: Expression) -> Iterator[str]:
     """The names that an expression is a product of; a sum has errors of its own."""
     if not isinstance(expression, Sum):
@@ -349,3 +338,36 @@ class Program(NamedTuple):
     kernels: tuple[Kernel, ...]
     remarks: tuple[str, ...] = ()  # paragraphs for the head of the module
     continuity: Continuity | None = None  # of the coordinates along a trajectory
+
+    @property
+    def called(self) -> frozenset[str]:
+        """The names of all functions that the kernels call."""
+        return frozenset(c.function for kernel in self.kernels for c in kernel.calls.values())
+
+    @property
+    def last(self) -> int:
+        """The highest k of the functions c_k that are called; -1 if there are none."""
+        calls = (call for kernel in self.kernels for call in kernel.calls.values())
+        return max((call.order for call in calls if call.order is not None), default=-1)
+
+    @property
+    def orders(self) -> int:
+        """How many functions c_k are computed together: the first three, or more."""
+        return max(2, self.last) + 1
+
+    @property
+    def has_angles(self) -> bool:
+        return not self.called.isdisjoint(("sin", "cos"))
+
+    @property
+    def has_series(self) -> bool:
+        return self.last >= 0
+
+    @property
+    def has_guards(self) -> bool:
+        return any(kernel.guards for kernel in self.kernels)
+
+    @property
+    def has_matrices(self) -> bool:
+        """Whether an argument is one."""
+        return any(a.is_matrix for kernel in self.kernels for a in kernel.arguments)

@@ -136,7 +136,7 @@ RESERVED = frozenset({"theta"})
 def render(program):
     (kernel,) = program.kernels
     lines = [f"FUNCTION {kernel.name}({', '.join(kernel.components)})"]
-    words = {"sin": "SIN", "cos": "COS"}
+    words = {"sin": "SIN({})", "cos": "COS({})"}
     lines += [f"  {a.name} := {infix(a.value, words)}" for a in kernel.assignments]
     return {f"{program.name}.toy": "\\n".join(lines)}
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from fractions import Fraction
 from functools import lru_cache
 from math import isnan
@@ -29,63 +29,61 @@ _CHOICE, _SUM, _PRODUCT, _ATOM = range(4)  # how tightly a piece of text holds t
 # Spaces at which no line ends: within products and definitions, and behind operators and words.
 _UNBROKEN = re.compile(r" (?=[*/=])|(?<=[-+*/=<>?:]) |(?<=\bif) |(?<=\belse) ")
 
-Literal = Callable[[float], str]
+_LIMITS = {"limit0": "None", "limit1": "{}", "limit2": "{}, 2"}
 
 
 def infix(
     expression: Expression,
-    functions: Mapping[str, str] = MappingProxyType({}),
-    number: Literal = repr,
+    forms: Mapping[str, str] = MappingProxyType({}),
+    number: str = "{}",
 ) -> str:
-    """The expression in one line; `functions` are the target's names for functions.
+    """The expression in one line; `forms` are how the target writes what is not arithmetic.
 
-    A function without a name there keeps its own; "or_nan" names the function of guards, "None"
-    their missing scale. A name with {} is a form for the arguments. "choice" there is a form with
-    three places, the condition first, "nan" a word, and "==" the sign of equality. `number` is how
-    the target writes a number.
+    A form has {} for the arguments of a function; a function without one keeps its name. "or_nan"
+    is the form of guards, "limit0" of their limit without a scale, "limit1" and "limit2" with one
+    and with a square of eps. "choice" has three places, the condition first; "nan" is a word, and
+    "==" the sign of equality. `number` is the form of a number.
     """
-    return _whole(expression, tuple(functions.items()), number)
+    return _whole(expression, tuple(forms.items()), number)
 
 
-@lru_cache(maxsize=4096)  # lines are measured before they are printed, and kernels are shared
-def _whole(
-    expression: Expression,
-    functions: tuple[tuple[str, str], ...],
-    number: Literal,
-) -> str:
-    return _text(expression, dict(functions), number)[0]
+@lru_cache(maxsize=4096)  # kernels are shared
+def _whole(expression: Expression, forms: tuple[tuple[str, str], ...], number: str) -> str:
+    return _text(expression, dict(forms), number)[0]
 
 
-def _text(expression: Expression, functions: Mapping[str, str], number: Literal) -> tuple[str, int]:
+def _text(expression: Expression, forms: Mapping[str, str], number: str) -> tuple[str, int]:
     """The text, and how tightly it holds together."""
 
     def within(part: Expression, tightness: int) -> str:
-        text, held = _text(part, functions, number)
+        text, held = _text(part, forms, number)
         return text if held >= tightness else f"({text})"
+
+    def called(function: str, arguments: str) -> str:
+        return forms.get(function, f"{function}({{}})").format(arguments)
 
     match expression:
         case Name(text):
             return text, _ATOM
         case Number(value) if isnan(value):
-            return functions.get("nan", "nan"), _ATOM
+            return forms.get("nan", "nan"), _ATOM
         case Number(value) if value == float(value):
-            return number(float(value)), _ATOM
+            return number.format(float(value)), _ATOM
         case Number(value):
-            ratio = (number(float(whole)) for whole in Fraction(value).as_integer_ratio())
+            ratio = (number.format(float(whole)) for whole in Fraction(value).as_integer_ratio())
             return " / ".join(ratio), _PRODUCT
         case Call(function):
-            names = [argument.text for argument in expression.arguments]
-            return _called(functions.get(function, function), names), _ATOM
+            return called(function, ", ".join(a.text for a in expression.arguments)), _ATOM
         case Compare(relation, left, right):
-            sign = functions.get(relation, relation)
+            sign = forms.get(relation, relation)
             return f"{within(left, _SUM)} {sign} {within(right, _SUM)}", _CHOICE
         case Choice():
-            form = functions.get("choice", "{1} if {0} else {2}")
+            form = forms.get("choice", "{1} if {0} else {2}")
             return form.format(*(within(part, _CHOICE) for part in parts(expression))), _CHOICE
         case Guarded(value, scale, power):
-            limit = functions.get("None", "None") if scale is None else within(scale, _SUM)
-            given = [value.text, limit, *([str(power)] if power != 1 else [])]
-            return _called(functions.get("or_nan", "or_nan"), given), _ATOM
+            key = f"limit{0 if scale is None else power}"
+            limit = forms.get(key, _LIMITS[key]).format(within(scale, _SUM) if scale else "")
+            return called("or_nan", f"{value.text}, {limit}"), _ATOM
         case Negative(operand):
             return f"-{within(operand, _PRODUCT)}", _SUM
         case Sum(terms):
@@ -103,11 +101,6 @@ def _text(expression: Expression, functions: Mapping[str, str], number: Literal)
             if not divisors:
                 return above, _PRODUCT
             return f"{above} / {f'({below})' if len(divisors) > 1 else below}", _PRODUCT
-
-
-def _called(function: str, arguments: list[str]) -> str:
-    listed = ", ".join(arguments)
-    return function.format(listed) if "{}" in function else f"{function}({listed})"
 
 
 def broken(text: str, width: int, margin: str = "") -> str:

@@ -14,13 +14,10 @@ from rigidsym.algebra.stable_forms import FIRST_SERIES, series_of, taylor
 from rigidsym.errors import KernelError
 from rigidsym.kernels.ir import (
     FUNCTIONS,
-    Call,
     Expression,
     Kernel,
     KernelArgument,
     Program,
-    functions_of,
-    last_order,
 )
 from rigidsym.kernels.lowering.naming import Names
 from rigidsym.kernels.targets import remarks
@@ -39,7 +36,7 @@ _TYPES = """type Vector = ArrayLike<number>;
 type Matrix = Vector | ArrayLike<Vector>;"""
 _SPELLED = {
     **{"choice": "{0} ? {1} : {2}", "nan": "NaN", "==": "==="},
-    **{"or_nan": "_or_nan", "None": "null"},
+    **{"or_nan": "_or_nan({})", "limit0": "null", "eps": "Number.EPSILON"},
 }
 
 
@@ -50,7 +47,7 @@ def render(program: Program) -> dict[str, str]:
     about = remarks.about_module("javascript/module.txt.jinja", program, table=remarks.table(rows))
     declared = "\n".join(line for kernel in kernels for line in _declared(kernel))
     types = f"// The types of {name}.mjs. {OWNERSHIP}\n\n{_TYPES}\n\n{declared}\n"
-    return {f"{name}.mjs": _module(about, kernels), f"{name}.d.mts": types}
+    return {f"{name}.mjs": _module(about, program), f"{name}.d.mts": types}
 
 
 def load(name: str, files: Mapping[str, str]) -> ModuleType:
@@ -61,27 +58,24 @@ def load(name: str, files: Mapping[str, str]) -> ModuleType:
 
 def bare(kernels: Sequence[Kernel]) -> str:
     """The functions alone, without a word on them, to be set into other programs."""
-    return _module([], kernels)
+    return _module([], Program("", "", (), "", (), tuple(kernels)))
 
 
-def _module(about: Sequence[remarks.Paragraph], kernels: Sequence[Kernel]) -> str:
-    called, last = functions_of(kernels), last_order(kernels)
-    has_guards = any(kernel.guards for kernel in kernels)
-    of_math = called.intersection(FUNCTIONS) - {"eps"}
-    of_math |= ({"abs"} if has_guards else set()) | ({"sqrt", "tan"} if last >= 0 else set())
+def _module(about: Sequence[remarks.Paragraph], program: Program) -> str:
+    of_math = program.called.intersection(FUNCTIONS) - {"eps"}
+    of_math |= {"abs"} if program.has_guards else set()
+    of_math |= {"sqrt", "tan"} if program.has_series else set()
     return (
         resources.environment()
         .get_template(TEMPLATE)
         .render(
             about=_comment(about),
-            functions=list(map(_function, kernels)),
+            program=program,
+            functions=list(map(_function, program.kernels)),
             imports=", ".join(sorted(of_math)),
-            series=[_entry(order) for order in range(FIRST_SERIES, last + 1)],
-            has_series=last >= 0,
-            has_divisors=has_guards,
+            series=[_entry(order) for order in range(FIRST_SERIES, program.last + 1)],
             has_batches=bool(about),
-            has_matrices=any(len(shape) > 1 for shape in (k.shape for k in kernels)),
-            takes_matrices=any(a.is_matrix for kernel in kernels for a in kernel.arguments),
+            gives_matrices=any(len(kernel.shape) > 1 for kernel in program.kernels),
         )
     )
 
@@ -160,8 +154,6 @@ def _placed(place: str, count: int) -> str:
 def _lines(kernel: Kernel) -> Iterator[str]:
     for name, value in kernel.statements:
         match value:
-            case Call("eps"):
-                yield f"  const {name} = Number.EPSILON;"
             case dict():  # all functions c_k of one square
                 calls = sorted(value.items(), key=lambda named: named[1].order or 0)
                 names = ", ".join(name for name, _ in calls)

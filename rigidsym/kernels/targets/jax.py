@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from types import ModuleType
 
 from rigidsym.kernels import loaded
-from rigidsym.kernels.ir import FUNCTIONS, Kernel, Program, functions_of, last_order
+from rigidsym.kernels.ir import FUNCTIONS, Kernel, Program
 from rigidsym.kernels.targets import python
 from rigidsym.kernels.targets.infix import broken, infix
 from rigidsym.kernels.targets.python import WIDTH, bracketed, exploded
@@ -14,9 +14,9 @@ from rigidsym.kernels.targets.python import WIDTH, bracketed, exploded
 RESERVED = python.RESERVED | {"jax", "jnp", "like", "parts"}
 _DERIVATIVES = 2  # that functions of n = |v| have: each takes two functions c_k more
 _WORDS = {
-    **{name: f"jnp.{name}" for name in FUNCTIONS},
-    **{"atan2": "jnp.arctan2", "eps": "_eps", "or_nan": "_or_nan", "entire": "_entire"},
-    **{"nan": "jnp.nan", "choice": "jnp.where({0}, {1}, {2})"},
+    **{name: f"jnp.{name}({{}})" for name in FUNCTIONS},
+    **{"atan2": "jnp.arctan2({})", "eps": "_eps({})", "or_nan": "_or_nan({})"},
+    **{"entire": "_entire({})", "nan": "jnp.nan", "choice": "jnp.where({0}, {1}, {2})"},
 }
 
 
@@ -31,15 +31,13 @@ def render(program: Program) -> dict[str, str]:
         }
         for kernel in kernels
     ]
-    has_series = last_order(kernels) >= 0
     text = python.module_text(
         program,
         "jax/module.py.jinja",
         about=python.about_module("jax/module.txt.jinja", program),
         names=[kernel.name for kernel in kernels],
         functions=functions,
-        has_eps="eps" in functions_of(kernels),
-        series=python.series(kernels, more=2 * _DERIVATIVES) if has_series else "",
+        series=python.series(program, more=2 * _DERIVATIVES) if program.has_series else "",
     )
     return {f"{program.name}_jax.py": text}
 

@@ -11,14 +11,17 @@ from collections.abc import Iterator, Mapping
 from types import ModuleType
 
 from rigidsym.kernels import loaded
-from rigidsym.kernels.ir import Call, Guarded, Kernel, Program, functions_of, last_order
+from rigidsym.kernels.ir import Call, Kernel, Program
 from rigidsym.kernels.targets import numpy, python
-from rigidsym.kernels.targets.infix import infix
 from rigidsym.kernels.targets.precision import DOUBLE
 from rigidsym.kernels.targets.python import bracketed
 
 RESERVED = numpy.RESERVED | {"njit", "sin_cos", "values", "lost"}
-_WORDS = {"atan2": "_angle_of", "nan": "np.nan"}
+_WORDS = {
+    **{"atan2": "_angle_of({})", "nan": "np.nan", "eps": "eps", "or_nan": "_or_nan({})"},
+    "limit0": "2.0**-970 if eps < 2.0**-50 else 2.0**-103",  # the least normal number over eps
+    **{"limit1": "eps * {}", "limit2": "eps * eps * {}"},
+}
 
 
 def render(program: Program) -> dict[str, str]:
@@ -39,15 +42,13 @@ def render(program: Program) -> dict[str, str]:
         ]
         body = numpy.called(kernel, f"_{kernel.name}_rows", f"{kernel.name}_scalar")
         functions.append(numpy.function(kernel, body, "\n\n\n".join(twins)))
-    last = last_order(kernels)
     text = numpy.module_text(
         program,
         "numba/module.py.jinja",
         functions,
         of_math={"sin", "cos", "sqrt"},
-        double=DOUBLE.filled(last),
-        orders=", ".join(f"c{k}" for k in range(max(last, 2) + 1)) if last >= 0 else "",
-        has_arctangents="atan2" in functions_of(kernels),
+        double=DOUBLE.filled(program.last),
+        orders=", ".join(f"c{k}" for k in range(program.orders)) if program.has_series else "",
     )
     return {f"{program.name}_numba.py": text}
 
@@ -72,13 +73,6 @@ def _body(kernel: Kernel) -> Iterator[str]:
                     yield f"    {name} = sin_cos({angle.text})[{place}]"
                 elif name == next(iter(both.values())):
                     yield f"    {both['sin']}, {both['cos']} = sin_cos({angle.text})"
-            case Guarded(divisor, scale, power):
-                limit = "2.0**-970 if eps < 2.0**-50 else 2.0**-103"  # the least normal number/eps
-                if scale is not None:
-                    limit = " * ".join([*["eps"] * power, infix(scale)])
-                yield bracketed(4, f"{name} = _or_nan(", [divisor.text, limit], ")")
-            case Call("eps"):
-                yield f"    {name} = eps"
             case _:
                 yield python.statement(4, name, value, _WORDS)
     outputs = numpy.outputs(kernel, 8)

@@ -14,8 +14,6 @@ from rigidsym.kernels.ir import (
     Kernel,
     Name,
     Program,
-    functions_of,
-    last_order,
 )
 from rigidsym.kernels.lowering.naming import Names
 from rigidsym.kernels.targets import python, remarks
@@ -29,10 +27,13 @@ RESERVED = python.RESERVED | {"np", "tan", "ValueError", "ZeroDivisionError", "e
 _NESTING = ("a float", "a tuple", "a tuple of rows", "a tuple of matrices")
 _SPELLED = len("float, float, float, float")  # longer types are those of tuples of any length
 
-_OF_FLOATS = {"or_nan": "_or_nan_scalar", "entire": "_entire_scalar"}
+_OF_FLOATS = {
+    **{"or_nan": "_or_nan_scalar({})", "entire": "_entire_scalar({})", "eps": f"{2.0**-52}"}
+}
 _OF_ARRAYS = {
-    **{"sin": "_sin", "cos": "_cos", "eps": "_eps", "sqrt": "np.sqrt", "abs": "np.abs"},
-    **{"atan2": "np.arctan2", "or_nan": "_or_nan", "entire": "_entire", "nan": "np.nan"},
+    **{"sin": "_sin({})", "cos": "_cos({})", "eps": "_eps({})", "sqrt": "np.sqrt({})"},
+    **{"abs": "np.abs({})", "atan2": "np.arctan2({})", "or_nan": "_or_nan({})"},
+    **{"entire": "_entire({})", "nan": "np.nan"},
     "choice": "_where({0}, lambda: {1}, {2})",
 }
 
@@ -40,8 +41,8 @@ _OF_ARRAYS = {
 def render(program: Program) -> dict[str, str]:
     """The module."""
     kernels = program.kernels
-    of_math = functions_of(kernels).intersection(FUNCTIONS) - {"abs", "eps"}
-    of_math |= {"sqrt", "tan"} if last_order(kernels) >= 0 else set()
+    of_math = program.called.intersection(FUNCTIONS) - {"abs", "eps"}
+    of_math |= {"sqrt", "tan"} if program.has_series else set()
     of_math |= {"nan"} if any(kernel.gives_nan for kernel in kernels) else set()
     functions = []
     for kernel in kernels:
@@ -54,8 +55,7 @@ def render(program: Program) -> dict[str, str]:
         TEMPLATE,
         functions,
         of_math=of_math,
-        series=python.series(kernels),
-        has_eps="eps" in functions_of(kernels),
+        series=python.series(program),
         has_choices=any(isinstance(v, Choice) for k in kernels for v in k.values),
     )
     return {f"{program.name}.py": text}
@@ -146,9 +146,7 @@ def _scalar_body(kernel: Kernel) -> Iterator[str]:
     """The statements of the scalar function, and its fallback where floats raise an error."""
     yield "    try:"
     for name, value in kernel.statements:
-        is_eps = isinstance(value, Call) and value.function == "eps"
-        line = f"        {name} = {2.0**-52!r}"
-        yield line if is_eps else python.statement(8, name, value, _OF_FLOATS)
+        yield python.statement(8, name, value, _OF_FLOATS)
     entries = outputs(kernel, 8 + 4 * len(kernel.shape))
     yield f"        return {nested(entries, kernel.shape, 8, is_open=True)}"
     points = [nested(a.components, (len(a.components),), 12) for a in kernel.arguments]

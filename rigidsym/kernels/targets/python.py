@@ -9,7 +9,7 @@ import re
 from collections.abc import Mapping, Sequence
 
 from rigidsym.algebra.stable_forms import FIRST_SERIES, series_of, taylor
-from rigidsym.kernels.ir import FUNCTIONS, Call, Expression, Kernel, Program, last_order
+from rigidsym.kernels.ir import FUNCTIONS, Call, Expression, Kernel, Program
 from rigidsym.kernels.targets import remarks
 from rigidsym.kernels.targets.infix import broken, infix
 from rigidsym.system import resources
@@ -33,7 +33,7 @@ def statement(
         calls = sorted(value.items(), key=lambda named: named[1].order or 0)
         name = ", ".join(name for name, _ in calls) if len(calls) > 1 else f"({calls[0][0]},)"
         given = [calls[0][1].argument.text, *(str(call.order) for _, call in calls)]
-        text = f"{words['entire']}({', '.join(given)})"
+        text = words["entire"].format(", ".join(given))
     else:
         text = infix(value, words)
     margin, inner = " " * indent, " " * (indent + 4)
@@ -45,10 +45,10 @@ def statement(
     return f"{margin}{name} = (\n{broken(inner + text, WIDTH, inner)}\n{margin})"
 
 
-def series(kernels: Sequence[Kernel], *, more: int = 0) -> str:
+def series(program: Program, *, more: int = 0) -> str:
     """The table of series, a line each: k, the switch, c_{k-2}(0), and the coefficients."""
     lines = []
-    for order in range(FIRST_SERIES, last_order(kernels) + more + 1):
+    for order in range(FIRST_SERIES, program.last + more + 1):
         one = series_of(order)
         numbers = [one.switch, taylor(order - 2)[0], *one.coefficients]
         lines.append(exploded(4, f"{order}: (", [repr(float(n)) for n in numbers], "),"))
@@ -94,13 +94,11 @@ def module_text(
         resources.environment()
         .get_template(template)
         .render(
+            program=program,
             about=about,
             exports="\n".join(f'    "{name}",' for name in sorted(names)),
             components="\n".join(components),
             signatures="\n".join(signatures),
-            has_guards=any(kernel.guards for kernel in kernels),
-            has_series=last_order(kernels) >= 0,
-            has_matrices=any(a.is_matrix for kernel in kernels for a in kernel.arguments),
             **facts,
         )
     )

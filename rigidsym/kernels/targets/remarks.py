@@ -21,8 +21,6 @@ from rigidsym.kernels.ir import (
     Product,
     Program,
     Sum,
-    functions_of,
-    last_order,
     names_in,
     rebuilt,
     walk,
@@ -50,16 +48,14 @@ def paragraphs(template: str, **facts: object) -> list[Paragraph]:
 
 def about_module(template: str, program: Program, **facts: object) -> list[Paragraph]:
     """The paragraphs at the head of a file."""
-    kernels, last = program.kernels, last_order(program.kernels)
-    series = map(series_of, range(FIRST_SERIES, last + 1))
+    kernels = program.kernels
+    series = map(series_of, range(FIRST_SERIES, program.last + 1))
     return paragraphs(
         template,
         program=program,
-        has_angles=not functions_of(kernels).isdisjoint(("sin", "cos")),
         adds_angles=any(map(adds_angles, kernels)),
         has_bounds=any(map(rounding, kernels)),
         sine=f"{SINE:g}",
-        has_series=last >= 0,
         series=[
             {
                 "order": each.order,
@@ -69,7 +65,6 @@ def about_module(template: str, program: Program, **facts: object) -> list[Parag
             }
             for each in series
         ],
-        has_guards=any(kernel.guards for kernel in kernels),
         version=__version__,
         ownership=OWNERSHIP,
         **facts,
