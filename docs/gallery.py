@@ -30,7 +30,7 @@ import sympy as sp
 import rigidsym as rs
 from rigidsym.models.library import PARAMETRISATIONS, PRESETS
 from rigidsym.models.solids import SHAPES, shaped
-from rigidsym.notes.formats.pdf import missing_programs, typeset
+from rigidsym.notes.formats.pdf import has_tex, typeset
 from rigidsym.pipeline import Output, output_of, read, read_spec
 from rigidsym.spec.derivation_spec import DerivationSpec
 
@@ -299,8 +299,8 @@ def main() -> None:
     parser.add_argument("--no-pdf", action="store_true", help="do not typeset; needs no TeX")
     parser.add_argument("--jobs", type=int, default=cpu_count(), help="processes, by default all")
     given = parser.parse_args()
-    if missing_programs() and not given.no_pdf:
-        parser.error(f"{' and '.join(missing_programs())} not found; --no-pdf needs no TeX")
+    if not has_tex() and not given.no_pdf:
+        parser.error("pdflatex not found; --no-pdf needs no TeX")
     begin, items = time.perf_counter(), everything()
     with ProcessPoolExecutor(given.jobs) as pool:
         work = [pool.submit(item.write, pdf=not given.no_pdf) for item in items]

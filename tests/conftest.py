@@ -18,7 +18,7 @@ from sympy.core.cache import clear_cache
 
 import rigidsym as rs
 from helpers.motions import derived
-from rigidsym.notes.formats.pdf import missing_programs
+from rigidsym.notes.formats.pdf import has_tex
 
 # The same examples in every run: a suite that is red today was red yesterday.
 settings.register_profile("same", derandomize=True, deadline=None)
@@ -83,7 +83,7 @@ def memory(request: pytest.FixtureRequest) -> Iterator[None]:
 
 @pytest.fixture
 def tex() -> None:
-    needed(not missing_programs(), "TeX")
+    needed(has_tex(), "TeX")
 
 
 @pytest.fixture(scope="session")
