@@ -148,10 +148,9 @@ def test_the_pens_draw_all_of_it_inside_the_box(drawing):
     in_html = svg(drawing, title="T", description="D", name="f")
     assert in_tex.count(r"\draw[") == len(drawing.strokes) == in_html.count("<polyline")
     assert in_tex.count(r"\node[") == len(drawing.labels) == in_html.count("<text")
-    assert in_tex.count(r"\fill[") == len(drawing.sectors)
-    assert in_tex.count(", hidden,") == in_html.count(" hidden")
-    arcs = sum(s.arc is not None for s in drawing.strokes)
-    assert in_tex.count(" arc (") == arcs + len(drawing.sectors)
+    turns = [s for s in drawing.strokes if s.kind == "turn"]
+    assert in_tex.count(r"\fill[") == in_html.count('class="area') == len(turns)
+    assert in_tex.count(", hidden]") == in_html.count(" hidden")
     assert not re.findall(r"-0\.0+\b", in_html + in_tex)
     (box,) = re.findall(r'viewBox="(\S+) (\S+) (\S+) (\S+)"', in_html)
     left, top, width, height = map(float, box)

@@ -10,7 +10,6 @@ import numpy as np
 import sympy as sp
 
 from rigidsym.formula.reader import formula
-from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.mass.bodies import in_numbers
 from rigidsym.notes.figure.body_mesh import (
@@ -47,10 +46,12 @@ def body_drawing(derivation: Derivation) -> tuple[Drawing, bool] | None:
     is_principal = body.inertia.is_diagonal()
     names, axes = (BODY, np.eye(3)) if is_principal else (_MOMENTS, _principal_axes(derivation))
     exits = [_exit(shape, axis) for axis in axes]
-    inner = [_stroke(0 * axis, at * axis) for at, axis in zip(exits, axes, strict=True)]
+    inner = [
+        _stroke(0 * axis, at * axis, is_hidden=True) for at, axis in zip(exits, axes, strict=True)
+    ]
     outer = [
-        _stroke(at * axis, max(_REACH, at + _BEYOND) * axis, name)
-        for name, at, axis in zip(names, exits, axes, strict=False)
+        _stroke(at * axis, max(_REACH, at + _BEYOND) * axis, is_hidden=False)
+        for _, at, axis in zip(names, exits, axes, strict=False)
     ]
     named: list[Named] = [
         ("space", name, beyond(((0.0, 0.0), stroke.points[-1])))
@@ -84,10 +85,9 @@ def _principal_axes(derivation: Derivation) -> Sequence[Vector]:
     return () if measured is None else [*measured.principal.axes.T]
 
 
-def _stroke(start: Vector, end: Vector, name: Formula | None = None) -> Stroke:
+def _stroke(start: Vector, end: Vector, *, is_hidden: bool) -> Stroke:
     points = (_projected(start), _projected(end))
-    inside = name is None
-    return Stroke(kind="space", points=points, name=name, is_hidden=inside, has_arrow=not inside)
+    return Stroke(kind="space", points=points, is_hidden=is_hidden, has_arrow=not is_hidden)
 
 
 def _projected(a: Vector) -> Point:

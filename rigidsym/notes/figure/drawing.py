@@ -31,35 +31,12 @@ _BESIDE = (0, 180, 40, -40, 140, -140, 75, -75, 105, -105)  # outside an arc or 
 _ALONG = (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8)  # fraction of the way along an arc
 
 
-class Ellipse(NamedTuple):
-    """The arc centre + cos t·u + sin t·v of an ellipse, for t from `start` to `end` in radians."""
-
-    centre: Point
-    u: Point
-    v: Point
-    start: float
-    end: float
-
-    @property
-    def points(self) -> tuple[Point, ...]:
-        steps = max(2, ceil(abs(self.end - self.start) / _STEP - 1e-9))
-        change = (self.end - self.start) / steps
-        return tuple(self.at(self.start + change * step) for step in range(steps + 1))
-
-    def at(self, t: float) -> Point:
-        x, y = (
-            c + cos(t) * p + sin(t) * q for c, p, q in zip(self.centre, self.u, self.v, strict=True)
-        )
-        return (x, y)
-
-
 class Stroke(NamedTuple):
-    """A line through points, which are on `arc` if it is one."""
+    """A line through points."""
 
     kind: Kind
     points: tuple[Point, ...]
-    name: Formula | None = None  # of an axis
-    arc: Ellipse | None = None
+    centre: Point | None = None  # of the tinted sector that the line bounds
     is_thin: bool = False
     is_hidden: bool = False  # behind the origin: dashed
     has_arrow: bool = False  # at its end
@@ -139,11 +116,6 @@ class Drawing(NamedTuple):
     facets: tuple[Facet, ...] = ()  # of a body, the farthest first
 
     @property
-    def sectors(self) -> tuple[Ellipse, ...]:
-        """The arcs of turns, whose sectors are tinted."""
-        return tuple(s.arc for s in self.strokes if s.kind == "turn" and s.arc is not None)
-
-    @property
     def bounds(self) -> tuple[Point, Point]:
         """The lower left and the upper right corner of all that is drawn."""
         points = [point for stroke in (*self.strokes, *self.behind) for point in stroke.points]
@@ -163,15 +135,16 @@ def drawn(scene: Posed, seen: Camera) -> Drawing:
     axes, arcs, circles = list[Stroke](), list[Stroke](), list[Stroke]()
     named: list[Named] = []
     for arc in scene.arcs:
-        ellipse = _ellipse(arc, seen, arc.turn.radius, 0.0, arc.angle)
-        arcs.append(Stroke(kind="turn", points=ellipse.points, arc=ellipse, has_arrow=True))
-        named.append(("turn", arc.turn.name, beside(ellipse.points)))
+        points = _points(arc, seen, arc.turn.radius, 0.0, arc.angle)
+        centre = seen.project(arc.centre)
+        arcs.append(Stroke(kind="turn", points=points, centre=centre, has_arrow=True))
+        named.append(("turn", arc.turn.name, beside(points)))
     for ray in scene.rays:
         length = AXIS if ray.kind in ("space", "body") else NODE
         end = seen.project(combined((length,), (ray.direction,)))
         is_line = ray is scene.line_of_nodes
         points = ((-end[0], -end[1]) if is_line else (0.0, 0.0), end)
-        axes.append(Stroke(kind=ray.kind, points=points, name=ray.name, has_arrow=not is_line))
+        axes.append(Stroke(kind=ray.kind, points=points, has_arrow=not is_line))
         named.append((ray.kind, ray.name, beyond(points)))
     if not scene.is_crowded:
         first, last = scene.arcs[0], scene.arcs[-1]
@@ -181,10 +154,13 @@ def drawn(scene: Posed, seen: Camera) -> Drawing:
     return Drawing(strokes=strokes, labels=labelled(named, strokes))
 
 
-def _ellipse(arc: Arc, seen: Camera, radius: float, start: float, end: float) -> Ellipse:
-    """Part of the circle that a point of the line describes."""
-    u, v = (seen.project(combined((radius,), (side,))) for side in (arc.start, arc.side))
-    return Ellipse(centre=seen.project(arc.centre), u=u, v=v, start=start, end=end)
+def _points(arc: Arc, seen: Camera, radius: float, start: float, end: float) -> tuple[Point, ...]:
+    """Part of the circle that a point of the line describes, which is seen as an ellipse."""
+    (u, v), (x, y) = (seen.project(combined((radius,), (s,))) for s in (arc.start, arc.side))
+    a, b = seen.project(arc.centre)
+    steps = max(2, ceil(abs(end - start) / _STEP - 1e-9))
+    angles = (start + (end - start) / steps * step for step in range(steps + 1))
+    return tuple((a + cos(t) * u + sin(t) * x, b + cos(t) * v + sin(t) * y) for t in angles)
 
 
 def _circle(kind: Kind, arc: Arc, seen: Camera) -> Iterator[Stroke]:
@@ -200,10 +176,8 @@ def _circle(kind: Kind, arc: Arc, seen: Camera) -> Iterator[Stroke]:
         (True, nearest + half, nearest - half + tau),
     ):
         if end - start > 1e-9:
-            ellipse = _ellipse(arc, seen, 1.0, start, end)
-            yield Stroke(
-                kind=kind, points=ellipse.points, arc=ellipse, is_thin=True, is_hidden=is_hidden
-            )
+            points = _points(arc, seen, 1.0, start, end)
+            yield Stroke(kind=kind, points=points, is_thin=True, is_hidden=is_hidden)
 
 
 def _guides(scene: Posed, seen: Camera) -> Iterator[Stroke]:

@@ -1,19 +1,16 @@
 """The pens for a drawing: a tikzpicture for LaTeX, an inline SVG for HTML.
 
-TikZ names the ends of axes and draws arcs as arcs; the style sheet of the page colours the SVG.
+Both draw the same lines and areas in the same order; the style sheet of the page colours the SVG.
 """
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable
 from html import escape
-from math import degrees, hypot
-from unicodedata import normalize
+from math import hypot
 
-from rigidsym.formula.tree import Formula
 from rigidsym.notes.figure.camera import Point
-from rigidsym.notes.figure.drawing import TYPE_SIZE, Drawing, Ellipse, Stroke
+from rigidsym.notes.figure.drawing import TYPE_SIZE, Drawing, Label, Stroke
 from rigidsym.notes.formats.escape import cleaned
 
 _UNIT = 0.3865 / TYPE_SIZE  # cm: an em at 11 points
@@ -25,88 +22,54 @@ _STYLES = (
     "hidden/.style={densely dashed, opacity=.6}"
 )
 
+Color = tuple[int, int, int]  # red, green, blue, of 255
+
+
+def _shapes(
+    drawing: Drawing,
+    line: Callable[[Stroke], str],
+    area: Callable[[Iterable[Point], Color | None], str],
+    label: Callable[[Label], str],
+) -> list[str]:
+    """All of a drawing from the back to the front; a sector has no color of its own."""
+    return [
+        *map(line, drawing.behind),
+        *(area(facet.points, facet.color) for facet in drawing.facets),
+        *(area((x.centre, *x.points), None) for x in drawing.strokes if x.centre is not None),
+        *map(line, drawing.strokes),
+        *map(label, drawing.labels),
+    ]
+
+
+def _styles(stroke: Stroke) -> list[str]:
+    """The styles of a stroke, which TikZ and the style sheet of the page call alike."""
+    return [stroke.kind, *("thin",) * stroke.is_thin, *("hidden",) * stroke.is_hidden]
+
 
 def tikz(drawing: Drawing) -> str:
     """The drawing in TikZ; it needs the library arrows.meta."""
-    lines = (*drawing.strokes, *drawing.behind)
-    names = {stroke.name for stroke in lines if stroke.name is not None}
-    written = {x: (x.latex, x.text) for x in (*names, *(label.symbol for label in drawing.labels))}
-    ends = {name: _end(written[name][1]) for name in names}
+
+    def path(points: Iterable[Point]) -> str:
+        return " -- ".join(f"({_rounded(x, 3)},{_rounded(y, 3)})" for x, y in points)
+
+    def line(stroke: Stroke) -> str:
+        options = [*_styles(stroke), *["->"] * stroke.has_arrow]
+        return rf"\draw[{', '.join(options)}] {path(stroke.points)};"
+
+    def area(points: Iterable[Point], color: Color | None) -> str:
+        if color is None:
+            return rf"\fill[turn, opacity=.1] {path(points)} -- cycle;"
+        red, green, blue = color
+        rgb = f"{{rgb,255:red,{red};green,{green};blue,{blue}}}"
+        return rf"\filldraw[line width=.4pt, color={rgb}] {path(points)} -- cycle;"
+
+    def label(x: Label) -> str:
+        return rf"\node[{x.kind}, inner sep=0pt] at {path([x.place])} {{${x.symbol.latex}$}};"
+
     options = f"scale={_UNIT:.3f}, >={{Latex[length=2mm]}}, line join=round, line cap=round"
-    return "\n".join(
-        [
-            rf"\begin{{tikzpicture}}[{options}, {_STYLES}]",
-            r"\coordinate (O) at (0,0);",
-            *(
-                rf"\coordinate {ends[x.name]} at {_point(x.points[-1])};"
-                for x in lines
-                if x.name is not None
-            ),
-            *_lines(drawing.behind, ends),
-            *(
-                rf"\filldraw[line width=.4pt, color={{rgb,255:red,{red};green,{green};"
-                rf"blue,{blue}}}] {' -- '.join(map(_point, outline))} -- cycle;"
-                for outline, (red, green, blue) in ((x.points, x.color) for x in drawing.facets)
-            ),
-            *(
-                rf"\fill[turn, opacity=.1, {_plane(arc)}] (0,0) -- {_turned(arc)} -- cycle;"
-                for arc in drawing.sectors
-            ),
-            *_lines(drawing.strokes, ends),
-            *(
-                rf"\node[{x.kind}, inner sep=0pt] at {_point(x.place)} "
-                rf"{{${written[x.symbol][0]}$}};"
-                for x in drawing.labels
-            ),
-            r"\end{tikzpicture}",
-        ]
-    )
-
-
-def _end(names: str) -> str:
-    """The end of an axis by the first of its names: (z') for z′ = z″, (N1) for N₁."""
-    first = normalize("NFKD", names.split(" = ")[0]).replace("′", "'")
-    return "(" + re.sub(r"[^A-Za-z0-9']", "", first) + ")"
-
-
-def _lines(strokes: Iterable[Stroke], ends: Mapping[Formula, str]) -> Iterator[str]:
-    for stroke in strokes:
-        options = [*_kinds(stroke), *(["->"] if stroke.has_arrow else [])]
-        if stroke.arc is not None:
-            yield rf"\draw[{', '.join([*options, _plane(stroke.arc)])}] {_turned(stroke.arc)};"
-        else:
-            *line, end = map(_point, stroke.points)
-            tip = end if stroke.name is None else ends[stroke.name]
-            yield rf"\draw[{', '.join(options)}] {' -- '.join([*line, tip])};"
-
-
-def _kinds(stroke: Stroke) -> list[str]:
-    """The styles of a stroke, which TikZ and the style sheet of the page call alike."""
-    thin, hidden = ("thin",) * stroke.is_thin, ("hidden",) * stroke.is_hidden
-    return [stroke.kind, *thin, *hidden]
-
-
-def _plane(arc: Ellipse) -> str:
-    """The plane of an arc, seen obliquely: its centre and the radii at 0 and 90 degrees."""
-    centre = _point(arc.centre)
-    shift = "" if centre == "(O)" else f"shift={{{centre}}}, "
-    u, v = (f"({_in_cm(x)}cm,{_in_cm(y)}cm)" for x, y in (arc.u, arc.v))
-    return f"{shift}x={{{u}}}, y={{{v}}}"
-
-
-def _turned(arc: Ellipse) -> str:
-    start, end = (f"{degrees(angle):.1f}" for angle in (arc.start, arc.end))
-    return f"({start}:1) arc ({start}:{end}:1)"
-
-
-def _point(point: Point) -> str:
-    x, y = map(_in_cm, point)
-    return "(O)" if x == y == _in_cm(0.0) else f"({x},{y})"
-
-
-def _in_cm(value: float) -> str:
-    """Three digits after the point, and never -0.000."""
-    return f"{round(value, 3) + 0.0:.3f}"
+    shapes = _shapes(drawing, line, area, label)
+    begin = rf"\begin{{tikzpicture}}[{options}, {_STYLES}]"
+    return "\n".join([begin, *shapes, r"\end{tikzpicture}"])
 
 
 _SCALE = 18.0 / TYPE_SIZE  # pixels: an em of a label
@@ -117,52 +80,48 @@ _ARROW = 9.0  # pixels, the length of a head
 
 def svg(drawing: Drawing, *, title: str, description: str, name: str) -> str:
     """The drawing as an SVG element; `name` makes its identifiers unique in a page."""
+
+    def path(points: Iterable[Point]) -> str:
+        return " ".join(f"{_rounded(x * _SCALE)},{_rounded(-y * _SCALE)}" for x, y in points)
+
+    def line(stroke: Stroke) -> str:
+        kinds = " ".join(_styles(stroke))
+        whole = f'<polyline class="{kinds}" points="{path(stroke.points)}"/>'
+        if not stroke.has_arrow:
+            return whole
+        (x0, y0), (x1, y1) = stroke.points[-2:]
+        size = _ARROW / _SCALE / (hypot(x1 - x0, y1 - y0) or 1.0)
+        dx, dy = size * (x1 - x0), size * (y1 - y0)
+        x, y = x1 - dx, y1 - dy  # the foot of a slim head
+        head = ((x1, y1), (x - dy / 3, y + dx / 3), (x + dy / 3, y - dx / 3))
+        return f'{whole}\n<polygon class="head {stroke.kind}" points="{path(head)}"/>'
+
+    def area(points: Iterable[Point], color: Color | None) -> str:
+        kind = 'class="area turn"'
+        if color is not None:
+            rgb = "#" + "".join(f"{part:02x}" for part in color)
+            kind = f'fill="{rgb}" stroke="{rgb}"'
+        return f'<polygon {kind} points="{path(points)}"/>'
+
+    def label(x: Label) -> str:
+        left, top = path([x.place]).split(",")
+        text = escape(as_in_formulas(x.symbol.text))
+        return f'<text class="{x.kind}" x="{left}" y="{top}" dy=".32em">{text}</text>'
+
     (left, low), (right, high) = drawing.bounds
-    x, y = left * _SCALE - _PAD, -high * _SCALE - _PAD
     width, height = (right - left) * _SCALE + 2 * _PAD, (high - low) * _SCALE + 2 * _PAD
-    box = " ".join(map(_number, (x, y, width, height)))
+    corner = (left * _SCALE - _PAD, -high * _SCALE - _PAD)
+    box = " ".join(map(_rounded, (*corner, width, height)))
     return "\n".join(
         [
-            f'<svg viewBox="{box}" width="{_number(width)}" height="{_number(height)}" role="img" '
-            f'aria-labelledby="{name}-title {name}-desc">',
+            f'<svg viewBox="{box}" width="{_rounded(width)}" height="{_rounded(height)}" '
+            f'role="img" aria-labelledby="{name}-title {name}-desc">',
             f'<title id="{name}-title">{escape(cleaned(title))}</title>',
             f'<desc id="{name}-desc">{escape(cleaned(description))}</desc>',
-            *_elements(drawing),
+            *_shapes(drawing, line, area, label),
             "</svg>",
         ]
     )
-
-
-def _elements(drawing: Drawing) -> Iterator[str]:
-    yield from _strokes(drawing.behind)
-    for facet in drawing.facets:
-        color = "#" + "".join(f"{part:02x}" for part in facet.color)
-        yield f'<polygon fill="{color}" stroke="{color}" points="{_points(facet.points)}"/>'
-    for arc in drawing.sectors:
-        yield f'<polygon class="area turn" points="{_points((arc.centre, *arc.points))}"/>'
-    yield from _strokes(drawing.strokes)
-    for label in drawing.labels:
-        x, y = label.place
-        yield (
-            f'<text class="{label.kind}" x="{_number(x * _SCALE)}" y="{_number(-y * _SCALE)}" '
-            f'dy=".32em">{escape(as_in_formulas(label.symbol.text))}</text>'
-        )
-
-
-def _strokes(strokes: Iterable[Stroke]) -> Iterator[str]:
-    for stroke in strokes:
-        yield f'<polyline class="{" ".join(_kinds(stroke))}" points="{_points(stroke.points)}"/>'
-        if stroke.has_arrow:
-            yield f'<polygon class="head {stroke.kind}" points="{_points(_head(stroke))}"/>'
-
-
-def _head(stroke: Stroke) -> tuple[Point, ...]:
-    """A slim arrow head whose point is the end of the stroke."""
-    (x0, y0), (x1, y1) = stroke.points[-2:]
-    size = _ARROW / _SCALE / (hypot(x1 - x0, y1 - y0) or 1.0)
-    dx, dy = size * (x1 - x0), size * (y1 - y0)
-    foot = (x1 - dx, y1 - dy)
-    return ((x1, y1), (foot[0] - dy / 3, foot[1] + dx / 3), (foot[0] + dy / 3, foot[1] - dx / 3))
 
 
 def as_in_formulas(text: str) -> str:
@@ -170,10 +129,6 @@ def as_in_formulas(text: str) -> str:
     return cleaned(text.translate(_AS_IN_FORMULAS))
 
 
-def _points(points: Iterable[Point]) -> str:
-    return " ".join(f"{_number(x * _SCALE)},{_number(-y * _SCALE)}" for x, y in points)
-
-
-def _number(value: float) -> str:
-    """One digit after the point, and never -0.0."""
-    return f"{round(value, 1) + 0.0:.1f}"
+def _rounded(value: float, digits: int = 1) -> str:
+    """So many digits after the point, and never -0.0."""
+    return f"{round(value, digits) + 0.0:.{digits}f}"
