@@ -9,7 +9,7 @@ the coordinates of the quaternion, and
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from rigidsym.algebra.evaluate import Floats, Unknown, evaluate
+from rigidsym.algebra.evaluate import Floats, evaluate
 from rigidsym.errors import ModelError, QuantityError, offer
 from rigidsym.kernels.module import generate
 from rigidsym.mechanics.derivation import Derivation, Step
@@ -27,15 +27,14 @@ from rigidsym.mechanics.derive import derive
 from rigidsym.mechanics.dynamics.euler import EulerEquations
 from rigidsym.mechanics.dynamics.lagrange import is_bound
 from rigidsym.mechanics.quantities.dynamics import EULER_QUANTITIES, FLOW_QUANTITIES
-from rigidsym.models.body import RigidBody, check_moments
+from rigidsym.models.body import RigidBody
 from rigidsym.models.forces import OMEGA, OMEGA_COMPONENTS, Forces, initial_values
-from rigidsym.models.rotation import RotationModel, as_typed
+from rigidsym.models.rotation import as_typed
 from rigidsym.simulation.trajectory import Array, Trajectory
 
 # from which a motion is computed
 NEEDED = ("rotation_matrix", "angular_velocity_body", "state_derivative", "first_integrals")
-_GRAVITY = "m/s^2"  # the unit by which the acceleration in a weight is known
-_ORIENTATIONS = 12  # at which a weight is told from other potentials; c has three components
+_RATES = "rates_from_angular_velocity_body"
 _UNIT = 1e-9  # by which the entries of R Rᵀ − 1 may be off at the start
 
 
@@ -66,7 +65,8 @@ class Problem:
         """Raises ModelError for names that are missing or unknown, and for an impossible body."""
         self.derivation = derivation
         self.model, self.forces = derivation.model, derivation.forces or Forces()
-        self.names = {a.name: a.names for a in derivation.arguments}
+        self.arguments = {argument.name: argument for argument in derivation.arguments}
+        self.names = {argument.name: argument.names for argument in derivation.arguments}
         self.coordinates = self.names["q"]
         self.count = len(self.coordinates)
         self.is_euler = self.names["y"][self.count :] == self.names["omega_body"]
@@ -74,122 +74,66 @@ class Problem:
         self.is_alone = not self.forces.parts
         # three coordinates of a vector have a pole wherever they are, and long equations of motion
         self.is_quaternion = bool(self.model.vector) and self.is_alone and not is_bound(self.model)
-        self.parameters = self._parameters(parameters)
+        self.body, self.parameters = self._with_values(parameters)
+        self.inertia = np.array(self.body.in_numbers(self.body.inertia).tolist(), float)  # I′
         self.kernels: ModuleType = generate(
             self._functions, "numpy", conversions=self.is_alone
         ).load()
         self.start = self._state(initial)
-        self._check_rotation(self.start)
+        self._check_rotation()
 
-    @cached_property
-    def _functions(self) -> Derivation:
-        """The derivation with the functions that are evaluated."""
-        names = ["rotation_matrix", "angular_velocity_body"]
-        whole, rates = self.derivation, "rates_from_angular_velocity_body"
-        if rates not in {step.quantity.name for step in whole.steps}:
-            # few coordinates, or too many, have no such rates
-            with suppress(QuantityError):
-                kinematics = derive(self.model, (rates,))
-                whole = replace(
-                    whole,
-                    steps=(*whole.steps, *kinematics.steps),
-                    singularities=kinematics.singularities,  # the margin that finds the poles
-                )
-        names += [s.quantity.name for s in whole.steps if s.quantity.name == rates]
-        functions = {}
-        if not self.is_quaternion:
-            functions[self.slopes_step.quantity.name] = self.slopes_step
-        if self.derivation.first_integrals:
-            functions["first_integrals"] = self.derivation.step("first_integrals")
-        return replace(whole.select(names), functions=functions)
-
-    @property
-    def slopes_step(self) -> Step:
-        """The derivative of the state."""
-        return self.derivation.step("state_derivative")
-
-    def _step(
-        self, name: str, value: sp.MatrixBase, inputs: tuple[str, ...], **changes: Any
-    ) -> Step:
-        """A function that no note shows."""
-        inputs = (*inputs, "parameters") if "parameters" in self.names else inputs
-        quantity = FLOW_QUANTITIES["state_derivative"]._replace(name=name, inputs=inputs, **changes)
-        return Step(quantity=quantity, expression=value)
-
-    def _loaded(self, step: Step) -> ModuleType:
-        """A kernel of one function."""
-        functions = {step.quantity.name: step}
-        return generate(replace(self.derivation.select(()), functions=functions)).load()
-
-    def _check_rotation(self, state: Array) -> None:
-        """Raises ModelError for a state (k,) whose R is no rotation."""
-        rotation = self.rotation(state)
-        errors = [np.abs(rotation @ rotation.T - np.eye(3)).max()]
-        if self.model.constraints:
-            bounds = sp.ImmutableMatrix(self.model.constraints)
-            functions = self._loaded(self._step("bounds", bounds, ("q",), shape="matrix"))
-            inputs = [self.parameters] if "parameters" in self.names else []
-            errors.append(np.abs(functions.bounds(state[: self.count], *inputs)).max())
-        if max(errors) > _UNIT:
-            q = zip(self.coordinates, state.tolist(), strict=False)
-            values = ", ".join(f"{name} = {value:.15g}" for name, value in q)
-            raise ModelError(f"{self.derivation.name}: no rotation has the coordinates {values}")
-
-    def _parameters(self, parameters: Mapping[str, float]) -> list[float]:
-        constants = self.names.get("parameters", ())
-        body = self.derivation.body
+    def _with_values(self, parameters: Mapping[str, float]) -> tuple[RigidBody, list[float]]:
+        """The body, whose moments are checked, and the values of all parameters."""
+        body, constants = self.derivation.body, self.names.get("parameters", ())
         assert body is not None
         # the mass of a body about a fixed point may not matter, nor some moments of parts
         used = body.inertia.free_symbols.union(
             self.model.constants, *(e.free_symbols for e in self.forces.acting)
         )
         if self.forces.parts:
-            used |= self.derivation.spelled(self.slopes_step.expression).free_symbols
-        names = {str(symbol) for symbol in used}
-        missing = [name for name in constants if name in names and name not in parameters]
+            slopes = self.derivation.step("state_derivative").expression
+            used |= self.derivation.spelled(slopes).free_symbols
+        names = {str(symbol) for symbol in used} & {*constants}
+        missing = [name for name in constants if name in names - parameters.keys()]
         if missing:
             raise ModelError(f"missing parameters: {', '.join(missing)}")
-        for name in parameters:
-            if name not in constants:
-                raise ModelError(f"unknown parameters: {name}; {offer(name, constants)}")
-        _check_finite("parameters", parameters)
-        values = [float(parameters.get(name, 1.0)) for name in constants]
-        by_name = dict(zip(constants, values, strict=True))
-        described = (replace(p, value=by_name[p.symbol.name]) for p in body.parameters)
-        body = replace(body, parameters=tuple(described))  # which checks its moments
-        if not body.allow and body.distribution is None and not self.forces.parts:
-            self._check_about_centre(body)
-        return values
+        _check("parameters", parameters, constants)
+        values = {name: float(parameters.get(name, 1.0)) for name in constants}
+        described = (replace(p, value=values[p.symbol.name]) for p in body.parameters)
+        return replace(body, parameters=tuple(described)), [*values.values()]
 
-    def _check_about_centre(self, body: RigidBody) -> None:
-        """Raises BodyError for moments about the fixed point that leave no body about its centre.
+    @cached_property
+    def _functions(self) -> Derivation:
+        """The derivation with the functions that are evaluated."""
+        whole, names = self.derivation, ["rotation_matrix", "angular_velocity_body", _RATES]
+        if _RATES not in {step.quantity.name for step in whole.steps}:
+            try:
+                kinematics = derive(self.model, (_RATES,))
+            except QuantityError:  # few coordinates, or too many, have no such rates
+                names.remove(_RATES)
+            else:
+                whole = replace(
+                    whole,
+                    steps=(*whole.steps, *kinematics.steps),
+                    singularities=kinematics.singularities,  # the margin that finds the poles
+                )
+        of_state = [] if self.is_quaternion else ["state_derivative"]
+        of_state += ["first_integrals"] if self.derivation.first_integrals else []
+        functions = {name: self.derivation.step(name) for name in of_state}
+        return replace(whole.select(names), functions=functions)
 
-        A weight, V = m g c·e with the third axis e of space in the axes of the body, tells the
-        centre of mass c; about it the tensor is less by m (|c|² 1 − c cᵀ). The potential is
-        evaluated at some orientations: it is a weight if one c serves for all.
-        """
-        gravity = [body.values[p.symbol] for p in body.parameters if p.unit == _GRAVITY]
-        mass = body.in_numbers(body.mass)
-        if len(gravity) != 1 or not gravity[0] or not mass.is_number:
-            return
-        orientations = np.random.default_rng(1).uniform(-1, 1, (self.count, _ORIENTATIONS))
-        values = dict(zip(self.model.coordinates, orientations, strict=True))
-        values |= {symbol: float(value) for symbol, value in body.values.items()}
-        # a text that no weight is may hold the time, or a function that has no number
-        with suppress(Unknown):
-            height, *vertical = (
-                np.broadcast_to(evaluate(e, Floats(np), values), _ORIENTATIONS)
-                for e in (self.forces.potential, *self.model.matrix.row(2))
-            )
-            height = height / float(mass * gravity[0])
-            axis = np.stack(vertical, axis=1)
-            centre = np.linalg.lstsq(axis, height)[0].round(12)  # m
-            if np.abs(axis @ centre - height).max() <= _UNIT * np.abs(height).max():
-                moved = centre @ centre * np.eye(3) - np.outer(centre, centre)
-                inertia = np.array(body.in_numbers(body.inertia).tolist(), float)
-                at = ", ".join(f"{part:.6g}" for part in centre)
-                where = f"{body.name}, about its centre of mass at ({at}) m"
-                check_moments(where, inertia - float(mass) * moved)
+    def _check_rotation(self) -> None:
+        """Raises ModelError if R of the start is no rotation."""
+        rotation, q = self.rotation(self.start), self.start[: self.count].tolist()
+        values = dict(zip(self.model.coordinates, q, strict=True))
+        if "parameters" in self.arguments:
+            values |= zip(self.arguments["parameters"].symbols, self.parameters, strict=True)
+        errors = [rotation @ rotation.T - np.eye(3)]
+        errors += [evaluate(c, Floats(np), values) for c in self.model.constraints]
+        if max(np.abs(error).max() for error in errors) > _UNIT:
+            pairs = zip(self.coordinates, q, strict=True)
+            place = ", ".join(f"{name} = {value:.15g}" for name, value in pairs)
+            raise ModelError(f"{self.derivation.name}: no rotation has the coordinates {place}")
 
     def _state(self, initial: Mapping[str, Any]) -> Array:
         """The state at t = 0, (k,), from coordinates and rates by name or the angular velocity.
@@ -197,11 +141,7 @@ class Problem:
         What is omitted is 0, and without any coordinate R = 1.
         """
         rates = self.names["q_dot"]
-        known = (*self.coordinates, *rates, OMEGA, *OMEGA_COMPONENTS)
-        for name in initial:
-            if name not in known:
-                raise ModelError(f"unknown initial values: {name}; {offer(name, known)}")
-        _check_finite("initial values", initial)
+        _check("initial values", initial, (*self.coordinates, *rates, OMEGA, *OMEGA_COMPONENTS))
         turning = {OMEGA, *OMEGA_COMPONENTS}.intersection(initial)
         if turning and not initial.keys().isdisjoint(rates):
             raise ModelError(f"initial values: expected rates or {OMEGA}, not both")
@@ -210,67 +150,59 @@ class Problem:
         if not turning:
             velocity = np.array([values[name] for name in rates], float)
             if self.is_euler:
-                velocity = self.kernels.angular_velocity_body(q, velocity, *self.angles)
-        else:
-            velocity = np.asarray(initial.get(OMEGA, [0.0] * 3), float)
-            if velocity.shape != (3,):
-                raise ModelError(f"{OMEGA}: expected three components, got {initial[OMEGA]}")
-            if OMEGA not in initial:
-                velocity = np.array([values[name] for name in OMEGA_COMPONENTS], float)
-            if not self.is_euler:
-                velocity = self._rates_at_start(q, velocity)
+                velocity = self._at("angular_velocity_body", q, velocity)
+            return np.concatenate([q, velocity])
+        given = initial[OMEGA] if OMEGA in initial else [values[n] for n in OMEGA_COMPONENTS]
+        velocity = np.asarray(given, float)
+        if velocity.shape != (3,):
+            raise ModelError(f"{OMEGA}: expected three components, got {given}")
+        if not self.is_euler:
+            if not hasattr(self.kernels, _RATES):
+                raise ModelError(
+                    f"{self.derivation.name}: the rates do not follow from {OMEGA}; expected rates"
+                )
+            velocity = self._at(_RATES, q, velocity)
+            if not np.isfinite(velocity).all():
+                raise ModelError(
+                    f"{self.derivation.name}: the motion starts at a pole of the coordinates, "
+                    f"where the rates do not follow from {OMEGA}; expected rates, or a rotation "
+                    "without this pole, such as unit_quaternion"
+                )
         return np.concatenate([q, velocity])
 
-    def _rates_at_start(self, q: Array, omega: Array) -> Array:
-        solved = getattr(self.kernels, "rates_from_angular_velocity_body", None)
-        if solved is None:
-            raise ModelError(
-                f"{self.derivation.name}: the rates do not follow from {OMEGA}; expected rates"
-            )
-        rates = np.asarray(solved(q, omega, *self.angles))
-        if not np.isfinite(rates).all():
-            raise ModelError(
-                f"{self.derivation.name}: the motion starts at a pole of the coordinates, "
-                f"where the rates do not follow from {OMEGA}; expected rates, or a rotation "
-                "without this pole, such as unit_quaternion"
-            )
-        return rates
-
-    @property
-    def angles(self) -> list[list[float]]:
-        """The parameters as the functions of a rotation with constants take them."""
-        return [self.parameters] if self.model.constants else []
+    def _at(self, function: str, *inputs: Array) -> Array:
+        """A function of the rotation, which takes the parameters if the rotation has constants."""
+        constants = [self.parameters] if self.model.constants else []
+        return np.array(getattr(self.kernels, function)(*inputs, *constants))
 
     # --- the motion in coordinates
 
     def slopes(self, t: float, y: Array) -> Array:
         """The derivative of one state."""
-        takes_parameters = "parameters" in self.slopes_step.quantity.inputs
-        inputs = (t, *y.tolist(), *(self.parameters if takes_parameters else ()))
-        return np.array(self.kernels.state_derivative_scalar(*inputs))
+        inputs = self.derivation.step("state_derivative").quantity.inputs
+        values = (t, *y.tolist(), *(self.parameters if "parameters" in inputs else ()))
+        return np.array(self.kernels.state_derivative_scalar(*values))
 
     def is_near_pole(self, y: Array, limit: float) -> bool:
         """Whether the singularity margin of the coordinates, if there is one, is small."""
-        margin = getattr(self.kernels, "singularity_margin_scalar", None)
-        return margin is not None and not margin(*y[: self.count].tolist(), *self.angles) > limit
+        has_margin = hasattr(self.kernels, "singularity_margin")
+        return has_margin and not self._at("singularity_margin", y[: self.count]) > limit
 
     def rotation(self, y: Array) -> Array:
-        return np.asarray(self.kernels.rotation_matrix(y[..., : self.count], *self.angles))
+        return self._at("rotation_matrix", y[..., : self.count])
 
     def omega(self, y: Array) -> Array:
         """Ω′ of states, (..., 3)."""
-        q, rest = y[..., : self.count], y[..., self.count :]
-        if self.is_euler:
-            return rest
-        return np.asarray(self.kernels.angular_velocity_body(q, rest, *self.angles))
+        q, velocity = y[..., : self.count], y[..., self.count :]
+        return velocity if self.is_euler else self._at("angular_velocity_body", q, velocity)
 
     def rates(self, q: Array, omega: Array) -> Array:
         """q̇ from Ω′, (n, k); at a pole the smallest rates with this Ω′, NaN if there are none."""
-        rates = np.array(self.kernels.rates_from_angular_velocity_body(q, omega, *self.angles))
+        rates = self._at(_RATES, q, omega)
         lost = np.isnan(rates).any(axis=1) & np.isfinite(q).all(axis=1)
         if lost.any():
-            each = np.eye(self.count)  # Ω′ for each rate by itself is a column of W′
-            rows = self.kernels.angular_velocity_body(q[lost][:, None], each, *self.angles)
+            # Ω′ for each rate by itself is a column of W′
+            rows = self._at("angular_velocity_body", q[lost][:, None], np.eye(self.count))
             least = np.einsum("nj,njk->nk", omega[lost], np.linalg.pinv(rows))
             error = np.linalg.norm(np.einsum("nk,nkj->nj", least, rows) - omega[lost], axis=1)
             far = error > _UNIT * np.linalg.norm(omega[lost], axis=1)
@@ -281,8 +213,8 @@ class Problem:
 
     @cached_property
     def _euler(self) -> EulerEquations:
-        assert self.derivation.body is not None
         forces = replace(self.forces, method="euler", first_integrals={})
+        assert self.derivation.body is not None
         return EulerEquations(self.model, self.derivation.body, forces)
 
     @cached_property
@@ -297,7 +229,14 @@ class Problem:
             return "several bodies move in these coordinates only"
         if not hasattr(self.kernels, "from_quaternion"):
             return "the coordinates do not follow from the rotation"
-        if not _has_limits(self.torque, self._euler.divisor, self.model):
+        # Common factors are cancelled: the torque of m g l cos θ in ZXZ divides by nothing, and a
+        # force −k φ̇ leaves 1/sin² θ, since φ̇ has no limit at θ = 0. The pole of a vector is at
+        # infinity or at a whole turn, from which a unit quaternion gives coordinates far away.
+        powers = (power for entry in self.torque for power in entry.atoms(sp.Pow))
+        divides = any(
+            p.exp.could_extract_minus_sign() and p.has(*self.model.coordinates) for p in powers
+        )
+        if divides and self.model.turns and not self.model.vector:
             names = ", ".join(as_typed(q) for q in self.forces.generalised)
             acting = f"forces on {names}" if names else "potential"
             return f"the torque of the {acting} has no limit there"
@@ -308,16 +247,17 @@ class Problem:
         """N′ as a function of the time, the coordinates, Ω′ and the parameters."""
         if self.torque.is_zero_matrix:
             return None
-        step = self._step(
-            "torque_body", self.torque, ("t", *EULER_QUANTITIES["torque_body"].inputs)
-        )
-        scalar: Callable[..., Sequence[float]] = self._loaded(step).torque_body_scalar
+        inputs = ("t", *EULER_QUANTITIES["torque_body"].inputs)
+        inputs += ("parameters",) if "parameters" in self.names else ()
+        quantity = FLOW_QUANTITIES["state_derivative"]._replace(name="torque_body", inputs=inputs)
+        functions = {"torque_body": Step(quantity=quantity, expression=self.torque)}
+        module = generate(replace(self.derivation.select(()), functions=functions)).load()
+        scalar: Callable[..., Sequence[float]] = module.torque_body_scalar
         return scalar
 
     def quaternion(self, y: Array) -> Array:
         """(quaternion, Ω′) of a state."""
-        q = self.kernels.quaternion(y[: self.count], *self.angles)
-        return np.concatenate([q, self.omega(y)])
+        return np.concatenate([self._at("quaternion", y[: self.count]), self.omega(y)])
 
     def quaternion_slopes(self, t: float, state: Array) -> Array:
         w, x, y, z, a, b, c = state.tolist()
@@ -348,21 +288,19 @@ class Problem:
         velocity = quaternions[:, 4:] if self.is_euler else self.rates(q, quaternions[:, 4:])
         return np.concatenate([q, velocity], axis=1)
 
-    @cached_property
-    def inertia(self) -> Array:
-        """I′ in numbers, (3, 3)."""
-        body = self.derivation.body
-        assert body is not None
-        values = dict(zip(self.names.get("parameters", ()), self.parameters, strict=True))
-        known = {symbol: values[str(symbol)] for symbol in body.inertia.free_symbols}
-        return np.array(body.inertia.xreplace(known).tolist(), float)
-
     # --- results
 
     def trajectory(
         self, t: Array, states: Array, ended: str = "", remarks: Sequence[str] = ()
     ) -> Trajectory:
         q, omega = states[:, : self.count], self.omega(states)
+        integrals: Mapping[str, Array] = {}
+        if self.derivation.first_integrals:
+            inputs = self.derivation.step("first_integrals").quantity.inputs
+            arguments = {"y": states, "t": t, "parameters": self.parameters}
+            values = np.asarray(self.kernels.first_integrals(*map(arguments.get, inputs)))
+            names = (integral.name for integral in self.derivation.first_integrals)
+            integrals = dict(zip(names, values.T, strict=True))
         return Trajectory(
             name=self.derivation.name,
             coordinates=self.coordinates,
@@ -371,61 +309,21 @@ class Problem:
             q_dot=self.rates(q, omega) if self.is_euler else states[:, self.count :],
             angular_velocity_body=omega,
             rotation_matrix=self.rotation(states),
-            first_integrals=self._integrals(t, states),
+            first_integrals=integrals,
             inertia=self.inertia,
             is_in_angles={*self.model.coordinate_units} == {"rad"},
             ended=ended,
             remarks=tuple(remarks),
         )
 
-    def _integrals(self, t: Array, states: Array) -> dict[str, Array]:
-        """The first integrals by name, (n,) each."""
-        names = [integral.name for integral in self.derivation.first_integrals]
-        if not names:
-            return {}
-        arguments = {"y": states, "t": t, "parameters": self.parameters}
-        inputs = self.derivation.step("first_integrals").quantity.inputs
-        values = np.asarray(self.kernels.first_integrals(*map(arguments.get, inputs)))
-        return dict(zip(names, values.T, strict=True))
 
-
-def _has_limits(torque: sp.ImmutableMatrix, divisor: sp.Expr, model: RotationModel) -> bool:
-    """Whether the torque divides by nothing that vanishes where the divisor of W′⁻¹ does.
-
-    Common factors are cancelled already: the torque of m g l cos θ in ZXZ divides by nothing. A
-    force −k φ̇ leaves 1/sin² θ, since φ̇ has no limit at θ = 0.
-    """
-    below = {d for entry in torque for d in _divisors(entry) if d.has(*model.coordinates)}
-    if not below:
-        return True
-    if model.vector or not model.turns:
-        # the pole of a vector is at infinity or at a whole turn, and a unit quaternion gives
-        # coordinates far from a whole turn
-        return True
-    waves = divisor.atoms(sp.sin, sp.cos)
-    if len(waves) != 1:  # where it vanishes is not that easily told
-        return not divisor.has(*model.coordinates)
-    (angle,) = waves.pop().args
-    zeros = [k * sp.pi / 2 for k in range(4)]
-    poles = [at for at in zeros if divisor.subs(angle, at) == 0]
-    return not any(d.subs(angle, at) == 0 for d in below for at in poles)
-
-
-def _divisors(value: sp.Expr) -> Iterator[sp.Expr]:
-    for node in sp.preorder_traversal(value):
-        if isinstance(node, sp.Pow) and node.exp.could_extract_minus_sign():
-            yield node.base
-        elif isinstance(node, sp.tan | sp.sec):
-            yield sp.cos(node.args[0])
-        elif isinstance(node, sp.cot | sp.csc):
-            yield sp.sin(node.args[0])
-
-
-def _check_finite(what: str, values: Mapping[str, Any]) -> None:
+def _check(what: str, values: Mapping[str, Any], known: Collection[str]) -> None:
+    """Raises ModelError for an unknown name and for a value that is no finite number."""
     for name, value in values.items():
-        try:
+        if name not in known:
+            raise ModelError(f"unknown {what}: {name}; {offer(name, known)}")
+        numbers = np.array(np.nan)
+        with suppress(TypeError, ValueError):
             numbers = np.asarray(value, float)
-        except (TypeError, ValueError):
-            numbers = np.array(np.nan)
         if not np.isfinite(numbers).all():
             raise ModelError(f"{what}: {name} is {value}; expected a finite number")

@@ -16,7 +16,6 @@ Array = NDArray[np.float64]
 
 PICTURES = (".png", ".svg", ".pdf")
 _ONE_TURN = 360
-_VIEW = (25, -60)  # elevation and azimuth of the eye, degrees
 _GREEK = ["alpha", "beta", "gamma", "delta", "theta", "phi", "psi", "sigma", "chi", "omega"]
 _SMALLEST = 1e-17  # of a relative change in the picture of the drift
 
@@ -79,70 +78,62 @@ class Trajectory:
         return self.report()
 
     def plot(self, path: str | Path) -> Path:
-        """Draw the motion into a PNG, SVG or PDF file. Needs Matplotlib."""
-        return save_plot(Path(path), self)
+        """Draw the motion into a PNG, SVG or PDF file. Raises MissingExtra without Matplotlib."""
+        path = Path(path)
+        check_picture(path)
+        try:
+            from matplotlib.figure import Figure
+        except ModuleNotFoundError as error:
+            raise MissingExtra("a picture", "plot") from error
+        names: list[Any] = ["q", "axis", *(["drift"] if self.first_integrals else [])]
+        figure = Figure(figsize=(4 * len(names), 4), layout="constrained")
+        panels = figure.subplot_mosaic([names], per_subplot_kw={"axis": {"projection": "3d"}})
+        self._draw_coordinates(panels["q"])
+        self._draw_trace(panels["axis"])
+        if self.first_integrals:
+            axes = panels["drift"]
+            for name, values in self.changes.items():
+                largest = np.maximum.accumulate(np.nan_to_num(values))
+                axes.semilogy(self.t, np.maximum(largest, _SMALLEST), label=name.replace("_", " "))
+            axes.set(xlabel="t in s", ylabel="largest change so far, relative")
+            axes.set_title("First integrals")
+            axes.legend(loc="lower right", fontsize="x-small")
+        path.parent.mkdir(parents=True, exist_ok=True)
+        figure.savefig(path, dpi=150)
+        return path
 
+    def _draw_coordinates(self, axes: Any) -> None:
+        """All of them; angles that wind on are left out, since they would dwarf the others."""
+        curves = np.degrees(self.q) if self.is_in_angles else self.q
+        winds = np.ptp(curves, axis=0) >= _ONE_TURN
+        for name, values, is_long in zip(self.coordinates, curves.T, winds, strict=True):
+            if winds.all() or not is_long:
+                axes.plot(self.t, values, label=f"$\\{name}$" if name in _GREEK else name)
+        hidden = [n for n, is_long in zip(self.coordinates, winds, strict=True) if is_long]
+        title = "Coordinates"
+        if hidden and not winds.all():
+            title += f"\n({', '.join(hidden)}: more than a turn, not shown)"
+        axes.set(xlabel="t in s", ylabel="degrees" if self.is_in_angles else "", title=title)
+        axes.legend(fontsize="small")
 
-# --- pictures
-
-
-def save_plot(path: Path, motion: Trajectory) -> Path:
-    """One sheet of pictures, PNG, SVG or PDF by the ending; raises MissingExtra."""
-    check_picture(path)
-    try:
-        from matplotlib.figure import Figure
-    except ModuleNotFoundError as error:
-        raise MissingExtra("a picture", "plot") from error
-    names: list[Any] = ["q", "axis", "drift"] if motion.first_integrals else ["q", "axis"]
-    figure = Figure(figsize=(4 * len(names), 4), layout="constrained")
-    panels = figure.subplot_mosaic([names], per_subplot_kw={"axis": {"projection": "3d"}})
-    _draw_coordinates(panels["q"], motion)
-    _draw_trace(panels["axis"], motion.rotation_matrix[:, :, 2])
-    panels["axis"].set_title("Trace of the third body axis")
-    if motion.first_integrals:
-        axes = panels["drift"]
-        for name, values in motion.changes.items():
-            largest = np.maximum.accumulate(np.nan_to_num(values))
-            axes.semilogy(motion.t, np.maximum(largest, _SMALLEST), label=name.replace("_", " "))
-        axes.set(xlabel="t in s", ylabel="largest change so far, relative", title="First integrals")
-        axes.legend(loc="lower right", fontsize="x-small")
-    path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path, dpi=150)
-    return path
+    def _draw_trace(self, axes: Any) -> None:
+        """A curve on the unit sphere, its beginning, and the axes of space."""
+        points = self.rotation_matrix[:, :, 2].T
+        latitude, longitude = np.mgrid[0 : np.pi : 37j, 0 : 2 * np.pi : 73j]
+        across = np.sin(latitude)
+        sphere = (across * np.cos(longitude), across * np.sin(longitude), np.cos(latitude))
+        axes.plot_wireframe(*sphere, rstride=6, cstride=6, color="0.75", linewidth=0.5)
+        axes.plot(*points, color="C0", linewidth=1.4)
+        axes.scatter(*points[:, :1], color="C3", s=18)
+        for name, end in zip("xyz", 1.2 * np.eye(3), strict=True):
+            axes.quiver(0, 0, 0, *end, color="0.4", linewidth=1, arrow_length_ratio=0.05)
+            axes.text(*end, name, color="0.4", ha="center", va="bottom")
+        axes.set(xlim=(-1, 1), ylim=(-1, 1), zlim=(-1, 1), title="Trace of the third body axis")
+        axes.set_box_aspect(np.ones(3))
+        axes.set_axis_off()
 
 
 def check_picture(path: Path, endings: Collection[str] = PICTURES) -> None:
     """Raises ModelError for a file with another ending."""
     if path.suffix not in endings:
         raise ModelError(f"{path}: expected a file that ends in {', '.join(endings)}")
-
-
-def _draw_coordinates(axes: Any, motion: Trajectory) -> None:
-    """All of them; angles that wind on are left out, since they would dwarf the others."""
-    names = (f"$\\{name}$" if name in _GREEK else name for name in motion.coordinates)
-    shown = np.degrees(motion.q) if motion.is_in_angles else motion.q
-    curves = dict(zip(names, shown.T, strict=True))
-    swinging = {n: v for n, v in curves.items() if np.ptp(v) < _ONE_TURN} or curves
-    for name, values in swinging.items():
-        axes.plot(motion.t, values, label=name)
-    winding = ", ".join(curves.keys() - swinging.keys())
-    title = f"Coordinates\n({winding}: more than a turn, not shown)" if winding else "Coordinates"
-    axes.set(xlabel="t in s", ylabel="degrees" if motion.is_in_angles else "", title=title)
-    axes.legend(fontsize="small")
-
-
-def _draw_trace(axes: Any, points: Array) -> None:
-    """A curve on the unit sphere, its beginning, and the axes."""
-    latitude, longitude = np.meshgrid(np.linspace(0, np.pi, 37), np.linspace(0, 2 * np.pi, 73))
-    across = np.sin(latitude)
-    sphere = (across * np.cos(longitude), across * np.sin(longitude), np.cos(latitude))
-    axes.plot_wireframe(*sphere, rstride=6, cstride=6, color="0.75", linewidth=0.5)
-    axes.plot(*points.T, color="C0", linewidth=1.4)
-    axes.scatter(*points[:1].T, color="C3", s=18)
-    for name, end in zip("xyz", np.eye(3), strict=True):
-        axes.plot(*np.array([end, 1.15 * end]).T, color="0.4", linewidth=1)
-        axes.text(*(1.28 * end), name, color="0.4", ha="center", va="center")
-    axes.view_init(*_VIEW)
-    axes.set_box_aspect(np.ones(3), zoom=1.1)
-    axes.set(xlim=(-1, 1), ylim=(-1, 1), zlim=(-1, 1))
-    axes.set_axis_off()

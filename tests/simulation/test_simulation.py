@@ -12,7 +12,6 @@ from scipy.integrate import solve_ivp
 import rigidsym as rs
 from helpers.command import call
 from rigidsym.errors import LimitReached
-from rigidsym.models.body import Parameter
 from rigidsym.simulation.problem import NEEDED, Problem
 
 A, B, C = sp.symbols("A B C")
@@ -100,30 +99,6 @@ def test_what_a_simulation_cannot_begin_with_is_said(initial, values, t_end, mes
         top().simulate(initial, values, t_end)
 
 
-TOP_WITH_WEIGHT = ["simulate", "heavy_symmetric_top", "--set=C=0.5", "--set=m=1", "--set=l=0.5"]
-
-
-@pytest.mark.parametrize(("moment", "status"), [("0.49", 3), ("0.51", 0)])
-def test_moments_about_the_tip_leave_a_body_about_the_centre_of_mass(moment, status, tmp_path):
-    """A is at least m l² + C/2 = 0.5 kg m²"""
-    given = [*TOP_WITH_WEIGHT, f"--set=A={moment}", "--time=0.1", "--samples=2"]
-    done = call(*given, cwd=tmp_path, status=status)
-    refusal = "about its centre of mass at (0, 0, 0.5) m: no body has the principal moments 0.24"
-    assert (refusal in done.stderr) == bool(status)
-
-
-def test_only_a_weight_tells_the_centre_of_mass():
-    g, m = sp.symbols("g m")
-    known = [Parameter(symbol=g, unit="m/s^2")]
-    body = rs.principal_moments(A, A, C, mass=m, parameters=known)
-    values = TOP | {"A": 0.6}  # less than m l² + C/2 = 0.67
-    spring = rs.derive("ZXZ", body=body, potential="m*g*l*cos(theta)**2")
-    assert len(spring.simulate(REST | {"theta": 1}, values, 0.01, samples=2).t) == 2
-    weight = rs.derive("ZXZ", body=body, potential="m*g*l*cos(theta)")
-    with pytest.raises(rs.RigidsymError, match="about its centre of mass"):
-        weight.simulate(REST | {"theta": 1}, values, 0.01)
-
-
 def test_the_examples_that_are_shipped_have_a_body(tmp_path):
     for name in ("kovalevskaya_top", "heavy_asymmetric_body"):
         call("simulate", name, "--time=0.01", "--samples=2", cwd=tmp_path)
@@ -168,9 +143,6 @@ def test_the_command_writes_a_table_a_picture_and_a_page(tmp_path):
     assert (table["t"][-1], table["theta"][0], table["psi_dot"][0]) == (1, 0.5, 20)
     assert table["angular_velocity_body_3"][0] == pytest.approx(20)
     assert (tmp_path / "top.svg").read_text(encoding="utf-8").startswith("<?xml")
-    call(*given, "--animate=top.html", cwd=tmp_path)
-    page = (tmp_path / "top.html").read_text(encoding="utf-8")
-    assert f'"start":{np.degrees(0.5)}'[:14] in page
     turning = [f"--initial=angular_velocity_body_{k}={k}" for k in (1, 2)]
     moments = ["--set=A=1", "--set=B=2", "--set=C=2.5"]
     free = ["simulate", "free_body", "--method=exact", "--time=1", *moments, *turning]
@@ -181,10 +153,6 @@ def test_the_command_writes_a_table_a_picture_and_a_page(tmp_path):
     for wrong, message in (
         ([*free, "--animate=free.gif"], "free.gif: expected a file that ends in .html"),
         (["simulate", "heavy_symmetric_top", "--set", "A"], "expected NAME=NUMBER"),
-        (
-            ["simulate", "dual_spin_satellite", "--time=1e9", "--animate=disc.html"],
-            "there is no live page of this motion",  # which would take for ever
-        ),
     ):
         assert message in call(*wrong, cwd=tmp_path, status=2).stderr
 
@@ -232,15 +200,13 @@ def test_a_heavy_body_is_carried_through_the_poles_of_its_coordinates(rotation):
 DAMPED = {"phi": "-k*phi_dot", "theta": "-k*theta_dot", "psi": "-k*psi_dot"}
 
 
-@pytest.mark.parametrize(("method", "chosen"), [("DOP853", NEEDED), ("Radau", ())])
-def test_a_pole_at_which_a_force_has_no_limit_ends_the_motion_with_the_time_and_the_reason(
-    method, chosen
-):
+@pytest.mark.parametrize("method", ["DOP853", "Radau"])
+def test_a_pole_at_which_a_force_has_no_limit_ends_the_motion_with_the_time_and_the_reason(method):
     """−k φ̇ damps the turn about the line of nodes with k/sin² θ; p_φ = L₃ and p_ψ = L₃′ decay by
     −k φ̇ and −k ψ̇
     """
     acting = {"potential": "m*g*l*cos(theta)", "forces": DAMPED}
-    damped = rs.derive("ZXZ", chosen, body=rs.principal_moments(A, A, C), **acting)
+    damped = rs.derive("ZXZ", NEEDED, body=rs.principal_moments(A, A, C), **acting)
     values = {"A": 1, "C": 0.6, "m": 1, "g": 9.81, "l": 0.4, "k": 0.1}
     found = damped.simulate({"theta": 0.5, "psi_dot": 20}, values, 3.0, method=method)
 
