@@ -14,14 +14,7 @@ from .models.body import (
 from .models.library import rotation_from as rotation_from
 from .models.parametrisations import (
     EULER_SEQUENCES as EULER_SEQUENCES,
-    AxisAngle as AxisAngle,
-    DirectionCosines as DirectionCosines,
     EulerAngles as EulerAngles,
-    GibbsVector as GibbsVector,
-    ModifiedRodrigues as ModifiedRodrigues,
-    Quaternion as Quaternion,
-    RotationVector as RotationVector,
-    UnitQuaternion as UnitQuaternion,
     chain as chain,
     given as given,
 )

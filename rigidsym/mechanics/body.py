@@ -40,7 +40,7 @@ from rigidsym.models.body import (
     RigidBody,
 )
 from rigidsym.models.forces import Forces
-from rigidsym.models.parametrisations import DirectionCosines
+from rigidsym.models.parametrisations import parametrised
 from rigidsym.models.rotation import RotationModel
 
 _MOST_TERMS = 60  # of a component that is worth being presented multiplied out
@@ -305,7 +305,8 @@ class NamedRotation(BodyValues):
     @cache
     def names() -> RotationModel:
         """The nine entries of R by name."""
-        return DirectionCosines([f"R_{row}{column}" for row in (1, 2, 3) for column in (1, 2, 3)])
+        entries = [f"R_{row}{column}" for row in (1, 2, 3) for column in (1, 2, 3)]
+        return parametrised("direction_cosines", entries)
 
     @cached_property
     def codec(self) -> Codec:

@@ -23,7 +23,7 @@ from rigidsym.formula.reader import formula, sentence
 from rigidsym.mechanics.derivation import Derivation, Proof, Statement, Step
 from rigidsym.mechanics.particles import IN_BODY, MASS, ParticleSums
 from rigidsym.mechanics.prove import Conditions, Prover
-from rigidsym.models.parametrisations import UnitQuaternion
+from rigidsym.models.parametrisations import parametrised
 from rigidsym.models.rotation import TIME, lecture, time_function, unit_example
 from rigidsym.system.resources import text
 
@@ -84,7 +84,7 @@ class Equations:
     """Free vectors, one particle and one rotation, over one ring."""
 
     def __init__(self) -> None:
-        model = UnitQuaternion()
+        model = parametrised("unit_quaternion")
         moving = [*model.coordinates, *_PLACE, *_CENTRE]
         fixed = [MASS, _WHOLE, *IN_BODY, *_OMEGA, *_U, *_V, *_W, *_LINE, *_TENSOR]
         unit = sum(part**2 for part in _LINE) - 1

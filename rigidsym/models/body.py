@@ -157,7 +157,6 @@ KEYS: Mapping[type, str] = {  # of a [body] table, and of its parts
 
 _MODULE_NAME = re.compile(r"[a-z][a-z0-9_]*")
 _AXES = ("x", "y", "z")
-_SPACE = r" \qquad "
 SOURCE = SOURCES["Landau 32"]
 ABOUT_FIXED_POINT = (
     "The body turns about a fixed point, which may be its centre of mass, and its inertia tensor "
@@ -275,14 +274,6 @@ class RigidBody:
                     f"{self.name}: the inertia tensor is not symmetric: I_{places[0]} − "
                     f"I_{places[1]} = {format(float(value), 'g') if value.is_Float else value}"
                 )
-
-    def _repr_latex_(self) -> str:
-        """What Jupyter shows: the mass, the centre and the inertia tensor about it."""
-        mass, centre, inertia = map(sp.latex, (self.mass, self.centre, self.inertia))
-        masses = "" if self.mass == sp.Symbol("M") else f"M = {mass}"
-        place = "" if self.centre.is_zero_matrix else rf"\mathbf{{c}} = {centre}"
-        parts = filter(None, (masses, place, rf"\mathbf{{I}}' = {inertia}"))
-        return f"$${_SPACE.join(parts)}$$"
 
     def __str__(self) -> str:
         return self.name

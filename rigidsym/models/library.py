@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from difflib import get_close_matches
 from types import MappingProxyType
@@ -13,24 +13,24 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from rigidsym.errors import ExpressionError, ModelError
-from rigidsym.models import parametrisations
 from rigidsym.models.parametrisations import (
     DEFAULT_ANGLES,
     DIGITS,
     EULER_SEQUENCES,
+    PARAMETRISATIONS as PARAMETRISATIONS,
     EulerAngles,
     axis_turn,
     chain,
-    direction,
     given,
+    parametrised,
 )
 from rigidsym.models.rotation import (
     AXES,
     SOURCES,
+    WORDS,
     Citation,
     RotationModel,
     Turn,
-    lecture,
     product_of,
     time_function,
 )
@@ -38,88 +38,25 @@ from rigidsym.text.expression import names_in, parse_expression, parse_turns
 from rigidsym.text.names import check_name
 
 
-class Entry(NamedTuple):
-    """One parametrisation: how it is built, and R written out."""
-
-    build: Callable[..., RotationModel]  # names of the coordinates, passive
-    product: str
-    has_scalar: bool = False  # whether its scalar may stand last
-
-
 class Preset(NamedTuple):
-    """The Euler angles of one text."""
+    """The Euler angles of one text, an entry of rotations.toml."""
 
     sequence: str
     about: str
     source: Citation
-    names: tuple[str, ...] = DEFAULT_ANGLES
+    names: Sequence[str] = DEFAULT_ANGLES
     passive: bool = False
     z_down: bool = False  # whether its z-axis points to the ground
 
 
-PARAMETRISATIONS: Mapping[str, Entry] = {
-    "quaternion": Entry(
-        parametrisations.Quaternion,
-        "((w² − v·v) 1 + 2 v vᵀ + 2 w C(v))/(w² + v·v)",
-        has_scalar=True,
-    ),
-    "unit_quaternion": Entry(
-        parametrisations.UnitQuaternion,
-        "(w² − v·v) 1 + 2 v vᵀ + 2 w C(v), w² + v·v = 1",
-        has_scalar=True,
-    ),
-    "axis_angle": Entry(parametrisations.AxisAngle, "1 + sin φ C(e) + (1 − cos φ) C(e)², e·e = 1"),
-    "rotation_vector": Entry(
-        parametrisations.RotationVector, "exp C(v) = 1 + sin n/n C(v) + (1 − cos n)/n² C(v)²"
-    ),
-    "gibbs_vector": Entry(parametrisations.GibbsVector, "1 + 2/(1 + g·g) (C(g) + C(g)²)"),
-    "modified_rodrigues": Entry(
-        parametrisations.ModifiedRodrigues, "1 + (8 C(s)² + 4 (1 − s·s) C(s))/(1 + s·s)²"
-    ),
-    "direction_cosines": Entry(
-        parametrisations.DirectionCosines, "its nine entries, with R Rᵀ = 1 and det R = 1"
-    ),
-}
-
 PRESETS: Mapping[str, Preset] = {
-    "lecture_angles": Preset(
-        "ZXZ", "the Euler angles of the lecture", lecture("17", "section 3.2")
-    ),
-    "goldstein": Preset(
-        "ZXZ",
-        "Goldstein's Euler angles, his matrix A from space to body axes",
-        SOURCES["Goldstein 4.4 (4.46)"],
-        passive=True,
-    ),
-    "aerospace": Preset(
-        "ZYX",
-        "yaw, pitch, roll; from the reference frame to the axes of the aircraft",
-        Citation(
-            "B. Stevens, F. Lewis, Aircraft Control and Simulation (2003)", section="section 1.3"
-        ),
-        ("psi", "theta", "phi"),
-        passive=True,
-        z_down=True,
-    ),
-    "rpy": Preset(
-        "xyz",
-        "roll, pitch, yaw about fixed axes, as in robotics",
-        Citation("J. Craig, Introduction to Robotics (2005)", section="section 2.8"),
-        ("roll", "pitch", "yaw"),
-    ),
+    name: Preset(**entry | {"source": SOURCES[entry["source"]]})
+    for name, entry in WORDS["presets"].items()
 }
-
-
-# From text to a model, or to a rotation at rest
-
-
 LONGEST = 900  # characters of a sequence or of turns
 _AT_REST = re.compile(r".*\D0")  # a name that ends in 0: alpha0, b_0; not a_10
 _SHOWN = 40  # characters of a wrong text that a message repeats
 ALIASES = {"mrp": "modified_rodrigues", "quat": "quaternion", "rotvec": "rotation_vector"}
-_REMOVED = {
-    "cayley_klein": "take unit_quaternion: α = w + i z and β = y + i x are Cayley's and Klein's"
-}
 _A_ROTATION = 'a sequence such as "ZXZ", turns such as "z(phi) x(theta)", or a name'
 
 
@@ -152,35 +89,40 @@ def rotation_from(
     if "(" in text:
         model = _turned(text, names, constants, passive)
     elif entry:
-        options: dict[str, Any] = {} if names is None else {"names": tuple(names)}
-        model = entry.build(
-            **options, **({"scalar_last": True} if scalar_last else {}), passive=passive
-        )
+        model = parametrised(name, names, scalar_last=scalar_last, passive=passive)
     elif preset:
-        angles = preset.names if names is None else names
         model = replace(
-            EulerAngles(preset.sequence, angles, passive=preset.passive != passive),
-            name=name + ("_transposed" if passive else ""),
-            title=preset.about[0].upper() + preset.about[1:] + (", transposed" if passive else ""),
+            EulerAngles(preset.sequence, names or preset.names, passive=preset.passive != passive),
+            name=name + "_transposed" * passive,
+            title=preset.about[0].upper() + preset.about[1:] + ", transposed" * passive,
             source=preset.source,
             z_down=preset.z_down,
+            request={},
         )
     else:
         letters = text.translate(DIGITS)
         if len(letters) != 3 or not set(letters.lower()) <= {*AXES}:
             shown = text if len(text) <= _SHOWN else text[:_SHOWN] + "…"
-            raise ModelError(f"{shown!r} is not a rotation\n{_meant(text)}")
-        return EulerAngles(text, DEFAULT_ANGLES if names is None else names, passive=passive)
-    if model.request and not preset:
+            near = get_close_matches(text.lower(), [*PARAMETRISATIONS, *PRESETS], n=1)
+            meant = f"expected {_A_ROTATION} (`rigidsym list`)"
+            meant = f"did you mean {near[0]}?" if near else meant
+            raise ModelError(f"{shown!r} is not a rotation\n{meant}")
+        model = EulerAngles(text, DEFAULT_ANGLES if names is None else names, passive=passive)
+    if model.request:
         return model  # Euler angles know what asks for them
-    asked = {
-        "sequence": name if name in ALIASES.values() else text,
-        "angles": names and list(names),
-        "constants": list(constants),
-        "scalar_last": scalar_last,
-        "passive": passive,
-    }
-    return replace(model, request={key: value for key, value in asked.items() if value})
+    return _asked_for(
+        model,
+        sequence=name if name in ALIASES.values() else text,
+        angles=names and list(names),
+        constants=list(constants),
+        scalar_last=scalar_last,
+        passive=passive,
+    )
+
+
+def _asked_for(model: RotationModel, **request: Any) -> RotationModel:
+    """The model with what asks for it in a file."""
+    return replace(model, request={key: value for key, value in request.items() if value})
 
 
 def rotation_given(
@@ -202,42 +144,30 @@ def rotation_given(
     functions = {check_name(q): time_function(check_name(q)) for q in coordinates}
     if len(functions) != len(coordinates):
         raise ModelError(f"a coordinate is named twice: {', '.join(coordinates)}")
-    texts = [*(entry for row in rows for entry in row), *constraints]
-    entries = [_read(text, functions) for text in texts]
     model = given(
-        sp.Matrix(3, 3, entries[:9]),
+        sp.Matrix([[read_part(text, functions) for text in row] for row in rows]),
         name=name,
         coordinates=tuple(functions.values()),
-        constraints=tuple(entries[9:]),
+        constraints=[read_part(text, functions) for text in constraints],
         passive=passive,
         example={check_name(key): parse_expression(text, {}) for key, text in example.items()},
     )
-    asked = {"matrix": [list(row) for row in rows], "coordinates": list(functions)}
-    asked |= {"constraints": list(constraints), "passive": passive, "example": dict(example)}
-    return replace(model, request={key: value for key, value in asked.items() if value})
+    return _asked_for(
+        model,
+        matrix=[list(row) for row in rows],
+        coordinates=list(functions),
+        constraints=list(constraints),
+        passive=passive,
+        example=dict(example),
+    )
 
 
-def faults_in(
-    rows: Sequence[Sequence[str]], coordinates: Sequence[str], constraints: Sequence[str] = ()
-) -> dict[tuple[str | int, ...], str]:
-    """{place: fault} of the texts that `rotation_given` cannot read."""
-    texts: dict[tuple[str | int, ...], str] = {
-        ("matrix", i, j): text for i, row in enumerate(rows) for j, text in enumerate(row)
-    }
-    texts |= {("constraints", k): text for k, text in enumerate(constraints)}
-    moving = {q: time_function(q) for q in coordinates}
-    faults: dict[tuple[str | int, ...], str] = {}
-    for place, text in texts.items():
-        try:
-            _read(text, moving)
-        except ExpressionError as error:
-            faults[place] = f"column {error.column}: {error.message}"
-    return faults
-
-
-def _read(text: str, moving: Mapping[str, sp.Expr]) -> sp.Expr:
+def read_part(text: str, coordinates: Iterable[str]) -> sp.Expr:
     """The expression in a text, whose names are coordinates or constants."""
-    names = {name: moving.get(name) or sp.Symbol(check_name(name)) for name in names_in(text)}
+    names = {
+        name: time_function(name) if name in coordinates else sp.Symbol(check_name(name))
+        for name in names_in(text)
+    }
     return parse_expression(text, names)
 
 
@@ -261,21 +191,6 @@ def request_of(model: RotationModel) -> Mapping[str, Any]:
     if model.request:
         return model.request
     raise ModelError(f"{model.name} was made in Python; no derivation file can ask for it")
-
-
-def _meant(text: str) -> str:
-    if text in _REMOVED:
-        return _REMOVED[text]
-    turns = re.findall(r"([xyz]) +(\w+)", text)
-    if turns and " ".join(f"{axis} {angle}" for axis, angle in turns) == " ".join(text.split()):
-        return f"did you mean {' '.join(f'{axis}({angle})' for axis, angle in turns)}?"
-    if text and set(text.lower()) <= {"x", "y", "z"}:
-        turned = " ".join(f"{a}({b})" for a, b in zip(text.lower(), "abcdefgh", strict=False))
-        return f"an Euler sequence has three axes; for another number write turns: {turned}"
-    near = get_close_matches(text.lower(), [*PARAMETRISATIONS, *PRESETS], n=1)
-    if near:
-        return f"did you mean {near[0]}?"
-    return f"expected {_A_ROTATION} (`rigidsym list`)"
 
 
 def _turned(
@@ -312,6 +227,5 @@ def _turn(axis: str, angle: str, column: int, symbol: Callable[[str], sp.Expr]) 
     parts = axis[1:-1].split(",")
     if len(parts) != 3:
         raise ExpressionError(f"the axis {axis} has {len(parts)} components; expected three")
-    exact = [_read(part, {}) for part in parts]
-    turn = axis_turn(direction(exact), value)
+    turn = axis_turn([read_part(part, ()) for part in parts], value)
     return replace(turn, axis=f"[{','.join(part.strip() for part in parts)}]")

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+import tomllib
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache, reduce
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
-from rigidsym.algebra.codec import codec_for
-from rigidsym.algebra.generators import TIME as TIME, in_names, rate_of, reduced
-from rigidsym.errors import ExpressionError, ModelError
-from rigidsym.text.names import check_name, lettered
+from rigidsym.algebra.generators import TIME as TIME, in_names, rate_of
+from rigidsym.errors import ModelError
+from rigidsym.text.names import lettered
 
 AXES = ("x", "y", "z")
 _MODULE_NAME = re.compile(r"[a-z][a-z0-9_]*")
@@ -33,36 +34,27 @@ class Citation(NamedTuple):
         return ", ".join(filter(None, (self.text, self.section, equation)))
 
 
-LECTURE = "Lecture notes on rigid body motion, unpublished, n.d."
+WORDS: Mapping[str, Mapping[str, Any]] = tomllib.loads(
+    Path(__file__).with_name("rotations.toml").read_text(encoding="utf-8")
+)
 
-_BOOKS = {
-    "Diebel": "J. Diebel, Representing Attitude: Euler Angles, Unit Quaternions, and Rotation "
-    "Vectors (2006)",
-    "Goldstein": "H. Goldstein, C. Poole, J. Safko, Classical Mechanics (2002)",
-    "Landau": "L. Landau, E. Lifshitz, Mechanics (1976)",
-    "Murray": "R. Murray, Z. Li, S. Sastry, A Mathematical Introduction to Robotic Manipulation "
-    "(1994)",
-}
+
+class _Sources(dict[str, Citation]):
+    """Citations by book and section: "Landau 35", or with an equation "Landau 32 (32.12)"."""
+
+    def __missing__(self, place: str) -> Citation:
+        book, section, equation = f"{place}  ".split(" ", 3)[:3]
+        section = section and f"section {section}"
+        self[place] = Citation(WORDS["books"][book], equation.strip("()"), section)
+        return self[place]
+
+
+SOURCES = _Sources()
 
 
 def lecture(equation: str = "", section: str = "") -> Citation:
     """A citation of the lecture notes."""
-    return Citation(text=LECTURE, equation=equation, section=section)
-
-
-def _cited(place: str) -> Citation:
-    """A place in a book: "Landau 35", or with an equation "Landau 32 (32.12)"."""
-    name, section, *equation = place.split(" ", 2)
-    return Citation(_BOOKS[name], "".join(equation).strip("()"), f"section {section}")
-
-
-_PLACES = """
-Diebel 5; Murray 2.4;
-Goldstein 1.2; Goldstein 1.4; Goldstein 4.2; Goldstein 4.4; Goldstein 4.4 (4.46); Goldstein 4.9;
-Goldstein 5.2; Goldstein 5.3; Goldstein 5.5; Goldstein 5.7; Goldstein 8.1;
-Landau 8; Landau 31; Landau 32; Landau 32 (32.12); Landau 33; Landau 35
-"""
-SOURCES = {place: _cited(place) for place in map(str.strip, _PLACES.split(";"))}
+    return SOURCES["lecture"]._replace(equation=equation, section=section)
 
 
 _ALONG = dict(zip(AXES, map(tuple, sp.eye(3).tolist()), strict=True))
@@ -76,30 +68,32 @@ class Turn:
     """
 
     axis: str  # x, y, z, or how the axis is printed
-    angle: sp.Expr  # radians; quotients in it that cancel are gone
+    angle: sp.Expr  # radians
     components: tuple[sp.Expr, ...] = ()  # of the axis, if it is not a coordinate axis
-    rate: sp.Expr = field(init=False, repr=False, compare=False)  # time derivative of the angle
-    direction: tuple[sp.Expr, ...] = field(init=False, repr=False, compare=False)  # along x, y, z
-    # (3, 3), taking components after the turn to those before it
-    matrix: sp.ImmutableMatrix = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        angle = symbolic(self.angle, "the angle of a turn")
+        object.__setattr__(self, "angle", symbolic(self.angle, "the angle of a turn"))
         if not self.components and self.axis not in AXES:
             raise ModelError(f"{self.axis!r} is not an axis: expected x, y, z or components")
         if self.components and len(self.components) != 3:
             raise ModelError(f"an axis has three components, got {len(self.components)}")
-        if isinstance(angle, AppliedUndef) and angle.args == (TIME,):  # a coordinate, most often
-            rate = sp.Derivative(angle, TIME)
-        else:
-            angle = reduced(angle)
-            rate = rate_of(angle)
-        object.__setattr__(self, "angle", angle)
-        object.__setattr__(self, "rate", rate)
-        object.__setattr__(self, "direction", self.components or _ALONG[self.axis])
-        own = self.components
-        matrix = rodrigues(own, angle) if own else elementary(self.axis, angle)
-        object.__setattr__(self, "matrix", matrix)
+
+    @property
+    def rate(self) -> sp.Expr:
+        """The time derivative of the angle."""
+        return rate_of(self.angle)
+
+    @property
+    def direction(self) -> tuple[sp.Expr, ...]:
+        """The components of the axis along x, y, z."""
+        return self.components or _ALONG[self.axis]
+
+    @property
+    def matrix(self) -> sp.ImmutableMatrix:
+        """The matrix (3, 3) that takes components after the turn to those before it."""
+        if self.components:
+            return rodrigues(self.components, self.angle)
+        return elementary(self.axis, self.angle)
 
     @property
     def angle_text(self) -> str:
@@ -183,8 +177,6 @@ class RotationModel:
     request: Mapping[str, Any] = field(
         default_factory=dict, hash=False
     )  # what asks for it in a file
-    # the symbols in R or its conditions that do not move: fixed angles, parts of an axis
-    constants: tuple[sp.Symbol, ...] = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         if not _MODULE_NAME.fullmatch(self.name):
@@ -192,51 +184,39 @@ class RotationModel:
                 f"{self.name!r} cannot name a model: expected lower-case letters, digits and "
                 "underscores, beginning with a letter"
             )
-        fault = self._fault_of_shape()
-        if not fault:
-            object.__setattr__(self, "constants", _constants(self._parts))
-            fault = self._fault_of_matrix()
-        if fault:
+        for fault in self._faults():
             raise ModelError(f"{self.name}: {fault}")
 
-    def _fault_of_shape(self) -> str:
+    def _faults(self) -> Iterator[str]:
+        """What is wrong with the model; each check relies on those before it."""
         if self.matrix.shape != (3, 3):
-            return f"a rotation matrix is 3x3, got {self.matrix.shape}"
+            yield f"a rotation matrix is 3x3, got {self.matrix.shape}"
         if not self.coordinates:
-            return "a model needs at least one coordinate, a function of time as phi(t)"
+            yield "a model needs at least one coordinate, a function of time as phi(t)"
         if self.units and len(self.units) != len(self.coordinates):
-            return f"{len(self.coordinates)} coordinates, but {len(self.units)} units"
+            yield f"{len(self.coordinates)} coordinates, but {len(self.units)} units"
         for place, coordinate in enumerate(self.coordinates):
             if coordinate in self.coordinates[:place]:
-                return f"the coordinate {coordinate} is named twice"
+                yield f"the coordinate {coordinate} is named twice"
             if not isinstance(coordinate, AppliedUndef) or coordinate.args != (TIME,):
-                return (
+                yield (
                     f"the coordinate {coordinate} is not a function of t; "
                     "make it with sympy.physics.vector.dynamicsymbols"
                 )
-        return ""
-
-    def _fault_of_matrix(self) -> str:
         moving = {coordinate.func.__name__ for coordinate in self.coordinates}
         for constant in self.constants:
             if constant.name in moving:
-                return f"{constant} is both a coordinate and a constant"
+                yield f"{constant} is both a coordinate and a constant"
         numbers = set().union(*(part.atoms(*_NUMBERS) for part in self._parts))
         if sp.I in numbers:
-            return "a rotation is real, but the matrix contains the number i"
+            yield "a rotation is real, but the matrix contains the number i"
         for number in numbers - {sp.pi, sp.E}:
-            return (
+            yield (
                 f"the matrix contains the number {number}, which is not in the ring; "
                 f"expected roots, as in {sp.expand_func(sp.GoldenRatio)}, or a symbol"
             )
-        # the matrix is the product of the turns, as it stands or in the ring
-        if not self.turns or product_of(self.turns) == self.matrix:
-            return ""
-        residual = product_of(self.turns) - self.matrix
-        codec = codec_for(residual, constraints=self.constraints, order=0)
-        if not any(map(codec.encode, residual)):
-            return ""
-        return f"the matrix is not the product of its turns, {self.product}"
+        if self.turns and product_of(self.turns) != self.matrix:
+            yield f"the matrix is not the product of its turns, {self.product}"
 
     @property
     def _parts(self) -> tuple[sp.Basic, ...]:
@@ -245,18 +225,13 @@ class RotationModel:
         return (*(turns or [self.matrix]), *self.constraints)
 
     @property
-    def coordinate_units(self) -> tuple[str, ...]:
-        return self.units or ("rad",) * len(self.coordinates)
+    def constants(self) -> tuple[sp.Symbol, ...]:
+        """The symbols in R or its conditions that do not move: fixed angles, parts of an axis."""
+        return _constants(self._parts)
 
     @property
-    def presentation(self) -> str:
-        """A sentence that says which components the presented matrix takes to which."""
-        if self.passive:
-            return (
-                "Passive: the matrix shown is A = Rᵀ, the direction cosine matrix; "
-                "x′ = A x takes space components to body components."
-            )
-        return "Active: x = R x′ takes body components to space components."
+    def coordinate_units(self) -> tuple[str, ...]:
+        return self.units or ("rad",) * len(self.coordinates)
 
     @property
     def product(self) -> str:
@@ -279,12 +254,6 @@ class RotationModel:
         """One line, for a prompt."""
         return f"<RotationModel {self.name}: {self.title}>"
 
-    def _repr_latex_(self) -> str:
-        """What Jupyter shows: R in the coordinates."""
-        shown = in_names(self.matrix.T if self.passive else self.matrix)
-        symbol = r"\mathbf{A} = \mathbf{R}^{\mathsf T}" if self.passive else r"\mathbf{R}"
-        return f"$${symbol} = {sp.latex(shown)}$$"
-
     def __str__(self) -> str:
         return self.name
 
@@ -298,17 +267,6 @@ def _constants(held: tuple[sp.Basic, ...]) -> tuple[sp.Symbol, ...]:
 def time_function(name: str) -> sp.Expr:
     """The function of time `name`(t), the same object that dynamicsymbols(name) gives."""
     return sp.Function(name)(TIME)
-
-
-def time_functions(names: Sequence[str], count: int, expected: str) -> tuple[sp.Expr, ...]:
-    """The functions of time of plain names; raises ModelError unless `count` different ones."""
-    try:
-        plain = [check_name(name) for name in names] if isinstance(names, Sequence) else []
-    except ExpressionError as error:
-        raise ModelError(str(error)) from error
-    if len(plain) != count or len(set(plain)) != count:
-        raise ModelError(f"{expected}, got {', '.join(plain) or repr(names)}")
-    return tuple(map(time_function, plain))
 
 
 def unit_example(parts: Sequence[sp.Expr], variant: int = 0) -> tuple[tuple[sp.Expr, sp.Expr], ...]:

@@ -11,7 +11,7 @@ from rigidsym.errors import Fault, SpecError, offer
 from rigidsym.kernels.lowering.derivatives import read_request
 from rigidsym.kernels.targets import TARGETS
 from rigidsym.models.forces import forces_on
-from rigidsym.models.library import faults_in, rotation_from, rotation_given
+from rigidsym.models.library import read_part, rotation_from, rotation_given
 from rigidsym.models.parametrisations import EulerAngles
 from rigidsym.models.rotation import RotationModel
 from rigidsym.motion import QUANTITIES, Notation
@@ -275,8 +275,13 @@ def _matrix(data: Data, place: Place, name: str) -> list[RotationModel]:
     texts = [[entry for entry in row if entry is not None] for row in rows]
     if not coordinates or not rows or texts != rows:
         return []
-    for steps, message in faults_in(texts, coordinates, constraints).items():
-        place.at(*steps).fault(message)
+    for i, row in enumerate(texts):
+        for j, text in enumerate(row):
+            with place.at("matrix", i, j).noting():
+                read_part(text, coordinates)
+    for k, text in enumerate(constraints):
+        with place.at("constraints", k).noting():
+            read_part(text, coordinates)
     with place.noting("matrix"):
         return [
             rotation_given(

@@ -19,7 +19,7 @@ from helpers.target_modules import EVERY, row_by_row
 from helpers.witness import distance, mp, rotation as exact_rotation
 from rigidsym.mechanics.conversions.conversions import Conversions
 from rigidsym.models.library import PARAMETRISATIONS, rotation_from
-from rigidsym.models.parametrisations import RotationVector, given
+from rigidsym.models.parametrisations import given, parametrised
 
 EPS = 10 * np.finfo(np.float64).eps  # ten times what is stated, for other processors
 EULER = ("ZXZ", "zyx")
@@ -249,7 +249,7 @@ def test_every_conversion_is_proved_and_every_chain_has_a_quaternion(text):
 
 
 def test_a_matrix_of_ones_own_converts_by_what_it_is():
-    vector = given(RotationVector().matrix, name="mine")
+    vector = given(parametrised("rotation_vector").matrix, name="mine")
     assert Conversions(vector).inverse.rule == "rotation_vector"
     phi = sp.Function("phi")(sp.Symbol("t"))
     c, s = sp.cos(phi), sp.sin(phi)

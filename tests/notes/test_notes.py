@@ -23,7 +23,7 @@ from rigidsym.formula.reader import formula, text_of
 from rigidsym.formula.unicode_pen import columns
 from rigidsym.mechanics.derivation import Derivation, Place, Proof, Singularity
 from rigidsym.mechanics.derive import derive
-from rigidsym.models.parametrisations import EulerAngles, UnitQuaternion, given
+from rigidsym.models.parametrisations import EulerAngles, given, parametrised
 from rigidsym.models.rotation import elementary, time_function
 from rigidsym.notes.document import Document
 from rigidsym.notes.facts.singular import PointFacts
@@ -272,7 +272,8 @@ def test_notes_compile_without_a_warning_in_every_notation(choices):
 @pytest.mark.parametrize("scalar_last", [False, True])
 def test_a_quaternion_is_printed_in_letters_that_are_no_axes(scalar_last):
     """The functions go on taking w, x, y, z, which the note says once."""
-    motion = rs.derive(UnitQuaternion(scalar_last=scalar_last), ["rotation_matrix"])
+    model = parametrised("unit_quaternion", scalar_last=scalar_last)
+    motion = rs.derive(model, ["rotation_matrix"])
     note = motion.note()
     order = "xyzw" if scalar_last else "wxyz"
     blocks = [block for section in note.document.sections for block in section.blocks]

@@ -50,8 +50,8 @@ from rigidsym.mechanics.conversions.inverse import (
 )
 from rigidsym.mechanics.derivation import Derivation, Proof, Quantity, Step
 from rigidsym.mechanics.prove import Prover
-from rigidsym.models.parametrisations import SHUSTER, UnitQuaternion
-from rigidsym.models.rotation import RotationModel, rotation_of
+from rigidsym.models.parametrisations import parametrised
+from rigidsym.models.rotation import SOURCES, RotationModel, rotation_of
 
 LONGEST_CHAIN = 4  # turns whose product is written out: its terms double with each
 QUATERNION = Quantity(
@@ -60,7 +60,7 @@ QUATERNION = Quantity(
     about="unit quaternion of the rotation, scalar first",
     inputs=("q",),
     shape="vector",
-    source=SHUSTER,
+    source=SOURCES["Shuster"],
 )
 
 
@@ -158,7 +158,7 @@ class Conversions:
 @cache
 def _read_off() -> Proof:
     """4 p pᵀ = K(R): sums and differences of the entries of R, for every unit quaternion p."""
-    model = UnitQuaternion()
+    model = parametrised("unit_quaternion")
     column = sp.Matrix(model.coordinates)
     residual = outer_product(model.matrix) - 4 * column * column.T
     return vanishing(model, [claim(r"4\,\p\p^T = \mathbf{K}", *residual)])[0]

@@ -29,7 +29,7 @@ from rigidsym.mechanics.conversions.function import (
 )
 from rigidsym.mechanics.derivation import Proof, phrases
 from rigidsym.mechanics.prove import Prover
-from rigidsym.models import parametrisations
+from rigidsym.models.parametrisations import parametrised
 from rigidsym.models.rotation import AXES, RotationModel, hat, rotation_of
 
 Claim = tuple[tuple[sp.Expr, ...], Formula]  # what vanishes, and how it is written
@@ -113,10 +113,10 @@ def inverse_rule(model: RotationModel) -> InverseRule | None:
     """The rule of a model; None if its coordinates do not follow in closed form."""
     count = len(model.coordinates)
     orders = [tuple(range(count)), *([(3, 0, 1, 2)] if count == 4 else [])]  # w may stand last
-    for rule, (build, size, form) in _FORMS.items():
+    for rule, (size, form) in _FORMS.items():
         for order in orders if count == size else ():
             q = tuple(model.coordinates[place] for place in order)
-            known = build([part.func.__name__ for part in q])
+            known = parametrised(rule, [part.func.__name__ for part in q])
             if known.matrix == model.matrix and known.constraints == model.constraints:
                 return _in_coordinates(model, rule, order, form(q))
     return _euler_rule(model)
@@ -328,12 +328,12 @@ def _direction_cosines(_: Vector) -> Form:
 
 
 BOTH_SIGNS = ("quaternion", "unit_quaternion")  # rules in which p and −p differ
-_FORMS: dict[str, tuple[Callable[..., RotationModel], int, Callable[[Vector], Form]]] = {
-    "quaternion": (parametrisations.Quaternion, 4, _quaternion),
-    "unit_quaternion": (parametrisations.UnitQuaternion, 4, _unit_quaternion),
-    "axis_angle": (parametrisations.AxisAngle, 4, _axis_angle),
-    "rotation_vector": (parametrisations.RotationVector, 3, _rotation_vector),
-    "gibbs_vector": (parametrisations.GibbsVector, 3, _gibbs_vector),
-    "modified_rodrigues": (parametrisations.ModifiedRodrigues, 3, _modified_rodrigues),
-    "direction_cosines": (parametrisations.DirectionCosines, 9, _direction_cosines),
-}  # by rule: the model in coordinates of given names, their number, and the form
+_FORMS: dict[str, tuple[int, Callable[[Vector], Form]]] = {
+    "quaternion": (4, _quaternion),
+    "unit_quaternion": (4, _unit_quaternion),
+    "axis_angle": (4, _axis_angle),
+    "rotation_vector": (3, _rotation_vector),
+    "gibbs_vector": (3, _gibbs_vector),
+    "modified_rodrigues": (3, _modified_rodrigues),
+    "direction_cosines": (9, _direction_cosines),
+}  # by rule: the number of coordinates, and the form
