@@ -10,7 +10,6 @@ from pathlib import Path
 import click
 
 from rigidsym.commands.command import command as make
-from rigidsym.commands.options import TEMPLATES
 from rigidsym.commands.output_folder import CERTIFICATE, content_of, printed
 from rigidsym.errors import CheckError, SpecError
 from rigidsym.notes.formats.record import SCHEMA, SCHEMA_VERSION
@@ -19,21 +18,10 @@ from rigidsym.system.files import read_bytes
 from rigidsym.tools.certificate.checker import BROKEN, load, verify
 
 
-@make("rigidsym check out", TEMPLATES)
-@click.argument(
-    "paths",
-    nargs=-1,
-    required=True,
-    metavar="PATH...",
-    type=click.Path(exists=True, path_type=Path),
-)
+@make("check")
 @click.pass_context
 def command(context: click.Context, paths: tuple[Path, ...]) -> None:
-    """Compare generated files with a fresh derivation.
-
-    PATH is a generated file or a folder; each record NAME.json says how the files beside it were
-    made. The exit code is 1 if a file is missing or differs.
-    """
+    """Compare generated files with a fresh derivation."""
     records = dict.fromkeys(record for path in paths for record in _records(path))
     is_wrong = False
     for record in records:

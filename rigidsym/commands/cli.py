@@ -16,28 +16,13 @@ from typing import Any
 
 import click
 
-from rigidsym.commands.command import message
+from rigidsym.commands.command import DECLARED, message
 from rigidsym.errors import RigidsymError
 from rigidsym.version import __version__
 
 _INTERRUPTED = 130
 _NEW_OBJECTS = 200_000  # between two searches for cycles; importing SymPy makes 100,000
-_SUMMARIES = {  # name: what `rigidsym --help` says of it
-    "derive": "Derive one rotation, show the result, and write files.",
-    "run": "Run derivation files.",
-    "page": "Write an interactive page for a browser.",
-    "build": "Compile kernels in C into a Python module.",
-    "check": "Compare generated files with a fresh derivation.",
-    "eval": "Evaluate quantities for every row of a file.",
-    "identify": "Find the convention that given numbers follow.",
-    "compare": "Check formulas and name their conventions.",
-    "inertia": "Compute the mass properties of particles or a mesh.",
-    "simulate": "Simulate a motion and report its first integrals.",
-    "problems": "Write a problem sheet with worked solutions.",
-    "list": "List rotations, quantities, targets and shipped files.",
-    "templates": "Copy the shipped templates, so that you can change them.",
-}
-_FILES = {"eval": "evaluate"}  # where the file is not named after its command
+_SUMMARIES = {name: entry["summary"] for name, entry in DECLARED["commands"].items()}
 
 
 def main() -> None:
@@ -79,24 +64,14 @@ class _Commands(click.Group):
     def list_commands(self, context: click.Context) -> list[str]:  # noqa: ARG002
         return list(_SUMMARIES)
 
-    def get_command(self, context: click.Context, name: str) -> click.Command | None:  # noqa: ARG002
+    def get_command(self, context: click.Context, name: str) -> click.Command | None:
         if name not in _SUMMARIES:
-            return None
-        module = import_module(f"rigidsym.commands.{_FILES.get(name, name)}")
-        command = module.command
-        assert isinstance(command, click.Command)
-        command.name = name
-        return command
-
-    def resolve_command(
-        self, context: click.Context, args: list[str]
-    ) -> tuple[str | None, click.Command | None, list[str]]:
-        name = args[0]
-        if name not in _SUMMARIES and not name.startswith("-"):
             near = get_close_matches(name, _SUMMARIES, n=1)
             hint = f"; did you mean {near[0]}?" if near else ""
             raise click.UsageError(f"no command {name!r}{hint}", context)
-        return super().resolve_command(context, args)
+        command = import_module(f"rigidsym.commands.{name}").command
+        assert isinstance(command, click.Command)
+        return command
 
     def format_commands(self, context: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002
         with formatter.section("Commands"):

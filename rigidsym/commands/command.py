@@ -1,120 +1,135 @@
-"""What every command has: an example in its help, a time limit, and the kinds of its options."""
+"""Commands made of the tables in commands.toml, each with a time limit; messages.
+
+Nothing here imports NumPy or SymPy, so that `rigidsym --help` answers at once.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+import tomllib
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
-from functools import partial, reduce
-from itertools import chain
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
 from rigidsym.errors import printable
 from rigidsym.system.processes import time_limit
 
-if TYPE_CHECKING:
-    _Type = click.ParamType[Any]
-else:  # generic from click 8.2 on
-    _Type = click.ParamType
-
-Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 Options = Mapping[str, Any]  # the values of a command's options, by name
 
-_MANY = (
-    "integrate `state_derivative` of the kernels, which takes arrays of states and parameters, as "
-    "in docs/howto/simulate.md"
-)
-_REMOVED = {  # options that left: what to use instead
-    "--degrees": "functions take radians; convert angles with np.radians and np.degrees, or a log "
-    "with `eval --degrees`",
-    "--ensemble": _MANY,
-    "--fragment": "write a template with the sections that you need, chosen by --style NAME",
-    "--frames": "write the names into a template, chosen by --style NAME",
-    "--grid": _MANY,
-    "--language": "a language is a folder of templates, chosen by --style LANGUAGE/NAME",
-    "--memory": "limit the memory of the shell with `ulimit -v`",
-    "--method": "an integrator is chosen by `rigidsym simulate --method`",
-    "--moodle": "enter the answers of the sheet with solutions into a quiz of your course",
-    "--names": "--angles names the coordinates",
-    "--only": "--quantity names the quantities",
-    "--quantity": "--only names the quantities",
-    "--scheduler": "use dask.array.apply_gufunc with a kernel, as in docs/howto/cluster.md",
-    "--seed": _MANY,
-    "--spread": _MANY,
-}
-POSITIVE = click.FloatRange(min=0, min_open=True)
-
-
-class _NamedNumber(_Type):
-    """NAME=NUMBER, as a pair."""
-
-    name = "number"
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> tuple[str, float]:
-        name, _, number = value.partition("=")
-        try:
-            return name.strip(), float(number)
-        except ValueError:
-            flag = param.opts[0] if param else ""
-            raise click.UsageError(f"{flag} {value}: expected NAME=NUMBER", ctx) from None
+DECLARED = tomllib.loads(Path(__file__).with_name("commands.toml").read_text(encoding="utf-8"))
 
 
 def _between_commas(_context: object, _option: object, texts: Sequence[str]) -> tuple[str, ...]:
     """The names in all texts of an option, which may be repeated."""
-    return tuple(name.strip() for name in chain.from_iterable(t.split(",") for t in texts))
+    return tuple(name.strip() for text in texts for name in text.split(","))
 
 
-# Kinds of options
-file = partial(click.option, type=click.Path(dir_okay=False, path_type=Path))
-flag = partial(click.option, is_flag=True)
-names = partial(click.option, multiple=True, callback=_between_commas, metavar="NAME,...")
-numbers = partial(click.option, multiple=True, type=_NamedNumber(), metavar="NAME=NUMBER")
-EXISTING_FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
-JSON = flag("--json", "as_json", help="Print the results as JSON.")
+def _by_name(
+    context: click.Context, option: click.Parameter, texts: Sequence[str]
+) -> dict[str, float]:
+    """The numbers in texts NAME=NUMBER."""
+    numbers: dict[str, float] = {}
+    for text in texts:
+        name, _, number = text.partition("=")
+        try:
+            numbers[name.strip()] = float(number)
+        except ValueError:
+            message = f"{option.opts[0]} {text}: expected NAME=NUMBER"
+            raise click.UsageError(message, context) from None
+    return numbers
+
+
+def _use_templates(context: click.Context, _: object, folder: Path | None) -> None:
+    """Use the templates of the directory until the command ends."""
+    if folder is not None:
+        from rigidsym.system.resources import overridden_by  # imports Jinja2
+
+        context.with_resource(overridden_by(folder))
+
+
+_path = partial(click.Path, path_type=Path)
+KINDS: Mapping[str, Mapping[str, Any]] = {  # what click knows of an option or argument
+    "flag": {"is_flag": True},
+    "names": {"multiple": True, "callback": _between_commas, "metavar": "NAME,..."},
+    "numbers": {"multiple": True, "callback": _by_name, "metavar": "NAME=NUMBER"},
+    "positive": {"type": click.FloatRange(min=0, min_open=True)},
+    "number": {"type": float},
+    "whole": {"type": int},
+    "count": {},  # a whole number from `least`, by default 1, to `most`
+    "path": {"type": _path(exists=True)},
+    "file": {"type": _path(exists=True, dir_okay=False)},
+    "input": {"type": _path(exists=True, dir_okay=False, allow_dash=True)},
+    "result": {"type": _path(dir_okay=False, allow_dash=True)},
+    "folder": {"type": _path(file_okay=False)},
+    "templates": {
+        "type": _path(exists=True, file_okay=False),
+        "callback": _use_templates,
+        "expose_value": False,
+    },
+    "text": {},
+}
+
+
+_OURS = ("kind", "choices", "least", "most")  # keys of an entry that click does not take
+
+
+def _parameter(
+    name: str, entry: Mapping[str, Any], choices: Mapping[str, Sequence[str]]
+) -> click.Parameter:
+    """An option, or an argument if its name has no dashes."""
+    own = {key: value for key, value in entry.items() if key not in _OURS}
+    settings = {**KINDS[entry.get("kind", "text")], **own}
+    if words := choices.get(name.strip("-").replace("-", "_"), entry.get("choices")):
+        settings["type"] = click.Choice(words)
+    if entry.get("kind") == "count":
+        settings["type"] = click.IntRange(entry.get("least", 1), entry.get("most"))
+    if not name.startswith("-"):
+        return click.Argument([name], **settings)
+    return click.Option([name], show_default=entry.get("default", "") != "", **settings)
 
 
 class _Command(click.Command):
     """A command whose time is limited by an option, and which names substitutes of old options."""
 
-    def __init__(self, *arguments: Any, **settings: Any) -> None:
-        super().__init__(*arguments, **settings)
-        timeout = click.Option(
-            ["--timeout"],
-            type=POSITIVE,
-            default=300.0,
-            metavar="SECONDS",
-            help="Stop after this time; inf for no limit.  [default: 300]",
-        )
-        self.params.append(timeout)
-
     def parse_args(self, context: click.Context, args: list[str]) -> list[str]:
         try:
             return super().parse_args(context, args)
         except click.NoSuchOption as error:
-            if error.option_name not in _REMOVED:
+            substitute = DECLARED["removed"].get(error.option_name)
+            if substitute is None:
                 raise
-            substitute = f"there is no {error.option_name}: {_REMOVED[error.option_name]}"
-            raise click.UsageError(substitute, context) from None
+            message = f"there is no {error.option_name}: {substitute}"
+            raise click.UsageError(message, context) from None
 
     def invoke(self, context: click.Context) -> Any:
         with time_limit(context.params.pop("timeout")):
             return super().invoke(context)
 
 
-def command(example: str, *options: Decorator) -> Callable[[Callable[..., Any]], click.Command]:
-    """Make a function a command with these options, and an example at the end of its help."""
-    mark = "\b\n" if "\n" in example else ""  # by which click keeps the lines
-    made = click.command(cls=_Command, epilog=f"{mark}Example: {example}")
+def command(name: str, **choices: Sequence[str]) -> Callable[[Callable[..., Any]], click.Command]:
+    """Make a function the command of this name in commands.toml.
 
-    def decorate(function: Callable[..., Any]) -> click.Command:
-        with_options = reduce(lambda inner, option: option(inner), reversed(options), function)
-        return made(with_options)
-
-    return decorate
+    `choices` are the words that an option or argument may take, if only the code knows them.
+    """
+    entry = DECLARED["commands"][name]
+    groups = [DECLARED["groups"][group] for group in entry.get("groups", ())]
+    tables: Iterable[Mapping[str, Any]] = (
+        entry.get("arguments", {}),
+        *groups,
+        entry.get("options", {}),
+        DECLARED["groups"]["every"],
+    )
+    parameters = [_parameter(key, table[key], choices) for table in tables for key in table]
+    return lambda function: _Command(
+        name,
+        callback=function,
+        params=parameters,
+        help=entry["help"],
+        epilog=f"\b\nExample: {entry['example']}",  # by \b click keeps the lines
+    )
 
 
 def message(text: str) -> None:

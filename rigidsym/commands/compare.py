@@ -10,8 +10,8 @@ from typing import Any
 
 import click
 
-from rigidsym.commands.command import Options, command as make, flag, message
-from rigidsym.commands.options import ROTATION, of_rotation
+from rigidsym.commands.command import Options, command as make, message
+from rigidsym.commands.options import of_rotation
 from rigidsym.data.columns import counted
 from rigidsym.errors import DataError
 from rigidsym.motion import Motion, derive
@@ -22,66 +22,17 @@ from rigidsym.tools.compare.comparison import compare
 from rigidsym.tools.compare.search import disappointment, search, source_files
 
 
-@make(
-    'rigidsym compare src/\n         rigidsym compare --formula "[c -s 0; s c 0; 0 0 1]"',
-    *ROTATION,
-    click.option(
-        "--formula", metavar="TEXT", help="A matrix or vector in Python, C, MATLAB or LaTeX."
-    ),
-    click.option(
-        "--rotation", metavar="ROTATION", help="A rotation as for `derive`, or a derivation file."
-    ),
-    click.option("--quantity", metavar="NAME", help="The quantity that the formula should give."),
-    click.option(
-        "--expect",
-        metavar="ROTATION",
-        help='In programs: the order of axes that is meant, such as "z(yaw) y(pitch) x(roll)".',
-    ),
-    flag("--expect-active", help="In programs: a transposed (passive) rotation matrix is a fault."),
-    click.option(
-        "--require",
-        type=int,
-        metavar="N",
-        default=0,
-        show_default=True,
-        help="In programs: fail if fewer formulas are known.",
-    ),
-    flag("--why", help="In programs: list what could not be read, with the reason."),
-    click.option(
-        "--format",
-        "form",
-        type=click.Choice(["text", "json", "sarif", "github"]),
-        default="text",
-        show_default=True,
-        help="Print text, JSON, a SARIF log, or faults as GitHub annotations.",
-    ),
-    click.option(
-        "--baseline",
-        metavar="FILE",
-        help="In programs: ignore the faults that FILE lists, an earlier result of --format json.",
-    ),
-)
-@click.argument("paths", nargs=-1, type=click.Path(exists=True, path_type=Path))
+@make("compare")
 @click.pass_context
 def command(context: click.Context, /, paths: tuple[Path, ...], **options: Any) -> None:
-    """Check the formula TEXT, or all formulas in source files.
-
-    The formula TEXT is compared with a quantity of a rotation, or with all known conventions. If
-    it is wrong, `compare` names the smallest repair: a sign, a transpose, sine for cosine, another
-    angle or frame, the order of turns, a missing square. Answers are proved wherever possible.
-
-    PATHS are files or folders. In Python, C, C++, JavaScript, TypeScript, MATLAB, Rust, Java and
-    C#, `compare` finds rotation matrices, rate matrices, quaternions and their products and
-    rates, Euler angles, Euler's equations and the parallel-axis theorem. Source code is parsed,
-    never run. The exit code is 1 if a formula is wrong or not as expected.
-    """
+    """Check the formula TEXT, or all formulas in source files."""
     formula = options["formula"]
     if (formula is None) == (not paths):
         raise click.UsageError("expected --formula TEXT, or paths")
     motion = _motion(options)
     if formula is not None:
         result = compare(formula, motion, options["quantity"])
-        click.echo(result.text() if options["form"] == "text" else _json(result.record()))
+        click.echo(result.text() if options["format"] == "text" else _json(result.record()))
         context.exit(not result.is_equal)
     if motion is not None:
         raise click.UsageError("--rotation and --quantity need --formula")
@@ -125,12 +76,12 @@ def _searched(paths: Sequence[Path], options: Options) -> bool:
         is_right = comparison.is_equal or comparison.is_reflection
         record["fault"] = (bool(other) or not is_right) and _key(record) not in accepted
         records.append(record)
-        if options["form"] == "text":
+        if options["format"] == "text":
             click.echo(record["text"])
     faults = [record for record in records if record["fault"]]
-    if options["form"] == "json":
+    if options["format"] == "json":
         click.echo(_json(records))
-    elif options["form"] != "text":
+    elif options["format"] != "text":
         template = environment().get_template(f"compare/{options['form']}.jinja")
         click.echo(template.render(faults=faults), nl=False)
     count = counted(len(records), "formula") if records else "no known formula"

@@ -11,9 +11,10 @@ from typing import Any
 import click
 
 from rigidsym.commands.command import Options, command as make, message
-from rigidsym.commands.options import MOST_LINES, PRINTING, ROTATION, applied, of_rotation
+from rigidsym.commands.options import MOST_LINES, applied, of_rotation
 from rigidsym.commands.output_folder import printed, with_existing_files, write
 from rigidsym.errors import RigidsymError
+from rigidsym.formula.notation import CHOICES
 from rigidsym.notes.formats.pdf import typeset
 from rigidsym.notes.formats.record import record
 from rigidsym.notes.formats.terminal import show
@@ -23,34 +24,18 @@ from rigidsym.system.files import write_bytes
 from rigidsym.system.processes import in_processes
 
 
-@make(
-    'rigidsym derive "z(yaw) y(pitch) x(roll)" --target numpy,c --pdf',
-    *PRINTING,
-    *ROTATION,
-    click.option(
-        "--format",
-        "equations",
-        type=click.Choice(["latex", "text", "json"]),
-        help="Print the equations in this format, and write no files; see --only.",
-    ),
-)
-@click.argument("rotation")
-def command(rotation: str, equations: str | None, **options: Any) -> None:
-    """Derive one rotation, show the result, and write its kernels and note.
-
-    ROTATION is ZXZ or 313 (intrinsic: about the current body axes), zxz (extrinsic: about the
-    fixed axes), turns such as "z(phi) x(theta) [1,1,0](psi)", or a name such as quaternion;
-    `rigidsym list` shows all of them.
-    """
+@make("derive", **CHOICES)
+def command(rotation: str, **options: Any) -> None:
+    """Derive one rotation, show the result, and write its kernels and note."""
     spec = applied(options, spec_for(rotation, **of_rotation(options)))
-    if equations is None:
+    if options["format"] is None:
         produce([spec], options)
         return
     motion = motion_of(spec)
-    if equations == "json":
+    if options["format"] == "json":
         click.echo(json.dumps(record(motion, {})["quantities"], indent=1, ensure_ascii=False))
     else:
-        is_latex = equations == "latex"
+        is_latex = options["format"] == "latex"
         click.echo("\n\n".join(s.latex() if is_latex else s.text() for s in motion.steps))
 
 
@@ -103,7 +88,7 @@ def _show(output: Output, written: Sequence[Path], options: Options, *, is_only:
     claims = f"{proved} of {len(output.proofs)} claims proved"
     if options["quiet"]:
         click.echo("\n".join(map(str, written)))
-    elif options["as_json"]:
+    elif options["json"]:
         click.echo(output.record_text, nl=False)
     elif not is_only:
         click.echo(f"{output.name:<28} {claims}  {written[0].parent}")

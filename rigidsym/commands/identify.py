@@ -11,7 +11,7 @@ import click
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rigidsym.commands.command import EXISTING_FILE, JSON, Options, command as make, flag, names
+from rigidsym.commands.command import Options, command as make
 from rigidsym.system.processes import bar
 from rigidsym.tools.identify.identification import Identification, identify_file, identify_source
 from rigidsym.tools.identify.readings import ANGLE_NAMES
@@ -26,47 +26,10 @@ from rigidsym.tools.identify.samples import (
 _BRACKETS = str.maketrans("[](){};", "      ,")
 
 
-def _samples(name: str, form: str, about: str) -> Any:
-    return click.option(f"--{name}", multiple=True, metavar=form, help=about)
-
-
-@make(
-    "rigidsym identify --angles roll=10,pitch=20,yaw=30 --quaternion 0.95,0.04,0.19,0.24",
-    _samples("angles", "A,B,C", "Three angles; roll=A,pitch=B,yaw=C names them."),
-    _samples("matrix", "R11,R12,...", "Nine numbers, row by row."),
-    _samples("quaternion", "A,B,C,D", "Four numbers, scalar first or last."),
-    _samples("rates", "A,B,C", "Rates of the angles; needs --omega."),
-    _samples("omega", "X,Y,Z", "Components of the angular velocity."),
-    names("--columns", help="Names of the columns of FILE; - skips one."),
-    click.option(
-        "--tolerance",
-        type=float,
-        metavar="RADIANS",
-        help="Largest angle between the data and a convention that fits.  [default: from the "
-        "digits given]",
-    ),
-    click.option(
-        "--missing",
-        type=click.Choice(["error", "drop"]),
-        default="error",
-        show_default=True,
-        help="If a sample lacks a number: stop, or leave it out.",
-    ),
-    flag("--all", "everything", help="Show every convention that fits, with all calls."),
-    JSON,
-)
-@click.argument("file", required=False, metavar="[FILE]", type=EXISTING_FILE)
+@make("identify")
 @click.pass_context
 def command(context: click.Context, /, file: Path | None, **options: Any) -> None:
-    """Name the convention that angles and a matrix or quaternion follow.
-
-    Give samples as options, each option once per sample, or in FILE. FILE is NPY, Parquet or text.
-    Its columns may have names: roll,pitch,yaw or phi,theta,psi or a1,a2,a3; r11,...,r33 or
-    q1,...,q4 or qw,qx,qy,qz; a1_dot,... or rate1,...; omega1,omega2,omega3. Without names, they are
-    3 angles, then 9 entries of a matrix or 4 of a quaternion, then perhaps 3 rates and 3 components
-    of the angular velocity. Units in names, such as "yaw [mrad]", are converted. The exit code is 1
-    if no convention fits.
-    """
+    """Name the convention that angles and a matrix or quaternion follow."""
     texts = {name: options[name] for name in SIZES}
     if (file is None) == (not any(texts.values())):
         raise OptionError(["expected a file, or --angles with --matrix or --quaternion"])
@@ -84,10 +47,10 @@ def command(context: click.Context, /, file: Path | None, **options: Any) -> Non
                 )
             except SampleError as error:
                 raise error.of(file) from None
-    if options["as_json"]:
+    if options["json"]:
         click.echo(json.dumps(result.record(), indent=1, ensure_ascii=False))
     else:
-        head, _, rest = result.text(everything=options["everything"]).partition("\n")
+        head, _, rest = result.text(everything=options["all"]).partition("\n")
         click.echo(f"{click.style(head, bold=True)}\n{rest}")
     if not result.fits:
         context.exit(1)

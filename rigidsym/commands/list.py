@@ -20,7 +20,7 @@ from rigidsym.system.resources import names, text
 _TURNS = 'such as "z(phi) x(theta) [1,1,0](psi) y(pi/4)"; a name such as alpha0 is a constant'
 
 
-@make("rigidsym list | grep -i quaternion")
+@make("list")
 def command() -> None:
     """List rotations, solids, quantities, targets and shipped derivations."""
     click.echo(inventory())

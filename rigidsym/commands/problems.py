@@ -7,8 +7,7 @@ from typing import Any
 
 import click
 
-from rigidsym.commands.command import command as make, flag
-from rigidsym.commands.options import OUT, QUIET
+from rigidsym.commands.command import command as make
 from rigidsym.commands.output_folder import report_old_pdf
 from rigidsym.notes.formats import render
 from rigidsym.notes.formats.pdf import typeset
@@ -18,37 +17,11 @@ from rigidsym.system.files import write_bytes, write_text
 _ENDINGS = ("tex", "html")
 
 
-@make(
-    "rigidsym problems euler --number 8 --variant 3",
-    click.option(
-        "--number",
-        type=click.IntRange(1, 100),
-        default=4,
-        show_default=True,
-        help="Number of problems.",
-    ),
-    click.option(
-        "--variant",
-        type=click.IntRange(0),
-        default=1,
-        show_default=True,
-        help="Each variant has its own numbers; the same variant gives the same sheet.",
-    ),
-    click.option("--author", default="", help="Author, printed below the title."),
-    click.option("--course", default="", help="Course, printed below the title."),
-    flag("--pdf", help="Also typeset the sheet and solutions; needs TeX."),
-    QUIET,
-    OUT,
-)
-@click.argument("subject", type=click.Choice(list(SUBJECTS)))
+@make("problems", subject=list(SUBJECTS))
 def command(
     subject: str, number: int, variant: int, author: str, course: str, pdf: bool, **options: Any
 ) -> None:
-    """Write a problem sheet and its worked solutions.
-
-    The subject is euler (Euler angles), bodies (moments of inertia) or all. Every answer is
-    derived. The files are LaTeX and HTML.
-    """
+    """Write a problem sheet and its worked solutions."""
     byline = tuple(filter(None, (author, course)))
     documents = [
         replace(document, author=author, byline=byline)

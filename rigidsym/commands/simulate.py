@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 import numpy as np
 
-from rigidsym.commands.command import command as make, file, numbers
+from rigidsym.commands.command import command as make
 from rigidsym.data.tables import check_ending, write_table
 from rigidsym.errors import DerivationError, ModelError
 from rigidsym.models.forces import Example
@@ -27,53 +27,9 @@ if TYPE_CHECKING:
 _ARCHIVE = ".npz"
 
 
-@make(
-    "rigidsym simulate heavy_symmetric_top --set A=1 --set C=0.5 --set m=1\n"
-    "         --set g=9.81 --set l=0.5 --initial theta=0.5 --initial psi_dot=20 --time 5",
-    numbers(
-        "--set",
-        "constants",
-        help="Value of a parameter.  [default: from the first example of the file]",
-    ),
-    numbers(
-        "--initial",
-        help="Initial value of a coordinate, a rate, or, instead of the rates, "
-        "angular_velocity_body_1, _2 or _3. The others are 0.  [default: from the first example "
-        "of the file, else R = 1 and at rest]",
-    ),
-    click.option(
-        "--time",
-        "t_end",
-        type=float,
-        metavar="SECONDS",
-        help="Duration.  [default: from the first example of the file, else 10]",
-    ),
-    click.option(
-        "--method",
-        type=click.Choice(METHODS),
-        default=METHODS[0],
-        show_default=True,
-        help="Integrator; exact is for free bodies.",
-    ),
-    click.option(
-        "--samples",
-        type=click.IntRange(2),
-        default=1001,
-        show_default=True,
-        help="Number of output times.",
-    ),
-    file("--out", help="Write the motion: .csv, .npy, .npz or .parquet."),
-    file("--plot", help="Draw the motion: .png, .svg or .pdf."),
-    file("--animate", help="Write a live page of the motion: .html."),
-)
-@click.argument("source", metavar="NAME|FILE")
+@make("simulate", method=METHODS)
 def command(source: str, **options: Any) -> None:
-    """Simulate the motion that a derivation file with [dynamics] describes.
-
-    NAME is a shipped derivation such as heavy_symmetric_top. The report shows how far each first
-    integral drifts. If the integration stops early, the motion up to that time is written, and the
-    exit code is 1.
-    """
+    """Simulate the motion that a derivation file with [dynamics] describes."""
     out, plot, animate = (options[name] for name in ("out", "plot", "animate"))
     if out is not None:
         check_ending(out, _ARCHIVE)
@@ -83,9 +39,9 @@ def command(source: str, **options: Any) -> None:
     motion = _motion(source, is_page=animate is not None)
     examples = motion.forces.examples if motion.forces else ()
     example = examples[0] if examples else Example({}, {}, 10.0)
-    initial = dict(options["initial"] or example.initial)
-    constants = {**example.parameters, **dict(options["constants"])}
-    t_end = example.time if options["t_end"] is None else options["t_end"]
+    initial = options["initial"] or dict(example.initial)
+    constants = {**example.parameters, **options["set"]}
+    t_end = example.time if options["time"] is None else options["time"]
     with bar(motion.name) as progress:
         result = motion.simulate(
             initial,

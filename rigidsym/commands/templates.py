@@ -11,13 +11,9 @@ from rigidsym.system import resources
 from rigidsym.system.files import write_text
 
 
-@make("rigidsym templates mine && rigidsym derive ZXZ --templates mine")
-@click.argument("folder", metavar="DIR", type=click.Path(file_okay=False, path_type=Path))
+@make("templates")
 def command(folder: Path) -> None:
-    """Copy the shipped templates of notes into DIR, where you can change them.
-
-    `rigidsym derive ROTATION --templates DIR` uses them.
-    """
+    """Copy the shipped templates of notes into DIR, where you can change them."""
     shipped = [f"{name}.jinja" for name in resources.names(resources.NOTES, ".jinja")]
     taken = [name for name in shipped if (folder / name).exists()]
     if taken:
