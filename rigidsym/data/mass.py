@@ -228,12 +228,7 @@ def inertia_of(
         if isinstance(table, TextTable):
             table.quotes = False  # it may be another kind of text
         used, factors = _columns(table, columns)
-        parts = [np.empty((0, len(factors)))]
-        for batch in table.batches(used):
-            parts.append(np.asarray(batch.table, float) * factors)
-            if progress is not None:
-                progress(batch.share)
-        return _properties(np.concatenate(parts), table, allow=allow)
+        return _properties(table.read(used, progress).table * factors, table, allow=allow)
     except (BodyError, DataError) as error:
         if path is None or str(path) in str(error):
             raise BodyError(str(error)) from None

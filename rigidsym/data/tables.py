@@ -27,6 +27,7 @@ from numpy.typing import NDArray
 from rigidsym.data.columns import counted, is_unit, unit_in
 from rigidsym.errors import DataError, MissingExtra, RequestError
 from rigidsym.system.files import whole_file
+from rigidsym.system.processes import Progress
 
 Numbers = NDArray[Any]  # float32 or float64, (rows, columns)
 Missing = Literal["error", "nan", "drop"]
@@ -74,16 +75,15 @@ class Table(ABC):
         Raises DataError, with the line, for a field that is not a number.
         """
 
-    def sample(self, columns: Sequence[int], rows: int) -> Batch:
-        """About as many rows, evenly spaced over the whole table."""
-        step, table, numbers = 1, np.empty((0, len(columns))), np.empty(0, np.intp)
-        for batch in self.batches(columns, 8192):
-            some = batch.at(batch.rows % step == 0)
-            table, numbers = np.vstack([table, some.table]), np.append(numbers, some.rows)
-            while len(numbers) > rows:  # twice as far apart
-                step *= 2
-                table, numbers = table[numbers % step == 0], numbers[numbers % step == 0]
-        return Batch(table, numbers, 1.0)
+    def read(self, columns: Sequence[int], progress: Progress | None = None) -> Batch:
+        """The whole table."""
+        tables, rows = [np.empty((0, len(columns)))], [np.empty(0, np.intp)]
+        for batch in self.batches(columns):
+            tables.append(batch.table)
+            rows.append(batch.rows)
+            if progress is not None:
+                progress(batch.share)
+        return Batch(np.concatenate(tables), np.concatenate(rows), 1.0)
 
     def place(self, row: int) -> str:
         """How messages name a row: row 3, line 17."""
@@ -482,13 +482,13 @@ class TextTable(Table):
         return f"field {column + 1}{shown} is not a number{hint}"
 
 
-def listed(path: Path | str, faults: Sequence[str], count: int | None = None) -> str:
-    """What is wrong with a file: one fault in a line, or the first ten in a list."""
-    if len(faults) == 1:
-        return f"{path}, {faults[0]}"
+def listed(source: Path | str, faults: Sequence[str], count: int = 0) -> str:
+    """What is wrong with a source: one fault in a line, or the first ten in a list."""
     count = count or len(faults)
+    if count == 1:
+        return f"{source}, {faults[0]}" if source else faults[0]
     more = [f"and {count - MOST_SHOWN} more"] if count > MOST_SHOWN else []
-    return "\n  ".join([f"{path}: {count} faults", *faults[:MOST_SHOWN], *more])
+    return "\n  ".join([f"{source or 'the data'}: {count} faults", *faults[:MOST_SHOWN], *more])
 
 
 def _decoded(line: bytes) -> str:

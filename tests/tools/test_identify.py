@@ -17,7 +17,6 @@ from helpers.conventions import (
     rotation,
     sample,
     some,
-    together,
 )
 from rigidsym.tools.identify.fit import calls
 from rigidsym.tools.identify.readings import VELOCITIES, Reading, Velocity, distinct
@@ -31,7 +30,6 @@ def found_alone(reading: Reading, **given) -> rs.Identification:
     found = rs.identify(**given)
     assert len(found.answers) == 1, found.text()
     assert holds(found.answers[0], reading), found.text()
-    assert found.further is None
     return found
 
 
@@ -109,41 +107,12 @@ def test_aliases_give_the_same_data(reading):
         np.testing.assert_allclose(other["omega"], given["omega"], rtol=1e-6)
 
 
-SPECIAL = [
-    (Reading(sequence="ZXZ"), (0.4, 0.0, 0.9)),
-    (Reading(sequence="ZYX", degrees=True, scalar_last=False), (10.0, 90.0, 40.0)),
-    (Reading(sequence="ZYX", velocity=VELOCITIES[1]), (0.0, 0.0, 0.5)),
-]
-
-
-@pytest.mark.parametrize(("truth", "angles"), SPECIAL, ids=str)
-def test_the_further_sample_separates_all_that_a_special_sample_leaves(truth, angles):
-    first = sample(truth, angles)
-    found = rs.identify(**first)
-    assert len(found.answers) > 1
-    assert any(holds(answer, truth) for answer in found.answers)
-    rng = np.random.default_rng(9)
-    left = [found.answers[k].reading for k in rng.integers(len(found.answers), size=8)]
-    for reading in [truth, *left]:
-        more = [sample(reading, s.angles, s.rates) for s in [found.further]]
-        (answer,) = rs.identify(**together(first, *more)).answers
-        assert holds(answer, reading)
-
-
 def test_without_motion_the_frame_of_omega_is_asked_for_with_rates():
     reading = Reading(sequence="ZXZ", velocity=VELOCITIES[0])
     found = rs.identify(**sample(reading, GENERIC[False], (0.0, 0.0, 0.0)))
     assert len(found.answers) == len(VELOCITIES)
     assert {answer.reading.orientation for answer in found.answers} == {reading.orientation}
     assert "They differ only in Ω; no sample at rest tells them apart." in str(found)
-    further = found.further
-    (answer,) = rs.identify(
-        **together(
-            sample(reading, GENERIC[False], (0.0, 0.0, 0.0)),
-            sample(reading, further.angles, further.rates),
-        )
-    ).answers
-    assert holds(answer, reading)
 
 
 @pytest.mark.parametrize("digits", [2, 6])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from math import degrees
 from pathlib import Path
 from textwrap import fill
@@ -16,16 +16,14 @@ from rigidsym.system.processes import Progress
 from rigidsym.system.resources import environment
 from rigidsym.tools.identify.fit import (
     Answer,
-    FurtherSample,
     Tolerance,
     fit,
-    further_sample,
 )
 from rigidsym.tools.identify.readings import ANGLE_NAMES, VELOCITIES, Reading, distinct
-from rigidsym.tools.identify.samples import SampleSource, from_arrays, from_file
+from rigidsym.tools.identify.samples import Columns, Samples, from_arrays, from_file
 
 SCHEMA = "rigidsym.identification"
-SCHEMA_VERSION = 2
+SCHEMA_VERSION = 3
 _NEAR = 0.2  # radians; no tolerance is suggested for a nearest reading further off
 
 
@@ -38,11 +36,8 @@ class Identification:
     tolerance: Tolerance
     samples: int
     tried: int  # readings that differ as functions of the data
-    names: tuple[str, ...]  # of the angle columns
-    converted: tuple[str, ...]  # columns whose unit was converted
-    unused: str  # columns of a velocity that say nothing alone, in words
+    columns: Columns
     has_velocity: bool  # rates and Ω were given
-    further: FurtherSample | None  # that tells the answers apart, if there is one
 
     @property
     def fits(self) -> bool:
@@ -79,22 +74,19 @@ class Identification:
         Its lines have 80 columns unless the names of the angles are long.
         """
         template = environment().get_template("identify/report.txt.jinja")
-        further = self.further
-        angles = zip(self.names, further.angles, strict=True) if further else ()
         return template.render(
             result=self,
-            names=self.names,
+            columns=self.columns,
+            names=self.columns.names,
             everything=everything,
             wrapped=_wrapped,
             counted=counted,
             degrees=degrees,
-            further=[f"{name} = {angle:g}" for name, angle in angles],
-            rates=[f"{rate:g}" for rate in (further and further.rates) or ()],
         ).rstrip()
 
     def record(self) -> dict[str, Any]:
         """The report of `rigidsym identify --json`: dictionaries, lists, texts and numbers."""
-        tolerance, names, further = self.tolerance, self.names, self.further
+        tolerance, names = self.tolerance, self.columns.names
         return {
             "schema": SCHEMA,
             "schema_version": SCHEMA_VERSION,
@@ -109,7 +101,6 @@ class Identification:
             },
             "answers": [_answer(answer, names) for answer in self.answers],
             "nearest": self.nearest and _answer(self.nearest, names),
-            "further": further and asdict(further),
         }
 
     def __str__(self) -> str:
@@ -203,7 +194,7 @@ def identify(
     """
     given = {"angles": angles, "matrix": matrix, "quaternion": quaternion}
     given |= {"rates": rates, "omega": omega}
-    return identify_source(from_arrays(given, names), tolerance=tolerance)
+    return identified(from_arrays(given, names), tolerance)
 
 
 def identify_file(
@@ -214,33 +205,28 @@ def identify_file(
     drops_missing: bool = False,
     progress: Progress | None = None,
 ) -> Identification:
-    """The same for an NPY, Parquet or text file, which is read in chunks.
+    """The same for an NPY, Parquet or text file, which is read as a whole.
 
     `columns` names the columns if the file does not, with `-` for a column to leave out. A sample
     that lacks a number is an error, unless `drops_missing`. `progress` is called with the fraction
     of the file that is done.
     """
-    source = from_file(Path(path), columns, drops_missing=drops_missing)
-    return identify_source(source, tolerance=tolerance, progress=progress)
+    samples = from_file(Path(path), columns, drops_missing=drops_missing, progress=progress)
+    return identified(samples, tolerance)
 
 
-def identify_source(
-    source: SampleSource, *, tolerance: float | None = None, progress: Progress | None = None
-) -> Identification:
-    """The same for any source of samples."""
-    answers, chosen, scale = fit(source, tolerance, progress)
+def identified(samples: Samples, tolerance: float | None) -> Identification:
+    """The same for samples that were read."""
+    answers, chosen = fit(samples, tolerance)
     best = answers[0]
-    has_velocity = best.reading.velocity is not None
-    count = sum(1 for _ in distinct(source.columns.layouts))
+    has_velocity = samples.omega is not None
+    count = sum(1 for _ in distinct(samples.columns.layouts))
     return Identification(
         answers=answers if best.fits else (),
         nearest=None if best.fits else best,
         tolerance=chosen,
         samples=best.samples,
         tried=count * (len(VELOCITIES) if has_velocity else 1),
-        names=source.columns.names,
-        converted=source.columns.converted,
-        unused=source.columns.unused,
+        columns=samples.columns,
         has_velocity=has_velocity,
-        further=further_sample([answer.reading for answer in answers], chosen, scale),
     )

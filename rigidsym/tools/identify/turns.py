@@ -1,10 +1,12 @@
-"""Readings in numbers: unit quaternions (w, x, y, z) on the last axis, and angular velocities."""
+"""Readings in numbers: unit quaternions (w, x, y, z), and angular velocities.
+
+A turning frame is a pair (q, Ω). Turning on about a body axis e by the angle a gives the pair
+(q · q_e(a), Ω + ȧ q e q*); three such steps are a reading.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cache
-from types import ModuleType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,45 +29,51 @@ class ReadingTable:
         self._signs = np.array([turn.signs for turn in turns], float).T
         self._units = np.array([int(turn.degrees) for turn in turns])
         self._scalar_last = np.array([bool(reading.scalar_last) for reading in self.readings])
-
-    def __len__(self) -> int:
-        return len(self.readings)
+        velocities = [turn.velocity for turn in turns]
+        self._factors = np.array([v.factor if v else 1.0 for v in velocities])
+        self._is_in_body = np.array([v is not None and v.frame == "body" for v in velocities])
 
     def residuals(self, angles: Array, orientation: Array) -> Array:
         """Angles between each reading and the data, in radians: (n, readings).
 
         `orientation` (n, 4) is the quaternion of the data with its numbers in their own order.
         """
-        return angle_between(self._quaternions(angles), self._given(orientation), axis=0)
+        data = np.repeat(orientation.T[..., None], len(self.readings), axis=2)
+        data[..., self._scalar_last] = np.roll(data[..., self._scalar_last], 1, axis=0)
+        return angle_between(self._turned(angles)[0], data, axis=0)
 
-    def _given(self, orientation: Array) -> Array:
-        """The data as each reading takes them, scalar first: (4, n, readings)."""
-        given = np.repeat(orientation.T[..., None], len(self), axis=2)
-        given[..., self._scalar_last] = np.roll(given[..., self._scalar_last], 1, axis=0)
-        return given
+    def angular_velocities(self, angles: Array, rates: Array) -> Array:
+        """Ω as the data have it under each reading, which has a velocity: (3, n, readings).
 
-    def as_given(self, angles: Array) -> Array:
-        """The quaternions with their numbers in the order of the data: (n, readings, 4)."""
-        q = self._quaternions(angles)
-        q[..., self._scalar_last] = np.roll(q[..., self._scalar_last], -1, axis=0)
-        return np.moveaxis(q, 0, -1)
+        `angles` and `rates` (n, 3) are columns of the data.
+        """
+        q, omega = self._turned(angles, rates)
+        across = np.cross(q[1:], omega, axis=0)
+        in_body = omega - 2 * q[0] * across + 2 * np.cross(q[1:], across, axis=0)  # q* Ω q
+        return np.where(self._is_in_body, in_body, omega) * self._factors
 
-    def _quaternions(self, angles: Array) -> Array:
-        """The quaternion of each reading for each row of angles (n, 3): (4, n, readings)."""
+    def _turned(self, angles: Array, rates: Array | None = None) -> tuple[Array, Array]:
+        """The quaternions (4, n, readings) for rows of angles (n, 3), and Ω for their rates."""
         # Sine and cosine are taken once for each column and unit, for all readings.
         half = angles[:, :, None] * (np.array([1.0, RADIANS_PER_DEGREE]) / 2)
         cosines, sines = np.cos(half), np.sin(half)
-        q = np.empty((4, len(angles), len(self)))
+        q = np.empty((4, len(angles), len(self.readings)))
+        omega = np.zeros((3, *q.shape[1:]))
         for sequence, places in self._sequences.items():
             turn: Array = np.zeros((4, len(angles), len(places)))
             turn[0] = 1.0
             for axis, columns, signs in zip(
-                sequence, self._columns[:, places], self._signs[:, places], strict=True
+                map(_AXES.index, sequence),
+                self._columns[:, places],
+                self._signs[:, places],
+                strict=True,
             ):
+                if rates is not None:
+                    omega[..., places] += _image(axis, turn) * (rates[:, columns] * signs)
                 which = (slice(None), columns, self._units[places])
-                turn = _then_about(_AXES.index(axis), turn, cosines[which], sines[which] * signs)
+                turn = _then_about(axis, turn, cosines[which], sines[which] * signs)
             q[..., places] = turn
-        return q
+        return q, omega
 
 
 def _then_about(axis: int, turn: Array, cosine: Array, sine: Array) -> Array:
@@ -77,6 +85,17 @@ def _then_about(axis: int, turn: Array, cosine: Array, sine: Array) -> Array:
     product[first] += turn[second] * sine
     product[second] -= turn[first] * sine
     return product
+
+
+def _image(axis: int, turn: Array) -> Array:
+    """Where a turn (4, ...) takes an axis: q e q* = (2 w² − 1) e + 2 (v·e) v + 2 w v × e."""
+    first, second = ((axis + k) % 3 for k in (1, 2))
+    scalar, vector = turn[0], turn[1:]
+    image = 2 * vector[axis] * vector
+    image[axis] += 2 * scalar**2 - 1
+    image[first] += 2 * scalar * vector[second]
+    image[second] -= 2 * scalar * vector[first]
+    return np.asarray(image)
 
 
 def angle_between(p: Array, q: Array, axis: int = -1) -> Array:
@@ -109,36 +128,3 @@ def quaternion_of(matrix: Array) -> Array:
     for _ in range(2):
         q = projector @ q
     return np.asarray(q[..., 0] / np.linalg.norm(q[..., 0], axis=-1, keepdims=True))
-
-
-_FRAMES = ("space", "body")
-
-
-@cache
-def _kernels(sequence: str) -> ModuleType:
-    # Loaded here, so that identifying orientations does not need SymPy.
-    from rigidsym.motion import derive
-
-    wanted = [f"angular_velocity_{frame}" for frame in _FRAMES]
-    return derive(sequence).select(wanted).kernels().load()
-
-
-def angular_velocities(readings: Sequence[Reading], angles: Array, rates: Array) -> Array:
-    """Ω as the data have it under each reading, which has a velocity: (n, readings, 3).
-
-    `angles` and `rates` (n, 3) are columns of the data.
-    """
-    kernels: dict[tuple[str, str], list[int]] = {}
-    for k, reading in enumerate(readings):
-        assert reading.velocity
-        kernels.setdefault((reading.intrinsic().sequence, reading.velocity.frame), []).append(k)
-    omega = np.empty((len(angles), len(readings), 3))
-    for (sequence, frame), places in kernels.items():
-        turns = [readings[k].intrinsic() for k in places]
-        columns, signs = ([getattr(t, name) for t in turns] for name in ("columns", "signs"))
-        units = np.array([[t.factor] for t in turns])
-        factors = np.array([[t.velocity.factor if t.velocity else 1.0] for t in turns])
-        kernel = getattr(_kernels(sequence), f"angular_velocity_{frame}")
-        q, q_dot = angles[:, columns] * (signs * units), rates[:, columns] * signs
-        omega[:, places] = kernel(q, q_dot) * factors
-    return omega
