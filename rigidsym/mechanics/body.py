@@ -337,7 +337,7 @@ class NamedRotation(BodyValues):
 
     def renamed(self, step: Step, chain: Chain) -> Step:
         """The step with R and Ω′ as a chain names them, and proves them to be."""
-        names = dict(zip(self.names().matrix, chain.partial[-1], strict=True))
+        names = dict(zip(self.names().matrix, chain.rotation, strict=True))
         names |= dict(zip(self.velocity_names, chain.omega_body, strict=True))
         if not step.expression.has(*names):
             return step

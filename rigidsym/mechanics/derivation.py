@@ -80,7 +80,6 @@ class Law(NamedTuple):
 
     claim: Formula  # R Rᵀ = 1
     residual: Callable[[Any, Any], Any]
-    is_of_inverse: bool = False  # which holds for every matrix W that has one
 
 
 def law(claim: str, residual: Callable[[Any, Any], Any], *parts: Formula) -> Law:

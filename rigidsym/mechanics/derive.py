@@ -30,7 +30,7 @@ from rigidsym.mechanics.kinematics.workspace import Values
 from rigidsym.mechanics.quantities.catalogue import OF_BODY, OF_MOTION
 from rigidsym.mechanics.quantities.kinematics import KINEMATICS
 from rigidsym.mechanics.quantities.mass import BODY_ALONE, OF_BODY_ALONE
-from rigidsym.mechanics.singularities import margin_of, singularities_of
+from rigidsym.mechanics.singularities import singularities_of
 from rigidsym.models.body import BodyDescription, Distribution, RigidBody
 from rigidsym.models.forces import Forces
 from rigidsym.models.rotation import RotationModel, depends_on_time
@@ -69,10 +69,11 @@ def derive(
     steps = _kinematics(chain or values, turning or only)
     absent = set(turning) - {step.quantity.name for step in steps}
     if absent:
-        raise QuantityError(
-            f"{model.name} has no quantity {', '.join(n for n in turning if n in absent)}: its "
-            "rate matrix has no inverse, since its rates do not give every angular velocity"
-        )
+        why = "its rate matrix has no inverse, since its rates do not give every angular velocity"
+        if chain:
+            why = "for this many turns solve W q_dot = Omega in numbers, as by numpy.linalg.pinv(W)"
+        lacking = ", ".join(name for name in turning if name in absent)
+        raise QuantityError(f"{model.name} has no quantity {lacking}: {why}")
     of_body = OfBody(values.arguments)
     if body is not None:
         from rigidsym.mechanics.body import steps_of_body
@@ -81,12 +82,9 @@ def derive(
         steps += of_body.steps
     arguments = of_body.arguments
     has_rates = not only or any(KINEMATICS[name].section == OF_RATES for name in turning)
-    singularities = None
-    if has_rates:
-        singularities = margin_of(chain) if chain else singularities_of(values)
+    singularities = singularities_of(values) if has_rates and not chain else None
     names = of_body.names or chain
     named: list[sp.Basic] = [step.expression for step in steps]
-    named += singularities.minors if singularities else ()
     if of_body.names is not None:
         named += [integral.expression for integral in of_body.first_integrals]
         named += [make().expression for make in of_body.functions.values()]

@@ -1,21 +1,15 @@
-"""Singular orientations: where the rate matrix loses rank, the axis lost, the null rates.
-
-Of a long chain of turns only the determinant of W Wᵀ is given, in the names of the chain.
-"""
+"""Singular orientations: where the rate matrix loses rank, the axis lost, the null rates."""
 
 from __future__ import annotations
 
 import operator
 from functools import reduce
 
-import sympy as sp
-
 from rigidsym.algebra.matrix import RingMatrix, primitive
 from rigidsym.algebra.present import presenter_for
 from rigidsym.algebra.stable_forms import at_zero, rewriter_for
 from rigidsym.algebra.zeros import FallingRank, Stratum, matrix_at
 from rigidsym.mechanics.derivation import Measure, Singularities, Singularity
-from rigidsym.mechanics.kinematics.chain import Chain
 from rigidsym.mechanics.kinematics.workspace import Values
 
 
@@ -127,17 +121,3 @@ class _Study:
             null_rates=self.present.matrix(there.kernel(full)),
             reachable_axis=in_space if rank == 1 else None,
         )
-
-
-def margin_of(chain: Chain) -> Singularities:
-    """The determinant of W Wᵀ, in the names of the chain; where it vanishes is not solved for."""
-    rows = chain.orthogonal_rows("space")
-    determinant = sp.Mul(*rows.squares) if rows else None
-    return Singularities(
-        rank=3 if rows else min(2, len(chain.model.coordinates)),
-        measure="det W Wᵀ" if rows else "minors",
-        determinant=None,  # a name of the chain, which says nothing by itself
-        minors=() if determinant is None else (sp.sqrt(determinant),),
-        points=(),
-        is_solved=False,
-    )

@@ -24,11 +24,12 @@ CONSTANTS = {"alpha0": (2, 7), "a": (2, 7), "b": (3, 7), "c": (6, 7)}  # a unit 
 
 IN_A_PLANE = CONSTANTS | {"b": (3, 5), "c": (4, 5)}  # for an axis without a first component
 
+LONG = "x(a_1) y(a_2) z(a_3) x(a_4) y(a_5)"  # five turns: nothing is multiplied out, nor inverted
 CHAINS = (
     "z(phi)",
     "y(phi) x(theta)",
     "z(phi) x(theta) z(psi) y(delta)",
-    "x(a_1) y(a_2) z(a_3) x(a_4) y(a_5)",
+    LONG,
     "x(alpha0) z(phi) y(pi/4) x(theta)",
     "[1,1,0](beta)",
     "z(phi) [a,b,c](beta) [1,2,2](psi)",
@@ -207,6 +208,12 @@ class Moving:
 
     def has(self, quantity: str) -> bool:
         return any(step.quantity.name == quantity for step in self.motion.steps)
+
+    @property
+    def has_inverse(self) -> bool:
+        """Whether the rates follow from Ω in closed form."""
+        stated = self.motion.singularities
+        return stated is not None and stated.rank == 3
 
     def __getattr__(self, quantity: str) -> Any:
         if quantity.startswith("_") or not self.has(quantity):

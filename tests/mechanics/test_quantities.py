@@ -60,10 +60,9 @@ def twice(value_of, k):
 
 def workspaces(name):
     if name in KINEMATICS:
-        # the inverse of a chain is that of the rows, whose factors are proved
-        is_inverse = any(law.is_of_inverse for law in QUANTITIES[name].laws)
         chain = Chain(rs.rotation_from("z(a) x(b) z(c) x(d) z(e)"))
-        return [Values(rs.EulerAngles("ZXZ")), *([] if is_inverse else [chain])]
+        has_value = chain.step(KINEMATICS[name]) is not None
+        return [Values(rs.EulerAngles("ZXZ")), *([chain] if has_value else [])]
     if name in OF_BODY:
         box, ball = shaped("box", sp.symbols("a b c"), mass=M), shaped("sphere", [h], mass=h)
         parts = (Part(what=box), Part(what=ball, at=sp.ImmutableMatrix([0, 0, h]), hole=True))

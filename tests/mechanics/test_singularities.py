@@ -14,7 +14,7 @@ import pytest
 import sympy as sp
 from scipy.spatial.transform import Rotation
 
-from helpers.parametrisations import CHAINS, WITNESSES, constants_of, motion_of
+from helpers.parametrisations import CHAINS, LONG, WITNESSES, constants_of, motion_of
 from helpers.witness import evaluate, mp, number
 from rigidsym.models.library import PARAMETRISATIONS
 from rigidsym.notes.formats.record import record
@@ -22,17 +22,14 @@ from rigidsym.notes.formats.record import record
 Array = np.ndarray[Any, Any]
 
 TURNS = (
-    *("ZXZ", "zyx", "aerospace", *CHAINS),
+    *("ZXZ", "zyx", "aerospace", *(text for text in CHAINS if text != LONG)),
     "z(phi) y(2*theta/3) x(psi)",
     "z(phi) x(theta + alpha0) z(psi)",
     "z(phi) x(theta) z(theta)",
     "x(a) z(b + pi/4) x(c) y(d)",
 )
 EVERY = (*PARAMETRISATIONS, *TURNS)
-UNDECIDED = (
-    "z(phi) [a,b,c](beta) [1,2,2](psi)",  # a cosine and a sine by any constants
-    "x(a_1) y(a_2) z(a_3) x(a_4) y(a_5)",  # five turns: W is not multiplied out
-)
+UNDECIDED = "z(phi) [a,b,c](beta) [1,2,2](psi)"  # a cosine and a sine by any constants
 
 
 @cache
@@ -127,7 +124,7 @@ def numbers(matrix: sp.ImmutableMatrix, text: str, q: Array) -> Array:
 def test_the_rank_and_the_directions_are_the_stated_ones(text):
     motion = motion_of(text)
     stated = motion.singularities
-    assert stated.is_solved == (text not in UNDECIDED)
+    assert stated.is_solved == (text != UNDECIDED)
     for seed in range(3):
         assert rank(rate_matrix(text, somewhere(text, seed))) == stated.rank
     for k, point in product((0, 1), stated.points):
@@ -154,7 +151,7 @@ def test_the_rank_and_the_directions_are_the_stated_ones(text):
             assert rank(np.hstack([matrix, reached])) == 1
 
 
-@pytest.mark.parametrize("text", [text for text in TURNS if text not in UNDECIDED])
+@pytest.mark.parametrize("text", [text for text in TURNS if text != UNDECIDED])
 def test_on_a_grid_the_rank_falls_at_the_stated_points_only(text):
     """Eighths of a turn, through a whole period, of those coordinates that lie inside."""
     stated = motion_of(text).singularities

@@ -212,11 +212,11 @@ def _rate_matrix(frame: Frame, *, of_chain: str, columns: str) -> Quantity:
 
 def _inverse_rate_matrix(frame: Frame, **reasons: str) -> Quantity:
     """W⁻¹, or W⁺ where there are more coordinates than dimensions."""
-    name, p = frame.name, frame.prime
+    name = frame.name
 
     def inverts(inverse: Formula) -> tuple[Law, ...]:
         claim = formula(r"#1 #2 = \1", frame.matrix, inverse)
-        return (Law(claim, lambda k, x: k.excess(name, *x, k.one), is_of_inverse=True),)
+        return (Law(claim, lambda k, x: k.excess(name, *x, k.one)),)
 
     return Quantity(
         frame=frame,
@@ -237,18 +237,13 @@ def _inverse_rate_matrix(frame: Frame, **reasons: str) -> Quantity:
                 laws=inverts(frame.right_inverse),
             ),
             *(when(WIDE, trait, reason=reason) for trait, reason in reasons.items()),
-            when(
-                CHAIN,
-                reason=reasons[CHAIN],
-                recursion=rf"\W{p}^T\left(\W{p}\,\W{p}^T\right)^{{-1}}",
-            ),
         ),
     )
 
 
 def _rates(frame: Frame) -> Quantity:
     """q̇ = W⁻¹ Ω, or W⁺ Ω."""
-    name, omega, p = frame.name, frame.omega, frame.prime
+    name, omega = frame.name, frame.omega
 
     def by(inverse: Formula) -> dict[str, Any]:
         claim = formula(r"#1\,(#2 #3) = #3", frame.matrix, inverse, omega)
@@ -256,8 +251,8 @@ def _rates(frame: Frame) -> Quantity:
         def residual(k: Any, x: Any) -> Any:
             return k.excess(name, *x, k.argument(f"omega_{name}"))
 
-        laws = (Law(claim, residual, is_of_inverse=True),)
-        return {"definition": formula("#1 #2", inverse, omega), "laws": laws}
+        definition = formula("#1 #2", inverse, omega)
+        return {"definition": definition, "laws": (Law(claim, residual),)}
 
     return Quantity(
         frame=frame,
@@ -274,11 +269,7 @@ def _rates(frame: Frame) -> Quantity:
         reason=f"rates_from_{name}",
         section=OF_RATES,
         is_result=True,
-        variants=(
-            when(WIDE, **by(frame.right_inverse)),
-            when(CHAIN, recursion=rf"\W{p}^{{-1}}\,\Om{p}"),
-            when(CHAIN, WIDE, recursion=rf"\W{p}^{{+}}\,\Om{p}"),
-        ),
+        variants=(when(WIDE, **by(frame.right_inverse)),),
     )
 
 
@@ -292,7 +283,6 @@ inverse_rate_matrix_space = _inverse_rate_matrix(
     wide="least_rates",
     vector="constant_length",
     bound="rates_within_conditions",
-    chain="least_norm",
 )
 rates_from_angular_velocity_space = _rates(SPACE)
 rate_matrix_body = _rate_matrix(
@@ -301,9 +291,7 @@ rate_matrix_body = _rate_matrix(
     columns=r"\begin{pmatrix} \B_2^T\,\n_1 & \ldots & \B_{LAST}^T\,\n_{BEFORE} & \n_{LAST} "
     r"\end{pmatrix}, \quad \B_k = \T_k\,\B_{k+1}",
 )
-inverse_rate_matrix_body = _inverse_rate_matrix(
-    BODY, wide="right_inverse_body", chain="right_inverse_body"
-)
+inverse_rate_matrix_body = _inverse_rate_matrix(BODY, wide="right_inverse_body")
 rates_from_angular_velocity_body = _rates(BODY)
 
 _ACCELERATION: dict[str, Any] = {
