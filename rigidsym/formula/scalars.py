@@ -1,4 +1,4 @@
-"""SymPy scalars as people write them, and as programs read them.
+"""SymPy scalars as people write them.
 
 What is written and in which order is settled here.
 
@@ -7,11 +7,10 @@ A sum never starts with a minus sign if it has a positive term, and no rate ever
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from enum import IntEnum
 from functools import lru_cache
-from typing import Any
 
 import sympy as sp
 
@@ -26,7 +25,6 @@ from rigidsym.formula.letters import (
     ordered_terms,
     power_of,
 )
-from rigidsym.formula.tree import Formula
 
 
 class Bound(IntEnum):
@@ -275,29 +273,3 @@ def _is_name(node: sp.Expr) -> bool:
 def _is_root(node: sp.Expr) -> bool:
     """Whether a node is the root of a number, which goes above the line: √2/2."""
     return bool(node.is_Pow and node.base.is_Number and node.exp == sp.Rational(1, 2))
-
-
-Names = Mapping[sp.Expr, sp.Symbol]
-
-
-def plain_data(data: Any, names: Names) -> Any:
-    """Formulas in both markups, expressions in plain names, matrices as lists of rows."""
-    match data:
-        case str() | int() | None:
-            return data
-        case Formula():
-            return data.markup
-        case list() | tuple():
-            return [plain_data(value, names) for value in data]
-        case sp.MatrixBase():
-            return plain_data(data.tolist(), names)
-        case sp.Basic():
-            return _text(data, tuple(names.items()))
-        case Mapping():
-            return {key: plain_data(value, names) for key, value in data.items()}
-    return data
-
-
-@lru_cache(maxsize=4096)  # an entry comes up in several quantities, and again in other conventions
-def _text(expression: sp.Basic, names: tuple[tuple[sp.Expr, sp.Symbol], ...]) -> str:
-    return str(expression.xreplace(dict(names)))

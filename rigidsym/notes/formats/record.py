@@ -6,23 +6,32 @@ Expressions are strings in the plain names of the arguments ("sin(theta)*phi_dot
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
 from rigidsym.formula.reader import text_of
-from rigidsym.formula.scalars import Names, plain_data
+from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import (
     Argument,
+    Definition,
     Derivation,
+    FirstIntegral,
+    Place,
     Proof,
     Singularities,
     Singularity,
+    Statement,
     Step,
+    VectorTerm,
 )
 from rigidsym.mechanics.dynamics.lagrange import is_bound
+from rigidsym.models.body import Parameter
 from rigidsym.models.forces import OMEGA_BODY
+from rigidsym.models.rotation import Citation
 from rigidsym.version import OWNERSHIP, __version__
 
 if TYPE_CHECKING:
@@ -32,6 +41,27 @@ if TYPE_CHECKING:
 
 SCHEMA = "rigidsym.derivation"
 SCHEMA_VERSION = 2
+
+
+# attributes in the order of the record, with its own keys where they differ
+_KEYS: Mapping[type, str] = {
+    Proof: "claim status residual",
+    FirstIntegral: "name expression proof",
+    Definition: "name=symbol.name expression",
+    Parameter: "name=symbol.name about unit value",
+    VectorTerm: "coefficient vector",
+    Statement: "number name section sides summands because source proofs",
+    Step: "number name=quantity.name about=quantity.about unit=quantity.unit "
+    "symbol=quantity.symbol inputs=quantity.inputs shape=quantity.shape expression vector_form "
+    "because source=quantity.source proofs",
+    Singularities: "rank measure determinant minors is_solved points",
+    Singularity: "at=places rank lost_direction_space=lost_axis_space "
+    "lost_direction_body=lost_axis_body undetermined_rates=null_rates.T "
+    "reached_direction_space=reachable_axis",
+    Place: "coordinate value modulo=period least=is_length",  # value + k modulo, for whole k
+}
+
+Names = Mapping[sp.Expr, sp.Symbol]
 
 
 def record(
@@ -47,37 +77,85 @@ def record(
         for argument in reversed(derivation.arguments)
         for expression, name in zip(argument.symbols, argument.names, strict=True)
     }
-    cited = [derivation.model.source, *[step.quantity.source for step in derivation.steps]]
-    source, *sources = [place and str(place) for place in cited]
-    found = {
+    model = derivation.model
+    data = {
         "schema": SCHEMA,
         "schema_version": SCHEMA_VERSION,
         "generator": f"rigidsym {__version__}",
         "ownership": OWNERSHIP,
         "name": derivation.name,
         "title": derivation.title,
-        "presentation": "passive" if derivation.model.passive else "active",
-        "convention": derivation.model.convention,
-        "source": source,
-        "rotation": _rotation(derivation.model, names),
+        "presentation": "passive" if model.passive else "active",
+        "convention": model.convention,
+        "source": model.source,
+        "rotation": _rotation(model, names),
         "is_proved": derivation.is_proved and (not conversions or conversions.is_proved),
         "request": request,
-        **({"theory": _theory(derivation)} if derivation.theory else {}),
-        "arguments": _arguments(derivation.arguments),
-        "quantities": list(map(_step, derivation.steps, sources)),
-        "first_integrals": [
-            {**_picked(integral, "name", "expression"), "proof": _proof(integral.proof)}
-            for integral in derivation.first_integrals
-        ],
-        "definitions": [
-            {"name": d.symbol.name, "expression": d.expression} for d in derivation.definitions
-        ],
-        "singularities": _singularities(derivation.singularities),
+        **({"theory": derivation.theory} if derivation.theory else {}),
+        "arguments": list(map(_argument, derivation.arguments)),
+        "quantities": derivation.steps,
+        "first_integrals": derivation.first_integrals,
+        "definitions": derivation.definitions,
+        "singularities": derivation.singularities,
         **({"body": _body(derivation.body)} if derivation.body else {}),
         **_motion(derivation),
         **({"conversions": _conversions(conversions)} if conversions else {}),
     }
-    return dict(plain_data(found, names))
+    return dict(_plain(data, names))
+
+
+def _plain(data: Any, names: Names) -> Any:
+    """Formulas in both markups, expressions in plain names, matrices as lists of rows."""
+    match data:
+        case _ if type(data) in _KEYS:
+            return _plain(_attributes(data), names)
+        case Formula():
+            return data.markup
+        case Citation():
+            return str(data)
+        case sp.MatrixBase():
+            return _plain(data.tolist(), names)
+        case sp.Basic():
+            return _text(data, tuple(names.items()))
+        case Mapping():
+            return {key: _plain(value, names) for key, value in data.items()}
+        case list() | tuple():
+            return [_plain(value, names) for value in data]
+    return data
+
+
+def _attributes(thing: Any) -> dict[str, Any]:
+    entries = (entry.partition("=") for entry in _KEYS[type(thing)].split())
+    found = {key: attrgetter(path or key)(thing) for key, _, path in entries}
+    match thing:
+        case Place(value=value, is_length=is_length):
+            return found | {"least": value if is_length else None}
+        case Statement():
+            return found | {"because": text_of(thing.because)}
+        case Singularity():
+            axes = (key for key in found if "_direction_" in key)
+            return found | {key: _vector(found[key]) for key in axes}
+        case Step(expression=expression, vector_form=form):
+            if form:  # coefficients are expressions in the length n of the vector v
+                terms = [*form.terms, *([form.last] if form.last else [])]
+                length = str(form.length)
+                found["vector_form"] = {"vector": form.components, "length": length, "terms": terms}
+            flat = expression.flat()
+            if found["shape"] == "vector":
+                return found | {"shape": [len(flat)], "expression": flat}
+            if found["shape"] == "scalar":
+                return found | {"shape": [], "expression": flat[0]}
+            return found | {"shape": expression.shape}
+    return found
+
+
+@lru_cache(maxsize=4096)  # an entry comes up in several quantities, and again in other conventions
+def _text(expression: sp.Basic, names: tuple[tuple[sp.Expr, sp.Symbol], ...]) -> str:
+    return str(expression.xreplace(dict(names)))
+
+
+def _vector(column: sp.ImmutableMatrix | None) -> list[sp.Expr] | None:
+    return None if column is None else [*column]
 
 
 def _rotation(model: RotationModel, names: Names) -> dict[str, Any]:
@@ -86,18 +164,17 @@ def _rotation(model: RotationModel, names: Names) -> dict[str, Any]:
     if model.pullback:
         products = matrix * matrix.T - sp.eye(3)
         conditions = [products[i, j] for i in range(3) for j in range(i + 1)] + [matrix.det() - 1]
-    axes = [turn.direction for turn in model.turns]
-    texts = [text for pair in zip(model.turns, axes, strict=True) for text in _turn(*pair, names)]
-    found = texts or ([model.definition] if model.definition else [])
-    return {**({"turns": found} if found else {"matrix": matrix}), "conditions": conditions}
+    turns = [text for turn in model.turns for text in _turn(turn, names)]
+    turns = turns or ([model.definition] if model.definition else [])
+    return {**({"turns": turns} if turns else {"matrix": matrix}), "conditions": conditions}
 
 
-def _turn(turn: Turn, direction: Sequence[sp.Expr], names: Names) -> Iterator[str]:
+def _turn(turn: Turn, names: Names) -> Iterator[str]:
     """One turn, or two about the same axis where a number is part of the angle."""
     constant, moving = sp.expand(turn.angle).as_coeff_add()
     constant += sum(term for term in moving if term.is_number)
     angle = (turn.angle - constant).xreplace(names)
-    axis = ", ".join([str(part.xreplace(names)) for part in direction])
+    axis = ", ".join([str(part.xreplace(names)) for part in turn.direction])
     if turn.angle != constant:
         yield f"axis_angle({axis}, {angle})" if turn.components else f"{turn.axis}({angle})"
     if constant:
@@ -119,10 +196,7 @@ def _body(body: RigidBody) -> dict[str, Any]:
         "centre": _vector(body.centre),
         "inertia": body.inertia,
         **({"parts": parts} if parts else {}),
-        "parameters": [
-            {"name": p.symbol.name, "about": p.about, "unit": p.unit, "value": p.value}
-            for p in body.parameters
-        ],
+        "parameters": body.parameters,
         "in_numbers": None if found is None else found.record(),
     }
 
@@ -144,113 +218,27 @@ def _motion(derivation: Derivation) -> dict[str, Any]:
     return {"motion": {"potential": acting.potential, "forces": forces, "torque": torque}}
 
 
-def _conversions(found: Conversions) -> dict[str, Any]:
+def _conversions(conversions: Conversions) -> dict[str, Any]:
     """How the coordinates go over into the unit quaternion, and come back from it and from R."""
-    back, forward = found.inverse, found.quaternion
-    source = forward.quantity.source if forward else None
+    back = conversions.inverse
     return {
-        "quaternion": _step(forward, source and str(source)) if forward else None,
-        "quaternion_from_matrix": _proof(found.from_matrix),
+        "quaternion": conversions.quaternion,
+        "quaternion_from_matrix": conversions.from_matrix,
         "coordinates": {
             "because": text_of(back.because),
             "branch": text_of(back.branch),
-            "proofs": list(map(_proof, back.proofs)),
+            "proofs": back.proofs,
         }
         if back
         else None,
-        "without": found.without or None,
+        "without": conversions.without or None,
     }
 
 
-def _theory(derivation: Derivation) -> list[dict[str, Any]]:
-    """The equations for every body and rotation, in order."""
-    return [
-        {
-            **_picked(statement, "number", "name", "section", "sides", "summands"),
-            "because": text_of(statement.because),
-            "source": str(statement.source),
-            "proofs": list(map(_proof, statement.proofs)),
-        }
-        for statement in derivation.theory
-    ]
-
-
-def _arguments(arguments: Sequence[Argument]) -> list[dict[str, Any]]:
-    letters = plain_data([argument.notation for argument in arguments], {})
-    return [
-        {
-            "name": argument.name,
-            "about": argument.about,
-            "components": [
-                {"name": name, "unit": unit, **letter}
-                for name, unit, letter in zip(argument.names, argument.units, own, strict=True)
-            ],
-        }
-        for argument, own in zip(arguments, letters, strict=True)
-    ]
-
-
-def _step(step: Step, source: str | None) -> dict[str, Any]:
-    quantity, entries = step.quantity, step.expression.flat()
-    values = {
-        "scalar": ((), *entries[:1]),
-        "vector": ((len(entries),), entries),
-        "matrix": (step.expression.shape, step.expression),
-    }
-    shape, expression = values[quantity.shape]
-    form = step.vector_form
+def _argument(argument: Argument) -> dict[str, Any]:
+    components = zip(argument.names, argument.units, argument.notation, strict=True)
     return {
-        "number": step.number,
-        **_picked(quantity, "name", "about", "unit", "symbol", "inputs"),
-        "shape": shape,
-        "expression": expression,
-        # coefficients as expressions in the length n of the vector v
-        "vector_form": form
-        and {
-            "vector": form.components,
-            "length": str(form.length),
-            "terms": [term._asdict() for term in (*form.terms, form.last) if term],
-        },
-        "because": step.because,
-        "source": source,
-        "proofs": list(map(_proof, step.proofs)),
+        "name": argument.name,
+        "about": argument.about,
+        "components": [{"name": n, "unit": u, **letter.markup} for n, u, letter in components],
     }
-
-
-def _proof(proof: Proof) -> dict[str, Any]:
-    return _picked(proof, "claim", "status", "residual")
-
-
-def _singularities(found: Singularities | None) -> dict[str, Any] | None:
-    if found is None:
-        return None
-    own = _picked(found, "rank", "measure", "determinant", "minors", "is_solved")
-    return {**own, "points": list(map(_point, found.points))}
-
-
-def _point(point: Singularity) -> dict[str, Any]:
-    return {
-        "at": [
-            {  # value + k modulo, for whole k; none of them below `least`, if there is one
-                "coordinate": place.coordinate,
-                "value": place.value,
-                "modulo": place.period,
-                "least": place.value if place.is_length else None,
-            }
-            for place in point.places
-        ],
-        "rank": point.rank,
-        "lost_direction_space": _vector(point.lost_axis_space),
-        "lost_direction_body": _vector(point.lost_axis_body),
-        "undetermined_rates": point.null_rates.T,
-        "reached_direction_space": _vector(point.reachable_axis),
-    }
-
-
-def _picked(thing: Any, *names: str) -> dict[str, Any]:
-    """Attributes that the record has by the same names."""
-    return {name: getattr(thing, name) for name in names}
-
-
-def _vector(column: sp.ImmutableMatrix | None) -> list[sp.Expr] | None:
-    return None if column is None else [*column]
