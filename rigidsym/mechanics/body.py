@@ -148,13 +148,6 @@ class BodyValues(Values):
     def principal(self) -> Principal | None:
         return principal_of(self.body.inertia)
 
-    @cached_property
-    def semi_axes(self) -> sp.ImmutableMatrix | None:
-        """1/√I_k; None if a principal moment is not known, or is 0."""
-        if self.principal is None or any(moment == 0 for moment in self.principal.moments):
-            return None
-        return sp.ImmutableMatrix([1 / self._root(moment) for moment in self.principal.moments])
-
     def _root(self, square: sp.Expr) -> sp.Expr:
         """The square root, in which √(a²) is a for a parameter that is positive."""
         positive = {

@@ -74,7 +74,7 @@ _SECTIONS = (
     *("rotation", "angular_velocity", "rates", "angular_acceleration"),
     *("body", "inertia", "energy", "momentum", "motion"),
 )
-_IN_A_ROW = ("radii_of_gyration", "inertia_ellipsoid")
+_IN_A_ROW = ("radii_of_gyration",)
 _DIAGONAL = formula("(I'_{11}, I'_{22}, I'_{33})")
 _WHERE_SHOWN = {  # what has no equation of its own in the lecture, and the one that it belongs to
     "rotation_rate": "velocity_by_the_rotation",

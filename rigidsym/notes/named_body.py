@@ -50,10 +50,6 @@ def in_names(derivation: Derivation) -> tuple[Derivation, Parts]:
         return derivation, ()
     found = derive(derivation.model, wanted, body=letters).steps if wanted else ()
     shown = {step.quantity.name: step.expression for step in found}
-    if not body.inertia.is_diagonal() and "principal_moments" in present:
-        shown["inertia_ellipsoid"] = sp.ImmutableMatrix(
-            [1 / sp.sqrt(moment) for moment in _MOMENTS]
-        )
     steps = tuple(_shown(step, shown, body) for step in derivation.steps)
     return replace(derivation, steps=steps), parts if wanted else ()
 
@@ -63,7 +59,7 @@ def _renamed(body: RigidBody) -> Iterator[str]:
     if not _is_short(body):
         skipped = {*_AS_DESCRIBED}
         if not body.inertia.is_diagonal():
-            skipped |= {"inertia_tensor", "inertia_ellipsoid"}
+            skipped |= {"inertia_tensor"}
         yield from (n for n in (*INERTIA_QUANTITIES, *ENERGY_QUANTITIES) if n not in skipped)
     elif any(body.centre):
         yield from _ABOUT_POINT

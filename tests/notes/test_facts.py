@@ -11,7 +11,6 @@ import sympy as sp
 import rigidsym as rs
 from rigidsym.mechanics.quantities.mass import OF_BODY_ALONE
 from rigidsym.mechanics.quantities.table import POINT
-from rigidsym.models.body import given_inertia
 from rigidsym.models.rotation import TIME
 from rigidsym.motion import Motion
 from rigidsym.notes.document import Equation, Figure
@@ -137,18 +136,6 @@ def test_what_is_shown_in_names_has_the_value_that_was_derived():
             rest = rest.xreplace({symbol: numbers[symbol]})
         assert max(map(abs, rest)) < 1e-12
     assert replaced > 8
-
-
-def test_letters_for_entries_need_no_moments_in_closed_form():
-    """Equal products of inertia leave moments in closed form, which I₁₂ and I₁₃ do not."""
-    mass, length = sp.symbols("M D")
-    row = [2 * length, -length * mass, -length * mass]
-    inertia = sp.Matrix([row, [row[1], row[0], 0], [row[1], 0, row[0]]])
-    body = given_inertia(inertia, mass=mass, allow=True)
-    motion = rs.derive("ZXZ", only=("inertia_tensor", "inertia_ellipsoid"), body=body)
-    shown, moments = in_names(motion)
-    assert [step.quantity.name for step in shown.steps] == [s.quantity.name for s in motion.steps]
-    assert moments == ()
 
 
 def test_components_of_the_angular_velocity_keep_their_names():

@@ -1,8 +1,8 @@
-"""Principal moments and axes in symbols, from the rational roots of the characteristic polynomial.
+"""Principal moments and axes in symbols.
 
-With three of them, the axes solve linear equations. With one, the other two moments are the roots
-of a quadratic equation, and the other axes are turned about the first. With none, there is no
-closed form that anyone would read.
+If all moments are rational functions of the entries, the axes solve linear equations. If one axis
+of the description is principal, the other two moments are the roots of a quadratic equation. Other
+tensors have no closed form that anyone would read.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
+from rigidsym.algebra.present import Rationals
 from rigidsym.mechanics.derivation import sentence_of
 
 _LAMBDA = sp.Symbol("lambda")
@@ -24,7 +25,7 @@ class Principal:
     """Principal moments (3, 1) and axes (3, 3), and how they follow."""
 
     moments: sp.ImmutableMatrix
-    axes: sp.ImmutableMatrix | None  # None if no direction has a closed form
+    axes: sp.ImmutableMatrix | None  # None if they are too long
     reasons: tuple[str, ...]  # keys of templates/notes/en/reasons.toml
     axis: str = ""  # of the description, which these name
 
@@ -34,7 +35,7 @@ class Principal:
 
 
 def principal_of(inertia: sp.ImmutableMatrix) -> Principal | None:
-    """The principal moments and axes; None if no moment is a rational function of the entries.
+    """The principal moments and axes; None if there is no short closed form.
 
     There are no axes where they would be too long for use.
     """
@@ -48,22 +49,20 @@ def principal_of(inertia: sp.ImmutableMatrix) -> Principal | None:
             axis=_LETTERS[single[0]] if single else "",
         )
     moments = _rational_moments(inertia)
-    if not moments:
+    apart = [k for k, unit in enumerate(_BASIS) if inertia * unit == inertia[k, k] * unit]
+    if len(moments) == 3:
+        principal = _factored(inertia, moments)
+    elif apart:
+        principal = _about(inertia, apart[0])
+    else:
         return None
-    principal = (_about_one_axis if len(moments) == 1 else _factored)(inertia, moments)
-    if principal.axes is None or sp.count_ops(principal.axes) <= _MOST_OF_AXES:
+    if sp.count_ops(principal.axes) <= _MOST_OF_AXES:
         return principal
     return replace(principal, axes=None, reasons=(*principal.reasons, "axes_too_long"))
 
 
 def _rational_moments(inertia: sp.ImmutableMatrix) -> list[sp.Expr]:
-    """The roots of the characteristic polynomial in its linear factors: three, one or none."""
-    for k in range(3):
-        i, j = (k + 1) % 3, (k + 2) % 3
-        if inertia[k, i] == inertia[k, j] == 0:
-            half, root = _half_and_root(inertia[i, i], inertia[j, j], inertia[i, j] ** 2)
-            pair = [] if _has_root(root) else [half + root / 2, half - root / 2]
-            return [*pair, inertia[k, k]]
+    """The roots of the characteristic polynomial in its linear factors."""
     # The polynomial is monic, so that its factors at a point would be those in symbols, there.
     symbols = sorted(inertia.free_symbols, key=str)
     there = inertia.xreplace({symbol: sp.prime(k) for k, symbol in enumerate(symbols, 5)})
@@ -81,51 +80,29 @@ def _rational_moments(inertia: sp.ImmutableMatrix) -> list[sp.Expr]:
     ]
 
 
-def _half_and_root(p: sp.Expr, q: sp.Expr, square: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
-    """(p + q)/2 and √((p − q)² + 4 r²), for two moments and the square of their product r."""
-    under = (p - q) ** 2 + 4 * square
-    root = sp.S.One
+def _about(inertia: sp.ImmutableMatrix, k: int) -> Principal:
+    """The k-th coordinate axis is principal; the other two are turned about it."""
+    i, j = (k + 1) % 3, (k + 2) % 3
+    p, q, r = inertia[i, i], inertia[j, j], inertia[i, j]
+    field = Rationals.of([p, q, r])  # which knows that sin² + cos² = 1
+    half, apart, product = map(field.read, ((p + q) / 2, p - q, 2 * r))
+    under, root = field.write(apart * apart + product * product), sp.S.One
+    # squares among the factors are taken out of the root; its sign only swaps the two moments
     for part, sign in zip(sp.fraction(sp.together(under)), (1, -1), strict=True):
         number, factors = sp.factor_list(part)
         inside = sp.Mul(number, *(factor ** (times % 2) for factor, times in factors))
         outside = sp.Mul(*(factor ** (times // 2) for factor, times in factors))
         root *= (outside * sp.sqrt(inside)) ** sign
-    return sp.cancel((p + q) / 2), min(root, sp.sqrt(under), key=sp.count_ops)
-
-
-def _has_root(expression: sp.Expr) -> bool:
-    return any(not power.exp.is_Integer for power in expression.atoms(sp.Pow))
-
-
-def _about_one_axis(inertia: sp.ImmutableMatrix, moments: list[sp.Expr]) -> Principal:
-    """One moment is rational, and so is the direction of its axis; the others lie across it."""
-    moment = moments[0]
-    axis = next((unit for unit in _BASIS if inertia * unit == moment * unit), None)
-    name = "" if axis is None else _LETTERS[_BASIS.index(axis)]
-    axis = _null_vector(inertia, moment) if axis is None else axis
-    across = (unit.cross(axis) for unit in _BASIS)
-    first = min((vector for vector in across if any(vector)), key=sp.count_ops)
-    second = axis.cross(first).applyfunc(sp.cancel)
-    squares = [sp.cancel(v.dot(v)) for v in (first, axis)]
-    squares.append(squares[0] * squares[1])
-    p, q = (
-        sp.cancel(v.dot(inertia * v) / square)
-        for v, square in ((first, squares[0]), (second, squares[2]))
-    )
-    # the product of inertia about unit vectors is that about these over the root of `size`
-    product, size = first.dot(inertia * second), squares[0] * squares[2]
-    half, root = _half_and_root(p, q, sp.cancel(product**2 / size))
-    x, z = (
-        vector / sp.sqrt(sp.factor(s)) for vector, s in zip((first, axis), squares, strict=False)
-    )
-    y = z.cross(x)
-    cosine = sp.sqrt(sp.Rational(1, 2) + (p - q) / (2 * root))
-    sine = product / (squares[0] * sp.sqrt(sp.factor(squares[1])) * root * cosine)
+    root = min(root, sp.sqrt((p - q) ** 2 + 4 * r**2), key=sp.count_ops)
+    cosine = sp.sqrt(sp.Rational(1, 2) + field.write(apart) / (2 * root))
+    sine, mean = r / (root * cosine), field.write(half)
+    x, y = _BASIS[i], _BASIS[j]
+    axes = [cosine * x + sine * y, cosine * y - sine * x, _BASIS[k]]
     return Principal(
-        moments=sp.ImmutableMatrix([half + root / 2, half - root / 2, moment]),
-        axes=sp.ImmutableMatrix(sp.Matrix.hstack(cosine * x + sine * y, cosine * y - sine * x, z)),
-        reasons=("one_axis_apart" if name else "linear_factor",),
-        axis=name,
+        moments=sp.ImmutableMatrix([mean + root / 2, mean - root / 2, inertia[k, k]]),
+        axes=sp.ImmutableMatrix(sp.Matrix.hstack(*axes)),
+        reasons=("one_axis_apart",),
+        axis=_LETTERS[k],
     )
 
 

@@ -218,23 +218,6 @@ principal_axes = Quantity(
     section=OF_INERTIA,
 )
 
-inertia_ellipsoid = Quantity(
-    symbol=formula(r"\left(a_1, a_2, a_3\right)"),
-    about="semi-axes of the inertia ellipsoid, along the principal axes",
-    unit="(kg m^2)^(-1/2)",
-    shape="vector",
-    value=lambda k: k.semi_axes,
-    laws=(
-        law(
-            r"a_k^2\,I_k = 1",
-            lambda k, x: sp.diag(*k.principal.moments) * x.multiply_elementwise(x) - sp.ones(3, 1),
-        ),
-    ),
-    without="no principal moments were found, or one of them is 0",
-    reason="ellipsoid",
-    section=OF_INERTIA,
-)
-
 inertia_tensor_space = Quantity(
     symbol=INERTIA_SPACE,
     about="inertia tensor about the centre of mass, space components",
