@@ -104,7 +104,6 @@ class Quantity(NamedTuple):
     frame: Frame | None = None  # of its components
     definition: Formula = NOTHING  # how it follows: C⁻¹(dR/dt Rᵀ)
     source: Citation | None = None
-    within: Callable[[Any], Any] | None = None  # the workspace of its own, if it has one
     # a matrix, over a ring or as it is printed, or (matrix, divisor); None if a model has none
     value: Callable[[Any], Any] | None = None
     rests_on: Callable[[Any], Sequence[Proof]] | None = None  # proofs of what it is worked out from
@@ -137,7 +136,7 @@ class Quantity(NamedTuple):
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Without its functions, which another process has no use for."""
-        plain = self._replace(within=None, value=None, rests_on=None, words=None)
+        plain = self._replace(value=None, rests_on=None, words=None)
         return Quantity, tuple(plain._replace(laws=(), also=(), variants=()))
 
 

@@ -30,7 +30,6 @@ from rigidsym.models.rotation import TIME, elementary
 _LENGTH, _ENERGY = claims.LENGTH_SYMBOL, claims.ENERGY_SYMBOL
 _LONGEST = 40  # operations of a condition for steady motion that tells a reader anything
 _LAMBDA, _FIRST, _SECOND, _THIRD, _MODULUS = sp.symbols("lambda u_1 u_2 u_3 k")
-_TURNS = formula(r"\mathbf{R}(t)")
 
 
 def _consequence(
@@ -75,7 +74,7 @@ def of_free_body(
     if A == B != C:
         yield from _symmetric(subject, inertia, slopes)
     elif len({A, B, C}) == 3:
-        yield from _asymmetric(subject, moments)
+        yield _asymmetric(subject, moments)
 
 
 def _principal_axes(
@@ -123,12 +122,8 @@ def _symmetric(
     yield _consequence(
         subject,
         "symmetric_body_in_space",
-        _TURNS,
-        formula(
-            claims.THREE_TURNS.format(
-                r"\alpha_0 + \dot{\alpha}t", r"\beta", r"\gamma_0 + \dot{\gamma}t"
-            )
-        ),
+        formula(r"\mathbf{R}(t)"),
+        claims.THREE_TURNS,
         (claims.CONSTANT_MOMENTUM, [*(momentum - sp.Matrix([0, 0, _LENGTH]))]),
         where=(
             (r"\cos\beta", along * third / _LENGTH),
@@ -138,10 +133,8 @@ def _symmetric(
     )
 
 
-def _asymmetric(subject: str, moments: Sequence[sp.Expr]) -> Iterator[Consequence]:
-    """Ω′ = (a cn, b sn, c dn) for A < B < C and L² > 2 E B, and R(t) with the third axis of space
-    along L, as three turns, of which one needs a quadrature.
-    """
+def _asymmetric(subject: str, moments: Sequence[sp.Expr]) -> Consequence:
+    """Ω′ = (a cn, b sn, c dn) for A < B < C and L² > 2 E B."""
     A, B, C = moments
     of_c, of_a = 2 * _ENERGY * C - _LENGTH**2, _LENGTH**2 - 2 * _ENERGY * A
     a, b, c = of_c / (A * (C - A)), of_c / (B * (C - B)), of_a / (C * (C - A))
@@ -153,7 +146,7 @@ def _asymmetric(subject: str, moments: Sequence[sp.Expr]) -> Iterator[Consequenc
         C**2 * c * tau * modulus**2 - (B - A) ** 2 * a * b,
         A * a * (1 - s**2) + B * b * s**2 + C * c * (1 - modulus * s**2) - 2 * _ENERGY,
     ]
-    yield _consequence(
+    return _consequence(
         subject,
         "asymmetric_body",
         BODY.omega,
@@ -163,24 +156,6 @@ def _asymmetric(subject: str, moments: Sequence[sp.Expr]) -> Iterator[Consequenc
         moments=moments,
         least=2 * _ENERGY * B,
         momentum_squared=_LENGTH**2,
-    )
-    one, two, three = OMEGA_BODY
-    cosine = C * three / _LENGTH
-    rate = _LENGTH * (2 * _ENERGY - C * three**2) / (_LENGTH**2 - C**2 * three**2)
-    twice = A * one**2 + B * two**2 + C * three**2
-    # L′ = |L| (sin β sin γ, sin β cos γ, cos β)
-    turning = (one * A * one + two * B * two) / _LENGTH / (1 - cosine**2)
-    yield _consequence(
-        subject,
-        "asymmetric_body_in_space",
-        _TURNS,
-        formula(claims.THREE_TURNS.format(r"\alpha(t)", r"\beta(t)", r"\gamma(t)")),
-        (claims.PRECESSION_OF_AXIS, [turning - rate.xreplace({_ENERGY: twice / 2})]),
-        where=(
-            (r"\cos\beta", cosine),
-            (r"\tan\gamma", A * one / (B * two)),
-            (r"\dot{\alpha}", rate),
-        ),
     )
 
 

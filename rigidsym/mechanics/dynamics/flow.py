@@ -16,10 +16,10 @@ from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import Codec, codec_for
 from rigidsym.algebra.matrix import RingMatrix
+from rigidsym.algebra.present import presenter_for
 from rigidsym.errors import ModelError
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import (
-    Argument,
     Consequence,
     FirstIntegral,
     Proof,
@@ -129,9 +129,7 @@ class Flow(Workspace):
             )
         if self.forces.leave_free(self.model):
             still = dict.fromkeys(self.arguments["torque"].symbols, sp.S.Zero)
-            turning = self.step(claims.angular_acceleration_from_torque)
-            assert turning is not None
-            slopes = turning.expression.xreplace(still)
+            slopes = self.free_turning.xreplace(still)
             yield from of_free_body(self.model.name, self.body.inertia, [*slopes])
 
     def in_state(self, value: sp.Expr) -> sp.Expr:
@@ -168,8 +166,18 @@ class Flow(Workspace):
         return sp.ImmutableMatrix([slopes_of(s, symbols, symbols) for s in self.state_derivative])
 
     @cached_property
-    def free_turning(self) -> FreeTurning:
-        return FreeTurning(self.model, self.body, self.arguments)
+    def free_turning(self) -> sp.ImmutableMatrix:
+        """dΩ′/dt for free Ω′ and N′, in a ring of their own."""
+        omega, torque = self.arguments["omega_body"].symbols, self.arguments["torque"].symbols
+        codec = codec_for([e for e in (*self.body.inertia, *omega, *torque) if e != 0], order=0)
+        tensor, w, n = codec.matrix(self.body.inertia), *map(codec.column, (omega, torque))
+        return presenter_for(codec).matrix(*solved_euler(tensor, w, n, codec.ring.one))
+
+    def excess_torque(self, slopes: sp.MatrixBase) -> sp.MatrixBase:
+        """I′ dΩ′/dt + Ω′ × I′ Ω′ − N′."""
+        omega, torque = (sp.Matrix(self.arguments[n].symbols) for n in ("omega_body", "torque"))
+        inertia = self.body.inertia
+        return inertia * slopes + omega.cross(inertia * omega) - torque
 
 
 class LagrangeForm(Flow):
@@ -213,23 +221,6 @@ class LagrangeForm(Flow):
             if constant is not None:
                 name = f"momentum_{q.func.__name__}"
                 yield FirstIntegral(name, symbols[k], momenta[k], constant)
-
-
-class FreeTurning(Workspace):
-    """Euler's equations for free Ω′ and N′, in a ring of their own."""
-
-    def __init__(
-        self, model: RotationModel, body: RigidBody, arguments: dict[str, Argument]
-    ) -> None:
-        self.model, self.body, self.arguments = model, body, arguments
-        self.traits = frozenset()
-        omega, torque = arguments["omega_body"].symbols, arguments["torque"].symbols
-        entries = [e for e in (*body.inertia, *omega, *torque) if e != 0]
-        self.codec = codec_for(entries, order=0)
-        w, n = map(self.codec.column, (omega, torque))
-        self.inertia = self.codec.matrix(body.inertia)
-        self.left = n - turned(self.inertia, w)  # N′ − Ω′ × I′ Ω′
-        self.solved = solved_euler(self.inertia, w, n, self.codec.ring.one)
 
 
 def turned(tensor: RingMatrix, omega: RingMatrix) -> RingMatrix:

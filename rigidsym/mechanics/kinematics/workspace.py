@@ -79,9 +79,6 @@ class Workspace:
 
         Raises NotARotation if the laws of the rotation matrix are false, showing what is left over.
         """
-        if entry.within:
-            found: Step | None = entry.within(self).step(entry._replace(within=None))
-            return found
         quantity = entry.presented(self.traits)
         assert quantity.value is not None
         value = quantity.value(self)

@@ -220,14 +220,8 @@ angular_acceleration_from_torque = Quantity(
     frame=BODY,
     definition=formula(r"\I'^{-1}\left(\N' - \Om'\times\I'\,\Om'\right)"),
     source=SOURCES["Goldstein 5.5"],
-    within=lambda k: k.free_turning,
-    value=lambda k: k.solved,
-    laws=(
-        law(
-            r"\I'\,\dot\Om' + \Om'\times\I'\,\Om' = \N'",
-            lambda k, x: k.inertia @ x[0] - k.left.scale(x[1]),
-        ),
-    ),
+    value=lambda k: k.free_turning,
+    laws=(law(r"\I'\,\dot\Om' + \Om'\times\I'\,\Om' = \N'", lambda k, x: k.excess_torque(x)),),
     reason="euler_equations",
     section=MOTION,
     is_result=True,
@@ -305,10 +299,8 @@ NORMAL = formula(r"\frac{\partial E}{\partial\Om'} = \I'\,\Om' = \L'")
 TWICE_ENERGY = formula(r"\L\cdot\Om = 2E")
 EULER_FREE = formula(r"\I'\,\dot\Om' + \Om'\times\I'\,\Om' = 0")
 CONSTANT_MOMENTUM = formula(r"\R\,\I'\,\Om' = \begin{pmatrix}0 \\ 0 \\ #1\end{pmatrix}", LENGTH)
-THREE_TURNS = r"\R_z({})\,\R_x({})\,\R_z({})"
-PRECESSION_RATE = formula(r"\dot{\alpha}")
-PRECESSION_OF_AXIS = formula(
-    r"\dot{\alpha} = \frac{\Omega'_1\sin\gamma + \Omega'_2\cos\gamma}{\sin\beta}"
+THREE_TURNS = formula(
+    r"\R_z(\alpha_0 + \dot{\alpha}t)\,\R_x(\beta)\,\R_z(\gamma_0 + \dot{\gamma}t)"
 )
 IN_ELLIPTIC_FUNCTIONS = formula(
     r"\begin{pmatrix}a\,\operatorname{cn}(\tau t, k) \\ b\,\operatorname{sn}(\tau t, k) \\ "

@@ -7,10 +7,11 @@ follow from the mass and the inertia tensor (`mechanics.particles`).
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from rigidsym.formula.reader import formula
-from rigidsym.mechanics.derivation import Quantity, by_name, law, when
+from rigidsym.mechanics.derivation import Law, Quantity, by_name, law, when
 from rigidsym.models.rotation import SOURCES
 
 ROTATIONAL = formula("E_R")
@@ -19,14 +20,15 @@ MOMENTUM_BODY = formula(r"\L'_R")
 ENERGY, MOMENTUM = "energy", "momentum"  # sections
 _SUM = formula(r"{\textstyle\sum_i} m_i")
 
-_ENERGY: dict[str, Any] = {
-    **{"unit": "J", "shape": "scalar", "source": SOURCES["Landau 32"]},
-    **{"section": ENERGY},
-}
-_MOMENTUM: dict[str, Any] = {
-    **{"unit": "kg m^2/s", "shape": "vector"},
-    **{"section": MOMENTUM},
-}
+
+def _over_particles(claim: str, summand: Callable[[Any], Any], times: int = 1) -> Law:
+    """The sum of m times a summand over the particles, #1 in the claim, is `times` the quantity."""
+    return law(claim, lambda k, x: k.sum(summand(k)) - k.read(times * x), _SUM)
+
+
+_ENERGY: dict[str, Any] = {"unit": "J", "shape": "scalar", "section": ENERGY}
+_ENERGY["source"] = SOURCES["Landau 32"]
+_MOMENTUM: dict[str, Any] = {"unit": "kg m^2/s", "shape": "vector", "section": MOMENTUM}
 
 translational_energy = Quantity(
     **_ENERGY,
@@ -36,11 +38,7 @@ translational_energy = Quantity(
     definition=formula(r"\tfrac{1}{2} M\,|\dot\r_C|^2"),
     value=lambda k: k.half_of_squares(k.velocity),
     laws=(
-        law(
-            r"\tfrac{1}{2} #1\,|\dot\r_C|^2 = E_C",
-            lambda k, x: k.sum(k.square(k.velocity)) - k.read(2 * x),
-            _SUM,
-        ),
+        _over_particles(r"\tfrac{1}{2} #1\,|\dot\r_C|^2 = E_C", lambda k: k.square(k.velocity), 2),
     ),
     reason="energy_of_centre",
     of_centre=True,
@@ -59,11 +57,7 @@ rotational_energy = Quantity(
             lambda k, x: k.back.T @ k.inertia @ k.back - k.read(2 * x),
             formula(r"(\R\,\I'\,\R^T)"),
         ),
-        law(
-            r"\tfrac{1}{2} #1\,|\dot\x_i|^2 = E_R",
-            lambda k, x: k.sum(k.square(k.x_dot)) - k.read(2 * x),
-            _SUM,
-        ),
+        _over_particles(r"\tfrac{1}{2} #1\,|\dot\x_i|^2 = E_R", lambda k: k.square(k.x_dot), 2),
     ),
     reason="quadratic_form",
     is_result=True,
@@ -78,10 +72,10 @@ kinetic_energy = Quantity(
     definition=formula("E_C + E_R"),
     value=lambda k: k.half_of_squares(k.velocity) + k.half_form(k.omega_body),
     laws=(
-        law(
+        _over_particles(
             r"\tfrac{1}{2} #1\,|\dot\r_i|^2 = E_C + E_R",
-            lambda k, x: k.sum(k.square(k.velocity + k.x_dot)) - k.read(2 * x),
-            _SUM,
+            lambda k: k.square(k.velocity + k.x_dot),
+            2,
         ),
     ),
     reason="energy_splits",
@@ -96,14 +90,8 @@ angular_momentum_centre = Quantity(
     inputs=("centre", "centre_dot"),
     definition=formula(r"\r_C\times(M\,\dot\r_C)"),
     source=SOURCES["Goldstein 1.2"],
-    value=lambda k: k.momentum_of_centre,
-    laws=(
-        law(
-            r"#1\,\r_C\times\dot\r_C = \L_C",
-            lambda k, x: k.sum(k.centre.cross(k.velocity)) - x,
-            _SUM,
-        ),
-    ),
+    value=lambda k: k.present.matrix(k.momentum_of_centre),
+    laws=(_over_particles(r"#1\,\r_C\times\dot\r_C = \L_C", lambda k: k.centre.cross(k.velocity)),),
     reason="momentum_of_centre",
     of_centre=True,
 )
@@ -118,8 +106,7 @@ angular_momentum_rotation_body = Quantity(
     value=lambda k: k.momentum_form_body,
     laws=(
         law(
-            r"\L'_R\cdot\Om' = 2 E_R",
-            lambda k, x: k.read(x).T @ k.omega_body - k.twice_rotational,
+            r"\L'_R\cdot\Om' = 2 E_R", lambda k, x: k.read(x).T @ k.omega_body - k.twice_rotational
         ),
     ),
     reason="tensor_times_velocity",
@@ -140,11 +127,7 @@ angular_momentum_rotation = Quantity(
             r"\L_R\cdot\Om = 2 E_R",
             lambda k, x: k.read(x).T @ k.omega_space - k.twice_rotational,
         ),
-        law(
-            r"#1\,\x_i\times\dot\x_i = \L_R",
-            lambda k, x: k.sum(k.x.cross(k.x_dot)) - k.read(x),
-            _SUM,
-        ),
+        _over_particles(r"#1\,\x_i\times\dot\x_i = \L_R", lambda k: k.x.cross(k.x_dot)),
     ),
     reason="momentum_rotated",
     is_result=True,
@@ -159,10 +142,9 @@ angular_momentum = Quantity(
     source=SOURCES["Goldstein 1.2"],
     value=lambda k: k.present.matrix(k.momentum_of_centre) + k.momentum_form,
     laws=(
-        law(
+        _over_particles(
             r"#1\,\r_i\times\dot\r_i = \L_C + \L_R",
-            lambda k, x: k.sum((k.centre + k.x).cross(k.velocity + k.x_dot)) - k.read(x),
-            _SUM,
+            lambda k: (k.centre + k.x).cross(k.velocity + k.x_dot),
         ),
     ),
     reason="momentum_splits",
