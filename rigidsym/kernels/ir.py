@@ -291,15 +291,14 @@ class Kernel:
     def statements(self) -> Iterator[tuple[str, Expression | dict[str, Call]]]:
         """The assignments, with all functions c_k of one square in the place of the first."""
         groups: dict[Name, dict[str, Call]] = {}
-        for name, call in self.calls.items():
+        for name, call in sorted(self.calls.items(), key=lambda named: named[1].order or 0):
             if call.order is not None:
                 groups.setdefault(call.argument, {})[name] = call
-        for assignment in self.assignments:
-            name, value = assignment.name, assignment.value
+        for name, value in self.assignments:
             if not isinstance(value, Call) or value.order is None:
                 yield name, value
-            elif name == next(iter(groups[value.argument])):
-                yield name, groups[value.argument]
+            elif group := groups.pop(value.argument, None):
+                yield next(iter(group)), group
 
     @cached_property
     def divisors(self) -> tuple[Expression, ...]:

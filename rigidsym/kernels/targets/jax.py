@@ -7,7 +7,7 @@ from types import ModuleType
 
 from rigidsym.kernels import loaded
 from rigidsym.kernels.ir import FUNCTIONS, Kernel, Program
-from rigidsym.kernels.targets import python
+from rigidsym.kernels.targets import python, remarks
 from rigidsym.kernels.targets.infix import broken, infix
 from rigidsym.kernels.targets.python import WIDTH, bracketed, exploded
 
@@ -37,7 +37,7 @@ def render(program: Program) -> dict[str, str]:
         about=python.about_module("jax/module.txt.jinja", program),
         names=[kernel.name for kernel in kernels],
         functions=functions,
-        series=python.series(program, more=2 * _DERIVATIVES) if program.has_series else "",
+        series=remarks.series(program, python.SERIES, WIDTH, more=2 * _DERIVATIVES),
     )
     return {f"{program.name}_jax.py": text}
 

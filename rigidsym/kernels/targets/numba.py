@@ -29,14 +29,13 @@ def render(program: Program) -> dict[str, str]:
     kernels = program.kernels
     functions = []
     for kernel in kernels:
-        head, about = numpy.twin_head(kernel)
         core = bracketed(0, f"def _{kernel.name}(", ["sin_cos", "eps", *kernel.components], "):")
         given = ["_sin_cos", f"{2.0**-52!r}", *kernel.components]
         one = bracketed(4, f"values = _{kernel.name}(", given, ")")
         values = [f"values[{k}]" for k in range(len(kernel.outputs))]
         twin = f"    return {numpy.nested(values, kernel.shape, 4, is_open=True)}"
         twins = [
-            "\n".join(["@_jit", head, about, one, twin]),
+            "\n".join(["@_jit", numpy.twin_head(kernel), one, twin]),
             "\n".join(["@_inlined", core, *_body(kernel)]),
             "\n".join(["@_jit", *_rows(kernel)]),
         ]

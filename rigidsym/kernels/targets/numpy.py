@@ -25,7 +25,6 @@ TEMPLATE = "numpy/module.py.jinja"
 RESERVED = python.RESERVED | {"np", "tan", "ValueError", "ZeroDivisionError", "entire", "fabs"}
 
 _NESTING = ("a float", "a tuple", "a tuple of rows", "a tuple of matrices")
-_SPELLED = len("float, float, float, float")  # longer types are those of tuples of any length
 
 _OF_FLOATS = {
     **{"or_nan": "_or_nan_scalar({})", "entire": "_entire_scalar({})", "eps": f"{2.0**-52}"}
@@ -47,7 +46,7 @@ def render(program: Program) -> dict[str, str]:
     functions = []
     for kernel in kernels:
         block, scalar = f"_{kernel.name}", f"{kernel.name}_scalar"
-        twin = "\n".join([*twin_head(kernel), *_scalar_body(kernel)])
+        twin = "\n".join([twin_head(kernel), *_scalar_body(kernel)])
         twins = "\n\n\n".join((twin, "\n".join(_block(kernel))))
         functions.append(function(kernel, called(kernel, block, scalar), twins))
     text = module_text(
@@ -55,7 +54,7 @@ def render(program: Program) -> dict[str, str]:
         TEMPLATE,
         functions,
         of_math=of_math,
-        series=python.series(program),
+        series=remarks.series(program, python.SERIES, WIDTH),
         has_choices=any(isinstance(v, Choice) for k in kernels for v in k.values),
     )
     return {f"{program.name}.py": text}
@@ -119,27 +118,21 @@ def called(kernel: Kernel, *functions: str) -> str:
     return bracketed(4, "return _apply(", given, ")")
 
 
-def twin_head(kernel: Kernel) -> tuple[str, str]:
+def twin_head(kernel: Kernel) -> str:
     """The signature and the docstring of a function of plain floats."""
     floats = [f"{name}: float" for name in kernel.components]
     nesting = _NESTING[len(kernel.shape)]
     about = docstring([f"`{kernel.name}` of one orientation; floats to {nesting}."], indent=4)
-    tail = f") -> {_floats(kernel.shape)}:"
-    return bracketed(0, f"def {kernel.name}_scalar(", floats, tail), f'    """{about}"""'
+    kind = "float"
+    for _ in kernel.shape:
+        kind = f"tuple[{kind}, ...]"
+    head = bracketed(0, f"def {kernel.name}_scalar(", floats, f") -> {kind}:")
+    return f'{head}\n    """{about}"""'
 
 
 def outputs(kernel: Kernel, margin: int) -> list[str]:
     """The outputs in lines that fit, behind a margin."""
     return [broken(infix(e), WIDTH - margin - 4, " " * (margin + 4)) for e in kernel.outputs]
-
-
-def _floats(shape: Sequence[int]) -> str:
-    """The type of one value in floats: tuple[float, float, float]."""
-    if not shape:
-        return "float"
-    inner = _floats(shape[1:])
-    spelled = ", ".join([inner] * shape[0])
-    return f"tuple[{spelled if len(spelled) <= _SPELLED else f'{inner}, ...'}]"
 
 
 def _scalar_body(kernel: Kernel) -> Iterator[str]:

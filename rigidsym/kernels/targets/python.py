@@ -8,7 +8,6 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 
-from rigidsym.algebra.stable_forms import FIRST_SERIES, series_of, taylor
 from rigidsym.kernels.ir import FUNCTIONS, Call, Expression, Kernel, Program
 from rigidsym.kernels.targets import remarks
 from rigidsym.kernels.targets.infix import broken, infix
@@ -20,6 +19,7 @@ _UNWELCOME = ("l", "O", "I")  # linters refuse these names
 RESERVED = frozenset({*FUNCTIONS, *_UNWELCOME, "nan", "max", "min"})
 _CALL = re.compile(r"([A-Za-z_][\w.]*\()(.*)\)")
 _QUOTES = '"""'
+SERIES = "    {}: ({}),"
 
 
 def statement(
@@ -30,9 +30,9 @@ def statement(
     What is too wide for a line is broken in the brackets of its call, or in brackets of its own.
     """
     if isinstance(value, dict):
-        calls = sorted(value.items(), key=lambda named: named[1].order or 0)
-        name = ", ".join(name for name, _ in calls) if len(calls) > 1 else f"({calls[0][0]},)"
-        given = [calls[0][1].argument.text, *(str(call.order) for _, call in calls)]
+        calls = list(value.values())
+        name = ", ".join(value) if len(calls) > 1 else f"({name},)"
+        given = [calls[0].argument.text, *(str(call.order) for call in calls)]
         text = words["entire"].format(", ".join(given))
     else:
         text = infix(value, words)
@@ -43,16 +43,6 @@ def statement(
     if call := _CALL.fullmatch(text):
         return bracketed(indent, f"{name} = {call[1]}", call[2].split(", "), ")")
     return f"{margin}{name} = (\n{broken(inner + text, WIDTH, inner)}\n{margin})"
-
-
-def series(program: Program, *, more: int = 0) -> str:
-    """The table of series, a line each: k, the switch, c_{k-2}(0), and the coefficients."""
-    lines = []
-    for order in range(FIRST_SERIES, program.last + more + 1):
-        one = series_of(order)
-        numbers = [one.switch, taylor(order - 2)[0], *one.coefficients]
-        lines.append(exploded(4, f"{order}: (", [repr(float(n)) for n in numbers], "),"))
-    return "\n".join(lines)
 
 
 def signature(kernel: Kernel, *options: str) -> str:
@@ -77,31 +67,14 @@ def module_text(
     program: Program, template: str, *, about: str, names: Sequence[str], **facts: object
 ) -> str:
     """The text of a module that exports some names, with the tables that all modules have."""
-    kernels, components = program.kernels, []
+    components = []
     for argument in program.arguments:
         quoted = [f'"{name}"' for name in argument.components]
         line = f'    "{argument.name}": {tuple_of(quoted)},'
         wide = exploded(4, f'"{argument.name}": (', quoted, "),")
         components.append(line if len(line) <= WIDTH else wide)
-    signatures = []  # as generalised ufuncs: "f": "(3),(3)->(3)",
-    for kernel in kernels:
-        *given, result = (
-            f"({','.join(map(str, shape))})"
-            for shape in (*(a.shape for a in kernel.arguments), kernel.shape)
-        )
-        signatures.append(f'    "{kernel.name}": "{",".join(given)}->{result}",')
-    return (
-        resources.environment()
-        .get_template(template)
-        .render(
-            program=program,
-            about=about,
-            exports="\n".join(f'    "{name}",' for name in sorted(names)),
-            components="\n".join(components),
-            signatures="\n".join(signatures),
-            **facts,
-        )
-    )
+    facts |= {"about": about, "names": sorted(names), "components": components}
+    return resources.environment().get_template(template).render(program=program, **facts)
 
 
 # docstrings

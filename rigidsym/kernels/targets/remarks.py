@@ -9,7 +9,7 @@ from functools import lru_cache, partial
 from math import ceil
 from textwrap import wrap
 
-from rigidsym.algebra.stable_forms import FIRST_SERIES, series_of
+from rigidsym.algebra.stable_forms import FIRST_SERIES, series_of, taylor
 from rigidsym.kernels.ir import (
     Call,
     Choice,
@@ -26,7 +26,7 @@ from rigidsym.kernels.ir import (
     walk,
 )
 from rigidsym.kernels.lowering.rounding import SINE, adds_angles, rounding
-from rigidsym.kernels.targets.infix import infix
+from rigidsym.kernels.targets.infix import broken, infix
 from rigidsym.system import resources
 from rigidsym.version import OWNERSHIP, __version__
 
@@ -84,6 +84,16 @@ def about_kernel(template: str, kernel: Kernel, **facts: object) -> list[Paragra
         in_units=in_units,
         **facts,
     )
+
+
+def series(program: Program, form: str, width: int, *, more: int = 0) -> str:
+    """The table of series: k, and the switch, c_{k-2}(0) and the coefficients of c_k."""
+    lines = []
+    for order in range(FIRST_SERIES, program.last + more + 1):
+        each = series_of(order)
+        numbers = map(float, (each.switch, taylor(order - 2)[0], *each.coefficients))
+        lines.append(form.format(order, ", ".join(map(repr, numbers))))
+    return "\n".join(broken(line, width, " " * 8) for line in lines)
 
 
 def in_units(units: Sequence[str]) -> str:
