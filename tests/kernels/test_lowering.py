@@ -29,7 +29,7 @@ from rigidsym.kernels.ir import (
     Product,
     Sum,
 )
-from rigidsym.kernels.lowering.cse import Reader
+from rigidsym.kernels.lowering.cse import Graph
 from rigidsym.kernels.lowering.lower import MARGIN, lower
 from rigidsym.kernels.lowering.naming import Names, identifier
 from rigidsym.kernels.lowering.rounding import guarded
@@ -45,10 +45,10 @@ INPUTS = {symbol: symbol.name for symbol in (A, B, C, D)}
 
 
 def lower_all(expressions):
-    reader = Reader("test", INPUTS)
-    weighted = [reader.weighted(sp.sympify(e)) for e in expressions]
-    reader.graph.share(node for _, node in weighted)
-    return write(reader.graph, weighted, Names(INPUTS.values()))
+    graph = Graph("test", INPUTS)
+    weighted = [graph.weighted(sp.sympify(e)) for e in expressions]
+    graph.share(node for _, node in weighted)
+    return write(graph, weighted, Names(INPUTS.values()))
 
 
 def restored(assignments, outputs, values):
@@ -181,13 +181,13 @@ def test_assignments_are_few_and_in_order(golden):
     """What is shared, what is left alone, and in which form."""
     lines = []
     for title, (values, *outputs) in ({k: ({}, *v) for k, v in FORMS.items()} | HELD).items():
-        reader = Reader("test", INPUTS)
+        graph = Graph("test", INPUTS)
         for name, value in values.items():
-            reader.hold(sp.Symbol(name), value)
-        weighted = [reader.weighted(output) for output in outputs]
+            graph.hold(sp.Symbol(name), value)
+        weighted = list(map(graph.weighted, outputs))
         if not values:
-            reader.graph.share(node for _, node in weighted)
-        assignments, written = write(reader.graph, weighted, Names(INPUTS.values()))
+            graph.share(node for _, node in weighted)
+        assignments, written = write(graph, weighted, Names(INPUTS.values()))
         lines += [title, *(f"    {a.name} = {infix(a.value)}" for a in assignments)]
         lines += [f"    -> {infix(output)}" for output in written]
     golden("kernels/lowered.txt", "\n".join(lines) + "\n")

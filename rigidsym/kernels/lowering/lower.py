@@ -17,7 +17,7 @@ import sympy as sp
 
 from rigidsym.algebra.stable_forms import Stumpff, at_zero, stable_forms
 from rigidsym.kernels import ir
-from rigidsym.kernels.lowering.cse import Graph, Reader, Weighted
+from rigidsym.kernels.lowering.cse import Graph, Weighted
 from rigidsym.kernels.lowering.derivatives import Jacobian
 from rigidsym.kernels.lowering.naming import Names
 from rigidsym.kernels.lowering.rounding import guarded
@@ -141,12 +141,12 @@ class _Lowering:
         )
         symbols = [symbol for given in function.inputs for symbol in given.argument.symbols]
         inputs = {symbol: self._known[symbol] for symbol in symbols}
-        reader = Reader(function.name, inputs, self._definitions)
-        reader.graph.share([reader.define(symbol, value) for symbol, value in function.shared])
+        graph = Graph(function.name, inputs, self._definitions)
+        graph.share([graph.define(symbol, value) for symbol, value in function.shared])
         for symbol, value in function.values:
-            reader.hold(symbol, value)
-        weighted = list(map(reader.weighted, function.outputs))
-        assignments, outputs = write(reader.graph, weighted, self._names.copy())
+            graph.hold(symbol, value)
+        weighted = list(map(graph.weighted, function.outputs))
+        assignments, outputs = write(graph, weighted, self._names.copy())
         return ir.Kernel(
             name=function.name,
             arguments=arguments,
@@ -269,10 +269,10 @@ def _shared(
     entries: tuple[sp.Expr, ...],
 ) -> tuple[Graph, list[Weighted]]:
     """The entries as nodes of a graph, in which what they have in common is one node."""
-    reader = Reader(name, dict(inputs), dict(definitions))
-    weighted = [reader.weighted(entry) for entry in entries]
-    reader.graph.share(node for _, node in weighted)
-    return reader.graph, weighted
+    graph = Graph(name, dict(inputs), dict(definitions))
+    weighted = list(map(graph.weighted, entries))
+    graph.share(node for _, node in weighted)
+    return graph, weighted
 
 
 def _scaled(minors: Sequence[sp.Expr], found: Singularities) -> tuple[sp.Rational, str]:

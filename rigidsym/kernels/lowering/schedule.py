@@ -10,7 +10,6 @@ from collections import Counter
 from collections.abc import Sequence
 from fractions import Fraction
 
-from rigidsym.errors import KernelError
 from rigidsym.kernels.ir import (
     FUNCTIONS,
     Assignment,
@@ -24,7 +23,7 @@ from rigidsym.kernels.ir import (
     Product,
     Sum,
 )
-from rigidsym.kernels.lowering.cse import CHOICE, HELD, Graph, Weighted
+from rigidsym.kernels.lowering.cse import CHOICE, HELD, INPUT, NUMBER, PRODUCT, SUM, Graph, Weighted
 from rigidsym.kernels.lowering.naming import Names
 
 Rank = tuple[tuple[int, int], ...]
@@ -38,10 +37,14 @@ _CALL_ORDER = {function: place for place, function in enumerate(FUNCTIONS)}
 def write(
     graph: Graph, outputs: Sequence[Weighted], names: Names
 ) -> tuple[tuple[Assignment, ...], tuple[Expression, ...]]:
-    """Assignments for what is used twice, and the outputs in terms of them."""
+    """Assignments for what is used twice, and the outputs in terms of them.
+
+    Sines and cosines of inputs come first, angle by angle, then what is held in a given order.
+    """
     writer = _Writer(graph, outputs, names)
-    writer.calls_on_inputs()
-    writer.held()
+    for node in (*writer.calls_on_inputs(), *graph.held):
+        if node in writer.reachable:
+            writer.node(node)
     written = tuple(writer.weighted(*output) for output in outputs)
     return tuple(writer.assignments), written
 
@@ -54,42 +57,33 @@ class _Writer:
         self._named: dict[int, Expression] = {graph.one: _ONE}
         self._ranks: dict[str, tuple[int, int]] = {}
         self._arguments: dict[Weighted, Name] = {}
-        for place, (name, node) in enumerate(graph.inputs.items()):
-            self._named[node] = Name(name)
-            self._ranks[name] = (_INPUT, place)
+        self._sines: dict[Weighted, int] = {}
         roots = [node for _, node in outputs]
-        self._reachable = graph.reachable(roots)
-        self._sines = {
-            arguments[0]: node
-            for node, (function, arguments) in graph.calls.items()
-            if function == "sin" and node in self._reachable
-        }
-        parts = (part for node in sorted(self._reachable) for part in graph.parts(node))
+        self.reachable = graph.reachable(roots)
+        for node, (kind, value) in enumerate(graph.nodes):
+            if kind == INPUT:
+                self._named[node] = Name(value)
+                self._ranks[value] = (_INPUT, node)
+            elif kind == "sin" and node in self.reachable:
+                self._sines[value[0]] = node
+        parts = (part for node in sorted(self.reachable) for part in graph.parts(node))
         self._uses = Counter([*roots, *parts])
 
-    def calls_on_inputs(self) -> None:
-        """Sines and cosines of inputs come first, angle by angle."""
+    def calls_on_inputs(self) -> list[int]:
         calls = [
-            (arguments[0][1], _CALL_ORDER.get(function, len(_CALL_ORDER)), node)
-            for node, (function, arguments) in self.graph.calls.items()
-            if node in self._reachable and _is_function(function)
+            (arguments[0][1], _CALL_ORDER.get(kind, len(_CALL_ORDER)), node)
+            for node, (kind, arguments) in enumerate(self.graph.nodes)
+            if _is_function(kind)
             if all(scale == 1 and argument in self._named for scale, argument in arguments)
         ]
-        for _, _, node in sorted(calls):
-            self._node(node)
-
-    def held(self) -> None:
-        """What is to be assigned in a given order."""
-        for node in self.graph.held:
-            if node in self._reachable:
-                self._node(node)
+        return [node for _, _, node in sorted(calls)]
 
     def weighted(self, coefficient: Fraction, node: int) -> Expression:
         """A number times a node, with the sign where it costs least."""
         if node == self.graph.one or not coefficient:
             number = Number(abs(coefficient))
             return Negative(number) if coefficient < 0 else number
-        size, expression = abs(coefficient), self._node(node)
+        size, expression = abs(coefficient), self.node(node)
         if size != 1:
             factors, divisors = _split(expression)
             if Fraction(float(size)) == size:  # one literal, since a double holds it exactly
@@ -116,35 +110,32 @@ class _Writer:
                         return Product((*factors[:place], turned, *factors[place + 1 :]), divisors)
         return Negative(expression)
 
-    def _node(self, node: int) -> Expression:
+    def node(self, node: int) -> Expression:
         """The name of a node that has or deserves one, else what it is made of."""
-        if node in self.graph.irrationals:
-            return Number(self.graph.irrationals[node])
+        kind, value = self.graph.nodes[node]
+        if kind == NUMBER:
+            return Number(value)
         if node not in self._named:
             expression = self._build(node)
-            is_call = node in self.graph.calls and not isinstance(expression, Compare)
-            if not is_call and self._uses[node] < 2:
+            is_plain = kind in (PRODUCT, SUM) or isinstance(expression, Compare)
+            if is_plain and self._uses[node] < 2:
                 return expression
             self._named[node] = self._assigned(expression, self.graph.held.get(node, ""))
         return self._named[node]
 
     def _assigned(self, value: Expression, wish: str = "") -> Name:
+        rank = _VALUE
         if wish:
             name = self.names.wished(wish)
-            self._ranks[name] = (_VALUE, len(self._ranks))
         elif isinstance(value, Call):  # sin_phi for sin(phi); a number for a long argument
-            is_long = len(value.argument.text) > _LONGEST_ARGUMENT or value.second
-            prefix = f"{value.function}_"
-            name = (
-                self.names.numbered(prefix)
-                if is_long
-                else self.names.fresh(prefix + value.argument.text)
-            )
             # eps is a number: in front of arrays, NumPy multiplies it by other numbers first
-            self._ranks[name] = (_NUMBER if value.function == "eps" else _CALL, len(self._ranks))
+            rank = _NUMBER if value.function == "eps" else _CALL
+            prefix, argument = f"{value.function}_", value.argument.text
+            is_long = len(argument) > _LONGEST_ARGUMENT or value.second
+            name = self.names.numbered(prefix) if is_long else self.names.fresh(prefix + argument)
         else:
             name = self.names.numbered("x")
-            self._ranks[name] = (_VALUE, len(self._ranks))
+        self._ranks[name] = (rank, len(self._ranks))
         self.assignments.append(Assignment(name, value))
         return Name(name)
 
@@ -156,37 +147,33 @@ class _Writer:
         return self._arguments[weighted]
 
     def _build(self, node: int) -> Expression:
-        if node in self.graph.calls:
-            function, arguments = self.graph.calls[node]
-            if not _is_function(function):
-                values = [self.weighted(*each) for each in arguments]
-                if function == HELD:
-                    return values[0]
-                return Choice(*values) if function == CHOICE else Compare(function, *values)
-            names = [self._argument(argument) for argument in arguments]
-            if function == "cos" and arguments[0] in self._sines:
-                self._node(self._sines[arguments[0]])  # first: both can be taken in one call
-            return Call(function, *names)
-        if node in self.graph.products:
-            return self._product(node)
-        if node in self.graph.sums:
-            return self._sum(self._terms(node, Fraction(1)))
-        raise KernelError(f"node {node} of a kernel has no value")
+        kind, value = self.graph.nodes[node]
+        if kind == PRODUCT:
+            return self._product(value)
+        if kind == SUM:
+            return self._sum(self._terms(value, Fraction(1)))
+        if _is_function(kind):
+            names = [self._argument(argument) for argument in value]
+            if kind == "cos" and value[0] in self._sines:
+                self.node(self._sines[value[0]])  # first: both can be taken in one call
+            return Call(kind, *names)
+        values = [self.weighted(*each) for each in value]
+        if kind == HELD:
+            return values[0]
+        return Choice(*values) if kind == CHOICE else Compare(kind, *values)
 
-    def _product(self, node: int) -> Expression:
+    def _product(self, nodes: Sequence[int]) -> Expression:
+        divisors = [self.node(~node) for node in nodes if node < 0]
         factors: list[Expression] = []
-        divisors: list[Expression] = []
-        for factor in self.graph.products[node]:
-            if factor < 0:
-                divisors.append(self._node(~factor))
-            else:
-                above, below = _split(self._node(factor))
+        for node in nodes:
+            if node >= 0:
+                above, below = _split(self.node(node))
                 factors += above
                 divisors += below
-        factors = factors or [_ONE]
-        return Product(
-            tuple(sorted(factors, key=self._rank)), tuple(sorted(divisors, key=self._rank))
+        numerator, denominator = (
+            tuple(sorted(side, key=self._rank)) for side in (factors or [_ONE], divisors)
         )
+        return Product(numerator, denominator)
 
     def _sum(self, terms: list[Expression]) -> Expression:
         if len(terms) == 1:
@@ -194,12 +181,13 @@ class _Writer:
         by_sign = sorted(terms, key=lambda term: (isinstance(term, Negative), self._rank(term)))
         return Sum(tuple(by_sign))
 
-    def _terms(self, node: int, scale: Fraction) -> list[Expression]:
+    def _terms(self, whole: Sequence[Weighted], scale: Fraction) -> list[Expression]:
         """The terms of a sum; a sum among them that has no name of its own is taken apart."""
         terms: list[Expression] = []
-        for coefficient, part in self.graph.sums[node]:
-            if part in self.graph.sums and self._uses[part] < 2:
-                terms += self._terms(part, scale * coefficient)
+        for coefficient, part in whole:
+            kind, value = self.graph.nodes[part]
+            if kind == SUM and self._uses[part] < 2:
+                terms += self._terms(value, scale * coefficient)
             else:
                 terms.append(self.weighted(scale * coefficient, part))
         return terms
@@ -219,7 +207,7 @@ class _Writer:
 
 
 def _is_function(called: str) -> bool:
-    return called.isidentifier() and called not in (HELD, CHOICE)
+    return called.isidentifier() and called not in (INPUT, NUMBER, PRODUCT, SUM, HELD, CHOICE)
 
 
 def _split(expression: Expression) -> tuple[tuple[Expression, ...], tuple[Expression, ...]]:
