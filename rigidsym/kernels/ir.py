@@ -16,6 +16,7 @@ from typing import NamedTuple
 
 from rigidsym.errors import KernelError
 from rigidsym.mechanics.conversions.function import Continuity
+from rigidsym.models.rotation import RotationModel
 
 # What every target must be able to call; and c0, c1, c2, ..., the functions c_k of n² that
 # `algebra.stable_forms` derives.
@@ -331,10 +332,10 @@ class Program(NamedTuple):
 
     name: str  # of the file, without its suffix
     title: str
-    convention: tuple[str, ...]  # sentences
-    source: str  # where the rotation comes from
     arguments: tuple[KernelArgument, ...]  # all that occur, in the order of a signature
     kernels: tuple[Kernel, ...]
+    model: RotationModel | None = None
+    of_body: tuple[str, ...] = ()  # sentences
     remarks: tuple[str, ...] = ()  # paragraphs for the head of the module
     continuity: Continuity | None = None  # of the coordinates along a trajectory
 

@@ -9,7 +9,7 @@ of the derivation.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property, lru_cache
 from typing import Any
 
@@ -32,12 +32,6 @@ from rigidsym.mechanics.derivation import (
 
 MARGIN = "singularity_margin"
 NO_CONVERSIONS = Converted()
-_SYMBOLS: Mapping[str, str] = {  # by the measure of singularity
-    "det W": "|det W|",
-    "det W Wᵀ": "√det(W Wᵀ)",
-    "det Wᵀ W": "√det(Wᵀ W)",
-    "det [W, J]": "|det [W; J]|",
-}
 
 
 def lower(
@@ -61,26 +55,14 @@ def lower(
     found += kernels.of_steps(added.steps)
     found += tuple(map(kernels.of_function, added.functions))
     used = {argument.name for kernel in found for argument in kernel.arguments}
-    model, body = derivation.model, derivation.body
-    presented = (
-        "Passive: rotation_matrix is the direction cosine matrix A = Rᵀ, which takes space "
-        "components to body components, x′ = A x; R itself turns the body."
-        if model.passive
-        else "Active: R takes body components to space components, x = R x′."
-    )
+    body, is_top = derivation.body, derivation.about_fixed_point
     return ir.Program(
         name=derivation.name,
         title=derivation.title,
-        convention=(
-            *((f"R = {model.product}.",) if model.turns else ()),
-            *model.convention,
-            presented,
-            *(f"R is a rotation where {condition}." for condition in model.conditions),
-            *(body.sentences(about_fixed_point=derivation.about_fixed_point) if body else ()),
-        ),
-        source=str(model.source),
         arguments=tuple(a for name, a in kernels.arguments.items() if name in used),
         kernels=found,
+        model=derivation.model,
+        of_body=tuple(body.sentences(about_fixed_point=is_top)) if body else (),
         remarks=added.remarks,
         continuity=added.continuity,
     )
@@ -146,13 +128,13 @@ class _Lowering:
         for symbol, value in function.values:
             graph.hold(symbol, value)
         weighted = list(map(graph.weighted, function.outputs))
-        assignments, outputs = write(graph, weighted, self._names.copy())
-        return ir.Kernel(
+        return _written(
+            graph,
+            weighted,
+            self._names.copy(),
             name=function.name,
             arguments=arguments,
-            assignments=assignments,
-            outputs=outputs,
-            shape=(len(outputs),),
+            shape=(len(weighted),),
             symbol=function.symbol,
             about=function.about,
             remarks=function.remarks,
@@ -172,7 +154,8 @@ class _Lowering:
             value = sp.sqrt(sp.Add(*(minor**2 for minor in minors)))
         is_free = self._symbols(value).isdisjoint(self.derivation.model.constants)
         inputs = [self._vectors[n] for n in (("q",) if is_free else ("q", "parameters"))]
-        symbol = _SYMBOLS.get(found.measure, "√Σ minors²") + ("" if scale == 1 else f"/({scale})")
+        size = f"|{found.measure}|" if len(minors) == 1 else "√Σ minors²"
+        symbol = size + ("" if scale == 1 else f"/({scale})")
         yield self._kernel(MARGIN, inputs, [value], shape=(), symbol=symbol, about=about)
 
     def _symbols(self, expression: sp.Expr) -> set[sp.Basic]:
@@ -227,38 +210,19 @@ class _Lowering:
     def _kernel(
         self, name: str, vectors: Sequence[Vector], entries: Iterable[sp.Expr], **words: Any
     ) -> ir.Kernel:
+        """A kernel whose common subexpressions are shared, with its divisors guarded."""
         arguments = tuple(map(self._argument, vectors))
         inputs = tuple((s, self._known[s]) for vector in vectors for s in vector.symbols)
-        definitions = tuple(self._definitions.items())
-        return _kernel(
-            name,
-            arguments,
-            inputs,
-            definitions,
-            tuple(entries),
-            self._names.taken,
-            **words,
+        graph, weighted = _shared(name, inputs, tuple(self._definitions.items()), tuple(entries))
+        names = self._names.copy()
+        return guarded(
+            _written(graph, weighted, names, name=name, arguments=arguments, **words), names
         )
 
 
-@lru_cache(maxsize=256)  # conventions have kernels in common
-def _kernel(
-    name: str,
-    arguments: tuple[ir.KernelArgument, ...],
-    inputs: tuple[tuple[sp.Expr, str], ...],
-    definitions: tuple[tuple[sp.Expr, sp.Expr], ...],
-    entries: tuple[sp.Expr, ...],
-    taken: frozenset[str],
-    **words: Any,
-) -> ir.Kernel:
-    """A kernel whose common subexpressions are shared, with its divisors guarded."""
-    graph, weighted = _shared(name, inputs, definitions, entries)
-    names = Names(taken)
+def _written(graph: Graph, weighted: Sequence[Weighted], names: Names, **words: Any) -> ir.Kernel:
     assignments, outputs = write(graph, weighted, names)
-    kernel = ir.Kernel(
-        name=name, arguments=arguments, assignments=assignments, outputs=outputs, **words
-    )
-    return guarded(kernel, names)
+    return ir.Kernel(assignments=assignments, outputs=outputs, **words)
 
 
 @lru_cache(maxsize=64)  # a page and a module share the same, and then name it in their languages

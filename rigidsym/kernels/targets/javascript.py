@@ -49,7 +49,7 @@ def load(name: str, files: Mapping[str, str]) -> ModuleType:
 
 def bare(kernels: Sequence[Kernel]) -> str:
     """The functions alone, without a word on them, to be set into other programs."""
-    return _module([], Program("", "", (), "", (), tuple(kernels)))
+    return _module([], Program("", "", (), tuple(kernels)))
 
 
 def _module(about: Sequence[remarks.Paragraph], program: Program) -> str:
