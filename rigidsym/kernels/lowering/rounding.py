@@ -38,6 +38,7 @@ from rigidsym.kernels.ir import (
     Product,
     Sum,
     names_in,
+    parts,
     rebuilt,
 )
 from rigidsym.kernels.lowering.naming import Names
@@ -135,14 +136,12 @@ def adds_angles(kernel: Kernel) -> bool:
 
 def _halves(kernel: Kernel) -> dict[str, str]:
     """name: what it is a half of, or another power of two times, and so exact."""
-    found = {}
-    for assignment in kernel.assignments:
-        match assignment.value:
-            case Product((Name(source),), (Number(value),)) | Product(
-                (Number(value), Name(source)), ()
-            ) if _is_power_of_two(value):
-                found[assignment.name] = source
-    return found
+    halves = {}
+    for name, product in kernel.assignments:
+        match product:
+            case Product((Number(value), Name(source)), ()) if _is_power_of_two(value):
+                halves[name] = source
+    return halves
 
 
 def _is_power_of_two(value: Fraction | float) -> bool:
@@ -246,42 +245,41 @@ class _Guard:
 
     def _divisor(self, divisor: Expression) -> Expression:
         if divisor not in self._known:
-            self._known[divisor] = self._guarded(self.expression(divisor))
+            whole = self.expression(divisor)
+            limit = self._limit(whole)
+            if limit is not None:
+                value = self._named(whole)
+                name = self._names.fresh(f"{value.text}_or_nan")
+                whole = self.assign(name, Guarded(value, *limit))
+            self._known[divisor] = whole
         return self._known[divisor]
 
-    def _guarded(self, divisor: Expression) -> Expression:
+    def _limit(self, divisor: Expression) -> tuple[Name | Number | None, int] | None:
+        """The scale of a guard and its power of eps; none if the divisor cannot vanish."""
         value = self._value(divisor)
         match value:
-            case Sum():
-                return self._of_sum(divisor, value)
             case Call("sin" | "cos", angle):
-                return self._or_nan(divisor, angle)
+                return angle, 1
             case Call("c0", square):
                 root = self._new(Call("sqrt", square))
-                return self._or_nan(divisor, self._new(Product((_ROUNDINGS, root))))
+                return self._new(Product((_ROUNDINGS, root))), 1
             case Call("c1"):
-                return self._or_nan(divisor, _ROUNDINGS)
+                return _ROUNDINGS, 1
             case Call("c2"):
-                return self._or_nan(divisor, _DOUBLE_ZERO, power=2)
-        return divisor
-
-    def _value(self, expression: Expression) -> Expression:
-        """What is behind a name, if it is not an input."""
-        if not isinstance(expression, Name):
-            return expression
-        return self._values.get(expression.text, expression)
-
-    def _of_sum(self, divisor: Expression, total: Sum) -> Expression:
-        """A sum of squares and a number never vanishes; one of squares alone may underflow."""
-        parts = list(self._parts(total))
-        is_positive = all(map(self._is_positive, parts))
-        if is_positive and any(isinstance(part, Number) for part in parts):
-            return divisor
-        name = self._named(divisor)
-        factors = (factor for part in parts for factor in self._factors(part))
-        if is_positive and any(isinstance(f, Name) and f.text in self._values for f in factors):
-            return self._or_nan(name, self._reach(), power=2)  # squares of inputs hold no rounding
-        return self._or_nan(name, None if is_positive else self._sizes(total))
+                return _DOUBLE_ZERO, 2
+            case Sum():
+                terms = list(self._flat(value, Sum))
+                is_positive = all(map(self._is_positive, terms))
+                if is_positive and any(isinstance(term, Number) for term in terms):
+                    return None
+                self._named(divisor)
+                factors = (factor for term in terms for factor in self._flat(term, Product))
+                if not is_positive:
+                    return self._sizes(value), 1
+                if any(isinstance(f, Name) and f.text in self._values for f in factors):
+                    return self._reach(), 2
+                return None, 1  # squares of inputs hold no rounding, but may underflow
+        return None
 
     def _reach(self) -> Name:
         """The square of how far rounding reaches where sines and cosines are squared, over eps²."""
@@ -290,31 +288,28 @@ class _Guard:
         reach = self._new(Product((_ROUNDINGS, Sum((Number(Fraction(1)), *sizes)))))
         return self._new(Product((reach, reach)))
 
-    def _parts(self, total: Sum) -> Iterator[Expression]:
-        """The terms of a sum and of the sums among them."""
-        for term in total.terms:
-            value = self._value(term)
-            if isinstance(value, Sum):
-                yield from self._parts(value)
-            else:
-                yield term
+    def _value(self, expression: Expression) -> Expression:
+        """What is behind a name, if it is not an input."""
+        if isinstance(expression, Name):
+            return self._values.get(expression.text, expression)
+        return expression
+
+    def _flat(self, whole: Expression, kind: type) -> Iterator[Expression]:
+        """The terms of a sum and of the sums among them, or the factors of a product likewise."""
+        value = self._value(whole)
+        if isinstance(value, kind) and not (isinstance(value, Product) and value.divisors):
+            for part in parts(value):
+                yield from self._flat(part, kind)
+        else:
+            yield whole
 
     def _is_positive(self, part: Expression) -> bool:
         """Whether it is a positive number, or a number times squares."""
-        factors = list(self._factors(part))
+        factors = list(self._flat(part, Product))
         return all(
             factor.value > 0 if isinstance(factor, Number) else factors.count(factor) % 2 == 0
             for factor in factors
         )
-
-    def _factors(self, part: Expression) -> Iterator[Expression]:
-        """What is multiplied in a part, and in the products among its factors."""
-        value = self._value(part)
-        if isinstance(value, Product) and not value.divisors:
-            for factor in value.factors:
-                yield from self._factors(factor)
-        else:
-            yield part
 
     def _sizes(self, total: Sum) -> Name:
         """The sum of the sizes of the terms, times the roundings that each may bring."""
@@ -332,7 +327,3 @@ class _Guard:
         if value not in self._made:
             self._made[value] = self.assign(self._names.numbered("x"), value)
         return self._made[value]
-
-    def _or_nan(self, divisor: Expression, scale: Name | Number | None, power: int = 1) -> Name:
-        value = self._named(divisor)
-        return self.assign(self._names.fresh(f"{value.text}_or_nan"), Guarded(value, scale, power))

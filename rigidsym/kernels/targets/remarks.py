@@ -49,22 +49,14 @@ def paragraphs(template: str, **facts: object) -> list[Paragraph]:
 def about_module(template: str, program: Program, **facts: object) -> list[Paragraph]:
     """The paragraphs at the head of a file."""
     kernels = program.kernels
-    series = map(series_of, range(FIRST_SERIES, program.last + 1))
+    each = map(series_of, range(FIRST_SERIES, program.last + 1))
     return paragraphs(
         template,
         program=program,
         adds_angles=any(map(adds_angles, kernels)),
         has_bounds=any(map(rounding, kernels)),
         sine=f"{SINE:g}",
-        series=[
-            {
-                "order": each.order,
-                "terms": len(each.coefficients),
-                "switch": f"{float(each.switch):g}",
-                "error": ceil(each.error),
-            }
-            for each in series
-        ],
+        series=[(series, ceil(series.error)) for series in each],
         version=__version__,
         ownership=OWNERSHIP,
         **facts,
