@@ -6,8 +6,9 @@ A distribution is particles, a solid, or a composition of parts.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import combinations
 from math import isfinite
 from operator import index
 from typing import Any
@@ -156,7 +157,6 @@ KEYS: Mapping[type, str] = {  # of a [body] table, and of its parts
 
 
 _MODULE_NAME = re.compile(r"[a-z][a-z0-9_]*")
-_AXES = ("x", "y", "z")
 SOURCE = SOURCES["Landau 32"]
 ABOUT_FIXED_POINT = (
     "The body turns about a fixed point, which may be its centre of mass, and its inertia tensor "
@@ -182,6 +182,11 @@ class Parameter:
                 "positive number"
             )
 
+    def described_by(self, about: str) -> Parameter:
+        """With a meaning, and its unit, if it has none of its own."""
+        unit = self.unit or _UNITS.get(about, "")
+        return replace(self, about=self.about or about, unit=unit)
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RigidBody:
@@ -195,7 +200,7 @@ class RigidBody:
     title: str  # "Solid cylinder"
     mass: sp.Expr  # kg
     inertia: sp.ImmutableMatrix  # (3, 3), about the centre of mass, kg m²
-    centre: sp.ImmutableMatrix = field(default_factory=lambda: sp.ImmutableMatrix.zeros(3, 1))
+    centre: sp.ImmutableMatrix = HERE  # (3, 1), m
     parameters: tuple[Parameter, ...] = ()  # every symbol above, in the order of kernels
     source: Citation = SOURCE
     declared: tuple[Parameter, ...] = ()  # descriptions, also of symbols that only forces hold
@@ -212,26 +217,40 @@ class RigidBody:
                 f"{self.name!r} cannot name a body: expected lower-case letters, digits and "
                 "underscores, beginning with a letter"
             )
-        shapes = {
-            "the inertia tensor": (self.inertia, (3, 3)),
-            "the centre of mass": (self.centre, (3, 1)),
-        }
-        for what, (matrix, shape) in shapes.items():
+        for fault in self._faults():
+            raise BodyError(f"{self.name}: {fault}")
+        inertia = self.in_numbers(self.inertia)
+        if not self.allow and all(entry.is_number for entry in inertia):
+            check_moments(self.name, inertia.tolist())
+
+    def _faults(self) -> Iterator[str]:
+        """What is wrong with the body; each check relies on those before it."""
+        for what, matrix, shape in (
+            ("the inertia tensor", self.inertia, (3, 3)),
+            ("the centre of mass", self.centre, (3, 1)),
+        ):
             if matrix.shape != shape:
-                raise BodyError(
-                    f"{self.name}: expected {what} of shape {shape}, got {matrix.shape}"
-                )
-        self._check_symbols()
-        self._check_symmetry()
-        if not self.allow:
-            mass = self.in_numbers(self.mass)
-            if mass.is_number and not (isfinite(mass) and mass > 0):
-                raise BodyError(
-                    f"{self.name}: the mass is {float(mass):g} kg; expected a positive number"
-                )
-            inertia = self.in_numbers(self.inertia)
-            if all(entry.is_number for entry in inertia):
-                check_moments(self.name, inertia.tolist())
+                yield f"expected {what} of shape {shape}, got {matrix.shape}"
+        known = {parameter.symbol for parameter in self.parameters}
+        if len(known) != len(self.parameters):
+            yield "a parameter is named twice"
+        for entry in (self.mass, *self.inertia, *self.centre):
+            if entry.has(TIME, AppliedUndef) or entry.has(sp.I, sp.nan, sp.oo, sp.zoo):
+                yield f"{entry} is not a real constant"
+            for number in entry.atoms(sp.Float):
+                yield str(not_exact(number))
+            for symbol in sorted(entry.free_symbols - known, key=str):
+                yield f"{symbol} is not among the parameters"
+        for i, j in combinations(range(3), 2):
+            residual = sp.expand(self.inertia[i, j] - self.inertia[j, i])
+            if residual != 0:
+                value = self.in_numbers(residual)
+                places = f"I_{'xyz'[i]}{'xyz'[j]} − I_{'xyz'[j]}{'xyz'[i]}"
+                amount = f"{float(value):g}" if value.is_Float else value
+                yield f"the inertia tensor is not symmetric: {places} = {amount}"
+        mass = self.in_numbers(self.mass)
+        if not self.allow and mass.is_number and not (isfinite(mass) and mass > 0):
+            yield f"the mass is {float(mass):g} kg; expected a positive number"
 
     def sentences(self, *, about_fixed_point: bool) -> tuple[str, ...]:
         """The body in plain sentences, to follow the convention of its rotation."""
@@ -251,29 +270,6 @@ class RigidBody:
     def in_numbers(self, expression: Any) -> Any:
         """An expression or a matrix after the known values are substituted."""
         return expression.xreplace(self.values)
-
-    def _check_symbols(self) -> None:
-        known = {parameter.symbol for parameter in self.parameters}
-        if len(known) != len(self.parameters):
-            raise BodyError(f"{self.name}: a parameter is named twice")
-        for entry in (self.mass, *self.inertia, *self.centre):
-            if entry.has(TIME, AppliedUndef) or entry.has(sp.I, sp.nan, sp.oo, sp.zoo):
-                raise BodyError(f"{self.name}: {entry} is not a real constant")
-            for number in entry.atoms(sp.Float):
-                raise BodyError(f"{self.name}: {not_exact(number)}")
-            for symbol in sorted(entry.free_symbols - known, key=str):
-                raise BodyError(f"{self.name}: {symbol} is not among the parameters")
-
-    def _check_symmetry(self) -> None:
-        for row, column in ((0, 1), (0, 2), (1, 2)):
-            left = sp.expand(self.inertia[row, column] - self.inertia[column, row])
-            if left != 0:
-                places = _AXES[row] + _AXES[column], _AXES[column] + _AXES[row]
-                value = self.in_numbers(left)
-                raise BodyError(
-                    f"{self.name}: the inertia tensor is not symmetric: I_{places[0]} − "
-                    f"I_{places[1]} = {format(float(value), 'g') if value.is_Float else value}"
-                )
 
     def __str__(self) -> str:
         return self.name
@@ -338,66 +334,67 @@ def principal_moments(
     mass is the symbol M by default. `parameters` describes further symbols. Raises BodyError.
     """
     moments = [symbolic(moment, "a principal moment") for moment in (A, B, C)]
-    total = sp.Symbol("M") if mass is None else symbolic(mass, "the mass")
     kinds = {1: "Spherical body", 2: "Symmetric body", 3: "Body in its principal axes"}
-    return RigidBody(
+    return given_inertia(
+        sp.diag(*moments),
+        mass=mass,
         name=name,
-        title=kinds[len(set(moments))],
-        mass=total,
-        inertia=sp.ImmutableMatrix(sp.diag(*moments)),
-        parameters=described(
-            parameters, (total, "mass"), *((m, "principal moment of inertia") for m in moments)
-        ),
-        declared=tuple(parameters),
+        parameters=parameters,
         allow=allow,
+        title=kinds[len(set(moments))],
+        moment="principal moment of inertia",
     )
 
 
 def general_inertia(*, mass: sp.Expr | None = None, name: str = "body") -> RigidBody:
     """A body with a general inertia tensor: the symbols I_11, I_12, I_13, I_22, I_23, I_33."""
-    total = sp.Symbol("M") if mass is None else symbolic(mass, "the mass")
     entries = sp.ImmutableMatrix(3, 3, lambda i, j: sp.Symbol(f"I_{min(i, j) + 1}{max(i, j) + 1}"))
-    return given_inertia(entries, mass=total, name=name)
+    return given_inertia(entries, mass=mass, name=name)
 
 
 def given_inertia(
     inertia: sp.MatrixBase,
     *,
-    mass: sp.Expr,
-    centre: sp.MatrixBase | None = None,
+    mass: sp.Expr | None = None,
+    centre: sp.MatrixBase = HERE,
     name: str = "body",
     parameters: Sequence[Parameter] = (),
     allow: bool = False,
+    title: str = "Body with a given inertia tensor",
+    moment: str = "moment of inertia",
 ) -> RigidBody:
-    """A body by its inertia tensor about the centre of mass, (3, 3), in kg m². Raises BodyError."""
-    place = sp.ImmutableMatrix.zeros(3, 1) if centre is None else sp.ImmutableMatrix(centre)
+    """A body by its inertia tensor about the centre of mass, (3, 3), in kg m². Raises BodyError.
+
+    `moment` is the meaning of the symbols on the diagonal.
+    """
+    mass = sp.Symbol("M") if mass is None else symbolic(mass, "the mass")
+    meanings = [moment if k % 4 == 0 else _PRODUCT for k in range(9)]  # row by row
     return RigidBody(
         name=name,
-        title="Body with a given inertia tensor",
+        title=title,
         mass=mass,
         inertia=sp.ImmutableMatrix(inertia),
-        centre=place,
+        centre=sp.ImmutableMatrix(centre),
         parameters=described(
             parameters,
             (mass, "mass"),
-            *zip(inertia, _ENTRIES, strict=True),
-            *((entry, "coordinate of the centre of mass") for entry in place),
+            *zip(inertia, meanings, strict=True),
+            *((entry, _COORDINATE) for entry in centre),
         ),
         declared=tuple(parameters),
         allow=allow,
     )
 
 
+_PRODUCT = "product of inertia, with its sign"
+_COORDINATE = "coordinate of the centre of mass"
 _UNITS = {
     "mass": "kg",
     "principal moment of inertia": "kg m^2",
     "moment of inertia": "kg m^2",
-    "product of inertia, with its sign": "kg m^2",
-    "coordinate of the centre of mass": "m",
+    _PRODUCT: "kg m^2",
+    _COORDINATE: "m",
 }
-_MOMENT, _PRODUCT = "moment of inertia", "product of inertia, with its sign"
-_ENTRIES = (*(_MOMENT, _PRODUCT, _PRODUCT, _PRODUCT) * 2, _MOMENT)  # row by row
-_SIGNED = {_PRODUCT, "coordinate of the centre of mass"}
 
 
 def described(given: Sequence[Parameter], *slots: tuple[sp.Expr, str]) -> tuple[Parameter, ...]:
@@ -410,12 +407,10 @@ def described(given: Sequence[Parameter], *slots: tuple[sp.Expr, str]) -> tuple[
     for expression, what in slots:
         for symbol in sorted(expression.free_symbols, key=str):
             about = what if expression == symbol else ""
-            is_positive = bool(about) and about not in _SIGNED
-            own = declared.get(symbol) or parameters.get(symbol) or Parameter(symbol=symbol)
-            if symbol not in declared:
-                known = symbol in parameters and own.positive
-                own = replace(own, positive=known or is_positive)
-            parameters[symbol] = replace(
-                own, about=own.about or about, unit=own.unit or _UNITS.get(about, "")
-            )
+            own = declared.get(symbol) or parameters.get(symbol)
+            own = own or Parameter(symbol=symbol, positive=False)
+            is_signed = about in ("", _PRODUCT, _COORDINATE)
+            if symbol not in declared and not is_signed:
+                own = replace(own, positive=True)
+            parameters[symbol] = own.described_by(about)
     return tuple(parameters.values())

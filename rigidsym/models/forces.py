@@ -25,7 +25,6 @@ from rigidsym.text.names import check_name
 
 OMEGA = "angular_velocity_body"
 OMEGA_COMPONENTS = (f"{OMEGA}_1", f"{OMEGA}_2", f"{OMEGA}_3")
-_KEYS = ("parameters", "initial", "time")
 
 
 class Example(NamedTuple):
@@ -43,25 +42,24 @@ def examples_of(model: RotationModel, given: Sequence[Mapping[str, Any]]) -> Ite
     """
     names = [q.func.__name__ for q in model.coordinates]
     known = (*names, *(f"{name}_dot" for name in names), *OMEGA_COMPONENTS)
-    first = Example({}, {}, 0.0)
+    first: Mapping[str, Any] = {"time": 0}
     for k, example in enumerate(given):
-        for key in set(example) - set(_KEYS):
-            raise ModelError(f"an example: unknown key {key}; expected {', '.join(_KEYS)}")
-        if not all(isinstance(example.get(key, {}), Mapping) for key in _KEYS[:2]):
-            raise ModelError("an example: expected parameters and initial values by name")
-        motion = Example(
-            {**first.parameters, **example.get("parameters", {})},
-            {**first.initial, **example.get("initial", {})},
-            example.get("time", first.time),
+        for key in set(example) - set(Example._fields):
+            raise ModelError(
+                f"an example: unknown key {key}; expected {', '.join(Example._fields)}"
+            )
+        parameters, initial = (
+            {**first.get(key, {}), **example.get(key, {})} for key in Example._fields[:2]
         )
-        for name in motion.initial:
+        motion = Example(parameters, initial, example.get("time", first["time"]))
+        for name in initial:
             if name not in known:
                 raise ModelError(f"an example: unknown initial value {name}; {offer(name, known)}")
-        numbers: list[Any] = [*motion.parameters.values(), *motion.initial.values(), motion.time]
+        numbers: list[Any] = [*parameters.values(), *initial.values(), motion.time]
         are_finite = all(isinstance(value, Real) and isfinite(value) for value in numbers)
         if not are_finite or motion.time <= 0:
             raise ModelError("an example needs finite numbers, and a time > 0 in seconds")
-        first = first if k else motion
+        first = first if k else motion._asdict()
         yield motion
 
 
@@ -91,12 +89,12 @@ METHODS = ("lagrange", "euler")
 OMEGA_BODY = sp.symbols("Omega_body_1:4")
 _LONG, _ALIKE = 4, 0.8  # letters of a name, and the share that two names have in common
 _OF_MOTION = re.compile(  # names of quantities, which are no constants
-    r"(?:angular_(?:velocity|acceleration|momentum)|omega|alpha)_(?:space|body)"
-    r"(?:_?[123])?|angular_(?:velocity|acceleration|momentum)(?:_?[123])?"
-    r"|(?:kinetic|potential|rotational|translational)_energy|rotation_matrix(?:_?[123]{2})?"
-    r"|generalised_momenta|lagrangian|hamiltonian|(?:quaternion|torque_body)(?:_?[0123])?",
+    r"(angular_(velocity|acceleration|momentum)|(omega|alpha)(?=_[sb]))(_space|_body)?(_?[123])?"
+    r"|(kinetic|potential|rotational|translational)_energy|rotation_matrix(_?[123]{2})?"
+    r"|generalised_momenta|lagrangian|hamiltonian|(quaternion|torque_body)(_?[0123])?",
     re.IGNORECASE,
 )
+_MOMENT = "principal moment of inertia"
 _NONE: Mapping[Any, sp.Expr] = MappingProxyType({})
 
 
@@ -178,22 +176,15 @@ class Forces:
         Raises ModelError for a potential that depends on the rates or on no coordinate, for parts
         that depend on the time, and for an example with a value of another constant.
         """
+        shown = f"the potential {as_typed(self.potential)} depends on"
         if self.potential.has(sp.Derivative, *OMEGA_BODY):
-            shown = as_typed(self.potential)
-            raise ModelError(f"the potential {shown} depends on rates; expected V(q, t)")
+            raise ModelError(f"{shown} rates; expected V(q, t)")
         if self.potential.free_symbols and not self.potential.has(*model.coordinates):
-            names = [as_typed(q) for q in model.coordinates]
-            letters = sorted(s.name for s in self.potential.free_symbols)
-            same = [n for n in letters if n in names]
-            near = [c for n in letters for c in get_close_matches(n, names, n=1) if not same]
+            names = ", ".join(map(as_typed, model.coordinates))
             raise ModelError(
-                f"the potential {as_typed(self.potential)} depends on none of the coordinates "
-                + ", ".join(names)
-                + "".join(f"; {n} is a constant in it, expected a text or {n}(t)" for n in same[:1])
-                + "".join(f"; did you mean {n}?" for n in near[:1])
+                f"{shown} none of the coordinates {names}; expected a text, or functions of t"
             )
-        moving = (e for part in self.parts for e in (*part.velocity, *part.inertia))
-        for expression in moving:
+        for expression in self._of_parts:
             what = "t" if depends_on_time(expression) else "Ω′"
             if what == "t" or expression.has(*OMEGA_BODY):
                 raise ModelError(
@@ -207,15 +198,12 @@ class Forces:
             raise ModelError(
                 f"an example: unknown parameter {name}; {offer(name, sorted(constants))}"
             )
-        moments = {moment for part in self.parts for moment in part.inertia}
+        about = dict.fromkeys((m for part in self.parts for m in part.inertia), _MOMENT)
         declared = {p.symbol: p for p in body.declared}
-        more = []
-        for symbol in sp.ordered(symbols):
-            parameter = declared.get(symbol, Parameter(symbol=symbol, positive=False))
-            if symbol in moments:
-                about = parameter.about or "principal moment of inertia"
-                parameter = replace(parameter, about=about, unit=parameter.unit or "kg m^2")
-            more.append(parameter)
+        more = (
+            (declared.get(s) or Parameter(symbol=s, positive=False)).described_by(about.get(s, ""))
+            for s in sp.ordered(symbols)
+        )
         return replace(body, parameters=(*body.parameters, *more))
 
     @property
@@ -227,8 +215,11 @@ class Forces:
     @property
     def expressions(self) -> Iterator[sp.Expr]:
         """All that acts, all that is claimed to be constant, and the parts."""
-        yield from self.acting
-        yield from (e for part in self.parts for e in (*part.velocity, *part.inertia))
+        yield from (*self.acting, *self._of_parts)
+
+    @property
+    def _of_parts(self) -> Iterator[sp.Expr]:
+        return (e for part in self.parts for e in (*part.velocity, *part.inertia))
 
 
 def forces_on(
@@ -320,12 +311,9 @@ def _check_spelling(name: str, names: Mapping[str, sp.Expr]) -> None:
     """Raises ModelError for a constant whose name is that of a quantity, or all but a known one."""
     plain = name.replace("_", "").lower()
     near = [known for known in names if known.replace("_", "").lower() == plain != known]
-    near = [known for known in near if len(plain) > 1]  # T may be a constant beside the time t
-    if not near and len(name) >= _LONG and not any(letter.isdigit() for letter in name):
-        near = get_close_matches(name, names, n=1, cutoff=_ALIKE)
-    if not near and _OF_MOTION.fullmatch(name) and re.search("velocity|omega", name.lower()):
-        near = [f"omega_body_{name[-1] if name[-1].isdigit() else 1}"]
-    if near:
+    if len(name) >= _LONG and not any(letter.isdigit() for letter in name):
+        near += get_close_matches(name, names, n=1, cutoff=_ALIKE)
+    if near and len(plain) > 1:  # T may be a constant beside the time t
         raise ModelError(f"unknown name {name}; did you mean {near[0]}?")
     if _OF_MOTION.fullmatch(name):
         raise ModelError(

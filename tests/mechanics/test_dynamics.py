@@ -251,7 +251,7 @@ NOWHERE = ("did you mean omega_body_2?", "Omega_body_2 omegabody2")
     [
         ({"potential": "m*g*theta_dot"}, r"the potential .*theta_dot depends on rates"),
         ({"potential": "m*g*l*cos(beta)"}, "depends on none of the coordinates phi, theta, psi"),
-        ({"potential": sp.cos(sp.Symbol("theta"))}, r"theta is a constant in it, .* theta\(t\)"),
+        ({"potential": sp.cos(sp.Symbol("theta"))}, r"expected a text, or functions of t"),
         ({"potential": TOP, "forces": {"chi": "1"}}, "a force on chi, which is not a coordinate"),
         ({"potential": "w*cos(thets)"}, r"unknown name thets; did you mean theta\?"),
         ({"torque": ["u - h*Theta_dot", "0", "0"]}, r"did you mean theta_dot\?"),
