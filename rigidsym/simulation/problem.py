@@ -189,7 +189,9 @@ class Problem:
         return has_margin and not self._at("singularity_margin", y[: self.count]) > limit
 
     def rotation(self, y: Array) -> Array:
-        return self._at("rotation_matrix", y[..., : self.count])
+        """R of states, from body to space components, (..., 3, 3)."""
+        matrix = self._at("rotation_matrix", y[..., : self.count])
+        return np.swapaxes(matrix, -1, -2) if self.model.passive else matrix
 
     def omega(self, y: Array) -> Array:
         """Ω′ of states, (..., 3)."""

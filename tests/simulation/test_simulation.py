@@ -12,6 +12,7 @@ from scipy.integrate import solve_ivp
 import rigidsym as rs
 from helpers.command import call
 from rigidsym.errors import LimitReached
+from rigidsym.models.library import rotation_from
 from rigidsym.simulation.problem import NEEDED, Problem
 
 A, B, C = sp.symbols("A B C")
@@ -62,6 +63,17 @@ def test_a_motion_that_starts_at_a_pole_is_that_of_the_quaternion():
         upright = found.rotation_matrix[:, 2, 2].min()
         assert bool(upright > 0.99999) is is_stable
         assert found.drift["energy"] < 1e-9
+
+
+def test_rotation_matrices_take_body_to_space_components_in_a_passive_convention_too():
+    body, start = rs.principal_moments(1, 1, 2), {"theta": 0.5, "psi": 0.3}
+    one, other = (
+        rs.derive(rotation_from("ZXZ", passive=passive), body=body).simulate(
+            start, {}, 1.0, samples=2
+        )
+        for passive in (False, True)
+    )
+    assert np.array_equal(one.rotation_matrix, other.rotation_matrix)
 
 
 def test_a_sleeping_top_keeps_its_angular_velocity_and_its_integrals():
