@@ -99,15 +99,13 @@ def _exit(shape: Shape, axis: Vector) -> float:
     triangles = np.array(
         [(face.corners[0], *pair) for face in shape for pair in pairwise(face.corners[1:])]
     )
-    first = triangles[:, 0]
-    normals = np.cross(triangles[:, 1] - first, triangles[:, 2] - first)
-    slopes = normals @ axis
-    triangles, normals = (each[np.abs(slopes) > 1e-12] for each in (triangles, normals))
-    distances = (normals * triangles[:, 0]).sum(axis=1) / (normals @ axis)
-    places = distances[:, None, None] * axis
-    edges = np.roll(triangles, -1, axis=1) - triangles
-    sides = (normals[:, None] * np.cross(edges, places - triangles)).sum(axis=-1)
-    return float(distances[(sides.min(axis=1) > -1e-9) & (distances > 0)].max(initial=0.0))
+    first, edges = triangles[:, 0], triangles[:, :1] - triangles[:, 1:]
+    # t·axis is the point of a triangle with the shares u and v of its edges
+    systems = np.stack([np.broadcast_to(axis, first.shape), *edges.swapaxes(0, 1)], axis=-1)
+    meets = np.abs(np.linalg.det(systems)) > 1e-12
+    t, u, v = np.linalg.solve(systems[meets], first[meets][..., None])[..., 0].T
+    is_inside = np.minimum(np.minimum(u, v), 1 - u - v) > -1e-9
+    return float(t[is_inside & (t > 0)].max(initial=0.0))
 
 
 class _Part(NamedTuple):

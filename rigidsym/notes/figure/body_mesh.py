@@ -6,7 +6,7 @@ those that shrink to lines and those that meet, as at the angles 0 and 2π.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import islice, pairwise, permutations, product
 from typing import Any, NamedTuple
@@ -64,16 +64,12 @@ def own_shape(body: RigidBody | None) -> Shape:
     what = _described(body)
     if body is None or what is None:
         return ()
-    values = {p.symbol: p.value for p in (*body.declared, *body.parameters)}
-    numbers = lengths_of(what, values)
-    # the size without any thickness, of which those of particles and lines are fractions
-    points = [*_points(what, numbers)] if numbers is not None else []
-    if numbers is None or not points:
+    numbers = lengths_of(what, {p.symbol: p.value for p in (*body.declared, *body.parameters)})
+    if numbers is None:
         return ()
-    size = float(np.linalg.norm(np.concatenate(points) - points[0][0], axis=1).max()) or 1.0
     middle = body.centre.xreplace(numbers)
-    centre = _floats(middle) / size if not middle.free_symbols else 0.0  # else about its origin
-    moved = [(face.corners - centre, face.color) for face in meshed(what, numbers, size)]
+    centre = _floats(middle) if not middle.free_symbols else 0.0  # else about its origin
+    moved = [(face.corners - centre, face.color) for face in meshed(what, numbers)]
     reach = max((np.linalg.norm(corners, axis=1).max() for corners, _ in moved), default=0.0)
     if not (reach and np.isfinite(reach)):
         return ()
@@ -108,9 +104,19 @@ def lengths_of(
     return None
 
 
-def meshed(what: Distribution, numbers: Numbers, unit: float = 1.0) -> Shape:
-    """The faces of what has mass, in its own axes; `unit` is their unit of length, in metres."""
-    return tuple(face for leaf in _leaves(what) for face in _faces(leaf, numbers, unit))
+def meshed(what: Distribution, numbers: Numbers) -> Shape:
+    """The faces of what has mass, in its own axes, in metres."""
+    sheets = [sheet for leaf in _leaves(what) for sheet in _sheets(leaf, numbers)]
+    if not sheets:
+        return ()
+    # the size without any thickness, of which those of particles and lines are fractions
+    points = np.concatenate([sheet.points.reshape(-1, 3) for sheet in sheets])
+    size = float(np.linalg.norm(points - points[0], axis=1).max()) or 1.0
+    return tuple(
+        Face(size * corners, sheet.color)
+        for sheet in sheets
+        for corners in sheet.faces(sheet.points / size)
+    )
 
 
 class _Leaf(NamedTuple):
@@ -121,11 +127,13 @@ class _Leaf(NamedTuple):
     turned: sp.ImmutableMatrix = UPRIGHT
     color: Color = BLUE
 
-    def moved(self, polygons: Iterable[Vector], numbers: Numbers, unit: float) -> Iterator[Vector]:
-        """Each array of points (n, 3) in the axes of the whole; `unit` is the unit of length."""
-        turned = _floats(self.turned.xreplace(numbers)).reshape(3, 3)
-        at = _floats(self.at.xreplace(numbers)) / unit
-        return (at + points @ turned.T for points in polygons)
+
+class _Sheet(NamedTuple):
+    """Points (..., 3) in the axes of the whole, and how they become faces."""
+
+    points: Vector
+    faces: Callable[[Vector], Iterator[Vector]]
+    color: Color
 
 
 def _leaves(what: Distribution, leaf: _Leaf | None = None) -> Iterator[_Leaf]:
@@ -164,36 +172,28 @@ def _floats(column: Any) -> Vector:
     return np.array([*column], float)
 
 
-def _columns(columns: Sequence[sp.MatrixBase], numbers: Numbers) -> Vector:
-    return np.array([_floats(column.xreplace(numbers)) for column in columns])
-
-
-def _points(what: Distribution, numbers: Numbers) -> Iterator[Vector]:
-    """Enough points (n, 3) to tell the size of a body, in metres."""
-    for leaf in _leaves(what):
-        match leaf.what:
-            case Particles():
-                points = _columns([p.position for p in leaf.what.particles], numbers)
-            case Solid():
-                shares = np.ix_(*[[0.0, 0.5, 1.0]] * len(leaf.what.coordinates))
-                points = _map(leaf.what, numbers, *shares).reshape(-1, 3)
-            case Known():
-                points = np.array(leaf.what.outline.corners)
-        if len(points):
-            yield from leaf.moved([points], numbers, 1.0)
-
-
-def _faces(leaf: _Leaf, numbers: Numbers, unit: float) -> Iterator[Face]:
+def _sheets(leaf: _Leaf, numbers: Numbers) -> Iterator[_Sheet]:
+    turned = _floats(leaf.turned.xreplace(numbers)).reshape(3, 3)
+    at = _floats(leaf.at.xreplace(numbers))
+    sheets: Iterable[tuple[Vector, Callable[[Vector], Iterator[Vector]]]]
     match leaf.what:
         case Particles():
-            centres = _columns([p.position for p in leaf.what.particles], numbers) / unit
-            faces = [centre + _PARTICLE * face for centre in centres for face in _OCTAHEDRON]
+            positions = (_floats(p.position.xreplace(numbers)) for p in leaf.what.particles)
+            sheets = ((position, _octahedron) for position in positions)
         case Solid():
-            faces = [*_of_solid(leaf.what, numbers, unit)]
+            sheets = _of_solid(leaf.what, numbers)
         case Known():
-            corners = np.array(leaf.what.outline.corners) / unit
-            faces = [corners[[*face]] for face in leaf.what.outline.faces]
-    return (Face(corners, leaf.color) for corners in leaf.moved(faces, numbers, unit))
+            corners = np.array(leaf.what.outline.corners)
+            sheets = ((corners[[*face]], _polygon) for face in leaf.what.outline.faces)
+    return (_Sheet(at + points @ turned.T, faces, leaf.color) for points, faces in sheets)
+
+
+def _octahedron(centre: Vector) -> Iterator[Vector]:
+    return (centre + _PARTICLE * face for face in _OCTAHEDRON)
+
+
+def _polygon(corners: Vector) -> Iterator[Vector]:
+    yield corners
 
 
 # A solid
@@ -228,27 +228,31 @@ def _is_outward(solid: Solid, numbers: Numbers, *shares: Any) -> Vector:
     return np.linalg.det(np.stack([there - here for there in moved], axis=-2)) > 0
 
 
-def _of_solid(solid: Solid, numbers: Numbers, unit: float) -> Iterator[Vector]:
+def _of_solid(
+    solid: Solid, numbers: Numbers
+) -> Iterator[tuple[Vector, Callable[[Vector], Iterator[Vector]]]]:
+    """A line; both sides of a surface; or the surface of a volume, side by side of its box."""
     counts = [_divisions(solid, symbol) for symbol in solid.coordinates]
     if len(counts) == 1:
         count = 2 * _ROUND if counts[0] > 1 else 1
-        yield from _tube(_map(solid, numbers, np.linspace(0, 1, count + 1)) / unit)
+        yield _map(solid, numbers, np.linspace(0, 1, count + 1)), _tube
         return
     steps = [np.linspace(0, 1, count + 1) for count in counts]
     if len(counts) == 2:
-        grid = _map(solid, numbers, *np.ix_(*steps)) / unit
-        yield from (*_tiles(grid), *_tiles(grid[:, ::-1]))
+        grid = _map(solid, numbers, *np.ix_(*steps))
+        yield from ((grid, _tiles), (grid[:, ::-1], _tiles))
         return
     outward = 1 if _is_outward(solid, numbers, 0.5, 0.5, 0.5) else -1
     for axis in range(3):
         j, k = (axis + 1) % 3, (axis + 2) % 3
         shares: dict[int, Any] = dict(zip((j, k), np.ix_(steps[j], steps[k]), strict=True))
         low, high = (
-            _map(solid, numbers, *({**shares, axis: end}[n] for n in range(3))) / unit
+            _map(solid, numbers, *({**shares, axis: end}[n] for n in range(3)))
             for end in (0.0, 1.0)
         )
-        if np.linalg.norm(high - low, axis=-1).max() > 1e-9:
-            yield from (*_tiles(high[:, ::outward]), *_tiles(low[:, ::-outward]))
+        # a closed coordinate has no ends
+        if np.linalg.norm(high - low, axis=-1).max() > 1e-9 * np.abs(high).max():
+            yield from ((high[:, ::outward], _tiles), (low[:, ::-outward], _tiles))
 
 
 def _divisions(solid: Solid, symbol: sp.Symbol) -> int:
