@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from functools import lru_cache
 from math import degrees, lcm, pi
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import sympy as sp
 
 from rigidsym.formula.letters import Letters
-from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Argument, Derivation
 from rigidsym.models.body import RigidBody
 from rigidsym.models.forces import OMEGA_COMPONENTS
@@ -30,30 +28,13 @@ _MOMENTS = (1.0, 0.6, 0.8)  # each is less than the sum of the others
 _WEIGHT = {sp.Symbol("g"): 9.81, sp.Symbol("l"): 0.5}
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Control:
-    """One slider, in the unit that is shown."""
-
-    kind: str  # the argument that it is part of: q, q_dot, omega_body, parameters
-    place: int
-    symbol: Formula
-    name: str  # spoken: "phi"
-    unit: str  # "°", "rad/s"; "" for a pure number
-    low: float
-    high: float
-    step: float
-    start: float
-    factor: float  # from the unit shown to the unit of the functions
-    period: float  # after which all is as before; 0 if there is none
-
-
 class _Range(NamedTuple):
-    """From −reach to reach, with a start if no initial value is known."""
+    """From −reach to reach in the unit that is shown, with a start if no initial value is known."""
 
     start: float
     reach: float
     unit: str
-    factor: float = 1.0
+    factor: float = 1.0  # from the unit shown to the unit of the functions
     is_periodic: bool = False
 
 
@@ -64,27 +45,21 @@ def controls_of(
     angles: Mapping[sp.Expr, float],
     start: Mapping[str, float],
     constants: Mapping[sp.Symbol, float],
-) -> Iterator[Control]:
+) -> Iterator[dict[str, Any]]:
     """The sliders of the coordinates, of their rates or Ω′ (`second`), and of the constants.
 
     `angles` are angles in radians that make a clear figure, `start` are initial values by name in
-    SI units, `constants` those of the body that are not fixed, with their values.
+    SI units, `constants` those of the body that are not fixed, with their values. A slider has the
+    `kind` of argument and the `place` in it that it sets; its limits are in the unit shown.
     """
     model = derivation.model
     for argument in derivation.arguments:
-        for k, symbol in enumerate(argument.symbols):
-            name = argument.names[k]
+        names = OMEGA_COMPONENTS if argument.name == "omega_body" else argument.names
+        for k, (symbol, name) in enumerate(zip(argument.symbols, names, strict=True)):
             if argument.name == "q":
-                limits = _coordinate(argument, k, model, angles)
-            elif argument.name == second == "omega_body":
-                limits, name = _Range(_RATES[k], 3.0, argument.units[k]), OMEGA_COMPONENTS[k]
+                limits = _of_coordinate(symbol, k, argument.units[k], model, angles)
             elif argument.name == second:
-                unit = argument.units[k]
-                if period_of(model.coordinates[k], model):
-                    limits = _Range(_ANGLE_RATES[k % len(_ANGLE_RATES)], 180.0, "°/s", pi / 180)
-                else:
-                    reach = 3.0 if unit == "rad/s" else 2.0
-                    limits = _Range(_RATES[k % len(_RATES)], reach, unit)
+                limits = _of_rate(k, argument, model)
             elif argument.name == "parameters" and symbol in constants:
                 value = constants[symbol]
                 limits = _Range(value, max(2.0, 2 * value), argument.units[k])
@@ -97,19 +72,19 @@ def controls_of(
             begin = start[name] / factor if name in start else limits.start
             begin = (begin + reach) % (2 * reach) - reach if is_periodic else begin
             reach = max(reach, abs(begin))
-            yield Control(
-                kind=argument.name,
-                place=k,
-                symbol=letters.name(symbol),
-                name=argument.names[k].replace("_", " "),
-                unit=unit_in_words(unit) if unit else "",
-                low=reach / 100 if symbol in constants else -reach,
-                high=reach,
-                step=0.01 if factor == 1.0 else 1.0,
-                start=begin,
-                factor=factor,
-                period=2 * reach if is_periodic else 0.0,
-            )
+            yield {
+                "kind": argument.name,
+                "place": k,
+                "symbol": letters.name(symbol),
+                "name": argument.names[k].replace("_", " "),  # spoken
+                "unit": unit_in_words(unit) if unit else "",
+                "low": reach / 100 if symbol in constants else -reach,
+                "high": reach,
+                "step": 0.01 if factor == 1.0 else 1.0,
+                "start": begin,
+                "factor": factor,
+                "period": 2 * reach if is_periodic else 0.0,  # after which all is as before
+            }
 
 
 def _turn(start: float, period: float) -> _Range:
@@ -117,10 +92,9 @@ def _turn(start: float, period: float) -> _Range:
     return _Range(start, round(degrees(period)) / 2, "°", pi / 180, is_periodic=True)
 
 
-def _coordinate(
-    argument: Argument, k: int, model: RotationModel, angles: Mapping[sp.Expr, float]
+def _of_coordinate(
+    q: sp.Expr, k: int, unit: str, model: RotationModel, angles: Mapping[sp.Expr, float]
 ) -> _Range:
-    q, unit = argument.symbols[k], argument.units[k]
     period = period_of(q, model)
     if period:
         return _turn(round(degrees(angles[q])) if q in angles else _ANGLE, period)
@@ -129,6 +103,13 @@ def _coordinate(
         size = 1.0 if unit == "rad" else 0.5
         return _Range(size * _VECTOR[model.vector.index(q)], reach, unit)
     return _Range(_SCALAR if model.vector else _NUMBERS[k % len(_NUMBERS)], reach, unit)
+
+
+def _of_rate(k: int, argument: Argument, model: RotationModel) -> _Range:
+    if argument.name == "q_dot" and period_of(model.coordinates[k], model):
+        return _Range(_ANGLE_RATES[k % len(_ANGLE_RATES)], 180.0, "°/s", pi / 180)
+    unit = argument.units[k]
+    return _Range(_RATES[k % len(_RATES)], 3.0 if unit == "rad/s" else 2.0, unit)
 
 
 def constants_of(body: RigidBody | None) -> dict[sp.Symbol, float]:

@@ -75,7 +75,7 @@ def print_page(
             _sliding(derivation, functions, constants),
         )
     ]
-    in_degrees = any(control.unit == "°" for control in controls)
+    in_degrees = any(control["unit"] == "°" for control in controls)
     printer = PagePrinter(document)
     stage, body = stage_of(model, letters), body_of(derivation, functions)
     seconds = examples[0].time if examples else 0.0
@@ -86,7 +86,7 @@ def print_page(
         "scene": stage,
         **body,
         "last": min(max(_SHORTEST, seconds), _LONGEST),
-        "controls": [{key: getattr(control, key) for key in _OF_SCRIPT} for control in controls],
+        "controls": [{key: control[key] for key in _OF_SCRIPT} for control in controls],
         "parameters": [constants.get(symbol, 0.0) for symbol in functions.constants],
         "inputs": functions.inputs,
         "second": functions.second,
@@ -151,13 +151,11 @@ def _sliding(
 
 def check_shown(derivation: Derivation) -> None:
     """Raises ModelError for a motion that the figure, one body about a fixed point, cannot show."""
-    forces, why = derivation.forces, ""
-    if forces is not None and forces.parts:
-        why = "its figure is one body about a fixed point, and other parts move with this body"
-    if why:
+    if derivation.forces is not None and derivation.forces.parts:
         raise ModelError(
-            f"{derivation.name}: there is no live page of this motion, since {why}; expected a "
-            "note (`rigidsym run`) or a picture of the motion (`rigidsym simulate --plot`)"
+            f"{derivation.name}: there is no live page of this motion, since its figure is one "
+            "body about a fixed point, and other parts move with this body; expected a note "
+            "(`rigidsym run`) or a picture of the motion (`rigidsym simulate --plot`)"
         )
 
 

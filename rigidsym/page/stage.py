@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import cache
-from math import atan2, floor, pi
 from typing import Any
 
 import numpy as np
@@ -16,10 +15,8 @@ from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import NOTHING, Formula, Numeral, Symbol
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.quantities.kinematics import SPACE
-from rigidsym.models.body import Composite, Part
 from rigidsym.models.rotation import AXES, RotationModel
-from rigidsym.models.solids import shaped
-from rigidsym.notes.figure.body_mesh import RED, Color, Face, Shape, meshed, own_shape
+from rigidsym.notes.figure.body_mesh import RED, Color, Face, Shape, own_shape, tiles
 from rigidsym.notes.figure.camera import STANDARD, Vector
 from rigidsym.notes.figure.scene import BODY, RADII, Scene, scene_of, turns_of
 from rigidsym.notes.formats.drawings import as_in_formulas
@@ -29,19 +26,8 @@ _AZIMUTH, _ELEVATION = 35, 22  # degrees, if the note has no figure
 _SLAB = [1.25, 0.8, 1.75]  # moments of the body of a page without one: three different edges
 _WHITE = (246, 244, 238)
 _SECTORS = 8  # of a top, red and white
-_SOLIDS = {  # solids of the library with their lengths and positions
-    "top": (
-        ("frustum", (0.02, 0.46, 0.66), (0, 0, 0)),
-        ("frustum", (0.46, 0.06, 0.2), (0, 0, 0.66)),
-        ("cylinder", (0.06, 0.36), (0, 0, 1.04)),
-    ),
-    "aircraft": (
-        ("box", (0.32, 1.9, 0.04), (0.05, 0, 0)),
-        ("box", (0.2, 0.7, 0.04), (-0.8, 0, 0)),
-        ("ellipsoid", (0.95, 0.14, 0.14), (0, 0, 0)),
-        ("box", (0.22, 0.04, 0.36), (-0.8, 0, 0.2)),
-    ),
-}
+_ROUND = 24  # corners of its circles
+_TOP = ((0, 0), (0.02, 0), (0.46, 0.66), (0.06, 0.86), (0.06, 1.22), (0, 1.22))  # radius, height
 
 
 def shown_angles(model: RotationModel, letters: Letters) -> dict[sp.Expr, float]:
@@ -123,9 +109,7 @@ def body_of(derivation: Derivation, functions: Functions) -> dict[str, Any]:
     axes = [turn.axis for turn in derivation.model.turns]
     is_about_z = len(axes) == 3 and axes[0] == axes[2] == "z"
     if not own and is_about_z and (not functions.is_motion or _is_top(derivation)):
-        own = body_of_page("top")
-    elif not own and axes in (["z", "y", "x"], ["x", "y", "z"]) and not functions.is_motion:
-        own = body_of_page("aircraft", z_down=derivation.model.z_down)
+        own = spinning_top()
     if own:
         return {"body": as_data(own)}
     if not functions.is_motion:
@@ -144,25 +128,16 @@ def _is_top(derivation: Derivation) -> bool:
 
 
 @cache
-def body_of_page(name: str, *, z_down: bool = False) -> Shape:
-    """A top on its tip, about z′, or an aircraft: nose along x′, wings along y′, fin up."""
-    flip = -1 if z_down else 1
-    parts = (
-        Part(
-            what=shaped(solid, [*map(sp.Float, lengths)], density=sp.S.One),
-            at=sp.ImmutableMatrix([x, y, flip * z]),
-        )
-        for solid, lengths, (x, y, z) in _SOLIDS[name]
+def spinning_top() -> Shape:
+    """A top on its tip, about z′: its profile, turned, in sectors that show the spin."""
+    turns = np.linspace(0, 2 * np.pi, _ROUND + 1)
+    rings = [np.stack([r * np.cos(turns), r * np.sin(turns), h + 0 * turns], 1) for r, h in _TOP]
+    surface = np.stack(rings, axis=1)
+    return tuple(
+        Face(corners, (RED, _WHITE)[k * _SECTORS // _ROUND % 2])
+        for k in range(_ROUND)
+        for corners in tiles(surface[k : k + 2])
     )
-    shape = meshed(Composite(parts=tuple(parts)), {})
-    if name != "top":
-        return shape
-    striped = []
-    for face in shape:  # in sectors, which show the spin
-        x, y, _ = face.corners.sum(axis=0)
-        sector = floor(_SECTORS * atan2(y, x) / (2 * pi))
-        striped.append(Face(face.corners, (RED, _WHITE)[sector % 2]))
-    return tuple(striped)
 
 
 def as_data(shape: Shape) -> dict[str, Any]:

@@ -240,7 +240,7 @@ def _of_solid(
     steps = [np.linspace(0, 1, count + 1) for count in counts]
     if len(counts) == 2:
         grid = _map(solid, numbers, *np.ix_(*steps))
-        yield from ((grid, _tiles), (grid[:, ::-1], _tiles))
+        yield from ((grid, tiles), (grid[:, ::-1], tiles))
         return
     outward = 1 if _is_outward(solid, numbers, 0.5, 0.5, 0.5) else -1
     for axis in range(3):
@@ -252,7 +252,7 @@ def _of_solid(
         )
         # a closed coordinate has no ends
         if np.linalg.norm(high - low, axis=-1).max() > 1e-9 * np.abs(high).max():
-            yield from ((high[:, ::outward], _tiles), (low[:, ::-outward], _tiles))
+            yield from ((high[:, ::outward], tiles), (low[:, ::-outward], tiles))
 
 
 def _divisions(solid: Solid, symbol: sp.Symbol) -> int:
@@ -265,7 +265,7 @@ def _divisions(solid: Solid, symbol: sp.Symbol) -> int:
     return _CURVED if later or solid.place.diff(symbol).has(symbol) else 1
 
 
-def _tiles(grid: Vector) -> Iterator[Vector]:
+def tiles(grid: Vector) -> Iterator[Vector]:
     """The tiles of a grid, counterclockwise as seen along (row) × (column); none without area."""
     grid = np.round(grid, 9) + 0.0  # without the errors that would part one corner into two
     for i, j in np.ndindex(len(grid) - 1, grid.shape[1] - 1):
@@ -293,7 +293,7 @@ def _tube(line: Vector) -> Iterator[Vector]:
         u = unit(np.cross(along, np.eye(3)[0 if abs(along[0]) < 0.8 else 1]))
         v = np.cross(along, u)
         around = _THICK * np.array([u + v, v - u, -u - v, u - v, u + v])
-        yield from _tiles(np.array([start + around, end + around])[:, ::-1])
+        yield from tiles(np.array([start + around, end + around])[:, ::-1])
         if is_open and k == 0:
             yield (start + around[:-1])[::-1]
         if is_open and k == len(line) - 2:
