@@ -9,11 +9,10 @@ from __future__ import annotations
 import csv
 import errno
 import io
-import os
 import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import chain, islice
 from pathlib import Path
@@ -24,7 +23,6 @@ import numpy as np
 from numpy.lib import format as npy
 from numpy.typing import NDArray
 
-from rigidsym.data.columns import counted, is_unit, unit_in
 from rigidsym.errors import DataError, MissingExtra, RequestError
 from rigidsym.system.files import whole_file
 from rigidsym.system.processes import Progress
@@ -50,11 +48,6 @@ class Batch:
         """Some of its rows."""
         kept = tuple(column[which] for column in self.kept)
         return Batch(self.table[which], self.rows[which], self.share, kept)
-
-    def split(self, rows: int) -> Iterator[Batch]:
-        """The batch in pieces of at most so many rows."""
-        for start in range(0, len(self.rows), rows):
-            yield self.at(slice(start, start + rows))
 
 
 class Table(ABC):
@@ -255,17 +248,15 @@ class ParquetTable(Table):
         if wrong := [self._names[k] for k in columns if not self._is_number[k]]:
             raise DataError(f"{self.source}: no numbers in the columns {', '.join(wrong)}")
         chosen = [self._names[k] for k in dict.fromkeys([*columns, *kept])]
-        at_once = max(1, 4 * ROWS // rows) * rows  # polars seeks the rows of a slice
-        for start in range(0, self._length, at_once):
+        for start in range(0, self._length, rows):
             with self._reported():
-                frame = self._scan.select(chosen).slice(start, at_once).collect()
-            whole = Batch(
+                frame = self._scan.select(chosen).slice(start, rows).collect()
+            yield Batch(
                 frame.select(self._names[k] for k in columns).to_numpy().astype(self.dtype),
                 np.arange(start, start + len(frame)),
                 (start + len(frame)) / self._length,
                 tuple(frame[self._names[k]].to_numpy() for k in kept),
             )
-            yield from whole.split(rows)
 
     @contextmanager
     def _reported(self) -> Iterator[None]:
@@ -279,156 +270,86 @@ class ParquetTable(Table):
 # Text
 
 _MISSING = ["", "-", "na", "n/a", "nan", "null", "none", "#n/a"]
-_LINES = 50_000  # that are read at once
-_LONGEST = 1 << 20  # bytes in a line
 _WIDEST = 10_000  # columns
-_AFTER_QUOTES = re.compile(r'((?<!")")[ \t]+(?=[,;\t]|$)')  # blanks that no dialect expects
+_TOO_WIDE = f"more than {_WIDEST} columns"
 _QUOTES = "quotes that do not end where the field does; expected one row per line"
-_KINDS = {
-    b"\x1f\x8b": "data compressed by gzip (gunzip unpacks them)",
-    b"PK": "a ZIP archive or a spreadsheet",
-    b"\xff\xfe": "text in UTF-16",
-    b"\xfe\xff": "text in UTF-16",
-    b"\x93NUMPY": "NPY, but its name does not end in .npy",
-    b"PAR1": "Parquet, but its name does not end in .parquet",
-    b"\x89HDF": "HDF5",
-    b"ULog": "a log of PX4 (ulog2csv converts it)",
-    b"\xa3\x95": "a log of ArduPilot (mavlogdump.py --format csv converts it)",
-    b"#ROSBAG": "a ROS bag (rostopic echo -p converts it)",
-}
 
 
 class TextTable(Table):
-    """A text file, or standard input; the first line that is no comment may name the columns.
+    """A text file; the first line that is no comment may name the columns.
 
-    Comments begin with # or %; the last one before the numbers names them if no other line does. A
-    second line may hold the units. Quoted fields, a byte-order mark and, unless commas separate
-    the columns, decimal commas are read. Raises DataError, with the lines, for what is not such a
-    table.
+    Comments begin with # or %; the last one before the numbers names them if no other line does.
+    Quoted fields, a byte-order mark and, unless commas separate the columns, decimal commas are
+    read. `content` is what to read instead of the file. Raises DataError, with the lines, for what
+    is not such a table.
     """
 
     quotes = True  # whether messages show fields that are not numbers
 
-    def __init__(self, path: Path, stream: BinaryIO | None = None) -> None:
-        self._polars = _polars()
-        self.path, self.source = path, str(path)
-        self._stream = stream and io.BufferedReader(stream)  # type: ignore[type-var]
-        self._size = 0 if stream else path.stat().st_size
-        self._ahead: list[bytes] = []  # lines that were read to find the header
-        with self._opened() as file:
-            begin = file.peek(4096)[:4096]
-            kind = next((kind for magic, kind in _KINDS.items() if begin.startswith(magic)), None)
-            if kind or b"\0" in begin:
-                what = kind or "no text"
-                raise DataError(f"{path} holds {what}; expected text in UTF-8, NPY or Parquet")
-            lines = iter(lambda: self._line(file), b"")
-            comments, first = self._first_row(lines)
-            bare = re.sub(r'"[^"]*"', "", first)
-            self.separator = next((mark for mark in (";", "\t", ",") if mark in bare), None)
-            fields = self._fields(first)
-            if fields is None:
-                raise DataError(f"{path}, line {len(self._ahead)}: {_QUOTES}")
-            if len(fields) > _WIDEST:
-                raise DataError(f"{path}: {len(fields)} columns; at most {_WIDEST} are read")
-            self.names, self._header = self._read_header(fields, comments, lines)
-        self.width = len(fields)
-
-    def _opened(self) -> Any:
-        return nullcontext(self._stream) if self._stream else self.path.open("rb")
-
-    def _line(self, file: io.BufferedReader) -> bytes:
-        """The next line of the beginning."""
-        self._ahead.append(file.readline(_LONGEST))
-        self._check_length(self._ahead[-1], len(self._ahead))
-        return self._ahead[-1]
-
-    def _check_length(self, line: bytes, number: int) -> None:
-        if len(line) >= _LONGEST:
-            raise DataError(
-                f"{self.path}, line {number}: longer than {_LONGEST >> 20} MB; "
-                "expected one row per line"
-            )
-
-    def _first_row(self, lines: Iterator[bytes]) -> tuple[list[str], str]:
-        """The comments before the first line that is none, and that line."""
+    def __init__(self, path: Path, content: bytes | None = None) -> None:
+        self._polars, self.source = _polars(), str(path)
+        self._path, self._content = path, content
         comments: list[str] = []
-        for text in (_decoded(line).strip() for line in lines):
-            if _is_row(text):
-                return comments, text
-            comments += [text.lstrip("#% ")] if text else []
-        if not comments:
-            raise DataError(f"{self.path}: no rows")
-        self._ahead.pop()  # the end of the file, after a header and no rows
-        return comments[:-1], comments[-1]
-
-    def _read_header(
-        self, fields: Sequence[str], comments: Sequence[str], lines: Iterator[bytes]
-    ) -> tuple[tuple[str, ...] | None, int]:
-        """The names of the columns, with the units of a second line; the lines before the rows."""
-        before = len(self._ahead)
+        with self._open() as file:
+            if b"\0" in file.read(4096):
+                raise DataError(f"{path} holds no text; expected text in UTF-8, NPY or Parquet")
+            file.seek(0)
+            line, first = next(_rows(file, comments), (0, ""))
+            self._size = file.seek(0, io.SEEK_END)
+        if not first and not comments:
+            raise DataError(f"{path}: no rows")
+        first = first or comments.pop()  # the header of no rows
+        bare = re.sub(r'"[^"]*"', "", first)
+        self.separator = next((mark for mark in (";", "\t", ",") if mark in bare), None)
+        fields = self._fields(first)
+        if fields is None or len(fields) > _WIDEST:
+            raise DataError(f"{path}, line {line}: {_QUOTES if fields is None else _TOO_WIDE}")
+        self.width, self._header = len(fields), int(line > 0)
+        self.names = tuple(fields)
         if self._has_number(fields):
-            named = [self._fields(comment) for comment in reversed(comments)]
-            alike = (names for names in named if names and len(names) == len(fields))
-            names = next((n for n in alike if not self._has_number(n)), None)
-            return tuple(names) if names else None, before - 1
-        units = self._fields(_decoded(next(lines, b"")).lstrip("#% ")) or []
-        units = [unit.strip("[]() ") for unit in units]
-        is_second = len(units) == len(fields) and any(units) and all(map(is_unit, units))
-        if not is_second or self._has_number(units):  # 1 is a unit, too
-            return tuple(fields), before
-        pairs = zip(fields, units, strict=True)
-        return tuple(
-            n if u in ("", "-") or unit_in(n) else f"{n} [{u}]" for n, u in pairs
-        ), before + 1
+            self._header = 0
+            named = (self._fields(comment) or [] for comment in reversed(comments))
+            alike = (n for n in named if len(n) == self.width and not self._has_number(n))
+            self.names = next(map(tuple, alike), None)
+
+    def _open(self) -> BinaryIO:
+        return self._path.open("rb") if self._content is None else io.BytesIO(self._content)
 
     def _has_number(self, fields: Sequence[str]) -> bool:
-        return any(self._numbers(self._polars.Series(fields).str.strip_chars()).is_not_null())
+        texts = self._polars.Series(fields).str.strip_chars()
+        return bool(self._numbers(texts, has_commas=self.separator != ",").is_not_null().any())
 
     def _fields(self, line: str) -> list[str] | None:
         """The fields of a line; None if quotes end within a field, or in a later line."""
-        lines = [_AFTER_QUOTES.sub(r"\1", line if self.separator else line.strip())]
         mark = self.separator or " "
         try:
-            rows = list(csv.reader(lines, delimiter=mark, skipinitialspace=True, strict=True))
+            (row,) = csv.reader([line], delimiter=mark, skipinitialspace=True, strict=True)
         except csv.Error:
             return None
-        return [field for row in rows for field in row]
+        return row
 
-    def _numbers(self, texts: Any) -> Any:
-        """Texts as numbers, null if they are none; commas are decimal unless they separate."""
-        points = texts if self.separator == "," else texts.str.replace(",", ".", literal=True)
-        return points.cast(self._polars.Float64, strict=False)
+    def _numbers(self, texts: Any, *, has_commas: bool) -> Any:
+        """Texts as numbers, null if they are none."""
+        if has_commas:
+            texts = texts.str.replace(",", ".", literal=True)
+        return texts.cast(self._polars.Float64, strict=False)
 
     def place(self, row: int) -> str:
-        """How messages name a row: by its line, or else by its number."""
-        if self._stream:
-            return super().place(row)
-        with self.path.open("rb") as file:
-            lines = enumerate(map(_decoded, file), start=1)
-            numbers = (n for n, line in lines if n > self._header and _is_row(line))
-            return f"line {next(islice(numbers, row, None))}"
+        """How messages name a row: by its line."""
+        with self._open() as file:
+            return f"line {next(islice(_rows(file), self._header + row, None))[0]}"
 
     def batches(
         self, columns: Sequence[int], rows: int = ROWS, kept: Sequence[int] = ()
     ) -> Iterator[Batch]:
         """As `Table.batches`; columns that are kept are texts."""
-        first, before, done = 0, self._header, sum(map(len, self._ahead[: self._header]))
-        with self._opened() as file:
-            if self._stream:
-                file = chain(self._ahead[self._header :], iter(file.readline, b""))
-            else:
-                file.seek(done)
-            while block := [*islice(file, _LINES)]:
-                if max(map(len, block)) >= _LONGEST:
-                    for number, line in enumerate(block, before + 1):
-                        self._check_length(line, number)
-                lines = enumerate(_decoded(b"".join(block)).split("\n"), before + 1)
-                numbered = {number: line for number, line in lines if _is_row(line)}
-                table, texts = self._read(numbered, columns, kept)
-                before, done = before + len(block), done + sum(map(len, block))
+        first = 0
+        with self._open() as file:
+            lines = islice(_rows(file), self._header, None)
+            while block := dict(islice(lines, rows)):
+                table, texts = self._read(block, columns, kept)
                 numbers = np.arange(first, first := first + len(table))
-                share = done / self._size if self._size else 1.0
-                yield from Batch(table, numbers, share, texts).split(rows)
+                yield Batch(table, numbers, file.tell() / self._size, texts)
 
     def _read(
         self, lines: Mapping[int, str], columns: Sequence[int], kept: Sequence[int]
@@ -441,45 +362,44 @@ class TextTable(Table):
         if self.separator and not any('"' in row for row in lines.values()):
             fields = pl.Series(lines.values(), dtype=pl.String).str.split(self.separator)
         else:
-            split = [self._fields(row.removesuffix("\r")) for row in lines.values()]
-            fields = pl.Series(split, dtype=pl.List(pl.String))
+            fields = pl.Series(map(self._fields, lines.values()), dtype=pl.List(pl.String))
         counts = fields.list.len()
         # separators at the end of a row make empty fields
         surplus = fields.list.slice(self.width).list.join("").str.strip_chars() != ""
-        is_wrong = fields.is_null() | (counts < self.width) | surplus
-        faults = [
-            (places[row], f"{counted(counts[row], 'field')}, expected {self.width}")
-            if fields[row] is not None
-            else (places[row], _QUOTES)
-            for row in is_wrong.arg_true()
-        ]
+        is_wrong = ((counts < self.width) | surplus).fill_null(True)
+        faults = []
+        for row in is_wrong.arg_true():
+            count = counts[row]
+            fault = _QUOTES if count is None else f"{count} fields, expected {self.width}"
+            faults.append((places[row], fault))
+        texts = [fields.list.get(k, null_on_oob=True).str.strip_chars() for k in columns]
+        # 1,234 beside 0.5 may be a thousand: then it is no number
+        has_points = any(column.str.contains(".", literal=True).any() for column in texts)
+        has_commas = self.separator != "," and not has_points
         table = np.empty((len(lines), len(columns)))
-        marks: dict[str, int] = {}  # of decimals, and the first row that has them
-        for column, k in enumerate(columns):
-            texts = fields.list.get(k, null_on_oob=True).str.strip_chars()
-            numbers = self._numbers(texts)
+        for k, column in enumerate(texts):
+            numbers = self._numbers(column, has_commas=has_commas)
             if numbers.has_nulls():
-                is_gap = texts.str.to_lowercase().is_in(_MISSING)
-                is_text = numbers.is_null() & ~is_gap & ~is_wrong
-                faults += [(places[row], self._fault(k, texts[row])) for row in is_text.arg_true()]
-            for mark in "" if self.separator == "," else ",.":
-                for row in texts.str.contains(mark, literal=True).arg_true()[:1]:
-                    marks[mark] = min(row, marks.get(mark, row))
-            table[:, column] = numbers.to_numpy()
-        if len(marks) > 1 and not faults:
-            row = max(marks.values())
-            faults = [(places[row], "decimal commas and decimal points in one file")]
+                is_gap = column.str.to_lowercase().is_in(_MISSING)
+                for row in (numbers.is_null() & ~is_gap & ~is_wrong).arg_true():
+                    text = f": {column[row][:40]!r}" if self.quotes else ""
+                    fault = f"field {columns[k] + 1}{text} is not a number"
+                    faults.append((places[row], fault))
+            table[:, k] = numbers.to_numpy()
         if faults:
-            raise DataError(
-                listed(self.path, [f"line {n}: {fault}" for n, fault in sorted(faults)])
-            )
+            messages = [f"line {line}: {fault}" for line, fault in sorted(faults)]
+            raise DataError(listed(self.source, messages))
         return table, tuple(fields.list.get(k).str.strip_chars().to_numpy() for k in kept)
 
-    def _fault(self, column: int, text: str) -> str:
-        shown = f": {text[:40]!r}" if self.quotes else ""
-        hint = "; write decimals with a point" if "," in text else ""
-        hint = "; write degrees without °" if "°" in text else hint
-        return f"field {column + 1}{shown} is not a number{hint}"
+
+def _rows(file: BinaryIO, comments: list[str] | None = None) -> Iterator[tuple[int, str]]:
+    """The lines that are neither blank nor comments, with their numbers from 1."""
+    for number, line in enumerate(file, start=1):
+        text = line.decode(errors="replace").removeprefix("\ufeff").strip(" \r\n")
+        if text.strip() and text[0] not in "#%":
+            yield number, text
+        elif text.strip() and comments is not None:
+            comments.append(text.lstrip("#% "))
 
 
 def listed(source: Path | str, faults: Sequence[str], count: int = 0) -> str:
@@ -489,15 +409,6 @@ def listed(source: Path | str, faults: Sequence[str], count: int = 0) -> str:
         return f"{source}, {faults[0]}" if source else faults[0]
     more = [f"and {count - MOST_SHOWN} more"] if count > MOST_SHOWN else []
     return "\n  ".join([f"{source or 'the data'}: {count} faults", *faults[:MOST_SHOWN], *more])
-
-
-def _decoded(line: bytes) -> str:
-    return line.decode(errors="replace").removeprefix("\ufeff")
-
-
-def _is_row(line: str) -> bool:
-    bare = line.lstrip()
-    return bare != "" and bare[0] not in "#%"
 
 
 # Writing
@@ -538,8 +449,6 @@ def write_table(
     write = {".npy": _write_npy, ".parquet": _write_parquet, ".pq": _write_parquet}
     with whole_file(path) as file:
         write.get(path.suffix.lower(), _write_text)(file, names, dtype, tallied())
-        file.flush()
-        os.fsync(file.fileno())
     return count
 
 
@@ -560,11 +469,9 @@ def _write_npy(
 
 
 def _as_number(column: NDArray[Any], dtype: np.dtype[Any]) -> Numbers:
-    try:
-        numbers = column.astype(dtype)
-    except ValueError:
-        numbers = None
-    if numbers is None or np.abs(numbers).max(initial=0) > _EXACT:
+    is_number = column.dtype.kind in _NUMERIC
+    numbers = column.astype(dtype) if is_number else np.empty(0)
+    if not is_number or np.abs(numbers).max(initial=0) > _EXACT:
         raise DataError(
             "a column of --keep has texts or integers beyond 2^53, which an NPY file of floats "
             "cannot contain; expected .csv or .parquet"

@@ -76,7 +76,7 @@ def evaluate(
     if isinstance(source, Path):
         table = open_table(source)
     else:
-        table = TextTable(Path("standard input"), source)
+        table = TextTable(Path("standard input"), source.read())
     where, stream = (path, None) if isinstance(path, Path) else (Path("standard output"), path)
     if stream is None:
         check_ending(where)
