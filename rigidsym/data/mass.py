@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from pathlib import Path
@@ -114,18 +114,19 @@ class MassProperties:
         return {"text/plain": self._in_numbers()}
 
     def _in_numbers(self) -> str:
-        principal = self.principal
-        lines = [
-            f"mass                 M = {_number(self.mass)} kg",
-            f"centre of mass       c = ({_row(self.centre)}) m",
-            "inertia tensor about the centre of mass, kg m²",
-            *_grid(self.inertia),
-            f"principal moments    {_row(principal.moments)} kg m²",
-            "principal axes as columns, right-handed",
-            *_grid(principal.axes),
-            f"radii of gyration    {_row(self.radii)} m",
-        ]
-        return "\n".join([*lines, *([principal.repeated] if principal.repeated else [])])
+        rows: dict[str, Array] = {
+            "mass M, kg": np.array([[self.mass]]),
+            "centre of mass c, m": self.centre[None],
+            "inertia tensor about the centre of mass, kg m²": self.inertia,
+            "principal moments, kg m²": self.principal.moments[None],
+            "principal axes as columns, right-handed": self.principal.axes,
+            "radii of gyration, m": self.radii[None],
+        }
+        lines: list[str] = []
+        for title, matrix in rows.items():
+            numbers = ("".join(f"{x + 0.0:20.12g}" for x in row) for row in matrix)  # −0 + 0 is 0
+            lines += [title, *numbers]
+        return "\n".join([*lines, self.principal.repeated]).rstrip()
 
     def as_table(self) -> dict[str, object]:
         """The values of [body] in a derivation file, without rounding errors of zeros."""
@@ -153,23 +154,6 @@ class MassProperties:
             "radii_of_gyration": self.radii.tolist(),
             "repeated": self.principal.repeated,
         }
-
-
-def _number(value: float) -> str:
-    return f"{value + 0.0:.15g}"  # −0 + 0 is 0
-
-
-def _row(values: Iterable[float]) -> str:
-    return ", ".join(map(_number, values))
-
-
-def _grid(matrix: Array) -> list[str]:
-    rows = [[f"{entry + 0.0: .12g}" for entry in row] for row in matrix]
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    return [
-        "  " + "  ".join(e.ljust(width) for e, width in zip(row, widths, strict=True)).rstrip()
-        for row in rows
-    ]
 
 
 # Particles
@@ -218,11 +202,6 @@ def inertia_of(
     (2.0, [2.0, 2.0, 0.0])
     """
     path = Path(particles) if isinstance(particles, str | Path) else None
-    if hasattr(particles, "dask"):
-        raise BodyError(
-            "expected an array in memory or the path of a file, got a Dask array; "
-            "to_npy_stack or to_parquet writes one in pieces"
-        )
     try:
         table = ArrayTable(particles) if path is None else open_table(path)
         if isinstance(table, TextTable):
@@ -249,12 +228,7 @@ def _properties(rows: Array, table: Table, *, allow: bool) -> MassProperties:
     def refuse(wrong: NDArray[np.bool_], expected: str) -> None:
         if wrong.any():
             row = int(np.argmax(wrong))
-            is_text = isinstance(table, TextTable)
-            name = (
-                f"{table.source}, {table.place(row)}"
-                if is_text
-                else f"particle {row}, counted from 0"
-            )
+            name = f"{table.source}, {table.place(row)}" if table.source else table.place(row)
             x, y, z = positions[row]
             fault = f"expected {expected}, got mass {masses[row]:g} at ({x:g}, {y:g}, {z:g})"
             raise BodyError(f"{name}: {fault}")
@@ -295,22 +269,14 @@ def _columns(table: Table, names: Sequence[str] | None) -> tuple[list[int], Arra
             )
         named = ("m", *_AXES)[4 - table.width :]
     header = ColumnNames(named)
-    if not any(map(header.has, (*_AXES, *_MASSES))):  # perhaps not to be shown
-        size = f"{Path(table.source).stat().st_size} bytes" if table.source else "an array"
-        raise BodyError(
-            f"{size} without a column named x, y, z or m; --columns names the columns in order"
-        )
     axes, mass = [header.find([name]) for name in _AXES], header.find(_MASSES)
     columns = [column for column in (*axes, mass) if column is not None]
+    if missing := [name for name, column in zip(_AXES, axes, strict=True) if column is None]:
+        remedy = "--columns names the columns in order"
+        raise BodyError(f"no column {', '.join(missing)} among {header.listed}; {remedy}")
     others = [name for k, name in enumerate(header.plain) if k not in columns]
-    listed = ", ".join(header.names)
-    if None in axes:
-        missing = _AXES[axes.index(None)]
-        near = get_close_matches(missing, others, n=1)
-        hint = f"did you mean {near[0]}?" if near else "--columns names the columns in order"
-        raise BodyError(f"no column {missing} among {listed}; {hint}")
     if mass is None and (near := get_close_matches("mass", others, n=1)):
-        raise BodyError(f"no column m or mass among {listed}; is {near[0]} the mass?")
+        raise BodyError(f"no column m or mass among {header.listed}; is {near[0]} the mass?")
     units = ("m", "m", "m", "kg")[: len(columns)]
     factors = [header.factor(c, unit) or 1.0 for c, unit in zip(columns, units, strict=True)]
     return columns, np.array(factors)

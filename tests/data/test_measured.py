@@ -83,7 +83,7 @@ def test_columns_by_name_in_every_format(tmp_path):
 
 def test_a_file_of_something_else_is_described_and_not_quoted(tmp_path):
     (tmp_path / "cloud.txt").write_text("secret:x:0:0:words:/bin/bash\n")
-    with pytest.raises(BodyError, match=r"\d+ bytes without a column named x") as error:
+    with pytest.raises(BodyError, match="no column x, y, z among 1 column") as error:
         inertia_of(tmp_path / "cloud.txt")
     assert not re.search("secret|words", str(error.value))
 
@@ -98,7 +98,7 @@ def test_units_are_converted_and_a_negative_mass_may_be_allowed(tmp_path):
 @pytest.mark.parametrize(
     ("table", "fault"),
     [
-        (np.vstack([rows(7), [np.inf, 0, 0, 0]]), r"particle 7, counted from 0"),
+        (np.vstack([rows(7), [np.inf, 0, 0, 0]]), r"row 8: expected finite numbers"),
         (rows(20) * (0, 1, 1, 1), r"the total mass is 0 kg; expected a positive mass"),
         (rows(20)[:0], r"expected at least one particle, got none"),
         (rows(20) * (1, 1e200, 1, 1), r"too large for double precision"),
