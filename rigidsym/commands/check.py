@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
 from itertools import zip_longest
 from pathlib import Path
@@ -14,7 +13,6 @@ from rigidsym.commands.output_folder import CERTIFICATE, content_of, printed
 from rigidsym.errors import CheckError, SpecError
 from rigidsym.notes.formats.record import SCHEMA, SCHEMA_VERSION
 from rigidsym.pipeline import read_record
-from rigidsym.system.files import read_bytes
 from rigidsym.tools.certificate.checker import BROKEN, load, verify
 
 
@@ -56,7 +54,7 @@ def _findings(record: Path) -> Iterator[tuple[Path, str, str]]:
     content = content_of(record)
     version = content.get("schema_version")
     if content.get("schema") != SCHEMA:
-        yield record, _damage(record), ""
+        yield record, "cannot be read as the record of a derivation; derive it again", ""
         return
     if version != SCHEMA_VERSION:
         yield record, f"schema version {version}, expected {SCHEMA_VERSION}", ""
@@ -81,19 +79,6 @@ def _findings(record: Path) -> Iterator[tuple[Path, str, str]]:
     path = record.with_suffix(f".{CERTIFICATE}")
     if path.name not in fresh.files and path.exists():
         yield path, f"unknown to {record.name}: derive again with --certificates", ""
-
-
-def _damage(record: Path) -> str:
-    """Why a file is no record."""
-    try:
-        json.loads(read_bytes(record).decode("utf-8"))
-    except OSError as error:
-        return f"cannot be read: {error.strerror}"
-    except json.JSONDecodeError as error:
-        return f"cannot be read: not valid JSON, at line {error.lineno}; derive it again"
-    except (ValueError, RecursionError):
-        return "cannot be read: not valid JSON; derive it again"
-    return "not the record of a derivation"
 
 
 def difference(path: Path, expected: str) -> str:

@@ -15,9 +15,7 @@ from rigidsym.mechanics.quantities.mass import BODY_ALONE
 from rigidsym.models.library import ALIASES, PARAMETRISATIONS, PRESETS, rotation_from
 from rigidsym.models.parametrisations import EULER_SEQUENCES, EulerAngles
 from rigidsym.models.solids import SHAPES
-from rigidsym.system.resources import names, text
-
-_TURNS = 'such as "z(phi) x(theta) [1,1,0](psi) y(pi/4)"; a name such as alpha0 is a constant'
+from rigidsym.system.resources import environment, names, text
 
 
 @make("list")
@@ -32,36 +30,31 @@ def inventory() -> str:
     presets = {name: rotation_from(name) for name in PRESETS}
     passive = {name: "A = Rᵀ, " if model.passive else "" for name, model in presets.items()}
     shipped = {name: text("derivations", f"{name}.toml") for name in names("derivations", ".toml")}
-    sections: dict[str, list[tuple[str, ...]]] = {
-        "Rotations (upper case: about body axes, lower case: about fixed axes)": [
-            (sequence, f"R = {EulerAngles(sequence).product}") for sequence in EULER_SEQUENCES
+    parametrisations = PARAMETRISATIONS.items()
+    targets = {
+        name: target.about + (f"; {target.missing} is not installed" * bool(target.missing))
+        for name, target in TARGETS.items()
+    }
+    template = environment().get_template("list/inventory.txt.jinja")
+    return template.render(
+        table=_table,
+        sequences=[(name, f"R = {EulerAngles(name).product}") for name in EULER_SEQUENCES],
+        parametrisations=[
+            (n + aliases.get(n, ""), f"R = {e.product}") for n, e in parametrisations
         ],
-        "Other parametrisations": [
-            (name + aliases.get(name, ""), f"R = {entry.product}")
-            for name, entry in PARAMETRISATIONS.items()
-        ],
-        "Presets": [
+        presets=[
             (name, f"{passive[name]}R = {model.product}: {PRESETS[name].about}")
             for name, model in presets.items()
         ],
-        "Any number of turns about any axes": [(_TURNS,)],
-        "Solids (shape in [body])": [
+        solids=[
             (name, f"{', '.join(length.key for length in shape.lengths)}: {shape.about}")
             for name, shape in SHAPES.items()
         ],
-        "Quantities": [
-            (BODY_ALONE, "", "all quantities that a body has without a rotation"),
-            *((name, entry.symbol.text, entry.about) for name, entry in QUANTITIES.items()),
-        ],
-        "Targets of the kernels (--target NAME,...)": [
-            (name, target.about + (f"; {target.missing} is not installed" * bool(target.missing)))
-            for name, target in TARGETS.items()
-        ],
-        "Shipped derivations (rigidsym run NAME)": [
-            (name, tomllib.loads(file).get("title", "")) for name, file in shipped.items()
-        ],
-    }
-    return "\n\n".join(f"{title}\n{_table(rows)}" for title, rows in sections.items())
+        all_of_a_body=BODY_ALONE,
+        quantities=[(name, entry.symbol.text, entry.about) for name, entry in QUANTITIES.items()],
+        targets=list(targets.items()),
+        derivations=[(n, tomllib.loads(file).get("title", "")) for n, file in shipped.items()],
+    ).rstrip()
 
 
 def _table(rows: Sequence[Sequence[str]]) -> str:

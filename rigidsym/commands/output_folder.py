@@ -35,7 +35,7 @@ def with_existing_files(spec: DerivationSpec, out: Path) -> DerivationSpec:
     Other targets and notes of an earlier run are printed again with the rest, so that one record
     describes all of them and `rigidsym check` sees them.
     """
-    before = _spec_in(out / spec.name)
+    before = _spec_of(content_of(out / spec.name / f"{spec.name}.json"))
     if before is None:
         return spec
     files = {key: getattr(spec, key) for key in ("kernels", "note", "certificates")}
@@ -60,8 +60,8 @@ def write(output: Output, out: Path, *, force: bool) -> list[Path]:
     """
     folder = out / output.spec.name
     with locked(folder):
-        known = content_of(folder / f"{folder.name}.json").get("files")
-        known = known if isinstance(known, dict) else {}
+        content = content_of(folder / f"{folder.name}.json")
+        known = content["files"] if isinstance(content.get("files"), dict) else {}
         own = [folder / name for name in known if Path(name).name == name]  # none elsewhere
         contents = {path: path.read_bytes() for path in own if path.is_file()}
         edited = {path for path, text in contents.items() if digest(text) != known[path.name]}
@@ -75,7 +75,7 @@ def write(output: Output, out: Path, *, force: bool) -> list[Path]:
                 f"{', '.join(map(str, lost))} changed since it was generated; use --force to "
                 "overwrite it, or --out for another folder"
             )
-        before = _spec_in(folder)
+        before = _spec_of(content)
         if before is not None and before.models != output.spec.models:
             message(f"replacing {folder}, which held another rotation (use --out to keep both)")
         gone = sorted({path.name for path in contents.keys() - edited} - output.files.keys())
@@ -83,33 +83,21 @@ def write(output: Output, out: Path, *, force: bool) -> list[Path]:
             message(f"removing {', '.join(gone)} from {folder} (use --out to keep both)")
         for name in gone:
             (folder / name).unlink()
-        if PDF not in output.spec.note:
-            report_old_pdf(folder / f"{folder.name}.tex", output.files.get(f"{folder.name}.tex"))
         return [write_text(folder / name, text) for name, text in output.files.items()]
 
 
-def report_old_pdf(source: Path, text: str | None) -> None:
-    """A message on standard error if the TeX file of a PDF is about to change, and not the PDF."""
-    pdf = source.with_suffix(".pdf")
-    if text is None or not (pdf.is_file() and source.is_file()):
-        return
-    if source.read_bytes() != text.encode():
-        message(f"{pdf} is of an earlier run; use --pdf to typeset it again, or delete it")
-
-
-def _spec_in(folder: Path) -> DerivationSpec | None:
-    """The specification in the record of a folder; None without a record that can be read."""
-    request = content_of(folder / f"{folder.name}.json").get("request")
+def _spec_of(content: dict[str, Any]) -> DerivationSpec | None:
+    """The specification in the content of a record; None without one that can be read."""
     try:
-        return None if request is None else read_record(request)
+        return read_record(content["request"]) if "request" in content else None
     except SpecError:
         return None
 
 
 def content_of(record: Path) -> dict[str, Any]:
-    """The object in a JSON file; empty without one that can be read."""
+    """The object in a JSON file; empty without one. Raises OSError for what is no regular file."""
     try:
         content = json.loads(read_bytes(record).decode("utf-8"))
-    except (OSError, ValueError, RecursionError):
+    except (FileNotFoundError, ValueError, RecursionError):
         return {}
     return content if isinstance(content, dict) else {}

@@ -8,7 +8,6 @@ from typing import Any
 import click
 
 from rigidsym.commands.command import command as make
-from rigidsym.commands.output_folder import report_old_pdf
 from rigidsym.notes.formats import render
 from rigidsym.notes.formats.pdf import typeset
 from rigidsym.notes.problems import SUBJECTS, sheets_of
@@ -33,10 +32,7 @@ def command(
     for document in documents:
         for ending in _ENDINGS:
             path = folder / f"{document.name}.{ending}"
-            text = render(document, ending)
-            if ending == "tex" and not pdf:
-                report_old_pdf(path, text)
-            click.echo(write_text(path, text))
+            click.echo(write_text(path, render(document, ending)))
     for document in documents if pdf else ():
         paper = typeset(render(document, "tex"))
         click.echo(write_bytes(folder / f"{document.name}.pdf", paper.pdf))

@@ -18,13 +18,11 @@ from rigidsym.pipeline import motion_of, read
 from rigidsym.simulation.problem import NEEDED
 from rigidsym.simulation.solver import METHODS
 from rigidsym.simulation.trajectory import PICTURES, check_picture
-from rigidsym.system.files import whole_file, write_text
+from rigidsym.system.files import write_text
 from rigidsym.system.processes import bar
 
 if TYPE_CHECKING:
     from rigidsym.simulation.trajectory import Trajectory
-
-_ARCHIVE = ".npz"
 
 
 @make("simulate", method=METHODS)
@@ -32,7 +30,7 @@ def command(source: str, **options: Any) -> None:
     """Simulate the motion that a derivation file with [dynamics] describes."""
     out, plot, animate = (options[name] for name in ("out", "plot", "animate"))
     if out is not None:
-        check_ending(out, _ARCHIVE)
+        check_ending(out)
     for path, endings in ((plot, PICTURES), (animate, (".html",))):
         if path is not None:
             check_picture(path, endings)
@@ -84,13 +82,8 @@ def _motion(source: str, *, is_page: bool) -> Motion:
 
 
 def _write(result: Trajectory, out: Path) -> None:
-    """The times and states in a table, or with the rotation matrices in an archive of NumPy."""
+    """The times and states in a table."""
     columns = result.columns()
-    if out.suffix == _ARCHIVE:
-        arrays: dict[str, Any] = {**columns, "rotation_matrix": result.rotation_matrix}
-        with whole_file(out) as archive:
-            np.savez(archive, **arrays)
-    else:
-        rows = np.column_stack([*columns.values()])
-        write_table(out, tuple(columns), rows.dtype, [(rows, ())])
+    rows = np.column_stack([*columns.values()])
+    write_table(out, tuple(columns), rows.dtype, [(rows, ())])
     click.echo(out)

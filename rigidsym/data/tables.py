@@ -417,11 +417,11 @@ Rows = tuple[Numbers, Sequence[NDArray[Any]]]  # numbers, and kept columns that 
 _EXACT = 1 << 53  # a larger integer may not be a double
 
 
-def check_ending(path: Path, *others: str) -> None:
-    """Raise RequestError for an ending that is neither written here nor among the others."""
-    if path.suffix.lower() not in (*ENDINGS, *others):
+def check_ending(path: Path) -> None:
+    """Raise RequestError for an ending that is not written."""
+    if path.suffix.lower() not in ENDINGS:
         ending = f"the ending {path.suffix}" if path.suffix else "no ending"
-        raise RequestError(f"{path} has {ending}; expected {', '.join((*ENDINGS, *others))}")
+        raise RequestError(f"{path} has {ending}; expected {', '.join(ENDINGS)}")
 
 
 def write_table(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -247,13 +248,17 @@ def _rotation(data: Data | None, place: Place, name: str) -> list[RotationModel]
     for own, text in texts:
         if text is not None:
             with own.noting():
-                model = rotation_from(
+                make = partial(
+                    rotation_from,
                     text,
-                    names=None if "(" in text else angles,
                     constants=constants or (),
                     scalar_last=bool(data.get("scalar_last")),
                     passive=bool(data.get("passive")),
                 )
+                model = make()
+                if angles and "(" not in text:
+                    with place.at("angles").noting():  # what is wrong now, is wrong with them
+                        model = make(names=angles)
                 models.append(model)
                 places.append(own)
     for k, message in repeated(models).items():

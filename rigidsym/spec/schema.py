@@ -33,11 +33,13 @@ _TYPES: Mapping[str, tuple[type, ...]] = {
     "array": (list,),
     "object": (Mapping,),
 }
-_NOUNS = {  # in singular and plural
-    "string": ("text in quotes", "texts in quotes"),
-    "number": ("number", "numbers"),
-    "integer": ("whole number", "whole numbers"),
-    "object": ("table", "tables"),
+_WORDS = {  # in messages
+    "string": "a text in quotes",
+    "number": "a number",
+    "integer": "a whole number",
+    "boolean": "true or false",
+    "array": "a list",
+    "object": "a table",
 }
 _LARGEST = 1e300  # sums and products of numbers in a file stay finite
 
@@ -102,25 +104,26 @@ def checked(value: Any, schema: Schema, place: Place) -> Any:
     kind = next((kind for kind in kinds if _is_of(value, kind["type"])), None)
     if kind is None:
         place.mistyped(value, expected(schema, place))
-        return None
-    if isinstance(value, Mapping):
+    elif isinstance(value, Mapping):
         return _checked_table(value, kind, place)
-    if isinstance(value, list):
+    elif isinstance(value, list):
         return _checked_list(value, kind, place)
-    if isinstance(value, str):
+    elif isinstance(value, str):
         return _checked_text(value, kind, place)
-    if isfinite(value) and abs(value) < _LARGEST:
+    elif isfinite(value) and abs(value) < _LARGEST:
         return value
-    place.fault(f"expected a finite number, got {value:.3g}")
+    else:
+        place.fault(f"expected a finite number, got {value:.3g}")
     return None
 
 
 def _is_of(value: object, types: str | list[str]) -> bool:
     """Whether a value is of one of the types; true and false are not numbers."""
-    for name in [types] if isinstance(types, str) else types:
-        if isinstance(value, _TYPES[name]) and isinstance(value, bool) == (name == "boolean"):
-            return True
-    return False
+    names = [types] if isinstance(types, str) else types
+    return any(
+        isinstance(value, _TYPES[name]) and isinstance(value, bool) == (name == "boolean")
+        for name in names
+    )
 
 
 def _checked_table(value: Mapping[str, Any], schema: Schema, place: Place) -> dict[str, Any]:
@@ -128,18 +131,13 @@ def _checked_table(value: Mapping[str, Any], schema: Schema, place: Place) -> di
     for key in value.keys() - keys.keys():
         place.at(key).fault(f"unknown key; {schema.get('hints', {}).get(key) or offer(key, keys)}")
     # null in JSON is as good as nothing; a missing key that is required is noted as None
-    present = [
-        key for key in keys if value.get(key) is not None or key in schema.get("required", ())
-    ]
+    required = schema.get("required", ())
+    present = [key for key in keys if value.get(key) is not None or key in required]
     return {key: checked(value.get(key), keys[key], place.at(key)) for key in present}
 
 
 def _checked_list(value: list[Any], schema: Schema, place: Place) -> list[Any] | None:
-    least = schema.get("minItems", 0)
-    if len(value) < least == 1:
-        place.fault(f"the list is empty; expected {expected(schema, place)}")
-        return None
-    if not least <= len(value) <= schema.get("maxItems", len(value)):
+    if not schema.get("minItems", 0) <= len(value) <= schema.get("maxItems", len(value)):
         place.mistyped(value, expected(schema, place))
         return None
     entries = [checked(entry, schema["items"], place.at(k)) for k, entry in enumerate(value)]
@@ -169,25 +167,12 @@ def _checked_text(value: str, schema: Schema, place: Place) -> str | None:
 def expected(schema: Schema, place: Place) -> str:
     """What a message says that a value should be."""
     if "type" not in schema:
-        return " or ".join(expected(kind, place) for kind in schema["anyOf"])
+        return " or ".join(dict.fromkeys(expected(kind, place) for kind in schema["anyOf"]))
     kind = schema["type"]
     if kind == "object" and place.path and isinstance(place.path[-1], str):
         return f"a table [{dotted(place.path)}]"
-    if kind == "boolean":
-        return "true or false"
     if isinstance(kind, list):
         return 'a number, or an expression in quotes such as "2*a"'
-    noun = "list" + _plural(schema).removeprefix("lists") if kind == "array" else _NOUNS[kind][0]
+    size = f" of {schema['maxItems']} entries" if "maxItems" in schema else ""
     such = [json.dumps(example, ensure_ascii=False) for example in schema.get("examples", ())]
-    return f"a {noun}" + "".join(f" such as {text}" for text in such)
-
-
-def _plural(schema: Schema) -> str:
-    """lists of 3 expressions"""
-    kind = schema["type"]
-    if kind == "array":
-        size = f"{schema['maxItems']} " if "maxItems" in schema else ""
-        return f"lists of {size}{_plural(schema['items'])}"
-    if "enum" in schema:
-        return "names"
-    return "expressions" if isinstance(kind, list) else _NOUNS[kind][1]
+    return _WORDS[kind] + size + "".join(f" such as {text}" for text in such)

@@ -90,24 +90,20 @@ Progress = Callable[[float], None]  # receives the share done, from 0 to 1
 
 @contextmanager
 def bar(label: str) -> Iterator[Progress | None]:
-    """A bar while the work goes on; None without a terminal."""
+    """A line with the share that is done, until the work ends; None without a terminal."""
     if not sys.stderr.isatty():
         yield None
         return
-    from rich.console import Console
-    from rich.progress import (
-        BarColumn,
-        Progress as Bar,
-        TaskProgressColumn,
-        TextColumn,
-        TimeRemainingColumn,
-    )
+    name = printable(label)
 
-    text = TextColumn("{task.description}", markup=False)
-    columns = text, BarColumn(), TaskProgressColumn(), TimeRemainingColumn()
-    with Bar(*columns, console=Console(stderr=True), transient=True) as drawn:
-        task = drawn.add_task(printable(label), total=1.0)
-        yield lambda share: drawn.update(task, completed=share)
+    def draw(share: float) -> None:
+        sys.stderr.write(f"\r{name} {share:4.0%}")
+        sys.stderr.flush()
+
+    try:
+        yield draw
+    finally:
+        sys.stderr.write(f"\r{' ' * (len(name) + 5)}\r")
 
 
 class _TimeIsUp(BaseException):

@@ -153,7 +153,7 @@ def test_wrong_data_has_every_fault_at_once():
     assert [str(fault) for fault in caught.value.faults] == [
         "nam: unknown key; did you mean name?",
         "name: missing; expected a text in quotes",
-        'note: expected a list of names such as ["tex"], got the number 1',
+        'note: expected a list such as ["tex"], got the number 1',
         "rotations[0].sequence: 'ZZX' is not an Euler sequence: consecutive axes must differ: Z "
         "follows Z; did you mean ZYZ or ZYX?",
         "rotations[1].seqence: unknown key; did you mean sequence?",

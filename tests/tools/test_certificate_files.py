@@ -87,11 +87,11 @@ COQ, RECORD = f"{ZXZ}.v", f"{ZXZ}.json"
         (exchanged("v"), {COQ: "differs from the derivation at line 1"}),
         (
             lambda folder: (folder / RECORD).write_text("{"),
-            {RECORD: "cannot be read: not valid JSON, at line"},
+            {RECORD: "cannot be read as the record"},
         ),
         (
             lambda folder: (folder / RECORD).write_text(""),
-            {RECORD: "cannot be read: not valid JSON, at line 1"},
+            {RECORD: "cannot be read as the record"},
         ),
     ],
 )

@@ -219,7 +219,7 @@ def test_several_samples_with_signs_and_velocity_as_json(tmp_path):
     assert (data["schema"], data["fits"], data["samples"]) == ("rigidsym.identification", True, 2)
     (answer,) = data["answers"]
     assert answer["reading"]["words"].startswith("ZXZ intrinsic, active, radians")
-    assert answer["reading"]["velocity"] == {"frame": "body", "opposite": False, "units": ""}
+    assert answer["reading"]["velocity"] == {"frame": "body", "is_opposite": False, "units": ""}
     assert set(answer["calls"]) == {"SciPy", "rigidsym"}
     assert len(answer["aliases"]) == 3
     assert data["nearest"] is None
@@ -254,4 +254,4 @@ def test_no_fit_is_an_answer_with_exit_code_1(tmp_path):
     assert "Even the best match is" in far.stdout
     data = json.loads(call(*words, "--json", cwd=tmp_path, status=1).stdout)
     assert (data["fits"], data["answers"]) == (False, [])
-    assert data["nearest"]["residual_rad"] == pytest.approx(np.radians(0.5))
+    assert data["nearest"]["residual"] == pytest.approx(np.radians(0.5))

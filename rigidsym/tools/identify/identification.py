@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from math import degrees
 from pathlib import Path
 from textwrap import fill
@@ -86,7 +86,7 @@ class Identification:
 
     def record(self) -> dict[str, Any]:
         """The report of `rigidsym identify --json`: dictionaries, lists, texts and numbers."""
-        tolerance, names = self.tolerance, self.columns.names
+        names = self.columns.names
         return {
             "schema": SCHEMA,
             "schema_version": SCHEMA_VERSION,
@@ -94,11 +94,7 @@ class Identification:
             "samples": self.samples,
             "tried": self.tried,
             "angle_names": list(names),
-            "tolerance": {
-                "orientation_rad": tolerance.orientation,
-                "velocity_relative": tolerance.velocity if self.has_velocity else None,
-                "because": tolerance.because,
-            },
+            "tolerance": asdict(self.tolerance),
             "answers": [_answer(answer, names) for answer in self.answers],
             "nearest": self.nearest and _answer(self.nearest, names),
         }
@@ -117,30 +113,18 @@ def _wrapped(words: str, head: str = "") -> str:
 
 def _answer(answer: Answer, names: Sequence[str]) -> dict[str, Any]:
     return {
+        **asdict(answer),
         "reading": _reading(answer.reading, names),
-        "residual_rad": answer.residual,
-        "velocity_residual": answer.velocity_residual,
-        "worst_at": answer.worst,
-        "fitting": answer.fitting,
         "aliases": [_reading(reading, names) for reading in answer.aliases],
         "calls": answer.calls,
     }
 
 
 def _reading(reading: Reading, names: Sequence[str]) -> dict[str, Any]:
-    velocity = reading.velocity
     return {
         "words": reading.words(names),
         "product": reading.product(names),
-        "sequence": reading.sequence,
-        "manner": "intrinsic" if reading.is_intrinsic else "extrinsic",
-        "passive": reading.passive,
-        "unit": reading.unit,
-        "columns": list(reading.columns),
-        "signs": list(reading.signs),
-        "scalar_last": reading.scalar_last,
-        "velocity": velocity
-        and {"frame": velocity.frame, "opposite": velocity.is_opposite, "units": velocity.units},
+        **asdict(reading),
     }
 
 
