@@ -7,7 +7,6 @@ holds in its ring holds for every rotation. Vectors without a derivation are fre
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache, cached_property, reduce
@@ -20,12 +19,11 @@ from rigidsym.algebra.matrix import RingMatrix, hat, unhat
 from rigidsym.algebra.present import presenter_for
 from rigidsym.errors import ModelError
 from rigidsym.formula.reader import formula, sentence
-from rigidsym.mechanics.derivation import Derivation, Proof, Statement, Step
+from rigidsym.mechanics.derivation import Derivation, Proof, Statement, Step, phrases
 from rigidsym.mechanics.particles import IN_BODY, MASS, ParticleSums
 from rigidsym.mechanics.prove import Conditions, Prover
 from rigidsym.models.parametrisations import parametrised
 from rigidsym.models.rotation import TIME, lecture, time_function, unit_example
-from rigidsym.system.resources import text
 
 _WHOLE = sp.Symbol("M")
 _PLACE = tuple(time_function(f"x_{k}") for k in (1, 2, 3))
@@ -34,36 +32,24 @@ _OMEGA, _U, _V, _W = (sp.symbols(f"{name}_1:4") for name in ("Omega", "u", "v", 
 _LINE = sp.symbols("e_1:4")
 _TENSOR = sp.Matrix(3, 3, lambda i, j: sp.Symbol(f"I_{min(i, j) + 1}{max(i, j) + 1}"))
 
-_ITEM = re.compile(r"\n    (?=(?:=|\w+:) )(\S+) ")  # "=" or the name of a claim
-
 
 @cache
 def statements() -> tuple[Statement, ...]:
     """The equations in order, each with its claims."""
-    _, *blocks = text("templates/notes", "en/lecture.txt").strip().split("\n\n")
-    found, section = [], ""
-    for block in blocks:
-        heading, _, rest = block.partition("\n")
-        if heading.startswith("# "):
-            section = heading[2:]
-            heading, _, rest = rest.partition("\n")
-        number, name, place, *more = heading.split()
-        words, *items = _ITEM.split("\n" + rest)
-        pairs = [(mark, formula(item)) for mark, item in zip(items[::2], items[1::2], strict=True)]
-        found.append(
-            Statement(
-                name=name,
-                number=None if number == "-" else int(number),
-                section=section,
-                because=sentence(" ".join(words.split())),
-                sides=tuple(side for mark, side in pairs if mark == "="),
-                claims=tuple((mark[:-1], claim) for mark, claim in pairs if mark != "="),
-                source=lecture("" if number == "-" else number, f"section {place}"),
-                is_result="result" in more,
-                shows_summands="summands" in more,
-            )
+    return tuple(
+        Statement(
+            name=name,
+            number=entry.get("number"),
+            section=entry["section"],
+            because=sentence(" ".join(entry["because"].split())),
+            sides=tuple(map(formula, entry["sides"])),
+            claims=tuple((key, formula(text)) for key, text in entry["claims"].items()),
+            source=lecture(str(entry.get("number", "")), f"section {entry['place']}"),
+            is_result=entry.get("is_result", False),
+            shows_summands=entry.get("shows_summands", False),
         )
-    return tuple(found)
+        for name, entry in phrases("lecture").items()
+    )
 
 
 @cache

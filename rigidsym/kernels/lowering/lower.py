@@ -117,14 +117,10 @@ class _Lowering:
 
     def of_function(self, function: ConversionFunction) -> ir.Kernel:
         """The kernel of a conversion: its values one by one, as they are written."""
-        arguments = tuple(
-            self._argument(given.argument, matrix=(3, 3) if given.is_matrix else ())
-            for given in function.inputs
-        )
-        symbols = [symbol for given in function.inputs for symbol in given.argument.symbols]
-        inputs = {symbol: self._known[symbol] for symbol in symbols}
+        shape = (3, 3) if function.is_matrix else ()
+        argument = self._argument(function.argument, matrix=shape)
+        inputs = {symbol: self._known[symbol] for symbol in function.argument.symbols}
         graph = Graph(function.name, inputs, self._definitions)
-        graph.share([graph.define(symbol, value) for symbol, value in function.shared])
         for symbol, value in function.values:
             graph.hold(symbol, value)
         weighted = list(map(graph.weighted, function.outputs))
@@ -133,7 +129,7 @@ class _Lowering:
             weighted,
             self._names.copy(),
             name=function.name,
-            arguments=arguments,
+            arguments=(argument,),
             shape=(len(weighted),),
             symbol=function.symbol,
             about=function.about,

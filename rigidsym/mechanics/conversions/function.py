@@ -22,24 +22,17 @@ Vector = tuple[sp.Expr, ...]
 Line = tuple[sp.Symbol, sp.Expr]
 
 
-class ConversionInput(NamedTuple):
-    """An argument of a conversion."""
-
-    argument: Argument
-    is_matrix: bool = False  # (3, 3), its components row by row
-
-
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ConversionFunction:
-    """One conversion of a vector, or of a matrix."""
+    """One conversion of a vector, or of a matrix (3, 3), its components row by row."""
 
     name: str
-    symbol: str  # of the result, in Unicode
-    inputs: tuple[ConversionInput, ...]
-    shared: tuple[Line, ...] = ()  # values first of all, whose common parts are computed once
+    argument: Argument
     values: tuple[Line, ...]
     outputs: Vector
     about: str
+    symbol: str = "q"  # of the result, in Unicode
+    is_matrix: bool = False
     remarks: tuple[str, ...] = ()  # paragraphs
     unit: str = ""
 
@@ -122,6 +115,12 @@ class NamedValues:
     def length(self, name: str, vector: Sequence[sp.Expr]) -> sp.Expr:
         return self.let(name, sp.sqrt(square(vector)))
 
+    def scaled(self, quaternion: Sequence[sp.Expr]) -> Vector:
+        """The quaternion over the sum of its parts' sizes: any length will do; zero gives NaN."""
+        quarters = [self.let("quarter", sp.Abs(part) / 4) for part in quaternion]  # no overflow
+        size = self.let("size", sp.Add(*quarters))
+        return self.each(PARTS, [part / size for part in quaternion])
+
     def wrapped(self, name: str, value: sp.Expr) -> sp.Expr:
         """An angle between −2π and 2π, taken into (−π, π]."""
         angle = self.let(name, value)
@@ -149,6 +148,7 @@ def square(vector: Sequence[sp.Expr]) -> sp.Expr:
 Part = TypeVar("Part", sp.Expr, PolyElement)
 
 PARTS = ("w", "x", "y", "z")
+MATRIX = tuple(f"r{row}{column}" for row in (1, 2, 3) for column in (1, 2, 3))
 SHEPPERD = Citation(
     text="S. Shepperd, Quaternion from Rotation Matrix, Journal of Guidance and Control 1 (1978)"
 )
@@ -200,19 +200,6 @@ def shepperd(values: NamedValues, matrix: sp.Matrix) -> Vector:
 def scalar_last(quaternion: Vector) -> Vector:
     """(x, y, z, w) from (w, x, y, z)."""
     return (*quaternion[1:], quaternion[0])
-
-
-def scaled(values: NamedValues, quaternion: Sequence[sp.Expr]) -> Vector:
-    """The quaternion over the sum of its parts' sizes: any length will do, and zero gives NaN."""
-    quarters = [values.let("quarter", sp.Abs(part) / 4) for part in quaternion]  # no overflow
-    size = values.let("size", sp.Add(*quarters))
-    return values.each(PARTS, [part / size for part in quaternion])
-
-
-def unit(values: NamedValues, quaternion: Vector) -> Vector:
-    """The quaternion over its length."""
-    length = values.length("length", quaternion)
-    return tuple(part / length for part in quaternion)
 
 
 def short_way(values: NamedValues, quaternion: Sequence[sp.Expr]) -> Vector:
