@@ -13,7 +13,7 @@ names.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -49,7 +49,7 @@ from rigidsym.notes.document import (
     said,
 )
 from rigidsym.notes.facts.rotation import product_of
-from rigidsym.notes.vectors import in_notation, rates_of_form, sum_of_vectors
+from rigidsym.notes.vectors import sum_of_vectors
 
 _MOST_LINES = 24  # of one quantity, where there is a short way to say it
 _MOST_OF_ROTATION = 48  # a page of R itself, which the others are for
@@ -61,7 +61,6 @@ _RATHER_SHORT = frozenset(  # than with names for their parts
         "angular_momentum",
     }
 )
-_MOST_NAMES = 3  # that a reader is reminded of one by one
 _BODY_VELOCITY = "angular_velocity_body"
 _ROOM_OF_A_NAME = 6.0  # ems
 
@@ -162,15 +161,11 @@ class Fitter:
     def _blocks(self, form: _Form) -> Iterator[NoteBlock]:
         """An equation behind what its names stand for; what was said before is referred to."""
         new = [part for part in form.parts if part[0] not in self._explained_at]
-        old: dict[str, list[Text]] = {}
-        names = sorted((name for name, _ in form.parts), key=lambda s: (len(s.name), s.name))
-        for name in names:
-            if name in self._explained_at:
-                old.setdefault(self._explained_at[name], []).append(
-                    (formula_of(name, self.letters),)
-                )
+        labels = (self._explained_at[name] for name, _ in form.parts if name in self._explained_at)
+        old: list[Text] = [(EquationReference(label),) for label in dict.fromkeys(labels)]
         if old:
-            yield Paragraph((*_again(old), "; let" if new else "."))
+            words = said("defined_before").text
+            yield Paragraph((*words, " ", *listed(old), "; let" if new else "."))
         elif new:
             yield said("let")
         if new:
@@ -184,18 +179,6 @@ class Fitter:
         if block.matrix is None or not block.sides or shown.done == "listed":
             return shown.lines
         return int(block.matrix.shape[0])
-
-
-def _again(names: Mapping[str, Sequence[Text]]) -> Text:
-    """Where abbreviations were explained, by the labels of the equations."""
-    if sum(map(len, names.values())) > _MOST_NAMES:
-        places = [(EquationReference(label),) for label in names]
-        return ("The abbreviations are defined in ", *listed(places))
-    again: list[Text] = [
-        (*listed(own), f" {'are' if len(own) > 1 else 'is'} as in ", EquationReference(label))
-        for label, own in names.items()
-    ]
-    return ("Here ", *listed(again))
 
 
 def as_vectors(equation: Equation, step: Step, letters: Letters) -> Equation:
@@ -233,49 +216,41 @@ def _without_entries(equation: Equation, sides: Sequence[Formula]) -> Equation:
     )
 
 
-_DEFINED = frozenset(  # by other quantities, and so are rates from an angular velocity
-    {
-        "spin_matrix",
-        "inertia_tensor_space",
-        "rotational_energy",
-        "kinetic_energy",
-        "angular_momentum_rotation_body",
-        "angular_momentum",
+_IN_SHORT: dict[str, tuple[Formula, ...]] = {
+    "spin_matrix": (),  # by its definition, as all others without sides
+    "inertia_tensor_space": (),
+    "rotational_energy": (),
+    "kinetic_energy": (),
+    "angular_momentum_rotation_body": (),
+    "angular_momentum": (),
+    "angular_momentum_rotation": (row(ROTATION, MOMENTUM_BODY),),
+}
+_INVERSES: dict[str, tuple[Formula, ...]] = {}  # of more than three rates
+for _frame in (SPACE, BODY):
+    _w = _frame.matrix
+    _IN_SHORT |= {
+        f"rates_from_angular_velocity_{_frame.name}": (),
+        f"angular_acceleration_{_frame.name}": (
+            formula(r"#1\,\ddot{\mathbf{q}} + #3\,#2", _w, RATES, Rate(_w)),
+        ),
     }
-)
-_ACCELERATIONS = formula(r"\ddot{\mathbf{q}}")
-_FRAMES = {"space": SPACE, "body": BODY}
+    # the right inverse of least norm
+    _inverse = formula(r"#2\,(#1#2)^{-1}", _w, transpose_of(_w))
+    _INVERSES[f"inverse_rate_matrix_{_frame.name}"] = (_inverse,)
 
 
 def in_short(step: Step, derivation: Derivation, letters: Letters) -> tuple[Formula, ...] | None:
     """What a quantity is equal to, by other quantities; None where it is known by itself alone."""
-    kind, _, frame = step.quantity.name.rpartition("_")
-    if step.quantity.name == "rotation_matrix" and derivation.model.turns:
-        whole = product_of(derivation.model.turns, letters)
-        if derivation.model.passive:  # A is the transpose
+    name, model = step.quantity.name, derivation.model
+    if name == "rotation_matrix" and model.turns:
+        whole = product_of(model.turns, letters)
+        if model.passive:  # A is the transpose
             whole = formula(r"\left(#1\right)^{\mathsf T}", whole)
         return (whole,)
-    if step.quantity.name == "rotation_rate":
+    if name == "rotation_rate":
         return (by_the_chain_rule(step.quantity.symbol, letters),)
-    if step.quantity.name == "angular_momentum_rotation":
-        return (row(ROTATION, MOMENTUM_BODY),)
-    if step.quantity.name in _DEFINED or kind == "rates_from_angular_velocity":
-        return ()
-    is_free = len(derivation.model.coordinates) > 3 and not derivation.model.constraints
-    if kind == "inverse_rate_matrix" and is_free:  # the right inverse of least norm
-        matrix = _FRAMES[frame].matrix
-        return (formula(r"#2\,(#1#2)^{-1}", matrix, transpose_of(matrix)),)
-    if kind != "angular_acceleration":
-        return None
-    # the derivative of the vector form of Ω, or Ẇ q̇ + W q̈
-    names = [step.quantity.name for step in derivation.steps]
-    velocity = f"angular_velocity_{frame}"
-    form = derivation.step(velocity).vector_form if velocity in names else None
-    if form is not None and letters.length is not None:
-        rates = rates_of_form(in_notation(form, letters.length), letters.length.rate)
-        return (min((sum_of_vectors(rate, letters) for rate in rates), key=lambda f: len(f.text)),)
-    matrix = _FRAMES[frame].matrix
-    return (formula(r"#1\,#2 + #4\,#3", matrix, _ACCELERATIONS, RATES, Rate(matrix)),)
+    is_free = len(model.coordinates) > 3 and not model.constraints
+    return (_IN_SHORT | _INVERSES if is_free else _IN_SHORT).get(name)
 
 
 def by_the_chain_rule(rate: Formula, letters: Letters) -> Formula:

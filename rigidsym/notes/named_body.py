@@ -13,7 +13,7 @@ from dataclasses import replace
 import sympy as sp
 
 from rigidsym.formula.reader import formula, named
-from rigidsym.formula.tree import MINUS, PLUS, Formula, bracketed, joined, row
+from rigidsym.formula.tree import PLUS, Formula, bracketed, joined
 from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.derive import derive
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
@@ -106,28 +106,22 @@ def _named(body: RigidBody) -> tuple[Parts, RigidBody]:
 
 
 def textbook_form(name: str, derivation: Derivation) -> tuple[Formula, ...]:
-    """E_R = ½ (I₁ Ω′₁² + I₂ Ω′₂² + I₃ Ω′₃²), L_R = I₂ Ω + (I₁ − I₂) Ω′₁ e′₁ + ...
+    """E_R = ½ (I₁ Ω′₁² + I₂ Ω′₂² + I₃ Ω′₃²).
 
     Empty for other quantities, and where the axes of the body are no principal axes with names.
     """
-    inertia = next(
-        (s.expression for s in derivation.steps if s.quantity.name == "inertia_tensor"), None
-    )
-    if inertia is None or not inertia.is_diagonal() or not all(e.is_Atom for e in inertia):
+    expressions = {step.quantity.name: step.expression for step in derivation.steps}
+    inertia = expressions.get("inertia_tensor")
+    if name != "rotational_energy" or inertia is None or not inertia.is_diagonal():
         return ()
-    moments = [None if moment == 0 else named(str(moment)) for moment in inertia.diagonal()]
-    numbered = [(k, moment) for k, moment in enumerate(moments, start=1) if moment]
-    if name == "rotational_energy":
-        terms = [formula(rf"#1\,{{\Omega'_{k}}}^2", moment) for k, moment in numbered]
-        whole = joined(terms, PLUS)
-        half = formula(r"\tfrac{1}{2}\,#1", bracketed(whole) if len(terms) > 1 else whole)
-        return (half,)
-    if name == "angular_momentum_rotation" and len(numbered) == 3:
-        middle = numbered[1][1]
-        terms = [row(middle, _TURNED)]
-        for k, moment in (numbered[0], numbered[2]):
-            if moment != middle:
-                excess = bracketed(row(moment, MINUS, middle))
-                terms.append(formula(rf"#1\,\Omega'_{k}\,\mathbf{{e}}'_{k}", excess))
-        return (joined(terms, PLUS),)
-    return ()
+    moments = inertia.diagonal()
+    if not all(moment.is_Atom for moment in moments):
+        return ()
+    terms = [
+        formula(rf"#1\,{{\Omega'_{k}}}^2", named(str(moment)))
+        for k, moment in enumerate(moments, start=1)
+        if moment != 0
+    ]
+    whole = joined(terms, PLUS)
+    half = formula(r"\tfrac{1}{2}\,#1", bracketed(whole) if len(terms) > 1 else whole)
+    return (half,)

@@ -14,12 +14,11 @@ import sympy as sp
 
 from rigidsym.errors import ModelError, offer
 from rigidsym.formula.reader import decimal, formula
-from rigidsym.formula.tree import COMMA, Bracket, Formula, Symbol, equal, indexed, joined
+from rigidsym.formula.tree import Formula, Symbol, equal, indexed
 from rigidsym.mechanics.derivation import Argument
 from rigidsym.mechanics.derive import derive
 from rigidsym.mechanics.mass.bodies import rigid_body
 from rigidsym.mechanics.quantities.kinematics import BODY, SPACE
-from rigidsym.models.body import Composite, Part
 from rigidsym.models.parametrisations import EulerAngles
 from rigidsym.models.solids import shaped
 from rigidsym.notes.document import (
@@ -164,38 +163,6 @@ def gimbal_lock(rng: Random) -> Problem:
     )
 
 
-def drilled_block(rng: Random) -> Problem:
-    """The moments of a block with a hole drilled beside its centre."""
-    a, b, c = (sp.Rational(rng.randrange(4, 11, 2), 10) for _ in range(3))
-    radius, aside, density = a / 8, a / 4, 100 * rng.randrange(5, 28)
-    block = shaped("box", (a, b, c), density=sp.Integer(density))
-    hole = shaped("cylinder", (radius, c), density=sp.Integer(density))
-    at = sp.ImmutableMatrix([aside, 0, 0])
-    whole = rigid_body(Composite(parts=(Part(what=block), Part(what=hole, at=at, hole=True))))
-    moments = [float(moment) for moment in whole.inertia.diagonal()]
-    return _problem(
-        "drilled_block",
-        [
-            Answer(formula("M"), float(whole.mass), "kg"),
-            Answer(formula("x_C"), float(whole.centre[0]), "m"),
-            *(Answer(formula(f"I_{k}"), each, "kg m²") for k, each in enumerate(moments, start=1)),
-        ],
-        edges=[numeral(float(edge)) for edge in (a, b, c)],
-        density=density,
-        radius=numeral(float(radius)),
-        aside=numeral(float(aside)),
-        parts=[
-            {
-                "mass": numeral(float(body.mass)),
-                "moments": Bracket(
-                    joined([numeral(float(each)) for each in body.inertia.diagonal()], COMMA)
-                ),
-            }
-            for body in (rigid_body(block), rigid_body(hole))
-        ],
-    )
-
-
 def parallel_axis(rng: Random) -> Problem:
     """The moment of a solid about an axis beside its centre of mass."""
     name, count = rng.choice([("cylinder", 2), ("cone", 2), ("sphere", 1), ("hemisphere", 1)])
@@ -240,7 +207,7 @@ def rotational_energy(rng: Random) -> Problem:
 
 Kinds = Sequence[Callable[[Random], Problem]]
 _EULER: Kinds = (which_convention, angular_velocity, gimbal_lock)
-_BODIES: Kinds = (parallel_axis, drilled_block, rotational_energy)
+_BODIES: Kinds = (parallel_axis, rotational_energy)
 SUBJECTS: dict[str, tuple[str, Kinds]] = {  # title, and kinds in turn
     "euler": ("Euler angles", _EULER),
     "bodies": ("Moments of inertia", _BODIES),
