@@ -223,26 +223,18 @@ class Kernel:
                 f"got {len(self.outputs)}"
             )
         known: set[str] = set()
-        for name in self.components:
-            self._define(name, known)
-        for assignment in self.assignments:
-            self._check(assignment.value, known, is_whole=True)
-            self._define(assignment.name, known)
-        for output in self.outputs:
-            self._check(output, known, is_whole=False)
-
-    def _define(self, name: str, known: set[str]) -> None:
-        if name in known:
-            raise KernelError(f"{self.name}: {name} is defined twice")
-        known.add(name)
-
-    def _check(self, expression: Expression, known: set[str], *, is_whole: bool) -> None:
-        for node in walk(expression):
-            if isinstance(node, Name) and node.text not in known:
-                raise KernelError(f"{self.name}: {node.text} is used before it is defined")
-            if isinstance(node, Call | Guarded | Choice) and not (is_whole and node is expression):
-                called = node.function if isinstance(node, Call) else type(node).__name__
-                raise KernelError(f"{self.name}: {called} is called inside an expression")
+        lines: list[tuple[str, Expression | None]] = [(name, None) for name in self.components]
+        lines += [*self.assignments, *(("", output) for output in self.outputs)]
+        for name, value in lines:
+            for node in walk(value) if value else ():
+                if isinstance(node, Name) and node.text not in known:
+                    raise KernelError(f"{self.name}: {node.text} is used before it is defined")
+                if isinstance(node, Call | Guarded | Choice) and not (name and node is value):
+                    called = node.function if isinstance(node, Call) else type(node).__name__
+                    raise KernelError(f"{self.name}: {called} is called inside an expression")
+            if name in known:
+                raise KernelError(f"{self.name}: {name} is defined twice")
+            known.update([name] if name else [])
 
     @property
     def components(self) -> tuple[str, ...]:

@@ -6,24 +6,21 @@ folder (XDG_CACHE_HOME). Without such a folder it is in one that goes away with 
 
 from __future__ import annotations
 
-import atexit
 import os
 import shutil
-import tempfile
-import time
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from functools import cache
 from hashlib import sha256
 from importlib import import_module, invalidate_caches
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from types import ModuleType
 
 from rigidsym.system.files import cache_folder
 
 # Packages in the cache folder, some 60 kB each; those unused for the longest time go.
 _KEPT = 200
-_DAY = 86400.0  # seconds, after which a draft belongs to a process that was killed
 
 
 def load(
@@ -39,47 +36,39 @@ def load(
     """
     digest = sha256(repr([*files.items(), *depends]).encode()).hexdigest()
     package = f"kernels_{digest[:32]}"
-    home = cache_folder("kernels") or _own()
+    home = cache_folder("kernels") or Path(_own().name)
     if str(home) not in __path__:
         __path__.append(str(home))  # where Python looks for the packages
     kept = home / package
     if not kept.is_dir():
-        draft = Path(tempfile.mkdtemp(dir=kept.parent, prefix="."))
-        try:
+        with TemporaryDirectory(dir=home, prefix=".", ignore_cleanup_errors=True) as folder:
+            draft = Path(folder)
             for name, text in {"__init__.py": "", **files}.items():
                 (draft / name).write_text(text, encoding="utf-8")
             if build is not None:
                 build(draft)
             with suppress(OSError):  # another process was faster, with the same content
                 draft.rename(kept)
-                _prune(kept.parent)
-        finally:
-            shutil.rmtree(draft, ignore_errors=True)
+        by_use = sorted(home.glob("kernels_*"), key=_last_use)
+        for old in by_use[:-_KEPT]:
+            shutil.rmtree(old, ignore_errors=True)
     with suppress(OSError):
         os.utime(kept)  # it was used now
     invalidate_caches()
     return import_module(f"{__name__}.{package}.{main}")
 
 
+def _last_use(package: Path) -> float:
+    try:
+        return package.stat().st_mtime
+    except OSError:  # another process removed it
+        return 0.0
+
+
 @cache
-def _own() -> Path:
+def _own() -> TemporaryDirectory[str]:
     """The folder of this process, if there is no other."""
-    home = Path(tempfile.mkdtemp(prefix="rigidsym-"))
-    atexit.register(shutil.rmtree, home, ignore_errors=True)
-    return home
-
-
-def _prune(home: Path) -> None:
-    """Remove the packages that were not used for the longest time, and drafts a day old."""
-    used: dict[Path, float] = {}
-    for folder in home.iterdir():
-        with suppress(OSError):  # another process was faster
-            used[folder] = folder.stat().st_mtime
-    drafts = {folder for folder in used if folder.name.startswith(".")}
-    kept = sorted(used.keys() - drafts, key=used.__getitem__)
-    old = [folder for folder in drafts if used[folder] < time.time() - _DAY]
-    for folder in (*kept[:-_KEPT], *old):
-        shutil.rmtree(folder, ignore_errors=True)
+    return TemporaryDirectory(prefix="rigidsym-")
 
 
 _CACHE = cache_folder("kernels")  # where another process may have put what is unpickled here

@@ -15,8 +15,6 @@ from rigidsym.kernels.targets import TARGETS, check_options, load, printer
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.system.files import write_text
 
-_CONVERSIONS = ("quaternion", "from_quaternion", "from_rotation_matrix", "unwrap")
-
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class KernelModule:
@@ -46,18 +44,17 @@ class KernelModule:
         They are kept in the user's cache folder (XDG_CACHE_HOME), so that each source is compiled
         once, and other processes can unpickle the functions. Raises MissingTool or MissingExtra
         if a tool or package is not installed. A name that the module lacks is an AttributeError
-        that names what adds it, or the nearest one.
+        with the nearest one.
         """
         module = load(self.target, self.name, self.files)
         names = vars(module).get("__all__", [n for n in vars(module) if not n.startswith("_")])
 
         def lacking(name: str) -> Any:  # Python calls it for names that are not there
-            remedy = offer(name, names)
-            if name in _CONVERSIONS:
-                remedy = "conversions=True adds the conversions"
-            elif "_jacobian_" in name:
-                remedy = "derivatives=[...] adds derivatives"
-            raise AttributeError(f"{self.main} has no function {name}; {remedy}", name=name)
+            raise AttributeError(
+                f"{self.main} has no function {name}; {offer(name, names)}; "
+                "conversions=True and derivatives=[...] add more",
+                name=name,
+            )
 
         vars(module).setdefault("__getattr__", lacking)
         return module

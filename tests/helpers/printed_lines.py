@@ -1,13 +1,11 @@
-"""What printers write, beside the text of their templates, for rotations that need all of it.
+"""What printers write for rotations that need all of it.
 
-The golden files hold one line for each file: how many lines it has, and a digest of those that are
-not in a template. The files of the lecture, tests/golden/kernels, show what changed; tests of
-values show what is right.
+The golden files hold one line for each file: how many lines it has, and a digest. The files of the
+lecture, tests/golden/kernels, show what changed; tests of values show what is right.
 """
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from functools import cache
 from hashlib import sha256
@@ -17,9 +15,7 @@ import sympy as sp
 
 import rigidsym as rs
 from rigidsym import __version__
-from rigidsym.kernels.targets import TARGETS
 from rigidsym.models.library import rotation_from
-from rigidsym.system import resources
 
 A, C = sp.symbols("A C", positive=True)
 TOP = {"body": rs.principal_moments(A, A, C), "potential": "m*g*l*cos(theta)"}
@@ -47,7 +43,6 @@ PRINTED: dict[str, list[dict[str, Any]]] = {
     "constants": [{"conversions": True}],
     "series": [{}, {"conversions": True, "derivatives": ("rotation_matrix by q",)}],
 }
-_PROSE = re.compile(r'""".*?"""|/\*.*?\*/', re.DOTALL)
 LEAN = {"lean": "double"}
 OF_C: dict[str, list[dict[str, Any]]] = {
     "turn": [LEAN | {"conversions": True}],
@@ -62,24 +57,10 @@ def motion(name: str) -> rs.Motion:
     return rs.derive(rotation_from(text), only=only, **acting)
 
 
-@cache
-def of_templates() -> set[str]:
-    folder = resources.folder("templates")
-    files = [file for target in TARGETS for file in (folder / target).glob("*.*")]
-    texts = [file.read_text(encoding="utf-8") for file in files]
-    return {line.strip() for text in texts for line in text.splitlines()}
-
-
-def described(file: str, text: str, way: str = "") -> str:
-    lines = text.replace(f"rigidsym {__version__};", "").splitlines()
-    own = [line for line in lines if line.strip() not in of_templates()]
-    digest = sha256("\n".join(own).encode()).hexdigest()
-    return f"{file} {way}: {len(lines)} {digest[:16]}"
-
-
 def of_rotations(target: str) -> Iterator[str]:
-    """What is printed of each rotation without docstrings and comments, a line for each file."""
+    """What is printed of each rotation, a line for each file."""
     for name, ways in PRINTED.items():
         for way in (*ways, *(OF_C.get(name, ()) if target == "c" else ())):
             for file, text in motion(name).kernels(target, **way).files.items():
-                yield described(file, _PROSE.sub("", text), " ".join(way))
+                digest = sha256(text.replace(__version__, "").encode()).hexdigest()
+                yield f"{file} {' '.join(way)}: {len(text.splitlines())} {digest[:16]}"

@@ -18,7 +18,6 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 import rigidsym as rs
 from helpers.target_modules import FEW, inputs as inputs_of, module, motion, one_by_one
-from rigidsym.kernels.targets import TARGETS
 
 
 def inputs(name: str, leading: tuple[int, ...] = (7,)) -> list[np.ndarray]:
@@ -185,16 +184,6 @@ def test_names_decide_and_not_the_order(form):
     assert_array_equal(found, expected.reshape(found.shape))
     with pytest.raises(ValueError, match=r"q: the columns are named .*; expected each of phi, "):
         module().rotation_matrix(NAMED[form](ANGLES))
-
-
-@pytest.mark.parametrize("target", ["numba", "c", "jax"])
-def test_names_decide_in_other_targets_and_columns_without_names_keep_their_order(target):
-    if TARGETS[target].missing:
-        pytest.skip(f"{target} is not installed")
-    matrix = rs.kernels("z(yaw) y(pitch) x(roll)", target, only="rotation_matrix").rotation_matrix
-    expected = matrix(ANGLES[:, ::-1])
-    assert_allclose(matrix(NAMED["pandas"](ANGLES)), expected, rtol=0, atol=1e-6)  # JAX: float32
-    assert_array_equal(matrix(pd.DataFrame(ANGLES[:, ::-1])), expected)
 
 
 def test_dask_takes_the_signature():

@@ -51,32 +51,16 @@ def lower_all(expressions):
     return write(graph, weighted, Names(INPUTS.values()))
 
 
+EXACT = {"nan": "nan", "choice": "{1} if {0} else {2}", "or_nan": "guarded({})", "abs": "Abs({})"}
+NAMES = {"Abs": sp.Abs, "sin": sp.sin, "cos": sp.cos, "sqrt": sp.sqrt, "Q": sp.Rational}
+
+
 def restored(assignments, outputs, values):
-    """The outputs as SymPy expressions, with every assignment put back."""
-    for assignment in assignments:
-        values[assignment.name] = in_sympy(assignment.value, values)
-    return [in_sympy(output, values) for output in outputs]
-
-
-def in_sympy(expression, values):
-    match expression:
-        case Name(text):
-            return values[text]
-        case Number(value):
-            return sp.Rational(value.numerator, value.denominator)
-        case Negative(operand):
-            return -in_sympy(operand, values)
-        case Sum(terms):
-            return sp.Add(*(in_sympy(term, values) for term in terms))
-        case Product(factors, divisors):
-            above = sp.Mul(*(in_sympy(factor, values) for factor in factors))
-            return above / sp.Mul(*(in_sympy(divisor, values) for divisor in divisors))
-        case Call("abs", argument):
-            return sp.Abs(values[argument.text])
-        case Call(function, argument):
-            return getattr(sp, function)(values[argument.text])
-        case Guarded(value, _):
-            return values[value.text]
+    """The outputs as SymPy expressions, with every assignment put back: what is printed, run."""
+    scope = {**NAMES, "guarded": lambda value, *_: value, **values}
+    for name, value in assignments:
+        scope[name] = eval(infix(value, EXACT, "Q({})"), scope)
+    return [eval(infix(output, EXACT, "Q({})"), scope) for output in outputs]
 
 
 def without_quotients(expression):

@@ -21,12 +21,6 @@ from rigidsym.errors import KernelError, MissingExtra, offer
 if TYPE_CHECKING:
     from rigidsym.kernels.ir import Program
 
-_ONE_TYPE = 'lean = "double" or "float" prints one plain function a quantity, over <math.h>'
-_REMOVED = {
-    "degrees": "angles are in radians; convert them with np.radians and np.degrees",
-    **dict.fromkeys(("precision", "arrays", "libm"), _ONE_TYPE),
-}
-
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Target:
@@ -87,28 +81,22 @@ TARGETS: dict[str, Target] = {  # the default first
 }
 
 
-def check_target(target: str) -> None:
-    """Raises KernelError, naming the known targets, if this is none of them."""
+def check_options(target: str, options: Mapping[str, str | bool]) -> None:
+    """Raises KernelError for an unknown target, an option it does not have, or another value."""
     if target not in TARGETS:
         raise KernelError(f"no target {target!r}; {offer(target, TARGETS)}")
-
-
-def check_options(target: str, options: Mapping[str, str | bool]) -> None:
-    """Raises KernelError for an option that the target does not have, or another value of it."""
-    check_target(target)
     known = TARGETS[target].options
     for name, value in options.items():
         if name not in known:
-            substitute = _REMOVED.get(name) or offer(name, ("conversions", "derivatives", *known))
-            raise KernelError(f"{target} has no option {name}; {substitute}")
+            nearest = offer(name, ("conversions", "derivatives", *known))
+            raise KernelError(f"{target} has no option {name}; {nearest}")
         if not any(type(value) is type(each) and value == each for each in known[name]):
             choices = ", ".join(map(repr, known[name]))
             raise KernelError(f"{target}, {name}: expected one of {choices}, got {value!r}")
 
 
 def printer(target: str) -> Printer:
-    """The printer of a target; raises KernelError if there is none of this name."""
-    check_target(target)
+    """The printer of a target."""
     return cast(Printer, import_module(f"{__name__}.{target}"))
 
 

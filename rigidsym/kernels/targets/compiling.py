@@ -8,8 +8,8 @@ import shutil
 import subprocess
 import sys
 import sysconfig
-import tempfile
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from types import ModuleType
 
@@ -56,14 +56,12 @@ def build(source: Path, *, portable: bool = False) -> Path:
             f"{', '.join(missing)}: not found; rigidsym derive --target c writes it, without --lean"
         )
     library = folder / f"_{name}_c{sysconfig.get_config_var('EXT_SUFFIX')}"
-    handle, draft = tempfile.mkstemp(dir=folder, prefix=".", suffix=".so")
-    os.close(handle)
+    draft = library.with_name(f".{os.getpid()}{library.name}")  # whole or not at all
     try:
-        compile_library(needed[:2], draft, portable=portable)
-        Path(draft).chmod(0o755)
-        os.replace(draft, library)
+        compile_library(needed[:2], str(draft), portable=portable)
+        draft.replace(library)
     finally:
-        Path(draft).unlink(missing_ok=True)
+        draft.unlink(missing_ok=True)
     return needed[3]
 
 
@@ -74,19 +72,13 @@ def load_built(main: str, files: Mapping[str, str], make: Callable[[Path], objec
     """
     import numpy as np
 
-    program = Path(compiler())
-    machine = sysconfig.get_config_var("EXT_SUFFIX"), sys.version, _processor()
+    program, processor = Path(compiler()), [platform.processor()]
+    with suppress(OSError):  # Linux lists the instructions that -march=native stands for
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+        processor += [line for line in lines if line.startswith(("flags", "Features"))][:1]
+    machine = sysconfig.get_config_var("EXT_SUFFIX"), sys.version, *processor
     depends = _FLAGS, _OF_THIS_PROCESSOR, str(program), program.stat().st_mtime_ns, *machine
     return load(main, files, make, *depends, np.__version__)
-
-
-def _processor() -> str:
-    """The instructions that -march=native stands for, as far as the system says."""
-    try:
-        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
-    except OSError:
-        return platform.processor()
-    return next((line for line in lines if line.startswith(("flags", "Features"))), "")
 
 
 def compiler() -> str:
@@ -106,21 +98,19 @@ def compile_library(sources: Sequence[Path], library: str, *, portable: bool = F
 
     folders = [sysconfig.get_paths()["include"], np.get_include()]
     command = [compiler(), *_FLAGS, *(f"-I{folder}" for folder in folders), *map(str, sources)]
-    tail = ["-o", library, "-lm"]
-    problem = _run([*command, *(_PORTABLE if portable else _OF_THIS_PROCESSOR), *tail])
-    if problem:
-        problem = _run([*command, *tail])
-    if problem:
-        raise ToolFailed(f"the C compiler stopped; the end of what it says:\n{problem}")
-
-
-def _run(command: list[str]) -> str:
-    """What a compiler that fails says; empty where it does not."""
-    try:
-        done = subprocess.run(
-            command, capture_output=True, text=True, errors="replace", timeout=TIMEOUT, check=False
-        )
-    except subprocess.TimeoutExpired as error:
-        raise ToolFailed(f"the C compiler was stopped after {TIMEOUT:g} seconds") from error
-    said = done.stderr.splitlines()[-_LOG_LINES:]
-    return "\n".join(said) or f"exit code {done.returncode}" if done.returncode else ""
+    for tuned in (_PORTABLE if portable else _OF_THIS_PROCESSOR, ()):
+        try:
+            done = subprocess.run(
+                [*command, *tuned, "-o", library, "-lm"],
+                capture_output=True,
+                text=True,
+                errors="replace",
+                timeout=TIMEOUT,
+                check=False,
+            )
+        except subprocess.TimeoutExpired as error:
+            raise ToolFailed(f"the C compiler was stopped after {TIMEOUT:g} seconds") from error
+        if not done.returncode:
+            return
+    log = "\n".join(done.stderr.splitlines()[-_LOG_LINES:]) or f"exit code {done.returncode}"
+    raise ToolFailed(f"the C compiler stopped; the end of what it says:\n{log}")
