@@ -27,10 +27,6 @@ class Names:
     def copy(self) -> Names:
         return Names(self._taken)
 
-    @property
-    def taken(self) -> frozenset[str]:
-        return frozenset(self._taken)
-
     def fresh(self, wish: str) -> str:
         """The wish as an identifier, with underscores behind it where it is taken."""
         name = identifier(wish)

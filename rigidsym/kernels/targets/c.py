@@ -159,7 +159,8 @@ def _declared(
 def _signature(program: Program, kernel: Kernel, precision: Precision) -> str:
     real, name = precision.real, precision.function.format(f"{program.name}_{kernel.name}")
     given = [f"const {real} {a.name}[{len(a.components)}]" for a in kernel.arguments]
-    return _listed(f"void {name}(", [*given, f"{real} out[{len(kernel.outputs)}]"])
+    given.append(f"{real} out[{len(kernel.outputs)}]")
+    return _prototype(name, given)
 
 
 def _array_signature(program: Program, kernel: Kernel, precision: Precision) -> str:
@@ -168,17 +169,13 @@ def _array_signature(program: Program, kernel: Kernel, precision: Precision) -> 
     for kind, array in (*(("const ", a.name) for a in kernel.arguments), ("", "out")):
         items.append(f"{kind}{precision.real} *{array}")
         items += [f"ptrdiff_t {array}_step", f"ptrdiff_t {array}_stride"]
-    return _listed(f"void {name}(", items)
+    return _prototype(name, items)
 
 
-def _listed(head: str, items: Sequence[str]) -> str:
-    """A head with its parameters: in its line, or in the next, or in a line each."""
-    joined = ", ".join(items)
-    if len(f"{head}{joined})") <= WIDTH:
-        return f"{head}{joined})"
-    if len(f"    {joined}") <= WIDTH:
-        return f"{head}\n    {joined}\n)"
-    return f"{head}\n    " + ",\n    ".join(items) + ")"
+def _prototype(name: str, parameters: Sequence[str]) -> str:
+    """In lines that end with a parameter."""
+    whole = ", ".join(parameter.replace(" ", "\xa0") for parameter in parameters)
+    return broken(f"void\xa0{name}({whole})", WIDTH, " " * 4)
 
 
 # statements

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from fractions import Fraction
-from functools import lru_cache
 from math import isnan
 from textwrap import wrap
 from types import MappingProxyType
@@ -44,12 +43,7 @@ def infix(
     and with a square of eps. "choice" has three places, the condition first; "nan" is a word, and
     "==" the sign of equality. `number` is the form of a number.
     """
-    return _whole(expression, tuple(forms.items()), number)
-
-
-@lru_cache(maxsize=4096)  # kernels are shared
-def _whole(expression: Expression, forms: tuple[tuple[str, str], ...], number: str) -> str:
-    return _text(expression, dict(forms), number)[0]
+    return _text(expression, forms, number)[0]
 
 
 def _text(expression: Expression, forms: Mapping[str, str], number: str) -> tuple[str, int]:
@@ -105,10 +99,10 @@ def _text(expression: Expression, forms: Mapping[str, str], number: str) -> tupl
 
 def broken(text: str, width: int, margin: str = "") -> str:
     """The text in lines that begin with a term; `margin` is before all but the first."""
-    if len(text) <= width:
-        return text
-    glued = _UNBROKEN.sub("\xa0", text)
-    lines = wrap(
-        glued, width, subsequent_indent=margin, break_long_words=False, break_on_hyphens=False
-    )
-    return "\n".join(lines).replace("\xa0", " ")
+    if len(text) > width:
+        glued = _UNBROKEN.sub("\xa0", text)
+        lines = wrap(
+            glued, width, subsequent_indent=margin, break_long_words=False, break_on_hyphens=False
+        )
+        text = "\n".join(lines)
+    return text.replace("\xa0", " ")

@@ -9,7 +9,7 @@ from rigidsym.kernels import loaded
 from rigidsym.kernels.ir import FUNCTIONS, Kernel, Program
 from rigidsym.kernels.targets import python, remarks
 from rigidsym.kernels.targets.infix import broken, infix
-from rigidsym.kernels.targets.python import WIDTH, bracketed, exploded
+from rigidsym.kernels.targets.python import WIDTH, bracketed
 
 RESERVED = python.RESERVED | {"jax", "jnp", "like", "parts"}
 _DERIVATIVES = 2  # that functions of n = |v| have: each takes two functions c_k more
@@ -55,10 +55,7 @@ def _body(kernel: Kernel) -> Iterator[str]:
     for argument in kernel.arguments:
         names = [name if name in kernel.used else "_" for name in argument.components]
         if kernel.used.intersection(names):
-            left = ", ".join(names) if len(names) > 1 else f"({names[0]},)"
-            line = f'    {left} = parts["{argument.name}"]'
-            wide = exploded(4, "(", names, f') = parts["{argument.name}"]')
-            yield line if len(line) <= WIDTH else wide
+            yield python.taken_apart(names, f'parts["{argument.name}"]')
     for name, value in kernel.statements:
         yield python.statement(4, name, value, _WORDS)
     outputs = (broken(infix(e), WIDTH - 12, " " * 12) for e in kernel.outputs)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from itertools import groupby
 from math import prod
 from types import ModuleType
 
@@ -185,8 +186,7 @@ def _block(kernel: Kernel) -> Iterator[str]:
         elif name in together:
             angles = together[name]
             both = [kernel.sines[angle][part] for part in ("sin", "cos") for angle in angles]
-            given = [angle.text for angle in angles]
-            yield bracketed(4, f"{', '.join(both)} = _sin_cos(", given, ")")
+            yield python.taken_apart(both, f"_sin_cos({', '.join(a.text for a in angles)})")
         if call is not None and call.function == "cos" and name in kernel.delicate:
             yield bracketed(4, f"{name} = _sharp(", [name, call.argument.text], ")")
     entries = [f"+{e}" if e in kernel.components else e for e in outputs(kernel, 8)]
@@ -206,21 +206,20 @@ def _unpacked(vector: str, components: Sequence[str], used: Container[str]) -> I
 def _gathered(kernel: Kernel) -> dict[str, list[Name]]:
     """Angles whose sines and cosines are taken in one call, by the name of their first sine.
 
-    Neighbours of one vector, as many as a line has room for; not with a cosine that divides,
-    which is taken anew.
+    Neighbours of one vector; not with a cosine that divides, which is taken anew.
     """
-    vectors = {name: a.name for a in kernel.arguments for name in a.components}
+    vectors = {name: (a.name,) for a in kernel.arguments for name in a.components}
+    both = [angle for angle, pair in kernel.sines.items() if len(pair) > 1]
     groups: dict[str, list[Name]] = {}
-    last, room = "", 0
-    for angle, pair in kernel.sines.items():
-        if len(pair) < 2:
-            continue
-        is_alone = angle.text not in vectors or pair["cos"] in kernel.delicate
-        vector = "" if is_alone else vectors[angle.text]
-        needed = len(", ".join(pair.values())) + len(", ")
-        if not vector or vector != last or needed > room:
-            first = min(pair.values(), key=[*kernel.calls].index)
-            groups[first], room = [], WIDTH - len("     = _of.sin_cos(")
-        groups[first].append(angle)
-        last, room = vector, room - needed
+    for _, angles in groupby(
+        both,
+        lambda angle: (
+            angle
+            if kernel.sines[angle]["cos"] in kernel.delicate
+            else vectors.get(angle.text, angle)
+        ),
+    ):
+        neighbours = list(angles)
+        first = min(kernel.sines[neighbours[0]].values(), key=[*kernel.calls].index)
+        groups[first] = neighbours
     return groups

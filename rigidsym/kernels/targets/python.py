@@ -45,6 +45,14 @@ def statement(
     return f"{margin}{name} = (\n{broken(inner + text, WIDTH, inner)}\n{margin})"
 
 
+def taken_apart(names: Sequence[str], text: str) -> str:
+    """The assignment of several values to names, in lines that fit."""
+    line = f"    {', '.join(names) if len(names) > 1 else f'({names[0]},)'} = {text}"
+    return (
+        line if len(line) <= WIDTH else broken(f"    ({', '.join(names)}) = {text}", WIDTH, " " * 8)
+    )
+
+
 def signature(kernel: Kernel, *options: str) -> str:
     """Of a function of arrays, with types."""
     arrays = [f"{a.name}: ArrayLike" for a in kernel.arguments]
@@ -71,8 +79,7 @@ def module_text(
     for argument in program.arguments:
         quoted = [f'"{name}"' for name in argument.components]
         line = f'    "{argument.name}": {tuple_of(quoted)},'
-        wide = exploded(4, f'"{argument.name}": (', quoted, "),")
-        components.append(line if len(line) <= WIDTH else wide)
+        components.append(broken(line, WIDTH, " " * 8))
     facts |= {"about": about, "names": sorted(names), "components": components}
     return resources.environment().get_template(template).render(program=program, **facts)
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import lru_cache, partial
+from collections.abc import Callable, Iterable, Sequence
+from functools import lru_cache
 from math import ceil
 from textwrap import wrap
 
@@ -14,7 +14,6 @@ from rigidsym.kernels.ir import (
     Call,
     Choice,
     Expression,
-    Guarded,
     Kernel,
     Name,
     Negative,
@@ -22,7 +21,6 @@ from rigidsym.kernels.ir import (
     Program,
     Sum,
     names_in,
-    rebuilt,
     walk,
 )
 from rigidsym.kernels.lowering.rounding import SINE, adds_angles, rounding
@@ -30,7 +28,6 @@ from rigidsym.kernels.targets.infix import broken, infix
 from rigidsym.system import resources
 from rigidsym.version import OWNERSHIP, __version__
 
-_LONGEST_DIVISOR = 16  # operations and inputs of a divisor that is written out
 _MOST_NAMES = 8
 _BLANK_LINES = re.compile(r"\n\s*\n")
 _COUNTED = {"sin": "trigonometric", "cos": "trigonometric", "sqrt": "roots", "abs": "sizes"}
@@ -120,31 +117,17 @@ def comment(texts: Sequence[Paragraph], width: int, safe: Callable[[str], str]) 
 
 
 def _divisor(kernel: Kernel, divisor: Name) -> str:
-    """A divisor as a formula if it is short, else what it depends on."""
-    sizes = dict.fromkeys(kernel.components, 1)
+    """A function of inputs as a formula; of anything else, what it depends on."""
     inputs: dict[str, tuple[str, ...]] = {name: (name,) for name in kernel.components}
     for name, value in kernel.assignments:
-        sizes[name] = sum(sizes.get(n.text, 0) if isinstance(n, Name) else 1 for n in walk(value))
-        behind = dict.fromkeys(i for n in names_in(value) for i in inputs[n])
+        behind = {i for n in names_in(value) for i in inputs[n]}
         inputs[name] = tuple(n for n in kernel.components if n in behind)
-    if sizes[divisor.text] > _LONGEST_DIVISOR:
-        names = inputs[divisor.text]
-        listed = ", ".join(names) if len(names) <= _MOST_NAMES else f"{len(names)} of the inputs"
-        return f"an expression in {listed}"
-    return infix(_in_inputs(divisor, dict(kernel.assignments)))
-
-
-def _in_inputs(expression: Expression, values: Mapping[str, Expression]) -> Expression:
-    """The expression with its definition for each name."""
-    written = partial(_in_inputs, values=values)
-    match expression:
-        case Name(text) if text in values:
-            return written(values[text])
-        case Call(function):
-            return Call(function, *(Name(infix(written(name))) for name in expression.arguments))
-        case Guarded(value):
-            return written(value)
-    return rebuilt(written, expression)
+    call = kernel.calls.get(divisor.text)
+    if call is not None and call.argument.text in kernel.components:
+        return infix(call)
+    names = inputs[divisor.text]
+    listed = ", ".join(names) if len(names) <= _MOST_NAMES else f"{len(names)} of the inputs"
+    return f"an expression in {listed}"
 
 
 def count(expressions: Iterable[Expression]) -> Counter[str]:
