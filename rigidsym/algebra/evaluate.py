@@ -1,6 +1,8 @@
 """Values of SymPy expressions in any arithmetic: `evaluate(expression, arithmetic, values)`.
 
-An arithmetic gives numbers, rational powers and functions. `Intervals` are proved to enclose the
+An arithmetic gives a `number` of the value numerator/denominator, a `constant` ("pi" or "e"), a
+rational `power`, and `apply`, which takes the names of its `functions`; it is given the expressions
+too, for errors to name them. `Intervals` are proved to enclose the
 true values: roots of negative numbers, quotients by zero and logarithms of numbers that are not
 positive have no real value there, and a value is returned only if it exists at every point of the
 intervals. `Floats` are NumPy arrays or plain numbers; `function_of` walks the expression once, and
@@ -13,7 +15,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from operator import itemgetter
-from typing import Any, Protocol
+from typing import Any
 
 import mpmath
 import sympy as sp
@@ -50,25 +52,9 @@ class Unknown(ValueError):
         self.part = part
 
 
-class Arithmetic(Protocol):
-    """Numbers of one kind. Functions are given the expression too, for errors to name it."""
-
-    functions: frozenset[str]  # the names that `apply` knows
-
-    def number(self, numerator: int, denominator: int) -> Any:
-        """A rational number."""
-
-    def constant(self, name: str) -> Any:
-        """The number "pi" or "e"."""
-
-    def power(self, base: Any, exponent: sp.Rational, whole: sp.Expr) -> Any:
-        """A rational power."""
-
-    def apply(self, name: str, whole: sp.Expr, *values: Any) -> Any:
-        """A function of values."""
-
-
-def evaluate(expression: sp.Expr, arithmetic: Arithmetic, values: dict[sp.Expr, Any]) -> Any:
+def evaluate(
+    expression: sp.Expr, arithmetic: Intervals | Floats, values: dict[sp.Expr, Any]
+) -> Any:
     """The value of an expression; `values` holds those of symbols, and remembers those of parts.
 
     Raises Unknown for a part that has none.
@@ -78,7 +64,7 @@ def evaluate(expression: sp.Expr, arithmetic: Arithmetic, values: dict[sp.Expr, 
     return values[expression]
 
 
-def _value(e: sp.Expr, arithmetic: Arithmetic, values: dict[sp.Expr, Any]) -> Any:
+def _value(e: sp.Expr, arithmetic: Intervals | Floats, values: dict[sp.Expr, Any]) -> Any:
     if e.is_Rational:
         return arithmetic.number(int(e.p), int(e.q))
     if e.is_Float:
@@ -172,9 +158,9 @@ class Intervals:
 @cache
 def context(digits: int, *, of_intervals: bool = False) -> Any:
     """mpmath's numbers or intervals of so many digits; it takes milliseconds to make them."""
-    made = mpmath.iv.__class__() if of_intervals else mpmath.mp.__class__()
-    made.dps = digits
-    return made
+    numbers = mpmath.iv.__class__() if of_intervals else mpmath.mp.__class__()
+    numbers.dps = digits
+    return numbers
 
 
 class RealValues:
@@ -271,20 +257,13 @@ def is_never_negative(expression: sp.Expr, bounds: Mapping[sp.Symbol, Bounds]) -
     """Whether the form of an expression tells that it is never negative within bounds.
 
     Symbols without bounds are constants, and positive. SymPy decides by the signs of the parts;
-    the sine of a multiple of one variable has one if it stays within half a turn.
+    the sine of a variable has one if it stays within half a turn.
     """
     plain: dict[sp.Expr, sp.Expr] = {}
-    for function in expression.atoms(sp.sin, sp.cos):
-        number, variable = function.args[0].as_coeff_Mul()
-        ends = [number * end for end in bounds.get(variable, ())]
-        first = sp.S.Zero if isinstance(function, sp.sin) else -sp.pi / 2
-        if ends and all(end.is_number and first <= end <= first + sp.pi for end in ends):
-            plain[function] = sp.Dummy(nonnegative=True)
-    for symbol in sorted(expression.free_symbols, key=str):
+    for symbol in expression.free_symbols:
         low, high = bounds.get(symbol, (sp.S.Zero, sp.oo))
-        is_positive = is_never_negative(low, bounds) if symbol not in low.free_symbols else False
-        is_negative = not is_positive and is_never_negative(-high, bounds)
-        plain[symbol] = sp.Dummy(
-            real=True, nonnegative=is_positive or None, nonpositive=is_negative or None
-        )
+        is_positive = symbol not in low.free_symbols and is_never_negative(low, bounds)
+        plain[symbol] = sp.Dummy(real=True, nonnegative=is_positive or None)
+        if is_positive and high.is_number and high <= sp.pi:
+            plain[sp.sin(symbol)] = sp.Dummy(nonnegative=True)
     return bool(expression.xreplace(plain).is_nonnegative)

@@ -35,23 +35,13 @@ def combination(argument: sp.Expr) -> Combination:
     """
     terms = sp.expand(argument).as_coefficients_dict()
     if any(map(_is_quotient, terms)):
-        terms = _cancelled(terms)
+        cancelled = sp.expand(sp.cancel(argument)).as_coefficients_dict()
+        terms = terms if any(map(_is_quotient, cancelled)) else cancelled
     for coefficient in terms.values():
         if not coefficient.is_Rational:
             raise not_exact(coefficient)
     combined = {atom: coefficient for atom, coefficient in terms.items() if coefficient}
     return _without_zeros(combined) if any(map(_has_root, combined)) else combined
-
-
-def reduced(angle: sp.Expr) -> sp.Expr:
-    """An angle without quotients that cancel and numbers that are zero; else as it is written."""
-    terms = sp.expand(angle).as_coefficients_dict()
-    if not any(_is_quotient(term) or _has_root(term) for term in terms):
-        return angle
-    combined = combination(angle)
-    if combined == {term: c for term, c in terms.items() if c}:
-        return angle
-    return sp.Add(*(coefficient * term for term, coefficient in combined.items()))
 
 
 def is_sum_of(angle: sp.Expr, *parts: sp.Expr) -> bool:
@@ -63,19 +53,6 @@ def _is_quotient(term: sp.Expr) -> bool:
     """Whether a term is divided by anything but a number."""
     powers = (factor for factor in sp.Mul.make_args(term) if factor.is_Pow)
     return any(p.exp.could_extract_minus_sign() and not p.base.is_number for p in powers)
-
-
-def _cancelled(terms: Combination) -> Combination:
-    """The terms with their quotients over one denominator, if that leaves fewer quotients."""
-    quotients = {term: c for term, c in terms.items() if _is_quotient(term)}
-    whole = sp.cancel(sp.Add(*(c * term for term, c in quotients.items())))
-    above, below = sp.fraction(whole)
-    again = sp.Add(*(term / below for term in sp.Add.make_args(sp.expand(above))))
-    fewer = again.as_coefficients_dict()
-    if sum(map(_is_quotient, fewer)) >= len(quotients):
-        return terms
-    rest = sp.Add(*(c * term for term, c in terms.items() if term not in quotients))
-    return sp.Add(rest, again).as_coefficients_dict()
 
 
 def _has_root(term: sp.Expr) -> bool:
@@ -249,7 +226,8 @@ class GeneratorSet:
         """All generators in the order of their kinds, sines and cosines over common fractions."""
         generators = list(self.kinds.items())
         for atom, fraction in self.fractions.items():
-            generators += _sine_and_cosine(atom, fraction)
+            angle = fraction * atom
+            generators += [(sp.sin(angle), Kind.SINE), (sp.cos(angle), Kind.COSINE)]
         return sorted(generators, key=lambda pair: pair[1])
 
     @cached_property
@@ -375,11 +353,6 @@ def in_names(value: Any) -> Any:
     }
     moving = filter(is_time_function, value.atoms(AppliedUndef))
     return value.xreplace(rates).xreplace({f: sp.Symbol(str(f.func)) for f in moving})
-
-
-@lru_cache(maxsize=1024)
-def _sine_and_cosine(atom: sp.Expr, fraction: sp.Rational) -> tuple[tuple[sp.Expr, Kind], ...]:
-    return (sp.sin(fraction * atom), Kind.SINE), (sp.cos(fraction * atom), Kind.COSINE)
 
 
 @lru_cache(maxsize=1024)

@@ -39,13 +39,10 @@ class RingMatrix:
         return cls.of(ring, [[entry] for entry in entries])
 
     @classmethod
-    def identity(cls, ring: Ring, size: int) -> RingMatrix:
-        return cls(
-            ring,
-            tuple(
-                tuple(ring.one if i == j else ring.zero for j in range(size)) for i in range(size)
-            ),
-        )
+    def identity(cls, ring: Ring, size: int, entry: PolyElement | None = None) -> RingMatrix:
+        """The unit matrix, or a multiple of it."""
+        one, places = ring.one if entry is None else entry, range(size)
+        return cls(ring, tuple(tuple(one if i == j else ring.zero for j in places) for i in places))
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -106,9 +103,7 @@ class RingMatrix:
     def scale(self, factor: PolyElement) -> RingMatrix:
         if self.ring.is_one(factor):
             return self
-        dot = self.ring.dot
-        rows = tuple(tuple(dot(((entry, factor),)) for entry in row) for row in self.rows)
-        return RingMatrix(self.ring, rows, (_scaled, (self, RingMatrix(self.ring, ((factor,),)))))
+        return self @ RingMatrix.identity(self.ring, self.shape[1], factor)
 
     def dt(self) -> RingMatrix:
         """The time derivative, entry by entry."""
@@ -141,24 +136,18 @@ class RingMatrix:
         return all(self.ring.is_zero(entry) for row in self.rows for entry in row)
 
     def det(self) -> PolyElement:
-        """The determinant: of three rows their triple product, else by the first row."""
-        if len(self.rows) == 3:
-            first, second, third = self.rows
-            return self.ring.dot(zip(first, cross(self.ring, second, third), strict=True))
+        """The determinant, by the first row."""
+        first = self.rows[0]
         if len(self.rows) == 1:
-            return self.rows[0][0]
-        signed = ((-1) ** j * self._minor(0, j).det() for j in range(len(self.rows)))
-        return self.ring.dot(zip(self.rows[0], signed, strict=True))
+            return first[0]
+        signed = ((-1) ** j * self._minor(0, j).det() if e else e for j, e in enumerate(first))
+        return self.ring.dot(zip(first, signed, strict=True))
 
     def adjugate(self) -> RingMatrix:
         """adj(M), with M adj(M) = det(M) 1."""
-        if len(self.rows) == 3:  # its columns are normal to rows
-            a, b, c = self.rows
-            columns = (cross(self.ring, b, c), cross(self.ring, c, a), cross(self.ring, a, b))
-            return RingMatrix(self.ring, columns).T
-        if len(self.rows) == 1:
-            return RingMatrix.identity(self.ring, 1)
         places = range(len(self.rows))
+        if len(places) == 1:
+            return RingMatrix.identity(self.ring, 1)
         return RingMatrix(
             self.ring,
             tuple(tuple((-1) ** (i + j) * self._minor(j, i).det() for j in places) for i in places),
@@ -182,18 +171,9 @@ class RingMatrix:
 
     def _minors(self, size: int) -> Iterator[PolyElement]:
         """The determinants of all parts with so many rows and columns."""
-        dot, places = self.ring.dot, range(self.shape[1])
-        if self.shape == (size, size):
-            yield self.det()
-            return
         for rows in combinations(self.rows, size):
-            if size == 2:
-                first, second = rows
-                for j, k in combinations(places, 2):
-                    yield dot(((first[j], second[k]),), minus=((first[k], second[j]),))
-            else:
-                for columns in combinations(places, size):
-                    yield self._part(rows, columns).det()
+            for columns in combinations(range(self.shape[1]), size):
+                yield self._part(rows, columns).det()
 
     def _part(self, rows: Sequence[Row], columns: Sequence[int]) -> RingMatrix:
         return RingMatrix(self.ring, tuple(tuple(row[k] for k in columns) for row in rows))
@@ -263,10 +243,6 @@ def _transposed(rows: Values) -> Values:
 def _multiplied(rows: Values, others: Values) -> Values:
     columns = list(zip(*others, strict=True))
     return [[sum(map(mul, row, column)) for column in columns] for row in rows]
-
-
-def _scaled(rows: Values, factor: Values) -> Values:
-    return [[entry * factor[0][0] for entry in row] for row in rows]
 
 
 def _entrywise(operation: Callable[[Any, Any], Any], rows: Values, others: Values) -> Values:

@@ -14,11 +14,10 @@ zero.
 from __future__ import annotations
 
 import random
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from decimal import Decimal, localcontext
 from functools import cached_property, lru_cache, partial
-from itertools import islice
 from typing import Any, NamedTuple
 
 import sympy as sp
@@ -71,11 +70,20 @@ def configurations(
     """
     bound = tuple(c for c in constraints if not is_identically_zero(c))
     _check(name, bound, dict(example))
-    reasons: list[NotReal] = []
-    points = tuple(islice(_points(bound, parts, dict(example), digits, reasons), count))
-    if points:
-        return points
-    reason = reasons[-1]
+    points: list[Configuration] = []
+    reason: NotReal | None = None
+    for seed in range(len(_SCALES) * 2):
+        point = Configuration(_with_rates(bound, dict(example), seed), digits, seed)
+        try:
+            values_of_parts(point.intervals(parts), parts)
+        except NotReal as error:
+            reason = error
+        else:
+            points.append(point)
+            if len(points) == count:
+                break
+    if points or reason is None:
+        return tuple(points)
     if reason.reason == "division by" and digits < MORE_DIGITS:
         return configurations(name, constraints, parts, example, MORE_DIGITS, count)
     place = ", where the `example` is" if bound else ""
@@ -111,24 +119,6 @@ def _check(name: str, constraints: Sequence[sp.Expr], example: Mapping[sp.Expr, 
                 "expected exact values, such as rational numbers, roots, or fractions of pi as "
                 "angles"
             )
-
-
-def _points(
-    constraints: Sequence[sp.Expr],
-    parts: Sequence[sp.Expr],
-    example: Mapping[sp.Expr, sp.Expr],
-    digits: int,
-    reasons: list[NotReal],
-) -> Iterator[Configuration]:
-    """Points at which the parts are real; why they were not at others, as `reasons`."""
-    for seed in range(len(_SCALES) * 2):
-        configuration = Configuration(_with_rates(constraints, example, seed), digits, seed)
-        try:
-            values_of_parts(configuration.intervals(parts), parts)
-        except NotReal as error:
-            reasons.append(error)
-        else:
-            yield configuration
 
 
 def _with_rates(
@@ -186,6 +176,7 @@ def values_of_parts(work: RealValues, parts: Sequence[sp.Expr]) -> list[Any]:
     return values
 
 
+@lru_cache(maxsize=64)
 def witness_for(
     codec: Codec, name: str, constraints: tuple[sp.Expr, ...] = (), example: Example = ()
 ) -> Witness:
@@ -193,13 +184,6 @@ def witness_for(
 
     Raises ModelError if no real configuration is found at which all generators are real.
     """
-    if codec.ring.complete and not constraints:
-        return _shared(codec, "", (), ())
-    return _shared(codec, name, constraints, example)
-
-
-@lru_cache(maxsize=64)
-def _shared(codec: Codec, name: str, constraints: tuple[sp.Expr, ...], example: Example) -> Witness:
     return Witness(codec, name, constraints, example)
 
 

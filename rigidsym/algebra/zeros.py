@@ -14,8 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
-from math import prod
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
@@ -45,11 +44,12 @@ class Root(NamedTuple):
     """One coordinate at one value, and the values of the generators there."""
 
     place: Place
-    becomes: tuple[tuple[int, Any], ...]  # generator: a whole number, or an element of the ring
+    becomes: tuple[tuple[int, PolyElement], ...]  # generator: an element of the ring
     order: tuple[int, float, str]  # by coordinates and values; symbols by their text
 
 
 Zero = tuple[Root, ...]  # all of them at once
+Pairs = list[tuple[sp.Expr, sp.Expr]]  # sines and cosines
 
 
 class _Angle(NamedTuple):
@@ -64,11 +64,8 @@ class _Angle(NamedTuple):
 
 def substituted(element: PolyElement, zero: Zero) -> PolyElement:
     """The element at a zero, not in normal form."""
-    values = dict(pair for root in zero for pair in root.becomes)
-    total = element.ring.zero
-    for powers, part in split(element, [*values]).items():
-        total += part * prod(map(pow, values.values(), powers))
-    return total
+    gens = element.ring.gens
+    return element.compose([(gens[place], e) for root in zero for place, e in root.becomes])
 
 
 @lru_cache(maxsize=256)
@@ -238,9 +235,21 @@ class Solver:
         used = [
             angle for angle in self._angles if any(m[angle.sine] or m[angle.cosine] for m in factor)
         ]
-        ways = [self._of_one, self._of_sum] if len(used) == 1 else [self._of_sum]
-        solved = (way(factor, angle) for angle in used for way in ways)
-        return next((roots for roots in solved if roots is not None), None)
+        for angle in used:
+            pairs = self._of_one(factor, angle) if len(used) == 1 else None
+            pairs = self._of_sum(factor, angle) if pairs is None else pairs
+            if pairs is not None:
+                try:
+                    elements = [tuple(map(self._codec.encode, pair)) for pair in pairs]
+                except AlgebraError:
+                    self.missing |= {part for pair in pairs for part in pair}
+                    continue
+                return [
+                    root
+                    for pair, becomes in zip(pairs, elements, strict=True)
+                    for root in self._rooted(angle, angle_of(*pair), becomes)
+                ]
+        return None
 
     def _is_never_zero(self, factor: PolyElement) -> bool:
         """Whether it is 1/d for a d of the ring, holds only constants, or is a sum of squares.
@@ -257,44 +266,24 @@ class Solver:
         is_even = all(power % 2 == 0 for monomial in factor for power in monomial)
         return len(signs) == 1 and is_even and self._ring.polynomials.zero_monom in factor
 
-    def _of_sum(self, factor: PolyElement, angle: _Angle) -> list[Root] | None:
-        """Roots of A cos + B sin with N² = A² + B² a number: cos = ±B/N, sin = ∓A/N."""
-        parts = self._weights(factor, angle)
-        if parts is None:
-            return None
-        above, beside = parts
-        square = self._ring.reduce(above**2 + beside**2)
-        if not square.is_ground:
-            return None
-        root = sp.sqrt(self._codec.decode(square))
-        try:
-            cosine, sine = (
-                self._codec.encode(self._codec.decode(part) / root) for part in (beside, -above)
-            )
-        except AlgebraError:
-            self.missing.add(root)
-            return None
-        value = self._codec.decode
-        return [
-            root
-            for s, c in ((sine, cosine), (-sine, -cosine))
-            for root in self._rooted(angle, angle_of(value(s), value(c)), (s, c))
-        ]
+    def _of_sum(self, factor: PolyElement, angle: _Angle) -> Pairs | None:
+        """Roots of A cos + B sin with N² = A² + B² a number: cos = ±B/N, sin = ∓A/N.
 
-    def _weights(
-        self, factor: PolyElement, angle: _Angle
-    ) -> tuple[PolyElement, PolyElement] | None:
-        """A and B of A cos + B sin, which may hold other coordinates; None for any other factor."""
+        A and B may hold other coordinates. None for any other factor.
+        """
         parts = split(factor, (angle.cosine, angle.sine))
         if not parts.keys() <= {(1, 0), (0, 1)}:
             return None
-        return parts.get((1, 0), self._ring.zero), parts.get((0, 1), self._ring.zero)
+        above, beside = (parts.get(powers, self._ring.zero) for powers in ((1, 0), (0, 1)))
+        square = self._ring.reduce(above**2 + beside**2)
+        if not square.is_ground:
+            return None
+        a, b, size = map(self._codec.decode, (above, beside, square))
+        sine, cosine = -a / sp.sqrt(size), b / sp.sqrt(size)
+        return [(sine, cosine), (-sine, -cosine)]
 
-    def _of_one(self, factor: PolyElement, angle: _Angle) -> list[Root] | None:
-        """Roots of a polynomial in one sine or one cosine, with numbers.
-
-        Above the second degree only Sturm's theorem is asked, whether there are none.
-        """
+    def _of_one(self, factor: PolyElement, angle: _Angle) -> Pairs | None:
+        """Roots of a polynomial in one sine or one cosine, up to the second degree."""
         element = self._ring.reduce(factor)
         expressions = [generator.expression for generator in self._ring.generators]
         used = {k for m in element for k, power in enumerate(m) if power}
@@ -302,37 +291,20 @@ class Solver:
         if len(moving) != 1:
             return None
         (place,), x = moving, sp.Dummy("x")
-        values = [sp.S.Zero]  # of a sine or cosine itself, the commonest
-        if len(element) > 1:
-            polynomial = sp.Poly(self._codec.decode(element).xreplace({expressions[place]: x}), x)
-            if polynomial.degree() > 2:
-                is_rational = all(number.is_Rational for number in polynomial.all_coeffs())
-                return [] if is_rational and not polynomial.count_roots(-1, 1) else None
-            values = [value for value in sp.roots(polynomial) if value.is_real]
-        roots: dict[Root, None] = {}
-        for value in values:
-            if abs(value) > 1:
-                continue
-            other = sp.sqrt(sp.expand(1 - value**2))
-            try:
-                own, beside = (
-                    int(part) if part.is_Integer else self._codec.encode(part)
-                    for part in (value, other)
-                )
-            except AlgebraError:
-                self.missing |= {value, other}
-                return None
-            for sign in (1, -1):
-                if place == angle.cosine:
-                    turned, pair = sign * sp.acos(value), (sign * beside, own)
-                else:
-                    turned = sp.asin(value) if sign > 0 else sp.pi - sp.asin(value)
-                    pair = (own, sign * beside)
-                roots |= dict.fromkeys(self._rooted(angle, turned, pair))
-        return list(roots)
+        polynomial = sp.Poly(self._codec.decode(element).xreplace({expressions[place]: x}), x)
+        if polynomial.degree() > 2:
+            return None
+        pairs: dict[tuple[sp.Expr, sp.Expr], None] = {}
+        for value in sp.roots(polynomial):
+            if value.is_real and abs(value) <= 1:
+                other = sp.sqrt(sp.expand(1 - value**2))
+                for beside in (other, -other):
+                    pair = (beside, value) if place == angle.cosine else (value, beside)
+                    pairs[pair] = None
+        return list(pairs)
 
     def _rooted(
-        self, angle: _Angle, value: sp.Expr, sine_and_cosine: tuple[Any, Any]
+        self, angle: _Angle, value: sp.Expr, sine_and_cosine: tuple[PolyElement, ...]
     ) -> Iterator[Root]:
         """The coordinates within one period whose multiple is the value, up to whole turns."""
         becomes = tuple(zip((angle.sine, angle.cosine), sine_and_cosine, strict=True))
