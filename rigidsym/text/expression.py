@@ -1,8 +1,6 @@
-"""Text to SymPy, by descent over a short grammar. The text is never run.
+"""Text to SymPy, by how tightly operators bind. The text is never run.
 
-    sum      product (("+" | "-") product)*
-    product  signed (("*" | "/") signed)*
-    signed   ("+" | "-") signed | value ["**" signed]
+    sum      value (operator sum)* | ("+" | "-") sum
     value    number | name | name "(" sum ("," sum)* ")" | "(" sum ")"
 
 Python's own reader would take `lambda` for a keyword, normalise letters (NFKC) and round 0.1.
@@ -12,8 +10,8 @@ Python's own reader would take `lambda` for a keyword, normalise letters (NFKC) 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
-from fractions import Fraction
+from collections.abc import Mapping
+from itertools import accumulate, takewhile
 from typing import NamedTuple
 
 import sympy as sp
@@ -33,6 +31,8 @@ _TOKEN = re.compile(
     r"|(?P<operator>\*\*|[-+*/(),])",
     re.ASCII,
 )
+_BINDING = {"+": 1, "-": 1, "*": 2, "/": 2, "**": 4}
+_SIGN = 3  # -a*b is (-a)*b, and -a**2 is -(a**2)
 _HINTS = {
     "^": "write ** for a power",
     "²": "write **2",
@@ -83,8 +83,11 @@ def parse_turns(text: str) -> tuple[tuple[str, str, int], ...]:
         turn = _TURN.match(text, place)
         if turn is None:
             raise _expected("a turn: x(...), y(...), z(...) or [1,1,0](...)", text, place)
-        end = _closing(text, turn.end())
-        inside = text[turn.end() : end]
+        depths = accumulate(({"(": 1, ")": -1}.get(c, 0) for c in text[turn.end() :]), initial=1)
+        inside = text[turn.end() :][: sum(1 for _ in takewhile(bool, depths)) - 1]
+        end = turn.end() + len(inside)
+        if end == len(text):
+            raise ExpressionError("unclosed (", column=turn.end())
         if not inside.strip():
             raise _expected("an angle", text, end)
         column = end - len(inside.lstrip()) + 1
@@ -139,16 +142,6 @@ def _expected(what: str, text: str, place: int) -> ExpressionError:
     return ExpressionError(f"expected {what}, found {found}", column=len(text) - len(rest) + 1)
 
 
-def _closing(text: str, place: int) -> int:
-    """The position of the bracket that closes the one just before `place`."""
-    depth = 1
-    for at in range(place, len(text)):
-        depth += {"(": 1, ")": -1}.get(text[at], 0)
-        if depth == 0:
-            return at
-    raise ExpressionError("unclosed (", column=place)
-
-
 class _Reader:
     """The values of one expression, from left to right."""
 
@@ -158,7 +151,7 @@ class _Reader:
         self._depth = 0  # open brackets
 
     def whole(self) -> Sized:
-        value = self._sum()
+        value = self._read(_BINDING["+"])
         if self._tokens:
             raise self._misplaced()
         return value
@@ -173,31 +166,21 @@ class _Reader:
         message = "unmatched )" if self._next == ")" else hint
         return ExpressionError(message, column=self._tokens[-1].start + 1)
 
-    def _sum(self) -> Sized:
-        return self._chain(("+", "-"), self._product)
-
-    def _product(self) -> Sized:
-        return self._chain(("*", "/"), self._signed)
-
-    def _chain(self, operators: tuple[str, ...], operand: Callable[[], Sized]) -> Sized:
-        value = operand()
-        while self._next in operators:
-            value = self._operate(self._tokens.pop().text, value, operand)
-        return value
-
-    def _operate(self, operator: str, value: Sized, operand: Callable[[], Sized]) -> Sized:
-        inside = (token.start + 1 for token in reversed(self._tokens) if token.text != "(")
-        column = next(inside, 1)
-        return operate(operator, value, operand(), column)
-
-    def _signed(self) -> Sized:
+    def _read(self, least: int) -> Sized:
+        """A value and the operators behind it that bind at least so tightly."""
         if self._next in ("+", "-"):
             is_minus = self._tokens.pop().text == "-"
-            value = self._signed()
-            return value._replace(expression=-value.expression) if is_minus else value
-        value = self._value()
-        if self._next == "**":
-            return self._operate(self._tokens.pop().text, value, self._signed)
+            value = self._read(_SIGN)
+            value = value._replace(expression=-value.expression) if is_minus else value
+        else:
+            value = self._value()
+        while _BINDING.get(self._next, -1) >= least:
+            operator = self._tokens.pop().text
+            inside = (token.start + 1 for token in reversed(self._tokens) if token.text != "(")
+            column = next(inside, 1)
+            # a power has a sign and a power of its own: 2**-3**2 is 2**(-(3**2))
+            right = self._read(_SIGN if operator == "**" else _BINDING[operator] + 1)
+            value = operate(operator, value, right, column)
         return value
 
     def _value(self) -> Sized:
@@ -210,7 +193,7 @@ class _Reader:
         elif token.kind == "number":
             value = _number(token)
         else:
-            value = self._call(token) if self._next == "(" else self._name(token)
+            value = self._named(token)
         if self._next == "(" or (self._tokens and self._tokens[-1].kind != "operator"):
             raise ExpressionError(
                 f"expected an operator before {self._next!r}, such as *",
@@ -224,10 +207,10 @@ class _Reader:
         column = bracket.start + 1
         if self._depth > _DEEPEST:
             raise ExpressionError(f"more than {_DEEPEST} nested brackets", column=column)
-        values = [self._sum()]
+        values = [self._read(_BINDING["+"])]
         while self._next in separators:
             self._tokens.pop()
-            values.append(self._sum())
+            values.append(self._read(_BINDING["+"]))
         if not self._tokens:
             raise ExpressionError("unclosed (", column=column)
         if self._next != ")":
@@ -236,24 +219,21 @@ class _Reader:
         self._depth -= 1
         return values
 
-    def _name(self, token: _Token) -> Sized:
+    def _named(self, token: _Token) -> Sized:
+        """A name, or a function of what follows in brackets."""
         name, column = spelled(token.text), token.start + 1
-        if name in self._names:
-            return Sized.atom(sp.sympify(self._names[name], strict=True))
-        if name == "pi":
-            return Sized(sp.pi, 0, 1, 1)
-        if name in FUNCTIONS:
-            raise ExpressionError(f"{name} is a function; expected {name}(...)", column=column)
-        raise ExpressionError(
-            f"unknown name {token.text!r}; {offer(name, self._names)}", column=column
-        )
-
-    def _call(self, token: _Token) -> Sized:
-        name, column = token.text, token.start + 1
-        if name not in FUNCTIONS:
-            is_name = spelled(name) in self._names
-            hint = f"write {name}*(...)" if is_name else offer(name, FUNCTIONS)
-            raise ExpressionError(f"{name!r} is not a function; {hint}", column=column)
+        if self._next != "(":
+            if name in self._names:
+                return Sized.atom(sp.sympify(self._names[name], strict=True))
+            if name == "pi":
+                return Sized(sp.pi, 0, 1, 1)
+            fault = f"unknown name {token.text!r}; {offer(name, self._names)}"
+            if name in FUNCTIONS:
+                fault = f"{name} is a function; expected {name}(...)"
+            raise ExpressionError(fault, column=column)
+        if token.text not in FUNCTIONS:
+            hint = f"write {name}*(...)" if name in self._names else offer(token.text, FUNCTIONS)
+            raise ExpressionError(f"{token.text!r} is not a function; {hint}", column=column)
         arguments = self._in_brackets(self._tokens.pop(), (",",))
         wanted = 2 if name == "atan2" else 1
         if len(arguments) != wanted:
@@ -272,5 +252,4 @@ def _number(token: _Token) -> Sized:
             f"a number of more than {_MOST_DIGITS} digits, or a larger power of ten",
             column=token.start + 1,
         )
-    value = Fraction(token.text)
-    return Sized.number(sp.Rational(value.numerator, value.denominator))
+    return Sized.number(sp.Rational(token.text))
