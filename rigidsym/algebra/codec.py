@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from functools import cached_property, lru_cache, reduce
-from itertools import permutations
 from operator import mul
 
 import sympy as sp
@@ -85,7 +84,6 @@ class Codec:
     ) -> None:
         """Give the ring its relations and derivatives, now that expressions can be read."""
         relations = [r for e, kind in kinds if (r := self._relation(e, kind)) is not None]
-        relations += self._between_roots(kinds)
         self._set_relations(relations)
         self.ring.set_derivatives(
             {
@@ -123,17 +121,6 @@ class Codec:
             cosine = ring.generator(ring.index[sp.cos(expression.args[0])])
             return gen**2 + cosine**2 - 1
         return None
-
-    def _between_roots(self, kinds: Sequence[tuple[sp.Expr, Kind]]) -> list[PolyElement]:
-        """What vanishes between roots of one base: (2^(1/4))² = 2^(1/2)."""
-        ring = self.ring
-        roots = [e for e, kind in kinds if kind is Kind.RADICAL and e.is_Pow]
-        return [
-            ring.generator(ring.index[deep]) ** int(deep.exp.q // shallow.exp.q)
-            - ring.generator(ring.index[shallow])
-            for deep, shallow in permutations(roots, 2)
-            if deep.base == shallow.base and deep.exp.q % shallow.exp.q == 0
-        ]
 
     @cached_property
     def angle_pairs(self) -> tuple[tuple[int, int], ...]:

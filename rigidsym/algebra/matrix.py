@@ -81,21 +81,16 @@ class RingMatrix:
         )
 
     def __add__(self, other: RingMatrix) -> RingMatrix:
-        return self._entrywise(add, add, other)
+        return self._entrywise(add, other)
 
     def __sub__(self, other: RingMatrix) -> RingMatrix:
-        return self._entrywise(self.ring.difference, sub, other)
+        return self._entrywise(sub, other)
 
-    def _entrywise(
-        self,
-        operation: Callable[[PolyElement, PolyElement], PolyElement],
-        of_values: Callable[[Any, Any], Any],
-        other: RingMatrix,
-    ) -> RingMatrix:
+    def _entrywise(self, operation: Callable[[Any, Any], Any], other: RingMatrix) -> RingMatrix:
         """Sums and differences of normal forms are normal forms."""
         pairs = zip(self.rows, other.rows, strict=True)
         rows = tuple(tuple(map(operation, *entries)) for entries in pairs)
-        return RingMatrix(self.ring, rows, (partial(_entrywise, of_values), (self, other)))
+        return RingMatrix(self.ring, rows, (partial(_entrywise, operation), (self, other)))
 
     def map(self, function: Callable[[PolyElement], PolyElement]) -> RingMatrix:
         return RingMatrix.of(self.ring, [[function(entry) for entry in row] for row in self.rows])
@@ -111,8 +106,7 @@ class RingMatrix:
 
     def jacobian(self, places: Sequence[int]) -> RingMatrix:
         """The derivatives of the entries by generators, at their places: an entry a row."""
-        partial = self.ring.partial
-        rows = (tuple(partial(entry, place) for place in places) for entry in self.entries)
+        rows = (tuple(entry.diff(place) for place in places) for entry in self.entries)
         return RingMatrix(self.ring, tuple(rows))
 
     def cross(self, other: RingMatrix) -> RingMatrix:

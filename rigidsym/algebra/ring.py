@@ -112,18 +112,9 @@ class Ring:
                         total[product] = known(product, 0) + weight * factor
         return self._settled(total) if total else self.zero
 
-    def difference(self, first: PolyElement, second: PolyElement) -> PolyElement:
-        """The difference of two normal forms; most are equal, since most differences are proofs."""
-        if not second or first is second:
-            return self.zero if second else first
-        return self.zero if dict.__eq__(first, second) else first - second
-
     def total(self, elements: Iterable[PolyElement]) -> PolyElement:
-        """The sum of elements in normal form, which is in normal form."""
-        result: Terms = {}
-        for element in elements:
-            _add(result, 1, element)
-        return self.zero.new({m: c for m, c in result.items() if c})
+        """The sum of elements, in normal form."""
+        return self.dot((element, self.one) for element in elements)
 
     def _settled(self, terms: Terms) -> PolyElement:
         """The polynomial of these terms, in normal form."""
@@ -140,16 +131,6 @@ class Ring:
         if not all(result.values()):
             result = {m: c for m, c in result.items() if c}
         return self.zero.new(result) if result else self.zero
-
-    def partial(self, element: PolyElement, place: int) -> PolyElement:
-        """∂/∂g by the generator at one place, the others held; of a normal form it is one."""
-        return self.zero.new(
-            {
-                (*m[:place], m[place] - 1, *m[place + 1 :]): c * m[place]
-                for m, c in element.items()
-                if m[place]
-            }
-        )
 
     def is_zero(self, element: PolyElement) -> bool:
         return not self.reduce(element)

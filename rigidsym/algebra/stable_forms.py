@@ -13,12 +13,13 @@ c_k and in the other generators. The form is put back into the ring, and must be
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from functools import cache, lru_cache
 from math import factorial
 from operator import mul
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
@@ -115,7 +116,7 @@ _HIGHEST = 8  # c_8: the highest that is tried
 _POWERS = 6  # of 1/n that are looked for below a fraction bar
 
 Orders = tuple[int, ...]  # of the functions c_k in one product, in order
-Parts = dict[tuple[Orders, int], PolyElement]  # (functions, power of 1/n²): what stands before
+Product = tuple[Orders, int]  # of functions and a power of 1/n²
 
 
 class Stumpff(sp.Function):
@@ -236,64 +237,67 @@ class Rewriter:
         special = {norm.sine, norm.cosine, *norm.powers}
         others = [g.expression for k, g in enumerate(codec.ring.generators) if k not in special]
         self._plain = codec_for([*self._symbols, *others, sp.Rational(1, 2)], order=0)
-        self._wholes: dict[PolyElement, sp.Expr | None] = {}
+        self._whole = cache(self._in_functions)
 
     def stable(self, entry: sp.Expr) -> sp.Expr:
         """The entry in terms of `Stumpff` if it moves and has such a form; else as it is."""
-        found = self.rewritten(entry) if entry.has(AppliedUndef) else None
-        return entry if found is None else found  # which may be zero
+        form = self.rewritten(entry) if entry.has(AppliedUndef) else None
+        return entry if form is None else form  # which may be zero
 
     def rewritten(self, expression: sp.Expr) -> sp.Expr | None:
         """The expression in terms of `Stumpff`, proved equal; None if a singularity remains.
 
         What stands below a fraction bar may still vanish, but not at n = 0 for all v.
         """
-        value = self.codec.encode_quotient(expression)
+        value, reduce = self.codec.encode_quotient(expression), self.codec.ring.reduce
         for power in range(_POWERS, -_POWERS - 1, -1):
-            below = self._whole(self._times(value.denominator, power))
-            if below is not None:
-                above = self._whole(self._times(value.numerator, power))
-                if above is not None:
-                    return self._proved(above, below, value)
+            below = self._whole(reduce(value.denominator * self._n(-power)))
+            if below is None:
+                continue
+            above = self._whole(reduce(value.numerator * self._n(-power)))
+            if above is None:
+                continue
+            parts = map(self._plain.encode, (above, below))
+            form = presenter_for(self._plain).quotient(Quotient(self._plain.ring, *parts))
+            form = form.xreplace(dict(zip(self._symbols, self._functions, strict=True)))
+            if not self.codec.encode_quotient(form.xreplace(self._closed)).equals(value):
+                raise AlgebraError(f"the form {form} differs from its normal form")
+            return form
         return None
 
-    def _proved(self, above: sp.Expr, below: sp.Expr, value: Quotient) -> sp.Expr:
-        """The shorter of the equal quotients, with the functions in their places."""
-        parts = map(self._plain.encode, (above, below))
-        form = presenter_for(self._plain).quotient(Quotient(self._plain.ring, *parts))
-        form = form.xreplace(dict(zip(self._symbols, self._functions, strict=True)))
-        if not self.codec.encode_quotient(form.xreplace(self._closed)).equals(value):
-            raise AlgebraError(f"the form {form} differs from its normal form")
-        return form
+    def _in_functions(self, element: PolyElement) -> sp.Expr | None:
+        """An element as a polynomial in the functions, by their symbols; None if it is none.
 
-    def _times(self, element: PolyElement, power: int) -> PolyElement:
-        """The element over n to a power."""
-        return self.codec.ring.reduce(element * self._n(-power))
-
-    def _whole(self, element: PolyElement) -> sp.Expr | None:
-        """An element of the ring as a polynomial in the functions, by their symbols."""
-        if element not in self._wholes:
-            self._wholes[element] = self._find_whole(element)
-        return self._wholes[element]
-
-    def _find_whole(self, element: PolyElement) -> sp.Expr | None:
-        parts = self._parts(element)
-        if parts is None:
-            return None
-        ring = self.codec.ring
-        rest, terms = ring.zero, []
-        for (orders, power), before in _lowered(parts, self._number(2)).items():
-            if orders and power <= 0:
-                terms.append((orders, ring.reduce(before * self._n(-2 * power))))
-            else:
-                rest += before * self._n(-2 * power)
-        terms.append(((), ring.reduce(rest)))
-        if any(m[place] for _, before in terms for m in before for place in self._norm.powers):
+        It is split by powers of cos rn = c₀, sin rn = rn c₁ and 1/n². No 1/n² stays beside a
+        function, since c_k/n² = c_k(0)/n² − r² c_{k+2}.
+        """
+        ring, norm = self.codec.ring, self._norm
+        parts: dict[Product, PolyElement] = defaultdict(lambda: ring.zero)
+        places = (norm.sine, norm.cosine, *norm.powers)
+        for (sines, cosines, *others), before in split(element, places).items():
+            power = -sines - sum(map(mul, others, norm.powers.values()))
+            if power % 2:
+                return None
+            key = (0,) * cosines + (1,) * sines, power // 2
+            parts[key] += before * ring.polynomials(norm.ratio**sines)
+        done: dict[Orders, PolyElement] = defaultdict(lambda: ring.zero)
+        while parts:
+            (orders, power), before = parts.popitem()
+            if power <= 0 or not orders or orders[0] + 2 > _HIGHEST:
+                done[orders if power <= 0 else ()] += before * self._n(-2 * power)
+                continue
+            first, *rest = orders
+            start = ring.polynomials(sp.Rational(*taylor(first)[0].as_integer_ratio()))
+            parts[tuple(rest), power] += before * start
+            raised = tuple(sorted((*rest, first + 2)))
+            parts[raised, power - 1] -= before * ring.polynomials(norm.ratio**2)
+        terms = {orders: ring.reduce(before) for orders, before in done.items()}
+        if any(m[place] for before in terms.values() for m in before for place in norm.powers):
             return None
         return sp.Add(
             *(
                 self.codec.decode(before) * sp.Mul(*(self._symbols[k] for k in orders))
-                for orders, before in terms
+                for orders, before in terms.items()
             )
         )
 
@@ -302,40 +306,3 @@ class Rewriter:
         ring = self.codec.ring
         norm = self._norm.expression
         return ring.generator(ring.index[norm if power > 0 else 1 / norm]) ** abs(power)
-
-    def _number(self, power: int) -> Any:
-        """The ratio r to a power, as a coefficient."""
-        ratio = self._norm.ratio**power
-        return self.codec.ring.polynomials.domain(int(ratio.p), int(ratio.q))
-
-    def _parts(self, element: PolyElement) -> Parts | None:
-        """Split by powers of cos rn = c₀, sin rn = rn c₁, 1/n²; None for an odd power of n."""
-        norm, parts = self._norm, dict[tuple[Orders, int], PolyElement]()
-        places = (norm.sine, norm.cosine, *norm.powers)
-        for (sines, cosines, *others), before in split(element, places).items():
-            power = -sines - sum(map(mul, others, norm.powers.values()))
-            if power % 2:
-                return None
-            key = (0,) * cosines + (1,) * sines, power // 2
-            _gather(parts, key, before * self._number(sines))
-        return parts
-
-
-def _lowered(parts: Mapping[tuple[Orders, int], PolyElement], square: Any) -> Parts:
-    """No 1/n² beside a function: c_k/n² = c_k(0)/n² − r² c_{k+2}; `square` is r²."""
-    waiting, done = dict(parts), dict[tuple[Orders, int], PolyElement]()
-    while waiting:
-        (orders, power), before = waiting.popitem()
-        if power <= 0 or not orders or orders[0] + 2 > _HIGHEST:
-            _gather(done, (orders, power), before)
-            continue
-        first, *others = orders
-        start = before.ring.domain(*taylor(first)[0].as_integer_ratio())
-        _gather(waiting, (tuple(others), power), before * start)
-        raised = tuple(sorted((*others, first + 2)))
-        _gather(waiting, (raised, power - 1), -before * square)
-    return done
-
-
-def _gather(parts: Parts, key: tuple[Orders, int], before: PolyElement) -> None:
-    parts[key] = parts[key] + before if key in parts else before

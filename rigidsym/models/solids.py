@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import sympy as sp
+from sympy.core.symbol import uniquely_named_symbol
 
 from rigidsym.errors import BodyError, offer
 from rigidsym.models.body import Solid
@@ -23,7 +24,7 @@ class Length(NamedTuple):
     """A length that a solid asks for, or several of a kind."""
 
     key: str  # in a file: radius
-    names: tuple[str, ...]  # of its symbols, by default
+    names: Sequence[str]  # of its symbols, by default
     about: str
 
 
@@ -32,11 +33,11 @@ class Shape(NamedTuple):
 
     title: str
     about: str  # where its origin and axes are
-    lengths: tuple[Length, ...]
+    lengths: Sequence[Length]
     place: str  # x, y, z, between commas
     bounds: str  # of u, v, w, as far as they are used
     element: str = ""  # of lines and surfaces
-    larger: tuple[tuple[str, str], ...] = ()  # keys, the first at least as long as the second
+    larger: Sequence[tuple[str, str]] = ()  # keys, the first at least as long as the second
 
     @property
     def has_corners(self) -> bool:
@@ -48,20 +49,17 @@ class Shape(NamedTuple):
         return tuple(name for length in self.lengths for name in length.names)
 
 
-def _shapes() -> dict[str, Shape]:
-    """The entries of solids.toml by their names."""
-    text = Path(__file__).with_name("solids.toml").read_text(encoding="utf-8")
-    shapes = {}
-    for name, entry in tomllib.loads(text).items():
-        lengths = (
-            Length(key, tuple(names.split()), about) for key, names, about in entry["lengths"]
-        )
-        larger = map(tuple, entry.get("larger", ()))
-        shapes[name] = Shape(**entry | {"lengths": tuple(lengths), "larger": tuple(larger)})
-    return shapes
-
-
-SHAPES: Mapping[str, Shape] = _shapes()
+SHAPES: Mapping[str, Shape] = {
+    name: Shape(
+        **entry
+        | {
+            "lengths": [Length(k, names.split(), about) for k, names, about in entry["lengths"]],
+        }
+    )
+    for name, entry in tomllib.loads(
+        Path(__file__).with_name("solids.toml").read_text(encoding="utf-8")
+    ).items()
+}
 
 
 def shape_of(name: str) -> Shape:
@@ -87,7 +85,8 @@ def shaped(
         if length.is_real is False:
             raise BodyError(f"{name}: {length} is not a length")
     check_lengths(name, [float(e) if e.is_number else None for e in lengths])
-    coordinates = _free_coordinates([*lengths, mass, density])
+    used = [part for part in (*lengths, mass, density) if part is not None]
+    coordinates = {name: uniquely_named_symbol(name, used) for name in "uvw"}
     names = dict(zip(shape.names, lengths, strict=True)) | coordinates
 
     def read(text: str) -> list[sp.Expr]:
@@ -119,16 +118,3 @@ def check_lengths(name: str, values: Sequence[float | None]) -> None:
                 f"{name}: {larger} is {known[larger]:g} m, less than {smaller} with "
                 f"{known[smaller]:g} m"
             )
-
-
-def _free_coordinates(used: Sequence[sp.Expr | None]) -> dict[str, sp.Symbol]:
-    """Symbols for u, v and w, with a number behind if an expression has the name already."""
-    taken = {
-        str(s) for expression in used if expression is not None for s in expression.free_symbols
-    }
-    return {
-        name: sp.Symbol(
-            next(n for n in (name, *(f"{name}_{k}" for k in range(1, 99))) if n not in taken)
-        )
-        for name in ("u", "v", "w")
-    }

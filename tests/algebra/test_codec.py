@@ -45,7 +45,6 @@ IDENTITIES = [
     (cos(a + pi / 5) + cos(a - pi / 5), (1 + sqrt(5)) / 2 * cos(a)),
     (sin(a + pi / 12), (sqrt(6) + sqrt(2)) / 4 * sin(a) + (sqrt(6) - sqrt(2)) / 4 * cos(a)),
     (cos(a - 9 * pi), -cos(a)),
-    (sp.Integer(2) ** Rational(1, 4) * sqrt(sqrt(2)) * m, sqrt(2) * m),
     (sp.I**2 * m, -m),
     (1 / (1 + 4 * u**2) + 4 * u**2 / (1 + 4 * u**2), 1),
     (1 / m - 1 / length, (length - m) / (m * length)),

@@ -71,11 +71,6 @@ def test_a_polynomial_that_is_not_solved_says_so():
     assert zeros(mixed) == ([], False)
 
 
-@pytest.mark.parametrize("expression", [cos(phi) ** 3 + 3, cos(phi) ** 4 + cos(phi) + 2])
-def test_no_zeros_of_a_higher_degree_are_known_by_sturms_theorem(expression):
-    assert zeros(expression) == ([], True)
-
-
 def test_singular_orientations_of_turns_by_sums_and_multiples_are_listed():
     by_sum = rs.derive(rs.rotation_from("z(phi) x(phi + theta) z(psi)")).singularities
     assert by_sum.is_solved

@@ -14,6 +14,7 @@ import pytest
 import sympy as sp
 
 import rigidsym as rs
+from helpers.parametrisations import values_on, way_of
 from helpers.reading import Values, define, equations, latex_of
 from helpers.witness import TOLERANCE, evaluate, mp
 from rigidsym.models.library import rotation_from
@@ -24,7 +25,6 @@ VECTORS = {  # as the notes call it, its components, and those whose length is n
     "axis_angle": ("e", "e_1 e_2 e_3", "e_1 e_2 e_3"),
     "rotation_vector": ("v", "v_1 v_2 v_3", "v_1 v_2 v_3"),
 }
-UNIT = {"unit_quaternion": 4, "axis_angle": 3}  # coordinates of length one
 ROTATIONS = (  # one of each kind
     *(
         "ZXZ",
@@ -80,37 +80,12 @@ class Printed:
             self._add_vectors(*VECTORS[text])
 
     def _point(self, text: str) -> dict[sp.Expr, Any]:
-        size = len(self.motion.model.coordinates)
-        q, rates, seconds = (
-            mp.matrix([mp.mpf((7 * k + 3 * n) % 11 + 1) / 17 for k in range(size)])
-            for n in (1, 2, 4)
-        )
-        count = UNIT.get(text, 0)
-        if count:
-            self._on_sphere(q, rates, seconds, count)
-        found: dict[sp.Expr, Any] = {}
-        for group, values in zip(self.motion.arguments, (q, rates, seconds), strict=False):
-            found |= zip(group.symbols, values, strict=True)
-        found |= zip(self.motion.model.constants, (mp.mpf(3) / 5, mp.mpf(4) / 5), strict=False)
+        values = values_on(self.motion, way_of(text)[0])
         for frame in ("space", "body"):
             expression = self.motion.step(f"angular_velocity_{frame}").expression
-            values = evaluate(self.motion.spelled(expression), found)
-            found |= zip(self.motion.argument(f"omega_{frame}").symbols, values, strict=True)
-        return found
-
-    @staticmethod
-    def _on_sphere(q: Any, rates: Any, seconds: Any, count: int) -> None:
-        """|q| = 1, q·q̇ = 0 and q·q̈ = -q̇², for the first coordinates."""
-        length = mp.norm(q[:count])
-        for k in range(count):
-            q[k] /= length
-        for vector, wanted in (
-            (rates, lambda: 0),
-            (seconds, lambda: -(mp.norm(rates[:count]) ** 2)),
-        ):
-            off = mp.fdot(q[:count], vector[:count]) - wanted()
-            for k in range(count):
-                vector[k] -= off * q[k]
+            omega = evaluate(self.motion.spelled(expression), values)
+            values |= zip(self.motion.argument(f"omega_{frame}").symbols, omega, strict=True)
+        return values
 
     def _add_vectors(self, letter: str, components: str, long: str) -> None:
         def vector(names: str, dots: str = "") -> Any:

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import sympy as sp
 from scipy.spatial.transform import Rotation
-from sympy.physics.vector import ReferenceFrame, dynamicsymbols, kinematic_equations
+from sympy.physics.vector import ReferenceFrame, dynamicsymbols
 
 from helpers.witness import (
     CONVENTIONS,
@@ -69,22 +69,6 @@ def test_sympy_has_the_same_rotation_and_velocities(convention):
         for path in PATHS:
             values = values_along(ANGLES, path)
             assert agree(printed(convention, quantity, path), evaluate(expression, values))
-
-
-@every_convention
-def test_sympy_solves_for_the_same_rates(convention):
-    """Its speeds are the body components of the angular velocity."""
-    given = motion(convention).argument("omega_body").symbols
-    manner = "body" if convention.isupper() else "space"
-    digits = convention.lower().translate(str.maketrans("xyz", "123"))
-    equations = kinematic_equations(given, ANGLES, manner, digits)
-    rates = [sp.Derivative(angle, sp.Symbol("t")) for angle in ANGLES]
-    theirs = sp.Matrix([rate - e for rate, e in zip(rates, equations, strict=True)])
-    ours = motion(convention).rates_from_angular_velocity_body
-    for path in PATHS:
-        values = values_along(ANGLES, path)
-        values |= dict(zip(given, path.q_ddot, strict=True))
-        assert agree(evaluate(ours, values), evaluate(theirs, values))
 
 
 def test_a_wrong_convention_is_seen_by_each_witness():

@@ -88,8 +88,8 @@ class LagrangeEquations(LagrangeForm):
         ring, rates = self.ring, [self.ring.index[rate] for rate in self.rates]
         last = {*rates, *(ring.index[a] for a in self.accelerations)}
         moving = [k for k in range(len(ring.generators)) if k not in last]
-        parts = [(ring.partial(element, k), ring.dt(ring.generator(k))) for k in moving]
-        columns = ([(part, ring.partial(rate, k)) for part, rate in parts if part] for k in rates)
+        parts = [(element.diff(k), ring.dt(ring.generator(k))) for k in moving]
+        columns = ([(part, rate.diff(k)) for part, rate in parts if part] for k in rates)
         return RingMatrix.column(ring, map(ring.dot, columns))
 
     @cached_property
