@@ -18,16 +18,14 @@ from rigidsym.models.forces import OMEGA_BODY, OMEGA_COMPONENTS, Example, Forces
 from rigidsym.models.rotation import TIME
 from rigidsym.notes.document import Equation, Figure
 from rigidsym.notes.figure.motion_picture import motion_picture
-from rigidsym.notes.figure.phase_portrait import phase_portrait
 from rigidsym.notes.template import figure_with
 
 
 class ConsequenceFacts(NamedTuple):
-    """What follows from the first integrals, with the figure that belongs to it."""
+    """What follows from the first integrals."""
 
     of: Consequence
     equation: Equation
-    portrait: Figure | None
 
 
 @dataclass(frozen=True)
@@ -62,25 +60,7 @@ class MotionFacts:
                 proved=claims if is_exact else (),
                 unproved=() if is_exact else claims,
             )
-            is_potential = each.name == "effective_potential"
-            yield ConsequenceFacts(each, equation, self._portrait() if is_potential else None)
-
-    def _portrait(self) -> Figure | None:
-        portrait = phase_portrait(self.derivation, self.letters)
-        if portrait is None:
-            return None
-        constants = self.derivation.argument("parameters").notation
-        return figure_with(
-            "en/phase_portrait",
-            portrait.drawing,
-            self.letters,
-            angle=portrait.name,
-            constants=equal(*constants, formula("1")),
-            momenta=[
-                equal(self.letters.name(symbol), formula_of(value, self.letters))
-                for symbol, value in portrait.momenta.items()
-            ],
-        )
+            yield ConsequenceFacts(each, equation)
 
     @property
     def picture(self) -> Figure | None:

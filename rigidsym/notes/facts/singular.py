@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from math import prod, radians, sin
+from math import radians, sin
 from typing import Literal, NamedTuple
 
 import sympy as sp
@@ -27,13 +27,6 @@ class PlaceFacts(NamedTuple):
 
     equation: sp.Expr
     is_counted: bool
-
-
-class Choice(NamedTuple):
-    """Coordinates that have any of some values."""
-
-    coordinates: tuple[sp.Expr, ...]
-    options: tuple[sp.Expr, ...]
 
 
 class Multiples(NamedTuple):
@@ -148,33 +141,16 @@ class SingularFacts:
     def zeros(self) -> list[PointFacts]:
         return [PointFacts(point, self.model.coordinates) for point in self._placed]
 
-    @cached_property
-    def _values(self) -> Mapping[sp.Expr, tuple[sp.Expr, ...]]:
-        """The values of each coordinate at the points."""
-        values: dict[sp.Expr, dict[sp.Expr, None]] = {}
-        for place in (place for point in self._placed for place in point.places):
-            values.setdefault(place.coordinate, {})[place.value] = None
-        return {coordinate: tuple(several) for coordinate, several in values.items()}
-
-    @property
-    def grid(self) -> list[Choice]:
-        """The values, if the points are all combinations of values of several coordinates."""
-        values = self._values
-        if len(values) < 2 or len(self._placed) != prod(map(len, values.values())):
-            return []
-        alike: dict[tuple[sp.Expr, ...], list[sp.Expr]] = {}
-        for coordinate, several in values.items():
-            alike.setdefault(several, []).append(coordinate)
-        return [Choice(tuple(coordinates), several) for several, coordinates in alike.items()]
-
     @property
     def multiples(self) -> Multiples | None:
-        if not self.found.is_solved or len(self._values) != 1:
+        places = {place for point in self._placed for place in point.places}
+        angle, *others = {place.coordinate for place in places} or {None}
+        if angle is None or others or not self.found.is_solved:
             return None
-        ((angle, zeros),) = self._values.items()
-        if {*zeros} == {sp.S.Zero, sp.pi}:
+        zeros = {place.value for place in places}
+        if zeros == {sp.S.Zero, sp.pi}:
             return Multiples(angle, sp.pi, are_odd=False)
-        if {*zeros} == {sp.pi / 2, -sp.pi / 2}:
+        if zeros == {sp.pi / 2, -sp.pi / 2}:
             return Multiples(angle, sp.pi / 2, are_odd=True)
         return None
 

@@ -59,22 +59,14 @@ class Range(NamedTuple):
 
 
 def chart(
-    curves: Sequence[Curve],
-    size: Point,
-    along: Formula,
-    upward: Formula | None = None,
-    names: Sequence[Formula] = (),
-    marks: Sequence[Point] = (),
+    curves: Sequence[Curve], size: Point, along: Formula, names: Sequence[Formula]
 ) -> Drawing:
-    """Curves over one axis, with marks at some points; `along` and `upward` name the axes.
+    """Curves over one axis that `along` names.
 
     `names` are those of the curves, behind their ends; that of a single curve names its axis.
     """
-    if len(names) == 1:
-        (upward,), names = names, ()
     across, up = (Range.of(np.concatenate(curves)[:, k]) for k in (0, 1))
     origin, scale = (across.low, up.low), np.divide(size, np.ptp([across[:2], up[:2]], axis=1))
-    drawn = [(curve - origin) * scale for curve in curves]
     width, height = size
     strokes = [
         Stroke("space", ((0.0, 0.0), (width, 0.0)), is_thin=True),
@@ -90,16 +82,18 @@ def chart(
         (half_width,) = half_widths([number])
         strokes.append(Stroke("space", ((0.0, y), (-_TICK, y)), is_thin=True))
         labels.append(Label("space", number, (-1.5 * _TICK - half_width, y)))
-    if upward is not None:
-        labels.append(Label("space", upward, (0.0, height + 0.8 * TYPE_SIZE)))
-    kinds = [kind for kind, _ in zip(cycle(_KINDS), curves, strict=False)]
-    lines = [Stroke(k, thinned(c)) for k, c in zip(kinds, drawn, strict=True)]
-    strokes += [_mark(*((np.array(mark) - origin) * scale)) for mark in marks]
-    named: list[Named] = [
-        (kind, name, beyond(((0.0, line.points[-1][1]), line.points[-1])))
-        for kind, name, line in zip(kinds, names, lines, strict=False)
+    lines = [
+        Stroke(kind, thinned((curve - origin) * scale))
+        for kind, curve in zip(cycle(_KINDS), curves, strict=False)
     ]
-    labels += labelled(named, lines)
+    if len(names) == 1:
+        labels.append(Label("space", names[0], (0.0, height + 0.8 * TYPE_SIZE)))
+    else:
+        named: list[Named] = [
+            (line.kind, name, beyond(((0.0, line.points[-1][1]), line.points[-1])))
+            for name, line in zip(names, lines, strict=True)
+        ]
+        labels += labelled(named, lines)
     return Drawing((*strokes, *lines), tuple(labels))
 
 

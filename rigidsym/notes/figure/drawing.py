@@ -16,8 +16,6 @@ from rigidsym.formula.unicode_pen import UnicodePen
 from rigidsym.notes.figure.camera import Camera, Point, Vector, combined, dot, is_same
 from rigidsym.notes.figure.scene import Arc, Kind, Posed
 
-Segment = tuple[Point, Point]
-
 TYPE_SIZE = 0.15  # one em, in units of the drawing
 AXIS = 1.35  # lengths of the axes drawn
 NODE = 1.2
@@ -57,25 +55,9 @@ class Box(NamedTuple):
         is_beside = abs(x - a) >= self.half_width + other.half_width
         return not is_beside and abs(y - b) < self.half_height + other.half_height
 
-    def crossings(self, segments: Iterable[Segment]) -> list[Segment]:
-        """The segments that have a point inside (the test of Liang and Barsky)."""
-        (x, y), half_width, half_height = self
-        left, right, below, above = x - half_width, x + half_width, y - half_height, y + half_height
-        inside = []
-        for segment in segments:
-            (x0, y0), (x1, y1) = segment
-            if (x0 < left and x1 < left) or (x0 > right and x1 > right):
-                continue  # most segments are to one side of the box
-            if (y0 < below and y1 < below) or (y0 > above and y1 > above):
-                continue
-            enters, leaves = 0.0, 1.0  # fractions of the way along the segment
-            for low, high, start, end in ((left, right, x0, x1), (below, above, y0, y1)):
-                if start != end:  # else it is between these two sides, or it would be left out
-                    ends = (low - start) / (end - start), (high - start) / (end - start)
-                    enters, leaves = max(enters, min(ends)), min(leaves, max(ends))
-            if enters <= leaves:
-                inside.append(segment)
-        return inside
+    def holds(self, point: Point) -> bool:
+        (x, y), (a, b) = self.centre, point
+        return abs(x - a) < self.half_width and abs(y - b) < self.half_height
 
 
 class Label(NamedTuple):
@@ -211,47 +193,34 @@ Named = tuple[Kind, Formula, Sequence[Place]]  # a label, and where it may go
 
 
 def labelled(named: Iterable[Named], strokes: Sequence[Stroke]) -> tuple[Label, ...]:
-    """Labels at their first free places, the nearest first; else where they touch the fewest."""
-    segments = segments_of(strokes)
-    named = tuple(named)
-    widths = half_widths([symbol for _, symbol, _ in named])
+    """Labels at their first free places, the nearest first; else where they touch the least."""
+    named, points = tuple(named), [*_sampled(strokes)]
     taken: list[Box] = []
-    labels = []
-    for (kind, symbol, places), half_width in zip(named, widths, strict=True):
-        taken.append(_free(half_width, places, segments, taken))
-        labels.append(Label(kind, symbol, taken[-1].centre))
-    return tuple(labels)
+
+    def touched(box: Box) -> int:
+        grown = box.grown(_MARGIN)
+        return sum(map(grown.holds, points)) + sum(map(grown.meets, taken))
+
+    widths = half_widths([symbol for _, symbol, _ in named])
+    for (_, _, places), half_width in zip(named, widths, strict=True):
+        where = [
+            Box(_shifted(half_width, start, direction, gap), half_width, _HALF_HEIGHT)
+            for gap in _GAPS
+            for start, direction in places
+        ]
+        free = next((box for box in where if not touched(box)), None)
+        taken.append(free or min(where, key=touched))
+    pairs = zip(named, taken, strict=True)
+    return tuple(Label(kind, symbol, box.centre) for (kind, symbol, _), box in pairs)
 
 
-def segments_of(strokes: Iterable[Stroke]) -> list[Segment]:
-    return [segment for stroke in strokes for segment in pairwise(stroke.points)]
-
-
-def _free(
-    half_width: float, places: Sequence[Place], segments: Sequence[Segment], taken: Sequence[Box]
-) -> Box:
-    """The first place where nothing is touched, or else the one where the least is."""
-    best, least = None, len(segments) + len(taken) + 1
-    near = _field(half_width, places).crossings(segments)
-    for gap in _GAPS:
-        for start, direction in places:
-            box = Box(_shifted(half_width, start, direction, gap), half_width, _HALF_HEIGHT)
-            grown = box.grown(_MARGIN)
-            touched = len(grown.crossings(near)) + sum(map(grown.meets, taken))
-            if touched < least:
-                best, least = box, touched
-            if touched == 0:
-                return box
-    assert best is not None
-    return best
-
-
-def _field(half_width: float, places: Sequence[Place]) -> Box:
-    """What holds the label at any of its places, so that lines outside it need no second look."""
-    xs, ys = zip(*(start for start, _ in places), strict=True)
-    centre = ((min(xs) + max(xs)) / 2, (min(ys) + max(ys)) / 2)
-    reach = _GAPS[-1] + 2 * hypot(half_width, _HALF_HEIGHT) + _MARGIN
-    return Box(centre, (max(xs) - min(xs)) / 2, (max(ys) - min(ys)) / 2).grown(reach)
+def _sampled(strokes: Iterable[Stroke]) -> Iterator[Point]:
+    """Points along all lines, so near to each other that no label fits between them."""
+    for stroke in strokes:
+        for (x, y), (a, b) in pairwise(stroke.points):
+            count = ceil(hypot(a - x, b - y) / _MARGIN)
+            yield from ((x + (a - x) * k / count, y + (b - y) * k / count) for k in range(count))
+        yield stroke.points[-1]
 
 
 def _shifted(half_width: float, start: Point, direction: float, gap: float) -> Point:
