@@ -45,5 +45,7 @@ def command(rotation: str, file: Path, **options: Any) -> None:
         )
     shown = f"{result.path}: {counted(result.rows, 'row')}; {', '.join(result.columns)}"
     click.echo(shown, err=str(out) == "-")
+    if not result.rows:
+        message(f"{file} has no rows of numbers: the result is only a header")
     if result.inputs:
         message(f"columns without a unit are read as {', '.join(result.inputs)}")

@@ -15,7 +15,6 @@ import rigidsym as rs
 from helpers.command import call
 from rigidsym.commands.cli import commands
 from rigidsym.errors import Fault, LimitReached, RequestError, SpecError
-from rigidsym.notes.formats.record import SCHEMA, SCHEMA_VERSION
 from rigidsym.system import processes
 from rigidsym.system.processes import in_processes, time_limit
 
@@ -68,15 +67,6 @@ def test_work_without_end_is_stopped(tmp_path, monkeypatch, work):
     done = CliRunner().invoke(commands, ["run", "top.toml", "--timeout", "0.2"])
     assert isinstance(done.exception, LimitReached), done.output
     assert [path.name for path in tmp_path.iterdir()] == ["top.toml"]
-
-
-def test_a_check_is_stopped_too(tmp_path):
-    rotations = [{"sequence": "ZXZ"}] * 20_000
-    request = {"name": "top", "rotations": rotations, "kernels": [], "note": ["tex"]}
-    record = {"schema": SCHEMA, "schema_version": SCHEMA_VERSION, "request": request}
-    (tmp_path / "top.json").write_text(json.dumps(record))
-    done = CliRunner().invoke(commands, ["check", str(tmp_path), "--timeout", "0.2"])
-    assert isinstance(done.exception, LimitReached), done.output
 
 
 @pytest.mark.parametrize(
