@@ -21,7 +21,6 @@ from rigidsym.spec.body_table import read_body
 from rigidsym.spec.derivation_spec import (
     DerivationSpec,
     fault_of_name,
-    fault_of_title,
     repeated,
 )
 from rigidsym.spec.faults import Place, shortened
@@ -141,9 +140,7 @@ def _spec(
     folder: Path | None,
 ) -> DerivationSpec:
     """All but the rotations, and all faults raised together."""
-    title, theory = data.get("title"), bool(data.get("theory"))
-    if message := fault_of_title(title):
-        place.at("title").fault(message)
+    theory = bool(data.get("theory"))
     if theory and any(model.passive for model in models):
         place.at("theory").fault("the theory is written for active rotations; remove passive")
     for key, message in (
@@ -175,7 +172,7 @@ def _spec(
     place.raise_faults(source)
     return DerivationSpec(
         name=name,
-        title=title,
+        title=data.get("title") or None,
         theory=theory,
         models=tuple(models),
         source=source,

@@ -17,8 +17,6 @@ from rigidsym.notes.formats import FORMATS
 from rigidsym.spec.faults import Place, shortened
 
 _NAME = re.compile(r"[a-z][a-z0-9_]*")
-_DEVICES = re.compile(r"con|prn|aux|nul|com[1-9]|lpt[1-9]")  # not allowed as file names on Windows
-_LONGEST_TITLE = 200
 
 
 Body = RigidBody | BodyDescription
@@ -72,8 +70,6 @@ class DerivationSpec:
                     self.notation.check(model)
         if len(self.models) == 1 and (message := fault_of_name(self.name)):
             place.at("name").fault(message)
-        if message := fault_of_title(self.title):
-            place.at("title").fault(message)
         place.raise_faults(self.source or self.name)
 
     def singles(self) -> tuple[DerivationSpec, ...]:
@@ -152,19 +148,8 @@ def fault_of_name(name: str) -> str:
             "expected a lower-case letter, then lower-case letters, digits or underscores, "
             f"got {shortened(name)}"
         )
-    if keyword.iskeyword(name) or _DEVICES.fullmatch(name):
-        return f"{name} is a reserved word of Python or Windows"
+    if keyword.iskeyword(name):
+        return f"{name} is a reserved word of Python"
     if name in sys.stdlib_module_names or name in ("numpy", "sympy", "rigidsym"):
         return f"{name}.py would hide the Python module of this name"
-    return ""
-
-
-def fault_of_title(title: str | None) -> str:
-    """Why a text cannot be a title; "" if it can."""
-    if title is None:
-        return ""
-    if not title.strip():
-        return "the title is empty; write one, or leave this key out"
-    if not title.isprintable() or len(title) > _LONGEST_TITLE:
-        return f"expected one line of at most {_LONGEST_TITLE} printable characters"
     return ""

@@ -135,10 +135,9 @@ def test_shipped_files_are_good_and_explained(name):
 def test_a_specification_checks_itself():
     model = EulerAngles("ZXZ")
     with pytest.raises(SpecError) as caught:
-        DerivationSpec(name="top", title="\n", models=(model, replace(model, passive=True)))
+        DerivationSpec(name="top", models=(model, replace(model, passive=True)))
     assert [str(fault) for fault in caught.value.faults] == [
         "models[1]: writes the folder euler_zxz_intrinsic, as entry 0 does",
-        "title: the title is empty; write one, or leave this key out",
     ]
     with pytest.raises(SpecError, match=r"name: numpy\.py would hide the Python module"):
         DerivationSpec(name="numpy", models=(model,))

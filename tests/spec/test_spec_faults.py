@@ -59,8 +59,7 @@ A_NAME = "expected a lower-case letter, then lower-case letters, digits or under
     ("name", "fault"),
     [
         ("My File", f'{A_NAME}"My File"'),
-        ("lambda", "lambda is a reserved word of Python or Windows"),
-        ("aux", "aux is a reserved word of Python or Windows"),
+        ("lambda", "lambda is a reserved word of Python"),
         ("numpy", "numpy.py would hide the Python module of this name"),
     ],
 )  # fmt: skip
