@@ -13,12 +13,13 @@ from functools import cache, cached_property, partial
 import sympy as sp
 from sympy.polys.rings import PolyElement
 
-from rigidsym.algebra.codec import Codec, codec_for
+from rigidsym.algebra.codec import codec_for
 from rigidsym.algebra.matrix import RingMatrix, hat
 from rigidsym.algebra.present import Rationals, agrees, half_form, half_of_squares, shortest_of
 from rigidsym.errors import QuantityError
 from rigidsym.mechanics import particles
-from rigidsym.mechanics.derivation import OfBody, Step
+from rigidsym.mechanics.derivation import Step
+from rigidsym.mechanics.dynamics.flow import Flow
 from rigidsym.mechanics.dynamics.lagrange import equations_of_motion
 from rigidsym.mechanics.kinematics.chain import Chain
 from rigidsym.mechanics.kinematics.workspace import Values
@@ -27,7 +28,6 @@ from rigidsym.mechanics.mass.moments import Moments, about_centre, moments_of
 from rigidsym.mechanics.mass.principal import Principal, principal_of
 from rigidsym.mechanics.prove import Prover
 from rigidsym.mechanics.quantities.catalogue import OF_BODY
-from rigidsym.mechanics.quantities.dynamics import FLOW_QUANTITIES
 from rigidsym.mechanics.quantities.kinematics import KINEMATICS
 from rigidsym.mechanics.quantities.mass import BODY_ALONE, INERTIA_QUANTITIES
 from rigidsym.mechanics.quantities.table import DIRECTION, POINT
@@ -122,14 +122,8 @@ class BodyValues(Values):
     def moment_about_line(self) -> sp.Expr:
         """nᵀ I′ n + M |n × (p − c)|²."""
         n, body = self.direction, self.body
-        squares: dict[sp.Expr, sp.Expr] = {}  # by entry, since equal ones have a factor in common
-        for k, entry in enumerate(body.inertia.diagonal()):
-            squares[entry] = squares.get(entry, sp.S.Zero) + n[k] ** 2
-        about_centre = sp.Add(
-            *(entry * square for entry, square in squares.items()),
-            *(2 * body.inertia[i, j] * n[i] * n[j] for i in range(3) for j in range(i + 1, 3)),
-        )
         crossed = n.cross(self.point - body.centre)
+        about_centre = sp.collect((n.T * body.inertia * n)[0], [*{*body.inertia.diagonal()}])
         return about_centre + body.mass * crossed.dot(crossed)
 
     @cached_property
@@ -249,38 +243,23 @@ class BodyValues(Values):
     @cached_property
     def momentum_form_body(self) -> sp.ImmutableMatrix:
         """I′Ω′, (3, 1): each moment times its component."""
-        return self._shortest([self._moments_times_velocity(self.inertia)], self.momentum_body)
+        return self.present.matrix(self.inertia) * self.present.matrix(self.omega_body)
 
     @cached_property
     def momentum_form(self) -> sp.ImmutableMatrix:
-        """R I′Ω′: multiplied out, row by row, or as b Ω + R (I′ − b 1) Ω′ for a moment b."""
-        momentum, element = self.momentum, self.present.element
-        forms = [self._rotated(list(self.momentum_form_body))]
-        if max(map(len, momentum.entries)) <= _MOST_TERMS:
-            forms.append([element(entry) for entry in momentum.entries])
-        along = [element(entry) for entry in self.omega_space.entries]
-        for moment in dict.fromkeys(self.inertia[k, k] for k in range(3)):
-            rest = self._rotated(
-                self._moments_times_velocity(self.inertia - self.one.scale(moment))
-            )
-            base = element(moment)
-            forms.append([base * w + more for w, more in zip(along, rest, strict=True)])
-        return self._shortest(forms, momentum)
+        """R I′Ω′: multiplied out, row by row, or as b Ω + R (I′ − b 1) Ω′ for a moment b.
 
-    def _moments_times_velocity(self, moments: RingMatrix) -> list[sp.Expr]:
-        element, omega = self.present.element, self.omega_body.entries
-        pairs = (zip(row, omega, strict=True) for row in moments.rows)
-        return [sp.Add(*(element(a) * element(w) for a, w in row if a)) for row in pairs]
-
-    def _rotated(self, column: list[sp.Expr]) -> list[sp.Expr]:
-        pairs = (zip(row, column, strict=True) for row in self.rotation.rows)
-        return [sp.Add(*(self.present.element(r) * c for r, c in row if r)) for row in pairs]
-
-    def _shortest(self, forms: list[list[sp.Expr]], momentum: RingMatrix) -> sp.ImmutableMatrix:
-        """The shortest form that the ring knows to be equal.
-
-        Where constraints bind the coordinates, b Ω may be equal and the ring unable to tell.
+        The shortest form is taken that the ring knows to be equal: where constraints bind the
+        coordinates, b Ω may be equal and the ring unable to tell.
         """
+        read, momentum = self.present.matrix, self.momentum
+        R, along, body = read(self.rotation), read(self.omega_space), read(self.omega_body)
+        forms = [R * self.momentum_form_body]
+        if max(map(len, momentum.entries)) <= _MOST_TERMS:
+            forms.append(read(momentum))
+        for moment in dict.fromkeys(self.inertia[k, k] for k in range(3)):
+            rest = R * (read(self.inertia - self.one.scale(moment)) * body)
+            forms.append(self.present.element(moment) * along + rest)
         is_equal = partial(agrees, self.present)
         return shortest_of([f for f in forms if all(map(is_equal, f, momentum.entries))])
 
@@ -301,32 +280,17 @@ class NamedRotation(BodyValues):
         entries = [f"R_{row}{column}" for row in (1, 2, 3) for column in (1, 2, 3)]
         return parametrised("direction_cosines", entries)
 
-    @cached_property
-    def codec(self) -> Codec:
+    def __init__(self, model: RotationModel, body: RigidBody, *, has_fixed_point: bool) -> None:
+        super().__init__(model, body, has_fixed_point=has_fixed_point)
         moving = [*self.arguments["centre"].symbols, *self.arguments["centre_dot"].symbols]
         inputs = [*self.names().matrix, *self.velocity_names, *moving]
-        inputs += [self.body.mass, *self.body.inertia, sp.Rational(1, 2), *self._also]
-        return codec_for(inputs, order=1)
-
-    @cached_property
-    def prove(self) -> Prover:
-        return Prover(self.names(), self.codec)
-
-    @cached_property
-    def rotation(self) -> RingMatrix:
-        return self.codec.matrix(self.names().matrix)
-
-    @cached_property
-    def rotation_rate(self) -> RingMatrix:
-        return self.rotation @ hat(self.omega_body)
-
-    @cached_property
-    def omega_space(self) -> RingMatrix:
-        return self.rotation @ self.omega_body
-
-    @cached_property
-    def omega_body(self) -> RingMatrix:
-        return self.codec.column(self.velocity_names)
+        inputs += [body.mass, *body.inertia, sp.Rational(1, 2), *self._also]
+        self.codec = codec_for(inputs, order=1)
+        self.prove = Prover(self.names(), self.codec)
+        self.omega_body = self.codec.column(self.velocity_names)
+        self.rotation = self.codec.matrix(self.names().matrix)
+        self.rotation_rate = self.rotation @ hat(self.omega_body)
+        self.omega_space = self.rotation @ self.omega_body
 
     def renamed(self, step: Step, chain: Chain) -> Step:
         """The step with R and Ω′ as a chain names them, and proves them to be."""
@@ -346,8 +310,8 @@ def steps_of_body(
     forces: Forces | None,
     only: Collection[str],
     chain: Chain | None,
-) -> OfBody:
-    """The body, integrated, with the steps to its quantities.
+) -> tuple[BodyValues, list[Step], Flow | None]:
+    """The body, integrated; the steps to its quantities; and its equations of motion under forces.
 
     With a `chain`, R and Ω′ are those that it names.
     """
@@ -372,24 +336,11 @@ def steps_of_body(
     if isinstance(values, NamedRotation) and chain:
         steps = [values.renamed(step, chain) for step in steps]
     if forces is None:
-        return OfBody(values.arguments, steps, whole)
+        return values, steps, None
     motion = equations_of_motion(model, whole, forces, chain)
     moving = list(motion.steps(tuple(only)))
     names = {step.quantity.name for step in moving}
     for name, quantity in motion.table.items():
         if name in only and name not in names:
             raise QuantityError(f"{model.name} has no quantity {name}: {quantity.without}")
-    steps += moving
-    asks = not only or not {*only}.isdisjoint(FLOW_QUANTITIES)
-    functions = motion.functions() if asks else {}
-    follows = not only or "effective_potential" in only
-    return OfBody(
-        arguments={**values.arguments, **{a.name: a for a in motion.added}},
-        steps=steps,
-        body=whole,
-        forces=forces,
-        functions={n: f for n, f in functions.items() if not only or n in only},
-        first_integrals=motion.first_integrals,
-        consequences=tuple(motion.consequences()) if follows else (),
-        names=motion.names,
-    )
+    return values, steps + moving, motion

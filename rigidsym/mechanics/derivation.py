@@ -201,20 +201,6 @@ class Consequence(NamedTuple):
     where: tuple[tuple[Formula | sp.Expr, sp.Expr], ...] = ()  # symbols of it with their values
 
 
-@dataclass(frozen=True, slots=True)
-class OfBody:
-    """What a body and the forces on it add to the derivation of a rotation."""
-
-    arguments: Mapping[str, Argument]  # all of them, by name
-    steps: Sequence[Step] = ()
-    body: RigidBody | None = None
-    forces: Forces | None = None  # in the symbols of the body
-    functions: Mapping[str, Callable[[], Step]] = field(default_factory=dict)  # of the state
-    first_integrals: tuple[FirstIntegral, ...] = ()
-    consequences: tuple[Consequence, ...] = ()
-    names: Any = None  # the names of a chain, if the equations of motion are written with them
-
-
 class Definition(NamedTuple):
     """A named intermediate quantity: symbol = expression, in inputs and names defined before it."""
 

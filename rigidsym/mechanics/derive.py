@@ -14,26 +14,25 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import replace
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
 from rigidsym.errors import QuantityError, offer
-from rigidsym.mechanics.derivation import (
-    OF_RATES,
-    Derivation,
-    OfBody,
-    Step,
-)
+from rigidsym.mechanics.derivation import OF_RATES, Consequence, Derivation, Step
 from rigidsym.mechanics.kinematics.chain import Chain, is_shorter
 from rigidsym.mechanics.kinematics.workspace import Values
 from rigidsym.mechanics.quantities.catalogue import OF_BODY, OF_MOTION
+from rigidsym.mechanics.quantities.dynamics import FLOW_QUANTITIES
 from rigidsym.mechanics.quantities.kinematics import KINEMATICS
 from rigidsym.mechanics.quantities.mass import BODY_ALONE, OF_BODY_ALONE
 from rigidsym.mechanics.singularities import singularities_of
 from rigidsym.models.body import BodyDescription, Distribution, RigidBody
 from rigidsym.models.forces import Forces
 from rigidsym.models.rotation import RotationModel, depends_on_time
+
+if TYPE_CHECKING:
+    from rigidsym.mechanics.dynamics.flow import Flow
 
 Body = RigidBody | BodyDescription | Distribution
 
@@ -74,39 +73,50 @@ def derive(
             why = "for this many turns solve W q_dot = Omega in numbers, as by numpy.linalg.pinv(W)"
         lacking = ", ".join(name for name in turning if name in absent)
         raise QuantityError(f"{model.name} has no quantity {lacking}: {why}")
-    of_body = OfBody(values.arguments)
+    has_rates = not only or any(KINEMATICS[name].section == OF_RATES for name in turning)
+    singularities = singularities_of(values) if has_rates and not chain else None
+    motion: Flow | None = None
     if body is not None:
         from rigidsym.mechanics.body import steps_of_body
 
-        of_body = steps_of_body(model, body, forces, only, chain)
-        steps += of_body.steps
-    arguments = of_body.arguments
-    has_rates = not only or any(KINEMATICS[name].section == OF_RATES for name in turning)
-    singularities = singularities_of(values) if has_rates and not chain else None
-    names = of_body.names or chain
+        values, moving, motion = steps_of_body(model, body, forces, only, chain)
+        steps += moving
+    arguments = values.arguments
+    functions: Mapping[str, Callable[[], Step]] = {}
+    consequences: tuple[Consequence, ...] = ()
+    if motion:
+        arguments = arguments | {argument.name: argument for argument in motion.added}
+        if not only or not {*only}.isdisjoint(FLOW_QUANTITIES):
+            makers = motion.functions()
+            functions = {n: makers[n] for n in makers if not only or n in only}
+        if not only or "effective_potential" in only:
+            consequences = tuple(motion.consequences())
+    integrals = motion.first_integrals if motion else ()
+    names = chain
     named: list[sp.Basic] = [step.expression for step in steps]
-    if of_body.names is not None:
-        named += [integral.expression for integral in of_body.first_integrals]
-        named += [make().expression for make in of_body.functions.values()]
+    if motion and motion.names is not None:
+        names = motion.names
+        named += [integral.expression for integral in integrals]
+        named += [make().expression for make in functions.values()]
     definitions = names.definitions_of(named) if names else ()
     constants = {*arguments["parameters"].symbols} if "parameters" in arguments else set()
     for symbol, expression in definitions:
         if not expression.free_symbols.isdisjoint(constants):
             constants.add(symbol)
-    finished = partial(_with_inputs, constants, forces is not None and forces.depend_on_time)
+    finished = partial(_with_inputs, constants, motion is not None and motion.forces.depend_on_time)
     return Derivation(
         name=model.name,
         title=model.title,
         model=model,
         arguments=tuple(arguments.values()),
         steps=tuple(finished(replace(step, number=k)) for k, step in enumerate(steps, start=1)),
-        functions=_LazySteps(of_body.functions, finished),
+        functions=_LazySteps(functions, finished),
         singularities=singularities,
-        body=of_body.body,
-        forces=of_body.forces,
+        body=values.body,
+        forces=motion.forces if motion else None,
         definitions=definitions,
-        first_integrals=of_body.first_integrals,
-        consequences=of_body.consequences,
+        first_integrals=integrals,
+        consequences=consequences,
     )
 
 

@@ -6,7 +6,7 @@ ring knows every relation or a point shows it; otherwise the claim stays unprove
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import NamedTuple
 
@@ -22,7 +22,7 @@ from rigidsym.algebra.ring import Quotient
 from rigidsym.algebra.witness import Example, witness_for
 from rigidsym.errors import Defect, DerivationError, NotARotation, RigidsymError
 from rigidsym.formula.tree import Formula
-from rigidsym.mechanics.derivation import Proof, Status
+from rigidsym.mechanics.derivation import Proof
 from rigidsym.models.rotation import TIME, Pullback, RotationModel
 
 
@@ -61,10 +61,6 @@ def consequence(proofs: Sequence[Proof], claim: Formula) -> Proof:
     return Proof(claim=claim, status=left.status, residual=left.residual)
 
 
-# a matrix, what it is to be zero for, and what the claim is divided by
-Claimed = tuple[RingMatrix, Formula, Iterable[PolyElement]]
-
-
 class Prover:
     """Decides claims about one subject in its ring."""
 
@@ -75,34 +71,33 @@ class Prover:
         self.witness = witness_for(codec, subject.name, subject.constraints, subject.example)
         self._values: dict[RingMatrix, Values] = {}  # at a real point, of the factors of residuals
 
-    def vanish(
-        self, claimed: Iterable[Claimed], *, error: type[RigidsymError] = DerivationError
-    ) -> tuple[Proof, ...]:
-        """The proofs that matrices are zero, and that their divisors are not.
+    def vanishes(
+        self,
+        residual: RingMatrix,
+        claim: Formula,
+        *divisors: PolyElement,
+        error: type[RigidsymError] = DerivationError,
+    ) -> Proof:
+        """The proof that a matrix is zero, and that what the claim is divided by is not.
 
         A residual that reduces to zero is also evaluated at a real point, from its factors and to
         50 digits; raises Defect if that value is not zero.
-        Raises the error if a matrix is shown not to be zero. If the ring does not know enough to
+        Raises the error if the matrix is shown not to be zero. If the ring does not know enough to
         tell, the proof is *unproved* and holds what is left.
         """
-        proofs, is_pulled_back = [], self.subject.pullback is not None
-        for residual, claim, divisors in claimed:
-            left: sp.ImmutableMatrix | None = None
-            if not residual.is_zero():
-                left = self._left(residual, claim, error)
-            elif not is_pulled_back and self.witness.disagrees(residual, self._values):
-                raise Defect(
-                    f"{self.subject.name}: {claim.text} is proved, and yet is false at a point; "
-                    "this is a defect of rigidsym, please report it"
-                )
-            if left is None:
-                for divisor in divisors:  # if one may be zero everywhere, it is the residual
-                    if not self.witness.is_nonzero(divisor):
-                        left = self.codec.decoded(RingMatrix.column(self.codec.ring, [divisor]))
-                        break
-            status: Status = "exact" if left is None else "unproved"
-            proofs.append(Proof(claim=claim, status=status, residual=left))
-        return tuple(proofs)
+        left: sp.ImmutableMatrix | None = None
+        if not residual.is_zero():
+            left = self._left(residual, claim, error)
+        elif self.subject.pullback is None and self.witness.disagrees(residual, self._values):
+            raise Defect(
+                f"{self.subject.name}: {claim.text} is proved, and yet is false at a point; "
+                "this is a defect of rigidsym, please report it"
+            )
+        if left is None:  # a divisor that may be zero everywhere is the residual
+            unsure = (d for d in divisors if not self.witness.is_nonzero(d))
+            divisor = next(unsure, None)
+            left = None if divisor is None else sp.ImmutableMatrix([[self.codec.decode(divisor)]])
+        return Proof(claim=claim, status="exact" if left is None else "unproved", residual=left)
 
     def _left(
         self, residual: RingMatrix, claim: Formula, error: type[RigidsymError]
@@ -128,17 +123,11 @@ class Prover:
             raise error(f"{self.subject.name}: {fails}; left over: {rest}")
         return left
 
-    def vanishes(
-        self, residual: RingMatrix, claim: Formula, *, divided_by: PolyElement | None = None
-    ) -> Proof:
-        """`vanish` for one claim."""
-        return self.vanish([(residual, claim, () if divided_by is None else (divided_by,))])[0]
-
     def cancel(self, quotients: Sequence[Quotient], claim: Formula) -> Proof:
         """The proof that quotients are zero, and that none of their divisors is."""
         numerators = RingMatrix.column(self.codec.ring, (q.numerator for q in quotients))
         divisors = dict.fromkeys(q.denominator for q in quotients)
-        return self.vanish([(numerators, claim, divisors)])[0]
+        return self.vanishes(numerators, claim, *divisors)
 
     def is_root(
         self,

@@ -47,10 +47,9 @@ def test_a_second_door_would_be_seen():
 
 def test_a_wrong_coefficient_of_a_vector_form_is_refused(monkeypatch):
     form = FORMS["quaternion", 3]
-    wrong = {
-        name: (values[0] + 1, *values[1:]) for name, values in form._asdict().items() if values
-    }
-    monkeypatch.setitem(FORMS, ("quaternion", 3), form._replace(**wrong))
+    one, *others = form.rotation
+    wrong = (one, *(coefficient + 1 for coefficient in others))
+    monkeypatch.setitem(FORMS, ("quaternion", 3), form._replace(rotation=wrong))
     with pytest.raises(DerivationError, match=r"in terms of v.* is false"):
         rs.derive("gibbs_vector", ["angular_velocity_space"])
 

@@ -201,19 +201,19 @@ def test_a_false_claim_that_the_ring_takes_for_true_is_a_defect(monkeypatch):
 
 def test_every_claim_of_a_derivation_is_evaluated(monkeypatch):
     seen, values = [], []
-    vanish, disagrees = Prover.vanish, Witness.disagrees
+    vanishes, disagrees = Prover.vanishes, Witness.disagrees
 
     def evaluated(self, residual, known):
         values.append(residual)
         return disagrees(self, residual, known)
 
-    def claimed(self, claims, **given):
-        proofs = vanish(self, claims, **given)
-        seen.extend(claim for residual, claim, _ in claims if residual in values)
-        return proofs
+    def claimed(self, residual, claim, *divisors, **given):
+        proof = vanishes(self, residual, claim, *divisors, **given)
+        seen.extend([claim] if residual in values else [])
+        return proof
 
     monkeypatch.setattr(Witness, "disagrees", evaluated)
-    monkeypatch.setattr(Prover, "vanish", claimed)
+    monkeypatch.setattr(Prover, "vanishes", claimed)
     assert {proof.claim for proof in rs.derive("unit_quaternion").proofs} <= set(seen)
 
 
@@ -278,7 +278,7 @@ def test_quotients_cancel_if_their_numerators_do_and_no_divisor_is_a_hidden_zero
         assert (found.status, found.residual is None) == (status, status == "exact")
     with pytest.raises(DerivationError):
         prover.cancel([Quotient(ring, positive, ring.one)], CLAIM)
-    divided = prover.vanishes(column(prover.codec, 0), CLAIM, divided_by=hidden)
+    divided = prover.vanishes(column(prover.codec, 0), CLAIM, hidden)
     assert divided.residual == sp.ImmutableMatrix([HIDDEN])
 
 

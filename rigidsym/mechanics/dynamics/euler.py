@@ -148,5 +148,5 @@ class EulerEquations(Flow):
             residual, divisor = self.rate(value)
             if residual.is_zero():
                 claim = claims.is_constant(symbol)
-                proof = self.prove.vanishes(residual, claim, divided_by=divisor)
+                proof = self.prove.vanishes(residual, claim, divisor)
                 yield FirstIntegral(name=name, symbol=symbol, expression=value, proof=proof)

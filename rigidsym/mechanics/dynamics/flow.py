@@ -140,7 +140,7 @@ class Flow(Workspace):
         """One that is claimed. Raises DerivationError if it is not constant."""
         value = self.in_state(value)
         residual, divisor = self.rate(value)
-        proof = self.prove.vanishes(residual, claims.is_constant(symbol), divided_by=divisor)
+        proof = self.prove.vanishes(residual, claims.is_constant(symbol), divisor)
         return FirstIntegral(name=name, symbol=symbol, expression=value, proof=proof)
 
     def functions(self) -> Mapping[str, Callable[[], Step]]:

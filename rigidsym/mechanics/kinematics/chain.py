@@ -313,6 +313,10 @@ class Chain(Names, Workspace):
         return self.from_body[-1].R
 
     @property
+    def rotation_rate(self) -> Matrix:
+        return hat(self.omega_space) * self.rotation
+
+    @property
     def omega_space(self) -> Vector:
         return self.from_space[0].omega
 
@@ -327,15 +331,6 @@ class Chain(Names, Workspace):
     @property
     def alpha_body(self) -> Vector:
         return self.from_body[-1].alpha
-
-    @property
-    def shown(self) -> Matrix:
-        return self.rotation.T if self.model.passive else self.rotation
-
-    @property
-    def shown_rate(self) -> Matrix:
-        rate = hat(self.omega_space) * self.rotation
-        return rate.T if self.model.passive else rate
 
     @property
     def shown_spin(self) -> Matrix:

@@ -12,20 +12,17 @@ from typing import Any, NamedTuple
 import sympy as sp
 from sympy.polys.rings import PolyElement
 
-from rigidsym.algebra.matrix import RingMatrix, hat
+from rigidsym.algebra.matrix import RingMatrix, Row, hat
 from rigidsym.algebra.ring import Quotient
 from rigidsym.formula.reader import formula
 from rigidsym.mechanics.derivation import Quantity, VectorForm, VectorTerm
 from rigidsym.models.rotation import TIME
 
 LENGTH = sp.Symbol("n", positive=True)  # |v|
-V = formula(r"\v")
-V_DOT = formula(r"\dot\v")
-CROSS = formula(r"\v\times\dot\v")
-TWICE = formula(r"\v\times(\v\times\dot\v)")
-_BASES = (formula(r"\1"), formula(r"\C(\v)"), formula(r"\C(\v)^{2}"), formula(r"\v\,\v^T"))
-_ROW = formula(r"\v^T")
-_APPLIED = ("#1", r"\v\times #1", r"\v\times(\v\times #1)", r"(\v\cdot #1)\,\v")  # to a vector
+V, V_DOT = formula(r"\v"), formula(r"\dot\v")
+_BASES = tuple(map(formula, (r"\1", r"\C(\v)", r"\C(\v)^{2}", r"\v\,\v^T", r"\v^T")))
+_APPLIED = ("#1", r"\v\times #1", r"\v\times(\v\times #1)", r"(\v\cdot #1)\,\v", r"\v\cdot #1")
+CROSS, TWICE = (formula(text, V_DOT) for text in _APPLIED[1:3])
 
 _OTHER = sp.Symbol("w")  # the coordinate that is not in v
 _HALF = sp.Rational(1, 2)
@@ -36,10 +33,10 @@ class Form(NamedTuple):
     """Coefficients of 1, C(v), C(v)² and v vᵀ; in Ω of v̇, v × v̇ and v × (v × v̇)."""
 
     rotation: Coefficients
-    velocity: Coefficients
     along: sp.Expr | int = 0  # of v in Ω, times the rate of the other coordinate
     inverse: Coefficients = ()  # W⁻¹, if it has three columns of v
     last: int = 0  # of vᵀ, in the row of the other coordinate
+    velocity: Coefficients = ()  # if it is not that of C(v) and of C(v)² in R
 
 
 def _forms() -> dict[tuple[str, int], Form]:
@@ -51,30 +48,21 @@ def _forms() -> dict[tuple[str, int], Form]:
     quarter = sp.Mul(sp.Rational(1, 4), 1 - n**2, evaluate=False)
     modified = 8 / (n**2 + 1) ** 2
     outer = -_HALF * (sp.sin(w) / (1 - sp.cos(w)))
+    half_and_outer = (_HALF, -_HALF, 0, _HALF)
     return {
-        ("unit_quaternion", 4): Form((1, 2 * w, 2), (2 * w, 2, 0), -2),
-        ("quaternion", 4): Form(
-            (1, 2 * w / square, 2 / square), (2 * w / square, 2 / square, 0), -2 / square
-        ),
-        ("quaternion", 3): Form((1, gibbs, gibbs), (gibbs, gibbs, 0), 0, (_HALF, -_HALF, 0, _HALF)),
-        ("axis_angle", 4): Form(
-            (1, sp.sin(w), 1 - sp.cos(w)),
-            (sp.sin(w), 1 - sp.cos(w), 0),
-            1,
-            (0, -_HALF, outer),
-            last=1,
-        ),
+        ("unit_quaternion", 4): Form((1, 2 * w, 2), -2),
+        ("quaternion", 4): Form((1, 2 * w / square, 2 / square), -2 / square),
+        ("quaternion", 3): Form((1, gibbs, gibbs), inverse=half_and_outer),
+        ("axis_angle", 4): Form((1, sp.sin(w), 1 - sp.cos(w)), 1, (0, -_HALF, outer), last=1),
         ("axis_angle", 3): Form(
             (1, sine / n, rest / n**2),
-            (1, rest / n**2, (n - sine) / n**3),
-            0,
-            (1, -_HALF, bracket),
+            inverse=(1, -_HALF, bracket),
+            velocity=(1, rest / n**2, (n - sine) / n**3),
         ),
         ("modified_rodrigues", 3): Form(
             (1, 4 * ((1 - n**2) / (n**2 + 1) ** 2), modified),
-            (4 / (n**2 + 1), modified, modified),
-            0,
-            (quarter, -_HALF, 0, _HALF),
+            inverse=(quarter, *half_and_outer[1:]),
+            velocity=(4 / (n**2 + 1), modified, modified),
         ),
     }
 
@@ -90,31 +78,29 @@ def vector_form(k: Any, quantity: Quantity, value: Any) -> VectorForm | None:
     model, kind, symbol = k.model, quantity.vectors, quantity.symbol
     head = model.definition.partition("(")[0]
     form = FORMS.get((head, len(model.coordinates))) if model.vector else None
-    if form is None or not kind:
-        return None
     others = [q for q in model.coordinates if q not in model.vector]
-    v = k.codec.column(model.vector)
-    bases, names = [k.one, hat(v), hat(v) @ hat(v), v @ v.T], list(_BASES)
-    coefficients = form.rotation if kind == "rotation" else form.velocity
-    row, row_name = v.T, _ROW
-    claim = formula(r"#1\text{ in terms of }\v", symbol)
-    if kind == "velocity":
-        v_dot = k.codec.column([sp.diff(x, TIME) for x in model.vector])
-        crossed = v.cross(v_dot)
-        bases, names = [v_dot, crossed, v.cross(crossed), v], [V_DOT, CROSS, TWICE, V]
-        coefficients = (*coefficients, *(form.along * sp.diff(q, TIME) for q in others))
-        claim = formula(r"#1\text{ in terms of }\v, \dot\v", symbol)
-    elif kind == "rate_matrix" and others:
+    if form is None or not kind or (kind == "rate_matrix" and others):
         return None
+    v = k.codec.column(model.vector)
+    names, bases = list(_BASES), [k.one, hat(v), hat(v) @ hat(v), v @ v.T, v.T]
+    coefficients = form.velocity or (*form.rotation[1:], 0)
+    text = r"#1\text{ in terms of }\v"
+    factor = V_DOT  # that the matrices are applied to
+    if kind == "rotation":
+        coefficients = form.rotation
     elif kind in ("inverse", "rates"):
         coefficients = form.inverse
-    if kind == "rates":
-        assert quantity.frame is not None
-        omega, w = quantity.frame.omega, k.argument(f"omega_{quantity.frame.name}")
-        bases, row = [basis @ w for basis in bases], v.T @ w
-        names = [formula(applied, omega) for applied in _APPLIED]
-        row_name = formula(r"\v\cdot #1", omega)
-        claim = formula(r"#1\text{ in terms of }\v, #2", symbol, omega)
+    if kind in ("velocity", "rates"):
+        if kind == "velocity":
+            coefficients = (*coefficients, *(form.along * sp.diff(q, TIME) for q in others))
+            u = k.codec.column([sp.diff(x, TIME) for x in model.vector])
+        else:
+            assert quantity.frame is not None
+            factor, u = quantity.frame.omega, k.argument(f"omega_{quantity.frame.name}")
+        bases = [basis @ u for basis in bases]
+        names, text = [formula(each, factor) for each in _APPLIED], text + ", #2"
+    if kind == "velocity":
+        names[3], bases[3] = V, v
     # C(v) changes its sign with the direction of the turn
     is_backwards = model.passive if quantity.frame is None else quantity.frame.prime != ""
     terms, vectors = [], []
@@ -128,17 +114,16 @@ def vector_form(k: Any, quantity: Quantity, value: Any) -> VectorForm | None:
     if not terms:
         return None
     matrix, divisor = value if isinstance(value, tuple) else (value, k.codec.ring.one)
-    residual = _residual(k, terms, vectors, RingMatrix(matrix.ring, matrix.rows[:3]), divisor)
+    residual = _residual(k, terms, vectors, matrix.rows[:3], divisor)
     last = None
     if form.last and len(matrix.rows) > 3:
-        last = VectorTerm(sp.Integer(form.last), row_name)
-        rest = RingMatrix(matrix.ring, matrix.rows[3:])
-        residual += _residual(k, [last], [row], rest, divisor)
+        last = VectorTerm(sp.Integer(form.last), names[4])
+        residual += _residual(k, [last], bases[4:], matrix.rows[3:], divisor)
     return VectorForm(
         terms=tuple(terms),
         components=model.vector,
         length=LENGTH,
-        proof=k.prove.cancel(residual, claim),
+        proof=k.prove.cancel(residual, formula(text, symbol, factor)),
         last=last,
     )
 
@@ -147,12 +132,12 @@ def _residual(
     k: Any,
     terms: Sequence[VectorTerm],
     vectors: Sequence[RingMatrix],
-    whole: RingMatrix,
+    rows: Sequence[Row],
     below: PolyElement,
 ) -> list[Quotient]:
-    """The printed terms less whole/below, entry by entry, with |v| = √(v·v)."""
+    """The printed terms less rows/below, entry by entry, with |v| = √(v·v)."""
     ring, length = k.codec.ring, sp.sqrt(sum(part**2 for part in k.model.vector))
-    total = [Quotient(ring, -entry, below) for entry in whole.entries]
+    total = [Quotient(ring, -entry, below) for row in rows for entry in row]
     for term, vector in zip(terms, vectors, strict=True):
         coefficient = k.codec.encode_quotient(term.coefficient.xreplace({LENGTH: length}))
         for place, entry in enumerate(vector.entries):

@@ -53,6 +53,8 @@ class Workspace:
     model: RotationModel
     body: RigidBody | None
     arguments: dict[str, Argument]
+    rotation: Any
+    rotation_rate: Any
 
     @cached_property
     def traits(self) -> frozenset[str]:
@@ -70,6 +72,16 @@ class Workspace:
     @cached_property
     def present(self) -> Presenter:
         return presenter_for(self.codec)
+
+    # The matrix that is shown: R, or A = Rᵀ
+
+    @property
+    def shown(self) -> Any:
+        return self.rotation.T if "passive" in self.traits else self.rotation
+
+    @property
+    def shown_rate(self) -> Any:
+        return self.rotation_rate.T if "passive" in self.traits else self.rotation_rate
 
     def scalar(self, element: PolyElement) -> RingMatrix:
         return RingMatrix.column(self.codec.ring, [element])
@@ -128,7 +140,7 @@ class Workspace:
                 proofs.append(identity(residual, law.claim, self.body.name))
             elif residual is not None:
                 divisors = () if divisor is None else (divisor,)
-                proofs += self.prove.vanish([(residual, law.claim, divisors)], error=error)
+                proofs.append(self.prove.vanishes(residual, law.claim, *divisors, error=error))
         return tuple(proofs)
 
 
@@ -148,7 +160,6 @@ class Values(Workspace):
         self._also = tuple(also)
         self._rate_matrices: dict[str, RingMatrix] = {}
         self._inverses: dict[str, Inverse | None] = {}
-        self._rates: dict[str, Inverse] = {}
 
     @cached_property
     def traits(self) -> frozenset[str]:
@@ -217,17 +228,7 @@ class Values(Workspace):
     def alpha_body(self) -> RingMatrix:
         return self.omega_body.dt()
 
-    # The matrix that is shown: R, or A = Rᵀ
-
     @property
-    def shown(self) -> RingMatrix:
-        return self.rotation.T if "passive" in self.traits else self.rotation
-
-    @property
-    def shown_rate(self) -> RingMatrix:
-        return self.rotation_rate.T if "passive" in self.traits else self.rotation_rate
-
-    @cached_property
     def shown_spin(self) -> RingMatrix:
         """dR/dt Rᵀ, or dA/dt Aᵀ."""
         return self.rotation_rate.T @ self.rotation if "passive" in self.traits else self.spin
@@ -265,10 +266,7 @@ class Values(Workspace):
     def rates(self, frame: str) -> Inverse | None:
         """The inverse times the angular velocity as an argument, q̇ = W⁻¹ Ω."""
         inverse = self.inverse(frame)
-        if inverse is not None and frame not in self._rates:
-            matrix, below = inverse
-            self._rates[frame] = matrix @ self.argument(f"omega_{frame}"), below
-        return self._rates.get(frame)
+        return inverse and (inverse[0] @ self.argument(f"omega_{frame}"), inverse[1])
 
     def excess(
         self, frame: str, above: RingMatrix, below: PolyElement, goal: RingMatrix

@@ -6,7 +6,6 @@ add.
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterable, Sequence
 from functools import cache, lru_cache
 from itertools import repeat
@@ -52,14 +51,12 @@ def arguments_of(model: RotationModel, body: RigidBody | None = None) -> tuple[A
         *(_of_body() if body else ()),
         *_parameters(model, body),
     )
-    if body is not None:
-        names = [name for argument in found for name in argument.names]
-        twice = sorted(name for name, count in Counter(names).items() if count > 1)
-        if twice:
-            raise ModelError(
-                f"{model.name}: {twice[0]} is a name both in the rotation and in the body; "
-                "rename one"
-            )
+    names = [name for argument in found for name in argument.names]
+    twice = sorted({name for name in names if names.count(name) > 1}) if body else []
+    if twice:
+        raise ModelError(
+            f"{model.name}: {twice[0]} is a name both in the rotation and in the body; rename one"
+        )
     return found
 
 
@@ -142,22 +139,20 @@ def _moving(
 ) -> tuple[Argument, ...]:
     """Functions of time and their derivatives, as many as are told about."""
     plain = [function.func.__name__ for function in functions]
-    shown, orders = _shown(plain, units), range(len(about))
-    symbols = [functions]
-    for _ in about[1:]:
-        symbols.append(tuple(map(rate_of, symbols[-1])))
-    notation = [tuple(map(named, shown, repeat(order))) for order in orders]
-    return tuple(
-        Argument(
-            name=name + _SUFFIX[order],
-            symbols=symbols[order],
-            names=tuple(label + _SUFFIX[order] for label in plain),
-            notation=notation[order],
-            units=tuple(f"{unit or '1'}{_PER[order]}" if order else unit for unit in units),
-            about=about[order],
+    found: list[Argument] = []
+    for order, words in enumerate(about):
+        own = [f"{unit or '1'}{_PER[order]}" if order else unit for unit in units]
+        found.append(
+            Argument(
+                name=name + _SUFFIX[order],
+                symbols=tuple(map(rate_of, found[-1].symbols)) if order else functions,
+                names=tuple(label + _SUFFIX[order] for label in plain),
+                notation=tuple(map(named, _shown(plain, units), repeat(order))),
+                units=tuple(own),
+                about=words,
+            )
         )
-        for order in orders
-    )
+    return tuple(found)
 
 
 def _shown(names: Sequence[str], units: Sequence[str]) -> Sequence[str]:
@@ -173,15 +168,10 @@ def is_quaternion(names: Sequence[str], units: Sequence[str]) -> bool:
 @cache
 def _angular_velocities() -> tuple[Argument, ...]:
     """The components of the angular velocity in space and in the body."""
-    shown = tuple(
-        map(
-            formula,
-            [r"\Omega_1", r"\Omega_2", r"\Omega_3", r"\Omega'_1", r"\Omega'_2", r"\Omega'_3"],
-        )
-    )
     found = []
-    for frame, symbols, notation in (("space", _SPACE, shown[:3]), ("body", OMEGA_BODY, shown[3:])):
+    for frame, symbols, prime in (("space", _SPACE, ""), ("body", OMEGA_BODY, "'")):
         about = f"{frame} components of the angular velocity"
+        notation = [formula(rf"\Omega{prime}_{k}") for k in (1, 2, 3)]
         vector = _vector(f"omega_{frame}", symbols, "rad/s", about, notation)
         found.append(vector._replace(names=tuple(f"omega_{frame}_{k}" for k in (1, 2, 3))))
     return tuple(found)
