@@ -49,20 +49,13 @@ def load(
                 build(draft)
             with suppress(OSError):  # another process was faster, with the same content
                 draft.rename(kept)
-        by_use = sorted(home.glob("kernels_*"), key=_last_use)
-        for old in by_use[:-_KEPT]:
-            shutil.rmtree(old, ignore_errors=True)
+        with suppress(OSError):  # another process removes them
+            for old in sorted(home.glob("kernels_*"), key=os.path.getmtime)[:-_KEPT]:
+                shutil.rmtree(old, ignore_errors=True)
     with suppress(OSError):
         os.utime(kept)  # it was used now
     invalidate_caches()
     return import_module(f"{__name__}.{package}.{main}")
-
-
-def _last_use(package: Path) -> float:
-    try:
-        return package.stat().st_mtime
-    except OSError:  # another process removed it
-        return 0.0
 
 
 @cache

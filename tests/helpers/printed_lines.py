@@ -6,6 +6,7 @@ lecture, tests/golden/kernels, show what changed; tests of values show what is r
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from functools import cache
 from hashlib import sha256
@@ -14,7 +15,6 @@ from typing import Any
 import sympy as sp
 
 import rigidsym as rs
-from rigidsym import __version__
 from rigidsym.models.library import rotation_from
 
 A, C = sp.symbols("A C", positive=True)
@@ -43,6 +43,7 @@ PRINTED: dict[str, list[dict[str, Any]]] = {
     "constants": [{"conversions": True}],
     "series": [{}, {"conversions": True, "derivatives": ("rotation_matrix by q",)}],
 }
+_PROSE = re.compile(r'""".*?"""|/\*.*?\*/', re.DOTALL)
 LEAN = {"lean": "double"}
 OF_C: dict[str, list[dict[str, Any]]] = {
     "turn": [LEAN | {"conversions": True}],
@@ -58,9 +59,9 @@ def motion(name: str) -> rs.Motion:
 
 
 def of_rotations(target: str) -> Iterator[str]:
-    """What is printed of each rotation, a line for each file."""
+    """What is printed of each rotation without docstrings and comments, a line for each file."""
     for name, ways in PRINTED.items():
         for way in (*ways, *(OF_C.get(name, ()) if target == "c" else ())):
             for file, text in motion(name).kernels(target, **way).files.items():
-                digest = sha256(text.replace(__version__, "").encode()).hexdigest()
-                yield f"{file} {' '.join(way)}: {len(text.splitlines())} {digest[:16]}"
+                digest = sha256(_PROSE.sub("", text).encode()).hexdigest()[:16]
+                yield f"{file} {' '.join(way)}: {len(text.splitlines())} {digest}"

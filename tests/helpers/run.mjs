@@ -1,7 +1,7 @@
 import { readFileSync } from "node:fs";
 import * as kernels from "./kernels.mjs";
 
-const [name, time, parted, ...sizes] = process.argv.slice(2);
+const [name, time, ...sizes] = process.argv.slice(2);
 const numbers = new Float64Array(Uint8Array.from(readFileSync(0)).buffer);
 const count = sizes.reduce((sum, size) => sum + Number(size), 0);
 const results = [];
@@ -13,8 +13,6 @@ for (let start = 0; start < Math.max(numbers.length, 1); start += Math.max(count
 }
 const shape = (value) => (Array.isArray(value) ? [value.length, ...shape(value[0])] : []);
 const plain = (value) => (ArrayBuffer.isView(value) ? Array.from(value) : value);
-const one = plain(results[0]);
-const shapes = parted ? one.map(shape) : [shape(one)];
-process.stdout.write(JSON.stringify(shapes) + "\n");
+process.stdout.write(JSON.stringify(shape(plain(results[0]))) + "\n");
 const flat = results.map(plain).flat(3);
 process.stdout.write(new Uint8Array(Float64Array.from(flat).buffer));

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import re
 import shutil
 from collections.abc import Callable
 from functools import cache
@@ -101,13 +100,11 @@ def rows_of(rotation: str, target: str, name: str, arrays) -> np.ndarray:
 
 
 def row_by_row(target: str, function: Callable[..., Any]) -> Callable[..., np.ndarray]:
-    """The function on arrays with one point a row; all its results as one row a point."""
+    """The function on arrays with one point a row; its result as one row a point."""
     compute = _jitted(function) if target == "jax" else function
 
     def call(*arrays: np.ndarray) -> np.ndarray:
-        found = compute(*arrays)
-        parts = found if isinstance(found, tuple) else (found,)
-        return np.hstack([np.asarray(part).reshape(len(arrays[0]), -1) for part in parts])
+        return np.asarray(compute(*arrays)).reshape(len(arrays[0]), -1)
 
     return call
 
@@ -151,8 +148,3 @@ def turned_by(name: str, *angles: str, axes: str = "zxz") -> rs.Motion:
             source=lecture("17"),
         )
     )
-
-
-def plain(text: str) -> str:
-    """Without line ends and the stars of comments."""
-    return re.sub(r"\s+(\* )?", " ", text)

@@ -8,7 +8,6 @@ import sys
 import tracemalloc
 from collections import namedtuple
 
-import dask.array as da
 import numpy as np
 import pandas as pd
 import polars as pl
@@ -184,10 +183,3 @@ def test_names_decide_and_not_the_order(form):
     assert_array_equal(found, expected.reshape(found.shape))
     with pytest.raises(ValueError, match=r"q: the columns are named .*; expected each of phi, "):
         module().rotation_matrix(NAMED[form](ANGLES))
-
-
-def test_dask_takes_the_signature():
-    function, (q,) = module().rotation_matrix, inputs("rotation_matrix", (60,))
-    chunked = da.from_array(q, chunks=(30, 3))
-    found = da.apply_gufunc(function, function.signature, chunked, output_dtypes=float)
-    assert_array_equal(found.compute(scheduler="sync"), function(q))

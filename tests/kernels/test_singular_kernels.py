@@ -14,7 +14,6 @@ import rigidsym as rs
 from helpers.motions import derived
 from helpers.witness import evaluate, mp
 from rigidsym.algebra.stable_forms import series_of
-from rigidsym.kernels.lowering.lower import MARGIN
 from rigidsym.models.library import rotation_from
 from rigidsym.motion import derive
 
@@ -103,20 +102,6 @@ def worst(found: np.ndarray, exact: list, scale=None) -> float:
     scale = max(map(abs, exact)) if scale is None else scale
     pairs = zip(found.ravel().tolist(), exact, strict=True)
     return float(max(abs(mp.mpf(value) - true) for value, true in pairs) / scale)
-
-
-@pytest.mark.parametrize("dtype", DTYPES)
-def test_the_margin_is_the_size_of_the_determinant(sequence, dtype):
-    eps = float(np.finfo(dtype).eps)
-    angles = [*poles(sequence, dtype), *np.linspace(-7, 7, 15).astype(dtype)]
-    for middle in angles:
-        arguments = [np.array([0.3, middle, -0.7], dtype)]
-        matrix = truth(derived(sequence), "rate_matrix_space", arguments)
-        exact = abs(mp.det(mp.matrix([matrix[k : k + 3] for k in (0, 3, 6)])))
-        for found in both(kernels(sequence), MARGIN, arguments):
-            assert found.shape == ()
-            assert abs(mp.mpf(float(found)) - exact) <= 30 * eps * exact
-            assert 0 <= found <= 1
 
 
 def test_the_margin_is_one_far_away_and_small_at_a_pole():

@@ -167,13 +167,9 @@ def test_a_portable_module_uses_wide_vectors_in_its_clones_only(tmp_path, monkey
     (library,) = tmp_path.glob("*.so")
     text = run("objdump", "-d", "--no-show-raw-insn", library.name, cwd=tmp_path)
     functions = [part for part in text.split("\n\n") if ">:" in part.partition("\n")[0]]
-    found = {
-        (name, register)
-        for part in functions
-        for register in re.findall(r"%([yz]mm)", part)
-        for name in [re.search(r"_(avx2|avx512)f?[.>]|$", part.partition("\n")[0])[1]]
-    }
-    assert found == {("avx2", "ymm"), ("avx512", "zmm"), ("avx512", "ymm")}
+    wide = [part for part in functions if "%ymm" in part or "%zmm" in part]
+    assert wide
+    assert all("_avx" in part.partition("\n")[0] for part in wide)
     code = f"import {source.stem}_c as m; print(m.rotation_matrix([[0.1, 0.2, 0.3]] * 40).tolist())"
     rows = np.array(json.loads(run(sys.executable, "-c", code, cwd=tmp_path)))
     expected = motion.kernels().load().rotation_matrix([0.1, 0.2, 0.3])
@@ -305,9 +301,7 @@ def test_compilers_are_silent_and_results_are_those_of_numpy(tmp_path, rotation,
         inputs = motion.step(name.removesuffix("_jacobian_q")).quantity.inputs
         sizes = [len(motion.argument(n).names) for n in inputs]
         given = [random.uniform(0.2, 1.2, size).astype(dtype) for size in sizes]
-        found = getattr(functions, name)(*given)
-        parts = found if isinstance(found, tuple) else (found,)
-        expected = np.hstack([part.ravel() for part in parts])
+        expected = getattr(functions, name)(*given).ravel()
         out = np.empty(expected.shape, dtype)
         function = getattr(library, f"{kernels.name}_{name}{'f' if real == 'float' else ''}")
         function(*(ctypes.c_void_p(array.ctypes.data) for array in (*given, out)))

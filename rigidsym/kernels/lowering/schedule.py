@@ -139,13 +139,6 @@ class _Writer:
         self.assignments.append(Assignment(name, value))
         return Name(name)
 
-    def _argument(self, weighted: Weighted) -> Name:
-        """The name of what functions are called with: half an angle has one for all of them."""
-        if weighted not in self._arguments:
-            value = self.weighted(*weighted)
-            self._arguments[weighted] = value if isinstance(value, Name) else self._assigned(value)
-        return self._arguments[weighted]
-
     def _build(self, node: int) -> Expression:
         kind, value = self.graph.nodes[node]
         if kind == PRODUCT:
@@ -153,10 +146,14 @@ class _Writer:
         if kind == SUM:
             return self._sum(self._terms(value, Fraction(1)))
         if _is_function(kind):
-            names = [self._argument(argument) for argument in value]
+            for each in value:  # half an angle has one name for all functions of it
+                if each not in self._arguments:
+                    text = self.weighted(*each)
+                    name = text if isinstance(text, Name) else self._assigned(text)
+                    self._arguments[each] = name
             if kind == "cos" and value[0] in self._sines:
                 self.node(self._sines[value[0]])  # first: both can be taken in one call
-            return Call(kind, *names)
+            return Call(kind, *map(self._arguments.__getitem__, value))
         values = [self.weighted(*each) for each in value]
         if kind == HELD:
             return values[0]

@@ -37,7 +37,14 @@ def render(program: Program, *, lean: str = "none") -> dict[str, str]:
     precisions = [p for p in PRECISIONS if lean in ("none", p.real)]
     facts = {"is_lean": is_lean, "has_floats": precisions[-1].suffix == "f", "tile": _TILE}
     about = _comment(remarks.about_module("c/header.txt.jinja", program, **facts))
-    declared = [_declared(program, k, precisions, is_lean=is_lean) for k in program.kernels]
+    declared = []
+    for kernel in program.kernels:
+        signatures = []
+        for precision in precisions:
+            signatures.append(_signature(program, kernel, precision))
+            signatures += [] if is_lean else [_array_signature(program, kernel, precision)]
+        text = _comment(remarks.about_kernel("c/function.txt.jinja", kernel))
+        declared.append({"about": text, "declared": signatures})
     header = _rendered("c/header.h.jinja", program, about=about, functions=declared)
     if is_lean:
         return {f"{name}.c": _lean(program, precisions[0]), f"{name}.h": header}
@@ -142,18 +149,6 @@ def _called(kernel: Kernel) -> str:
 
 
 # declarations
-
-
-def _declared(
-    program: Program, kernel: Kernel, precisions: Sequence[Precision], *, is_lean: bool
-) -> dict[str, object]:
-    """What the header says of a function, and its declarations."""
-    signatures = []
-    for precision in precisions:
-        signatures.append(_signature(program, kernel, precision))
-        signatures += [] if is_lean else [_array_signature(program, kernel, precision)]
-    about = _comment(remarks.about_kernel("c/function.txt.jinja", kernel))
-    return {"about": about, "declared": signatures}
 
 
 def _signature(program: Program, kernel: Kernel, precision: Precision) -> str:
