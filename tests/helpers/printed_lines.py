@@ -63,5 +63,6 @@ def of_rotations(target: str) -> Iterator[str]:
     for name, ways in PRINTED.items():
         for way in (*ways, *(OF_C.get(name, ()) if target == "c" else ())):
             for file, text in motion(name).kernels(target, **way).files.items():
-                digest = sha256(_PROSE.sub("", text).encode()).hexdigest()[:16]
-                yield f"{file} {' '.join(way)}: {len(text.splitlines())} {digest}"
+                lines = _PROSE.sub("", text).splitlines()
+                digest = sha256("\n".join(lines).encode()).hexdigest()[:16]
+                yield f"{file} {' '.join(way)}: {len(lines)} {digest}"
