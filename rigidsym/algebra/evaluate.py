@@ -32,7 +32,9 @@ _REWRITTEN: dict[str, Callable[..., sp.Expr]] = {  # where an arithmetic has no 
     "csch": lambda x: 2 / (sp.exp(x) - sp.exp(-x)),
     "acot": lambda x: sp.atan(1 / x),
 }
-_MONOTONE = frozenset({"atan", "asin", "acos", "sinh", "tanh", "asinh", "acosh", "atanh", "erf"})
+_MONOTONE = frozenset(
+    {"atan", "asin", "acos", "sinh", "tanh", "asinh", "acosh", "atanh", "erf", "log"}
+)
 _LARGEST_EXPONENT = 10**5  # of exp, and angle of sin and cos: mpmath would need ever more digits
 
 
@@ -94,7 +96,7 @@ def _value(e: sp.Expr, arithmetic: Intervals | Floats, values: dict[sp.Expr, Any
 class Intervals:
     """Intervals of so many digits, by mpmath."""
 
-    functions = _MONOTONE | {"exp", "sin", "cos", "log", "Abs", "atan2"}
+    functions = _MONOTONE | {"exp", "sin", "cos", "Abs", "atan2"}
 
     def __init__(self, digits: int) -> None:
         self.context = context(digits, of_intervals=True)
@@ -110,15 +112,12 @@ class Intervals:
             raise NotReal("a root of a negative number,", whole.base)
         if exponent < 0 and 0 in base:
             raise NotReal("division by", whole.base)
-        return self._root(base, int(exponent.q)) ** int(exponent.p)
-
-    def _root(self, value: Any, degree: int) -> Any:
-        if degree < 3:
-            return value if degree == 1 else self.context.sqrt(value)
-        if 0 in value:
-            above = self.context.mpf(value.b) ** (self.context.mpf(1) / degree)
-            return self.context.mpf([0, above.b]) if value.b > 0 else self.context.mpf(0)
-        return self.context.exp(self.context.log(value) / degree)
+        degree = int(exponent.q)
+        if degree == 2:
+            base = self.context.sqrt(base)
+        elif degree > 2:
+            base = self._monotone("root", base, whole, degree)
+        return base ** int(exponent.p)
 
     def apply(self, name: str, whole: sp.Expr, *values: Any) -> Any:
         (value, *others), context = values, self.context
@@ -128,11 +127,6 @@ class Intervals:
             return getattr(context, name)(value)
         if name == "Abs":
             return abs(value)
-        if name == "log":
-            if not value.a > 0:
-                part = whole.args[0]
-                raise NotReal("the logarithm of a number that is not positive,", part)
-            return context.log(value)
         if name == "atan2":
             # by the arc tangent of a quotient that stays finite
             (x,) = others
@@ -144,11 +138,11 @@ class Intervals:
             raise NotReal("no direction is known of", sp.Tuple(*whole.args[::-1]))
         return self._monotone(name, value, whole)
 
-    def _monotone(self, name: str, value: Any, whole: sp.Expr) -> Any:
+    def _monotone(self, name: str, value: Any, whole: sp.Expr, *more: int) -> Any:
         """A monotone function, by its values at both ends."""
         digits = self.context.dps
         own = context(digits + 10)
-        ends = [getattr(own, name)(own.mpf(end)) for end in (value.a, value.b)]
+        ends = [getattr(own, name)(own.mpf(end), *more) for end in (value.a, value.b)]
         if any(isinstance(end, own.mpc) or not own.isfinite(end) for end in ends):
             raise NotReal("a value that is not real,", whole)
         slack = own.mpf(10) ** -digits * (1 + max(map(abs, ends)))

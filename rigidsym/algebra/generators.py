@@ -15,7 +15,6 @@ from collections.abc import Collection, Iterable
 from enum import IntEnum
 from fractions import Fraction
 from functools import cached_property, lru_cache, reduce
-from math import gcd, lcm
 from typing import Any
 
 import sympy as sp
@@ -41,7 +40,17 @@ def combination(argument: sp.Expr) -> Combination:
         if not coefficient.is_Rational:
             raise not_exact(coefficient)
     combined = {atom: coefficient for atom, coefficient in terms.items() if coefficient}
-    return _without_zeros(combined) if any(map(_has_root, combined)) else combined
+    if all(atom is sp.pi or isinstance(atom, sp.Symbol | AppliedUndef) for atom in combined):
+        return combined
+    # multiples of one thing by numbers may add up to zero
+    groups: dict[sp.Expr, Combination] = {}
+    for atom, coefficient in combined.items():
+        number, rest = (
+            (atom, sp.S.One) if atom.is_number else atom.as_independent(*atom.free_symbols)
+        )
+        groups.setdefault(rest, {})[atom] = coefficient * number
+    kept = [group for group in groups.values() if not is_identically_zero(sp.Add(*group.values()))]
+    return {atom: combined[atom] for group in kept for atom in group}
 
 
 def is_sum_of(angle: sp.Expr, *parts: sp.Expr) -> bool:
@@ -53,22 +62,6 @@ def _is_quotient(term: sp.Expr) -> bool:
     """Whether a term is divided by anything but a number."""
     powers = (factor for factor in sp.Mul.make_args(term) if factor.is_Pow)
     return any(p.exp.could_extract_minus_sign() and not p.base.is_number for p in powers)
-
-
-def _has_root(term: sp.Expr) -> bool:
-    return any(f.is_number and not f.is_Rational and f is not sp.pi for f in sp.Mul.make_args(term))
-
-
-def _without_zeros(terms: Combination) -> Combination:
-    """The terms without multiples of one thing by numbers that add up to zero."""
-    groups: dict[sp.Expr, Combination] = {}
-    for term, coefficient in terms.items():
-        number, rest = term.as_independent(*term.free_symbols, as_Add=False)
-        groups.setdefault(rest if term.free_symbols else sp.S.One, {})[term] = coefficient * (
-            number if term.free_symbols else term
-        )
-    kept = [group for group in groups.values() if not is_identically_zero(sp.Add(*group.values()))]
-    return {term: terms[term] for group in kept for term in group}
 
 
 def is_identically_zero(expression: sp.Expr) -> bool:
@@ -123,21 +116,19 @@ def common_fractions(combinations: Iterable[Combination]) -> Combination:
     """
     given = [{a: c for a, c in terms.items() if a is not sp.pi} for terms in combinations]
     if any(len(terms) > 1 for terms in given):
-        multiples = [_multiple(terms) for terms in given if terms]
+        multiples = []
+        for terms in filter(None, given):  # each as a multiple of one sum of whole multiples
+            unit = reduce(sp.Rational.gcd, map(abs, terms.values()))
+            angle = sp.Add(*(c / unit * atom for atom, c in terms.items()))
+            sign = -1 if angle.could_extract_minus_sign() else 1
+            multiples.append({sign * angle: sign * unit})
         if _are_independent(set().union(*multiples)):
             given = multiples
     fractions: Combination = {}
     for terms in given:
         for angle, coefficient in terms.items():
-            fractions[angle] = _common(fractions.get(angle, sp.Integer(0)), abs(coefficient))
+            fractions[angle] = fractions.get(angle, sp.S.Zero).gcd(abs(coefficient))
     return fractions
-
-
-def _multiple(terms: Combination) -> Combination:
-    """{angle: coefficient}: the combination as a multiple of one sum of whole multiples."""
-    unit = reduce(_common, map(abs, terms.values()), sp.Integer(0))
-    angle = sp.Add(*(c / unit * atom for atom, c in terms.items()))
-    return {-angle: -unit} if angle.could_extract_minus_sign() else {angle: unit}
 
 
 def _are_independent(angles: Collection[sp.Expr]) -> bool:
@@ -155,10 +146,6 @@ def _are_independent(angles: Collection[sp.Expr]) -> bool:
 def coefficients(angles: Iterable[sp.Expr], atoms: Collection[sp.Expr]) -> sp.Matrix:
     """A row for each angle: its coefficients, atom by atom."""
     return sp.Matrix([[combination(angle).get(atom, 0) for atom in atoms] for angle in angles])
-
-
-def _common(a: sp.Rational, b: sp.Rational) -> sp.Rational:
-    return sp.Rational(gcd(int(a.p), int(b.p)), lcm(int(a.q), int(b.q)))
 
 
 TIME = sp.Symbol("t")  # the time symbol of sympy.physics.vector.dynamicsymbols

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from itertools import combinations, product
@@ -50,7 +50,10 @@ class RingMatrix:
 
     @property
     def T(self) -> RingMatrix:
-        return RingMatrix(self.ring, tuple(zip(*self.rows, strict=True)), (_transposed, (self,)))
+        rows = tuple(zip(*self.rows, strict=True))
+        return RingMatrix(
+            self.ring, rows, (lambda values: list(zip(*values, strict=True)), (self,))
+        )
 
     @property
     def entries(self) -> Row:
@@ -155,19 +158,15 @@ class RingMatrix:
         largest = min(self.shape) if most is None else min(*self.shape, most)
         for size in range(largest, 0, -1):
             minors: list[PolyElement] = []
-            for minor in filter(None, self._minors(size)):
-                if most is not None and minor.is_ground:
+            columns = combinations(range(self.shape[1]), size)
+            for part in product(combinations(self.rows, size), columns):
+                minor = self._part(*part).det()
+                if minor and minor.is_ground and most is not None:
                     return size, [minor]
-                minors.append(minor)
+                minors += [minor] if minor else []
             if minors:
                 return size, minors
         return 0, []
-
-    def _minors(self, size: int) -> Iterator[PolyElement]:
-        """The determinants of all parts with so many rows and columns."""
-        for rows in combinations(self.rows, size):
-            for columns in combinations(range(self.shape[1]), size):
-                yield self._part(rows, columns).det()
 
     def _part(self, rows: Sequence[Row], columns: Sequence[int]) -> RingMatrix:
         return RingMatrix(self.ring, tuple(tuple(row[k] for k in columns) for row in rows))
@@ -228,10 +227,6 @@ class RingMatrix:
         """The matrix without one row and one column."""
         kept = [entries for place, entries in enumerate(self.rows) if place != row]
         return RingMatrix(self.ring, tuple(e[:column] + e[column + 1 :] for e in kept))
-
-
-def _transposed(rows: Values) -> Values:
-    return list(zip(*rows, strict=True))
 
 
 def _multiplied(rows: Values, others: Values) -> Values:

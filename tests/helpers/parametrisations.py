@@ -14,8 +14,6 @@ from rigidsym.models.library import PARAMETRISATIONS, PRESETS, rotation_from
 from rigidsym.models.parametrisations import EULER_SEQUENCES
 from rigidsym.motion import Motion, derive
 
-CLOSE = mp.mpf(10) ** -30
-
 Curve = Callable[[Any], list[Any]]  # coordinates at a time
 
 Build = Callable[[list[Any]], Any]  # R from coordinates

@@ -80,10 +80,6 @@ ROTATIONS = {
     "parts of pi": model(
         chain(("z", phi + pi / 3), ("x", pi / 4), ("y", pi / 5), ("x", pi / 8)), phi
     ),
-    "roots of one number": model(
-        about_z(sp.Integer(2) ** Rational(1, 4) / 2, sqrt(1 - sqrt(2) / 4)) * elementary("x", phi),
-        phi,
-    ),
     "tangent of the half angle": model(
         about_z(
             (1 - tan(phi / 2) ** 2) / (1 + tan(phi / 2) ** 2),

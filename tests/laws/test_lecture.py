@@ -10,11 +10,10 @@ import sympy as sp
 from sympy import cos, sin
 from sympy.physics.vector import dynamicsymbols
 
-from helpers.witness import agree, evaluate, paths, values_along
 from rigidsym.mechanics.derive import derive
 from rigidsym.models.library import PRESETS
 from rigidsym.models.parametrisations import EulerAngles
-from rigidsym.models.rotation import SOURCES, hat, lecture
+from rigidsym.models.rotation import SOURCES, lecture
 
 phi, theta, psi = dynamicsymbols("phi theta psi")
 phi_dot, theta_dot, psi_dot = dynamicsymbols("phi theta psi", 1)
@@ -64,20 +63,6 @@ def test_derived_term_by_term(quantity, printed):
     assert derived.shape == printed.shape
     for entry, expected in zip(derived, printed, strict=True):
         assert entry == expected
-
-
-def test_equation_16_joins_what_is_printed():
-    assert hat(OMEGA_PRINTED) == SPIN_PRINTED
-    (path,) = paths(1)
-    values = values_along(MODEL.coordinates, path)
-    turned = evaluate(R_PRINTED, values).T * evaluate(OMEGA_PRINTED, values)
-    assert agree(turned, evaluate(EQUATION_18, values))
-
-
-def test_rate_matrices_are_the_coefficients_of_the_printed_velocities():
-    rates = [phi_dot, theta_dot, psi_dot]
-    assert MOTION.rate_matrix_space == OMEGA_PRINTED.jacobian(rates)
-    assert MOTION.rate_matrix_body == EQUATION_18.jacobian(rates)
 
 
 def test_equation_17_is_the_product_as_written():

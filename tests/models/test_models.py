@@ -6,8 +6,6 @@ import dataclasses
 
 import pytest
 import sympy as sp
-from sympy import pi
-from sympy.physics.vector import dynamicsymbols
 
 from helpers.samples import ONE, chain, model, phi
 from helpers.witness import CONVENTIONS
@@ -18,7 +16,7 @@ from rigidsym.models.parametrisations import (
     axis_turn,
     chain as chain_of,
 )
-from rigidsym.models.rotation import AXES, Turn, elementary
+from rigidsym.models.rotation import Turn
 
 
 class TestCatalogue:
@@ -27,13 +25,6 @@ class TestCatalogue:
         names = {EulerAngles(c, passive=p).name for c in CONVENTIONS for p in (False, True)}
         assert len(names) == 48
         assert {"euler_zxz_intrinsic", "euler_zyx_extrinsic"} <= names
-
-    def test_angles_are_taken_in_the_order_of_the_turns(self):
-        for convention in ("ZYX", "zyx"):
-            built = EulerAngles(convention, angles=("yaw", "pitch", "roll"))
-            assert list(built.coordinates) == dynamicsymbols("yaw pitch roll")
-            by_axis = {turn.axis: turn.angle.func.__name__ for turn in built.turns}
-            assert by_axis == {"z": "yaw", "y": "pitch", "x": "roll"}
 
     @pytest.mark.parametrize(
         ("sequence", "part"),
@@ -50,17 +41,6 @@ class TestCatalogue:
         with pytest.raises(ModelError, match="is not an Euler sequence") as caught:
             EulerAngles(sequence)
         assert part in str(caught.value)
-
-
-class TestElementary:
-    @pytest.mark.parametrize(("axis", "others"), [("x", "yz"), ("y", "zx"), ("z", "xy")])
-    def test_a_quarter_turn_is_right_handed(self, axis, others):
-        """About x it takes y to z, and so on around."""
-        unit = {name: ONE[:, k] for k, name in enumerate(AXES)}
-        quarter = elementary(axis, pi / 2)
-        assert quarter * unit[axis] == unit[axis]
-        assert quarter * unit[others[0]] == unit[others[1]]
-        assert quarter * unit[others[1]] == -unit[others[0]]
 
 
 class TestChecks:
