@@ -2,79 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import NamedTuple
-
 import sympy as sp
 
-from rigidsym.formula.letters import Letters, VectorLength, is_negative, power_of
+from rigidsym.formula.letters import Letters, VectorLength, is_negative
 from rigidsym.formula.scalars import formula_of
-from rigidsym.formula.tree import MINUS, PLUS, Bracket, Formula, Matrix, bracketed, row
+from rigidsym.formula.tree import MINUS, PLUS, Formula, Matrix, bracketed, row
 from rigidsym.mechanics.derivation import VectorForm
 
 
 def sum_of_vectors(form: VectorForm, letters: Letters) -> Formula:
-    """The terms with their coefficients: v̇ + (1 − cos n)/n² v × v̇ + ...
-
-    A fraction that several terms share is written once: 2/n² (w v̇ + v × v̇ − ẇ v).
-    """
+    """The terms with their coefficients: v̇ + (1 − cos n)/n² v × v̇ + ..."""
     form = in_notation(form, letters.length) if letters.length else form
-    groups: dict[tuple[_Shared, int], list[tuple[bool, sp.Expr, Formula]]] = {}
-    for place, term in enumerate(form.terms):
-        minus, coefficient = sign_outside(by_half_angle(term.coefficient))
-        own, shared = _parted(coefficient)
-        key = (shared, place if shared == _Shared() else -1)
-        groups.setdefault(key, []).append((minus, own, term.vector))
     parts: list[Formula] = []
-    for (shared, _), terms in groups.items():
-        minus, own, vector = terms[0]
-        common = sp.gcd_list([own for _, own, _ in terms]) if len(terms) > 1 else own
+    for term in form.terms:
+        minus, coefficient = sign_outside(by_half_angle(term.coefficient))
         if minus or parts:
             parts.append(MINUS if minus else PLUS)
-        parts += _factor(common, shared, letters)
-        parts.append(_bracket(terms, common, letters) if len(terms) > 1 else vector)
+        parts += [*_factor(coefficient, letters), term.vector]
     if form.last is None:
         return row(*parts)
-    below = _factor(form.last.coefficient, _Shared(), letters)
-    return Matrix(((row(*parts),), (row(*below, form.last.vector),)))
+    last = row(*_factor(form.last.coefficient, letters), form.last.vector)
+    return Matrix(((row(*parts),), (last,)))
 
 
-class _Shared(NamedTuple):
-    """What terms may share of their coefficients: sums/(number × divisor)."""
-
-    sums: sp.Expr = sp.S.One
-    number: sp.Integer = sp.S.One
-    divisor: sp.Expr = sp.S.One
-
-
-def _parted(coefficient: sp.Expr) -> tuple[sp.Expr, _Shared]:
-    """A coefficient that has no sign: a product of an integer and names, and the rest."""
-    content, primitive = coefficient.as_content_primitive()
-    above, below = sp.fraction(primitive)
-    sums = [factor for factor in sp.Mul.make_args(above) if power_of(factor)[0].is_Add]
-    names = [factor for factor in sp.Mul.make_args(above) if factor not in sums]
-    return sp.Mul(content.p, *names), _Shared(sp.Mul(*sums), sp.Integer(content.q), below)
-
-
-def _factor(own: sp.Expr, shared: _Shared, letters: Letters) -> list[Formula]:
+def _factor(coefficient: sp.Expr, letters: Letters) -> list[Formula]:
     """A coefficient before a vector; 1 is not written, and a sum is in brackets."""
-    if shared.divisor == 1:  # apart, or SymPy would multiply the number into the sum
-        factors = [own / shared.number, shared.sums]
-    else:
-        factors = [sp.Mul(own, shared.sums, 1 / shared.number, 1 / shared.divisor)]
-    return [bracketed(formula_of(factor, letters)) for factor in factors if factor != 1]
-
-
-def _bracket(
-    terms: Sequence[tuple[bool, sp.Expr, Formula]], common: sp.Expr, letters: Letters
-) -> Formula:
-    """The terms over what is common to them, and to the sign of the first."""
-    inside: list[Formula] = []
-    for minus, own, vector in terms:
-        if inside:
-            inside.append(PLUS if minus == terms[0][0] else MINUS)
-        inside += [*_factor(own / common, _Shared(), letters), vector]
-    return Bracket(row(*inside))
+    return [bracketed(formula_of(coefficient, letters))] if coefficient != 1 else []
 
 
 def in_notation(form: VectorForm, length: VectorLength) -> VectorForm:
