@@ -23,13 +23,11 @@ from rigidsym.kernels.lowering.lower import MARGIN
 from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.models.forces import OMEGA_COMPONENTS, initial_values
 from rigidsym.models.rotation import RotationModel
-from rigidsym.notes.document import Document, Equation, Paragraph, Text
+from rigidsym.notes.document import Document, Equation
 from rigidsym.notes.facts.rotation import sum_of_turns
-from rigidsym.notes.facts.singular import PointFacts
 from rigidsym.notes.figure.body_mesh import lengths_in
 from rigidsym.notes.figure.scene import scene_of
 from rigidsym.notes.formats.html import HtmlPrinter, escape, rendered
-from rigidsym.notes.template import texts_of
 from rigidsym.notes.words import unit_in_words
 from rigidsym.page.controls import constants_of, controls_of
 from rigidsym.page.functions import Functions, functions_of, has_turns
@@ -93,7 +91,6 @@ def print_page(
         "values": factors | ({"first_integrals": 1} if functions.integrals else {}),
         "passive": model.passive,
         "copies": dict(_latex(document)),
-        "poles": list(_poles(derivation, printer)),
     }
     script = _script(functions, data)
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
@@ -182,10 +179,6 @@ class PagePrinter(HtmlPrinter):
         """Where the script puts the button that copies the equation as LaTeX."""
         return f'<p class="copy" data-of="{escape(equation.label)}">{equation.number}</p>'
 
-    def sentence(self, text: Text) -> str:
-        """A sentence, in the notation of the document."""
-        return self.block(Paragraph(text))
-
 
 def _script(functions: Functions, data: object) -> str:
     """The script of the page; nothing in it can end its element."""
@@ -227,26 +220,3 @@ def _value(step: Step, *, in_degrees: bool) -> dict[str, Any]:
         "shape": step.expression.shape,
         "factor": _DEGREE if is_turned else 1,
     }
-
-
-def _poles(derivation: Derivation, printer: PagePrinter) -> Iterator[dict[str, Any]]:
-    """The singular orientations, in radians, and the sentence about each."""
-    singularities = derivation.singularities
-    coordinates = derivation.model.coordinates
-    points = singularities.points if singularities else ()
-    for point in points:
-        is_shown = all(p.coordinate in coordinates and p.value.is_number for p in point.places)
-        if len(points) > 1 and not (point.places and is_shown):
-            continue  # the coordinates do not show which of them is near
-        places = [
-            {
-                "place": coordinates.index(place.coordinate),
-                "value": float(place.value),
-                "period": float(place.period),
-            }
-            for place in point.places
-            if is_shown
-        ]
-        facts = PointFacts(point, coordinates)
-        (words,) = texts_of("en/singular_point", printer.document.letters, point=facts)
-        yield {"places": places, "words": printer.sentence(words)}

@@ -38,14 +38,6 @@ function showNumbers(name, factor) {
   });
 }
 
-/** The singular orientation that is nearest, by the coordinates that it fixes. */
-function nearestPole() {
-  const away = ({ place, value, period }) =>
-    Math.abs(Math.sin(((state.q[place] - value) * Math.PI) / period));
-  const distance = ({ places }) => Math.max(...places.map(away));
-  return page.poles.reduce((a, b) => (distance(b) < distance(a) ? b : a), page.poles[0]);
-}
-
 /** Show the distance from gimbal lock; returns whether it is small. */
 function showMargin() {
   if (!kernels.singularity_margin) return false;
@@ -55,7 +47,7 @@ function showMargin() {
   at("margin-number").textContent = fixed(margin, 4);
   const isNear = margin < 0.1;
   document.body.classList.toggle("near-a-pole", isNear);
-  const words = isNear ? (page.poles.length ? nearestPole().words : at("pole").innerHTML) : "";
+  const words = isNear ? at("pole").innerHTML : "";
   if (words !== warned) at("warning").innerHTML = words; // else it would be read out again
   warned = words;
   return isNear;

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby
-from typing import NamedTuple
+from typing import Any
 
 import sympy as sp
 
@@ -14,7 +14,7 @@ from rigidsym.data.mass import MassProperties
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import decimal
 from rigidsym.formula.scalars import formula_of
-from rigidsym.formula.tree import NOTHING, Big, Differential, Formula, bracketed, equal, row
+from rigidsym.formula.tree import equal
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.mass.bodies import in_numbers
 from rigidsym.mechanics.mass.moments import moments_of
@@ -34,73 +34,7 @@ from rigidsym.notes.figure.body_mesh import lengths_of
 from rigidsym.notes.template import figure_with
 from rigidsym.notes.words import number, unit_in_words
 
-_KINDS = {
-    Particles: "particles",
-    Composite: "composite",
-    Known: "measured",
-}
-
-
-class PartFacts(NamedTuple):
-    """A part of a composite body."""
-
-    of: Part
-    name: str
-    mass: sp.Expr
-    is_turned: bool
-
-
-class AxisFacts(NamedTuple):
-    """A principal axis in numbers."""
-
-    moment: str
-    radius: str
-    components: list[str]
-
-
-@dataclass(frozen=True)
-class SolidFacts:
-    """The map of a solid, the element of its volume, area or length, and its integral."""
-
-    solid: Solid
-    letters: Letters
-    label: str = ""
-
-    @property
-    def is_of_volume(self) -> bool:
-        return len(self.solid.coordinates) == 3
-
-    @property
-    def is_of_area(self) -> bool:
-        return len(self.solid.coordinates) == 2
-
-    @cached_property
-    def factor(self) -> sp.Expr:
-        element = moments_of(self.solid).element
-        assert element is not None
-        return sp.factor(element)
-
-    @property
-    def element(self) -> Formula:
-        """The element of volume, area or length: r dr dφ dz."""
-        factor = [formula_of(self.factor, self.letters)] if self.factor != 1 else []
-        return row(*factor, *self._differentials(self.solid.coordinates))
-
-    @property
-    def integral(self) -> Formula:
-        """The integral of the density, or of the element alone, and its value."""
-        solid, letters = self.solid, self.letters
-        value = (sp.S.One if solid.density is None else solid.density) * self.factor
-        integrand = NOTHING if value == 1 else bracketed(formula_of(value, letters))
-        signs = (Big("∫", *(formula_of(end, letters) for end in ends)) for ends in solid.bounds)
-        spread = self._differentials(solid.coordinates[::-1])
-        plain = solid if solid.mass is None else replace(solid, mass=None, density=sp.S.One)
-        total = formula_of(moments_of(plain).mass, letters)
-        return equal(row(*signs, integrand, *spread), total)
-
-    def _differentials(self, coordinates: tuple[sp.Symbol, ...]) -> list[Formula]:
-        """du dv dw."""
-        return [x for u in coordinates for x in (Differential(), formula_of(u, self.letters))]
+_KINDS = {Particles: "particles", Composite: "composite", Known: "measured"}
 
 
 @dataclass(frozen=True)
@@ -152,15 +86,15 @@ class MassFacts:
         return groups
 
     @property
-    def parts(self) -> list[PartFacts]:
+    def parts(self) -> list[dict[str, Any]]:
         return [
-            PartFacts(
-                part,
-                part.what.title if isinstance(part.what, Solid) else _KINDS[type(part.what)],
-                moments_of(part.what).mass,
-                part.turned != UPRIGHT,
-            )
-            for part in self._parts
+            {
+                "of": part,
+                "name": what.title if isinstance(what, Solid) else _KINDS[type(what)],
+                "mass": moments_of(what).mass,
+                "is_turned": part.turned != UPRIGHT,
+            }
+            for part, what in ((part, part.what) for part in self._parts)
         ]
 
     @property
@@ -174,26 +108,28 @@ class MassFacts:
         return tuple(distribution.particles) if isinstance(distribution, Particles) else ()
 
     @property
-    def solids(self) -> list[SolidFacts]:
-        """The body, or the first part of each kind."""
-        distribution = self.body.distribution
-        if isinstance(distribution, Solid):
-            return [SolidFacts(distribution, self.letters)]
-        firsts: dict[str, SolidFacts] = {}
-        for part in self._parts:
-            if isinstance(part.what, Solid):
-                facts = SolidFacts(part.what, self.letters, part.label)
-                firsts.setdefault(part.what.title, facts)
+    def solids(self) -> list[tuple[str, Solid]]:
+        """The body, or the first part of each kind, with its name."""
+        whole = self.body.distribution
+        named = [("", whole), *((part.label, part.what) for part in self._parts)]
+        firsts: dict[str, tuple[str, Solid]] = {}
+        for label, what in named:
+            if isinstance(what, Solid):
+                firsts.setdefault(what.title, (label or what.title.lower(), what))
         return [*firsts.values()]
 
     @property
-    def principal(self) -> list[AxisFacts]:
+    def principal(self) -> list[dict[str, Any]]:
         """In ascending order of the moments, which need not be that of the formulas."""
         if self.numbers is None:
             return []
         moments, axes = self.numbers.principal.moments, self.numbers.principal.axes.T
         return [
-            AxisFacts(number(moment), number(radius), list(map(number, axis)))
+            {
+                "moment": number(moment),
+                "radius": number(radius),
+                "components": [*map(number, axis)],
+            }
             for moment, radius, axis in zip(moments, self.numbers.radii, axes, strict=True)
         ]
 
@@ -209,7 +145,8 @@ class MassFacts:
                 about = f"   {p.about}" if p.about else ""
                 yield f"{formula_of(p.symbol, self.letters).text} = {number(p.value)}{unit}{about}"
         for axis in self.principal:
-            yield f"principal moment {axis.moment} kg m² about ({', '.join(axis.components)})"
+            about = ", ".join(axis["components"])
+            yield f"principal moment {axis['moment']} kg m² about ({about})"
         if self.numbers and self.numbers.principal.repeated:
             yield self.numbers.principal.repeated
 
