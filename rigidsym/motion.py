@@ -31,12 +31,6 @@ if TYPE_CHECKING:
     from rigidsym.simulation.trajectory import Trajectory
 
 QUANTITIES = NAMES
-_MEANT = {"omega_body": "angular_velocity_body", "omega_space": "angular_velocity_space"}
-
-
-def offered(name: str) -> str:
-    """The end of a message about an unknown quantity, perhaps the name of an input."""
-    return f"did you mean {_MEANT[name]}?" if name in _MEANT else offer(name, QUANTITIES)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -85,13 +79,7 @@ class Motion(Derivation):
         `options` depend on the target: `kernels("c", lean="double")` prints C for firmware.
         Raises KernelError for an unknown target, option or derivative.
         """
-        return generate(
-            self,
-            target,
-            conversions=conversions,
-            derivatives=derivatives,
-            **options,
-        )
+        return generate(self, target, conversions=conversions, derivatives=derivatives, **options)
 
     def equality(self, left: sp.MatrixBase, right: sp.MatrixBase) -> Proof:
         """The proof that two matrices in coordinates, rates and other inputs are equal.
@@ -231,14 +219,12 @@ def derive(
         if not isinstance(name, str):
             raise TypeError(f"only: expected names of quantities, got {name!r}")
         if name not in QUANTITIES:
-            raise QuantityError(f"no quantity {name!r}; {offered(name)}")
+            raise QuantityError(f"no quantity {name!r}; {offer(name, QUANTITIES)}")
     with nullcontext() if timeout is None else time_limit(timeout):
         acting = None
-        given: dict[str, Any] = {
-            **{"potential": potential, "forces": forces, "torque": torque, "method": method},
-            **{"first_integrals": first_integrals, "parts": parts, "examples": examples},
-        }
-        moving = {key: value for key, value in given.items() if value is not None}
+        given = {"potential": potential, "forces": forces, "torque": torque, "method": method}
+        given |= {"first_integrals": first_integrals, "parts": parts, "examples": examples}
+        moving: dict[str, Any] = {key: e for key, e in given.items() if e is not None}
         if moving:
             if body is None:
                 raise ModelError("forces act on a body; expected body=rs.principal_moments(...)")

@@ -100,19 +100,10 @@ def read(source: str, **options: Any) -> DerivationSpec:
     try:
         return spec_for(source, **options)
     except ModelError as error:
-        if not source.isidentifier() or (options and _is_rotation(source)):
+        if options or not source.isidentifier():
             raise
         hint = f"or a derivation file, NAME.toml or a shipped one; {offer(source, shipped)}"
         raise ModelError(f"{error}\n{hint}") from None
-
-
-def _is_rotation(source: str) -> bool:
-    """Whether this names a rotation; then the error is about one of its options."""
-    try:
-        spec_for(source)
-    except ModelError:
-        return False
-    return True
 
 
 # 2. derive
@@ -164,11 +155,8 @@ def _printed(motion: Motion, spec: DerivationSpec) -> Iterator[tuple[str, str]]:
             **spec.target_options.get(target, {}),
         )
         yield from module.files.items()
-    if spec.note:
-        yield from _notes(motion, spec)
-
-
-def _notes(motion: Motion, spec: DerivationSpec) -> Iterator[tuple[str, str]]:
+    if not spec.note:
+        return
     note = motion.note(
         with_kernels="numpy" in spec.kernels,
         conversions=spec.conversions,

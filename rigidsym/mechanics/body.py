@@ -84,6 +84,11 @@ class BodyValues(Values):
         """M (|d|² 1 − d dᵀ)."""
         return mass * (by.dot(by) * _ONE - by * by.T)
 
+    @staticmethod
+    def tensor(second: sp.MatrixBase) -> sp.Matrix:
+        """tr(J) 1 − J of the second moments J."""
+        return second.trace() * _ONE - second
+
     def inertia_of_parts(self) -> sp.Matrix:
         """Σ (R I R ᵀ + m (|d|² 1 − d dᵀ)), a hole with a minus sign."""
         assert isinstance(self.body.distribution, Composite)

@@ -17,7 +17,6 @@ Array = NDArray[np.float64]
 PICTURES = (".png", ".svg", ".pdf")
 _ONE_TURN = 360
 _GREEK = ["alpha", "beta", "gamma", "delta", "theta", "phi", "psi", "sigma", "chi", "omega"]
-_SMALLEST = 1e-17  # of a relative change in the picture of the drift
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, repr=False)
@@ -38,24 +37,20 @@ class Trajectory:
     remarks: tuple[str, ...] = ()  # such as a pole that was passed
 
     @property
-    def changes(self) -> Mapping[str, Array]:
-        """The relative change of each first integral, (n,); NaN at a pole, where rates are.
+    def drift(self) -> Mapping[str, float]:
+        """The largest relative change of each first integral, a measure of the error.
 
-        A momentum may begin at 0, so its size is taken to be at least |L| at the beginning.
+        A momentum may begin at 0, so its size is taken to be at least |L| at the beginning. Values
+        are NaN at a pole, where rates are.
         """
         momentum = np.linalg.norm(self.inertia @ self.angular_velocity_body[0])
-        changes = {}
+        drift = {}
         for name, values in self.first_integrals.items():
             size = abs(values[0])
             if "momentum_" in name and "squared" not in name:
                 size = max(size, momentum)
-            changes[name] = np.abs(values - values[0]) / (size or 1.0)
-        return changes
-
-    @property
-    def drift(self) -> Mapping[str, float]:
-        """The largest of `changes` for each first integral, a measure of the error."""
-        return {name: float(np.nanmax(values)) for name, values in self.changes.items()}
+            drift[name] = float(np.nanmax(np.abs(values - values[0])) / (size or 1.0))
+        return drift
 
     def columns(self) -> dict[str, Array]:
         """All of it as named columns: t, the coordinates, their rates, Ω′ and the integrals."""
@@ -85,19 +80,9 @@ class Trajectory:
             from matplotlib.figure import Figure
         except ModuleNotFoundError as error:
             raise MissingExtra("a picture", "plot") from error
-        names: list[Any] = ["q", "axis", *(["drift"] if self.first_integrals else [])]
-        figure = Figure(figsize=(4 * len(names), 4), layout="constrained")
-        panels = figure.subplot_mosaic([names], per_subplot_kw={"axis": {"projection": "3d"}})
-        self._draw_coordinates(panels["q"])
-        self._draw_trace(panels["axis"])
-        if self.first_integrals:
-            axes = panels["drift"]
-            for name, values in self.changes.items():
-                largest = np.maximum.accumulate(np.nan_to_num(values))
-                axes.semilogy(self.t, np.maximum(largest, _SMALLEST), label=name.replace("_", " "))
-            axes.set(xlabel="t in s", ylabel="largest change so far, relative")
-            axes.set_title("First integrals")
-            axes.legend(loc="lower right", fontsize="x-small")
+        figure = Figure(figsize=(8, 4), layout="constrained")
+        self._draw_coordinates(figure.add_subplot(1, 2, 1))
+        self._draw_trace(figure.add_subplot(1, 2, 2, projection="3d"))
         path.parent.mkdir(parents=True, exist_ok=True)
         figure.savefig(path, dpi=150)
         return path

@@ -25,8 +25,6 @@ STEINER = r"#1 + #2\,(|#3|^2\,\1 - #4 #4^T)"
 _ONE = sp.eye(3)
 OF_BODY, OF_INERTIA = "body", "inertia"  # sections of the note
 
-_TOTAL = r"\int\,dm"
-_MEAN = r"\frac{1}{M}\int \x'\,dm"
 _TENSOR = r"\int \left(|\x'-\c|^2\,\1 - (\x'-\c)(\x'-\c)^T\right)\,dm"
 
 
@@ -36,10 +34,16 @@ def _of_particles(integral: str) -> str:
     return whole.replace(r"\x'", r"\x'_i")
 
 
-def _integrated(claim: str, residual: Callable[[Any, Any], Any]) -> dict[str, Any]:
-    """A law about an integral over the mass, which is a sum for particles."""
-    of_particles = when("particles", laws=(law(_of_particles(claim), residual),))
-    return {"laws": (law(claim, residual),), "variants": (of_particles,)}
+def _integrated(
+    *claims: tuple[str, Callable[[Any, Any], Any]], definition: str = ""
+) -> dict[str, Any]:
+    """A definition and laws with integrals over the mass, which are sums for particles."""
+
+    def changes(spelled: Callable[[str], str]) -> dict[str, Any]:
+        fields: dict[str, Any] = {"definition": formula(spelled(definition))} if definition else {}
+        return {**fields, "laws": tuple(law(spelled(claim), e) for claim, e in claims)}
+
+    return {**changes(str), "variants": (when("particles", **changes(_of_particles)),)}
 
 
 mass = Quantity(
@@ -47,46 +51,37 @@ mass = Quantity(
     about="mass",
     unit="kg",
     shape="scalar",
-    definition=formula(_TOTAL),
+    **_integrated(definition=r"\int\,dm"),
     value=lambda k: k.body.mass if k.is_distributed and not k.body.mass.is_Symbol else None,
     rests_on=lambda k: k.moments.proofs,
     without="it is given, not added up",
     reason="sum_of_parts",
     section=OF_BODY,
     is_result=True,
-    variants=(when("particles", definition=formula(_of_particles(_TOTAL))),),
 )
 
-_IS_CENTRE = _integrated(r"\int (\x'-\c)\,dm = \0", lambda k, x: k.moments.first - k.body.mass * x)
 centre_of_mass = Quantity(
     symbol=formula(r"\c"),
     about="centre of mass, in the axes of the description",
     unit="m",
     shape="vector",
-    definition=formula(_MEAN),
+    **_integrated(
+        (r"\int (\x'-\c)\,dm = \0", lambda k, x: k.moments.first - k.body.mass * x),
+        definition=r"\frac{1}{M}\int \x'\,dm",
+    ),
     source=SOURCES["Landau 8"],
     value=lambda k: k.body.centre if k.is_distributed else None,
     rests_on=lambda k: k.moments.proofs if k.body.mass.is_Symbol else (),
-    laws=_IS_CENTRE["laws"],
     without="how its mass is distributed is not given",
     reason="mean_position",
     section=OF_BODY,
     is_result=True,
-    variants=(
-        when("particles", definition=formula(_of_particles(_MEAN))),
-        *_IS_CENTRE["variants"],
-    ),
 )
 
 _SYMMETRIC = law(r"\I' = \I'^T", lambda _, x: x - x.T)
 _ABOUT_ORIGIN = law(
     rf"\I'_O = {STEINER}",
-    lambda k, x: (
-        k.moments.second.trace() * _ONE
-        - k.moments.second
-        - x
-        - k.steiner(k.body.mass, k.body.centre)
-    ),
+    lambda k, x: k.tensor(k.moments.second) - x - k.steiner(k.body.mass, k.body.centre),
     *(INERTIA, MASS, formula(r"\c"), formula(r"\c")),
 )
 _OF_PARTS = law(
@@ -130,8 +125,10 @@ inertia_tensor_point = Quantity(
     source=SOURCES["Landau 32 (32.12)"],
     value=lambda k: k.shifted_inertia(),
     **_integrated(
-        r"\I'_P = \int \left(|\x'-\p|^2\,\1 - (\x'-\p)(\x'-\p)^T\right)\,dm",
-        lambda k, x: k.second_about_point.trace() * _ONE - k.second_about_point - x,
+        (
+            r"\I'_P = \int \left(|\x'-\p|^2\,\1 - (\x'-\p)(\x'-\p)^T\right)\,dm",
+            lambda k, x: k.tensor(k.second_about_point) - x,
+        )
     ),
     reason="parallel_axes",
     section=OF_INERTIA,
@@ -154,7 +151,7 @@ moment_of_inertia = Quantity(
     definition=formula(r"\n^T\,\I'_P\,\n"),
     source=SOURCES["Goldstein 5.3"],
     value=lambda k: k.moment_about_line(),
-    **_integrated(r"I_n = \int |\n\times(\x'-\p)|^2\,dm", _moment_by_mass),
+    **_integrated((r"I_n = \int |\n\times(\x'-\p)|^2\,dm", _moment_by_mass)),
     reason="form_of_tensor",
     section=OF_INERTIA,
     of_centre=True,
