@@ -238,18 +238,6 @@ def test_what_a_general_tensor_does_not_tell_is_refused_by_name():
     assert "inertia_tensor_space" in names
 
 
-def test_kernels_evaluate_the_body():
-    motion = rs.derive("ZXZ", body=rs.solid("cylinder"))
-    module, values = motion.kernels().load(), {"M": 2.0, "a": 3.0, "h": 5.0}
-    parameters = [values[s.name] for s in motion.argument("parameters").symbols]
-    tensor = module.inertia_tensor(parameters)
-    assert np.allclose(tensor, np.diag([2 * (27 + 25) / 12] * 2 + [9]))
-    assert np.isclose(module.moment_of_inertia([3, 0, 0], [0, 0, 1], parameters), 27)
-    assert np.allclose(module.radii_of_gyration(parameters)[2], 3 / np.sqrt(2))
-    space = module.inertia_tensor_space([0.3, 1.3, 2.3], parameters)
-    assert np.allclose(np.linalg.eigvalsh(space), np.linalg.eigvalsh(tensor))
-
-
 TENSORS = {  # with words of the sentence
     "diagonal": (sp.diag(a, b, c), "body axes are principal axes."),
     "sphere": (sp.diag(a, a, a), "every axis through the centre"),
