@@ -118,12 +118,13 @@ def test_the_quadcopter_has_the_equations_that_sympy_finds():
 
 def test_a_tree_that_branches_has_the_equations_that_sympy_finds():
     """A frame that turns by φ carries the body and, by the angle 2θ, another one."""
-    space, outer, body = frame(("z", PHI), ("x", THETA))
+    space, outer, turned = frame(("z", PHI), ("x", THETA))
     other = outer.orientnew("G", "Axis", [2 * THETA, outer.y])
     branch = {"rotation": "z(phi) y(2*theta)", "principal_moments": ["J_1", "J_2", "J_3"]}
-    lagrangian = kinetic(space, body, (A, B, C)) + kinetic(space, other, sp.symbols("J_1:4"))
-    body = rs.principal_moments(A, B, C)
-    motion = rs.derive("z(phi) x(theta)", ["accelerations"], body=body, parts=[branch])
+    lagrangian = kinetic(space, turned, sp.symbols("I_11 I_22 I_33 I_12 I_23 I_13"))
+    lagrangian += kinetic(space, other, sp.symbols("J_1:4"))
+    body, only = rs.general_inertia(), ["mass_matrix", "accelerations"]
+    motion = rs.derive("z(phi) x(theta)", only, body=body, parts=[branch])
     assert motion.is_proved
     assert satisfied(motion, lagrangian, [PHI, THETA])
 
