@@ -14,11 +14,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from functools import cached_property, partial
-from typing import Any
+from typing import Any, TypeAlias
 
 import sympy as sp
 
-from rigidsym.formula.reader import formula
+from rigidsym.formula.reader import formula, named
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Consequence
 from rigidsym.mechanics.prove import identity
@@ -27,6 +27,7 @@ from rigidsym.mechanics.quantities.kinematics import BODY
 from rigidsym.models.forces import OMEGA_BODY
 from rigidsym.models.rotation import TIME, elementary
 
+Written: TypeAlias = str | Formula | sp.Expr  # a formula, as it is typed or read, or an expression
 _LENGTH, _ENERGY = claims.LENGTH_SYMBOL, claims.ENERGY_SYMBOL
 _LONGEST = 40  # operations of a condition for steady motion that tells a reader anything
 _LAMBDA, _FIRST, _SECOND, _THIRD, _MODULUS = sp.symbols("lambda u_1 u_2 u_3 k")
@@ -35,21 +36,25 @@ _LAMBDA, _FIRST, _SECOND, _THIRD, _MODULUS = sp.symbols("lambda u_1 u_2 u_3 k")
 def _consequence(
     subject: str,
     name: str,
-    left: Formula | sp.Expr,
-    value: Formula | sp.Expr,
-    *proofs: tuple[Formula, Sequence[sp.Expr]],
-    where: Sequence[tuple[str | Formula | sp.Expr, sp.Expr]] = (),
+    left: Written,
+    value: Written,
+    *proofs: tuple[Written, Sequence[sp.Expr]],
+    where: Sequence[tuple[Written, sp.Expr]] = (),
     **spans: Any,
 ) -> Consequence:
     """A consequence for a rotation `subject`, with its claims and their residuals."""
     return Consequence(
         name=name,
         spans=spans,
-        left=left,
-        value=value,
-        proofs=tuple(identity(sp.ImmutableMatrix([*e]), claim, subject) for claim, e in proofs),
-        where=tuple((formula(n) if isinstance(n, str) else n, e) for n, e in where),
+        left=_read(left),
+        value=_read(value),
+        proofs=tuple(identity(sp.ImmutableMatrix([*e]), _read(n), subject) for n, e in proofs),
+        where=tuple((_read(n), e) for n, e in where),
     )
+
+
+def _read(value: Written) -> Any:
+    return formula(value) if isinstance(value, str) else value
 
 
 def of_free_body(
@@ -62,10 +67,13 @@ def of_free_body(
     yield _consequence(  # L is normal to the ellipsoid of energy, whose tangent plane is at rest
         subject,
         "poinsot",
-        formula("d"),
+        "d",
         2 * _ENERGY / _LENGTH,
-        (claims.NORMAL, [*(omega.applyfunc(partial(sp.diff, energy)) - momentum)]),
-        (claims.TWICE_ENERGY, [omega.dot(momentum) - 2 * energy]),
+        (
+            r"\frac{\partial E}{\partial\Om'} = \I'\,\Om' = \L'",
+            [*(omega.applyfunc(partial(sp.diff, energy)) - momentum)],
+        ),
+        (r"\L\cdot\Om = 2E", [omega.dot(momentum) - 2 * energy]),
     )
     if not inertia.is_diagonal():
         return
@@ -95,9 +103,8 @@ def _principal_axes(
         if squared != 0:
             first = "symmetry_axis" if one == other else "principal_axis"
             name = "another_axis" if name else first
-            proof = (claims.GROWTH, [a * b - squared])
-            left = claims.SQUARED_RATE
-            yield _consequence(subject, name, left, squared, proof, axis=axis, rate=spin)
+            proof = (r"\lambda^2 = a b", [a * b - squared])
+            yield _consequence(subject, name, r"\lambda^2", squared, proof, axis=axis, rate=spin)
 
 
 def _symmetric(
@@ -111,20 +118,21 @@ def _symmetric(
     across, along = inertia[0, 0], inertia[2, 2]
     kappa = (along - across) / across * third
     residual = [slopes[0] + kappa * second, slopes[1] - kappa * first, slopes[2]]
-    left, proof = formula(r"\kappa"), (claims.PRECESSION, residual)
-    yield _consequence(subject, "symmetric_body", left, kappa, proof)
+    claim = r"\dot{\Omega}'_1 + i\dot{\Omega}'_2 = i\kappa(\Omega'_1 + i\Omega'_2)"
+    yield _consequence(subject, "symmetric_body", r"\kappa", kappa, (claim, residual))
     angle, precession = sp.Dummy("beta"), _LENGTH / across
     spin = -kappa.xreplace({third: _LENGTH * sp.cos(angle) / along})
     alpha, beta, gamma = map(elementary, "zxz", (precession * TIME, angle, spin * TIME))
     rotation = alpha * beta * gamma
     skew = rotation.T * rotation.diff(TIME)
     momentum = rotation * inertia * sp.Matrix([skew[2, 1], skew[0, 2], skew[1, 0]])
+    claim = r"\R\,\I'\,\Om' = \begin{pmatrix}0 \\ 0 \\ \left|\L\right|\end{pmatrix}"
     yield _consequence(
         subject,
         "symmetric_body_in_space",
-        formula(r"\mathbf{R}(t)"),
-        claims.THREE_TURNS,
-        (claims.CONSTANT_MOMENTUM, [*(momentum - sp.Matrix([0, 0, _LENGTH]))]),
+        r"\mathbf{R}(t)",
+        r"\R_z(\alpha_0 + \dot{\alpha}t)\,\R_x(\beta)\,\R_z(\gamma_0 + \dot{\gamma}t)",
+        (claim, [*(momentum - sp.Matrix([0, 0, _LENGTH]))]),
         where=(
             (r"\cos\beta", along * third / _LENGTH),
             (r"\dot{\alpha}", precession),
@@ -150,13 +158,19 @@ def _asymmetric(subject: str, moments: Sequence[sp.Expr]) -> Consequence:
         subject,
         "asymmetric_body",
         BODY.omega,
-        claims.IN_ELLIPTIC_FUNCTIONS,
-        (claims.EULER_FREE, residual),
+        r"\begin{pmatrix}a\,\operatorname{cn}(\tau t, k) \\ b\,\operatorname{sn}(\tau t, k) \\ "
+        r"c\,\operatorname{dn}(\tau t, k)\end{pmatrix}",
+        (r"\I'\,\dot\Om' + \Om'\times\I'\,\Om' = 0", residual),
         where=(("a^2", a), ("b^2", b), ("c^2", c), (r"\tau^2", tau), ("k^2", modulus)),
         moments=moments,
         least=2 * _ENERGY * B,
         momentum_squared=_LENGTH**2,
     )
+
+
+def _name(coordinate: sp.Expr, order: int = 0) -> Formula:
+    """Of a coordinate or one of its time derivatives."""
+    return named(coordinate.func.__name__, order)
 
 
 class OneDimension:
@@ -182,9 +196,8 @@ class OneDimension:
 
     def consequences(self) -> Iterator[Consequence]:
         value = self.mass * self.rate**2 / 2 + self.potential
-        claim = formula(r"E = \tfrac{1}{2}m\dot{q}^2 + V_{\mathrm{eff}}")
-        left = claims.ENERGY
-        yield self._follows("effective_potential", left, value, claim, self.E - value, q=self.q)
+        claim, residual = r"E = \tfrac{1}{2}m\dot{q}^2 + V_{\mathrm{eff}}", self.E - value
+        yield self._follows("effective_potential", "E", value, claim, residual, q=self.q)
         yield from self._others()
         yield from self._steady()
         if self.in_cosine is not None and not self.mass.has(self.q):
@@ -194,9 +207,9 @@ class OneDimension:
     def _follows(
         self,
         name: str,
-        left: Formula | sp.Expr,
+        left: Written,
         value: sp.Expr,
-        claim: Formula,
+        claim: Written,
         residual: sp.Expr,
         **more: Any,
     ) -> Consequence:
@@ -213,9 +226,9 @@ class OneDimension:
             terms = sp.Add.make_args(sp.diff(self.potential, p))
             forms = ((sp.cancel(term), sp.factor(term)) for term in terms)
             value = sp.Add(*(min(pair, key=sp.count_ops) for pair in forms))
-            spans = {"own": claims.name_of(self.q), "angle": claims.name_of(q)}
-            spans["rate"] = claims.name_of(q, order=1)
-            claim = claims.RATE_OF_IGNORABLE
+            spans = {"own": _name(self.q), "angle": _name(q)}
+            spans["rate"] = _name(q, order=1)
+            claim = r"\dot{q} = \frac{\partial V_{\mathrm{eff}}}{\partial p}"
             yield self._follows(name, rate, value, claim, rate - value, **spans)
             name = "another_coordinate"
 
@@ -240,10 +253,9 @@ class OneDimension:
             if sp.count_ops(condition.as_expr()) > _LONGEST:
                 return
             value = condition.as_expr().xreplace({x: turning})
-            left, claim = formula("0"), formula(r"\ddot{q} = 0")
             residual = of_spin - sp.cancel(of_spin / value) * value
             value = sp.collect(value, turning)
-            yield self._follows("steady_motion", left, value, claim, residual, q=self.q)
+            yield self._follows("steady_motion", "0", value, r"\ddot{q} = 0", residual, q=self.q)
             yield from self._both_rates(condition, turning, p)
             return
 
@@ -253,7 +265,7 @@ class OneDimension:
         """The roots of the quadratic equation for steady motion, with when there are any."""
         a, b, c = condition.all_coeffs()
         below = sp.factor(b**2 - 4 * a * c)
-        single, claim = sp.cancel(-c / b), formula(r"a x^2 + b x + c = 0")
+        single, claim = sp.cancel(-c / b), r"a x^2 + b x + c = 0"
         spans = {"lead": a, "discriminant": below, "momentum": spin}
         spans |= {"slow": single, "fast": sp.cancel(-b / a)}
         r = sp.Dummy("r")  # the root of the discriminant
@@ -263,7 +275,7 @@ class OneDimension:
             value = x.xreplace({r: sp.sqrt(below)})
             yield self._follows(name, turning, value, claim, residual, **spans)
         if a.has(self.q):
-            claim, residual = formula("b x + c = 0"), b * single + c
+            claim, residual = "b x + c = 0", b * single + c
             yield self._follows("single_precession", turning, single, claim, residual, **spans)
 
     @cached_property
@@ -288,16 +300,16 @@ class OneDimension:
         height, slope = (e.xreplace(upright) for e in (equal, sp.diff(equal, u)))
         bend = equal - height - (u - 1) * slope
         rest = sp.cancel(bend / (1 - u) ** 2)  # regular at u = 1
-        names = map(claims.momentum_of, self.ignorable)
+        names = (formula("p_{#1}", _name(q)) for q in self.ignorable)
         yield self._follows(
             "upright_motion",
-            formula(r"\kappa"),
+            r"\kappa",
             min(sp.expand(-slope), sp.factor(-slope), key=sp.count_ops),
-            claims.NEAR_UPRIGHT,
+            r"V_{\mathrm{eff}} = V_{\mathrm{eff}}(0) + \kappa(1 - u) + O((1 - u)^2)",
             bend - (1 - u) ** 2 * rest,
             q=self.q,
             square=self.q**2,
-            momenta=formula("#1 = #2 = #3", *names, claims.integral_symbol(self.p.name)),
+            momenta=formula("#1 = #2 = #3", *names, named(self.p.name)),
         )
 
     def _nutation(self, in_cosine: sp.Expr) -> Iterator[Consequence]:
@@ -312,10 +324,10 @@ class OneDimension:
         f = sp.expand(sp.cancel(value)).as_poly(u)
         if f is None or f.degree() != 3:
             return
-        name = claims.integral_symbol(u.name)
+        name = named(u.name)
         spans: dict[str, Any] = {
             "u": name,
-            "cosine": formula(r"#1 = \cos #2", name, claims.name_of(self.q)),
+            "cosine": formula(r"#1 = \cos #2", name, _name(self.q)),
             "equation": formula(r"\dot{#1}^2 = f(#1)", name),
         }
         left, cosine = formula("f(#1)", name), sp.cos(self.q)

@@ -18,6 +18,7 @@ from rigidsym.algebra.codec import Codec, codec_for
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.present import presenter_for
 from rigidsym.errors import ModelError
+from rigidsym.formula.reader import named
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import (
     Consequence,
@@ -109,7 +110,7 @@ class Flow(Workspace):
     def first_integrals(self) -> tuple[FirstIntegral, ...]:
         """What is constant along every motion, with its proof."""
         claimed = (
-            self.constant(name, claims.integral_symbol(name), value)
+            self.constant(name, named(name), value)
             for name, value in self.forces.first_integrals.items()
         )
         return (*self.own_integrals(), *claimed)

@@ -12,13 +12,12 @@ from typing import Any
 
 import sympy as sp
 
-from rigidsym.formula.reader import formula, named
+from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Law, Quantity, by_name, law, when
 from rigidsym.mechanics.quantities.kinematics import BODY
 from rigidsym.models.rotation import SOURCES
 
-EFFECTIVE = formula(r"V_{\mathrm{eff}}")
 ENERGY = formula("E")
 MOTION = "motion"  # section of the note
 DRIVING = formula(r"\frac{\partial V}{\partial t}")
@@ -202,7 +201,7 @@ hamiltonian = Quantity(
 
 effective_potential = Quantity(
     **_ENERGY,
-    symbol=EFFECTIVE,
+    symbol=formula(r"V_{\mathrm{eff}}"),
     about="effective potential of the coordinate that is not cyclic",
     inputs=("q", "momenta"),
     source=SOURCES["Goldstein 5.7"],
@@ -285,50 +284,14 @@ FLOW_QUANTITIES = by_name(
 
 # Claims about motions as a whole
 
-MOMENTUM = formula(r"\L")
 MOMENTUM_SQUARED = formula(r"\L^2")
-
-# The free body. The symbols are printed as LETTERS says.
-
+# symbols of the free body, which are printed as LETTERS says
 ENERGY_SYMBOL, LENGTH_SYMBOL = sp.Dummy("E"), sp.Dummy("L")
-LENGTH = formula(r"\left|\L\right|")
-LETTERS = {ENERGY_SYMBOL: ENERGY, LENGTH_SYMBOL: LENGTH}
-SQUARED_RATE = formula(r"\lambda^2")
-GROWTH = formula(r"\lambda^2 = a b")
-NORMAL = formula(r"\frac{\partial E}{\partial\Om'} = \I'\,\Om' = \L'")
-TWICE_ENERGY = formula(r"\L\cdot\Om = 2E")
-EULER_FREE = formula(r"\I'\,\dot\Om' + \Om'\times\I'\,\Om' = 0")
-CONSTANT_MOMENTUM = formula(r"\R\,\I'\,\Om' = \begin{pmatrix}0 \\ 0 \\ #1\end{pmatrix}", LENGTH)
-THREE_TURNS = formula(
-    r"\R_z(\alpha_0 + \dot{\alpha}t)\,\R_x(\beta)\,\R_z(\gamma_0 + \dot{\gamma}t)"
-)
-IN_ELLIPTIC_FUNCTIONS = formula(
-    r"\begin{pmatrix}a\,\operatorname{cn}(\tau t, k) \\ b\,\operatorname{sn}(\tau t, k) \\ "
-    r"c\,\operatorname{dn}(\tau t, k)\end{pmatrix}"
-)
+LETTERS = {ENERGY_SYMBOL: ENERGY, LENGTH_SYMBOL: formula(r"\left|\L\right|")}
 
 
 def is_constant(symbol: Formula) -> Formula:
     return formula(r"\frac{d#1}{dt} = 0", symbol)
-
-
-PRECESSION = formula(r"\dot{\Omega}'_1 + i\dot{\Omega}'_2 = i\kappa(\Omega'_1 + i\Omega'_2)")
-RATE_OF_IGNORABLE = formula(r"\dot{q} = \frac{\partial #1}{\partial p}", EFFECTIVE)
-NEAR_UPRIGHT = formula(r"#1 = #1(0) + \kappa(1 - u) + O((1 - u)^2)", EFFECTIVE)
-
-
-def name_of(coordinate: sp.Expr, order: int = 0) -> Formula:
-    """Of a coordinate or one of its time derivatives."""
-    return named(coordinate.func.__name__, order)
-
-
-def momentum_of(coordinate: sp.Expr) -> Formula:
-    return formula("p_{#1}", name_of(coordinate))
-
-
-def integral_symbol(name: str) -> Formula:
-    """Of a first integral that the user names."""
-    return named(name)
 
 
 def momentum_is_constant(place: int) -> Formula:
