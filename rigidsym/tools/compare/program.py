@@ -13,8 +13,8 @@ import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import islice, product
-from typing import TYPE_CHECKING, Any
+from itertools import islice, product, zip_longest
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import sympy as sp
 
@@ -22,6 +22,7 @@ from rigidsym.errors import ExpressionError, offer
 from rigidsym.text.bounds import FUNCTIONS
 from rigidsym.text.names import spelled
 from rigidsym.tools.compare.language import (
+    ANGLE,
     CONSTANTS,
     OF_MATRICES,
     as_matrix,
@@ -34,6 +35,7 @@ from rigidsym.tools.compare.language import (
 from rigidsym.tools.compare.latex import python_of
 from rigidsym.tools.compare.quantities import stem_of
 from rigidsym.tools.compare.syntax import (
+    CALLS,
     EXPRESSIONS,
     PARTS,
     STATEMENTS,
@@ -51,7 +53,6 @@ from rigidsym.tools.compare.syntax import (
     parameters,
     parsed,
     part,
-    place_of,
     short_name,
     targets,
     text_of,
@@ -65,7 +66,7 @@ _DEEPEST = 60  # nested nodes of an expression; formulas of real programs have f
 _DEEPEST_BLOCK = 40
 _LONGEST_LIST = 64
 _MOST_FORMULAS = 1_000  # of a file
-_MOST_STEPS = 12_000  # expressions of a file: what takes some ten seconds
+_MOST_STEPS = 18_000  # expressions of a file: what takes some ten seconds
 _MOST_NODES = 400_000  # of a file: a generated megabyte is not worth reading
 _MOST_CHARACTERS = 20_000  # of a formula
 _LONGEST = 40  # parts of a value without a symbol of its own
@@ -76,15 +77,16 @@ _INLINED = 3  # calls of functions of the same file inside one another
 _NUMBERS = re.compile(r"(-?)((?:\d[\d_]*\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)_?[fFlLuUdDmM]*(?:32|64)?")
 _NUMPY = re.compile(r"^\s*(?:import|from) (?:numpy|jax)\b", re.MULTILINE)
 _MATRICES = re.compile(r"\bsympy\b|\bcasadi\b|\b(?:np|numpy)\.mat\(|[mM]atrix\(")  # whose * is @
-_MATRIX_NAME = re.compile(r"mat|rot|dcm|basis|tensor|^set|setvalue|new|tf", re.IGNORECASE)
-_VECTOR_NAME = re.compile(r"vec|quat|^set|new|array|wxyz|xyzw", re.IGNORECASE)
+_MATRIX_NAME = re.compile(r"mat|rot|dcm|basis|tensor|^set|setvalue|new|tf|\dx\d", re.IGNORECASE)
+_VECTOR_NAME = re.compile(r"vec|quat|^set|new|array|wxyz|xyzw|float[34]$", re.IGNORECASE)
 _MAY_BE_MATRIX = re.compile(r"[\[{].*,|(?i:sin|cos|mat|quat|dcm)", re.DOTALL)
-_BY_COLUMNS = re.compile(r"from_?col|^f?mat3x?3?$|column_stack|hstack|^c_$", re.IGNORECASE)
+_BY_COLUMNS = re.compile(
+    r"from_?col|^f?mat3x?3?$|float[34]x[34]|column_stack|hstack|^c_$", re.IGNORECASE
+)
 _HARMLESS = re.compile(
     r"print|disp|log|assert|plot|show|append|push|test|check|expect", re.IGNORECASE
 )
 _AXES = {"x": 0, "y": 1, "z": 2, "X": 0, "Y": 1, "Z": 2}
-_CLAMPS = re.compile(r"clip|clamp|constrain", re.IGNORECASE)
 _SHORT = (sp.sin, sp.cos, sp.tan)  # functions in values that get no symbol
 _INVERSE = (sp.atan2, sp.asin, sp.acos, sp.atan)
 _DEGREE = 180 / sp.pi
@@ -92,20 +94,33 @@ _OPERATORS = ("+", "-", "*", "/", "**", "@")
 _ELEMENTWISE = {".*": "%", "./": "/", ".^": "**", "^": "**"}  # MATLAB
 _FLAT = {9: (3, 3), 12: (4, 3), 16: (4, 4)}
 _OF_NUMBERS = {*FUNCTIONS, "pow", "sq", "sind", "cosd", "tand", "deg2rad", "rad2deg"}
-_NO_ENTRIES = WORDS["cast"] | WORDS["zeros"] | WORDS["unit"] | WORDS["pair"] | WORDS["column"]
+_RESERVED = (*_OF_NUMBERS, *OF_MATRICES, *CALLS)  # names that no array has
 _RETURNED, _ARGUMENT = "returned", "argument"  # in place of a name
+_LONGEST_PLACE = 120  # characters
+_ALL = slice(None)
+_MACRO = re.compile(r"macro_rules!\s*\w+\s*\{\s*\([^{}]*?\)\s*=>\s*\{")
+_GUARDED = {*PARTS["elif"], *(k for k, v in STATEMENTS.items() if v == "_directive")}
+_INDEX_NAME = re.compile(r"^(?:#define )?(\w+)(?: *= *| +)(\d\d?);?$", re.MULTILINE)
+_TYPE = re.compile(r"[a-z]?vec[234]?|float[34]|Vec\w*|[a-z]*[qQ]uat\w*")  # of a vector
+_MODULE = re.compile(
+    r"(?:np|numpy|jnp|torch|tf|math|mx|cs|ca|F|self|this)\b|_?[A-Z]+[a-z]|[A-Z]{2,}"
+)
+_GETTER = re.compile(rf"(?:get)?_?([wxyz]|{ANGLE.pattern}|xyz|vec|imag)_?", re.IGNORECASE)
+_SWIZZLE = re.compile(r"[xyzw]{1,4}|[XYZW]")
+_PARTS_OF = dict.fromkeys(("vec", "imag", "v"), "xyz")
+_WITH_SWIZZLES = (".cs", ".cu", ".cuh")
 
-# Conditions that hold always or never. A sine is 1 at the poles only, a length is never 0, and
-# what a null pointer points to is not written.
-_LARGE = r"(?:1(?:\.0*)?f?|0?\.9{2,}\d*f?)"
-_POLE = re.compile(
-    rf"(?P<abs>(?:\w+(?:\.|::))?f?absf?\()?(?P<name>[\w.>\[\]-]+)\)?(?P<sign>[<>])=?(?P<minus>-?){_LARGE}"
-)
-_NULL = re.compile(
-    r"(?P<name>\w+)(?P<sign>[=!]==?|[<>]=?)(?:0(?:\.0*)?f?|\d(?:\.\d*)?e-\d+f?|\w*(?:EPS|eps)\w*)"
-)
-_SATURATED = re.compile(rf"(\w+)[<>]=?-?{_LARGE}\?-?{_LARGE}:\1")  # s > 1 ? 1 : s
-_NOT_NULL = re.compile(r"\w+(?:!=|isnot)(?:nullptr|NULL|null|None)")
+Key = tuple[int, ...]
+
+
+class Place(NamedTuple):
+    """A name or an entry: self.phi, p->x, m[0][1], R(1, 2), R.at(0, 1), q[1:]."""
+
+    path: str  # with dots
+    indices: tuple[int | slice, ...] = ()
+
+
+# Conditions that hold always or never
 _BOOLEANS = {"0": False, "false": False, "False": False, "1": True, "true": True, "True": True}
 
 # Scalars that are one vector or matrix: a stem and an index, if all indices are there
@@ -139,7 +154,7 @@ class Formula:
     forms: tuple[sp.ImmutableMatrix, ...] = ()  # in terms of the inputs, and of long values
     reason: str = ""
     unread: tuple[tuple[str, int], ...] = ()  # names in it whose values are not read, and lines
-    lines: Mapping[tuple[int, int], int] = field(default_factory=dict, compare=False)  # of entries
+    cases: tuple[sp.ImmutableMatrix, ...] = ()  # with the values of one branch
 
     @property
     def is_named(self) -> bool:
@@ -159,7 +174,6 @@ class _Grid:
     line: int
     name: str
     entries: dict[tuple[int, ...], sp.Expr]
-    lines: dict[tuple[int, ...], int] = field(default_factory=dict)  # of the entries
     is_whole: bool = False  # assigned at once
 
     @classmethod
@@ -169,7 +183,7 @@ class _Grid:
         return cls(line, name, {place: matrix[place] for place in places}, is_whole=True)
 
     def copy(self) -> _Grid:
-        return _Grid(self.line, self.name, dict(self.entries), dict(self.lines), self.is_whole)
+        return _Grid(self.line, self.name, dict(self.entries), self.is_whole)
 
     def matrix(self) -> sp.ImmutableMatrix | None:
         """The matrix, if no entry is missing."""
@@ -181,16 +195,6 @@ class _Grid:
             return None
         entries = [self.entries[index] for index in grid]
         return _unflattened(sp.ImmutableMatrix(height, width, entries))
-
-    def places(self) -> dict[tuple[int, int], int]:
-        """The line of each entry of the matrix."""
-        matrix = self.matrix()
-        width = matrix.cols if matrix is not None else 1
-        return {
-            divmod(k, width): self.lines[index]
-            for k, index in enumerate(sorted(self.entries))
-            if index in self.lines
-        }
 
 
 @dataclass
@@ -211,6 +215,7 @@ class _Program:
 
     suffix: str
     functions: Mapping[str, Node] = field(default_factory=dict)
+    constants: Mapping[str, int] = field(default_factory=dict)  # q_i = 0 of the whole file
     is_numpy: bool = False  # * is the product entry by entry
     is_formula: bool = False  # a formula on its own, with the functions of `language`
     steps: Counter[str] = field(default_factory=Counter)  # expressions that were read
@@ -218,6 +223,9 @@ class _Program:
 
 def program_formulas(text: str, suffix: str) -> list[Formula]:
     """All matrices and vectors of a program, in the order of its lines."""
+    if suffix == ".rs":  # the body of a macro is code
+        text = _MACRO.sub(lambda m: "mod macros {" + "\n" * m[0].count("\n"), text)
+        text = re.sub(r"\$(?=\w)|\$\($|^\s*\)[+*]$", "", text, flags=re.MULTILINE)
     try:
         root = parsed(text, suffix)
     except ExpressionError as error:
@@ -227,7 +235,9 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
     functions = [node for node in below([root]) if node.type in PARTS["function"]]
     by_name = {name: node for node in functions if (name := function_name(node))}
     is_numpy = suffix == ".py" and bool(_NUMPY.search(text)) and not _MATRICES.search(text)
-    program = _Program(suffix, by_name, is_numpy)
+    is_numpy |= suffix == ".cs"
+    constants = {m[1]: int(m[2]) for m in _INDEX_NAME.finditer(text)}
+    program = _Program(suffix, by_name, constants, is_numpy)
     formulas: dict[Any, Formula] = {}
     for scope in (root, *functions):
         interpreter = _Interpreter(program)
@@ -297,7 +307,10 @@ class _Interpreter:
         self.formulas: list[Formula] = []
         self.paths: dict[str, str] = {}  # name: its path in the program
         self.inputs: set[str] = set()  # names that were read before anything was assigned
+        self.vectors: set[Any] = set()  # symbols that a cross or dot product has
+        self.outputs: set[str] = set()  # pointers, to which results are written
         self.definitions: dict[sp.Symbol, sp.Expr | None] = {}  # what symbols stand for, if read
+        self.choices: dict[sp.Expr, tuple[sp.Expr, ...]] = {}  # values of names that are cases
         self.components: set[Any] = set()  # symbols of components of a value, which are inputs
         self.later: dict[tuple[sp.Expr, str], sp.Dummy] = {}  # entries of an array assigned anew
         self.lines: dict[str, int] = {}  # where a name was assigned
@@ -305,8 +318,7 @@ class _Interpreter:
         self.emitted: set[tuple[Any, ...]] = set()  # kind, stem and values of a group
         self.aliases: dict[str, str] = {}  # functions by another name
         self.untracked: set[str] = set()
-        self.result: Any = None
-        self.results = 0
+        self.results: list[Any] = []  # None for one that is not read
         self.depth = 0
 
     def unreadable(self, node: Node, reason: str = "is not understood") -> _Unreadable:
@@ -384,17 +396,17 @@ class _Interpreter:
 
     def _function_named(self, node: Node) -> str:
         """The function of numbers that a path names, as in np.sin; "" for anything else."""
-        place = place_of(node)
+        place = self.place(node)
         name = function_word(place.path.rpartition(".")[2]) if place else ""
         is_value = place is None or place.indices or self.name_of(place.path) in self.state.values
         return name if name in FUNCTIONS and not is_value else ""
 
     def _unpacked(self, value: sp.Expr | _Grid, node: Node, count: int) -> Sequence[sp.Expr]:
         """The components of w, x, y, z = q, and of c, s, t = cos(v)."""
-        if isinstance(value, sp.Function) and len(value.free_symbols) == 1:
-            (vector,) = value.free_symbols
-            parts = (sp.Symbol(f"{vector}_{k}", real=True) for k in range(count))
-            return [value.xreplace({vector: part}) for part in parts]
+        if isinstance(value, sp.Function):
+            parts = [_part(value, key) for key in range(count)]
+            if None not in parts:
+                return parts
         matrix = value.matrix() if isinstance(value, _Grid) else None
         if matrix is None or len(matrix) != count or 1 not in matrix.shape:
             raise self.unreadable(node)
@@ -402,14 +414,14 @@ class _Interpreter:
 
     def _store(self, left: Node, value: sp.Expr | _Grid) -> None:
         """An assignment to a name, a member, or an entry."""
-        index = self.index(left)
-        if index is not None:
-            self._store_entry(left, *index, value)
-            return
-        place = place_of(left)
-        if place is None or place.indices:
+        place = self.place(left)
+        if place is None:
             raise self.unreadable(left)
         name = self.name_of(place.path)
+        self.outputs |= {name} if left.type == "pointer_expression" else set()
+        if any(index != _ALL for index in place.indices):
+            self._store_entries(left, name, place.indices, value)
+            return
         if isinstance(value, _Grid) and len(value.entries) == 1:
             (value,) = value.entries.values()
         if not isinstance(value, _Grid):
@@ -423,8 +435,7 @@ class _Interpreter:
         self.state.values[name] = value
 
     def _store_scalar(self, name: str, value: sp.Expr, line: int) -> None:
-        if name not in self.lines:
-            self._join_groups(name)
+        self._join_groups(name)
         self.lines[name] = line
         value = self._renamed(name, value)
         is_first = name not in self.inputs and name not in self.state.values
@@ -455,29 +466,55 @@ class _Interpreter:
         is_divided = _is_length(1 / ratio) and own.free_symbols <= ratio.free_symbols
         return own if is_unit or is_divided else value
 
-    def _expanded(self, value: Any) -> Any:
-        """An expression or a matrix with long values in place of their symbols."""
-        for _ in range(_LONG_IN_LONG):
+    def _expanded(self, value: Any, case: int | None = None) -> Any:
+        """An expression or a matrix with long values, and those of a case, for their symbols."""
+        for _ in range(_LONG_IN_LONG + (case is not None)):
             parts = {s: v for s in value.free_symbols if (v := self.definitions.get(s)) is not None}
+            if case is not None:
+                parts |= {
+                    s: self.choices[s][min(case, len(self.choices[s]) - 1)]
+                    for s in value.free_symbols & self.choices.keys()
+                }
             if _size(value) > _MOST_PARTS:
                 break
             value = value.xreplace(parts)
         return value
 
-    def _store_entry(
-        self, left: Node, base: str, place: tuple[int, ...], value: sp.Expr | _Grid
+    def _chosen(self, node: Node, values: Sequence[Any]) -> Any:
+        """One of several values, if a condition decides: at a pole, angles are numbers."""
+        wholes = [self._expanded(value) for value in values if value is not None]
+        are_angles = all(isinstance(v, sp.Expr) and v.has(*_INVERSE) for v in wholes)
+        is_read = len(wholes) == len(values) and all(isinstance(v, sp.Expr) for v in wholes)
+        if not wholes or not (is_read or are_angles):
+            raise self.unreadable(node)
+        wholes = _alive(wholes)
+        if all(whole == wholes[0] for whole in wholes):
+            return wholes[0]
+        symbol = self._symbol_for("case", None)
+        self.choices[symbol] = tuple(wholes)
+        return symbol
+
+    def _store_entries(
+        self, left: Node, base: str, indices: Sequence[int | slice], value: sp.Expr | _Grid
     ) -> None:
         grid = self.state.values.get(base)
-        if isinstance(value, _Grid):
-            raise self.unreadable(left, "is a block that is assigned")
         if not isinstance(grid, _Grid):
             grid = _Grid(line_of(left), base, {})
             self.state.values[base] = grid
-        if grid.is_whole and len(place) == 1 and (place[0], 0) in grid.entries:
-            place = (place[0], 0)
-        if grid.is_whole and place not in grid.entries:
-            raise self.unreadable(left, "is an entry outside of the matrix")
-        grid.entries[place], grid.lines[place] = value, line_of(left)
+        if isinstance(value, _Grid) and not any(isinstance(index, slice) for index in indices):
+            indices = (*indices, _ALL)  # a row
+        of_grid = value.entries if isinstance(value, _Grid) else {(): value}
+        values = [of_grid[key] for key in sorted(of_grid)]
+        if len(values) == 1:  # of a batch
+            indices = [index for index in indices if index != _ALL]
+        keys = self._keys(base, indices, len(values))
+        if len(keys) != len(values):
+            raise self.unreadable(left, "is a block of another size")
+        for key, entry in zip(keys, values, strict=True):
+            place = (*key, 0) if grid.is_whole and (*key, 0) in grid.entries else key
+            if grid.is_whole and place not in grid.entries:
+                raise self.unreadable(left, "is an entry outside of the matrix")
+            grid.entries[place] = entry
 
     def _update(self, node: Node) -> None:
         """a += b, or a++."""
@@ -553,7 +590,7 @@ class _Interpreter:
         """The name that an assignment writes to, also through parts that are not understood."""
         node: Node | None = left
         while node is not None:
-            place = place_of(node)
+            place = self.place(node)
             if place is not None:
                 return self.name_of(place.path)
             node = part(
@@ -581,18 +618,7 @@ class _Interpreter:
 
     def _truth(self, condition: Node | None) -> bool | None:
         """Whether a condition always holds, or never does; None if that depends."""
-        text = re.sub(r"\s", "", text_of(condition))
-        text = text[1:-1] if text.startswith("(") and text.endswith(")") else text
-        if match := _POLE.fullmatch(text):
-            name = self.name_of(match["name"].replace("->", "."))
-            is_computed = "[" in name or (name in self.state.values and name not in self.inputs)
-            if match["abs"] or is_computed or "." in match["name"]:
-                return (match["sign"] == ">") == bool(match["minus"])
-        if match := _NULL.fullmatch(text):
-            length = self.state.values.get(match["name"])
-            if _is_length(self.definitions.get(length, length)):
-                return match["sign"][0] in "!>"
-        return True if _NOT_NULL.fullmatch(text) else _BOOLEANS.get(text)
+        return _BOOLEANS.get(text_of(condition).strip("() "))
 
     def _choice(self, node: Node) -> None:
         """switch, match."""
@@ -608,11 +634,11 @@ class _Interpreter:
         if header is not None and node.type != "for_statement":
             self._drop(header)
         body = part(node, "body") or child(node, "block") or node
-        self._either([body], node, before=before, ends_at_break=True)
+        self._either([body], node, before=before, ends_at_break=True, is_case=False)
 
     def _maybe(self, node: Node) -> None:
         """The handler of an exception."""
-        self._either([node], node)
+        self._either([node], node, is_case=False)
 
     def _either(
         self,
@@ -622,6 +648,7 @@ class _Interpreter:
         before: _State | None = None,
         is_sure: bool = False,
         ends_at_break: bool = False,
+        is_case: bool = True,
     ) -> None:
         """Run each block from the same state, and merge: differing values are unreadable."""
         self._emit_groups()
@@ -629,22 +656,53 @@ class _Interpreter:
         paths = [] if is_sure else [before]
         for block in blocks:
             self.state = start.copy()
-            condition = part(block, "condition") if block.type in PARTS["elif"] else None
+            fields = ("condition", "name", "alternative") if block.type in _GUARDED else ()
+            skipped = [part(block, each) for each in fields]
             is_simple = block.type in STATEMENTS and block != node
             for each in [block] if is_simple else children(block):
-                if each != condition:
+                if each not in skipped:
                     self.run(each)
             self._emit([k for k in self.state.values if _is_unfinished(start.values.get(k))])
             self._emit_groups()
             self.state.is_over &= not ends_at_break  # a break ends only the loop or the choice
             paths.append(self.state)
         alive = [path for path in paths if not path.is_over]
+        self._merge(alive, start, before, node, is_case=is_case)
+
+    def _merge(
+        self, alive: list[_State], start: _State, before: _State, node: Node, *, is_case: bool
+    ) -> None:
+        """One state for all paths: where they differ, a name has a case for each of them."""
+        alive = [p for p in alive if not any(self._is_pole(p, q) for q in alive)]
         self.state = (alive or [before])[0].copy()
         self.state.is_over = not alive
-        for name in {name for path in alive for name in path.values}:
+        for name in dict.fromkeys(name for path in alive for name in path.values):
             ends = [path.values.get(name) for path in alive]
-            if not all(_same(ends[0], value) for value in ends[1:]):
-                self._become_unread(name, node)
+            is_input = name in self.inputs and name not in self.outputs
+            if name not in start.values and not is_input:  # had no value before
+                ends = [value for value in ends if value is not None]
+            if is_case and all(isinstance(value, sp.Expr) for value in ends):
+                ends = _alive(ends)
+            if all(_same(ends[0], value) for value in ends[1:]):
+                self.state.values[name] = ends[0]
+                continue
+            self._become_unread(name, node)
+            if is_case and all(isinstance(value, sp.Expr) for value in ends):
+                self.choices[self.state.values[name]] = tuple(ends)
+
+    def _is_pole(self, path: _State, other: _State) -> bool:
+        """Whether a name is a number here, and an angle by an inverse function there."""
+        for name, value in path.values.items():
+            ours, theirs = (
+                v.entries if isinstance(v, _Grid) else {(): v}
+                for v in (value, other.values.get(name))
+            )
+            for key in ours.keys() & theirs.keys():
+                one, two = (self.definitions.get(v, v) for v in (ours[key], theirs[key]))
+                is_angle = isinstance(two, sp.Expr) and two.has(*_INVERSE)
+                if is_angle and (one is None or not one.has(*_INVERSE)):
+                    return True
+        return False
 
     def _end(self, node: Node) -> None:
         """return, break, raise."""
@@ -653,13 +711,12 @@ class _Interpreter:
 
     def _return(self, node: Node | None) -> None:
         if node is not None:
-            self.results += 1
             try:
-                self.result = self.value(node)
-                if isinstance(self.result, _Grid) and place_of(node) is None:
-                    self._add(_RETURNED, self.result)
+                self.results.append(self.value(node))
+                if isinstance(self.results[-1], _Grid) and self.place(node) is None:
+                    self._add(_RETURNED, self.results[-1])
             except ExpressionError as error:
-                self.result = None
+                self.results.append(None)
                 if _MAY_BE_MATRIX.search(text_of(node)):
                     unread = Formula(line=line_of(node), name=_RETURNED, reason=str(error))
                     self.formulas.append(unread)
@@ -669,7 +726,22 @@ class _Interpreter:
     def _call_statement(self, node: Node) -> None:
         """m.set(...) is an assignment; other calls may change their object and matrices."""
         call = call_of(node)
+        if re.search("sin_?cos", call.name, re.IGNORECASE) and len(call.arguments) == 3:
+            self._sine_and_cosine(call)
+            return
         if "::" in text_of(part(node, "function")):  # of a type, not of an object
+            return
+        meaning = CALLS.get(call.name)
+        if meaning == "scale" or (meaning == "set_unit" and (call.base or call.arguments)):
+            target = call.owner if call.base else call.arguments[-1]
+            name = self.written(target) if target is not None else ""
+            grid = self.state.values.get(name)
+            if meaning == "set_unit":
+                self._emit([name])
+                self.state.values[name] = _Grid.of(line_of(node), sp.eye(4), name)
+            elif isinstance(grid, _Grid) and self.written(call.arguments[1]) == name:
+                factor = self.value(call.arguments[0])
+                grid.entries = {k: combined("*", factor, v) for k, v in grid.entries.items()}
             return
         is_own = not call.base and call.name in ("set", "setValue")
         if (call.base or is_own) and (
@@ -678,9 +750,13 @@ class _Interpreter:
             try:
                 values = [self.read(argument) for argument in call.arguments]
                 if len(values) in (3, 4, 9, 16):
-                    name = self.name_of(call.base or "this")
-                    self._emit([name])
-                    self.state.values[name] = _Grid.of(line_of(node), rows(values), name)
+                    grid = _Grid.of(line_of(node), rows(values))
+                    if call.base == "?" and call.owner is not None:
+                        self._store(call.owner, grid)  # m[0].set(...)
+                        return
+                    grid.name = self.name_of(call.base or "this")
+                    self._emit([grid.name])
+                    self.state.values[grid.name] = grid
                     return
             except ExpressionError:
                 pass  # the call is taken as any other below
@@ -699,14 +775,33 @@ class _Interpreter:
                     self._emit([name] if isinstance(grid, _Grid) and grid.is_whole else [])
                     self._become_unread(name, node)
 
+    def _sine_and_cosine(self, call: Call) -> None:
+        """sincos(a, &s, &c), sincos(a, out s, out c), or SinCos(&s, &c, a)."""
+        results = [a for a in call.arguments if a.type in PARTS["pointer"]]
+        results = results if len(results) == 2 else call.arguments[1:]
+        (angle,) = (a for a in call.arguments if a not in results)
+        for left, word in zip(results, ("sin", "cos"), strict=True):
+            try:
+                self._store(left, called(word, [self.read(angle)]))
+            except ExpressionError:
+                self._drop(left)
+
+    def _directive(self, node: Node) -> None:
+        """#if and #else."""
+        other = part(node, "alternative")
+        blocks = [node] * (text_of(part(node, "condition")) != "0")
+        blocks += [other] if other is not None else []
+        is_sure = other is not None or node.type == "preproc_else"
+        self._either(blocks, node, is_sure=is_sure)
+
     def _reached(self, node: Node) -> set[str]:
         """Names that a call, or a stream, may change: its object, matrices, and &name."""
         if STATEMENTS[node.type] == "_stream":
             return {self.written(node)} if operator(node) == "<<" else set()
         call = call_of(node)
-        places = [place for place in map(place_of, call.arguments) if place is not None]
+        places = [place for place in map(self.place, call.arguments) if place is not None]
         names = {self.name_of(path) for path in [call.base, *(place.path for place in places)]}
-        pointers = [each for each in call.arguments if each.type == "pointer_expression"]
+        pointers = [each for each in call.arguments if each.type in PARTS["pointer"]]
         changed = {n for n in names if isinstance(self.state.values.get(n), _Grid)}
         return changed | set(map(self.written, pointers))
 
@@ -728,9 +823,7 @@ class _Interpreter:
             return
         try:
             values = rows([self.read(each) for each in (right, *others)])
-            grid = _Grid.of(line_of(node), values)
-            grid.lines = self._lines_of([right, *others], grid)
-            self._store(left, grid)
+            self._store(left, _Grid.of(line_of(node), values))
         except ExpressionError:
             self._drop(left)
 
@@ -798,8 +891,6 @@ class _Interpreter:
                 continue
             self.emitted.add(key)
             grid = _Grid.of(self.lines[names[0]], sp.ImmutableMatrix(column))
-            lines = zip(sorted(grid.entries), names, strict=True)
-            grid.lines = {place: self.lines[name] for place, name in lines}
             self._add(", ".join(names) if len(names) < 9 else stem.strip("._") or "elements", grid)
 
     def _add(self, name: str, grid: _Grid) -> None:
@@ -826,14 +917,20 @@ class _Interpreter:
             for s in (matrix.free_symbols | symbols)
             if isinstance(s, sp.Dummy)
         }
+        for stem in {n[:-2] for n in names if n.endswith("_0")}:  # dot(v, v) beside v.x
+            if f"{stem}_x" in names or f"{stem}_y" in names:
+                indices = {sp.Symbol(f"{stem}_{k}", real=True): c for k, c in enumerate("xyz")}
+                plain |= {s: sp.Symbol(f"{stem}_{c}", real=True) for s, c in indices.items()}
         forms = [spelled_out(m, self.definitions).xreplace(plain) for m in (whole, matrix)]
+        most = max((len(self.choices[s]) for s in symbols & self.choices.keys()), default=0)
+        cases = [spelled_out(self._expanded(matrix, k), self.definitions) for k in range(most)]
         self.formulas.append(
             Formula(
                 line=grid.line,
                 name=name,
                 forms=tuple(dict.fromkeys(forms)),
                 unread=tuple((n, self.lines.get(n, grid.line)) for n in sorted(unread)),
-                lines=grid.places(),
+                cases=tuple(m for m in cases if not m.free_symbols & self.definitions.keys()),
             )
         )
 
@@ -841,7 +938,7 @@ class _Interpreter:
 
     def value(self, node: Node) -> sp.Expr | _Grid:
         """An expression, or a matrix that may be shared; raises ExpressionError."""
-        place = place_of(node)
+        place = self.place(node)
         value = self.state.values.get(self.name_of(place.path)) if place else None
         is_name = place is not None and not place.indices
         return (
@@ -852,30 +949,7 @@ class _Interpreter:
         matrix = as_matrix(value)
         if len(matrix) == 1:
             return matrix[0]
-        grid = _Grid.of(line_of(node), matrix)
-        if node.end_point[0] > node.start_point[0] and not self.program.is_formula:
-            grid.lines = self._lines_of([node], grid)
-        return grid
-
-    def _lines_of(self, nodes: Sequence[Node], grid: _Grid) -> dict[tuple[int, ...], int]:
-        """The lines of the entries of a matrix that is written out."""
-        leaves = [*nodes]
-        while len(leaves) < len(grid.entries):
-            parts = [call_of(n).arguments if _is_call(n) else children(n) for n in leaves]
-            if not leaves or not all(n.type in PARTS["list"] or _is_call(n) for n in leaves):
-                return {}
-            leaves = [leaf for each in parts for leaf in each]
-        try:
-            values = [self.read(leaf) for leaf in leaves]
-        except ExpressionError:
-            return {}
-        lines = {}
-        for k, place in enumerate(grid.entries):  # by rows; a transpose has them in another order
-            order = [*values[k : k + 1], *values]
-            if grid.entries[place] in order:
-                index = order.index(grid.entries[place])
-                lines[place] = line_of(leaves[index - 1 if index else k])
-        return lines
+        return _Grid.of(line_of(node), matrix)
 
     def read(self, node: Node) -> Any:
         """The value of an expression; raises ExpressionError if it is not understood."""
@@ -903,6 +977,19 @@ class _Interpreter:
         if not children(node):
             raise self.unreadable(node)
         return self.read(part(node, "value") or children(node)[-1])
+
+    def _tried(self, node: Node) -> Any:
+        """The value, or None if it is not understood."""
+        try:
+            return self.read(node)
+        except ExpressionError:
+            return None
+
+    def _assigned(self, node: Node) -> Any:
+        """a = b inside an expression."""
+        left = left_of(node)
+        self.run(node)
+        return self.read(left if left is not None else node)
 
     def _list(self, node: Node) -> Any:
         parts = children(node)
@@ -940,8 +1027,31 @@ class _Interpreter:
         return value if operator(node) == "+" else -value
 
     def _binary(self, node: Node) -> Any:
-        left, right = children(node)[0], children(node)[-1]
-        return combined(self._operation(node, operator(node)), self.read(left), self.read(right))
+        left, right = self.read(children(node)[0]), self.read(children(node)[-1])
+        is_turn = not isinstance(right, sp.MatrixBase) and (right / sp.pi).is_number
+        if operator(node) == "%" and is_turn and left.has(*_INVERSE):  # the same angle
+            return left
+        if operator(node) in ("+", "-"):
+            left, right = self._as_vector(left, right), self._as_vector(right, left)
+        return combined(self._operation(node, operator(node)), left, right)
+
+    def _as_vector(self, value: Any, other: Any) -> Any:
+        """v or c v, where v has no value, in components if it is added to a vector."""
+        if not isinstance(value, sp.Expr) or getattr(other, "shape", ()) != (3, 1):
+            return value
+        vectors = self.vectors & value.free_symbols or ({value} if value.is_Symbol else set())
+        factor = value / next(iter(vectors), sp.S.One)
+        if len(vectors) != 1 or factor.has(*vectors):
+            return value
+        return combined("*", factor, self._vector(*vectors))
+
+    def _vector(self, value: Any) -> Any:
+        """Three components for a name without a value."""
+        parts = [_part(value, key) for key in range(3)] if isinstance(value, sp.Expr) else [None]
+        if None in parts:
+            return value
+        self.vectors |= value.free_symbols
+        return rows(parts)
 
     def _operation(self, node: Node, sign: str) -> str:
         if self.is_matlab:
@@ -955,39 +1065,125 @@ class _Interpreter:
         if self.program.suffix != ".py":
             fields = (part(node, f) for f in ("consequence", "condition", "alternative"))
             parts = [each or node for each in fields]
-        if match := _SATURATED.fullmatch(re.sub(r"\s|\.0f?", "", text_of(node))):
-            return self._symbol(node, self.name_of(match[1]))
         constant = self._truth(parts[1])
         if constant is None:
-            raise self.unreadable(parts[1], "is a condition that decides on it")
+            return self._chosen(node, [self._tried(parts[0]), self._tried(parts[2])])
         return self.read(parts[0] if constant else parts[2])
 
-    def index(self, node: Node) -> tuple[str, tuple[int, ...]] | None:
-        """The matrix and the indices, from 0, of m[0][1], m(0, 1), m.at(0, 1)."""
-        place = place_of(node)
-        if place is None or not place.indices:
+    def place(self, node: Node | None) -> Place | None:
+        """The name and the indices of R[0][1], q.w(), m.at(0, 1), state["phi"] or *p."""
+        if node is None or node.end_byte - node.start_byte > _LONGEST_PLACE:
             return None
-        base, name = self.name_of(place.path), place.path.rpartition(".")[2]
-        if place.is_called:
-            is_function = name in self.program.functions and not self.is_matlab
-            name = self._word(name)
-            words = name in _OF_NUMBERS or name in OF_MATRICES or name in _NO_ENTRIES
-            if is_function or words or len(place.indices) > 2:
-                return None
-        indices = []
-        for text in place.indices:
-            is_axis = text in ("X", "Y", "Z") and text not in self.inputs | self.state.values.keys()
-            if not is_axis and (not text.isdecimal() or len(text) > 2):
-                return None
-            indices.append(_AXES[text] if is_axis else int(text) - self.is_matlab)
-        return (base, tuple(indices)) if min(indices) >= 0 else None
+        parts, meaning = children(node), EXPRESSIONS.get(node.type)
+        if node.type in PARTS["name"]:
+            return Place(spelled(text_of(node)))
+        if meaning == "_wrapped" or (operator(node) in ("*", "&") and len(parts) == 1):
+            return self.place(parts[-1]) if parts and not self.program.is_formula else None
+        if meaning == "_member" and parts:
+            return self._below(self.place(parts[0]), re.sub("<.*>", "", text_of(parts[-1])))
+        if node.type in PARTS["index"]:
+            return self._indexed(self.place(parts[0]), parts[1:])
+        if meaning != "_call":
+            return None
+        call = call_of(node)
+        word, owner = function_word(call.name), self.place(call.owner) or Place(call.base)
+        if not call.arguments:
+            match = _GETTER.fullmatch(call.name)
+            return self._below(owner, match[1].lower()) if match else None
+        if call.name in WORDS["entry"]:
+            return self._indexed(owner, call.arguments)
+        is_function = word in self.program.functions and not self.is_matlab
+        is_function |= word in _RESERVED and self.name_of(call.name) not in self.state.values
+        if is_function or len(call.arguments) > 2 + self.is_matlab:
+            return None
+        callee = self._below(owner, call.name) if owner.path else Place(spelled(call.name))
+        return self._indexed(callee, call.arguments) if callee and not callee.indices else None
 
-    def _entry(self, node: Node, base: str, place: tuple[int, ...]) -> Any:
+    def _below(self, place: Place | None, name: str) -> Place | None:
+        if place is None or not place.indices:
+            path = f"{place.path}.{name}" if place and place.path else name
+            return Place(path) if place else None
+        return Place(place.path, (*place.indices, _AXES[name])) if name in _AXES else None
+
+    def _indexed(self, place: Place | None, nodes: Sequence[Node]) -> Place | None:
+        lists = [children(n) if n.type in PARTS["list"] else [n] for n in nodes]
+        indices = [self._index(node) for nodes in lists for node in nodes]
+        if place is None or None in indices:
+            return None
+        if any(isinstance(index, str) for index in indices):
+            return self._below(place, str(indices[0])) if len(indices) == 1 else None
+        grid = self.state.values.get(self.name_of(place.path))
+        is_matrix = isinstance(grid, _Grid) and grid.is_whole
+        while indices[0] == _ALL and len(indices) > 1 + is_matrix:  # of a batch: q[..., 0]
+            indices = indices[1:]
+        shifted = [i if isinstance(i, slice) else i - self.is_matlab for i in indices[:2]]
+        is_place = all(isinstance(i, slice) or 0 <= i < 64 for i in shifted)
+        return Place(place.path, (*place.indices, *shifted)) if is_place else None
+
+    def _index(self, node: Node) -> int | str | slice | None:
+        """An index as it is written, or the key of a table."""
+        text, parts = text_of(node), children(node)
+        if text in (":", "..."):
+            return _ALL
+        if match := re.fullmatch(r"(\d?):(\d?)", text):
+            ends = [int(end) if end else None for end in match.groups()]
+            return slice(ends[0] - 1 if self.is_matlab and ends[0] else ends[0], ends[1])
+        if text == "-1":  # of a quaternion
+            return 3
+        if match := re.fullmatch(r"""["'](\w+)["']|(\d\d?)""", text):
+            return match[1] or int(match[2])
+        if EXPRESSIONS.get(node.type) == "_wrapped" and parts:
+            return self._index(parts[-1])
+        if EXPRESSIONS.get(node.type) == "_binary":
+            sides = [self._index(side) for side in parts]
+            if all(isinstance(side, int) for side in sides) and operator(node) in "+-*":
+                return int(combined(operator(node), *map(sp.Integer, sides)))
+        place = self.place(node) if not text.isdigit() else None
+        if place is None or place.indices:
+            return None
+        name = self.name_of(place.path)
+        letter = _AXES.get(name) if name not in self.inputs else None
+        value = self.state.values.get(name, self.program.constants.get(name, letter))
+        value = self.definitions.get(value, value)
+        return int(value) if isinstance(value, int | sp.Integer) else None
+
+    def _keys(self, base: str, indices: Sequence[int | slice], count: int = 3) -> list[Key]:
+        """The places of all entries that indices and slices name."""
         grid = self.state.values.get(base)
+        sizes = map(max, zip(*grid.entries, strict=False)) if isinstance(grid, _Grid) else ()
+        ranges = []
+        for index, size in zip_longest(indices, [*sizes][: len(indices)]):
+            if isinstance(index, slice):
+                start = index.start or 0
+                stop = index.stop or (size + 1 if size else max(4 * bool(start), count))
+                ranges.append(range(start, stop))
+            else:
+                ranges.append(range(index, index + 1))
+        return [*product(*ranges)]
+
+    def _entry(self, node: Node, base: str, indices: Sequence[int | slice]) -> Any:
+        grid = self.state.values.get(base)
+        width = max((len(key) for key in grid.entries), default=1) if isinstance(grid, _Grid) else 1
+        if self.program.suffix == ".py" and width == 2 and len(indices) == 1:
+            indices = (*indices, _ALL)  # a row
+        if any(isinstance(index, slice) for index in indices):
+            keys = self._keys(base, indices)
+            values = [self._entry(node, base, key) for key in keys]
+            columns = len({key[-1] for key in keys})
+            is_grid = all(isinstance(index, slice) for index in indices) and len(indices) == 2
+            shape = (len(keys) // columns, columns) if is_grid else (len(keys), 1)
+            return sp.ImmutableMatrix(*shape, values) if len(keys) > 1 else values[0]
+        place = tuple(indices)
         if isinstance(grid, _Grid):
             value = grid.entries.get((*place, 0), grid.entries.get(place))
             if value is None:
                 raise self.unreadable(node, "has no value")
+            return value
+        if (
+            isinstance(grid, sp.Expr)
+            and len(place) == 1
+            and (value := _part(grid, place[0] + self.is_matlab))
+        ):
             return value
         self.inputs.add(base)
         name = "_".join([base, *(str(n + self.is_matlab) for n in place)])
@@ -1009,20 +1205,31 @@ class _Interpreter:
         return value
 
     def _named(self, node: Node) -> Any:
-        """A name, an entry, or a component."""
-        place, index = place_of(node), self.index(node)
-        if index is not None:
-            return self._entry(node, *index)
+        """A name, an entry, a component, or several: q.xyz."""
+        place = self.place(node)
         is_slip = self.program.is_formula and text_of(node).startswith("*")  # a + * b
-        if place is None or place.indices or is_slip:
+        if place is None or is_slip:
             raise self.unreadable(node)
+        if place.indices:
+            return self._entry(node, self.name_of(place.path), place.indices)
         base, _, member = place.path.rpartition(".")
         if member in CONSTANTS:
             return CONSTANTS[member]
-        grid = self.state.values.get(self.name_of(base)) if base else None
-        if isinstance(grid, _Grid) and member in _AXES and len(grid.entries) == 3:
-            return self._entry(node, self.name_of(base), (_AXES[member],))
+        if base and _SWIZZLE.fullmatch(member := _PARTS_OF.get(member, member)):
+            parts = [self._component(node, base, letter) for letter in member]
+            return parts[0] if len(parts) == 1 else rows(parts)
         return self._symbol(node, self.name_of(place.path))
+
+    def _component(self, node: Node, base: str, letter: str) -> Any:
+        """x, y, z or w of a vector."""
+        vector = self.state.values.get(self.name_of(base))
+        count = len(vector.entries) if isinstance(vector, _Grid) and vector.is_whole else 0
+        if count == 3 or (count == 4 and self.program.suffix in _WITH_SWIZZLES):
+            return self._entry(node, self.name_of(base), ("xyzw".index(letter.lower()),))
+        name = self.name_of(f"{base}.{letter}")
+        is_new = isinstance(vector, sp.Expr) and name not in self.state.values
+        value = _part(vector, letter) if is_new else None
+        return self._symbol(node, name) if value is None else value
 
     def _member(self, node: Node) -> Any:
         inner = part(node, "object", "value", "argument", "expression")
@@ -1045,69 +1252,99 @@ class _Interpreter:
 
     def _call(self, node: Node) -> Any:
         """A function of numbers, a method of a matrix, a constructor, or a function of the file."""
-        place = place_of(node)
-        if self.index(node) is not None or (place is not None and not place.indices):  # q.w()
+        if self.place(node) is not None:  # R(0, 1), q.w()
             return self._named(node)
         call = call_of(node)
-        name, nodes = self._word(call.name), call.arguments
+        name = self.aliases.get(call.name) or function_word(call.name)
+        nodes, meaning = call.arguments, CALLS.get(name, "")
         own = self.state.values.get(self.name_of(call.base)) if call.base else None
-        is_of_number = name in _OF_NUMBERS and len(nodes) < 1 + (name in ("pow", "atan2"))
-        is_same = name in WORDS["same"] | WORDS["pair"] and not nodes
+        is_short = name in _OF_NUMBERS and len(nodes) < 1 + (name in ("pow", "atan2"))
         is_value = call.base == "?" or isinstance(own, _Grid)
-        is_method = is_value or is_of_number or is_same
-        if call.owner is not None and is_method:
+        is_method = is_short or (meaning and not _MODULE.match(call.base))
+        if call.owner is not None and (is_value or is_method):
             nodes = [call.owner, *nodes]
-        is_listed = bool(nodes) and (len(nodes) == 1 or nodes[0].type in PARTS["list"])
         is_letter = name in [*"cstCST"] and len(nodes) == 1
         in_formula = self.program.is_formula and (name in OF_MATRICES or is_letter)
-        if name in ("asin", "acos") and nodes:
-            nodes = [_unclamped(nodes[0])]
         if (name in _OF_NUMBERS or in_formula) and nodes:
             return called(name, [self.read(each) for each in nodes])
-        if name in WORDS["pair"] and len(nodes) == 1:
-            return rows([called(each, [self.read(nodes[0])]) for each in ("sin", "cos")])
-        if name in WORDS["number"] and not call.arguments:  # T::zero()
-            return sp.Integer("one" in name.lower())
-        if name in WORDS["column"] and len(call.arguments) == 1 and call.base not in ("", "?"):
-            index = text_of(call.arguments[0])
-            places = [(k, index) if name == "col" else (index, k) for k in range(3)]
-            base = self.name_of(call.base)
-            return rows([self._symbol(node, f"{base}_{i}_{j}") for i, j in places])
-        if name in WORDS["transpose"] and len(nodes) == 1:
-            return as_matrix(self.read(nodes[0])).T
+        is_listed = bool(nodes) and (len(nodes) == 1 or nodes[0].type in PARTS["list"])
         is_reordered = any(text_of(option).startswith("order") for option in call.options)
-        if (
-            (name in WORDS["cast"] and len(nodes) == 1)
-            or (name in WORDS["wrapper"] and is_listed)
-            or (is_method and name in WORDS["same"] and not is_reordered)
-        ):
-            return self.read(nodes[0])
-        if name in WORDS["product"] and len(nodes) == 2:
-            return called("dot", [self.read(each) for each in nodes])
-        if name in WORDS["zeros"] | WORDS["unit"]:
-            return self._filled(node, call)
-        if name in WORDS["stack"] or _BY_COLUMNS.search(name):
+        match meaning:
+            case "pair" if len(nodes) == 1:
+                return rows([called(each, [self.read(nodes[0])]) for each in ("sin", "cos")])
+            case "number" if not call.arguments and self.program.suffix == ".rs":  # T::zero()
+                return sp.Integer("one" in name.lower())
+            case "cast" if len(nodes) == 1:
+                return self.read(nodes[0])
+            case "wrapper" if is_listed:
+                return self.read(nodes[0])
+            case "same" if nodes and not is_reordered:
+                return self.read(nodes[0])
+            case "zeros" | "unit":
+                return self._filled(node, call)
+            case "row" | "column" if len(call.arguments) == 1 and call.base not in ("", "?"):
+                index = self._index(call.arguments[0])
+                places = [(index, _ALL) if meaning == "row" else (_ALL, index)]
+                if isinstance(index, int):
+                    return self._entry(node, self.name_of(call.base), places[0])
+            case "clamp" | "least" if len(nodes) > 1:
+                return self._unclamped(node, [self.read(each) for each in nodes])
+            case "where" if len(nodes) == 3:
+                return self._chosen(node, [self._tried(each) for each in nodes[1:]])
+            case "transpose" | "dot" | "cross" | "outer" | "norm" | "skew" | "inverse" if nodes:
+                return self._of_vectors(meaning, [self.read(each) for each in nodes])
+        is_new = self.program.suffix == ".rs" and name == "new" and len(call.arguments) == 3
+        if is_new and all(EXPRESSIONS.get(n.type) == "_call" for n in nodes):  # of three columns
+            return as_matrix(rows([self.read(each) for each in nodes])).T
+        if meaning == "stack" or _BY_COLUMNS.search(name):
             return self._stacked(node, call)
-        count = len(call.arguments)  # nine numbers or three rows; three or four numbers
-        is_vector = count in (3, 4) and bool(_VECTOR_NAME.search(call.path))
-        is_matrix = count in (3, 9, 16) and bool(_MATRIX_NAME.search(call.path))
-        if name in self.program.functions and call.base in ("", "self", "this"):
+        nodes = call.arguments
+        if len(nodes) in (4, 5, 10, 17) and text_of(nodes[-1]) in ("true", "false"):  # a flag
+            nodes = nodes[:-1]
+        is_vector = len(nodes) in (3, 4) and bool(_VECTOR_NAME.search(call.path))
+        is_matrix = len(nodes) in (3, 9, 16) and bool(_MATRIX_NAME.search(call.path))
+        if name in self.program.functions and call.base in ("", "self", "this", "Self"):
             try:
                 return self._inline(node, name, nodes)
             except ExpressionError:
                 if not (is_vector or is_matrix):  # a constructor
                     raise
         if is_vector or is_matrix:
-            return rows([self.read(each) for each in call.arguments])
+            return rows([self.read(each) for each in nodes])
+        if _TYPE.fullmatch(name) and 1 < len(nodes) < 4:  # float4(v, w)
+            parts = [as_matrix(self.read(each)) for each in nodes]
+            return sp.ImmutableMatrix(sp.Matrix.vstack(*parts))
         if self.program.is_formula and call.owner is None:
             hint = offer(name, [*FUNCTIONS, *OF_MATRICES])
             raise ExpressionError(f"{name!r} is not a function; {hint}")
         raise self.unreadable(node)
 
+    def _unclamped(self, node: Node, values: Sequence[Any]) -> Any:
+        """x of clamp(x, -1, 1), or of min(1, x): the sine of any other number does not exist."""
+        parts = [value.as_coeff_Add() for value in values]  # a bound may be -1 + epsilon
+        bounds = [0.99 < abs(c) < 1.01 and rest.as_coeff_Mul()[1].is_Atom for c, rest in parts]
+        if bounds.count(False) != 1:
+            raise self.unreadable(node)
+        return values[bounds.index(False)]
+
+    def _of_vectors(self, meaning: str, values: Sequence[Any]) -> Any:
+        """An operation of matrices; a name without a value is a vector."""
+        if meaning in ("cross", "dot", "norm", "skew", "outer"):
+            values = [self._vector(value) for value in values]
+        match meaning, values:
+            case "norm", [vector]:
+                return called("sqrt", [called("dot", [vector, vector])])
+            case "dot", [one, other] if as_matrix(one).cols == 1 and as_matrix(other).cols == 1:
+                return called("dot", [one, other])
+            case "dot", [one, other]:
+                return combined("@", one, other)
+        names = {"transpose": "T", "skew": "C", "inverse": "inv"}
+        return called(names.get(meaning, meaning), [as_matrix(value) for value in values])
+
     def _filled(self, node: Node, call: Call) -> Any:
         """zeros(3, 3), Matrix3d::Identity()."""
         texts = " ".join(map(text_of, call.arguments))
-        sizes = [int(digits) for digits in re.findall(r"\d+", texts)] or [3]
+        sizes = [int(digits) for digits in re.findall(r"\d+", texts)][-2:] or [3]
         is_zero = call.name in WORDS["zeros"]
         is_column = len(sizes) == 1 and bool(texts) and is_zero and not self.is_matlab
         height, width = sizes[0], 1 if is_column else sizes[-1]
@@ -1122,8 +1359,12 @@ class _Interpreter:
         by_columns = bool(_BY_COLUMNS.search(call.name)) ^ axis.endswith(("=1", "=-1"))
         nodes = call.arguments
         is_listed = len(nodes) == 1 and nodes[0].type in PARTS["list"]
-        matrix = self.read(nodes[0]) if is_listed else rows([self.read(each) for each in nodes])
-        return as_matrix(matrix).T if by_columns and 1 not in as_matrix(matrix).shape else matrix
+        nodes = children(nodes[0]) if is_listed else nodes
+        parts = [as_matrix(self.read(each)) for each in nodes]
+        if all(each.cols == 1 for each in parts) and len({each.rows for each in parts}) > 1:
+            return sp.ImmutableMatrix(sp.Matrix.vstack(*parts))  # (w, v)
+        matrix = rows(parts)
+        return matrix.T if by_columns and 1 not in matrix.shape else matrix
 
     def _inline(self, node: Node, name: str, nodes: Sequence[Node]) -> Any:
         """The value of a function of the same file."""
@@ -1137,27 +1378,28 @@ class _Interpreter:
             value = self.value(argument)
             inner.state.values[each] = value.copy() if isinstance(value, _Grid) else value
         inner.run_scope(function)
-        result = inner.result.matrix() if isinstance(inner.result, _Grid) else inner.result
+        results = [v.matrix() if isinstance(v, _Grid) else v for v in inner.results]
         is_closed = not inner.inputs - set(names) and None not in inner.definitions.values()
-        if inner.results != 1 or result is None or not is_closed:
+        if not results or None in results or not is_closed:
             raise self.unreadable(node)
-        return inner._expanded(result)
+        results = [inner._expanded(result) for result in results]
+        return results[0] if len(results) == 1 else self._chosen(node, results)
 
 
-def _is_call(node: Node) -> bool:
-    return EXPRESSIONS.get(node.type) == "_call"
+def _part(value: sp.Expr, key: int | str) -> sp.Expr | None:
+    """A component of c v, or of a function of it, if v is a name without a value."""
+    vector = next(iter(value.free_symbols), None)
+    is_simple = len(value.free_symbols) == 1 and not isinstance(vector, sp.Dummy)
+    if not is_simple or not (isinstance(value, sp.Function) or (value / vector).is_number):
+        return None
+    return value.xreplace({vector: sp.Symbol(f"{vector}_{key}", real=True)})
 
 
-def _unclamped(node: Node) -> Node:
-    """x of clamp(x, -1, 1): the arc sine of any other number does not exist."""
-    if not _is_call(node):
-        return node
-    call = call_of(node)
-    nodes = call.arguments
-    if call.owner is not None and len(nodes) == 2:
-        nodes = [call.owner, *nodes]
-    bounds = [re.sub(r"\.0*|[\sfF]|T\(|\)|static_cast<\w+>\(", "", text_of(a)) for a in nodes[1:]]
-    return nodes[0] if bounds == ["-1", "1"] and _CLAMPS.search(call.name) else node
+def _alive(values: list[Any]) -> list[Any]:
+    """Values without those at a pole, where an angle is a number, and without bounds of a sine."""
+    is_angle = any(value.has(*_INVERSE) for value in values)
+    fixed = [v.is_number and (is_angle or 0.99 < abs(v) < 1.01) for v in values]
+    return [v for v, is_fixed in zip(values, fixed, strict=True) if not is_fixed] or values
 
 
 def _size(value: Any) -> int:

@@ -402,6 +402,7 @@ _OMEGA = re.compile(
     r"(?:omega|Omega|w|W|gyro|g|rate|Omega_body|omega_(?:body|space))_?[xyz0-3]|[pqr]|[wW][pqr]"
 )
 _COMPONENT = re.compile(r"(?P<stem>.*?)_?(?P<part>[xyz]{2}|[0-3]_?[0-3]|[wxyz0-4]|)")
+_INDEXED = re.compile(r"(?P<stem>.+)_(?P<part>[wxyz0-4])")  # b1_0
 _LETTER_FIRST = re.compile(r"(?P<part>[wxyz])_?(?P<stem>\d|[a-z]?)")  # w1, x1, y1, z1
 ELEMENT = re.compile(r"(?P<stem>.*?)_?(?P<row>[0-3])_?(?P<column>[0-3])")
 ROW = re.compile(r"(?P<stem>.*?)_?(?P<row>[abc])_(?P<column>[xyz])")  # Matrix3 of ArduPilot
@@ -506,7 +507,7 @@ def _of_vectors(matrix: sp.MatrixBase, wanted: Sequence[tuple[sp.Expr, ...]]) ->
     quaternion in an array, the scalar may be the first or the last entry.
     """
     sizes = [len(vector) for vector in wanted]
-    for pattern in (_COMPONENT, _LETTER_FIRST):
+    for pattern in (_COMPONENT, _INDEXED, _LETTER_FIRST):
         groups: dict[str, list[tuple[str, sp.Symbol]]] = {}
         for symbol in sorted(matrix.free_symbols, key=str):
             match = pattern.fullmatch(symbol.name)

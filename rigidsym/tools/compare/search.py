@@ -32,19 +32,18 @@ class FormulaInFile:
     comparison: Comparison | None = None
     reason: str = ""
 
+    is_case: bool = False  # whether this is so in one of several branches
+
     @property
     def line(self) -> int:
-        """The line of the first wrong entry if it is known, else the line where it begins."""
-        repairs = self.comparison.repairs if self.comparison else ()
-        places = [(each.place[0] - 1, each.place[1] - 1) for each in repairs if each.place]
-        lines = self.formula.lines
-        return next((lines[place] for place in places if place in lines), self.formula.line)
+        return self.formula.line
 
     def __str__(self) -> str:
         name = f"{self.formula.name}: " if self.formula.name else ""
         text = self.comparison.text() if self.comparison else f"not read, since {self.reason}"
         if self.formula.unread and self.comparison:
-            text += f"; not read: {_in_lines(self.formula.unread)}"
+            words = "in one case of" if self.is_case else "not read:"
+            text += f"; {words} {_in_lines(self.formula.unread)}"
         return f"{self.path}:{self.line}: {name}{text}"
 
     def record(self) -> dict[str, Any]:
@@ -102,21 +101,30 @@ def search(path: Path) -> Iterator[FormulaInFile]:
         else:
             if formula.unread:
                 reason = f"{_in_lines(formula.unread)} cannot be read"
+        is_known = comparison is not None and comparison.found is not None
+        for form in () if is_known else formula.cases:
+            case = _identified(form, is_equal=True)
+            if case.is_equal:
+                yield FormulaInFile(path, formula, case, is_case=True)
+                break
         if reason or (comparison and (comparison.found is not None or comparison.is_reflection)):
             yield FormulaInFile(path, formula, None if reason else comparison, reason)
 
 
 @lru_cache(maxsize=1024)  # programs repeat themselves
-def _identified(matrix: sp.ImmutableMatrix) -> Comparison:
-    return identified(matrix, is_in_program=True)
+def _identified(matrix: sp.ImmutableMatrix, *, is_equal: bool = False) -> Comparison:
+    return identified(matrix, only_equal=is_equal, is_in_program=True)
 
 
 def formulas(text: str, suffix: str) -> Iterator[Formula]:
     """The matrices and vectors that may be one of kinematics, and those that cannot be read."""
     for formula in program_formulas(text, suffix):
-        forms = tuple(filter(_may_be_known, map(_block, formula.forms)))
-        if forms or formula.reason:
-            yield replace(formula, forms=forms)
+        forms, cases = (
+            tuple(filter(_may_be_known, map(_block, matrices)))
+            for matrices in (formula.forms, formula.cases)
+        )
+        if forms or cases or formula.reason:
+            yield replace(formula, forms=forms, cases=cases)
 
 
 def disappointment(

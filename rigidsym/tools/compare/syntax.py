@@ -12,8 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rigidsym.errors import ExpressionError, MissingExtra
-from rigidsym.text.names import spelled
-from rigidsym.tools.compare.language import ANGLE, SPELLINGS
+from rigidsym.tools.compare.language import SPELLINGS
 
 if TYPE_CHECKING:
     from tree_sitter import Node
@@ -38,16 +37,9 @@ PARTS, WORDS = (
     {name: frozenset(words.split()) for name, words in _TABLES[title].items()}
     for title in ("parts", "words")
 )
-_LONGEST_PLACE = 120  # characters
+CALLS = {word: meaning for meaning, words in WORDS.items() for word in words}
 _CHUNK = 2_048  # bytes that the parser reads at once
 _MOST_STEPS = 50_000  # of the parser: a megabyte without errors takes half as many
-_NAME = r"[A-Za-z_]\w*"
-_PLACE = re.compile(
-    rf"(?P<path>{_NAME}(?:\.{_NAME})*)(?P<indices>(?:\[[\w,.()*+:]+\]|\([\w,]+\))*)"
-)
-_KEY = re.compile(r"""\[["'](\w+)["']\]""")  # state["phi"]
-_GETTER = re.compile(rf"(^|\.)(?:get)?([wxyz]|{ANGLE.pattern})\(\)", re.IGNORECASE)  # q.w()
-_POINTER = re.compile(r"^\(\*(\w+)\)|^\*(?=\w)")  # (*m)(0, 1), *roll
 
 
 @cache
@@ -163,38 +155,6 @@ def parameters(function: Node) -> list[str]:
     return names
 
 
-class Place(NamedTuple):
-    """A name or an entry: self.phi, p->x, m[0][1], R(1, 2), R.at(0, 1)."""
-
-    path: str  # with dots
-    indices: tuple[str, ...]
-    is_called: bool  # R(1, 2) may be a call
-
-
-def _plain_mark(match: re.Match[str]) -> str:
-    return match[1] if match[1] in "[](),.*+" else "."
-
-
-def place_of(node: Node | None) -> Place | None:
-    """The place that a node names, or None for other expressions."""
-    if node is None or node.end_byte - node.start_byte > _LONGEST_PLACE:
-        return None
-    text = re.sub(r"\s*(->|::|[?!]\.|[\[\](),.*+])\s*", _plain_mark, text_of(node).strip())
-    text = _POINTER.sub(lambda m: m[1] or "", spelled(text))
-    text = _GETTER.sub(r"\1\2", _KEY.sub(r".\1", text))
-    match = _PLACE.fullmatch(text)
-    if match is None:
-        return None
-    path, method = match["path"], match["path"].rpartition(".")
-    if match["indices"] and method[0] and method[2] in WORDS["entry"]:
-        path = method[0]
-    parts = re.sub(r"\[(?:\.\.\.|:),", "[", match["indices"])  # q[..., 0]
-    parts = re.sub(r"(\d+)\*(\d+)", lambda m: str(int(m[1]) * int(m[2])), parts)
-    parts = re.sub(r"(\d+)\+(\d+)", lambda m: str(int(m[1]) + int(m[2])), parts)
-    indices = tuple(index for index in re.split(r"[\[\](),]+", parts) if index)
-    return Place(path, indices, is_called="(" in match["indices"] and path == match["path"])
-
-
 class Call(NamedTuple):
     """A call: the object of a method, its name, and its arguments."""
 
@@ -224,13 +184,14 @@ def call_of(node: Node) -> Call:
     if owner is None:
         base, _, name = name.rpartition(".")
     else:
-        place = place_of(owner)
-        base = place.path if place and not place.indices else "?"
+        text = re.sub(r"\s*(?:->|::|[?!]\.)\s*", ".", text_of(owner))
+        base = text if re.fullmatch(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*", text) else "?"
+        name = name.rpartition(".")[2]  # Eigen::Matrix<T, 3, 3>::Zero
     return Call(owner, base, name, plain, options)
 
 
 _SPELLED = re.compile(  # tf2Sin, arm_cos_f32, FusionArcSin
-    r"(?:tf2?|bt|b3|mju_|arm_|simd_|safe_|fast_?|Fusion)?_?(a|arc)?(sin|cos|tan2?|sqrt)(?:_f32|[fFlL])?",
+    r"_?(?:tf2?|bt|b3|mju_|arm_|simd_|safe_?|fast_?|Fusion)?_?(a|arc)?(sin|cos|tan2?|sqrt)(?:_f32|[fFlL])?",
     re.IGNORECASE,
 )
 _ANGLE_UNITS = re.compile(
