@@ -133,11 +133,9 @@ _GROUPS = {
     "vector": re.compile(r"(?P<stem>.*?)(?P<index>[wxyzWXYZ0-4])"),
     "rates": re.compile(r"(?P<stem>)(?P<index>[pqrPQR])"),
 }
-_COMPLETE = [frozenset(word) for word in ("xyz", "wxyz", "012", "123", "0123", "1234", "pqr")]
-_COMPLETE += [
-    frozenset(map("".join, product(*pair)))
-    for pair in (("012", "012"), ("123", "123"), ("abc", "xyz"))
-]
+_PLACES = (product(rows, columns) for rows, columns in (("012",) * 2, ("123",) * 2, ("abc", "xyz")))
+_COMPLETE = [{*word} for word in ("xyz", "wxyz", "012", "123", "0123", "1234", "pqr")]
+_COMPLETE += [{i + j for i, j in places} for places in _PLACES]
 _FLAT_INDICES = [str(4 * i + j) for i in range(3) for j in range(3)]  # of sixteen entries
 
 
@@ -726,65 +724,53 @@ class _Interpreter:
     def _call_statement(self, node: Node) -> None:
         """m.set(...) is an assignment; other calls may change their object and matrices."""
         call = call_of(node)
-        if re.search("sin_?cos", call.name, re.IGNORECASE) and len(call.arguments) == 3:
-            self._sine_and_cosine(call)
+        nodes, meaning = call.arguments, CALLS.get(call.name)
+        if re.search("sin_?cos", call.name, re.IGNORECASE) and len(nodes) == 3:
+            self._sine_and_cosine(nodes)
             return
         if "::" in text_of(part(node, "function")):  # of a type, not of an object
             return
-        meaning = CALLS.get(call.name)
-        if meaning == "scale" or (meaning == "set_unit" and (call.base or call.arguments)):
-            target = call.owner if call.base else call.arguments[-1]
-            name = self.written(target) if target is not None else ""
-            grid = self.state.values.get(name)
-            if meaning == "set_unit":
-                self._emit([name])
-                self.state.values[name] = _Grid.of(line_of(node), sp.eye(4), name)
-            elif isinstance(grid, _Grid) and self.written(call.arguments[1]) == name:
-                factor = self.value(call.arguments[0])
-                grid.entries = {k: combined("*", factor, v) for k, v in grid.entries.items()}
+        target = call.owner or (nodes[-1] if nodes and meaning else None)
+        name = self.written(target) if target is not None else "this"
+        is_set = call.name in ("set", "setValue") if target is None else meaning is None
+        value: Any = None
+        if meaning == "set_unit":
+            value = sp.eye(4)
+        elif meaning == "scale" and self.written(nodes[1]) == name:
+            grid, factor = self.state.values.get(name), self._tried(nodes[0])
+            matrix = grid.matrix() if isinstance(grid, _Grid) else None
+            value = combined("*", factor, matrix) if None not in (factor, matrix) else None
+        elif is_set and any(p.search(call.name) for p in (_MATRIX_NAME, _VECTOR_NAME)):
+            values = [self._tried(each) for each in nodes]
+            value = rows(values) if len(nodes) in (3, 4, 9, 16) and None not in values else None
+        if value is not None:
+            self._emit([name])
+            grid = _Grid.of(line_of(node), value, "" if call.base == "?" else name)
+            self.state.values |= {} if call.base == "?" else {name: grid}
+            if call.base == "?" and target is not None:  # m[0].set(...)
+                self._store(target, grid)
             return
-        is_own = not call.base and call.name in ("set", "setValue")
-        if (call.base or is_own) and (
-            _MATRIX_NAME.search(call.name) or _VECTOR_NAME.search(call.name)
-        ):
-            try:
-                values = [self.read(argument) for argument in call.arguments]
-                if len(values) in (3, 4, 9, 16):
-                    grid = _Grid.of(line_of(node), rows(values))
-                    if call.base == "?" and call.owner is not None:
-                        self._store(call.owner, grid)  # m[0].set(...)
-                        return
-                    grid.name = self.name_of(call.base or "this")
-                    self._emit([grid.name])
-                    self.state.values[grid.name] = grid
-                    return
-            except ExpressionError:
-                pass  # the call is taken as any other below
-        for argument in call.arguments:  # list.append(np.array(...))
-            if argument.type in PARTS["list"] or EXPRESSIONS.get(argument.type) == "_call":
-                try:
-                    value = self.value(argument)
-                except ExpressionError:
-                    continue
-                if isinstance(value, _Grid):
-                    self._add(_ARGUMENT, value)
-        if not _HARMLESS.search(call.path):
-            for name in self._reached(node):
-                if name in self.state.values or name in self.inputs:
-                    grid = self.state.values.get(name)
-                    self._emit([name] if isinstance(grid, _Grid) and grid.is_whole else [])
-                    self._become_unread(name, node)
+        for each in nodes:  # list.append(np.array(...))
+            if each.type in PARTS["list"] or EXPRESSIONS.get(each.type) == "_call":
+                matrix = as_matrix(self._tried(each) or 0)
+                if len(matrix) > 1:
+                    self._add(_ARGUMENT, _Grid.of(line_of(each), matrix))
+        for name in self._reached(node) if not _HARMLESS.search(call.path) else ():
+            if name in self.state.values or name in self.inputs:
+                grid = self.state.values.get(name)
+                self._emit([name] if isinstance(grid, _Grid) and grid.is_whole else [])
+                self._become_unread(name, node)
 
-    def _sine_and_cosine(self, call: Call) -> None:
+    def _sine_and_cosine(self, nodes: Sequence[Node]) -> None:
         """sincos(a, &s, &c), sincos(a, out s, out c), or SinCos(&s, &c, a)."""
-        results = [a for a in call.arguments if a.type in PARTS["pointer"]]
-        results = results if len(results) == 2 else call.arguments[1:]
-        (angle,) = (a for a in call.arguments if a not in results)
+        results = [each for each in nodes if each.type in PARTS["pointer"]]
+        results = results if len(results) == 2 else [*nodes[1:]]
+        (angle,) = (self._tried(each) for each in nodes if each not in results)
         for left, word in zip(results, ("sin", "cos"), strict=True):
-            try:
-                self._store(left, called(word, [self.read(angle)]))
-            except ExpressionError:
+            if angle is None:
                 self._drop(left)
+            else:
+                self._store(left, called(word, [angle]))
 
     def _directive(self, node: Node) -> None:
         """#if and #else."""
@@ -854,40 +840,30 @@ class _Interpreter:
         word = re.sub(r"^_+|_?(val|rad|angle)?_*$", "", last.lower())
         for triple in _TRIPLES:
             if word in triple:
-                self.groups.setdefault(("angles", f"{base} {triple[0]}"), {})[word] = name
+                index = str(triple.index(word))
+                self.groups.setdefault(("angles", f"{base} {triple[0]}"), {})[index] = name
 
     def _emit_groups(self, changed: str | None = None) -> None:
         """Scalars that are one vector or matrix, all or those with a name that will change."""
+        lone = [m["w"] for (kind, _), m in self.groups.items() if (kind, *m) == ("vector", "w")]
         for (kind, stem), members in self.groups.items():
             if changed not in (None, *members.values()):
                 continue
+            is_vector = kind == "vector" and members.keys() == {*"xyz"}
+            if is_vector and len(set(lone)) == 1:  # v.x beside w
+                members = {**members, "w": lone[0]}
+            order = sorted(members) if kind != "derivatives" else [*members]
             is_known = members.keys() in _COMPLETE if kind in _GROUPS else len(members) in (3, 4)
-            order = sorted(members) if kind in ("matrix", "rows") else [*members]
-            scalars = {
-                n
-                for (k, _), m in self.groups.items()
-                if (k, *m) == ("vector", "w")
-                for n in m.values()
-            }
-            if kind == "vector" and [*members] == [*"xyz"] and len(scalars) == 1:  # v.x beside w
-                members, order = {**members, "w": scalars.pop()}, [*"wxyz"]
-            if kind == "angles":
-                order = sorted(
-                    members, key=next(t for t in _TRIPLES if t[0] == stem.split()[-1]).index
-                )
             if kind == "flat" and members.keys() >= {*_FLAT_INDICES}:
                 order, is_known = _FLAT_INDICES, True
-            values = [self.state.values.get(members[index]) for index in order]
-            column = [
-                self.definitions.get(v, v) if isinstance(v, sp.Expr) else None for v in values
-            ]
-            are_angles = all(isinstance(v, sp.Expr) and v.has(*_INVERSE) for v in column)
-            is_triple = are_angles and members.keys() == {*"xyz"}
-            is_other = (kind == "angles" and not are_angles) or (kind == "vector" and is_triple)
-            if not is_known or None in column or is_other:
-                continue
             names = [members[index] for index in order]
-            if (key := (kind, stem, *column)) in self.emitted:
+            values = [self.state.values.get(name) for name in names]
+            column = [self.definitions.get(v, v) for v in values if isinstance(v, sp.Expr)]
+            if not is_known or None in column or len(column) < len(names):
+                continue
+            are_angles = all(value.has(*_INVERSE) for value in column)
+            is_other = not are_angles if kind == "angles" else are_angles and is_vector
+            if is_other or (key := (kind, stem, *column)) in self.emitted:
                 continue
             self.emitted.add(key)
             grid = _Grid.of(self.lines[names[0]], sp.ImmutableMatrix(column))
@@ -902,15 +878,9 @@ class _Interpreter:
         if _size(whole) > _MOST_PARTS:
             whole = matrix
         symbols = whole.free_symbols
-        computed = symbols & self.definitions.keys()
-        bases = {re.sub(r"(?:_\d+)+$", "", s.name) for s in symbols - computed}
-        of_bases = {b: s for b in bases if isinstance(s := self.state.values.get(b), sp.Symbol)}
-        unread = {s.name for s in computed - self.components if self.definitions[s] is None}
-        unread |= {
-            b
-            for b, s in of_bases.items()
-            if self.definitions.get(s, s) is None and s not in self.components
-        }
+        bases = [self.state.values.get(re.sub(r"(?:_\d+)+$", "", s.name)) for s in symbols]
+        used = symbols | {base for base in bases if isinstance(base, sp.Symbol)}
+        unread = {s.name for s in used - self.components if self.definitions.get(s, s) is None}
         names = {s.name for s in symbols if not isinstance(s, sp.Dummy)}
         plain = {  # symbols of a name's later values as plain symbols
             s: sp.Symbol(s.name + "_new" * (s.name in names), real=True)
@@ -1144,7 +1114,7 @@ class _Interpreter:
         name = self.name_of(place.path)
         letter = _AXES.get(name) if name not in self.inputs else None
         value = self.state.values.get(name, self.program.constants.get(name, letter))
-        value = self.definitions.get(value, value)
+        value = self.definitions.get(value, value) if isinstance(value, sp.Expr) else value
         return int(value) if isinstance(value, int | sp.Integer) else None
 
     def _keys(self, base: str, indices: Sequence[int | slice], count: int = 3) -> list[Key]:
