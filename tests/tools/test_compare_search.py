@@ -316,7 +316,7 @@ CHANGED = {  # statements of a function of phi and psi: what its matrix is
     f"{SINES}; M = {TURN}; M[0, 1] = s; return M": "entry (1, 2): sin(phi) should be -sin(phi)",
     f"{SINES}; M = {TURN}; change(M); return M": "equal to",  # before it is changed
     f"{SINES}; M = {TURN}; N = M; N[0, 1] = s; return M": "entry (1, 2)",
-    f"{SINES}\n    if flip: s = -s\n    return {TURN}": "",
+    f"{SINES}\n    if flip: s = -s\n    return {TURN}": "in one case of s in line 4",
     f"{SINES}\n    if flip: return None\n    return {TURN}": "equal to",
     f"{SINES}\n    if 0: s = -s\n    return {TURN}": "equal to",
     f"{SINES}\n    for k in range(n): s = -s\n    return {TURN}": "",
@@ -627,7 +627,7 @@ void h(int order) {
     assert found == [f"euler_angles of {axes}" for axes in ("xyz", "xyz", "XYZ", "XZY")]
 
 
-def test_a_fault_is_at_the_line_of_its_entry_and_counts_once(tmp_path):
+def test_a_fault_is_at_the_line_where_its_matrix_begins_and_counts_once(tmp_path):
     file = tmp_path / "a.py"
     file.write_text("""import numpy as np
 def f(a, b):
@@ -640,9 +640,9 @@ def f(a, b):
     return np.asarray(R)
 """)
     (found,) = found_in(tmp_path, "a.py", file.read_text())
-    assert (found.line, found.formula.line) == (7, 4)
+    assert found.line == 4
     annotation = run(str(file), "--format", "github").stdout
-    assert annotation.startswith(f"::error file={file},line=7::{file}:7: R: close to")
+    assert annotation.startswith(f"::error file={file},line=4::{file}:4: R: close to")
 
 
 def test_a_name_that_gets_another_value_is_another_input(tmp_path):

@@ -13,7 +13,7 @@ import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import islice, product, zip_longest
+from itertools import islice, product
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import sympy as sp
@@ -105,6 +105,21 @@ _TYPE = re.compile(r"[a-z]?vec[234]?|float[34]|Vec\w*|[a-z]*[qQ]uat\w*")  # of a
 _MODULE = re.compile(
     r"(?:np|numpy|jnp|torch|tf|math|mx|cs|ca|F|self|this)\b|_?[A-Z]+[a-z]|[A-Z]{2,}"
 )
+_METHODS = {
+    *(
+        "same",
+        "transpose",
+        "dot",
+        "cross",
+        "outer",
+        "norm",
+        "skew",
+        "inverse",
+        "clamp",
+        "least",
+        "pair",
+    )
+}
 _GETTER = re.compile(rf"(?:get)?_?([wxyz]|{ANGLE.pattern}|xyz|vec|imag)_?", re.IGNORECASE)
 _SWIZZLE = re.compile(r"[xyzw]{1,4}|[XYZW]")
 _PARTS_OF = dict.fromkeys(("vec", "imag", "v"), "xyz")
@@ -233,7 +248,6 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
     functions = [node for node in below([root]) if node.type in PARTS["function"]]
     by_name = {name: node for node in functions if (name := function_name(node))}
     is_numpy = suffix == ".py" and bool(_NUMPY.search(text)) and not _MATRICES.search(text)
-    is_numpy |= suffix == ".cs"
     constants = {m[1]: int(m[2]) for m in _INDEX_NAME.finditer(text)}
     program = _Program(suffix, by_name, constants, is_numpy)
     formulas: dict[Any, Formula] = {}
@@ -355,7 +369,10 @@ class _Interpreter:
         if self.depth > _DEEPEST_BLOCK:
             self._forget(node)
         elif node.type in STATEMENTS:
-            getattr(self, STATEMENTS[node.type])(node)
+            try:
+                getattr(self, STATEMENTS[node.type])(node)
+            except ExpressionError:  # what the statement does is unknown
+                self._forget(node)
         else:
             for each in children(node):
                 self.run(each)
@@ -501,7 +518,7 @@ class _Interpreter:
             self.state.values[base] = grid
         if isinstance(value, _Grid) and not any(isinstance(index, slice) for index in indices):
             indices = (*indices, _ALL)  # a row
-        of_grid = value.entries if isinstance(value, _Grid) else {(): value}
+        of_grid: dict[Key, sp.Expr] = value.entries if isinstance(value, _Grid) else {(): value}
         values = [of_grid[key] for key in sorted(of_grid)]
         if len(values) == 1:  # of a batch
             indices = [index for index in indices if index != _ALL]
@@ -691,11 +708,13 @@ class _Interpreter:
     def _is_pole(self, path: _State, other: _State) -> bool:
         """Whether a name is a number here, and an angle by an inverse function there."""
         for name, value in path.values.items():
-            ours, theirs = (
-                v.entries if isinstance(v, _Grid) else {(): v}
-                for v in (value, other.values.get(name))
-            )
-            for key in ours.keys() & theirs.keys():
+            pair = (value, other.values.get(name))
+            tables: list[Mapping[Key, Any]]
+            tables = [v.entries if isinstance(v, _Grid) else {(): v} for v in pair]
+            ours, theirs = tables
+            for key in ours:
+                if key not in theirs:
+                    continue
                 one, two = (self.definitions.get(v, v) for v in (ours[key], theirs[key]))
                 is_angle = isinstance(two, sp.Expr) and two.has(*_INVERSE)
                 if is_angle and (one is None or not one.has(*_INVERSE)):
@@ -807,11 +826,8 @@ class _Interpreter:
         left, right = part(node, "left"), part(node, "right")
         if left is None or right is None or operator(node) != "<<":
             return
-        try:
-            values = rows([self.read(each) for each in (right, *others)])
-            self._store(left, _Grid.of(line_of(node), values))
-        except ExpressionError:
-            self._drop(left)
+        values = [self.read(each) for each in (right, *others)]
+        self._store(left, _Grid.of(line_of(node), rows(values)))
 
     # Formulas
 
@@ -866,7 +882,8 @@ class _Interpreter:
             if is_other or (key := (kind, stem, *column)) in self.emitted:
                 continue
             self.emitted.add(key)
-            grid = _Grid.of(self.lines[names[0]], sp.ImmutableMatrix(column))
+            line = min(self.lines[name] for name in names)
+            grid = _Grid.of(line, sp.ImmutableMatrix(column))
             self._add(", ".join(names) if len(names) < 9 else stem.strip("._") or "elements", grid)
 
     def _add(self, name: str, grid: _Grid) -> None:
@@ -887,6 +904,8 @@ class _Interpreter:
             for s in (matrix.free_symbols | symbols)
             if isinstance(s, sp.Dummy)
         }
+        if any({f"{v}_w", f"{v}_{3 + self.is_matlab}"} & names for v in self.vectors):
+            return  # a quaternion, whose length was taken for that of a vector
         for stem in {n[:-2] for n in names if n.endswith("_0")}:  # dot(v, v) beside v.x
             if f"{stem}_x" in names or f"{stem}_y" in names:
                 indices = {sp.Symbol(f"{stem}_{k}", real=True): c for k, c in enumerate("xyz")}
@@ -1003,6 +1022,9 @@ class _Interpreter:
             return left
         if operator(node) in ("+", "-"):
             left, right = self._as_vector(left, right), self._as_vector(right, left)
+        are_columns = all(getattr(side, "cols", 0) == 1 for side in (left, right))
+        if operator(node) == "*" and are_columns and self.program.suffix in _WITH_SWIZZLES:
+            return combined("%", left, right)
         return combined(self._operation(node, operator(node)), left, right)
 
     def _as_vector(self, value: Any, other: Any) -> Any:
@@ -1017,7 +1039,8 @@ class _Interpreter:
 
     def _vector(self, value: Any) -> Any:
         """Three components for a name without a value."""
-        parts = [_part(value, key) for key in range(3)] if isinstance(value, sp.Expr) else [None]
+        keys = [key + self.is_matlab for key in range(3)]
+        parts = [_part(value, key) for key in keys] if isinstance(value, sp.Expr) else [None]
         if None in parts:
             return value
         self.vectors |= value.free_symbols
@@ -1077,14 +1100,14 @@ class _Interpreter:
 
     def _indexed(self, place: Place | None, nodes: Sequence[Node]) -> Place | None:
         lists = [children(n) if n.type in PARTS["list"] else [n] for n in nodes]
-        indices = [self._index(node) for nodes in lists for node in nodes]
+        indices: list[Any] = [self._index(node) for nodes in lists for node in nodes]
         if place is None or None in indices:
             return None
         if any(isinstance(index, str) for index in indices):
             return self._below(place, str(indices[0])) if len(indices) == 1 else None
         grid = self.state.values.get(self.name_of(place.path))
         is_matrix = isinstance(grid, _Grid) and grid.is_whole
-        while indices[0] == _ALL and len(indices) > 1 + is_matrix:  # of a batch: q[..., 0]
+        while len(indices) > 1 + is_matrix and indices[0] == _ALL:  # of a batch: q[..., 0]
             indices = indices[1:]
         shifted = [i if isinstance(i, slice) else i - self.is_matlab for i in indices[:2]]
         is_place = all(isinstance(i, slice) or 0 <= i < 64 for i in shifted)
@@ -1112,51 +1135,53 @@ class _Interpreter:
         if place is None or place.indices:
             return None
         name = self.name_of(place.path)
-        letter = _AXES.get(name) if name not in self.inputs else None
-        value = self.state.values.get(name, self.program.constants.get(name, letter))
+        value: Any = self.state.values.get(name)
+        if value is None and name not in self.inputs:
+            value = self.program.constants.get(name, _AXES.get(name))
         value = self.definitions.get(value, value) if isinstance(value, sp.Expr) else value
         return int(value) if isinstance(value, int | sp.Integer) else None
 
     def _keys(self, base: str, indices: Sequence[int | slice], count: int = 3) -> list[Key]:
         """The places of all entries that indices and slices name."""
         grid = self.state.values.get(base)
-        sizes = map(max, zip(*grid.entries, strict=False)) if isinstance(grid, _Grid) else ()
+        keys = [*grid.entries] if isinstance(grid, _Grid) else []
         ranges = []
-        for index, size in zip_longest(indices, [*sizes][: len(indices)]):
+        for axis, index in enumerate(indices):
             if isinstance(index, slice):
-                start = index.start or 0
-                stop = index.stop or (size + 1 if size else max(4 * bool(start), count))
-                ranges.append(range(start, stop))
+                sizes = [key[axis] + 1 for key in keys if len(key) > axis]
+                stop = max(sizes, default=4 if index.start else count)
+                ranges.append(range(index.start or 0, index.stop or stop))
             else:
                 ranges.append(range(index, index + 1))
         return [*product(*ranges)]
 
     def _entry(self, node: Node, base: str, indices: Sequence[int | slice]) -> Any:
+        """One entry, or those of slices as a column or a matrix."""
         grid = self.state.values.get(base)
-        width = max((len(key) for key in grid.entries), default=1) if isinstance(grid, _Grid) else 1
-        if self.program.suffix == ".py" and width == 2 and len(indices) == 1:
-            indices = (*indices, _ALL)  # a row
-        if any(isinstance(index, slice) for index in indices):
-            keys = self._keys(base, indices)
-            values = [self._entry(node, base, key) for key in keys]
-            columns = len({key[-1] for key in keys})
-            is_grid = all(isinstance(index, slice) for index in indices) and len(indices) == 2
-            shape = (len(keys) // columns, columns) if is_grid else (len(keys), 1)
-            return sp.ImmutableMatrix(*shape, values) if len(keys) > 1 else values[0]
-        place = tuple(indices)
+        if isinstance(grid, _Grid) and self.program.suffix == ".py" and len(indices) == 1:
+            indices = (*indices, _ALL)[: max(map(len, grid.entries), default=1)]  # a row
+        keys = self._keys(base, indices)
+        if not keys:
+            raise self.unreadable(node)
+        values = [self._at(node, base, key) for key in keys]
+        height = len({key[0] for key in keys})
+        is_matrix = height > 1 and len(keys) > height
+        shape = (height, len(keys) // height) if is_matrix else (len(keys), 1)
+        return sp.ImmutableMatrix(*shape, values) if len(keys) > 1 else values[0]
+
+    def _at(self, node: Node, base: str, key: Key) -> Any:
+        grid = self.state.values.get(base)
         if isinstance(grid, _Grid):
-            value = grid.entries.get((*place, 0), grid.entries.get(place))
+            value = grid.entries.get((*key, 0), grid.entries.get(key))
             if value is None:
                 raise self.unreadable(node, "has no value")
             return value
-        if (
-            isinstance(grid, sp.Expr)
-            and len(place) == 1
-            and (value := _part(grid, place[0] + self.is_matlab))
-        ):
+        from_1 = [index + self.is_matlab for index in key]
+        value = _part(grid, from_1[0]) if isinstance(grid, sp.Expr) and len(key) == 1 else None
+        if value is not None:
             return value
         self.inputs.add(base)
-        name = "_".join([base, *(str(n + self.is_matlab) for n in place)])
+        name = "_".join([base, *map(str, from_1)])
         if isinstance(grid, sp.Dummy) and name not in self.state.values:
             return self.later.setdefault((grid, name), sp.Dummy(name, real=True))
         return self._symbol(node, name)
@@ -1195,7 +1220,7 @@ class _Interpreter:
         vector = self.state.values.get(self.name_of(base))
         count = len(vector.entries) if isinstance(vector, _Grid) and vector.is_whole else 0
         if count == 3 or (count == 4 and self.program.suffix in _WITH_SWIZZLES):
-            return self._entry(node, self.name_of(base), ("xyzw".index(letter.lower()),))
+            return self._at(node, self.name_of(base), ("xyzw".index(letter.lower()),))
         name = self.name_of(f"{base}.{letter}")
         is_new = isinstance(vector, sp.Expr) and name not in self.state.values
         value = _part(vector, letter) if is_new else None
@@ -1230,7 +1255,7 @@ class _Interpreter:
         own = self.state.values.get(self.name_of(call.base)) if call.base else None
         is_short = name in _OF_NUMBERS and len(nodes) < 1 + (name in ("pow", "atan2"))
         is_value = call.base == "?" or isinstance(own, _Grid)
-        is_method = is_short or (meaning and not _MODULE.match(call.base))
+        is_method = is_short or (meaning in _METHODS and not _MODULE.match(call.base))
         if call.owner is not None and (is_value or is_method):
             nodes = [call.owner, *nodes]
         is_letter = name in [*"cstCST"] and len(nodes) == 1
@@ -1254,9 +1279,9 @@ class _Interpreter:
                 return self._filled(node, call)
             case "row" | "column" if len(call.arguments) == 1 and call.base not in ("", "?"):
                 index = self._index(call.arguments[0])
-                places = [(index, _ALL) if meaning == "row" else (_ALL, index)]
                 if isinstance(index, int):
-                    return self._entry(node, self.name_of(call.base), places[0])
+                    place = (index, _ALL) if meaning == "row" else (_ALL, index)
+                    return self._entry(node, self.name_of(call.base), place)
             case "clamp" | "least" if len(nodes) > 1:
                 return self._unclamped(node, [self.read(each) for each in nodes])
             case "where" if len(nodes) == 3:
@@ -1283,7 +1308,7 @@ class _Interpreter:
             return rows([self.read(each) for each in nodes])
         if _TYPE.fullmatch(name) and 1 < len(nodes) < 4:  # float4(v, w)
             parts = [as_matrix(self.read(each)) for each in nodes]
-            return sp.ImmutableMatrix(sp.Matrix.vstack(*parts))
+            return rows([entry for each in parts for entry in each])
         if self.program.is_formula and call.owner is None:
             hint = offer(name, [*FUNCTIONS, *OF_MATRICES])
             raise ExpressionError(f"{name!r} is not a function; {hint}")
