@@ -455,7 +455,7 @@ class _Interpreter:
         value = self._renamed(name, value)
         is_first = name not in self.inputs and name not in self.state.values
         is_sum = value.is_Add or value.is_number or value.atoms(sp.Function) - value.atoms(*_SHORT)
-        is_long = _size(value) > _LONGEST
+        is_long = _size(value) > _LONGEST or (value.is_Pow and value.exp == sp.Rational(1, 2))
         is_named = is_long or (is_first and is_sum)
         self.state.values[name] = self._symbol_for(name, value) if is_named else value
 
@@ -1086,7 +1086,9 @@ class _Interpreter:
         if call.name in WORDS["entry"]:
             return self._indexed(owner, call.arguments)
         is_function = word in self.program.functions and not self.is_matlab
-        is_function |= word in _RESERVED and self.name_of(call.name) not in self.state.values
+        is_entry = len(call.arguments) == 2 and len(word) == 1  # t(1, 2), but not T(2)
+        is_new = self.name_of(call.name) not in self.state.values and not is_entry
+        is_function |= word in _RESERVED and is_new
         if is_function or len(call.arguments) > 2 + self.is_matlab:
             return None
         callee = self._below(owner, call.name) if owner.path else Place(spelled(call.name))
