@@ -328,7 +328,6 @@ class _Interpreter:
         self.lines: dict[str, int] = {}  # where a name was assigned
         self.groups: dict[tuple[str, str], dict[str, str]] = {}  # names by (kind, stem) and index
         self.emitted: set[tuple[Any, ...]] = set()  # kind, stem and values of a group
-        self.aliases: dict[str, str] = {}  # functions by another name
         self.untracked: set[str] = set()
         self.results: list[Any] = []  # None for one that is not read
         self.depth = 0
@@ -395,10 +394,6 @@ class _Interpreter:
 
     def _assign(self, left: Node, right: Node) -> None:
         names = targets(left)
-        values = [right] if left in names else children(right)
-        functions = [self._function_named(each) for each in values]
-        if all(functions) and len(names) == len(values):  # s, c = np.sin, np.cos
-            self.aliases |= dict(zip(map(text_of, names), functions, strict=True))
         try:
             value = self.value(right)
             if left in names:
@@ -408,13 +403,6 @@ class _Interpreter:
                 self._store(name, entry)
         except ExpressionError:
             self._drop(left, is_input=left not in names)
-
-    def _function_named(self, node: Node) -> str:
-        """The function of numbers that a path names, as in np.sin; "" for anything else."""
-        place = self.place(node)
-        name = function_word(place.path.rpartition(".")[2]) if place else ""
-        is_value = place is None or place.indices or self.name_of(place.path) in self.state.values
-        return name if name in FUNCTIONS and not is_value else ""
 
     def _unpacked(self, value: sp.Expr | _Grid, node: Node, count: int) -> Sequence[sp.Expr]:
         """The components of w, x, y, z = q, and of c, s, t = cos(v)."""
@@ -534,20 +522,15 @@ class _Interpreter:
     def _update(self, node: Node) -> None:
         """a += b, or a++."""
         left, right, sign = left_of(node), part(node, "right"), operator(node)
-        if left is None:
-            return
-        try:
-            if right is None:
-                raise self.unreadable(node)
-            both = combined(self._operation(node, sign[:-1]), self.read(left), self.read(right))
-            value = self._valued(node, both)
-            grid = self.state.values.get(self.written(left))
-            if isinstance(grid, _Grid) and isinstance(value, _Grid):
-                grid.entries = value.entries  # also of other names for this matrix
-            else:
-                self._store(left, value)
-        except ExpressionError:
-            self._drop(left)
+        if left is None or right is None:
+            raise self.unreadable(node)
+        both = combined(self._operation(node, sign[:-1]), self.read(left), self.read(right))
+        value = self._valued(node, both)
+        grid = self.state.values.get(self.written(left))
+        if isinstance(grid, _Grid) and isinstance(value, _Grid):
+            grid.entries = value.entries  # also of other names for this matrix
+        else:
+            self._store(left, value)
 
     def _drop(self, left: Node, *, is_input: bool = False) -> None:
         """The value of a name, or of the array of an entry, is not read.
@@ -874,7 +857,9 @@ class _Interpreter:
                 order, is_known = _FLAT_INDICES, True
             names = [members[index] for index in order]
             values = [self.state.values.get(name) for name in names]
-            column = [self.definitions.get(v, v) for v in values if isinstance(v, sp.Expr)]
+            column: list[Any] = [
+                self.definitions.get(v, v) for v in values if isinstance(v, sp.Expr)
+            ]
             if not is_known or None in column or len(column) < len(names):
                 continue
             are_angles = all(value.has(*_INVERSE) for value in column)
@@ -1018,7 +1003,9 @@ class _Interpreter:
     def _binary(self, node: Node) -> Any:
         left, right = self.read(children(node)[0]), self.read(children(node)[-1])
         is_turn = not isinstance(right, sp.MatrixBase) and (right / sp.pi).is_number
-        if operator(node) == "%" and is_turn and left.has(*_INVERSE):  # the same angle
+        if (
+            operator(node) == "%" and is_turn and self._expanded(left).has(*_INVERSE)
+        ):  # the same angle
             return left
         if operator(node) in ("+", "-"):
             left, right = self._as_vector(left, right), self._as_vector(right, left)
@@ -1244,15 +1231,13 @@ class _Interpreter:
 
     # Calls
 
-    def _word(self, name: str) -> str:
-        return self.aliases.get(name) or function_word(name)
-
     def _call(self, node: Node) -> Any:
         """A function of numbers, a method of a matrix, a constructor, or a function of the file."""
         if self.place(node) is not None:  # R(0, 1), q.w()
             return self._named(node)
         call = call_of(node)
-        name = self.aliases.get(call.name) or function_word(call.name)
+        alias = self.state.values.get(call.name)  # s, c = np.sin, np.cos
+        name = function_word(str(alias) if str(alias) in FUNCTIONS else call.name)
         nodes, meaning = call.arguments, CALLS.get(name, "")
         own = self.state.values.get(self.name_of(call.base)) if call.base else None
         is_short = name in _OF_NUMBERS and len(nodes) < 1 + (name in ("pow", "atan2"))

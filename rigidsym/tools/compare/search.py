@@ -34,21 +34,17 @@ class FormulaInFile:
 
     is_case: bool = False  # whether this is so in one of several branches
 
-    @property
-    def line(self) -> int:
-        return self.formula.line
-
     def __str__(self) -> str:
         name = f"{self.formula.name}: " if self.formula.name else ""
         text = self.comparison.text() if self.comparison else f"not read, since {self.reason}"
         if self.formula.unread and self.comparison:
             words = "in one case of" if self.is_case else "not read:"
             text += f"; {words} {_in_lines(self.formula.unread)}"
-        return f"{self.path}:{self.line}: {name}{text}"
+        return f"{self.path}:{self.formula.line}: {name}{text}"
 
     def record(self) -> dict[str, Any]:
         """For JSON."""
-        place = {"path": str(self.path), "line": self.line, "name": self.formula.name}
+        place = {"path": str(self.path), "line": self.formula.line, "name": self.formula.name}
         place |= {"unread": dict(self.formula.unread)}
         return place | (self.comparison.record() if self.comparison else {})
 
