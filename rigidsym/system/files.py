@@ -8,6 +8,7 @@ import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from secrets import token_hex
 from typing import BinaryIO
 
 
@@ -50,19 +51,23 @@ def cache_folder(kind: str) -> Path | None:
 def whole_file(path: Path) -> Iterator[BinaryIO]:
     """A file to write into, moved into place if the block succeeds, removed if not.
 
-    Makes its folder. Errors of the system name the file that was to be.
+    Makes its folder. Errors of the system that name no file, or the draft, name the file that was
+    to be.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
-    with naming(path):
-        descriptor, draft = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-        try:
-            with os.fdopen(descriptor, "wb") as file:
-                yield file
-            Path(draft).chmod(0o666 & ~_umask())
-            os.replace(draft, path)
-        except BaseException:
-            Path(draft).unlink(missing_ok=True)
+    draft = path.with_name(f".{path.name}.{token_hex(4)}")
+    try:
+        with draft.open("xb") as file:
+            yield file
+        draft.replace(path)
+    except OSError as error:
+        draft.unlink(missing_ok=True)
+        if error.errno is None or error.filename not in (None, str(draft)):
             raise
+        raise OSError(error.errno, error.strerror, str(path)) from error
+    except BaseException:
+        draft.unlink(missing_ok=True)
+        raise
 
 
 @contextmanager
@@ -84,21 +89,3 @@ def locked(folder: Path) -> Iterator[None]:
         yield
     finally:
         os.close(descriptor)
-
-
-@contextmanager
-def naming(path: Path) -> Iterator[None]:
-    """Errors of the system that name no file, or its draft, name the file that is to be."""
-    try:
-        yield
-    except OSError as error:
-        named = Path(error.filename).name if error.filename else ""
-        if error.errno is None or (named and not named.startswith(f".{path.name}.")):
-            raise
-        raise OSError(error.errno, error.strerror, str(path)) from error
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask

@@ -67,13 +67,6 @@ def sample(reading: Reading, angles: Sequence[float], rates: Sequence[float] = R
     return given
 
 
-def together(*samples):
-    """Several samples as one."""
-    return {
-        name: np.stack([np.asarray(one[name], float) for one in samples]) for name in samples[0]
-    }
-
-
 def holds(answer, reading: Reading) -> bool:
     """Whether an answer is this reading, in these or in other words."""
     return reading in (answer.reading, *answer.aliases)
