@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
-from difflib import get_close_matches
 from math import ceil
 from pathlib import Path
 from typing import Any
@@ -198,7 +197,12 @@ def by_name(names: Sequence[str]) -> Columns:
     alone = {part: group for part, group in velocity.items() if share(group) == 1}
     if len(alone) == 2:
         groups, alone = groups | velocity, {}
-    faults = _missing([name for group in groups.values() for name in group], header)
+    faults: list[str] = []
+    if missing := [n for group in groups.values() for n in group if not header.has(n)]:
+        lacking = ", ".join(missing)
+        lacking = lacking.replace(", ".join(MATRICES[0]), "r11, ..., r33 or qw, qx, qy, qz")
+        remedy = "--columns names the columns in order"
+        faults.append(f"no column {lacking} among {header.listed}; {remedy}")
     if share(matrix) == share(quaternion) == 1:
         faults.append("both a matrix and a quaternion are named; leave one out")
     if faults:
@@ -238,27 +242,6 @@ def _scalar_last(names: Names) -> bool | None:
         if names in ((scalar, *vector), (*vector, scalar)):
             return names[-1] == scalar
     return None
-
-
-def _missing(wanted: Sequence[str], header: ColumnNames) -> list[str]:
-    """Messages on missing columns, with similar names that are there."""
-    there = dict(zip(header.plain, header.names, strict=True))
-    free = [name for name in there if name not in wanted]
-    faults: list[str] = []
-    rest: list[str] = []
-    for name in wanted:
-        if header.has(name):
-            continue
-        if near := get_close_matches(name, free, n=2):
-            near = [there[match] for match in near]
-            faults.append(f"no column {name}: did you mean {' or '.join(near)}?")
-        else:
-            rest.append(name)
-    if rest:
-        lacking = ", ".join(rest)
-        lacking = lacking.replace(", ".join(MATRICES[0]), "r11, ..., r33 or qw, qx, qy, qz")
-        faults.append(f"no column {lacking} among {header.listed}")
-    return [*faults, "--columns names the columns in order"] if faults else []
 
 
 # Reading
