@@ -255,3 +255,12 @@ def test_no_fit_is_an_answer_with_exit_code_1(tmp_path):
     data = json.loads(call(*words, "--json", cwd=tmp_path, status=1).stdout)
     assert (data["fits"], data["answers"]) == (False, [])
     assert data["nearest"]["residual"] == pytest.approx(np.radians(0.5))
+
+
+def test_units_in_names_are_converted(tmp_path):
+    names = HEADERS["named"].split(",")
+    names[:3] = (f"{name} [arcmin]" for name in names[:3])
+    table = rows(30) * np.where(np.arange(18) < 3, 60, 1)
+    found = identify_file(written(tmp_path / "log.csv", table, ",".join(names)))
+    assert holds(found.answers[0], AEROSPACE)
+    assert f"converted to degrees: {', '.join(names[:3])}" in found.text()
