@@ -213,6 +213,15 @@ def caption_of(motion: rs.Motion) -> str:
     return "".join(s if isinstance(s, str) else s.text for s in picture_of(motion).caption)
 
 
+def test_a_body_that_spins_about_its_third_axis_keeps_this_axis_and_its_angular_velocity():
+    spinning = {"initial": {"theta": 0.9, "psi_dot": 12}, "time": 1}
+    body = rs.principal_moments(1, 1, 2)
+    picture = picture_of(rs.derive("ZXZ", body=body, potential=0, examples=[spinning]))
+    curves = [s.points for s in picture.drawing.strokes if s.kind == "body"]
+    assert len(curves) == 2
+    assert max(np.ptp(curve, axis=0).max() for curve in curves) < 1e-6
+
+
 def test_captions_tell_parameters_and_initial_values_in_common_and_apart():
     two = rs.derive(**A_PENDULUM, examples=[FIRST, {"initial": {"theta": 3}}])
     assert caption_of(two).endswith(
