@@ -8,7 +8,6 @@ import pytest
 import sympy as sp
 
 import rigidsym as rs
-from rigidsym.algebra.codec import codec_for
 from rigidsym.errors import QuantityError
 from rigidsym.mechanics.derive import derive
 from rigidsym.mechanics.kinematics import chain as chain_of_turns
@@ -71,15 +70,6 @@ def test_definitions_grow_linearly_and_begin_with_five_turns():
     assert counts[18] - counts[12] == counts[12] - counts[6]
     assert counts[4] == 0 < counts[5]
     assert not is_shorter(rs.EulerAngles("ZXZ"))
-
-
-def test_the_attributes_of_a_motion_are_in_the_coordinates_only():
-    motion = rs.derive(chain(5))
-    matrix = motion.rotation_matrix
-    assert not matrix.free_symbols - {sp.Symbol("t")}
-    assert matrix.atoms(sp.core.function.AppliedUndef) == {*motion.model.coordinates}
-    codec = codec_for([*matrix], order=0)
-    assert not any(map(codec.encode, matrix * matrix.T - sp.eye(3)))
 
 
 def test_a_body_on_a_long_chain_has_the_energy_and_momentum_of_the_expanded_rotation():

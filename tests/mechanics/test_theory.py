@@ -6,20 +6,17 @@ The cloud moves and turns along a path in 50 digits; nothing of the derivation t
 from __future__ import annotations
 
 import json
-import random
 from functools import cache
 from typing import Any
 
+import numpy as np
 import pytest
-import sympy as sp
 from sympy.physics.vector import dynamicsymbols
 
 import rigidsym as rs
 from helpers.typesetting import numbered_by_tex
 from helpers.witness import (
-    cross,
     derivative,
-    dot,
     evaluate,
     hat,
     mp,
@@ -46,109 +43,81 @@ def lecture() -> rs.Motion:
     return output_of(LECTURE).motion
 
 
-def vector(*parts: Any) -> Any:
-    return mp.matrix(parts)
+def array(matrix: Any) -> Any:
+    """Numbers of 50 digits: (3, 3), or (3,) from a column."""
+    return np.array(matrix.tolist()).squeeze()
 
 
 def near(first: Any, second: Any) -> bool:
-    difference = first - second
-    entries = list(difference) if hasattr(difference, "rows") else [difference]
-    return all(abs(entry) < SMALL for entry in entries)
+    return max(map(abs, np.ravel(first - second))) < SMALL
+
+
+def dot(first: Any, second: Any) -> Any:
+    return (first * second).sum(axis=-1)
 
 
 class World:
     """A cloud of particles that moves; sums over it are sums over it."""
 
     def __init__(self) -> None:
-        source = random.Random(3)
-        self.m = [mp.mpf(source.randint(1, 50)) / 7 for _ in range(6)]
-        self.M = sum(self.m)
-        free = [vector(*(mp.mpf(source.randint(-50, 50)) / 11 for _ in range(3))) for _ in self.m]
-        mean = self.sum(free) / self.M
-        self.at_rest = [place - mean for place in free]
-        self.R = self.turn(0)
-        self.R_dot = derivative(self.turn)
-        self.omega = unhat(self.R_dot * self.R.T)
-        self.r_C, self.v_C = self.centre(0), derivative(self.centre)
-        self.r = [self.place(x)(0) for x in self.at_rest]
-        self.v = [derivative(self.place(x)) for x in self.at_rest]
-        self.x = [r - self.sum(self.r) / self.M for r in self.r]
-        self.x_dot = [v - self.sum(self.v) / self.M for v in self.v]
-        self.e = [vector(*(int(j == k) for k in range(3))) for j in range(3)]
+        whole = np.random.default_rng(3).integers(-50, 50, (6, 4)).astype(object) * mp.mpf(1)
+        self.m = abs(whole[:, 3]) + 1
+        self.M = self.m.sum()
+        self.at_rest = whole[:, :3] - self.sum(whole[:, :3]) / self.M
+        self.R, self.R_dot = map(array, (turn(0), derivative(turn)))
+        self.omega = array(unhat(derivative(turn) * turn(0).T))
+        self.r_C, self.v_C = map(array, (centre(0), derivative(centre)))
+        self.r = self.r_C + self.at_rest @ self.R.T
+        self.v = self.v_C + self.at_rest @ self.R_dot.T
+        self.x, self.x_dot = self.r - self.sum(self.r) / self.M, self.v - self.v_C
         self.I = self.tensor(self.x)
+        self.turning = self.sum(dot(self.x_dot, self.x_dot)) / 2
+        self.momentum = self.sum(np.cross(self.x, self.x_dot))
 
-    def turn(self, t: Any) -> Any:
-        return rotation("ZXZ", PATH.at(t)[:3])
-
-    def centre(self, t: Any) -> Any:
-        return vector(*PATH.at(t)[3:])
-
-    def place(self, x: Any) -> Any:
-        return lambda t: self.centre(t) + self.turn(t) * x
-
-    def sum(self, values: list[Any]) -> Any:
+    def sum(self, values: Any) -> Any:
         """Σ m of what belongs to the particles."""
-        first, *others = (m * value for m, value in zip(self.m, values, strict=True))
-        return sum(others, first)
+        return (self.m * values.T).sum(axis=-1)
 
-    def tensor(self, places: list[Any]) -> Any:
+    def tensor(self, places: Any) -> Any:
         """Equation 4, entry by entry."""
-        result = mp.matrix(3, 3)
-        for j in range(3):
-            for k in range(3):
-                result[j, k] = self.sum(
-                    [dot(cross(self.e[j], x), cross(self.e[k], x)) for x in places]
-                )
-        return result
+        crossed = [np.cross(e, places) for e in np.eye(3, dtype=int)]
+        return np.array([[self.sum(dot(u, v)) for v in crossed] for u in crossed])
 
-    @property
-    def energy(self) -> Any:
-        return self.sum([dot(v, v) for v in self.v]) / 2
 
-    @property
-    def turning(self) -> Any:
-        return self.sum([dot(v, v) for v in self.x_dot]) / 2
+def turn(t: Any) -> Any:
+    return rotation("ZXZ", PATH.at(t)[:3])
 
-    @property
-    def momentum(self) -> Any:
-        return self.sum([cross(x, v) for x, v in zip(self.x, self.x_dot, strict=True)])
 
-    def principal(self) -> tuple[Any, Any, Any]:
-        """The principal moments, the rotation to their axes, and Ω along these."""
-        moments, axes = mp.eigsy(self.I)
-        return moments, axes, axes.T * self.omega
-
-    def values(self) -> dict[sp.Expr, Any]:
-        coordinates = dynamicsymbols("phi theta psi X Y Z")
-        return values_along(coordinates, PATH)
+def centre(t: Any) -> Any:
+    return mp.matrix(PATH.at(t)[3:])
 
 
 def equations(w: World) -> dict[int, list[bool]]:
     """Each equation of the lecture, read as a statement on sums over the particles."""
-    R, W, e = w.R, w.omega, w.e
-    pairs = list(zip(w.x, w.x_dot, strict=True))
-    in_body, inverse = R.T * W, mp.inverse(R)
-    whole = w.sum([cross(r, v) for r, v in zip(w.r, w.v, strict=True)])
-    about_centre = [cross(r - w.r_C, v) for r, v in zip(w.r, w.v, strict=True)]
-    moments, axes, along = w.principal()
-    printed = {n: evaluate(getattr(lecture(), n), w.values()) for n in PRINTED}
+    R, W, e = w.R, w.omega, np.eye(3, dtype=int)
+    in_body, inverse = R.T @ W, array(mp.inverse(turn(0)))
+    whole, about_centre = np.cross(w.r, w.v), np.cross(w.r - w.r_C, w.v)
+    moments, axes = map(array, mp.eigsy(mp.matrix(w.I.tolist())))
+    along = axes.T @ W
+    values = values_along(dynamicsymbols("phi theta psi X Y Z"), PATH)
+    printed = {name: array(evaluate(getattr(lecture(), name), values)) for name in PRINTED}
     return {
         1: [near(w.sum(w.r) / w.M, w.r_C)],
-        2: [near(w.energy, w.M * dot(w.v_C, w.v_C) / 2 + w.turning)],
-        3: [near(v, cross(W, x)) for x, v in pairs],
-        4: [near(dot(W, w.I * W) / 2, w.turning)],
-        5: [near(vector(*(dot(W, R * axis) for axis in e)), in_body)],
-        6: [near(dot(W, R * axis), dot(inverse * W, axis)) for axis in e],
-        7: [near(R * (inverse * W), W)],
-        8: [near(dot(in_body, R.T * w.I * R * in_body) / 2, w.turning)],
-        9: [near(R.T * w.I * R, w.tensor(w.at_rest))],
-        10: [near(sum(moments[k] * along[k] ** 2 for k in range(3)) / 2, w.turning)],
-        11: [near(whole, cross(w.r_C, w.M * w.v_C) + w.momentum)],
+        2: [near(w.sum(dot(w.v, w.v)) / 2, w.M * dot(w.v_C, w.v_C) / 2 + w.turning)],
+        3: [near(w.x_dot, np.cross(W, w.x))],
+        4: [near(dot(W, w.I @ W) / 2, w.turning)],
+        5: [near(np.array([dot(W, R @ axis) for axis in e]), in_body)],
+        6: [near(dot(W, R @ axis), dot(inverse @ W, axis)) for axis in e],
+        7: [near(R @ (inverse @ W), W)],
+        8: [near(dot(in_body, R.T @ w.I @ R @ in_body) / 2, w.turning)],
+        9: [near(R.T @ w.I @ R, w.tensor(w.at_rest))],
+        10: [near(dot(moments, along**2) / 2, w.turning)],
+        11: [near(w.sum(whole), np.cross(w.r_C, w.M * w.v_C) + w.momentum)],
         12: [near(w.sum(about_centre), w.momentum)],  # the momentum about the centre alone is L_R
-        13: [near(w.I * W, w.momentum), near(dot(w.momentum, W), 2 * w.turning)],
-        14: [near(axes.T * w.momentum, vector(*(moments[k] * along[k] for k in range(3))))],
-        15: [near(w.R_dot * R.T * x, v) for x, v in pairs],
-        16: [near(hat(in_body), R.T * w.R_dot)],
+        13: [near(w.I @ W, w.momentum), near(dot(w.momentum, W), 2 * w.turning)],
+        14: [near(axes.T @ w.momentum, moments * along)],
+        15: [near(w.x @ (w.R_dot @ R.T).T, w.x_dot)],
+        16: [near(array(hat(in_body)), R.T @ w.R_dot)],
         17: [near(printed["rotation_matrix"], R)],
         18: [near(printed["angular_velocity_body"], in_body)],
     }
