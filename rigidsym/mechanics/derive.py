@@ -65,7 +65,15 @@ def derive(
         only = {*only, *OF_BODY_ALONE}
     chain, values = Chain(model) if is_shorter(model) else None, Values(model)
     turning = [name for name in only if name in KINEMATICS]
-    steps = _kinematics(chain or values, turning or only)
+    work, wanted = chain or values, turning or only
+    rotation, *others = KINEMATICS.values()
+    first = work.step(rotation)  # in any case, since all else rests on its proof
+    assert first is not None
+    if not model.passive:  # where R is found: equation 17 of the lecture is that of ZXZ
+        first = replace(first, quantity=first.quantity._replace(source=model.source))
+    steps = [first] if not wanted or rotation.name in wanted else []
+    derived = (work.step(entry) for entry in others if not wanted or entry.name in wanted)
+    steps += filter(None, derived)
     absent = set(turning) - {step.quantity.name for step in steps}
     if absent:
         why = "its rate matrix has no inverse, since its rates do not give every angular velocity"
@@ -118,22 +126,6 @@ def derive(
         first_integrals=integrals,
         consequences=consequences,
     )
-
-
-def _kinematics(work: Values | Chain, only: Collection[str]) -> list[Step]:
-    """The steps of the quantities that are wanted and that the model has.
-
-    The matrix is proved to be a rotation in any case: all else rests on it. Raises NotARotation if
-    R Rᵀ ≠ 1 or det R ≠ 1, showing what is left over.
-    """
-    rotation, *others = KINEMATICS.values()
-    first = work.step(rotation)
-    assert first is not None
-    if not work.model.passive:  # where R is found: equation 17 of the lecture is that of ZXZ
-        first = replace(first, quantity=first.quantity._replace(source=work.model.source))
-    steps = [work.step(entry) for entry in others if not only or entry.name in only]
-    wanted = [first] if not only or rotation.name in only else []
-    return [*wanted, *(step for step in steps if step is not None)]
 
 
 def _check_names(only: Collection[str], *, has_body: bool, has_forces: bool) -> None:
