@@ -173,18 +173,14 @@ class KernelArgument(NamedTuple):
     components: tuple[str, ...]
     units: tuple[str, ...]
     about: str
-    matrix: tuple[int, ...] = ()  # its shape, if it is one; else a vector
+    is_matrix: bool = False  # (3, 3), row by row; else a vector
     is_scalar: bool = False  # a number, such as the time
 
     @property
     def shape(self) -> tuple[int, ...]:
         if self.is_scalar:
             return ()
-        return self.matrix or (len(self.components),)
-
-    @property
-    def is_matrix(self) -> bool:
-        return bool(self.matrix)
+        return (3, 3) if self.is_matrix else (len(self.components),)
 
 
 class Assignment(NamedTuple):

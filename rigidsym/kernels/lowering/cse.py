@@ -74,11 +74,6 @@ class Graph:
         coefficient, factors = self._monomial(expression)
         return coefficient, self._product(factors)
 
-    def define(self, symbol: sp.Symbol, value: sp.Expr) -> int:
-        """A symbol for a value; returns its node."""
-        self._known[symbol] = self._monomial(value)
-        return self.weighted(value)[1]
-
     def hold(self, symbol: sp.Symbol, value: sp.Expr) -> None:
         """A symbol for a value that gets an assignment of its own, after those before.
 

@@ -81,7 +81,7 @@ class _Lowering:
             self._argument(vector)
         self._definitions = {d.symbol: d.expression for d in derivation.definitions}
 
-    def _argument(self, vector: Vector, **kinds: Any) -> ir.KernelArgument:
+    def _argument(self, vector: Vector, *, is_matrix: bool = False) -> ir.KernelArgument:
         """The argument; components of another keep their names."""
         if vector.name not in self.arguments:
             for symbol, name in zip(vector.symbols, vector.names, strict=True):
@@ -93,7 +93,7 @@ class _Lowering:
                 units=vector.units,
                 about=vector.about,
                 is_scalar=vector.is_scalar,
-                **kinds,
+                is_matrix=is_matrix,
             )
         return self.arguments[vector.name]
 
@@ -117,8 +117,7 @@ class _Lowering:
 
     def of_function(self, function: ConversionFunction) -> ir.Kernel:
         """The kernel of a conversion: its values one by one, as they are written."""
-        shape = (3, 3) if function.is_matrix else ()
-        argument = self._argument(function.argument, matrix=shape)
+        argument = self._argument(function.argument, is_matrix=function.is_matrix)
         inputs = {symbol: self._known[symbol] for symbol in function.argument.symbols}
         graph = Graph(function.name, inputs, self._definitions)
         for symbol, value in function.values:

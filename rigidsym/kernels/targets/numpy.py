@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
 from math import prod
 from types import ModuleType
@@ -177,7 +177,13 @@ def _block(kernel: Kernel) -> Iterator[str]:
     vectors = [names.fresh(argument.name) for argument in kernel.arguments]
     yield bracketed(0, f"def _{kernel.name}(", vectors, "):")
     for vector, argument in zip(vectors, kernel.arguments, strict=True):
-        yield from _unpacked(vector, argument.components, kernel.used)
+        components = enumerate(argument.components)
+        places = {name: f"{vector}[{k}]" for k, name in components if name in kernel.used}
+        line = f"    {', '.join(places)} = {', '.join(places.values())}"
+        if places and len(line) <= WIDTH:  # to index a few costs half of what unpacking does
+            yield line
+        else:
+            yield from (f"    {name} = {place}" for name, place in places.items())
     together = _gathered(kernel)
     for name, value in kernel.statements:
         call = value if isinstance(value, Call) and value.function in ("sin", "cos") else None
@@ -191,16 +197,6 @@ def _block(kernel: Kernel) -> Iterator[str]:
             yield bracketed(4, f"{name} = _sharp(", [name, call.argument.text], ")")
     entries = [f"+{e}" if e in kernel.components else e for e in outputs(kernel, 8)]
     yield f"    return {nested(entries, (len(entries),), 4, is_open=True)}"
-
-
-def _unpacked(vector: str, components: Sequence[str], used: Container[str]) -> Iterator[str]:
-    """The components of an array; to index a few costs half of what unpacking does."""
-    places = {name: f"{vector}[{k}]" for k, name in enumerate(components) if name in used}
-    line = f"    {', '.join(places)} = {', '.join(places.values())}"
-    if places and len(line) <= WIDTH:
-        yield line
-    elif places:
-        yield from (f"    {name} = {place}" for name, place in places.items())
 
 
 def _gathered(kernel: Kernel) -> dict[str, list[Name]]:
