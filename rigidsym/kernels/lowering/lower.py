@@ -149,7 +149,8 @@ class _Lowering:
             value = sp.sqrt(sp.Add(*(minor**2 for minor in minors)))
         is_free = self._symbols(value).isdisjoint(self.derivation.model.constants)
         inputs = [self._vectors[n] for n in (("q",) if is_free else ("q", "parameters"))]
-        size = f"|{found.measure}|" if len(minors) == 1 else "√Σ minors²"
+        size = f"√({found.measure})" if "ᵀ" in found.measure else f"|{found.measure}|"
+        size = "√Σ minors²" if found.measure == "minors" else size
         symbol = size + ("" if scale == 1 else f"/({scale})")
         yield self._kernel(MARGIN, inputs, [value], shape=(), symbol=symbol, about=about)
 
