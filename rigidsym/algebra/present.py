@@ -22,9 +22,11 @@ from functools import cache, lru_cache
 from itertools import combinations
 from math import gcd, lcm
 from operator import sub
+from random import Random
 from typing import Any, NamedTuple
 
 import sympy as sp
+from sympy.polys.orderings import lex
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import Codec, codec_for
@@ -33,6 +35,8 @@ from rigidsym.algebra.matrix import RingMatrix, Row
 from rigidsym.algebra.ring import Monomial, Quotient, shortest
 from rigidsym.errors import AlgebraError
 
+_SHORT_SUM = 12  # terms of a divisor that is factored, since that is done once for many entries
+_PRIME = 2**61 - 1  # modulo which images of polynomials are compared
 _MORE_TERMS = 2  # that a sum over one denominator may have; with more it is hardly ever shorter
 Terms = Mapping[Monomial, Any]  # coefficients: whole numbers or fractions
 
@@ -75,6 +79,7 @@ class Presenter:
         }
         self._matrices: dict[tuple[tuple[Row, ...], PolyElement], sp.ImmutableMatrix] = {}
         self._known: dict[tuple[PolyElement, PolyElement], sp.Expr] = {}
+        self._factors: dict[PolyElement, list[tuple[PolyElement, int]]] = {}
 
     def _addition_theorems(self) -> Iterator[Rule]:
         """Those of every two angles whose sums have no generators of their own."""
@@ -126,7 +131,7 @@ class Presenter:
     def _form(self, above: PolyElement, below: PolyElement) -> sp.Expr:
         above, below = shortest(self.ring, above), shortest(self.ring, below)
         if len(below) > 1:
-            _, above, below = above.cofactors(below)
+            above, below = self._cancelled(above, below)
         if len(below) > 1:
             over, under = _leading_number(above), _leading_number(below)
             return sp.Mul(
@@ -138,6 +143,25 @@ class Presenter:
         return self._terms(
             {tuple(map(sub, m, divisor)): c for m, c in above.items()}, _fraction(scale)
         )
+
+    def _cancelled(self, above: PolyElement, below: PolyElement) -> tuple[PolyElement, PolyElement]:
+        """Both without their common factors; many entries are divided by one short sum."""
+        if len(below) > _SHORT_SUM:
+            if not _are_coprime(above, below):
+                _, above, below = above.cofactors(below)
+            return above, below
+        polynomials = below.ring
+        plain = polynomials.clone(order=lex)  # in which leading terms are found fastest
+        above, below = above.set_ring(plain), below.set_ring(plain)
+        if below not in self._factors:
+            self._factors[below] = below.factor_list()[1]
+        for factor, power in self._factors[below]:
+            for _ in range(power):
+                quotient, rest = above.div(factor)
+                if rest:
+                    break
+                above, below = quotient, below.exquo(factor)
+        return above.set_ring(polynomials), below.set_ring(polynomials)
 
     def _over_one(self, element: PolyElement) -> Iterator[sp.Expr]:
         """Terms that are divided by different powers of one sum, over the highest of them."""
@@ -214,6 +238,24 @@ def _leading_number(element: PolyElement) -> Fraction:
     lowest = element[min(element, key=lambda monomial: (sum(monomial), monomial))]
     size = _content(element.values())
     return -size if lowest < 0 else size
+
+
+def _are_coprime(one: PolyElement, other: PolyElement) -> bool:
+    """Whether images in each generator, at numbers for the others, have no factor in common.
+
+    The image of a common factor divides both images. So coprime images spare the greatest common
+    divisor of hundreds of terms, which takes seconds for the accelerations of a gimbal and is
+    nearly always one. If the numbers are unlucky, a common factor stays, and the value is the same.
+    """
+    numbers, modular = Random(1), one.ring.clone(domain=sp.GF(_PRIME))
+    sides = [side.clear_denoms()[1].set_ring(modular) for side in (one, other)]
+    point = [(gen, numbers.randrange(1, _PRIME)) for gen in modular.gens]
+    for place in range(len(point)):
+        if all(side.degree(place) > 0 for side in sides):
+            images = (side.evaluate(point[:place] + point[place + 1 :]) for side in sides)
+            if next(images).gcd(next(images)).degree() > 0:
+                return False
+    return True
 
 
 def _content(numbers: Iterable[Any]) -> Fraction:
