@@ -49,6 +49,7 @@ def codec_for(
         tuple(needed.fractions.items()),
         conditions,
         order,
+        # A constraint may begin with any number, 2x² + y² = 1, by which a basis divides.
         needed.needs_fractions or bool(conditions),
     )
 
@@ -83,6 +84,7 @@ class Codec:
         order: int,
     ) -> None:
         """Give the ring its relations and derivatives, now that expressions can be read."""
+        # Relations come first, since every expression that is read afterwards is reduced by them.
         relations = [r for e, kind in kinds if (r := self._relation(e, kind)) is not None]
         self._set_relations(relations)
         self.ring.set_derivatives(
@@ -93,6 +95,9 @@ class Codec:
             }
         )
         # constraints and their time derivatives, as far as the ring can derive them
+        # f(q) = 0 for all time implies df/dt = 0 and d²f/dt² = 0, which bind the rates and
+        # accelerations. With them the ideal is closed under d/dt, and the derivative of a residue
+        # class is well defined.
         for element in [self.encode(constraint) for constraint in constraints]:
             while element:
                 relations.append(element)
@@ -212,6 +217,8 @@ class Codec:
         whole = int(exponent.p)
         if exponent.q == 1:
             return self._whole_power(base, whole)
+        # √12 = (√2)² √3. Roots of one degree of different primes are independent over the rational
+        # numbers, whereas √2, √3 and √6 are not.
         counts = sp.factorint(base).values() if base.is_Integer else [1]
         roots = roots_of(base, exponent.q)
         if any(root not in self.ring.index for root in roots):
@@ -223,6 +230,7 @@ class Codec:
         return Quotient.product(self.ring, factors)
 
     def _whole_power(self, base: sp.Expr, exponent: int) -> Quotient:
+        # With a generator for 1/b the inverse is a polynomial, and no denominator arises.
         if exponent < 0 and 1 / base in self.ring.index:
             return self.encode_quotient(1 / base) ** -exponent
         return self.encode_quotient(base) ** exponent
@@ -242,6 +250,9 @@ class Codec:
         terms = combination(argument)
         if not any(angle.is_Add for angle in self._fractions):
             return terms
+        # Rows of A are the angles of the ring, w is the argument, both in coordinates: x A = w has
+        # the least-squares solution x = w Aᵀ (A Aᵀ)⁻¹. If that misses w, the ring cannot express
+        # the argument.
         atoms = {a for e in (argument, *self._fractions) for a in combination(e) if a is not sp.pi}
         own, wanted = coefficients(self._fractions, atoms), coefficients([argument], atoms)
         solution = wanted * own.T * (own * own.T).inv()
@@ -267,6 +278,7 @@ class Codec:
         cosine = ring.generator(index[sp.cos(fraction * atom)])
         sine = ring.generator(index[sp.sin(fraction * atom)])
         single = cosine, sine if times > 0 else -sine
+        # cos nθ and sin nθ by n additions of θ to the angle zero.
         pair = ring.one, ring.zero
         for _ in range(abs(int(times))):
             pair = self._added(pair, single)
@@ -274,6 +286,7 @@ class Codec:
 
     def _added(self, first: Pair, second: Pair) -> Pair:
         (c, s), (cosine, sine) = first, second
+        # cos(α + β) = cos α cos β − sin α sin β and sin(α + β) = sin α cos β + cos α sin β.
         reduce = self.ring.reduce
         return reduce(c * cosine - s * sine), reduce(s * cosine + c * sine)
 

@@ -82,6 +82,7 @@ def _value(e: sp.Expr, arithmetic: Intervals | Floats, values: dict[sp.Expr, Any
     if e.is_Pow:
         if e.exp.is_Rational:
             return arithmetic.power(evaluate(e.base, arithmetic, values), e.exp, e)
+        # bᵉ = exp(e log b), unevaluated, since SymPy may turn it back into bᵉ.
         return evaluate(sp.exp(e.exp * sp.log(e.base), evaluate=False), arithmetic, values)
     if isinstance(e, AppliedUndef) or not e.args:
         raise Unknown(e)
@@ -141,6 +142,9 @@ class Intervals:
     def _monotone(self, name: str, value: Any, whole: sp.Expr, *more: int) -> Any:
         """A monotone function, by its values at both ends."""
         digits = self.context.dps
+        # The image of [a, b] under a monotone function lies between f(a) and f(b). mpmath's
+        # floating-point functions do not bound their errors; ten more digits and the slack below
+        # leave room for these.
         own = context(digits + 10)
         ends = [getattr(own, name)(own.mpf(end), *more) for end in (value.a, value.b)]
         if any(isinstance(end, own.mpc) or not own.isfinite(end) for end in ends):
@@ -152,6 +156,8 @@ class Intervals:
 @cache
 def context(digits: int, *, of_intervals: bool = False) -> Any:
     """mpmath's numbers or intervals of so many digits; it takes milliseconds to make them."""
+    # A context of its own, since the precision of mpmath's global contexts is shared by all
+    # callers.
     numbers = mpmath.iv.__class__() if of_intervals else mpmath.mp.__class__()
     numbers.dps = digits
     return numbers
@@ -253,11 +259,14 @@ def is_never_negative(expression: sp.Expr, bounds: Mapping[sp.Symbol, Bounds]) -
     Symbols without bounds are constants, and positive. SymPy decides by the signs of the parts;
     the sine of a variable has one if it stays within half a turn.
     """
+    # Dummies with assumptions in place of the symbols; SymPy then knows the signs of sums and
+    # products.
     plain: dict[sp.Expr, sp.Expr] = {}
     for symbol in expression.free_symbols:
         low, high = bounds.get(symbol, (sp.S.Zero, sp.oo))
         is_positive = symbol not in low.free_symbols and is_never_negative(low, bounds)
         plain[symbol] = sp.Dummy(real=True, nonnegative=is_positive or None)
+        # sin u ≥ 0 for 0 ≤ u ≤ π, as in the volume element r² sin θ.
         if is_positive and high.is_number and high <= sp.pi:
             plain[sp.sin(symbol)] = sp.Dummy(nonnegative=True)
     return bool(expression.xreplace(plain).is_nonnegative)

@@ -68,10 +68,14 @@ def is_identically_zero(expression: sp.Expr) -> bool:
     """Whether an expression vanishes by expansion or, of algebraic numbers, by its polynomial."""
     if sp.expand(expression) == 0:
         return True
+    # By Euler's formula, identities of sines and cosines become identities of polynomials in
+    # exp(ix).
     if expression.has(sp.Function) and sp.expand(expression.rewrite(sp.exp)) == 0:
         return True
     if not expression.is_number or not expression.is_algebraic:
         return False
+    # Zero is the only algebraic number whose minimal polynomial is x. To find that polynomial is
+    # slow, so a number that is clearly not zero is told by its value.
     return bool(
         abs(sp.N(expression, 30)) < _NEARLY_ZERO and sp.minimal_polynomial(expression).is_Symbol
     )
@@ -79,6 +83,8 @@ def is_identically_zero(expression: sp.Expr) -> bool:
 
 def angle_of(sine: sp.Expr, cosine: sp.Expr) -> sp.Expr:
     """The angle with a given sine and cosine; atan2 only if they name no angle themselves."""
+    # (sin α, cos α) is at α, (−sin α, cos α) at −α, (sin α, −cos α) at π − α and (−sin α, −cos α)
+    # at α + π. With sine and cosine exchanged, α is replaced by π/2 − α.
     for sign_of_sine in (1, -1):
         for sign_of_cosine in (1, -1):
             first, second = sign_of_sine * sine, sign_of_cosine * cosine
@@ -115,6 +121,9 @@ def common_fractions(combinations: Iterable[Combination]) -> Combination:
     The angles are the combinations themselves if these are independent, or else their atoms.
     """
     given = [{a: c for a, c in terms.items() if a is not sp.pi} for terms in combinations]
+    # Two choices: an angle such as φ + ψ/2 is one generator pair, or its atoms have a pair each and
+    # the addition theorems expand it. The first gives fewer terms, but it is valid only if no
+    # rational combination of the angles vanishes: sin φ, sin ψ and sin(φ + ψ) are not independent.
     if any(len(terms) > 1 for terms in given):
         multiples = []
         for terms in filter(None, given):  # each as a multiple of one sum of whole multiples
@@ -124,6 +133,8 @@ def common_fractions(combinations: Iterable[Combination]) -> Combination:
             multiples.append({sign * angle: sign * unit})
         if _are_independent(set().union(*multiples)):
             given = multiples
+    # The greatest common divisor of the coefficients: cos 2θ and sin(θ/3) are polynomials in the
+    # cosine and sine of gcd(2, 1/3) θ = θ/3.
     fractions: Combination = {}
     for terms in given:
         for angle, coefficient in terms.items():
@@ -170,6 +181,7 @@ _QUOTIENTS = {  # function: numerator, denominator
     sp.sec: (None, sp.cos),
     sp.csc: (None, sp.sin),
 }
+# Kinds whose only relation, s² + c² = 1, has the leading coefficient 1: reduction never divides.
 _MONIC = frozenset({Kind.SINE, Kind.COSINE, Kind.TIME_FUNCTION, Kind.CONSTANT})
 
 
@@ -181,6 +193,7 @@ def rate_of(expression: sp.Expr) -> sp.Expr:
     """
     if is_time_function(expression):
         return sp.Derivative(expression, TIME)
+    # The chain rule: d/dt sin u = u̇ cos u and d/dt cos u = −u̇ sin u.
     if isinstance(expression, sp.sin):
         return sp.cos(*expression.args) * rate_of(*expression.args)
     if isinstance(expression, sp.cos):
@@ -258,6 +271,7 @@ class GeneratorSet:
             for part in expression.args:
                 self.collect(part)
         elif expression.is_Pow and expression.exp.is_Rational:
+            # b^(p/q) is (b^(1/q))^p: the root is a generator, and its inverse too if p is negative.
             base, exponent = expression.base, expression.exp
             self.collect(base)
             for root in [base] if exponent.q == 1 else roots_of(base, exponent.q):
@@ -278,6 +292,7 @@ class GeneratorSet:
             raise AlgebraError(
                 f"sin and cos of {argument} are not in the ring; expected a symbol for the number"
             )
+        # By the addition theorem, sin(θ + π/4) = (sin θ + cos θ)/√2, so the ring needs these roots.
         if sp.pi in terms:
             for value in cosine_sine_of_pi(terms[sp.pi]):
                 self.collect(value)

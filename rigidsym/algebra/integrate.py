@@ -64,6 +64,7 @@ class Integrator:
         total = element.diff(ring.generator(self._place))
         if self._pair is not None:
             sine, cosine = map(ring.generator, self._pair)
+            # The chain rule with s = sin ωu and c = cos ωu: ∂F/∂u + ω (c ∂F/∂s − s ∂F/∂c).
             turned = element.diff(sine) * cosine - element.diff(cosine) * sine
             total += turned * self._number(self._frequency)
         return ring.reduce(total)
@@ -93,16 +94,20 @@ class Integrator:
         if a == b == 0:
             return u ** (n + 1) * self._number(sp.Rational(1, n + 1))
         if n:  # by parts
+            # ∫ uⁿ f du = uⁿ F − n ∫ uⁿ⁻¹ F du with F = ∫ f du. Each step lowers the power of u by
+            # one.
             inner = self._basis(0, a, b)
             rest = self.antiderivative(ring.reduce(u ** (n - 1) * inner))
             return ring.reduce(u**n * inner - rest * n)
         assert self._pair is not None
         assert a < 2
         sine, cosine = map(ring.generator, self._pair)
+        # ∫ sin ωu cosᵇ ωu du = −cosᵇ⁺¹ ωu / (ω (b + 1))
         if a == 1:
             return cosine ** (b + 1) * self._number(-1 / (self._frequency * (b + 1)))
         if b == 1:
             return sine * self._number(1 / self._frequency)
+        # ∫ cosᵇ ωu du = cosᵇ⁻¹ ωu sin ωu / (ω b) + (b − 1)/b ∫ cosᵇ⁻² ωu du
         first = cosine ** (b - 1) * sine * self._number(1 / (self._frequency * b))
         return first + self._basis(0, 0, b - 2) * self._number(sp.Rational(b - 1, b))
 

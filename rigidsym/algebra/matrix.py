@@ -72,6 +72,7 @@ class RingMatrix:
 
     def gram(self) -> RingMatrix:
         """M Mᵀ, the products of every two rows, each worked out once."""
+        # M Mᵀ is symmetric, so the entries on and below the diagonal suffice.
         half = [
             [self.ring.dot(zip(row, other, strict=True)) for other in self.rows[: place + 1]]
             for place, row in enumerate(self.rows)
@@ -134,6 +135,8 @@ class RingMatrix:
 
     def det(self) -> PolyElement:
         """The determinant, by the first row."""
+        # Laplace expansion: det M = Σ_j (−1)ʲ M_0j det(M without row 0 and column j). Unlike
+        # elimination it needs no division, and zeros spare their minors.
         first = self.rows[0]
         if len(self.rows) == 1:
             return first[0]
@@ -142,6 +145,7 @@ class RingMatrix:
 
     def adjugate(self) -> RingMatrix:
         """adj(M), with M adj(M) = det(M) 1."""
+        # adj(M)_ij = (−1)^(i+j) times the minor without row j and column i.
         places = range(len(self.rows))
         if len(places) == 1:
             return RingMatrix.identity(self.ring, 1)
@@ -155,6 +159,7 @@ class RingMatrix:
 
         With `most`, one minor that is a number is enough: the rank is then the same everywhere.
         """
+        # The generic rank is the size of the largest minor that is not zero in the ring.
         largest = min(self.shape) if most is None else min(*self.shape, most)
         for size in range(largest, 0, -1):
             minors: list[PolyElement] = []
@@ -176,10 +181,15 @@ class RingMatrix:
         width = self.shape[1]
         if not rank:
             return RingMatrix.identity(self.ring, width)
+        # Two independent rows u and v span the row space, and u × v is orthogonal to it.
         if (rank, width) == (2, 3):
             pairs = combinations(self.rows, 2)
             normal = next(n for u, v in pairs if any(n := cross(self.ring, u, v)))
             return RingMatrix.column(self.ring, primitive(self.ring, normal))
+        # With the regular square part A of the pivot columns and the column a of a free unknown, A
+        # x + a = 0 has the solution x = −adj(A) a / det A. The multiple by det A is a kernel vector
+        # without divisions, (−adj(A) a, det A). It vanishes where det A does, so all regular parts
+        # contribute a vector, unless one determinant is a number.
         parts: list[tuple[RingMatrix, Sequence[Row], Sequence[int]]] = []
         for rows, pivots in product(
             combinations(self.rows, rank), combinations(range(width), rank)
@@ -211,12 +221,18 @@ class RingMatrix:
         count = self.shape[1]
         if count < 3:
             return None
+        # W adj(W) = det(W) 1
         if count == 3 and bound is None:
             return _if_regular(self.adjugate(), self.det())
+        # W Wᵀ adj(W Wᵀ) = det(W Wᵀ) 1, so G = Wᵀ adj(W Wᵀ) and d = det(W Wᵀ). Rates in the row
+        # space of W have the least norm. For a unit quaternion they also keep |q| constant, and J G
+        # = 0 comes for free.
         gram = self.gram()
         least = _if_regular(self.T @ gram.adjugate(), gram.det())
         if least is None or bound is None or (bound @ least[0]).is_zero():
             return least
+        # Otherwise W q̇ = Ω and J q̇ = 0 are one square system: [W; J] G = [d 1; 0] holds for the
+        # first three columns of adj([W; J]).
         square = RingMatrix(self.ring, (*self.rows, *bound.rows))
         if square.shape[0] != count:
             return None
@@ -268,6 +284,7 @@ def primitive(ring: Ring, given: Sequence[PolyElement]) -> Row:
     """The entries without their common factor, the first of them with a plus sign."""
     entries = [shortest(ring, entry) for entry in given]
     first, *others = (entry for entry in entries if entry)
+    # The greatest common divisor of all entries; the sign makes the result unique.
     common = first
     for entry in others:
         if not common.is_ground:  # a search that can find nothing

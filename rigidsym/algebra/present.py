@@ -129,6 +129,8 @@ class Presenter:
         return form
 
     def _form(self, above: PolyElement, below: PolyElement) -> sp.Expr:
+        # The shortest representatives come first, as common factors are visible only in them: 1 −
+        # c² is s², and s²/s cancels.
         above, below = shortest(self.ring, above), shortest(self.ring, below)
         if len(below) > 1:
             above, below = self._cancelled(above, below)
@@ -139,6 +141,8 @@ class Presenter:
             )
         if self.ring.is_one(below):
             return min([self._terms(above), *self._over_one(above)], key=sp.count_ops)
+        # A single term below the bar divides term by term, as negative powers, so that sin θ/cos θ
+        # is found as tan θ inside a sum.
         ((divisor, scale),) = below.items()
         return self._terms(
             {tuple(map(sub, m, divisor)): c for m, c in above.items()}, _fraction(scale)
@@ -185,6 +189,8 @@ class Presenter:
         if factor is None:
             return sp.Add(*(self._product(number, powers) for powers, number in terms.items()))
         place, sign = factor
+        # Greedy Horner scheme: a b + a c + d becomes a (b + c) + d, and both sums are treated
+        # likewise.
         inside = {m: c for m, c in terms.items() if m[place] * sign > 0}
         outside = {m: c for m, c in terms.items() if m[place] * sign <= 0}
         # all that the terms have in common: the lowest powers of one sign, and their numbers
@@ -202,6 +208,8 @@ class Presenter:
         once. Ties go to the place that comes first.
         """
         best, most = None, 0
+        # Taken out of k terms, a factor of w operations saves k − 1 copies and as many
+        # multiplications: (k − 1)(w + 1) operations.
         for place, column in enumerate(zip(*terms, strict=True)):
             for sign in (1, -1):
                 powers = [power for power in column if power * sign > 0]
@@ -214,6 +222,7 @@ class Presenter:
         """number · generators^powers · sums; sines over cosines and the reverse are tan and cot."""
         rest, parts = list(powers), []
         for sine, cosine in self.codec.angle_pairs:
+            # sinᵃ/cosᵇ = tanᵐ times the rest, with m = min(a, b).
             if rest[sine] * rest[cosine] < 0:
                 times = min(abs(rest[sine]), abs(rest[cosine]))
                 above, below = (sine, cosine) if rest[sine] > 0 else (cosine, sine)
@@ -288,6 +297,8 @@ def _folded(terms: Terms, rules: Sequence[Rule]) -> Terms:
     for k in usable:
         rule, place = rules[k], k - len(rules)
         a, b = rule.first
+        # cos α cos β ∓ sin α sin β are two terms that differ only in one pair of factors, with
+        # coefficients of equal size. Both leave, and one term with the new factor enters.
         for monomial in list(result):
             if monomial in result and monomial[a] > 0 and monomial[b] > 0:  # it may begin a pair
                 rest = list(monomial)
@@ -344,6 +355,8 @@ _MOST_TERMS = 60  # of a form that is tried multiplied out; longer ones are no t
 def half_form(present: Presenter, matrix: RingMatrix, vector: RingMatrix) -> sp.Expr:
     """½ vᵀ M v for a constant symmetric M, (3, 3), and v, (3, 1); proved equal."""
     entries = vector.entries
+    # ½ vᵀ M v = ½ Σ_k M_kk v_k² + Σ_{j<k} M_jk v_j v_k. Squares of equal moments are added first,
+    # where sin² + cos² = 1 can shorten them: ½A (θ̇² + φ̇² sin² θ).
     by_weight: dict[PolyElement, list[PolyElement]] = {}
     for k in range(3):
         if matrix[k, k]:

@@ -67,10 +67,13 @@ class Ring:
     def set_relations(self, relations: Iterable[PolyElement]) -> None:
         """Take the relations and their Gröbner basis; normal forms from now on obey them."""
         self.relations = tuple(relation for relation in relations if relation)
+        # With a Gröbner basis, the remainder of a division does not depend on the order of its
+        # steps, and it is zero exactly for the members of the ideal.
         basis = groebner(list(self.relations), self.polynomials) if self.relations else []
         if any(element.is_ground for element in basis):
             raise AlgebraError("the relations contradict one another: they imply 1 = 0")
         rules: list[Rule] = []
+        # c·m + rest = 0 becomes the rule m → −rest/c: s² + c² − 1 = 0 becomes s² → 1 − c².
         for element in basis:  # read as: leading monomial -> minus the rest
             leading, divide = element.leading_expv(), element.ring.domain.exquo
             lead = element[leading]
@@ -97,6 +100,8 @@ class Ring:
 
     def dot(self, pairs: Iterable[Pair], minus: Iterable[Pair] = ()) -> PolyElement:
         """The sum of the products, less those of `minus`, in normal form."""
+        # Σ pᵢ qᵢ is reduced once, after all products are added; products that cancel are never
+        # reduced.
         times = self.polynomials.monomial_mul
         total: Terms = {}
         known = total.get
@@ -118,6 +123,7 @@ class Ring:
 
     def _settled(self, terms: Terms) -> PolyElement:
         """The polynomial of these terms, in normal form."""
+        # Reduction is linear: the normal form of Σ c m is Σ c NF(m) over the monomials m.
         forms = self._normal_forms
         result = terms
         if not forms.standard.issuperset(terms):
@@ -148,6 +154,8 @@ class Ring:
 
         Raises AlgebraError where a generator has no derivative in this ring.
         """
+        # d/dt (Σ c m) = Σ c ṁ, since the coefficients are constant. The result needs no reduction:
+        # a sum of normal forms is a normal form.
         result: Terms = {}
         for monomial, coefficient in element.items():
             if monomial not in self._monomial_rates:
@@ -165,6 +173,7 @@ class Ring:
                     f"{self.generators[place].expression}; build it with a higher order"
                 )
             if power:
+                # ∂/∂g of gⁿ·rest, times ġ: n gⁿ⁻¹ ġ·rest.
                 rest = (*monomial[:place], power - 1, *monomial[place + 1 :])
                 total += self.derivatives[place].mul_term((rest, power))
         return self.reduce(total)
@@ -204,6 +213,7 @@ class Quotient:
         return reduce(mul, factors) if factors else cls.whole(ring, ring.one)
 
     def __add__(self, other: Quotient) -> Quotient:
+        # Without common denominators a/b + c/d is (a d + c b)/(b d), and its terms multiply.
         if self.denominator == other.denominator:
             return Quotient(self.ring, self.numerator + other.numerator, self.denominator)
         a, b = (self.numerator, self.denominator), (other.numerator, other.denominator)
@@ -234,6 +244,7 @@ class Quotient:
         """Whether both are the same function: the cross products agree in the ring."""
         if dict.__eq__(self.denominator, other.denominator):
             return dict.__eq__(self.numerator, other.numerator)  # normal forms
+        # a/b = c/d exactly if a d − c b = 0. Neither quotient has to be in lowest terms.
         crossed = (self.numerator, other.denominator), (other.numerator, self.denominator)
         return not self.ring.dot(crossed[:1], minus=crossed[1:])
 
@@ -249,6 +260,9 @@ class _NormalForms(dict[Monomial, Terms | None]):
         self._rules = rules
 
     def __missing__(self, monomial: Monomial) -> Terms | None:
+        # m = rest·leading becomes rest·tail. Each monomial of the tail comes before the leading one
+        # in the monomial order, so the recursion ends. Any rule that divides m will do, by the
+        # Gröbner property.
         for leading, needed, tail in self._rules:
             if all(monomial[place] >= power for place, power in needed):
                 rest = tuple(map(sub, monomial, leading))
@@ -295,6 +309,9 @@ def shortest(ring: Ring, element: PolyElement) -> PolyElement:
     """A shortest polynomial found that equals `element` in the ring."""
     if element.is_ground or len(element) > _MOST_TERMS:
         return element
+    # A walk in the residue class of the element: each step subtracts a multiple of a relation.
+    # Steps to polynomials of equal length are allowed, since the way to a shorter one often leads
+    # over them; `seen` keeps the walk from turning in circles.
     best = current = element
     least = length = (len(element), sum(map(sum, element)))  # the terms, then their degrees
     seen = {current}
@@ -322,6 +339,8 @@ class Neighbour(NamedTuple):
 
 def _neighbours(ring: Ring, element: PolyElement, length: tuple[int, int]) -> Iterator[Neighbour]:
     """Each polynomial in which one term was replaced by means of one relation."""
+    # The multiple t·r of a relation r is chosen so that one of its terms cancels one of the
+    # element.
     domain = ring.polynomials.domain
     highest = tuple(map(max, zip(*element, strict=True)))
     for part, needed, factor, relation in ring.relation_terms:
@@ -336,6 +355,8 @@ def _neighbours(ring: Ring, element: PolyElement, length: tuple[int, int]) -> It
                 continue
             rest = tuple(map(sub, monomial, part))
             count, degrees = length
+            # The length of the difference is counted without building it, as only one neighbour is
+            # used.
             for own, number in relation.items():
                 changed = tuple(map(add, own, rest))
                 before = element.get(changed)

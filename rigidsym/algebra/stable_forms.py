@@ -53,12 +53,17 @@ class Series(NamedTuple):
 @cache
 def series_of(order: int) -> Series:
     """The series of c_k, k ≥ 3, with its switch and its bounds, derived."""
+    # The closed form loses digits by cancellation for small x and the series by truncation for
+    # large x. The switch is as low as the error of the closed form permits, which keeps the series
+    # short.
     switch = _STEP  # the least from which on the closed form keeps its bound
     while switch < _FURTHEST and _closed_error(order, switch) > _CLOSED:
         switch += _STEP
     closed = _closed_error(order, switch)
     value = _enclosed(order, switch)[0]
     terms = taylor(order)
+    # Below the switch c_k falls with x while the terms grow, so the relative error is largest at
+    # the switch.
     left_out = (abs(term) * switch**place / value for place, term in enumerate(terms))
     length = next(place for place, size in enumerate(left_out) if size <= _LEFT_OUT)
     remainder = abs(terms[length]) * switch**length / value
@@ -84,6 +89,7 @@ def closed_form(order: int, angle: sp.Expr) -> sp.Expr:
     """c_k of an angle n in sines and cosines."""
     if order < 2:
         return sp.sin(angle) / angle if order else sp.cos(angle)
+    # c_k = (c_{k−2}(0) − c_{k−2})/n² with c_j(0) = 1/j!
     first = taylor(order - 2)[0]
     start = sp.Rational(first.numerator, first.denominator)
     return (start - closed_form(order - 2, angle)) / angle**2
@@ -204,6 +210,7 @@ def _vanishing(entry: sp.Expr) -> tuple[sp.Expr, ...]:
     """The angles of the divisors a ± a cos θ."""
     found = []
     for power in entry.atoms(sp.Pow):
+        # a ± a cos θ, which vanishes at θ = π or 0; a + b cos θ with |b| ≠ |a| is left alone.
         number, rest = power.base.as_coeff_Add()
         size, cosine = rest.as_coeff_Mul()
         if power.exp.is_negative and isinstance(cosine, sp.cos) and abs(size) == abs(number):
@@ -234,6 +241,7 @@ class Rewriter:
         self._functions = [Stumpff(k, angle**2) for k in range(_HIGHEST + 1)]
         self._closed = {f: closed_form(k, angle) for k, f in enumerate(self._functions)}
         self._symbols = [sp.Dummy(f"c{k}") for k in range(_HIGHEST + 1)]
+        # The target ring has c_0, c_1, ... in place of n, 1/n, sin rn and cos rn.
         special = {norm.sine, norm.cosine, *norm.powers}
         others = [g.expression for k, g in enumerate(codec.ring.generators) if k not in special]
         self._plain = codec_for([*self._symbols, *others, sp.Rational(1, 2)], order=0)
@@ -250,6 +258,8 @@ class Rewriter:
         What stands below a fraction bar may still vanish, but not at n = 0 for all v.
         """
         value, reduce = self.codec.encode_quotient(expression), self.codec.ring.reduce
+        # Above and below are both divided by n^power, which leaves the quotient as it is. The
+        # highest power at which both stay regular at n = 0 cancels the whole singularity.
         for power in range(_POWERS, -_POWERS - 1, -1):
             below = self._whole(reduce(value.denominator * self._n(-power)))
             if below is None:
@@ -276,6 +286,7 @@ class Rewriter:
         places = (norm.sine, norm.cosine, *norm.powers)
         for (sines, cosines, *others), before in split(element, places).items():
             power = -sines - sum(map(mul, others, norm.powers.values()))
+            # An odd power of n, as n² has none, is not analytic in the components of v.
             if power % 2:
                 return None
             key = (0,) * cosines + (1,) * sines, power // 2
@@ -291,6 +302,8 @@ class Rewriter:
             parts[tuple(rest), power] += before * start
             raised = tuple(sorted((*rest, first + 2)))
             parts[raised, power - 1] -= before * ring.polynomials(norm.ratio**2)
+        # Singular parts of different products may cancel here. What remains with a power of n is
+        # singular, since n² itself reduces to v·v.
         terms = {orders: ring.reduce(before) for orders, before in done.items()}
         if any(m[place] for before in terms.values() for m in before for place in norm.powers):
             return None

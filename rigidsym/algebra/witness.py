@@ -84,6 +84,7 @@ def configurations(
                 break
     if points or reason is None:
         return tuple(points)
+    # The divisor may only be too small for these digits.
     if reason.reason == "division by" and digits < MORE_DIGITS:
         return configurations(name, constraints, parts, example, MORE_DIGITS, count)
     place = ", where the `example` is" if bound else ""
@@ -129,6 +130,8 @@ def _with_rates(
     They solve linear equations. The rates that these leave free are random. All are zero, which
     is right as well, if there is no solution, as where constraints touch: (u − 1)² = 0.
     """
+    # f(q) = 0 implies J q̇ = 0 and J q̈ + J̇ q̇ = 0, J = ∂f/∂q. The first is linear in the rates
+    # and, with the rates known, the second is linear in the accelerations.
     derivatives = [[sp.diff(c, TIME, order) for c in constraints] for order in (1, 2)]
     values: Numbers = dict(example)
     for equations in derivatives:
@@ -155,6 +158,7 @@ def _atoms_of(expressions: Sequence[sp.Expr]) -> list[sp.Expr]:
 def _random_point(atoms: Sequence[sp.Expr], seed: int) -> Numbers:
     """A rational number for each atom, the same for its name and the seed wherever it occurs."""
     scale = sp.Rational(_SCALES[seed % len(_SCALES)])
+    # Seeded by the name, so that a symbol has the same value in every ring and every process.
     drawn = (random.Random(f"{seed} {atom}").randint(101, 999) for atom in atoms)
     numbers = (scale * sp.Rational(number, 1000) for number in drawn)
     return {TIME: sp.Rational(1, 3), **dict(zip(atoms, numbers, strict=True))}
@@ -216,6 +220,8 @@ class Witness:
         """Whether an element is certainly not zero: by the ring, or by a value at a point."""
         if self._decides or element.is_ground:
             return bool(element)
+        # An interval without zero proves that the element is not zero. One point at 50 digits
+        # decides nearly always; further points and more digits cost more and come later.
         return any(
             0 not in _value(self._bounds(at), context(digits, of_intervals=True).mpf, element)
             for digits, count in ((DIGITS, 1), (DIGITS, _POINTS), (MORE_DIGITS, 1))
@@ -229,6 +235,8 @@ class Witness:
         values of matrices from one claim to the next. Decimal numbers are the fastest of so many
         digits; a disagreement is put to intervals.
         """
+        # Rounding can make a zero look different from zero, so a disagreement must be confirmed by
+        # intervals. An agreement needs no more: the ring has proved the zero already.
         with localcontext(prec=DIGITS + _GUARD):
             rows = residual.values(partial(_value, self._numbers, Decimal), known)
         if all(abs(entry) < _SMALL for row in rows for entry in row):

@@ -116,8 +116,11 @@ class FallingRank:
 
         Whether these are all.
         """
+        # A minor that is a number other than zero keeps the rank at every point.
         if not rank or any(minor.is_ground for minor in minors):
             return True
+        # Real minors vanish together exactly where the sum of their squares does; by Cauchy and
+        # Binet this sum is det(W Wᵀ). It is often a number although no minor is: sin² θ + cos² θ.
         if len(minors) > 1 and self.solver.is_never_zero(self.sum_of_squares(minors)):
             return True
         zeros, is_solved = self.solver.common(minors)
@@ -127,6 +130,7 @@ class FallingRank:
             if not is_allowed:
                 is_solved = is_solved and is_allowed is False
                 continue
+            # On each zero the rank may fall further: at θ = 0 by one, at θ = 0 and φ = 0 by two.
             there = matrix_at(matrix, more)
             full, smaller = there.rank_and_minors(rank - 1)
             self.strata.append(Stratum(whole, there, full))
@@ -141,9 +145,12 @@ class FallingRank:
 
         Nothing is told of points at which the conditions touch and leave more rates free.
         """
+        # A relation that becomes a number other than zero, 1 = 0, excludes the point.
         relations = (substituted(relation, zero) for relation in self.codec.ring.relations)
         if any(relation.is_ground and relation for relation in relations):
             return False
+        # If the rank of ∂f/∂q falls as well, the point is a singular point of the constraints, and
+        # the implicit function theorem says nothing about the rates that are possible there.
         bound = self._bound
         if bound is not None and matrix_at(bound, zero).rank_and_minors()[0] < self.bound_rank:
             return None
@@ -184,6 +191,8 @@ class Solver:
         """The common zeros of the elements, and whether all were found."""
         zeros: dict[frozenset[Root], Zero] = {}
         is_complete = self._search(list(elements), (), zeros)
+        # A zero with further conditions, θ = 0 and φ = 0, is part of the larger one with fewer, θ =
+        # 0.
         least = [zero for key, zero in zeros.items() if not any(other < key for other in zeros)]
         return sorted(least, key=lambda zero: sorted(root.order for root in zero)), is_complete
 
@@ -207,6 +216,8 @@ class Solver:
         solved = [roots for element in remaining if (roots := self._roots(element)) is not None]
         if not solved:
             return False
+        # Every common zero is a zero of each element. To branch over the element with the fewest
+        # roots keeps the search tree small.
         is_complete = True
         for root in min(solved, key=len):
             is_complete &= self._search(remaining, (*zero, root), zeros)
@@ -215,6 +226,7 @@ class Solver:
     def _roots(self, element: PolyElement) -> list[Root] | None:
         """The zeros of one element; None if some factor is not solved."""
         roots: dict[Root, None] = {}
+        # A product vanishes where one of its factors does.
         if len(element) == 1:  # a product of generators needs no search for its factors
             (powers,) = element
             factors = [gen for gen, power in zip(element.ring.gens, powers, strict=True) if power]
@@ -262,6 +274,7 @@ class Solver:
         expressions = [self._ring.generators[place].expression for place in used]
         if len(expressions) == len(factor) == 1:
             return bool(expressions[0].is_Pow and expressions[0].exp.is_negative)
+        # Even powers, coefficients of one sign and a constant term: 1 + x² + 3 y⁴ has no real zero.
         signs = {coefficient > 0 for coefficient in factor.values()}
         is_even = all(power % 2 == 0 for monomial in factor for power in monomial)
         return len(signs) == 1 and is_even and self._ring.polynomials.zero_monom in factor
@@ -274,6 +287,8 @@ class Solver:
         parts = split(factor, (angle.cosine, angle.sine))
         if not parts.keys() <= {(1, 0), (0, 1)}:
             return None
+        # A cos + B sin = N sin(angle + δ) with N constant has two zeros in each period. N² must be
+        # a number: where N = 0, every angle is a zero.
         above, beside = (parts.get(powers, self._ring.zero) for powers in ((1, 0), (0, 1)))
         square = self._ring.reduce(above**2 + beside**2)
         if not square.is_ground:
@@ -296,6 +311,7 @@ class Solver:
             return None
         pairs: dict[tuple[sp.Expr, sp.Expr], None] = {}
         for value in sp.roots(polynomial):
+            # x = cos α has the two solutions sin α = ±√(1 − x²), and likewise for x = sin α.
             if value.is_real and abs(value) <= 1:
                 other = sp.sqrt(sp.expand(1 - value**2))
                 for beside in (other, -other):
@@ -307,6 +323,8 @@ class Solver:
         self, angle: _Angle, value: sp.Expr, sine_and_cosine: tuple[PolyElement, ...]
     ) -> Iterator[Root]:
         """The coordinates within one period whose multiple is the value, up to whole turns."""
+        # (p/q) x = value + 2πk gives x = (value + 2πk) q/p. The period of sin(p x/q) is 2πq/p, so
+        # there are p of these in the common period 2πq.
         becomes = tuple(zip((angle.sine, angle.cosine), sine_and_cosine, strict=True))
         turns, times = int(angle.fraction.q), int(angle.fraction.p)
         period = 2 * sp.pi * turns
