@@ -76,11 +76,16 @@ class Solid:
                 f"{self.title}: expected one to three coordinates, bounds for each, and three "
                 "components of the position"
             )
+        # A volume element follows from the map, du dv dw |det ∂x/∂(u, v, w)|. The element of a
+        # surface is the root of a Gram determinant, whose short form is better given and then
+        # proved.
         if (count == 3) == (self.element is not None):
             raise BodyError(f"{self.title}: lines and surfaces have an element, volumes have none")
         if (self.mass is None) == (self.density is None):
             raise BodyError(f"{self.title}: expected either the mass or the density")
         for place, pair in enumerate(self.bounds):
+            # The last coordinate is integrated first, so its bounds may hold all those before it,
+            # as in 0 ≤ v ≤ 1 − u for a triangle, and never those behind.
             later = set(self.coordinates[place:])
             for bound in pair:
                 if bound.free_symbols & later:
@@ -219,6 +224,8 @@ class RigidBody:
             )
         for fault in self._faults():
             raise BodyError(f"{self.name}: {fault}")
+        # The inequalities between the moments are decided in numbers only: with symbols they hold
+        # for some values and fail for others.
         inertia = self.in_numbers(self.inertia)
         if not self.allow and all(entry.is_number for entry in inertia):
             check_moments(self.name, inertia.tolist())
@@ -287,6 +294,9 @@ def check_moments(name: str, inertia: Sequence[Sequence[Any]]) -> None:
     numbers = np.array(inertia, dtype=float)
     if not np.isfinite(numbers).all():
         raise BodyError(f"{name}: the inertia tensor holds NaN or infinity: {numbers.tolist()}")
+    # The principal moments, in ascending order. Of the three triangle inequalities Ix + Iy ≥ Iz
+    # only the one for the largest can fail. Equality holds for a plate, so rounding needs some
+    # slack.
     low, middle, high = map(float, np.linalg.eigvalsh(numbers))
     slack = _ROUNDING * max(-low, high)
     if low < -slack:
@@ -368,6 +378,7 @@ def given_inertia(
     `moment` is the meaning of the symbols on the diagonal.
     """
     mass = sp.Symbol("M") if mass is None else symbolic(mass, "the mass")
+    # Entries 0, 4 and 8 of nine are the diagonal.
     meanings = [moment if k % 4 == 0 else _PRODUCT for k in range(9)]  # row by row
     return RigidBody(
         name=name,
@@ -409,6 +420,8 @@ def described(given: Sequence[Parameter], *slots: tuple[sp.Expr, str]) -> tuple[
             about = what if expression == symbol else ""
             own = declared.get(symbol) or parameters.get(symbol)
             own = own or Parameter(symbol=symbol, positive=False)
+            # A mass or a moment that is a symbol by itself is positive. Products of inertia and
+            # coordinates have any sign, and so have symbols inside larger expressions.
             is_signed = about in ("", _PRODUCT, _COORDINATE)
             if symbol not in declared and not is_signed:
                 own = replace(own, positive=True)

@@ -78,6 +78,8 @@ def initial_values(model: RotationModel, given: Mapping[str, Any]) -> dict[str, 
 def no_rotation(model: RotationModel) -> dict[str, float]:
     """Coordinates of R = 1: all 0, or one of them 1."""
     q = model.coordinates
+    # Angles and vectors vanish for R = 1; for −1 no coordinate is set. A quaternion has its scalar
+    # at one, wherever that stands among the coordinates.
     for place in range(-1, len(q)):
         values = {x: sp.S.One if k == place else sp.S.Zero for k, x in enumerate(q)}
         if model.matrix.xreplace(values) == sp.eye(3):
@@ -134,6 +136,8 @@ class Forces:
     def leave_free(self, model: RotationModel) -> bool:
         """Whether nothing acts on a body that can turn in every way, and nothing moves with it."""
         acting = [*self.generalised.values(), *self.torque, *self.parts]
+        # A constant potential exerts no force. With fewer than three coordinates, the joint exerts
+        # torques even on a body on which nothing else acts.
         acting += [sp.diff(self.potential, q) for q in model.coordinates]
         return not any(acting) and len(model.coordinates) >= len(OMEGA_BODY)
 
@@ -165,6 +169,7 @@ class Forces:
         own = {symbol.name: symbol for symbol in body.inertia.free_symbols | body.mass.free_symbols}
 
         def named(expression: sp.Expr) -> sp.Expr:
+            # SymPy distinguishes a positive m from one without assumptions, though both print as m.
             symbols = (s for s in expression.free_symbols if s.name in own)
             return expression.xreplace({s: own[s.name] for s in symbols})
 
@@ -276,6 +281,7 @@ def _part(given: Mapping[str, Any], names: Mapping[str, sp.Expr]) -> MovingPart:
             raise ModelError(f"a part turns by {strange[0]}, which is not a coordinate of the body")
         inertia = given["principal_moments"]
     elif given.keys() == {"velocity", "mass"}:
+        # T = ½ m v² = ½ vᵀ diag(m, m, m) v has the form of ½ Ω′ᵀ I′ Ω′, so one formula serves both.
         velocity, inertia = given["velocity"], [given["mass"]] * 3
     else:
         raise ModelError(
@@ -309,6 +315,8 @@ def _with_roots(value: sp.Expr) -> sp.Expr:
 
 def _check_spelling(name: str, names: Mapping[str, sp.Expr]) -> None:
     """Raises ModelError for a constant whose name is that of a quantity, or all but a known one."""
+    # thetadot and Theta_dot are meant for theta_dot. As constants they would turn a force that
+    # damps into one that does not, without an error.
     plain = name.replace("_", "").lower()
     near = [known for known in names if known.replace("_", "").lower() == plain != known]
     if len(name) >= _LONG and not any(letter.isdigit() for letter in name):

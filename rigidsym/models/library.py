@@ -83,6 +83,8 @@ def rotation_from(
         raise ModelError(f"{text} has no constants; they go with turns such as z(phi) x(incline)")
     name = text.strip().lower().replace("-", "_").replace(" ", "_")
     name = ALIASES.get(name, name)
+    # The spelling is lenient for names, but upper and lower case matter in a sequence: ZXZ is
+    # intrinsic and zxz is extrinsic.
     entry, preset = PARAMETRISATIONS.get(name), PRESETS.get(name)
     if scalar_last and not (entry and entry.has_scalar):
         raise ModelError(f"scalar-last applies only to quaternions; {text} is not one")
@@ -92,6 +94,7 @@ def rotation_from(
         model = parametrised(name, names, scalar_last=scalar_last, passive=passive)
     elif preset:
         model = replace(
+            # The transpose of a transposed matrix is R again, so two flags cancel each other.
             EulerAngles(preset.sequence, names or preset.names, passive=preset.passive != passive),
             name=name + "_transposed" * passive,
             title=preset.about[0].upper() + preset.about[1:] + ", transposed" * passive,
@@ -210,6 +213,8 @@ def _turned(
         raise ExpressionError(f"column {error.column}: {error.message}") from None
     letters = "".join(turn.axis for turn in turns).upper()
     angles = [turn.angle for turn in turns]
+    # Three turns by three different coordinates are Euler angles, with their name, source and
+    # conversions; otherwise the same text would be a chain.
     is_euler = letters in EULER_SEQUENCES and len(set(angles)) == len(angles)
     if is_euler and all(isinstance(angle, AppliedUndef) for angle in angles):
         return EulerAngles(letters, [angle.func.__name__ for angle in angles], passive=passive)
@@ -221,6 +226,7 @@ def _turn(axis: str, angle: str, column: int, symbol: Callable[[str], sp.Expr]) 
     try:
         value = parse_expression(angle, {name: symbol(name) for name in names_in(angle)})
     except ExpressionError as error:
+        # From the column inside the angle to the column in the whole text.
         raise ExpressionError(error.message, column=column + error.column - 1) from None
     if axis in AXES:
         return Turn(axis=axis, angle=value)

@@ -63,6 +63,8 @@ def _model(
 # Euler angles in all 24 conventions
 
 
+# Only neighbours must differ, 3·2·2 = 12 sequences: the first and the last axis may be the same
+# (proper Euler angles, zxz) or not (Tait-Bryan angles, zyx).
 AXIS_SEQUENCES = tuple(a + b + c for a, b, c in product(AXES, repeat=3) if a != b != c)
 EULER_SEQUENCES = tuple(s.upper() for s in AXIS_SEQUENCES) + AXIS_SEQUENCES
 DEFAULT_ANGLES = ("phi", "theta", "psi")
@@ -100,6 +102,8 @@ def EulerAngles(
     coordinates = _coordinates(angles, 3, "Euler angles need three different names")
     in_order = [Turn(axis=a, angle=q) for a, q in zip(letters.lower(), coordinates, strict=True)]
     is_intrinsic = letters.isupper()
+    # A turn about an axis of the body multiplies from the right, one about an axis in space from
+    # the left. So extrinsic turns are the intrinsic ones in the reverse order.
     turns = tuple(in_order if is_intrinsic else in_order[::-1])
     about_new = _in_order(turns, "new").replace("new ", "", 1)
     if is_intrinsic:
@@ -172,12 +176,15 @@ def chain(turns: Sequence[Turn], *, passive: bool = False) -> RotationModel:
         raise ModelError("a chain needs at least one turn, such as z(phi)")
     written = " ".join(map(str, turns))
     moving = (sp.ordered(turn.angle.atoms(AppliedUndef)) for turn in turns)
+    # Each coordinate once, in the order of the turns; `ordered` decides only inside one angle.
     coordinates = tuple(dict.fromkeys(atom for atoms in moving for atom in atoms))
     if not coordinates:
         raise ModelError(
             f"{written} does not move: expected an angle that is a function of time; angles are "
             "in radians, 30° is pi/6"
         )
+    # Rodrigues' formula is a rotation only for unit axes. Axes in numbers are unit vectors already;
+    # those in symbols add the condition n·n = 1.
     units = (_square(turn.direction) - 1 for turn in turns)
     constraints = tuple(dict.fromkeys(c for c in units if not is_identically_zero(c)))
     letters = "".join(turn.axis if turn.axis in AXES else "u" for turn in turns)
@@ -204,6 +211,8 @@ def chain(turns: Sequence[Turn], *, passive: bool = False) -> RotationModel:
 def _axes_example(conditions: Sequence[sp.Expr]) -> Example:
     """Exact values of the symbols in the axes, which make them unit vectors one after the other."""
     values: dict[sp.Expr, sp.Expr] = {}
+    # Axes may share symbols. With the fewest symbols first, each condition leaves new ones to
+    # choose, as far as that is possible.
     fewest = sorted(conditions, key=lambda condition: len(condition.free_symbols))
     for variant, condition in enumerate(fewest):  # n₁ s₁² + n₂ s₂² + ... − rest = 0
         squares = condition.xreplace(values)
@@ -260,10 +269,14 @@ def _square(parts: Sequence[sp.Expr]) -> sp.Expr:
 
 
 def _exponential(v: Sequence[sp.Expr]) -> sp.Matrix:
+    # exp C(v) = 1 + (sin n / n) C(v) + ((1 − cos n)/n²) C(v)² with n = |v|
     n, skew = sp.sqrt(_square(v)), hat(v)
     return sp.eye(3) + sp.sin(n) / n * skew + (1 - sp.cos(n)) / n**2 * skew * skew
 
 
+# Rodrigues' formula for the axis e and the angle β, in half angles for g = e tan(β/2) and in
+# quarter angles for s = e tan(β/4): no roots, and the rotations by π and 2π respectively are at
+# infinity.
 def _gibbs(g: Sequence[sp.Expr]) -> sp.Matrix:
     skew = hat(g)
     return sp.eye(3) + 2 / (1 + _square(g)) * (skew + skew * skew)
@@ -275,6 +288,7 @@ def _modified_rodrigues(s: Sequence[sp.Expr]) -> sp.Matrix:
 
 
 _MATRICES: Mapping[str, Callable[[Sequence[sp.Expr]], sp.MatrixBase]] = {
+    # Over |q|², every multiple of a quaternion gives the same rotation.
     "quaternion": lambda q: rotation_of(q) / _square(q),
     "unit_quaternion": rotation_of,
     "axis_angle": lambda q: rodrigues(tuple(q[:3]), q[3]),
@@ -329,6 +343,8 @@ def parametrised(
     pullback = None
     if entry.pullback:
         quaternion = PARAMETRISATIONS[entry.pullback].coordinates.split()
+        # Every matrix with R Rᵀ = 1 and det R = 1 comes from a unit quaternion, so the nine entries
+        # may be replaced by its polynomials.
         own = [f"{words[default[0]]}_quaternion_{part}" for part in quaternion]
         other = parametrised(entry.pullback, own)
         pullback = Pullback(coordinates=tuple(other.matrix), constraints=other.constraints)

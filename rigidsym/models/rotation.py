@@ -120,6 +120,7 @@ def by_axis(turns: tuple[Turn, ...], angle: sp.Expr) -> list[tuple[Turn, sp.Immu
 
 def carried_axes(turns: tuple[Turn, ...]) -> list[sp.ImmutableMatrix]:
     """The axis of each turn in space components (3, 1), carried along by the turns before it."""
+    # Turn k is about nₖ in axes that the turns before it have moved: R₁ ⋯ Rₖ₋₁ nₖ in space.
     before, axes = sp.eye(3), []
     for turn in turns:
         axes.append(sp.ImmutableMatrix(before * sp.Matrix(turn.direction)))
@@ -221,6 +222,7 @@ class RotationModel:
     @property
     def _parts(self) -> tuple[sp.Basic, ...]:
         """The parts of the rotation; turns are shorter to read than their product."""
+        # A product of many turns has 2ⁿ terms, and the same symbols as its angles and axes.
         turns = [part for turn in self.turns for part in (turn.angle, *turn.components)]
         return (*(turns or [self.matrix]), *self.constraints)
 
@@ -274,6 +276,8 @@ def unit_example(parts: Sequence[sp.Expr], variant: int = 0) -> tuple[tuple[sp.E
 
     They are the stereographic image of a point whose coordinates are one over a prime.
     """
+    # The inverse stereographic projection takes t to (2t, 1 − t·t)/(1 + t·t), a unit vector, which
+    # is rational whenever t is.
     flat = [sp.Rational(1, sp.prime(k + variant)) for k in range(1, len(parts))]
     square = sp.Add(*(number**2 for number in flat))
     values = [*(2 * number / (1 + square) for number in flat), (1 - square) / (1 + square)]
@@ -307,6 +311,7 @@ def hat(vector: sp.MatrixBase) -> sp.ImmutableMatrix:
 
 def rotation_of(parts: Sequence[sp.Expr]) -> sp.Matrix:
     """(w² − v·v) 1 + 2 v vᵀ + 2 w C(v): the matrix of a quaternion (w, v), times its square."""
+    # q x q̄ for the vector x, multiplied out; for a unit quaternion this is the rotation.
     w, *vector = parts
     v = sp.Matrix(vector)
     return (w**2 - v.dot(v)) * sp.eye(3) + 2 * v * v.T + 2 * w * hat(v)
@@ -318,6 +323,8 @@ def elementary(axis: str, angle: sp.Expr) -> sp.ImmutableMatrix:
 
     For z and x it is the R_z(β) and R_x(β) printed in the lecture, section 3.2.
     """
+    # The turn takes the second axis towards the third, in cyclic order: y to z about x, z to x
+    # about y, x to y about z.
     first = AXES.index(axis)
     second, third = (first + 1) % 3, (first + 2) % 3
     cosine, sine = sp.cos(angle), sp.sin(angle)
@@ -332,6 +339,8 @@ def rodrigues(axis: tuple[sp.Expr, ...], angle: sp.Expr) -> sp.ImmutableMatrix:
 
     1 + sin β C(e) + (1 − cos β) C(e)², which is a rotation where e·e = 1 and not otherwise.
     """
+    # The product (1 − cos β) C² is multiplied out term by term, so that entries are sums of
+    # products, as the ring and the printers hold them.
     skew = hat(axis)
     sine, rest = sp.sin(angle), 1 - sp.cos(angle)
     parts = zip(sp.eye(3), skew, skew * skew, strict=True)

@@ -86,9 +86,12 @@ def shaped(
             raise BodyError(f"{name}: {length} is not a length")
     check_lengths(name, [float(e) if e.is_number else None for e in lengths])
     used = [part for part in (*lengths, mass, density) if part is not None]
+    # A length may itself be called u, as in radius = "u", and must not be integrated over.
     coordinates = {name: uniquely_named_symbol(name, used) for name in "uvw"}
     names = dict(zip(shape.names, lengths, strict=True)) | coordinates
 
+    # The texts of solids.toml are read with the names of the shape standing for the lengths, so no
+    # later substitution can confuse them.
     def read(text: str) -> list[sp.Expr]:
         return [parse_expression(part.strip(), names) for part in text.split(",")]
 
@@ -113,6 +116,7 @@ def check_lengths(name: str, values: Sequence[float | None]) -> None:
         if value is not None and not value > 0 and not shape.has_corners:
             raise BodyError(f"{name}: {key} is {value:g} m; expected a positive length")
     for larger, smaller in shape.larger:
+        # A length without a value fulfils every such condition.
         if known.get(larger, inf) < known.get(smaller, 0):
             raise BodyError(
                 f"{name}: {larger} is {known[larger]:g} m, less than {smaller} with "

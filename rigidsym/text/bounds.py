@@ -75,6 +75,9 @@ def operate(operation: str, left: Sized, right: Sized, column: int) -> Sized:
         raise ExpressionError(f"{operation} is not allowed", column=column)
     if operation == "/" and right.expression == 0:
         raise ExpressionError("division by zero", column=column)
+    # Bounds for the fully expanded result: a sum has the terms of both, a product every term of one
+    # with every term of the other; digits of products add, and a sum of fractions with different
+    # denominators is as long as a product.
     bits = left.bits + right.bits + 1
     if operation in "+-":
         degree, terms = max(left.degree, right.degree), left.terms + right.terms
@@ -98,8 +101,11 @@ def _power(base: Sized, exponent: Sized, column: int) -> Sized:
         )
     if power < 0 and base.expression == 0:
         raise ExpressionError("division by zero", column=column)
+    # SymPy takes squares out of √n by the prime factors of n.
     if power.q > 1 and longest_number(base.expression) > _LONGEST_ROOT:
         raise ExpressionError("too large: a root of a number with too many digits", column=column)
+    # (a₁ + ... + a_k)ⁿ has as many terms as there are monomials of degree n in k letters, the
+    # binomial coefficient C(k + n − 1, n).
     times = ceil(abs(power))
     degree, bits = base.degree * times, base.bits * times + 1
     terms = comb(base.terms + times - 1, times)

@@ -31,6 +31,8 @@ _TOKEN = re.compile(
     r"|(?P<operator>\*\*|[-+*/(),])",
     re.ASCII,
 )
+# Precedence climbing: an operator takes the operand to its right as far as operators that bind more
+# tightly reach. A sign lies between products and powers.
 _BINDING = {"+": 1, "-": 1, "*": 2, "/": 2, "**": 4}
 _SIGN = 3  # -a*b is (-a)*b, and -a**2 is -(a**2)
 _HINTS = {
@@ -79,10 +81,12 @@ def parse_turns(text: str) -> tuple[tuple[str, str, int], ...]:
     _check_length(text)
     turns: list[tuple[str, str, int]] = []
     place = len(text) - len(text.lstrip())
+    # An empty text is read once, for its error.
     while place < len(text) or not turns:
         turn = _TURN.match(text, place)
         if turn is None:
             raise _expected("a turn: x(...), y(...), z(...) or [1,1,0](...)", text, place)
+        # The angle ends where the depth of the brackets, 1 behind the first, falls to 0.
         depths = accumulate(({"(": 1, ")": -1}.get(c, 0) for c in text[turn.end() :]), initial=1)
         inside = text[turn.end() :][: sum(1 for _ in takewhile(bool, depths)) - 1]
         end = turn.end() + len(inside)
@@ -151,6 +155,8 @@ class _Reader:
         self._depth = 0  # open brackets
 
     def whole(self) -> Sized:
+        # The weakest operator is read first, so this takes the whole text unless something is
+        # misplaced.
         value = self._read(_BINDING["+"])
         if self._tokens:
             raise self._misplaced()
@@ -176,6 +182,7 @@ class _Reader:
             value = self._value()
         while _BINDING.get(self._next, -1) >= least:
             operator = self._tokens.pop().text
+            # The column of a fault is that of the right operand, behind its brackets.
             inside = (token.start + 1 for token in reversed(self._tokens) if token.text != "(")
             column = next(inside, 1)
             # a power has a sign and a power of its own: 2**-3**2 is 2**(-(3**2))
@@ -247,6 +254,8 @@ class _Reader:
 def _number(token: _Token) -> Sized:
     mantissa, _, power = token.text.lower().partition("e")
     digits = len(mantissa.replace(".", ""))
+    # Five characters of the exponent decide: a longer one is too large, and int() of thousands of
+    # digits is slow.
     if digits > _MOST_DIGITS or abs(int(power[:5] or 0)) > _MOST_DIGITS:
         raise ExpressionError(
             f"a number of more than {_MOST_DIGITS} digits, or a larger power of ten",

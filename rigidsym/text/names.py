@@ -39,6 +39,7 @@ def spelled(text: str) -> str:
 
 def lettered(name: str) -> str:
     """The name as it is read, `φ₁` for `phi_1`, also where a terminal knows no such letters."""
+    # SymPy's setting is global, so it is put back.
     before = pretty_use_unicode(True)
     try:
         return str(pretty_symbol(name))
@@ -69,6 +70,7 @@ def _fault(name: str) -> str:
         return "expected a letter (Latin or Greek), then letters, digits and single underscores"
     if name in _TAKEN:
         return f"{name} is {_TAKEN[name]}"
+    # theta_dot is the rate of theta in every text and in generated functions.
     if name.endswith("dot"):
         return "a name that ends in dot reads as a rate"
     if _ANGULAR_VELOCITY.fullmatch(name):
