@@ -57,6 +57,7 @@ def consequence(proofs: Sequence[Proof], claim: Formula) -> Proof:
     """The proof of what follows from other claims: exact if all of them are."""
     if not proofs:
         raise ValueError(f"{claim.text} follows from nothing")
+    # A conclusion is as certain as its least certain premise.
     left = next((proof for proof in proofs if not proof.is_exact), proofs[0])
     return Proof(claim=claim, status=left.status, residual=left.residual)
 
@@ -94,6 +95,7 @@ class Prover:
                 "this is a defect of rigidsym, please report it"
             )
         if left is None:  # a divisor that may be zero everywhere is the residual
+            # n/d = 0 follows from n = 0 only if d is not identically zero.
             unsure = (d for d in divisors if not self.witness.is_nonzero(d))
             divisor = next(unsure, None)
             left = None if divisor is None else sp.ImmutableMatrix([[self.codec.decode(divisor)]])
@@ -125,6 +127,7 @@ class Prover:
 
     def cancel(self, quotients: Sequence[Quotient], claim: Formula) -> Proof:
         """The proof that quotients are zero, and that none of their divisors is."""
+        # A quotient vanishes if its numerator does and its denominator does not.
         numerators = RingMatrix.column(self.codec.ring, (q.numerator for q in quotients))
         divisors = dict.fromkeys(q.denominator for q in quotients)
         return self.vanishes(numerators, claim, *divisors)
@@ -141,6 +144,7 @@ class Prover:
         `squared` is the difference of the squares. The sign follows for variables within bounds
         and positive constants; if it does not, the proof is *unproved* and holds the value.
         """
+        # r² = s² leaves r = ±s; the sign is decided by r ≥ 0.
         proof = self.vanishes(squared, claim)
         if proof.is_exact and not is_never_negative(value, bounds):
             return Proof(claim=claim, status="unproved", residual=sp.ImmutableMatrix([[value]]))
@@ -154,6 +158,8 @@ class Prover:
         values: dict[sp.Expr, sp.Expr] = {}
         for coordinate, value in zip(self.subject.coordinates, pullback.coordinates, strict=True):
             for order in range(3):
+                # Positions, rates and accelerations are substituted together, so that relations
+                # between the rates hold as well.
                 values[sp.diff(coordinate, TIME, order)] = sp.diff(value, TIME, order)
         given = [gen.expression for gen in self.codec.ring.generators if gen.expression.is_Symbol]
         inputs = [*pullback.coordinates, *given]

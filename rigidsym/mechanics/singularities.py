@@ -48,6 +48,8 @@ class _Study:
         one = RingMatrix.identity(codec.ring, 3)
         self.to_space = reduce(operator.matmul, map(codec.matrix, matrices), one)
         self.to_body = rotation.T @ self.to_space
+        # Pᵀ W has the rank and the kernel of W, since P is a rotation. J is stacked below it, so
+        # that the rates of the whole kernel are those that give no Ω and keep the constraints.
         here = self.to_space.T @ rates
         self.whole = RingMatrix(codec.ring, (*here.rows, *(bound.rows if bound else ())))
         self.falling = FallingRank(
@@ -61,6 +63,8 @@ class _Study:
 
     def singularities(self) -> Singularities:
         found, rows, columns = self.falling, len(self.whole.rows), len(self.whole.rows[0])
+        # The allowed rates are the kernel of J, so they reach dim W(ker J) = rank [W; J] − rank J
+        # directions of Ω.
         rank, minors = found.rank - found.bound_rank, found.minors
         measure: Measure = "det Wᵀ W" if columns == found.rank and rows == 3 else "minors"
         if rows == found.rank == 3:
@@ -95,8 +99,11 @@ class _Study:
         places = tuple(root.place for root in zero)
         rank, axis = full - self.falling.bound_rank, None
         if rank == 2:  # the direction that no rates give
+            # (a, b) [W; J] = 0 means a·W q̇ = −b·J q̇ = 0 for all allowed rates: a is the lost
+            # axis.
             axis = there.T.kernel(full).T.rows[0]
         elif rank == 1:  # the direction of all that the allowed rates give
+            # W times a basis of the kernel of J; all columns are multiples of one.
             reached = RingMatrix(there.ring, there.rows[:3])
             if self.falling.bound_rank:
                 bound = RingMatrix(there.ring, there.rows[3:])
@@ -110,6 +117,8 @@ class _Study:
                 matrix_at(self.to_space, zero) @ here,
                 matrix_at(self.to_body, zero) @ here,
             )
+            # One common factor is taken out of both, so that they stay the same vector in two
+            # frames.
             entries = primitive(ring, (*space.entries, *body.entries))
             in_space = self.present.matrix(column(ring, entries[:3]))
             in_body = self.present.matrix(column(ring, entries[3:]))

@@ -70,6 +70,8 @@ class Conversions:
     def quaternion(self) -> Step | None:
         """The unit quaternion; None if it has no short closed form."""
         model, rule = self.model, self.inverse
+        # R = R₁ R₂ ⋯ has the quaternion p₁ p₂ ⋯, with cos(β/2) + sin(β/2) e for the turn by β about
+        # e.
         factors = [half_turn(turn.direction, turn.angle) for turn in model.turns]
         if rule is not None and rule.quaternion:
             factors = [rule.quaternion]
@@ -85,6 +87,7 @@ class Conversions:
         except AlgebraError:  # half of a fixed angle need not have a sine that is a root
             return None
         prove, is_fixed = Prover(model, codec), value.free_symbols.isdisjoint(model.constants)
+        # ±p are the same rotation, so R(p) = R and |p| = 1 are all that can be claimed.
         same = codec.column(rotation_of(list(value)) - model.matrix)
         proofs = (
             prove.vanishes(same, formula(r"\R(\p) = \R")),
@@ -130,6 +133,7 @@ def _read_off() -> Proof:
     """4 p pᵀ = K(R): sums and differences of the entries of R, for every unit quaternion p."""
     model = parametrised("unit_quaternion")
     column = sp.Matrix(model.coordinates)
+    # K(R) is linear in R, and R is quadratic in p.
     residual = outer_product(model.matrix) - 4 * column * column.T
     return vanishing(model, [(tuple(residual), formula(r"4\,\p\p^T = \mathbf{K}"))])[0]
 

@@ -117,6 +117,8 @@ class NamedValues:
 
     def scaled(self, quaternion: Sequence[sp.Expr]) -> Vector:
         """The quaternion over the sum of its parts' sizes: any length will do; zero gives NaN."""
+        # The sum |w| + |x| + |y| + |z| needs no root. After the division the parts are between −4
+        # and 4, and the largest is at least 1, so their squares neither overflow nor all underflow.
         quarters = [self.let("quarter", sp.Abs(part) / 4) for part in quaternion]  # no overflow
         size = self.let("size", sp.Add(*quarters))
         return self.each(PARTS, [part / size for part in quaternion])
@@ -156,6 +158,7 @@ SHEPPERD = Citation(
 
 def product(first: Sequence[Part], second: Sequence[Part]) -> tuple[Part, ...]:
     """The product of two quaternions, as it comes."""
+    # (w, u)(a, v) = (w a − u·v, w v + a u + u × v)
     (w, x, y, z), (a, b, c, d) = first, second
     return (
         w * a - x * b - y * c - z * d,
@@ -172,6 +175,10 @@ def half_turn(direction: Sequence[sp.Expr], angle: sp.Expr) -> Vector:
 
 def outer_product(matrix: sp.MatrixBase) -> sp.Matrix:
     """K(R) = 4 p pᵀ, (4, 4), of a rotation matrix (Shepperd, 1978)."""
+    # For R = (w² − v·v) 1 + 2 v vᵀ + 2 w C(v) with w² + v·v = 1:
+    # 4 w² = 1 + tr R
+    # 4 w C(v) = R − Rᵀ
+    # 4 v vᵀ = R + Rᵀ + (1 − tr R) 1
     r, trace = sp.Matrix(matrix), matrix.trace()
     vector = [r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]]
     block = r + r.T + (1 - trace) * sp.eye(3)
@@ -183,6 +190,8 @@ def shepperd(values: NamedValues, matrix: sp.Matrix) -> Vector:
 
     Its scalar is not negative where the first column is taken.
     """
+    # Column k of 4 p pᵀ is 4 pₖ p. Its diagonal adds up to 4, so the largest entry 4 pₖ² is at
+    # least 1.
     outer = outer_product(matrix)
     names = [[f"k{a}{b}" for b in PARTS] for a in PARTS]
     w, x, y, z = (
@@ -204,6 +213,7 @@ def scalar_last(quaternion: Vector) -> Vector:
 
 def short_way(values: NamedValues, quaternion: Sequence[sp.Expr]) -> Vector:
     """The same rotation by the quaternion whose scalar is not negative."""
+    # p and −p are the same rotation; w ≥ 0 is the one by at most half a turn.
     w, *vector = quaternion
     flipped = [Where(w < 0, -part, part) for part in vector]
     return values.each(PARTS, [sp.Abs(w), *flipped])

@@ -147,6 +147,8 @@ def _of_euler_angles(model: RotationModel, order: tuple[int, ...]) -> Rule:
 
     def back(values: NamedValues, quaternion: Vector) -> Vector:
         a = values.each(("a0", "a1", "a2", "a3"), map(sp.expand, in_frame(quaternion)))
+        # a = κ (cos β'/2 cos σ, cos β'/2 sin σ, sin β'/2 cos δ, sin β'/2 sin δ), κ > 0. So β' is
+        # twice the angle of (far, near), and α = σ + δ, γ = σ − δ.
         far, near = values.length("far", a[:2]), values.length("near", a[2:])
         total = values.let("half_sum", sp.atan2(a[1], a[0]))
         difference = values.let("half_difference", sp.atan2(a[3], a[2]))
@@ -156,6 +158,8 @@ def _of_euler_angles(model: RotationModel, order: tuple[int, ...]) -> Rule:
         other = -1 if order[0] == 2 else 1
         chosen = values.let("half_difference", Where(is_low, other * total, difference))
         total = values.let("half_sum", Where(is_high, other * difference, total))
+        # The arc tangent keeps its digits near both poles, where an arc cosine would lose half of
+        # them.
         middle = 2 * sp.atan2(near, far) - quarters_in_radians
         outer = values.wrapped("first", total + chosen), values.wrapped("last", total - chosen)
         return outer[0], sign * middle, outer[1]
@@ -163,6 +167,8 @@ def _of_euler_angles(model: RotationModel, order: tuple[int, ...]) -> Rule:
     quarters_in_radians = sp.Float(float(sp.pi / 2)) if quarters else sp.S.Zero
     alpha, beta, gamma = (turn.angle for turn in model.turns)
     half, sigma, delta = sign * beta / 2, (alpha + gamma) / 2, (alpha - gamma) / 2
+    # β' = ±β + λ: cos(β/2 + λ/2) and sin(β/2 + λ/2) by addition, times the factor that `along` and
+    # `across` leave out.
     cosine = along * sp.cos(half) - across * sp.sin(half)
     sine = along * sp.sin(half) + across * sp.cos(half)
     expected = (
@@ -227,6 +233,8 @@ def _axis_angle(q: Vector) -> dict[str, Any]:
     vector = _along(half, axis)
 
     def back(values: NamedValues, quaternion: Vector) -> Vector:
+        # p = (cos φ/2, sin φ/2 e) gives φ = 2 atan2(|p_v|, p_0) in [0, π], and e = p_v/|p_v|.
+        # Without a rotation any axis will do, and x is taken.
         w, x, y, z = short_way(values, quaternion)
         none, length = _length(values, (x, y, z))
         first = values.let("axis_x", Where(none, sp.S.One, x / length))
@@ -251,6 +259,7 @@ def _rotation_vector(q: Vector) -> dict[str, Any]:
         return Where(none, sp.S.One, sp.cos(length / 2)), *_along(factor, q)
 
     def back(values: NamedValues, quaternion: Vector) -> Vector:
+        # v = 2 atan2(|p_v|, p_0) p_v/|p_v|, and the limit 2 p_v/p_0 as p_v vanishes.
         w, *parts = short_way(values, quaternion)
         none, length = _length(values, tuple(parts))
         limit = 2 / Where(sp.Eq(w, 0), sp.S.One, w)
@@ -266,6 +275,8 @@ def _rotation_vector(q: Vector) -> dict[str, Any]:
 
 
 def _gibbs_vector(q: Vector) -> dict[str, Any]:
+    # g = e tan(β/2) = p_v/p_0. A half turn has p_0 = 0: the components that do not vanish become
+    # infinite, and those that do stay 0 and not NaN.
     p = _along(1 / sp.sqrt(1 + square(q)), (sp.S.One, *q))
 
     def back(_: NamedValues, quaternion: Vector) -> Vector:
@@ -280,9 +291,12 @@ def _gibbs_vector(q: Vector) -> dict[str, Any]:
 
 def _modified_rodrigues(q: Vector) -> dict[str, Any]:
     size = square(q)
+    # s = e tan(β/4), and the half-angle formulas give p_0 = (1 − s·s)/(1 + s·s), p_v = 2 s/(1 +
+    # s·s).
     scalar, vector = (1 - size) / (1 + size), _along(2 / (1 + size), q)
 
     def back(values: NamedValues, quaternion: Vector) -> Vector:
+        # s = p_v/(|p| + p_0) with p_0 ≥ 0: nothing cancels in the divisor, and |s| is at most 1.
         parts = short_way(values, quaternion)
         divisor = values.let("divisor", values.length("length", parts) + parts[0])
         return tuple(part / divisor for part in parts[1:])
@@ -296,6 +310,7 @@ def _direction_cosines(_: Vector) -> dict[str, Any]:
         return _unit(values, short_way(values, shepperd(values, sp.Matrix(3, 3, q))))
 
     def back(values: NamedValues, quaternion: Vector) -> Vector:
+        # R(p) is quadratic in p, so division by p·p normalises without a root.
         size = values.let("square", square(quaternion))
         return tuple(sp.expand(entry) / size for entry in rotation_of(quaternion))
 

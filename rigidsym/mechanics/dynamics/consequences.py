@@ -97,6 +97,7 @@ def _principal_axes(
         steady = {s: spin if n == k else sp.S.Zero for n, s in enumerate(OMEGA_BODY)}
         a, b = (sp.diff(slopes[n], OMEGA_BODY[o]).xreplace(steady) for n, o in ((i, j), (j, i)))
         own, one, other = moments[k], moments[i], moments[j]
+        # λ² = Ω² (Iₖ − Iᵢ)(Iⱼ − Iₖ)/(Iᵢ Iⱼ): positive, and so unstable, only about the middle axis.
         squared = spin**2 * (own - one) * (other - own) / (one * other)
         if one == other:
             squared = -((spin * (own - one) / one) ** 2)
@@ -122,6 +123,8 @@ def _symmetric(
     yield _consequence(subject, "symmetric_body", r"\kappa", kappa, (claim, residual))
     angle, precession = sp.Dummy("beta"), _LENGTH / across
     spin = -kappa.xreplace({third: _LENGTH * sp.cos(angle) / along})
+    # Regular precession: with the third axis of space along L, α̇ = |L|/A, β is constant and γ̇ =
+    # −κ.
     alpha, beta, gamma = map(elementary, "zxz", (precession * TIME, angle, spin * TIME))
     rotation = alpha * beta * gamma
     skew = rotation.T * rotation.diff(TIME)
@@ -144,6 +147,9 @@ def _symmetric(
 def _asymmetric(subject: str, moments: Sequence[sp.Expr]) -> Consequence:
     """Ω′ = (a cn, b sn, c dn) for A < B < C and L² > 2 E B."""
     A, B, C = moments
+    # Landau and Lifshitz, section 37. The derivatives cn' = −sn dn, sn' = cn dn and dn' = −k² sn cn
+    # turn Euler's equations into three conditions on a, b, c and τ. They are squared, since the
+    # letters stand for squares here, and the energy fixes the scale.
     of_c, of_a = 2 * _ENERGY * C - _LENGTH**2, _LENGTH**2 - 2 * _ENERGY * A
     a, b, c = of_c / (A * (C - A)), of_c / (B * (C - B)), of_a / (C * (C - A))
     tau, modulus = (C - B) * of_a / (A * B * C), (B - A) * of_c / ((C - B) * of_a)
@@ -180,6 +186,7 @@ class OneDimension:
         """Of the k-th coordinate in `dynamics.lagrange.LagrangeEquations`."""
         q, symbols = work.model.coordinates, work.arguments["momenta"].symbols
         momenta, others = work.present.matrix(work.momenta), [*range(len(q))]
+        # All but the k-th coordinate are ignorable.
         others.remove(k)
         self.name, self.q = work.model.name, q[k]
         self.rate = sp.diff(self.q, TIME)
@@ -238,6 +245,8 @@ class OneDimension:
         for spin, turning, (p, momentum) in zip(
             self.rates, reversed(self.rates), self.momenta.items(), strict=True
         ):
+            # The spin is eliminated by its constant momentum, ψ̇ = (p − rest)/slope, so that the
+            # condition is one on the rate of precession and p.
             slope = sp.diff(momentum, spin)
             if len(self.rates) != 2 or slope.has(self.q):  # no spin about an axis of the body
                 continue
@@ -248,6 +257,8 @@ class OneDimension:
             condition = sp.Poly(sp.prod(factors), x)
             if len(factors) != 1 or condition.degree() != 2:
                 continue
+            # The sign of an equation that equals zero is free; a positive leading coefficient reads
+            # best.
             if condition.LC().could_extract_minus_sign():
                 condition = -condition
             if sp.count_ops(condition.as_expr()) > _LONGEST:
@@ -265,12 +276,14 @@ class OneDimension:
         """The roots of the quadratic equation for steady motion, with when there are any."""
         a, b, c = condition.all_coeffs()
         below = sp.factor(b**2 - 4 * a * c)
+        # For a large spin b² ≫ 4 a c, the roots are nearly −c/b and −b/a: slow and fast precession.
         single, claim = sp.cancel(-c / b), r"a x^2 + b x + c = 0"
         spans = {"lead": a, "discriminant": below, "momentum": spin}
         spans |= {"slow": single, "fast": sp.cancel(-b / a)}
         r = sp.Dummy("r")  # the root of the discriminant
         for name, sign in (("slow_precession", -1), ("fast_precession", 1)):
             x = (-b + sign * r) / (2 * a)
+            # With r free, a x² + b x + c = (r² − (b² − 4 a c))/(4 a), which is zero for the root r.
             residual = a * x**2 + b * x + c - (r**2 - (b**2 - 4 * a * c)) / (4 * a)
             value = x.xreplace({r: sp.sqrt(below)})
             yield self._follows(name, turning, value, claim, residual, **spans)
@@ -291,6 +304,8 @@ class OneDimension:
 
     def _sleeping(self, in_cosine: sp.Expr) -> Iterator[Consequence]:
         """V_eff near θ = 0 for equal momenta, if these alone make it regular there."""
+        # At θ = 0 the two momenta of an upright top are the same component of L. The pole of V_eff
+        # at u = 1 then cancels, and V_eff has a minimum there if κ > 0.
         u, upright = self.u, {self.u: sp.S.One}
         equal = sp.cancel(in_cosine.xreplace(dict.fromkeys(self.momenta, self.p)))
         below = (sp.denom(sp.together(value)) for value in (in_cosine, equal))
@@ -315,6 +330,8 @@ class OneDimension:
     def _nutation(self, in_cosine: sp.Expr) -> Iterator[Consequence]:
         """u̇² = f(u) = 2 (1 − u²)(E − V)/m, and u(t) if f is a cubic polynomial."""
         u, regular, singular = self.u, sp.S.Zero, sp.S.Zero
+        # u̇ = −θ̇ sin θ, so u̇² = (1 − u²) θ̇² = (1 − u²) 2 (E − V_eff)/m. The factor 1 − u²
+        # cancels the poles of the centrifugal terms at u = ±1.
         for part in sp.Add.make_args(in_cosine):
             if sp.denom(part).has(u):  # with a pole at u = ±1
                 singular += sp.factor(sp.cancel(part * (1 - u**2)))
@@ -337,6 +354,8 @@ class OneDimension:
         # u(t) between the roots u₁ ≤ u₂ of the cubic f; its third root is u₃
         one, two, three = _FIRST, _SECOND, _THIRD
         sn, a = sp.Dummy("sn"), sp.Dummy("a")
+        # u = u₁ + (u₂ − u₁) sn²(λt, k) has u̇² = 4 λ² (u₂ − u₁)² sn² cn² dn², with cn² = 1 − sn²
+        # and dn² = 1 − k² sn². It equals a (u − u₁)(u − u₂)(u − u₃) for 4 λ² = a (u₃ − u₁).
         between = one + (two - one) * sn**2
         modulus = (two - one) / (three - one)
         rate_squared = a * (three - one) / 4

@@ -54,6 +54,7 @@ class EulerEquations(Flow):
         self.divisor = rotation.codec.decode(divisor)
         self._matrix = rotation.model.matrix
         q = model.coordinates
+        # Rates in given forces are replaced by q̇ = W′⁻¹ Ω′, as they are not part of this state.
         turning = self._inverse * sp.Matrix(OMEGA_BODY) / self.divisor
         rates = {sp.diff(x, TIME): rate for x, rate in zip(q, turning, strict=True)}
         self._gradient = [sp.diff(forces.potential, x) for x in q]
@@ -80,6 +81,8 @@ class EulerEquations(Flow):
         acting = [q - v for q, v in zip(self._forces, self._gradient, strict=True)]
         if not any(acting):
             return given, self.codec.ring.one
+        # Equal powers, N′·Ω′ = (Q − ∂V/∂q)·q̇ = (Q − ∂V/∂q)·W′⁻¹ Ω′ for every Ω′, give N′ = W′⁻ᵀ (Q
+        # − ∂V/∂q).
         below = self.codec.encode(self.divisor)
         turning = self.codec.matrix(self._inverse).T @ self.codec.column(acting)
         return given.scale(below) + turning, below
@@ -107,6 +110,7 @@ class EulerEquations(Flow):
         """dE/dt less ∂V/∂t and the power of what the potential does not account for."""
         rate, divisor = self.rate(value)
         below = self.codec.encode(self.divisor)
+        # The gradient of V is left out: its power is part of dE/dt through V itself.
         forced = self.codec.matrix(self._inverse).T @ self.codec.column(self._forces)
         power = self.omega.T @ (self.codec.column(self._torque).scale(below) + forced)
         left = (rate - self.driving.scale(divisor)).scale(below) - power.scale(divisor)
@@ -121,6 +125,8 @@ class EulerEquations(Flow):
             sp.ImmutableMatrix([slopes_of(slope, part, y) for slope in slopes])
             for part in (q, OMEGA_BODY)
         )
+        # The error state (δθ, δΩ′) has no redundant component: δθ is a small turn in the body. From
+        # dδθ/dt + Ω′ × δθ = δΩ′, the first rows are (−C(Ω′), 1).
         turned = by_q * self._inverse / self.divisor
         upper = sp.Matrix.hstack(-hat(sp.ImmutableMatrix(OMEGA_BODY)), sp.eye(3))
         return sp.ImmutableMatrix(upper.col_join(sp.Matrix.hstack(turned, by_omega)))
@@ -131,6 +137,8 @@ class EulerEquations(Flow):
         """
         momentum = self.inertia @ self.omega
         matrix = self.codec.matrix(self._matrix)
+        # L = R I′ Ω′ in space is constant without a torque. The components along the axes of the
+        # body are constant only by symmetry, as L′₃ of a symmetric top.
         in_space = self.present.matrix(matrix @ momentum)
         in_body = self.present.matrix(momentum)
         candidates = {"energy": (claims.ENERGY, self.whole)}

@@ -88,6 +88,8 @@ class Flow(Workspace):
 
     def rate(self, value: sp.Expr) -> tuple[RingMatrix, PolyElement]:
         """dF/dt along the motion, as a numerator and its divisor."""
+        # dF/dt = ∇₁F·n₁/d₁ + ∇₂F·n₂/d₂ + ∂F/∂t for the two blocks of the state, over d₁ d₂. The
+        # common divisor keeps the residual a polynomial.
         ring = self.codec.ring
         parts = []
         for block in self.blocks:
@@ -129,6 +131,7 @@ class Flow(Workspace):
                 value=self.present.matrix(self.driving)[0],
             )
         if self.forces.leave_free(self.model):
+            # The results for the free body are about dΩ′/dt at N′ = 0.
             still = dict.fromkeys(self.arguments["torque"].symbols, sp.S.Zero)
             slopes = self.free_turning.xreplace(still)
             yield from of_free_body(self.model.name, self.body.inertia, [*slopes])
@@ -170,6 +173,7 @@ class Flow(Workspace):
     def free_turning(self) -> sp.ImmutableMatrix:
         """dΩ′/dt for free Ω′ and N′, in a ring of their own."""
         omega, torque = self.arguments["omega_body"].symbols, self.arguments["torque"].symbols
+        # Ω′ and N′ are independent symbols here, so no angle occurs and the ring stays small.
         codec = codec_for([e for e in (*self.body.inertia, *omega, *torque) if e != 0], order=0)
         tensor, w, n = codec.matrix(self.body.inertia), *map(codec.column, (omega, torque))
         return presenter_for(codec).matrix(*solved_euler(tensor, w, n, codec.ring.one))
@@ -213,6 +217,7 @@ class LagrangeForm(Flow):
 
     def own_integrals(self) -> Iterator[FirstIntegral]:
         """The energy, if nothing does work, and the momenta of coordinates that do not matter."""
+        # dE/dt = Q·q̇ + ∂V/∂t
         if self.power.is_zero() and self.driving.is_zero():
             proof = self.energy_is_constant(claims.is_constant(claims.ENERGY))
             yield FirstIntegral("energy", claims.ENERGY, self.whole, proof)
@@ -238,6 +243,7 @@ def solved_euler(
     """
     if not tensor.det():
         raise ModelError("the inertia tensor has no inverse; expected three positive moments")
+    # I′⁻¹ = adj(I′)/det I′, and the torque brings its own divisor.
     left = torque - turned(tensor, omega).scale(below)
     return tensor.adjugate() @ left, tensor.ring.reduce(tensor.det() * below)
 

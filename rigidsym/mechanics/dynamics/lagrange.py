@@ -68,6 +68,8 @@ class LagrangeEquations(LagrangeForm):
         q, values = model.coordinates, Values(model)
         rates, self.accelerations = ([sp.diff(x, TIME, n) for x in q] for n in (1, 2))
         self._jacobian = values.codec.decoded(values.rate_matrix("body"))
+        # The power of a torque is N′·Ω′ = N′·W′ q̇ = (W′ᵀ N′)·q̇, so W′ᵀ N′ is its generalised
+        # force.
         omega = self._jacobian * sp.Matrix(rates)
         in_rates = dict(zip(OMEGA_BODY, omega, strict=True))
         torque = sp.Matrix(forces.torque or [0, 0, 0]).xreplace(in_rates)
@@ -76,6 +78,7 @@ class LagrangeEquations(LagrangeForm):
             for x, part in zip(q, self._jacobian.T * torque, strict=True)
         ]
         self._gradient = [sp.diff(forces.potential, x) for x in q]
+        # One ring for everything that the steps below combine.
         entries = [*self._jacobian, *body.inertia, *omega, sp.Rational(1, 2), forces.potential]
         entries += [*self._gradient, *self._generalised, *rates]
         entries += [*forces.first_integrals.values(), *self.accelerations]
@@ -85,6 +88,8 @@ class LagrangeEquations(LagrangeForm):
 
     def slopes(self, element: PolyElement) -> RingMatrix:
         """The derivatives by q, a column, by the chain rule over the generators of the ring."""
+        # ∂f/∂qₖ = Σ_g (∂f/∂g)(∂g/∂qₖ) over the generators g that depend on q. Since ġ = Σₖ (∂g/∂qₖ)
+        # q̇ₖ, the ring's own derivation gives ∂g/∂qₖ as the coefficient of q̇ₖ in ġ.
         ring, rates = self.ring, [self.ring.index[rate] for rate in self.rates]
         last = {*rates, *(ring.index[a] for a in self.accelerations)}
         moving = [k for k in range(len(ring.generators)) if k not in last]
@@ -126,6 +131,7 @@ class LagrangeEquations(LagrangeForm):
     @cached_property
     def gyroscopic(self) -> RingMatrix:
         """W′ᵀ (I′ dW′/dt q̇ + Ω′ × I′ Ω′)."""
+        # dΩ′/dt = W′ q̈ + Ẇ′ q̇; the first part belongs to M q̈, the second to h.
         inner = self.inertia @ (self.jacobian.dt() @ self.q_dot)
         return self.jacobian.T @ (inner + turned(self.inertia, self.omega))
 
@@ -157,10 +163,14 @@ class LagrangeEquations(LagrangeForm):
         if len(self.rates) == 3:
             # by Euler's equations: W′ q̈ = dΩ′/dt − dW′/dt q̇
             jacobian, tensor = self.jacobian, self.inertia
+            # q̈ = W′⁻¹ (I′⁻¹ (W′⁻ᵀ (Q − ∂V/∂q) − Ω′ × I′ Ω′) − Ẇ′ q̇), with each inverse as
+            # adjugate over determinant. det M = det² W′ det I′ would be harder to take apart after
+            # it is multiplied out.
             back, divisor, size = jacobian.adjugate(), jacobian.det(), tensor.det()
             slopes = jacobian.dt() @ self.q_dot
             inner = tensor.adjugate() @ turned(tensor, self.omega) + slopes.scale(size)
             applied = self.generalised - self.gradient
+            # Without forces W′⁻ᵀ does not occur, and one factor det W′ less stands below.
             if applied.is_zero():
                 above = back @ inner.scale(-self.ring.one)
                 below = self.ring.reduce(size * divisor)
@@ -169,6 +179,7 @@ class LagrangeEquations(LagrangeForm):
                 above = back @ (torque - inner.scale(divisor))
                 below = self.ring.reduce(size * divisor * divisor)
         else:
+            # W′ is not square if fewer than three coordinates turn the body.
             above = self.mass_matrix.adjugate() @ self.needed
             below = self.mass_matrix.det()
         if not below:
@@ -193,6 +204,8 @@ class LagrangeEquations(LagrangeForm):
     @cached_property
     def of_lagrange(self) -> RingMatrix:
         """d/dt ∂T/∂q̇ − ∂T/∂q − (M q̈ + h − ∂V/∂q)."""
+        # The left side is taken from T by its definition, the right side from the formulas for M
+        # and h.
         turning = self.mass_matrix @ self.q_ddot
         return self.momenta.dt() - self._slopes - turning - self.gyroscopic
 
@@ -207,6 +220,7 @@ class LagrangeEquations(LagrangeForm):
 
     def energy_rate(self, value: sp.Expr) -> RingMatrix:
         """dE/dt − q̇·(M q̈ + h) − ∂V/∂t."""
+        # dE/dt = q̇·(M q̈ + h) + ∂V/∂t for any q̈, whether or not it obeys the equations of motion.
         moving = self.mass_matrix @ self.q_ddot + self.bias
         return self.codec.column([value]).dt() - self.q_dot.T @ moving - self.driving
 
@@ -218,6 +232,7 @@ class LagrangeEquations(LagrangeForm):
     @property
     def energy_by_momenta(self) -> RingMatrix:
         """(pᵀ M⁻¹ p − 2T) det M."""
+        # With p = M q̇, pᵀ M⁻¹ p = q̇ᵀ M q̇ = 2T.
         above = self.momenta.T @ self.mass_matrix.adjugate() @ self.momenta
         return above - self.codec.column([2 * self.kinetic]).scale(self.mass_matrix.det())
 
@@ -236,6 +251,7 @@ class LagrangeEquations(LagrangeForm):
     @cached_property
     def single(self) -> int | None:
         """The position of the only coordinate that moves if the others are ignorable."""
+        # A coordinate whose momentum is constant is ignorable; exactly one other may be left.
         constant = {integral.name for integral in self.own_integrals()}
         moving = [k for k, q in enumerate(self.q) if f"momentum_{q.func.__name__}" not in constant]
         if len(moving) != 1 or len(self.q) == 1:
@@ -250,6 +266,7 @@ class LagrangeEquations(LagrangeForm):
     @cached_property
     def effective(self) -> sp.Expr:
         """V_eff, the Hamiltonian with the only coordinate that moves at rest."""
+        # H = p_k²/(2m) + V_eff if M does not couple q_k to the others, so V_eff is H at p_k = 0.
         momenta = enumerate(self.arguments["momenta"].symbols)
         return self._in_momenta([sp.S.Zero if j == self.single else p for j, p in momenta])
 
@@ -273,6 +290,7 @@ class LagrangeEquations(LagrangeForm):
 
     def momentum_is_constant(self, k: int, claim: Formula) -> Proof | None:
         """If neither T nor what acts depends on the coordinate; they may not cancel each other."""
+        # ṗₖ = ∂T/∂qₖ + Qₖ − ∂V/∂qₖ
         applied = self.generalised[k, 0] - self.gradient[k, 0]
         if applied or self._slopes[k, 0]:
             return None

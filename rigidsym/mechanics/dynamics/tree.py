@@ -132,6 +132,7 @@ class TreeEquations(LagrangeForm):
                 )
             before = None
             for count, turn in enumerate(model.turns, start=1):
+                # Bodies share the joints up to the turn at which their products part.
                 path = model.turns[:count]
                 if path not in joints:
                     joints[path] = self._joint(str(len(joints) + 1), turn, before)
@@ -144,6 +145,7 @@ class TreeEquations(LagrangeForm):
         matrix = self.names.named(f"T{label}", turn.matrix)
         speed = self.names.define(f"dtheta{label}", turn.rate)
         own = sp.ImmutableMatrix(turn.direction) * speed
+        # wₖ = θ̇ₖ nₖ + Tₖᵀ wₖ₋₁
         omega = velocity(matrix.T, own, before.omega if before else _ZERO)
         omega = self.names.named(f"w{label}", omega)
         slopes = sp.ImmutableMatrix([[sp.diff(turn.angle, q) for q in self.q]])
@@ -155,6 +157,9 @@ class TreeEquations(LagrangeForm):
         text = ", ".join(map(as_typed, given))
         if slopes.has(*rates) or any(given.xreplace(dict.fromkeys(rates, sp.S.Zero))):
             raise ModelError(f"the velocity ({text}) is not linear in the rates")
+        # J q̇ is the rate of a position r(q) exactly if J = ∂r/∂q, which by Schwarz' theorem
+        # requires ∂Jⱼ/∂qₖ = ∂Jₖ/∂qⱼ. Rolling without slipping fails it, and Lagrange's equations do
+        # not hold for it in this form.
         turned = [
             entry
             for j, k in combinations(range(len(self.q)), 2)
@@ -181,6 +186,7 @@ class TreeEquations(LagrangeForm):
         for joint in reversed(total):  # each after those that it carries
             total[joint] = self.names.named(f"{letter}{joint.label}", total[joint])
             if joint.before:
+                # A vector goes back to the axes of the joint before as T v, a tensor as T I Tᵀ.
                 back = joint.matrix * total[joint]
                 total[joint.before] += back * joint.matrix.T if of_tensors else back
         return total
@@ -209,6 +215,7 @@ class TreeEquations(LagrangeForm):
         """What each joint up to this one feels of a torque, along its axis."""
         along: dict[Joint, sp.Expr] = {}
         at: Joint | None = joint
+        # fᵢ = nᵢ · Tᵢ₊₁ ⋯ Tₖ f for all joints i from k down to the root: one product for each.
         while at is not None:
             torque = self.names.named(f"{letter}{joint.label}_{at.label}", torque)
             along[at] = at.axis.dot(torque)
@@ -220,6 +227,8 @@ class TreeEquations(LagrangeForm):
         total = sp.zeros(len(self.q))
         composite = self._carried("I", lambda joint: joint.inertia, of_tensors=True)
         for joint, tensor in composite.items():
+            # Row k of the mass matrix by angles: nᵢ · Iᶜₖ nₖ for i up to k. M is symmetric, so the
+            # transpose is added, and the diagonal element, which both contain, is subtracted once.
             felt = self._felt("f", joint, tensor * joint.axis)
             part = self._by_coordinate(felt) * joint.slopes
             total += part + part.T - joint.slopes.T * joint.slopes * felt[joint]
@@ -231,6 +240,7 @@ class TreeEquations(LagrangeForm):
         """h."""
         gained: dict[Joint, Vector] = {}
         for joint in self.joints.values():
+            # θ̈ₖ at q̈ = 0 is d/dt(∂θₖ/∂q) q̇, which vanishes unless the angle is not linear in q.
             own = joint.axis * joint.slopes.diff(TIME) * sp.Matrix(self.rates)
             before = gained[joint.before] if joint.before else _ZERO
             turned = joint.omega.cross(joint.axis) * joint.speed
@@ -275,6 +285,8 @@ class TreeEquations(LagrangeForm):
             names[which][at] = symbol
             meanings[which][at] = self.names.printed(symbol, value)
 
+        # Column by column: Dⱼ = Mⱼⱼ − Σ_k Lⱼₖ² Dₖ and Lᵢⱼ = (Mᵢⱼ − Σ_k Lᵢₖ Dₖ Lⱼₖ)/Dⱼ over k < j. M
+        # is positive definite, so that no pivoting is needed.
         for j in range(n):
             scaled = D[:j, :j] * L[j, :j].T
             for i in range(j, n):
@@ -289,9 +301,11 @@ class TreeEquations(LagrangeForm):
                     "that move the bodies in different ways"
                 )
         for i in range(n):
+            # Forward, yᵢ = Qᵢ − hᵢ − Σ_k Lᵢₖ yₖ over k < i.
             rest = self.generalised[i] - self.bias[i] - (L[i, :i] * y[:i, :])[0]
             define(2, (i, 0), f"y{i + 1}", rest)
         for i in reversed(range(n)):
+            # Backward, xᵢ = yᵢ/Dᵢ − Σ_k Lₖᵢ xₖ over k > i.
             rest = (L[i + 1 :, i].T * x[i + 1 :, :])[0]
             define(3, (i, 0), f"ddq{i + 1}", y[i] / D[i, i] - rest)
         return names, meanings
@@ -352,6 +366,8 @@ class TreeEquations(LagrangeForm):
             return np.array([[work(entry) for entry in row] for row in matrix.tolist()])
 
         parts = []  # inertia, J, dJ/dt, and whether it turns
+        # Independently of the recursion: J ← Tᵀ J + n ∂θ/∂q from turn to turn, and its time
+        # derivative.
         for path, joint in self.joints.items():
             jacobian = rate = np.zeros((3, len(self.q)), int)
             for k, turn in enumerate(path, start=1):
@@ -364,12 +380,14 @@ class TreeEquations(LagrangeForm):
             slopes, one = (p.slopes, p.slopes.diff(TIME)), np.eye(3, dtype=int)
             parts.append((one * work(p.mass), *map(read, slopes), False))
         q_dot, mass, needed = read(sp.Matrix(self.rates)), 0, read(sp.Matrix(self.gradient))
+        # M = Σ Jᵀ I J and h = Σ Jᵀ (I J̇ q̇ + ω × I ω) + ∂V/∂q; a particle has no gyroscopic term.
         for inertia, jacobian, rate, turns_too in parts:
             omega, torque = jacobian @ q_dot, inertia @ rate @ q_dot
             if turns_too:
                 torque = torque + np.cross(omega, inertia @ omega, axis=0)
             mass = mass + jacobian.T @ inertia @ jacobian
             needed = needed + jacobian.T @ torque
+        # p = M q̇ and 2T = q̇ᵀ M q̇. Intervals are compared: a difference must contain zero.
         momenta = mass @ q_dot
         off = [mass - read(self.mass_matrix), needed - read(self.bias)]
         off += [momenta - read(self.momenta), q_dot.T @ momenta - 2 * work(self.kinetic)]
@@ -400,6 +418,8 @@ class TreeEquations(LagrangeForm):
         return consequence([*self._lemmas, self.prove.vanishes(self.power, claim)], claim)
 
     def momentum_is_constant(self, k: int, claim: Formula) -> Proof | None:
+        # ṗₖ = ∂T/∂qₖ + Qₖ − ∂V/∂qₖ. A value at one point refutes it quickly; only what survives is
+        # multiplied out and proved.
         residual = self._slope_of_kinetic(k) + self.generalised[k] - self.gradient[k]
         if self.names.is_nonzero(residual):
             return None
@@ -411,6 +431,8 @@ class TreeEquations(LagrangeForm):
         """∂T/∂q."""
         parts = []
         for joint, momentum in self._momenta.items():
+            # With the angle θ = θ(q) of a joint, ∂T/∂q = (∂θ/∂q) ∂T/∂θ + (d/dt ∂θ/∂q) ∂T/∂θ̇; the
+            # second part vanishes for angles linear in q.
             slope = joint.slopes[k]
             parts.append(-slope * joint.axis.dot(joint.omega.cross(momentum)))
             parts.append(sp.diff(slope, TIME) * joint.axis.dot(momentum))
@@ -433,6 +455,7 @@ def of_any_body() -> tuple[Proof, ...]:
     gained = slope + W.cross(omega)  # dW/dt
     torque = tensor * rate + omega.cross(tensor * omega)
     momentum = tensor * omega
+    # For one column W: d/dt ∂T/∂q̇ = d/dt (W·I ω) = Ẇ·I ω + W·I ω̇ and ∂T/∂q = (∂ω/∂q)·I ω.
     lagrange = gained.dot(momentum) + W.dot(tensor * rate) - slope.dot(momentum) - W.dot(torque)
     carried = (turn.T * W).dot(slope) - W.dot(turn * slope)
     composite = ((turn.T * W).T * tensor * (turn.T * omega))[0]
@@ -463,6 +486,8 @@ def of_any_turn(turn: Turn, conditions: Conditions) -> Proof:
     a, A, s = (sp.Matrix(sp.symbols(f"{name}_1:4")) for name in ("a", "A", "s"))
     back, n, angle = turn.matrix.T, sp.Matrix(turn.direction), turn.angle
     speed, unknown = sp.Symbol("speed"), sp.Dummy("theta")
+    # d(Tᵀ)/dθ. For the old column Tᵀ A the law is dW/dt − Tᵀ s = Tᵀ A × ω, and for the new column
+    # n, which is constant, it is −∂ω/∂θ = n × ω.
     slope = back.subs(angle, unknown).diff(unknown).subs(unknown, angle)
     omega = n * speed + back * a
     first = slope * speed * A + back * (s + A.cross(a)) - back * s - (back * A).cross(omega)

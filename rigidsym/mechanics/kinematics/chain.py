@@ -109,6 +109,7 @@ class Composition(Values):
     ) -> None:
         rates, gains = sp.symbols("v_1:4"), sp.symbols("dv_1:4")
         angles = sorted(turn.angle.atoms(AppliedUndef), key=str)
+        # An angle may be a combination of coordinates, θ = 2φ − ψ, so its rate is a sum of theirs.
         speed, gain = (sp.diff(turn.angle, TIME, order) for order in (1, 2))
         speeds = [sp.diff(q, TIME) for q in angles]
         entries = [*turn.matrix, *turn.direction, *speeds, speed, gain, *rates, *gains]
@@ -116,6 +117,7 @@ class Composition(Values):
         self.prove = Prover(conditions, codec)
         self.traits = frozenset(("passive",) if passive else ())
         T, axis, v = codec.matrix(turn.matrix), codec.column(turn.direction), codec.column(rates)
+        # Ω = n θ̇ = n (∂θ/∂q) q̇, so W = n ∂θ/∂q.
         columns = sp.Matrix(turn.direction) * sp.Matrix([[sp.diff(turn.angle, q) for q in angles]])
         own = Part(
             (T, T.dt(), T.dt().dt()),
@@ -125,10 +127,13 @@ class Composition(Values):
             speeds,
         )
         v_dot = codec.column(gains)
+        # dQ/dt = C(v) Q, hence d²Q/dt² = (C(dv/dt) + C(v)²) Q, at Q = 1.
         any_rotation = (self.one, operator(v), operator(v_dot) + operator(v) @ operator(v))
         other = Part(any_rotation, v, v_dot, self.one, rates)
         first, second = (own, other) if comes_first else (other, own)
         (a, a_dot, a_ddot), (b, b_dot, b_ddot) = first.R, second.R
+        # The product rule for R = A B: Ṙ = Ȧ B + A Ḃ and R̈ = Ä B + 2 Ȧ Ḃ + A B̈. The spin and its
+        # rate follow as Ṙ Rᵀ and R̈ Rᵀ + Ṙ Ṙᵀ, without the law that they are to prove.
         self.rotation = a @ b
         self.rotation_rate = a_dot @ b + a @ b_dot
         mixed = a_dot @ b_dot
@@ -136,6 +141,7 @@ class Composition(Values):
         self.spin_rate += self.rotation_rate @ self.rotation_rate.T
         self.omega_space = velocity(a, first.omega, second.omega)
         self.omega_body = velocity(b.T, second.omega, first.omega)
+        # From here on the law itself: Ω = Ω₁ + R₁ Ω₂, and its rate α₁ + Ω₁ × Ω + R₁ α₂.
         gained = first.omega.cross(self.omega_space)
         self.alpha_space = acceleration(a, first.alpha, gained, second.alpha)
         gained = self.omega_body.cross(second.omega)
@@ -170,6 +176,8 @@ def kinds_of(turns: Iterable[Turn], model: RotationModel) -> tuple[tuple[Turn, C
     """The different axes with the conditions on them; all angles by one coordinate are alike."""
     kinds = []
     for turn in turns:
+        # The law for a turn about x does not depend on the name of its angle, so one proof serves
+        # all turns about this axis.
         if isinstance(turn.angle, AppliedUndef):
             turn = Turn(axis=turn.axis, components=turn.components, angle=ANGLE)
         symbols = sp.Tuple(*turn.direction).free_symbols
@@ -193,6 +201,7 @@ class Names:
 
     def define(self, name: str, value: sp.Expr) -> sp.Expr:
         """A symbol for the value, the same each time; a number, an input or a sine of one stays."""
+        # A multiple of a symbol or of a sine costs less than the assignment of a name.
         plain = value.as_coeff_Mul()[1]
         if plain.is_Atom or plain.is_Function or plain.is_Derivative:
             return value
@@ -221,6 +230,7 @@ class Names:
     def definitions_of(self, expressions: Iterable[sp.Basic]) -> tuple[Definition, ...]:
         """The definitions that expressions rest on, each in inputs and those before it."""
         needed = set().union(*(e.free_symbols for e in expressions)) & self._meanings.keys()
+        # A definition rests only on earlier ones, so one pass from the last to the first finds all.
         for symbol in reversed(self._meanings):
             if symbol in needed:
                 needed |= self._meanings[symbol].free_symbols & self._meanings.keys()
@@ -285,6 +295,8 @@ class Chain(Names, Workspace):
     @cached_property
     def from_space(self) -> list[State]:
         """(B₁, u₁, u̇₁), ..., (Bₙ, uₙ, u̇ₙ) and (1, 0, 0)."""
+        # The recursion starts from the identity at rest, and each step applies the law to one more
+        # turn.
         states = [State()]
         for k in reversed(range(self.count)):
             T, n, speed, later = self.turns[k], self.axes[k], self.speeds[k], states[-1]
@@ -343,6 +355,8 @@ class Chain(Names, Workspace):
                 letter, carried = "n", [state.R for state in self.from_body]  # Pₖ₋₁ nₖ
             else:
                 letter, carried = "m", [state.R.T for state in self.from_space[1:]]  # Bₖ₊₁ᵀ nₖ
+            # Ω = Σ θ̇ₖ (carried axis k) and θ̇ₖ = Σ (∂θₖ/∂q) q̇, so the column of q is Σ (∂θₖ/∂q)
+            # (axis k).
             columns = {q: sp.zeros(3, 1) for q in self.model.coordinates}
             for k, turn in enumerate(self.model.turns):
                 moved = self.named(f"{letter}{k + 1}", carried[k] * self.axes[k])

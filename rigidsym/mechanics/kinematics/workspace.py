@@ -39,6 +39,7 @@ def traits_of(model: RotationModel) -> frozenset[str]:
         "one_turn": len(angles) == 1,
         "one_coordinate": len(q) == 1,
         "by_turns": len(angles) == len(q) and {*angles} == {*q},  # each by one coordinate
+        # Column k of W is then the axis of turn k.
         "in_order": tuple(angles) == q,
         "wide": len(q) != 3,  # W has no inverse, but perhaps a right inverse
         "vector": bool(model.vector),
@@ -211,10 +212,12 @@ class Values(Workspace):
 
     @cached_property
     def omega_space(self) -> RingMatrix:
+        # R Rᵀ = 1 gives Ṙ Rᵀ + (Ṙ Rᵀ)ᵀ = 0. The spin is skew, so it is C(Ω) for one vector Ω.
         return unhat(self.spin)
 
     @cached_property
     def omega_body(self) -> RingMatrix:
+        # Rᵀ C(Ω) R = C(Rᵀ Ω), so Ω′ = Rᵀ Ω, or directly C(Ω′) = Rᵀ Ṙ.
         if self.model.pullback is None:
             return self.rotation.T @ self.omega_space
         # for the ring of a pullback, RᵀΩ would not become shorter
@@ -246,6 +249,7 @@ class Values(Workspace):
         if frame not in self._rate_matrices:
             index = self.codec.ring.index
             places = [index[q] for q in self.arguments["q_dot"].symbols]
+            # Ω is linear in the rates, Ω = W q̇, so W is its Jacobian.
             self._rate_matrices[frame] = self.omega(frame).jacobian(places)
         return self._rate_matrices[frame]
 
@@ -254,6 +258,7 @@ class Values(Workspace):
         if frame not in self._inverses:
             ring, rotation = self.codec.ring, self.rotation
             if tuple(self.model.matrix) == self.model.coordinates:
+                # Ṙ = C(Ω) R = R C(Ω′)
                 # the coordinates are the entries of R: columns are dR/dt of unit velocities
                 skew = [hat(RingMatrix.column(ring, e)) for e in self.one.rows]
                 rates = [s @ rotation if frame == "space" else rotation @ s for s in skew]
@@ -272,6 +277,7 @@ class Values(Workspace):
         self, frame: str, above: RingMatrix, below: PolyElement, goal: RingMatrix
     ) -> RingMatrix:
         """W (above/below) − goal, times the divisor."""
+        # Times the divisor, the residual is a polynomial.
         return self.rate_matrix(frame) @ above - goal.scale(below)
 
     @cached_property
@@ -279,6 +285,7 @@ class Values(Workspace):
         """J = ∂(constraints)/∂q, (m, n); None if no constraint binds a coordinate."""
         coordinates = self.model.coordinates
         binding = [c for c in self.model.constraints if c.has(*coordinates)]
+        # f(q) = 0 for all time implies (∂f/∂q) q̇ = 0.
         rows = [[sp.diff(c, q) for q in coordinates] for c in binding]
         return self.codec.matrix(sp.Matrix(rows)) if rows else None
 

@@ -123,6 +123,7 @@ def solid(
     if unknown:
         known = ", ".join(length.key for length in chosen.lengths)
         raise BodyError(f"{shape} has no {', '.join(sorted(unknown))}; it has {known}")
+    # Lengths that are not given are symbols by their usual letters.
     values: list[sp.Expr] = []
     for length in chosen.lengths:
         given = lengths.get(length.key, [sp.Symbol(letter) for letter in length.names])
@@ -189,9 +190,12 @@ def in_parameters(body: RigidBody) -> RigidBody:
 
     (mass,), centre, inertia = map(rounded, ([body.mass], body.centre, body.inertia))
     largest = max(map(abs, inertia))
+    # A length of the body: √(I/M) is a radius of gyration. Coordinates that are tiny compared with
+    # it are rounding errors.
     size = max(map(abs, centre)) + (largest / mass) ** 0.5
     parameters: dict[str, Parameter] = {}
 
+    # An entry that is zero up to rounding becomes an exact zero, which keeps formulas short.
     def named(name: str, value: float, scale: float) -> sp.Expr:
         if abs(value) <= scale * _ROUNDING:
             return sp.S.Zero

@@ -64,6 +64,8 @@ class Moments:
     def central(self) -> tuple[sp.ImmutableMatrix, sp.ImmutableMatrix]:
         """The centre c = S/M, (3, 1), and the tensor about it, tr(J) 1 − J of J − M c cᵀ."""
         field = Rationals.of(self.matrix)
+        # Steiner's theorem for second moments, J_c = J − M c cᵀ, and I = tr(J_c) 1 − J_c: the
+        # diagonal of I is the sum of the two other diagonal entries, and elsewhere I is −J_c.
         mass, second = field.read(self.mass), field.read_matrix(self.second)
         inverse = mass.inverse()
         centre = [field.write(field.read(entry) * inverse) for entry in self.first]
@@ -112,6 +114,7 @@ def _(cloud: Particles) -> Moments:
 def _(known: Known) -> Moments:
     """The moments that give the inertia tensor back: J = ½ tr(I) 1 − I about the centre."""
     place = sp.Matrix([*known.centre, 1])
+    # I = tr(J) 1 − J has tr I = 2 tr J, so J = ½ tr(I) 1 − I.
     about_centre = sp.eye(3) * known.inertia.trace() / 2 - known.inertia
     matrix = sp.diag(about_centre, 0) + known.mass * place * place.T
     return Moments(matrix=sp.ImmutableMatrix(matrix))
@@ -130,6 +133,8 @@ def _(whole: Composite) -> Moments:
     held += [e for part in whole.parts for e in (*part.at, *part.turned)]
     field, matrices = Rationals.of(held), []
     for part, m in zip(whole.parts, moments, strict=True):
+        # x = R x′ + d as one matrix in homogeneous coordinates, G = (R d; 0 1). The last row keeps
+        # the mass.
         place = sp.Matrix(part.turned).row_join(part.at).col_join(sp.Matrix([[0, 0, 0, 1]]))
         matrices.append((-1 if part.hole else 1) * place * m.matrix * place.T)
     return _moments(
@@ -161,6 +166,7 @@ def _(solid: Solid) -> Moments:
     measure, proofs = work.measure()
     if not measure:
         raise BodyError(f"{solid.title}: its points are in a plane, on a line, or all the same")
+    # A constant measure, the Jacobian determinant of an affine map, stays outside of the integrals.
     constant, varying = work.split(measure)
     weight = ring.dot([(varying, codec.encode(density))])
     place = [codec.encode(entry) for entry in (*solid.place, sp.S.One)]
@@ -168,6 +174,7 @@ def _(solid: Solid) -> Moments:
     integrals = [work.integral(ring.dot([(weighted[i], place[j])])) for i, j in _PAIRS]
     if not integrals[-1]:
         raise BodyError("the solid has no volume, area or length")
+    # With a given mass the density is M/∫ dV, and the constant part of the measure cancels.
     uniform = Quotient.whole(ring, constant)
     if solid.mass is not None:
         uniform = Quotient(ring, codec.encode(solid.mass), integrals[-1])
@@ -191,6 +198,7 @@ class _Integrals:
     def integral(self, element: PolyElement) -> PolyElement:
         """Over all coordinates."""
         pairs = list(zip(self._each, self.solid.bounds, strict=True))
+        # Iterated integrals, ∫ du ∫ dv ∫ dw: the bounds of w may hold u and v.
         for integrator, bounds in reversed(pairs):
             antiderivative = integrator.antiderivative(element)
             self._left.append(integrator.derivative(antiderivative) - element)
@@ -206,6 +214,9 @@ class _Integrals:
         place = [self.codec.encode(entry) for entry in self.solid.place]
         columns = [[each.derivative(x) for x in place] for each in self._each]
         tangents = RingMatrix.of(self.ring, columns)
+        # dV = |det ∂x/∂(u, v, w)| du dv dw. In fewer dimensions the Gram determinant of the
+        # tangents takes its place, dA = √(det JᵀJ) du dv, whose root is given with the solid and
+        # checked by its square.
         if len(columns) == 3:
             determinant = tangents.det()
             return determinant * self._sign(determinant), ()
@@ -249,6 +260,7 @@ class _Integrals:
         sevenths = [(k,) * count for k in (3, 4, 5)] if free else product((1, 3, 6), repeat=count)
         signs = set()
         for shares in sevenths:
+            # Each bound is evaluated at the coordinates before it.
             inside = dict(point)  # a place within the bounds, the coordinates one after the other
             pairs = zip(self.solid.coordinates, self.solid.bounds, shares, strict=True)
             for coordinate, (low, high), k in pairs:

@@ -71,6 +71,7 @@ def _rational_moments(inertia: sp.ImmutableMatrix) -> list[sp.Expr]:
         is_known and there.charpoly(_LAMBDA).is_irreducible
     ):
         return []
+    # det(I − λ 1) = 0. Only linear factors give a moment without roots.
     matrix = sp.Matrix(inertia - _LAMBDA * sp.eye(3))
     polynomial = sp.together(sp.expand(matrix.det(method="berkowitz")))
     return [
@@ -83,6 +84,9 @@ def _rational_moments(inertia: sp.ImmutableMatrix) -> list[sp.Expr]:
 def _about(inertia: sp.ImmutableMatrix, k: int) -> Principal:
     """The k-th coordinate axis is principal; the other two are turned about it."""
     i, j = (k + 1) % 3, (k + 2) % 3
+    # The block (p r; r q) has the eigenvalues (p + q)/2 ± w/2 with w² = (p − q)² + 4 r². Its first
+    # axis is at the angle α with tan 2α = 2 r/(p − q), so cos² α = ½ + (p − q)/(2 w) and sin α cos
+    # α = r/w.
     p, q, r = inertia[i, i], inertia[j, j], inertia[i, j]
     field = Rationals.of([p, q, r])  # which knows that sin² + cos² = 1
     half, apart, product = map(field.read, ((p + q) / 2, p - q, 2 * r))
@@ -115,6 +119,7 @@ def _factored(inertia: sp.ImmutableMatrix, moments: list[sp.Expr]) -> Principal:
         moments,  # a single one last, the others by their size if it is known
         key=lambda m: (moments.count(m) == 1, shares[m] if is_ordered else 0, str(m)),
     )
+    # With two equal moments every direction across the third axis is principal; one is chosen.
     is_symmetric = moments[0] == moments[1]
     last = _null_vector(inertia, moments[2])
     across = (last.cross(unit).applyfunc(sp.cancel) for unit in _BASIS)
@@ -129,6 +134,8 @@ def _factored(inertia: sp.ImmutableMatrix, moments: list[sp.Expr]) -> Principal:
 
 def _null_vector(inertia: sp.ImmutableMatrix, moment: sp.Expr) -> sp.Matrix:
     """The axis of a single moment λ, a column of the adjugate of I − λ 1, in lowest terms."""
+    # (I − λ 1) adj(I − λ 1) = det(I − λ 1) 1 = 0, so each column of the adjugate is an eigenvector
+    # or 0. For a single eigenvalue the rank of I − λ 1 is two, and some column is not 0.
     adjugate = (inertia - moment * sp.eye(3)).adjugate().applyfunc(sp.cancel)
     column = next(column for k in range(3) if any(column := sp.Matrix(adjugate[:, k])))
     lead = next(entry for entry in column if entry != 0)
