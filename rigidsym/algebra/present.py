@@ -129,8 +129,8 @@ class Presenter:
         return form
 
     def _form(self, above: PolyElement, below: PolyElement) -> sp.Expr:
-        # The shortest representatives come first, as common factors are visible only in them: 1 −
-        # c² is s², and s²/s cancels.
+        # The shortest representatives come first, as common factors are visible only in them:
+        # 1 − c² is s², and s²/s cancels.
         above, below = shortest(self.ring, above), shortest(self.ring, below)
         if len(below) > 1:
             above, below = self._cancelled(above, below)

@@ -191,8 +191,8 @@ class Solver:
         """The common zeros of the elements, and whether all were found."""
         zeros: dict[frozenset[Root], Zero] = {}
         is_complete = self._search(list(elements), (), zeros)
-        # A zero with further conditions, θ = 0 and φ = 0, is part of the larger one with fewer, θ =
-        # 0.
+        # A zero with further conditions, θ = 0 and φ = 0, is part of the larger one with fewer,
+        # θ = 0.
         least = [zero for key, zero in zeros.items() if not any(other < key for other in zeros)]
         return sorted(least, key=lambda zero: sorted(root.order for root in zero)), is_complete
 
