@@ -118,7 +118,7 @@ class _Console:
             return self._scalar(heads, value)
         if not sides:
             return self._listing(equation.entries, matrix)
-        rows = matrix_of(matrix, self.letters)
+        rows = matrix_of(matrix, self.letters).rows
         for lines in _forms(self._heads(sides), self._texts(rows)):
             if max(map(columns, lines)) <= self.width:
                 return lines

@@ -1,24 +1,22 @@
 """How an equation is set so that it fits: on one line, on two, in shorthand, or entry by entry.
 
-The choice is by estimated width, in this order. A reader who has to know of it is told. Any pen
-that typesets can write the result.
+The choice is by estimated width, in this order. A reader who has to know of it is told.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Literal, NamedTuple
 
 import sympy as sp
 
-from rigidsym.formula.latex_pen import LatexPen
+from rigidsym.formula.latex_pen import EQUAL, QUAD, WIDE_GAP, LatexPen, environment
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.pen import Segment, break_lines
 from rigidsym.formula.scalars import factored, formula_of, listed_entries, matrix_of
-from rigidsym.formula.sheet_pen import EQUAL, QUAD, Aligned, SheetPen
-from rigidsym.formula.tree import EQUALS, Formula, Matrix, equal, indexed, row
+from rigidsym.formula.tree import NOTHING, Formula, equal, indexed, row
 from rigidsym.formula.unicode_pen import UnicodePen
 
 PAGE = 39.2  # ems of a display on a page, beside a number such as (13)
@@ -26,6 +24,7 @@ BOX = 0.96  # ems that the box around a result takes
 
 Done = Literal["", "abbreviated", "listed"]
 
+INDENT = r"\quad"  # of a line that goes on; the next bracket adds another
 _MOST_INDENTS = 5
 
 
@@ -56,32 +55,28 @@ class Equation:
 class Display(NamedTuple):
     """The inside of a display, how wide it is, and what was done that the reader must know."""
 
-    text: str
+    inside: str
     width: float  # ems; it may be more than was asked for, where there is no place to break
+    environment: Literal["", "aligned", "gathered"] = ""  # of lines below one another
     done: Done = ""
-    rows: tuple[Aligned, ...] = ()  # between which a page may end where they are many
-    are_aligned: bool = True  # at their signs; else each is in the middle
-    is_high: bool = False
+    lines: int = 1  # of a listing
+    height: float = 0.0  # of a listing, in lines of text
     is_broken: bool = False  # whether a value of the equation, or an entry, fits on no line
+    is_boxed: bool = False
 
     @property
-    def lines(self) -> int:
-        """Of a listing."""
-        return len(self.rows) or 1
+    def text(self) -> str:
+        text = environment(self.environment, self.inside) if self.environment else self.inside
+        return rf"\boxed{{{text}}}" if self.is_boxed else text
 
-    @property
-    def height(self) -> float:
-        """Of a listing, in lines of text."""
-        return sum(2.4 if line.height else 1.3 for line in self.rows)
 
-    def joined(self, pen: LatexPen) -> str:
-        """The rows without their environment."""
-        lines = (pen.line(r) if self.are_aligned else pen.body(r) for r in self.rows)
-        return pen.joined(lines, self.is_high)
+class _Row(NamedTuple):
+    text: str
+    is_high: bool = False
 
 
 def display(
-    equation: Equation, letters: Letters, width: float, pen: SheetPen | None = None
+    equation: Equation, letters: Letters, width: float, pen: LatexPen | None = None
 ) -> Display:
     """The equation in the first form that fits into `width` ems; a listing where none does.
 
@@ -93,13 +88,10 @@ def display(
 
 
 @lru_cache(maxsize=512)  # what was fitted is printed, often in several formats
-def _displayed(equation: Equation, letters: Letters, width: float, pen: SheetPen) -> Display:
-    setter = _Setter(letters, pen)
-    if not equation.is_result:
-        shown = setter.display(equation, width)
-    else:
-        inside = setter.display(equation, width - BOX)
-        shown = inside._replace(text=pen.boxed(inside.text), width=inside.width + BOX)
+def _displayed(equation: Equation, letters: Letters, width: float, pen: LatexPen) -> Display:
+    box = BOX if equation.is_result else 0.0
+    inside = _Setter(letters, pen).display(equation, width - box)
+    shown = inside._replace(width=inside.width + box, is_boxed=equation.is_result)
     is_broken = shown.width > width
     if equation.matrix is None and equation.scalar is None:
         is_broken = False
@@ -118,26 +110,35 @@ def spoken(equation: Equation, letters: Letters) -> str:
     if equation.scalar is not None:
         value = [formula_of(equation.scalar, letters)]
     elif equation.matrix is not None:
-        value = [Matrix(tuple(map(tuple, matrix_of(equation.matrix, letters))))]
+        value = [matrix_of(equation.matrix, letters)]
     return UnicodePen(letters.notation).write(equal(*equation.sides, *value)).text
 
 
-def pack(equations: Sequence[Equation], letters: Letters, width: float, pen: SheetPen) -> str:
+def pack(equations: Sequence[Equation], letters: Letters, width: float, pen: LatexPen) -> str:
     """Short equations, as many on a line as fit into `width` ems."""
-    lines: list[str] = []
+    displays = [display(equation, letters, width, pen) for equation in equations]
+    rows = _packed((((_Row(shown.text),), shown.width) for shown in displays), width)
+    texts = [text for text, _ in rows]
+    return texts[0] if len(texts) == 1 else environment("gathered", pen.joined(texts, True))
+
+
+def _packed(blocks: Iterable[tuple[Sequence[_Row], float]], width: float) -> list[_Row]:
+    """Blocks below one another, given with their widths; short ones side by side."""
+    rows: list[_Row] = []
     room = 0.0
-    for equation in equations:
-        shown = display(equation, letters, width, pen)
-        if lines and shown.width + 2 * QUAD <= room:
-            lines[-1] += f" {pen.wide_gap}{shown.text}"
-            room -= shown.width + 2 * QUAD
+    for block, own in blocks:
+        if len(block) == 1 and own + 2 * QUAD <= room:
+            last, first = rows[-1], block[0]
+            is_high = last.is_high or first.is_high
+            rows[-1] = _Row(f"{last.text} {WIDE_GAP}{first.text}", is_high)
+            room -= own + 2 * QUAD
         else:
-            lines.append(shown.text)
-            room = width - shown.width
-    return lines[0] if len(lines) == 1 else pen.gathered(lines, True)
+            rows += block
+            room = width - own if len(block) == 1 else 0.0
+    return rows
 
 
-def broken(formula: Formula, width: float, pen: SheetPen) -> list[Segment]:
+def broken(formula: Formula, width: float, pen: LatexPen) -> list[Segment]:
     """The lines of a formula; within high brackets it is broken only if nothing else will do."""
     lines = break_lines(pen.write(formula), width, QUAD)
     if widest(lines) <= width:
@@ -155,120 +156,106 @@ def widest(lines: Sequence[Segment]) -> float:
 class _Setter:
     """Sets equations with one pen."""
 
-    def __init__(self, letters: Letters, pen: SheetPen) -> None:
+    def __init__(self, letters: Letters, pen: LatexPen) -> None:
         self.letters = letters
         self.pen = pen
 
     def display(self, equation: Equation, width: float) -> Display:
         # in another notation a rate may be its own definition
         sides = tuple(dict.fromkeys(map(self.letters.notation.applied, equation.sides)))
+        matrix = equation.matrix
         if equation.scalar is not None:
             # a value stands on one line with its sides, or below them
-            given = [sides[0], *([equal(*sides[1:])] if sides[1:] else [])]
-            return self._lines([*given, formula_of(equation.scalar, self.letters)], width)
-        if equation.matrix is None:
-            return self._lines(sides, width)
-        rows = matrix_of(equation.matrix, self.letters)
+            definition = [equal(*sides[1:])] if sides[1:] else []
+            sides = (sides[0], *definition, formula_of(equation.scalar, self.letters))
+        if equation.scalar is not None or matrix is None:
+            whole = self.pen.write(equal(*sides))
+            if whole.width <= width or len(sides) == 1:
+                return Display(whole.text, whole.width)
+            first, *others = sides
+            heads = [first, *[NOTHING] * (len(others) - 1)]
+            return self._listing(heads, others, width, is_high=True)
         if not sides:
-            return self._definitions(equation.entries, [value for (value,) in rows], width)
-        factor, rest = factored(equation.matrix)  # a fraction that all entries hold
-        full: Formula = Matrix(tuple(map(tuple, matrix_of(rest, self.letters))))
+            return self._definitions(equation.entries, matrix, width)
+        factor, rest = factored(matrix)  # a fraction that all entries hold
+        full: Formula = matrix_of(rest, self.letters)
         full = full if factor == 1 else row(formula_of(factor, self.letters), full)
         for form in self._forms(sides, full, self.pen):
             if form.width <= width:
                 return form
-        if equation.matrix.shape[1] > 1:
+        if matrix.shape[1] > 1:
             for form in self._forms(sides, full, replace(self.pen, short=True)):
                 if form.width <= width:
                     return form._replace(done="abbreviated")
-        listed = listed_entries(equation.names, equation.matrix)
-        values = [formula_of(value, self.letters) for _, value in listed]
-        lines, needed = self._listing([name for name, _ in listed], values, width)
-        return Display(self.pen.aligned(lines, False), needed, "listed", tuple(lines))
+        names, entries = zip(*listed_entries(equation.names, matrix), strict=True)
+        values = [formula_of(entry, self.letters) for entry in entries]
+        return self._listing(names, values, width)._replace(done="listed")
 
-    def _forms(self, sides: Sequence[Formula], matrix: Formula, pen: SheetPen) -> Iterator[Display]:
+    def _forms(self, sides: Sequence[Formula], matrix: Formula, pen: LatexPen) -> Iterator[Display]:
         """The equation on one line; broken before its last equals sign; and then farther left."""
         whole = pen.write(equal(*sides, matrix))
         yield Display(whole.text, whole.width)
         if len(sides) > 1:
             first, above, last = map(pen.write, (sides[0], equal(*sides[1:]), matrix))
-            lines = (Aligned(first.text, above.text, "="), Aligned("", last.text, "="))
             needed = first.width + EQUAL + max(above.width, last.width)
-            yield Display(pen.aligned(lines, True), needed)
-            lines = (
-                Aligned("", self._headed(sides[0], above.text)),
-                Aligned("", self._headed(row(), last.text), indent=1),
-            )
+            lines = (f"{first.text} &= {above.text}", f"&= {last.text}")
+            yield Display(pen.joined(lines, True), needed, "aligned")
             needed = EQUAL + max(first.width + above.width, QUAD + last.width)
-            yield Display(pen.aligned(lines, True), needed)
-
-    def _definitions(
-        self, names: Sequence[Formula], values: Sequence[Formula], width: float
-    ) -> Display:
-        """Short ones side by side, as many as fit on a line; long ones broken."""
-        lines: list[Aligned] = []
-        room = needed = 0.0
-        for name, value in zip(names, values, strict=True):
-            whole = self.pen.write(equal(name, value))
-            if whole.width + 2 * QUAD <= room:
-                body = f"{lines[-1].body} {self.pen.wide_gap}{whole.text}"
-                lines[-1] = lines[-1]._replace(
-                    body=body, height=max(lines[-1].height, whole.height)
-                )
-                room -= whole.width + 2 * QUAD
-                continue
-            cut, own = self._listing([name], [value], width)
-            first = cut[0]._replace(head="", sign="", body=self._headed(name, cut[0].body))
-            lines += [first, *cut[1:]]
-            room = width - own if len(cut) == 1 else 0.0
-            needed = max(needed, own)
-        text = self.pen.gathered(list(map(self.pen.body, lines)), False)
-        return Display(text, needed, rows=tuple(lines), are_aligned=False)
-
-    def _headed(self, name: Formula, body: str) -> str:
-        """The first line of a definition, without a place to align it."""
-        head = self.pen.write(name).text
-        return f"{head} {self.pen.sign(EQUALS, is_binary=True).text.strip()} {body}"
+            lines = (f"&{first.text} = {above.text}", rf"&{INDENT} {{}} = {last.text}")
+            yield Display(pen.joined(lines, True), needed, "aligned")
 
     def _listing(
-        self, names: Sequence[Formula], entries: Sequence[Formula], width: float
-    ) -> tuple[list[Aligned], float]:
-        """One entry after the other, long ones broken at + and −; with its width."""
+        self,
+        names: Sequence[Formula],
+        values: Sequence[Formula],
+        width: float,
+        *,
+        is_high: bool = False,
+    ) -> Display:
+        """Each value behind its name and a sign, long ones broken at + and −."""
         heads = [self.pen.write(name) for name in names]
         head = max(piece.width for piece in heads) + EQUAL
+        rows: list[_Row] = []
         needed = 0.0
-        lines: list[Aligned] = []
-        for name, entry in zip(heads, entries, strict=True):
-            (first, *others), own = self._hanging([entry], width - head)
-            lines += [first._replace(head=name.text), *others]
+        for name, value in zip(heads, values, strict=True):
+            (first, *others), own = self._hanging(value, width - head)
+            rows.append(first._replace(text=f"{name.text} &= {first.text}".strip()))
+            rows += [row._replace(text=f"&{row.text}") for row in others]
             needed = max(needed, own)
-        return lines, head + needed
+        return self._below_one_another("aligned", rows, head + needed, is_high)
 
-    def _lines(self, sides: Sequence[Formula], width: float) -> Display:
-        """Sides that are equal: on one line, or each on its own and broken at + and −."""
-        whole = self.pen.write(equal(*sides))
-        if whole.width <= width or len(sides) == 1:
-            return Display(whole.text, whole.width)
-        first, *others = sides
-        head = self.pen.write(first)
-        room = head.width + EQUAL
-        lines, needed = self._hanging(others, width - room)
-        lines[0] = lines[0]._replace(head=head.text)
-        text = self.pen.aligned(lines, True)
-        return Display(text, room + needed, rows=tuple(lines), is_high=True)
+    def _definitions(
+        self, names: Sequence[Formula], matrix: sp.ImmutableMatrix, width: float
+    ) -> Display:
+        """Short ones side by side, as many as fit on a line; long ones broken."""
+        blocks: list[tuple[Sequence[_Row], float]] = []
+        for name, value in zip(names, matrix, strict=True):
+            head = self.pen.write(name)
+            room = head.width + EQUAL
+            value_rows, own = self._hanging(formula_of(value, self.letters), width - room)
+            first = value_rows[0]._replace(text=f"{head.text} = {value_rows[0].text}")
+            blocks.append(((first, *value_rows[1:]), room + own))
+        needed = max(own for _, own in blocks)
+        return self._below_one_another("gathered", _packed(blocks, width), needed)
 
-    def _hanging(self, formulas: Sequence[Formula], room: float) -> tuple[list[Aligned], float]:
-        """Each formula behind its sign, long ones broken at + and −; with the greatest width."""
-        lines: list[Aligned] = []
-        needed = 0.0
-        for formula in formulas:
-            for indents in range(1, _MOST_INDENTS):  # its lines are to fit with their indents
-                hung = broken(formula, room - indents * QUAD, self.pen)
-                if widest(hung) <= room:
-                    break
-            first, *others = hung
-            tall = self.pen.write(formula).height
-            lines.append(Aligned("", first.text, "=", height=tall))
-            lines += [Aligned("", line.text, indent=1 + line.level, height=tall) for line in others]
-            needed = max(needed, widest(hung))
-        return lines, needed
+    def _below_one_another(
+        self,
+        kind: Literal["aligned", "gathered"],
+        rows: Sequence[_Row],
+        width: float,
+        is_high: bool = False,
+    ) -> Display:
+        inside = self.pen.joined((row.text for row in rows), is_high)
+        height = sum(2.4 if row.is_high else 1.3 for row in rows)
+        return Display(inside, width, kind, lines=len(rows), height=height)
+
+    def _hanging(self, formula: Formula, room: float) -> tuple[list[_Row], float]:
+        """A formula, broken at + and − where it is long; with the greatest width."""
+        for indents in range(1, _MOST_INDENTS):  # its lines are to fit with their indents
+            lines = broken(formula, room - indents * QUAD, self.pen)
+            if widest(lines) <= room:
+                break
+        first, *others = lines
+        is_high = bool(self.pen.write(formula).height)
+        indented = [rf"{INDENT * (1 + line.level)} {{}}{line.text}" for line in others]
+        return [_Row(text, is_high) for text in (first.text, *indented)], widest(lines)

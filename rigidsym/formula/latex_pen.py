@@ -1,18 +1,71 @@
-"""Formulas in LaTeX, for a document, and for readers of Markdown."""
+"""Formulas in LaTeX: for a document, for readers of Markdown, and for MathML in a browser.
+
+Widths are in ems of Latin Modern at 11 points, rounded up. A test sets formulas with TeX and
+compares.
+"""
 
 from __future__ import annotations
 
 import unicodedata
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
+from dataclasses import replace
 from itertools import pairwise
 from typing import ClassVar
 
-from rigidsym.formula.pen import BREAKS, Height, Piece
+from rigidsym.formula import tree
+from rigidsym.formula.pen import BREAKS, Binding, Height, Pen, Piece, atom
 from rigidsym.formula.reader import FUNCTIONS, LETTERS, SIGNS
-from rigidsym.formula.sheet_pen import Aligned, SheetPen, Size
-from rigidsym.formula.tree import Big, Formula, FunctionCall, Numeral, Radical, Rate, Symbol
 
+SCRIPT = 0.8  # size of indices and exponents
+OPERATOR_SPACE = 0.34  # thin spaces on both sides of a function
+THIN = 0.17
+QUAD = 1.0
+EQUAL = 1.34
+PRIME = 0.26
+FRACTION = 0.26  # beyond the wider of its two parts
+ROOT = 0.9
+DIGIT = 0.5
+BRACKET = 0.39
+COLUMN_GAP = 0.92
+TALL_BRACKETS = 1.62
+BIG = 1.45
+
+_GREEK_WIDTHS = {
+    **dict.fromkeys("ιεδ", 0.49),
+    **dict.fromkeys("θξζρητ", 0.56),
+    **dict.fromkeys("νυγκλ", 0.6),
+    **dict.fromkeys("μπσφβχα", 0.65),
+    **dict.fromkeys("ωψΓΞΛ", 0.7),
+    **dict.fromkeys("ΩΦΣΠΘΥΨ", 0.78),
+    "Δ": 0.84,
+}
+_WIDTHS = {
+    **_GREEK_WIDTHS,
+    **dict.fromkeys("lijt", 0.41),
+    **dict.fromkeys("bcers", 0.52),
+    **dict.fromkeys("adfghknopquvxyz", 0.62),
+    **dict.fromkeys("mw", 0.88),
+    **dict.fromkeys("MW", 1.16),
+    **dict.fromkeys("0123456789", DIGIT),
+}
+_WORD = 0.87  # width of letters in a word, which stand closer
+_CAPITAL, _UNKNOWN = 0.92, 1.0
+_SIGN_WIDTHS = {"+": 1.23, "−": 1.23, "±": 1.23, "=": EQUAL}
+_SIGN_WIDTHS |= {"·": 0.8, "/": 0.5, ",": 0.45, ";": 0.45}
+_FUNCTION_WIDTHS = {"sin": 1.24, "cos": 1.34, "tan": 1.46, "cot": 1.34, "det": 1.39}
+_FACES = {  # and how much wider they are
+    "bold": (r"\mathbf{{{}}}", 1.2),
+    "arrow": (r"\vec{{{}}}", 1.0),
+    "upright": (r"\mathrm{{{}}}", 1.0),
+    "sans": (r"\mathsf {}", 1.05),
+    "italic": ("{}", 1.0),
+}
 _SIGNS = {"−": "-"} | {sign: f"{macro} " for macro, sign in SIGNS.items()}
+_PRIMES = {"": ("", 0.0), "′": ("'", PRIME), "ᴮ": (r"^{\mathrm{B}}", SCRIPT)}
+_DOTS = ("{}", r"\dot{{{}}}", r"\ddot{{{}}}")
+_FLAT, _LARGE, _STRETCHED = ("", "", 0.0), (r"\Bigl", r"\Bigr", 0.25), (r"\left", r"\right", 0.35)
+_BIG = {"∑": r"\sum", "∫": r"\int"}
+_RAISED = tree.Row | tree.Fraction | tree.Power | tree.FunctionCall  # in brackets, as a base
 
 
 def _macro(letter: str) -> str:
@@ -22,87 +75,151 @@ def _macro(letter: str) -> str:
 
 
 # without omicron and the capitals that look like Latin letters, which have no macro
-GREEK = {letter: _macro(letter) for letter in "αβγδεζηθικλμνξπρστυφχψωΓΔΘΛΞΠΣΥΦΨΩ"}
+GREEK = {letter: _macro(letter) for letter in _GREEK_WIDTHS}
 _LETTERS = GREEK | {letter: macro for macro, letter in LETTERS.items()} | {"∗": "*"}
-_DOTS = ("", r"\dot", r"\ddot")
-_LEFT = {"flat": ("", ""), "large": (r"\Bigl", r"\Bigr"), "stretched": (r"\left", r"\right")}
-_BIG = {"∑": r"\sum", "∫": r"\int"}
 
 
-class LatexPen(SheetPen):
+class LatexPen(Pen):
     """Macros that MathJax knows too."""
 
-    wide_gap = r"\qquad "
     thin: ClassVar[str] = r"\,"
     row_end: ClassVar[str] = r" \\[{}pt]" + "\n"
     script: ClassVar[str] = ""  # what stands before an index
-    spelt_fraction = r"\frac{{{}}}{{{}}}".format
-    spelt_root = r"\sqrt{{{}}}".format
-    spelt_words = r"\text{{{}}}".format
-    boxed = r"\boxed{{{}}}".format
+    after_accent: ClassVar[str] = "{}"  # a prime on the accent would stand too high
 
-    def spelt_number(self, digits: str) -> str:
-        return digits.replace(",", "{,}")
+    def symbol(self, node: tree.Symbol) -> Piece:
+        text = node.macro or _LETTERS.get(node.letter, node.letter)
+        is_word = len(node.letter) > 1
+        face, factor = _FACES[node.face]
+        if node.face == "bold" and text.startswith("\\"):
+            face = r"\boldsymbol{{{}}}"
+        elif node.face == "italic" and is_word and not node.macro:
+            face = r"\mathit{{{}}}"
+        text = _DOTS[node.dots].format(face.format(text))
+        if node.dots and node.prime:
+            text += self.after_accent
+        prime, room = _PRIMES[node.prime]
+        width = sum(map(_letter_width, node.letter)) * factor * (_WORD if is_word else 1.0) + room
+        piece = atom(text + prime, width)
+        return piece if node.index is None else self._with_index(piece, node.index)
 
-    def spelt_symbol(self, symbol: Symbol, index: str | None) -> str:
-        text = symbol.macro or _LETTERS.get(symbol.letter, symbol.letter)
-        if symbol.face == "bold":
-            bold = r"\boldsymbol" if text.startswith("\\") else r"\mathbf"
-            text = rf"{bold}{{{text}}}"
-        elif symbol.face == "arrow":
-            text = rf"\vec{{{text}}}"
-        elif symbol.face == "upright":
-            text = rf"\mathrm{{{text}}}"
-        elif symbol.face == "sans":
-            text = rf"\mathsf {text}"
-        elif len(symbol.letter) > 1 and not symbol.macro:
-            text = rf"\mathit{{{text}}}"
-        if symbol.dots:
-            text = rf"{_DOTS[symbol.dots]}{{{text}}}"
-            text += "{}" if symbol.prime else ""  # a prime on the accent would stand too high
-        text += {"": "", "′": "'", "ᴮ": r"^{\mathrm{B}}"}[symbol.prime]
-        return text if index is None else self.spelt_index(text, index)
+    def indexed(self, node: tree.Indexed) -> Piece:
+        return self._with_index(self.node(node.base), node.index)
 
-    def spelt_index(self, base: str, index: str) -> str:
-        return f"{base}{self.script}_{_braced(index)}"
+    def _with_index(self, base: Piece, node: tree.Formula) -> Piece:
+        index = self.indices(node)
+        text = f"{base.text}{self.script}_{_braced(index.text)}"
+        return atom(text, base.width + SCRIPT * index.width, height=base.height)
 
-    def spelt_sign(self, character: str, is_binary: bool) -> str:
-        text = _SIGNS.get(character, character)
-        if not is_binary or character in "/·×":
-            return f" {text}" if text.startswith("\\") and is_binary else text
-        if character in ",;":
-            return f"{text} "
-        return f"{text.rstrip()} " if character in BREAKS else f" {text.rstrip()} "
+    def numeral(self, node: tree.Numeral) -> Piece:
+        text = node.digits.replace(",", "{,}")
+        return atom(text, DIGIT * len(node.digits), Binding.NUMBER)
 
-    def spelt_gap(self, before: Formula, after: Formula, is_thin: bool) -> str:
-        if is_thin:
-            return self.thin if not isinstance(before, Big) else " "
-        return " " if isinstance(before, Numeral | Big) or isinstance(after, FunctionCall) else ""
+    def sign(self, node: tree.Sign, *, is_binary: bool = False) -> Piece:
+        text = _SIGNS.get(node.character, node.character)
+        if not is_binary or node.character in "/·×":
+            text = f" {text}" if text.startswith("\\") and is_binary else text
+        elif node.character in ",;":
+            text = f"{text} "
+        else:
+            before = "" if node.character in BREAKS else " "
+            text = f"{before}{text.rstrip()} "
+        return atom(text, _SIGN_WIDTHS.get(node.character, _UNKNOWN))
 
-    def spelt_function(self, function: str, exponent: int, argument: Piece) -> str:
-        known = function in FUNCTIONS
-        head = f"\\{function}" if known else rf"\operatorname{{{function.replace('_', '')}}}"
-        if exponent != 1:
-            head += f"^{_braced(str(exponent))}"
-        return f"{head} " if argument.text[0].isalnum() else head
+    def between(self, before: tree.Formula, after: tree.Formula) -> Piece:
+        if _is_thin(before, after) or self._is_short(after):
+            return atom(" " if isinstance(before, tree.Big) else self.thin, THIN)
+        is_parted = isinstance(before, tree.Numeral | tree.Big)
+        return atom(" " if is_parted or isinstance(after, tree.FunctionCall) else "", 0.0)
 
-    def spelt_power(self, base: Formula, inside: str, exponent: str) -> str:
-        # a prime is a superscript, and TeX takes one superscript only
-        is_raised = isinstance(base, Symbol) and (
-            base.prime == "ᴮ" or (base.prime and base.index is not None)
+    def functioncall(self, node: tree.FunctionCall) -> Piece:
+        name, exponent = node.function, tree.Numeral(str(node.exponent))
+        if self._is_short(node):
+            letter = tree.Symbol(name[0], index=node.argument)
+            return self.node(letter if node.exponent == 1 else tree.Power(letter, exponent))
+        width = _FUNCTION_WIDTHS.get(name) or sum(map(_letter_width, name))
+        width += OPERATOR_SPACE
+        head = f"\\{name}"
+        if name not in FUNCTIONS:
+            head = rf"\operatorname{{{name.replace('_', '')}}}"
+        if node.exponent != 1:
+            width += SCRIPT * DIGIT
+            head += f"^{_braced(exponent.digits)}"
+        argument = self.node(node.argument)
+        head += " " if argument.text[0].isalnum() else ""
+        return self.glued((atom(head, width), argument))
+
+    def _is_short(self, part: tree.Formula) -> bool:
+        """Whether a function is abbreviated to a letter, and so stands as one among factors."""
+        return (
+            self.short and isinstance(part, tree.FunctionCall) and part.function in ("sin", "cos")
         )
-        is_whole = is_raised or isinstance(base, Rate | Radical)
-        return f"{{{inside}}}^{_braced(exponent)}" if is_whole else f"{inside}^{_braced(exponent)}"
 
-    def spelt_bracket(self, bracket: str, size: Size, is_open: bool) -> str:
-        return _LEFT[size][not is_open] + bracket
+    def power(self, node: tree.Power) -> Piece:
+        base, raised = node.base, self.node(node.exponent)
+        exponent, room = f"^{_braced(raised.text)}", SCRIPT * raised.width
+        if isinstance(base, _RAISED):
+            base = tree.Bracket(base)
+        if isinstance(base, tree.Bracket):
+            within = self.node(base.inside)
+            if self._size_around(within) != _STRETCHED:
+                return self.around(within, base.kind, exponent, room)
+        inside = self.node(base)
+        # a prime is a superscript, and TeX takes one superscript only
+        is_whole = isinstance(base, tree.Rate | tree.Radical) or (
+            isinstance(base, tree.Symbol)
+            and (base.prime == "ᴮ" or (base.prime and base.index is not None))
+        )
+        text = f"{{{inside.text}}}" if is_whole else inside.text
+        return atom(text + exponent, inside.width + room, Binding.POWER, inside.height)
 
-    def spelt_matrix(self, rows: Sequence[Sequence[Piece]]) -> str:
+    def fraction(self, node: tree.Fraction) -> Piece:
+        above, below = self.node(node.above), self.node(node.below)
+        return _quotient(above, below, max(above.height, below.height, Height.TALL))
+
+    def rate(self, node: tree.Rate) -> Piece:
+        """The quotient of differentials; the whole of a bracket stands behind it."""
+        if isinstance(node.of, tree.Bracket):
+            return self.glued((self.rate(tree.Rate(tree.row(), node.order)), self.node(node.of)))
+        whole = _quotient(*self.differentials(node), Height.RATE)
+        return atom(whole.text, whole.width * (SCRIPT if self.small else 1.0), height=Height.RATE)
+
+    def bracket(self, node: tree.Bracket) -> Piece:
+        return self.around(self.node(node.inside), node.kind)
+
+    def around(self, inside: Piece, kind: str, exponent: str = "", room: float = 0.0) -> Piece:
+        size = left, right, larger = self._size_around(inside)
+        width = BRACKET + larger
+        # the last line may hold nothing else of the bracket
+        end = atom(right + kind[1] + exponent, width + room)
+        whole = self.within(atom(left + kind[0], width), inside, end)
+        return whole.solid() if size == _STRETCHED else whole
+
+    def _size_around(self, inside: Piece) -> tuple[str, str, float]:
+        """No line can end within brackets that are stretched."""
+        if inside.height == Height.FLAT:
+            return _FLAT
+        return _LARGE if inside.height == Height.RATE or self.loose else _STRETCHED
+
+    def radical(self, node: tree.Radical) -> Piece:
+        inside = self.node(node.inside)
+        height = Height.ROOTED if inside.height >= Height.TALL else inside.height
+        return atom(rf"\sqrt{{{inside.text}}}", inside.width + ROOT, height=height)
+
+    def matrix(self, node: tree.Matrix) -> Piece:
+        small = replace(self, small=True)
+        rows: list[list[Piece]] = []
+        for line in node.rows:
+            # a rate in a matrix is in small type, unless a fraction beside it is not
+            pieces = ((small.write(entry), entry) for entry in line)
+            rows.append([p if p.height <= Height.RATE else self.write(e) for p, e in pieces])
+        columns = [max(entry.width for entry in column) for column in zip(*rows, strict=True)]
+        width = sum(columns) + COLUMN_GAP * (len(columns) - 1) + TALL_BRACKETS
         # fractions in their full height, but for those within others
         high = {True: r"\displaystyle ", False: ""}
-        lines = [" & ".join(high[e.height >= Height.TALL] + e.text for e in row) for row in rows]
-        text = lines[0]
-        for (above, below), line in zip(pairwise(rows), lines[1:], strict=True):
+        texts = [" & ".join(high[e.height >= Height.TALL] + e.text for e in row) for row in rows]
+        text = texts[0]
+        for (above, below), next_line in zip(pairwise(rows), texts[1:], strict=True):
             upper, lower = (max(entry.height for entry in cells) for cells in (above, below))
             # points: dots want some air, fractions more, and roots in them most
             if max(upper, lower) == Height.RATE:
@@ -111,31 +228,25 @@ class LatexPen(SheetPen):
                 distance = 13 if Height.ROOTED in (upper, lower) else 10
             else:
                 distance = 7 if lower else 2
-            text += self.row_end.format(distance) + line
-        return _environment("pmatrix", text)
+            text += self.row_end.format(distance) + next_line
+        return atom(environment("pmatrix", text), width, Binding.BRACKET, Height.TALL)
 
-    def spelt_big(self, sign: str, below: str, above: str) -> str:
+    def big(self, node: tree.Big) -> Piece:
+        below, above = (self.node(b).text if b else "" for b in (node.below, node.above))
         lower = f"{self.script}_{_braced(below)}" if below else ""
-        return _BIG[sign] + lower + (f"^{_braced(above)}" if above else "")
+        return atom(_BIG[node.sign] + lower + (f"^{_braced(above)}" if above else ""), BIG)
 
-    def spelt_differential(self, letter: str) -> str:
-        return r"\partial " if letter == "∂" else letter
+    def words(self, node: tree.Words) -> Piece:
+        return atom(rf"\text{{{node.words}}}", 0.5 * len(node.words))
 
-    def continued(self, text: str, indent: int) -> str:
-        return r"\quad" * indent + f" {{}}{text}" if indent else text
+    def differential(self, node: tree.Differential) -> Piece:
+        return atom(r"\partial " if node.letter == "∂" else node.letter, 0.62)
 
-    def aligned(self, lines: Sequence[Aligned], is_high: bool) -> str:
-        return _environment("aligned", self.joined(map(self.line, lines), is_high))
-
-    def line(self, line: Aligned) -> str:
-        """Head, sign and body; a line that goes on is indented."""
-        sign = f"{line.sign} " if line.sign else ""
-        return f"{line.head} &{sign}{self.body(line)}".strip()
-
-    def gathered(self, lines: Sequence[str], is_high: bool) -> str:
-        return _environment("gathered", self.joined(lines, is_high))
+    def gap(self, _: tree.Gap) -> Piece:
+        return atom(WIDE_GAP, 2 * QUAD)
 
     def joined(self, lines: Iterable[str], is_high: bool) -> str:
+        """Lines below one another; whether they are high."""
         return self.row_end.format(4 if is_high else 2).join(lines)
 
 
@@ -148,9 +259,40 @@ class MarkdownPen(LatexPen):
     script: ClassVar[str] = " "
 
 
+class WebPen(LatexPen):
+    """LaTeX that becomes MathML, whose style sheet settles the distance between rows."""
+
+    row_end: ClassVar[str] = " \\\\\n"
+    after_accent: ClassVar[str] = ""
+
+
+WIDE_GAP = r"\qquad "
+
+
+def environment(name: str, inside: str) -> str:
+    return f"\\begin{{{name}}}\n{inside}\n\\end{{{name}}}"
+
+
+def _letter_width(letter: str) -> float:
+    return _WIDTHS.get(letter) or (_CAPITAL if letter.isalpha() else _UNKNOWN)
+
+
+def _quotient(above: Piece, below: Piece, height: Height) -> Piece:
+    width = max(above.width, below.width) + FRACTION
+    return atom(rf"\frac{{{above.text}}}{{{below.text}}}", width, height=height)
+
+
 def _braced(script: str) -> str:
     return script if len(script) == 1 else f"{{{script}}}"
 
 
-def _environment(name: str, inside: str) -> str:
-    return f"\\begin{{{name}}}\n{inside}\n\\end{{{name}}}"
+def _is_thin(before: tree.Formula, after: tree.Formula) -> bool:
+    """A thin space stands between letters; numbers, functions and signs bring their own."""
+    if isinstance(before, tree.Words) or isinstance(after, tree.Words | tree.FunctionCall):
+        return False
+    if isinstance(before, tree.Bracket) and isinstance(after, tree.Bracket):
+        return False
+    if tree.is_differential(before):
+        is_word = isinstance(after, tree.Symbol) and len(after.letter) > 1
+        return is_word and before == tree.Differential()
+    return not isinstance(before, tree.Numeral)

@@ -141,9 +141,10 @@ def listed_entries(
     ]
 
 
-def matrix_of(matrix: sp.MatrixBase, letters: Letters) -> list[list[tree.Formula]]:
-    """The entries of a matrix, row by row."""
-    return [[formula_of(entry, letters) for entry in line] for line in matrix.tolist()]
+def matrix_of(matrix: sp.MatrixBase, letters: Letters) -> tree.Matrix:
+    return tree.Matrix(
+        tuple(tuple(formula_of(entry, letters) for entry in line) for line in matrix.tolist())
+    )
 
 
 class _ScalarWalk:

@@ -1,7 +1,7 @@
 """A formula as a small tree: what is written and in which order, before any pen writes it.
 
 Nodes are immutable and hashable. Products are rows of factors, sums are rows with signs between
-the terms; the pens (LaTeX, Markdown, MathML, Unicode) choose spaces and the sizes of brackets.
+the terms; the pens (LaTeX and Unicode) choose spaces and the sizes of brackets.
 """
 
 from __future__ import annotations

@@ -1,16 +1,14 @@
 """Printed formulas and generated functions, read back as numbers with 50 digits.
 
-These readers know nothing of the package: they read LaTeX, MathML, Python, C and JavaScript as a
+These readers know nothing of the package: they read LaTeX, Python, C and JavaScript as a
 person does, and compute with what they find.
 """
 
 from __future__ import annotations
 
 import re
-import unicodedata
 from collections.abc import Callable, Iterator
 from typing import Any
-from xml.etree import ElementTree
 
 from helpers.witness import hat, mp, unhat
 
@@ -247,68 +245,3 @@ class Formula:
         prime = "'" if self._has("'") else ""
         index = "_" + "".join(self._group()) if self._has("_") else ""
         return name + ("'" if prime or self._has("'") else "") + index
-
-
-# MathML
-
-_SIGNS = {"−": "-", "×": r"\times", "·": r"\cdot", "′": "'", "∂": r"\partial"}
-_DOTS = {"˙": r"\dot", "¨": r"\ddot"}
-_NAMED = {name.lstrip("\\") for name in _FUNCTIONS}
-
-
-def latex_of(mathml: str) -> str:
-    """A `math` element in the LaTeX that `Formula` reads."""
-    return _spelt(ElementTree.fromstring(mathml.replace("&ApplyFunction;", "")))
-
-
-def _spelt(element: ElementTree.Element) -> str:
-    tag = element.tag.rpartition("}")[2]
-    parts = [_spelt(child) for child in element]
-    match tag, parts:
-        case (("mi" | "mn" | "mo" | "mtext"), _):
-            return _letters(element.text or "")
-        case "mspace", _:
-            return r" \qquad " if element.get("width") == "2em" else ""
-        case "mfrac", (above, below):
-            return rf"\frac{{{above}}}{{{below}}}"
-        case "msqrt", _:
-            return rf"\sqrt{{{' '.join(parts)}}}"
-        case "mover", (base, accent):
-            return f"{_DOTS.get(accent, accent)}{{{base}}}"
-        case "msub", (base, index):
-            return f"{base}_{{{index}}}"
-        case "msubsup", (base, index, above):
-            return f"{base}{above}_{{{index}}}"
-        case "msup", (base, exponent):
-            base = f"{{{base}}}" if element[0].tag == "mrow" else base
-            if exponent.startswith("'"):
-                base, exponent = f"{base}'", exponent[1:].strip()
-            return f"{base}^{{{exponent}}}" if exponent else base
-        case "mtr", _:
-            return " & ".join(parts)
-        case "mtable", _:
-            rows = r" \\ ".join(parts)
-            return rf"\begin{{aligned}}{rows}\end{{aligned}}"
-    if tag == "mrow" and [child.tag for child in element] == ["mo", "mtable", "mo"]:
-        return parts[1].replace("{aligned}", "{pmatrix}")
-    return " ".join(parts)
-
-
-def _letters(text: str) -> str:
-    if text in _NAMED:
-        return rf"\{text} "
-    return "".join(map(_letter, text))
-
-
-def _letter(character: str) -> str:
-    plain = unicodedata.normalize("NFKD", character) if character.isalnum() else character
-    name = unicodedata.name(plain[0], "")
-    found = f"\\{name.rpartition(' ')[2].lower()} " if name.startswith("GREEK") else plain
-    if "CAPITAL" in name and name.startswith("GREEK"):
-        found = f"\\{found[1:].capitalize()}"
-    style = unicodedata.name(character, "")
-    if "MATHEMATICAL BOLD" in style:
-        return rf"\mathbf{{{found}}}"
-    if "SANS-SERIF" in style:
-        return rf"\mathsf {found}"
-    return _SIGNS.get(character, found)

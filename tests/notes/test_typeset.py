@@ -14,7 +14,6 @@ from helpers.typesetting import BEGIN, END, warnings_of
 from rigidsym.errors import MissingTool, ToolFailed
 from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.scalars import matrix_of
-from rigidsym.formula.tree import Matrix
 from rigidsym.mechanics.derive import derive
 from rigidsym.models.library import rotation_from
 from rigidsym.models.parametrisations import (
@@ -110,8 +109,8 @@ def _formulas_with_widths(angles: tuple[str, ...]) -> list[tuple[str, float]]:
         letters = letters_of(motion.arguments)
         for step in motion.steps:
             formulas = [step.quantity.symbol, *(proof.claim for proof in step.proofs)]
-            rows = matrix_of(step.expression, letters)
-            formulas += [*chain(*rows), Matrix(tuple(map(tuple, rows)))]
+            matrix = matrix_of(step.expression, letters)
+            formulas += [*chain(*matrix.rows), matrix]
             for pen in (LatexPen(), LatexPen(short=True)):
                 widths |= {piece.text: piece.width for piece in map(pen.write, formulas)}
     return list(widths.items())

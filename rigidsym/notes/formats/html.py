@@ -6,14 +6,18 @@ pieces that are made here.
 
 from __future__ import annotations
 
+import re
 from html import escape as escape_markup
 from itertools import pairwise
 
+from math_core import LatexToMathML
+
 from rigidsym.formula.display import Display, display, spoken
-from rigidsym.formula.mathml_pen import MathmlPen, math
-from rigidsym.formula.pen import Piece
+from rigidsym.formula.latex_pen import WebPen
+from rigidsym.formula.pen import Height, Piece
 from rigidsym.formula.reader import text_of
 from rigidsym.formula.tree import Formula
+from rigidsym.formula.unicode_pen import UnicodePen
 from rigidsym.notes.document import (
     Document,
     Equation,
@@ -35,6 +39,7 @@ _IN_WORDS = 0.75  # of a display's ems: what a formula among words may take
 _PHONE = 19.0  # ems of a display on a screen 360 pixels wide
 _SAFE = 1.08  # fonts differ
 _POINTS = ".,;:)"
+_INLINE = 13.0  # ems of a formula between words on a phone
 _SMALLER = 1.45  # times as many on a phone in smaller type, which can still be read
 
 
@@ -59,6 +64,42 @@ def escape(words: str) -> str:
     return escape_markup(cleaned(words))
 
 
+_CONVERTER = LatexToMathML(fancy_error=False)
+_MENDED = (
+    ('<menclose notation="box">', '<mrow class="boxed">'),  # menclose is not in MathML Core
+    ("</menclose>", "</mrow>"),
+    # the validator of the W3C knows these of mstyle only; the level is that of the display
+    (' scriptlevel="0"', ""),
+    ('<mrow displaystyle="true">', '<mrow class="tall">'),
+    ("<mo>′</mo>", '<mo class="prime">′</mo>'),  # browsers set it too high
+    # and a large bracket with an exponent in the size of a letter
+    (r"<msup>(<mo minsize[^>]*>.</mo>)", r'\1<msup><mspace height="1.1em"/>'),
+)
+
+
+def math(latex: str, spoken: str, *, is_display: bool = False, is_tall: bool = False) -> str:
+    """A `math` element, with `spoken` for readers that know no MathML.
+
+    Fractions between words keep the height of a display if `is_tall`.
+    """
+    text = str(_CONVERTER.convert_with_local_state(latex, displaystyle=is_display))
+    for written, mended in _MENDED:
+        text = re.sub(written, mended, text)
+    kind = ' class="tall"' if is_tall else ""
+    return text.replace("<math", f'<math alttext="{escape_markup(spoken)}"{kind}', 1)
+
+
+def _parts(piece: Piece) -> list[str]:
+    """A formula among words, cut before each sign outside all brackets."""
+    parts: list[str] = []
+    for chunk in piece.chunks:
+        if parts and chunk.level:
+            parts[-1] += f" {chunk.text}"
+        else:
+            parts.append(chunk.text)
+    return parts
+
+
 class HtmlPrinter(NotePrinter):
     width = _PAGE
     words = staticmethod(escape)
@@ -66,7 +107,7 @@ class HtmlPrinter(NotePrinter):
 
     def __init__(self, document: Document) -> None:
         self.notation = document.letters.notation
-        super().__init__(document, MathmlPen(self.notation))
+        super().__init__(document, WebPen(self.notation))
         self._math = {
             equation: math(shown.text, spoken(equation, document.letters), is_display=True)
             for equation, shown in self.shown.items()
@@ -174,7 +215,7 @@ class HtmlPrinter(NotePrinter):
                 after = text[place + 1] if place + 1 < len(text) else ""
                 words = after if isinstance(after, str) else ""
                 held = len(words) - len(words.lstrip(_POINTS))
-                parts = [chunk.text for chunk in self.pen.inline(span).chunks]
+                parts = self.inline(span)
                 if written and written[-1].endswith("("):
                     written[-1] = written[-1][:-1]
                     parts[0] = f'<span class="whole">({parts[0]}</span>'
@@ -185,8 +226,17 @@ class HtmlPrinter(NotePrinter):
                 written.append(self.span(span))
         return "".join(written)
 
-    def formula_of(self, piece: Piece) -> str:
-        return piece.text
+    def formula_of(self, formula: Formula) -> str:
+        return " ".join(self.inline(formula))
+
+    def inline(self, formula: Formula) -> list[str]:
+        """As elements; one too wide for a phone in parts that may go on several lines."""
+        piece, said = self.pen.write(formula), UnicodePen(self.notation).write(formula)
+        parts, texts = [piece.text], [said.text]
+        if piece.width > _INLINE and len(_parts(piece)) == len(_parts(said)):
+            parts, texts = _parts(piece), _parts(said)
+        is_tall = piece.height > Height.FLAT
+        return [math(p, t, is_tall=is_tall) for p, t in zip(parts, texts, strict=True)]
 
     def code(self, text: str) -> str:
         # a line may end within the long name of a function

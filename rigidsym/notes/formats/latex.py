@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from rigidsym.formula.display import PAGE, Display, pack
 from rigidsym.formula.latex_pen import LatexPen
-from rigidsym.formula.pen import Piece
 from rigidsym.formula.tree import Formula
 from rigidsym.notes.document import (
     Document,
@@ -126,12 +125,12 @@ class _LatexPrinter(NotePrinter):
 
     def _over_pages(self, equation: Equation, shown: Display) -> list[str]:
         """Lines between which a page may end, which a box would keep together."""
-        environment = "align*" if shown.are_aligned else "gather*"
+        environment = shown.environment.replace("ed", "*")  # align* for aligned
         number = [rf"\numbered{{{self._label(equation.label)}}}"] if equation.number else []
         return [
             *(self._from(equation.number) if equation.number else []),
             rf"{{\freely\begin{{{environment}}}",
-            shown.joined(self.pen),
+            shown.inside,
             *number,
             rf"\end{{{environment}}}}}",
         ]
@@ -208,9 +207,6 @@ class _LatexPrinter(NotePrinter):
     def figure_number(self, number: int) -> str:
         """As TeX counts them, which is the place of the figure in a larger document."""
         return rf"\ref{{{self._label(f'figure-{number}')}}}"
-
-    def formula_of(self, piece: Piece) -> str:
-        return f"${piece.text}$"
 
     def _typed(self, code: str) -> str:
         return rf"\texttt{{{escape(code)}}}"

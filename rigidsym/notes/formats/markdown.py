@@ -12,7 +12,6 @@ from collections.abc import Sequence
 
 from rigidsym.formula.display import pack
 from rigidsym.formula.latex_pen import MarkdownPen
-from rigidsym.formula.pen import Piece
 from rigidsym.notes.document import (
     Document,
     Equation,
@@ -103,9 +102,6 @@ class _MarkdownPrinter(NotePrinter):
 
     def _row(self, cells: Sequence[Text]) -> str:
         return f"| {' | '.join(map(self.text, cells))} |"
-
-    def formula_of(self, piece: Piece) -> str:
-        return f"${piece.text}$"
 
     def code(self, text: str) -> str:
         return _code(text)

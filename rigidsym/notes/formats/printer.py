@@ -9,8 +9,7 @@ from collections.abc import Callable, Iterator
 from typing import Any, ClassVar
 
 from rigidsym.formula.display import Done, display
-from rigidsym.formula.pen import Piece
-from rigidsym.formula.sheet_pen import SheetPen
+from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.tree import Formula
 from rigidsym.notes.document import (
     Cited,
@@ -36,14 +35,14 @@ class NotePrinter:
     width: ClassVar[float]  # ems of a display
     beside_number: ClassVar[float | None] = None  # the same beside a number, if that takes room
     words: Callable[[str], str]
-    formula_of: Callable[[Piece], str]  # among words
+
     code: Callable[[str], str]
     strong: Callable[[str], str]
     reference: Callable[[str], str]  # to an equation, by its label
     citation: Callable[[int, str], str]  # of a source, by its number, and a place in it
     key: Callable[[int], str]  # of a source, by its number
 
-    def __init__(self, document: Document, pen: SheetPen) -> None:
+    def __init__(self, document: Document, pen: LatexPen) -> None:
         self.document = document
         self.pen = pen
         beside = self.beside_number or self.width
@@ -70,6 +69,10 @@ class NotePrinter:
     def body(self, section: Section) -> str:
         return self.separator.join(map(self.block, section.blocks))
 
+    def formula_of(self, formula: Formula) -> str:
+        """A formula among words."""
+        return f"${self.pen.write(formula).text}$"
+
     def block(self, block: NoteBlock) -> str:
         return str(getattr(self, type(block).__name__.lower())(block))
 
@@ -81,7 +84,7 @@ class NotePrinter:
             case str():
                 return self.words(span)
             case Formula():
-                return self.formula_of(self.pen.inline(span))
+                return self.formula_of(span)
             case Code(text):
                 return self.code(text)
             case Strong(text):
