@@ -162,6 +162,21 @@ def test_every_page_is_valid(tmp_path: Path):
     assert faults_of(map(page_of, motions), tmp_path) == ""
 
 
+def test_mathml_is_what_browsers_and_validators_know():
+    latex = r"\boxed{\begin{aligned}a' &= \begin{pmatrix} \displaystyle \frac{b}{2} \end{pmatrix} "
+    latex += r"+ \Bigl(\frac{d\phi}{dt}\Bigr)^2 \end{aligned}}"
+    written = html.math(latex, "a < b", is_display=True)
+    assert written.startswith('<math alttext="a &lt; b" display="block"><mrow class="boxed">')
+    for part in (
+        '<mo class="prime">′</mo>',
+        '</mo><msup><mspace height="1.1em"/><mn>2</mn></msup>',
+    ):
+        assert part in written
+    assert '<mrow class="tall"><mfrac>' in written
+    assert "menclose" not in written and "scriptlevel" not in written
+    assert html.math("a", "a", is_tall=True) == '<math alttext="a" class="tall"><mi>a</mi></math>'
+
+
 WIDE = """
 [...document.querySelectorAll(".formula, .scroll")]
   .filter((box) => box.offsetParent && box.scrollWidth > box.clientWidth + 1)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -53,7 +54,9 @@ def titles(document: Document) -> list[str]:
 @pytest.mark.parametrize("ending", ["tex", "html", "md"])
 def test_the_note_of_the_lectures_rotation(golden, ending):
     motion = derived("ZXZ")
-    golden(f"notes/{ZXZ}.{ending}", note(motion, module=f"{motion.name}.py").render(ending))
+    text = note(motion, module=f"{motion.name}.py").render(ending)
+    # the inside of MathML is from the LaTeX, by a package whose versions differ in details
+    golden(f"notes/{ZXZ}.{ending}", re.sub(r"(<math .*?>).*?</math>", r"\1", text))
 
 
 # rotations whose notes say what the note of the lecture has no occasion to say
