@@ -173,7 +173,7 @@ def test_mathml_is_what_browsers_and_validators_know():
     ):
         assert part in written
     assert '<mrow class="tall"><mfrac>' in written
-    assert "menclose" not in written and "scriptlevel" not in written
+    assert not re.search("menclose|scriptlevel", written)
     assert html.math("a", "a", is_tall=True) == '<math alttext="a" class="tall"><mi>a</mi></math>'
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rigidsym.formula.display import PAGE, Display, pack
+from rigidsym.formula.display import PAGE, pack
 from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.tree import Formula
 from rigidsym.notes.document import (
@@ -14,7 +14,6 @@ from rigidsym.notes.document import (
     NoteTable,
     Paragraph,
     Section,
-    Span,
     Text,
 )
 from rigidsym.notes.formats.drawings import tikz
@@ -34,12 +33,13 @@ _DELIMITERS = {
 }
 _LINE = 41.5  # ems: 160 mm at 11 points
 _LINE_OF_A_SOURCE = 95  # letters
+_TOGETHER = 8  # lines of a table that stay on one page
 _TALL = 30  # lines of text, of about fifty on a page: more than these may part
 
 
 def render(document: Document) -> str:
     """The note as a LaTeX file; the same document gives the same bytes."""
-    printer = _LatexPrinter(document)
+    printer = _LatexPrinter(document, LatexPen(document.letters.notation))
     sections = [
         {
             "title": escape(section.title),
@@ -76,64 +76,61 @@ def metadata(document: Document) -> str:
 
 
 class _LatexPrinter(NotePrinter):
-    pen: LatexPen
     heading = ""  # of the section; a table need not repeat it as its caption
     words = staticmethod(escape)
     width = _LINE
     beside_number = PAGE
-
-    def __init__(self, document: Document) -> None:
-        super().__init__(document, LatexPen(document.letters.notation))
-        blocks = [block for section in document.sections for block in section.blocks]
-        rows = [block for block in blocks if isinstance(block, EquationRow)]
-        self.rows = {r: pack(r.equations, document.letters, _LINE, self.pen) for r in rows}
+    strong = r"\textbf{{{}}}"
+    reference = r"\eqref{{{label}}}"
+    # as TeX counts them, which is the place of the figure in a larger document
+    figure_number = r"\ref{{{label}}}"
+    figure_title = r"\figuretitle{{Figure}}{{{label}}}"
+    citation = r"\cite{place}{{{label}}}"
+    place_in_source = "[{}]"
 
     def body(self, section: Section) -> str:
         self.heading = section.title
         return super().body(section)
+
+    def label(self, label: str) -> str:
+        """Unique among the notes that may be bound together."""
+        return f"{self.document.name}:{label}"
+
+    def code(self, text: str) -> str:
+        """A line may end within: names in it are long, and no word of them has a hyphen."""
+        typed = _typed(text)
+        return typed.replace(r"\_", r"\_\allowbreak ").replace("(", r"(\allowbreak ")
 
     def paragraph(self, block: Paragraph) -> str:
         # no empty line: a display that follows belongs to the paragraph
         return "\n" + self.text(block.text)
 
     def equationrow(self, block: EquationRow) -> str:
-        return f"\\[\n{self.rows[block]}\n\\]"
+        row = pack(block.equations, self.document.letters, _LINE, self.pen)
+        return f"\\[\n{row}\n\\]"
 
     def equation(self, equation: Equation) -> str:
-        shown = self.shown[equation]
-        announced = self.announced(equation, shown.done)
-        lines = [announced] if announced else []
+        shown, label = self.shown[equation], self.label(equation.label)
+        lines = [announced] if (announced := self.announced(equation)) else []
+        numbers = [e.number or 0 for e in self.document.equations]
+        if equation.number and equation.number - 1 not in (0, *numbers):
+            # the numbers of a theory leave some out, and TeX counts the equations
+            lines.append(rf"\setcounter{{equation}}{{{equation.number - 1}}}")
         if shown.height > _TALL:
-            lines += self._over_pages(equation, shown)
+            # lines between which a page may end, which a box would keep together
+            environment = shown.environment.replace("ed", "*")  # align* for aligned
+            lines += [rf"{{\freely\begin{{{environment}}}", shown.inside]
+            lines += [rf"\numbered{{{label}}}"] if equation.number else []
+            lines.append(rf"\end{{{environment}}}}}")
         elif equation.number:
-            begin = rf"\begin{{resultof}}{{{self._label(equation.label)}}}"
-            lines += [*self._from(equation.number), begin, shown.text, r"\end{resultof}"]
+            lines += [rf"\begin{{resultof}}{{{label}}}", shown.text, r"\end{resultof}"]
         else:
             lines.append(f"\\[\n{shown.text}\n\\]")
-        said = " ".join(f"{claim}." for claim in self.claims(equation))
-        function = self._typed(equation.function) if equation.function else ""
-        if said or function:
-            lines = ["{\\followed", *lines, "}", rf"\remark{{{said}}}{{{function}}}"]
+        remarks = " ".join(f"{claim}." for claim in self.claims(equation))
+        function = _typed(equation.function) if equation.function else ""
+        if remarks or function:
+            lines = ["{\\followed", *lines, "}", rf"\remark{{{remarks}}}{{{function}}}"]
         return "\n".join(lines)
-
-    def _from(self, number: int) -> list[str]:
-        """TeX counts the equations; where the numbers of a theory leave some out, so does TeX."""
-        numbers = (equation.number or 0 for equation in self.document.equations)
-        before = max((n for n in numbers if n < number), default=0)
-        is_next = number == before + 1
-        return [] if is_next else [rf"\setcounter{{equation}}{{{number - 1}}}"]
-
-    def _over_pages(self, equation: Equation, shown: Display) -> list[str]:
-        """Lines between which a page may end, which a box would keep together."""
-        environment = shown.environment.replace("ed", "*")  # align* for aligned
-        number = [rf"\numbered{{{self._label(equation.label)}}}"] if equation.number else []
-        return [
-            *(self._from(equation.number) if equation.number else []),
-            rf"{{\freely\begin{{{environment}}}",
-            shown.inside,
-            *number,
-            rf"\end{{{environment}}}}}",
-        ]
 
     def claim(self, claim: Formula) -> str:
         """A formula in a line of its own height; fractions in small type would be hard to read."""
@@ -141,51 +138,17 @@ class _LatexPrinter(NotePrinter):
         return rf"$\displaystyle {piece.text}$" if piece.height else f"${piece.text}$"
 
     def notetable(self, table: NoteTable) -> str:
-        head, *rows = (list(map(self._cell, row)) for row in (table.head, *table.rows))
         # l for a column of one line a cell, T for the one of words
         columns = "".join("T" if k == table.of_words else "l" for k in range(len(table.head)))
-        parts = self._parts(table)
-        if parts > 1:
-            high = -(-len(rows) // parts)
-            rows += [[""] * len(head)] * (parts * high - len(rows))
-            beside = zip(*(rows[k : k + high] for k in range(0, len(rows), high)), strict=True)
-            rows = [[cell for row in line for cell in row] for line in beside]
-            head = head * parts
-            columns = rf"@{{\hspace{{{_GAPS[parts]}em}}}}".join([columns] * parts)
-        lines = [" & ".join(row) + r" \\" for row in (head, *rows)]
-        is_said = table.caption.lower() in self.heading.lower()
-        caption = "" if is_said else escape(table.caption)
+        rows = (" & ".join(map(self._cell, row)) for row in (table.head, *table.rows))
+        lines = [rf"{row} \\" for row in rows]
+        is_repeated = table.caption.lower() in self.heading.lower()
+        caption = "" if is_repeated else escape(table.caption)
         height = 3 + sum(2.5 if r"\tall" in line else 1.2 for line in lines)
         is_short = bool(caption) and len(lines) <= _TOGETHER
         room = [rf"\room{{{height:.1f}\baselineskip}}"] if is_short else []
-        begin = rf"\begin{{ruled}}{{{columns}}}{{{len(head)}}}{{{caption}}}"
+        begin = rf"\begin{{ruled}}{{{columns}}}{{{len(table.head)}}}{{{caption}}}"
         return "\n".join([*room, begin, f"{{{lines[0]}}}", *lines[1:], r"\end{ruled}"])
-
-    def _parts(self, table: NoteTable) -> int:
-        """In how many parts beside one another a narrow table is set."""
-        if len(table.rows) < _MANY or len(table.head) > 2:
-            return 1
-        for parts in (3, 2):
-            high = -(-len(table.rows) // parts)
-            beside = (table._replace(rows=table.rows[k * high :][:high]) for k in range(parts))
-            width = sum(map(self._width, beside)) + _GAPS[parts] * (parts - 1)
-            if width <= _SLACK * _LINE / _SMALL:
-                return parts
-        return 1
-
-    def _width(self, table: NoteTable) -> float:
-        """About how wide a table is, in ems."""
-        columns = zip(table.head, *table.rows, strict=True)
-        return sum(
-            _COLUMN_GAP + max(sum(map(self._width_of_span, cell)) for cell in column)
-            for column in columns
-        )
-
-    def _width_of_span(self, span: Span) -> float:
-        if isinstance(span, Formula):
-            return self.pen.write(span).width
-        words = span if isinstance(span, str) else span.text
-        return _LETTER * (4 if isinstance(span, EquationReference) else len(words))
 
     def _cell(self, text: Text) -> str:
         written = ""
@@ -201,42 +164,6 @@ class _LatexPrinter(NotePrinter):
         drawing = f"\n\\begin{{drawing}}\n{tikz(figure.drawing)}\n\\end{{drawing}}"
         return f"{drawing}\n\\inthefigure{{{self.figure_words(figure)}}}"
 
-    def figure_title(self, number: int) -> str:
-        return rf"\figuretitle{{Figure}}{{{self._label(f'figure-{number}')}}}"
 
-    def figure_number(self, number: int) -> str:
-        """As TeX counts them, which is the place of the figure in a larger document."""
-        return rf"\ref{{{self._label(f'figure-{number}')}}}"
-
-    def _typed(self, code: str) -> str:
-        return rf"\texttt{{{escape(code)}}}"
-
-    def code(self, text: str) -> str:
-        """A line may end within: names in it are long, and no word of them has a hyphen."""
-        typed = self._typed(text)
-        return typed.replace(r"\_", r"\_\allowbreak ").replace("(", r"(\allowbreak ")
-
-    def strong(self, text: str) -> str:
-        return rf"\textbf{{{escape(text)}}}"
-
-    def reference(self, label: str) -> str:
-        return rf"\eqref{{{self._label(label)}}}"
-
-    def citation(self, number: int, place: str) -> str:
-        return rf"\cite{f'[{escape(place)}]' if place else ''}{{{self.key(number)}}}"
-
-    def key(self, source: int) -> str:
-        """The key of a source, unique among the notes that may be bound together."""
-        return self._label(f"source-{source}")
-
-    def _label(self, label: str) -> str:
-        return f"{self.document.name}:{label}"
-
-
-_TOGETHER = 8  # lines of a table that stay on one page
-_MANY = 8  # rows of a narrow table that are set in two parts or three
-_GAPS = {2: 3, 3: 1}  # ems between them
-_SLACK = 1.05  # by which they may seem too wide: the widths of formulas are upper bounds
-_SMALL = 0.9  # size of a table
-_COLUMN_GAP = 1.1  # ems
-_LETTER = 0.5  # ems
+def _typed(code: str) -> str:
+    return rf"\texttt{{{escape(code)}}}"

@@ -67,9 +67,21 @@ def _inside(text: str) -> str:
     return _DOLLARS.sub(r"`\g<0>`", _SPECIAL.sub(r"\\\1", cleaned(text)))
 
 
+def _code(text: str) -> str:
+    """A code span, in more ticks than the text holds."""
+    ticks = "`" * (1 + max(map(len, _TICKS.findall(text)), default=0))
+    inside = f" {text} " if text.startswith("`") or text.endswith("`") else text
+    return f"{ticks}{inside}{ticks}"
+
+
 class _MarkdownPrinter(NotePrinter):
     width = _WIDTH
     words = staticmethod(_inside)
+    code = staticmethod(_code)
+    strong = "**{}**"
+    reference = "({number})"
+    figure_title = "**Figure {number}.**"
+    citation = "[{number}{place}]"
 
     def section(self, section: Section) -> str:
         return "\n\n".join([f"## {escape(section.title)}", *map(self.block, section.blocks)])
@@ -84,11 +96,12 @@ class _MarkdownPrinter(NotePrinter):
 
     def equation(self, equation: Equation) -> str:
         shown = self.shown[equation]
-        announced = self.announced(equation, shown.done)
         tag = f"\n\\tag{{{equation.number}}}" if equation.number else ""
         function = [_code(equation.function)] if equation.function else []
         remarks = " · ".join([*self.claims(equation), *function])
-        return "\n\n".join(filter(None, [announced, _display(shown.text + tag), remarks]))
+        return "\n\n".join(
+            filter(None, [self.announced(equation), _display(shown.text + tag), remarks])
+        )
 
     def equationrow(self, block: EquationRow) -> str:
         return _display(pack(block.equations, self.document.letters, _WIDTH, self.pen))
@@ -103,25 +116,6 @@ class _MarkdownPrinter(NotePrinter):
     def _row(self, cells: Sequence[Text]) -> str:
         return f"| {' | '.join(map(self.text, cells))} |"
 
-    def code(self, text: str) -> str:
-        return _code(text)
-
-    def strong(self, text: str) -> str:
-        return f"**{escape(text)}**"
-
-    def reference(self, label: str) -> str:
-        return f"({self.document.number(label)})"
-
-    def citation(self, number: int, place: str) -> str:
-        return f"[{number}{f', {_inside(place)}' if place else ''}]"
-
 
 def _display(latex: str) -> str:
     return f"$$\n{latex}\n$$"
-
-
-def _code(text: str) -> str:
-    """A code span, in more ticks than the text holds."""
-    ticks = "`" * (1 + max(map(len, _TICKS.findall(text)), default=0))
-    inside = f" {text} " if text.startswith("`") or text.endswith("`") else text
-    return f"{ticks}{inside}{ticks}"

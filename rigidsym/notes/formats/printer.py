@@ -1,6 +1,6 @@
 """The walk over a document, for every format that is one text: blocks, spans, what is beside them.
 
-A subclass has a method for each kind of block and of span, named after it, and its pen.
+A subclass has its forms of spans, a method named after each kind of block, and its pen.
 """
 
 from __future__ import annotations
@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import Any, ClassVar
 
-from rigidsym.formula.display import Done, display
+from rigidsym.formula.display import display
 from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.tree import Formula
 from rigidsym.notes.document import (
@@ -31,16 +31,17 @@ from rigidsym.notes.words import announcement
 class NotePrinter:
     """Blocks and spans of one document in one format."""
 
-    separator: ClassVar[str] = "\n"  # between two blocks
     width: ClassVar[float]  # ems of a display
     beside_number: ClassVar[float | None] = None  # the same beside a number, if that takes room
     words: Callable[[str], str]
-
     code: Callable[[str], str]
-    strong: Callable[[str], str]
-    reference: Callable[[str], str]  # to an equation, by its label
-    citation: Callable[[int, str], str]  # of a source, by its number, and a place in it
-    key: Callable[[int], str]  # of a source, by its number
+    # forms of spans; {label} is unique in the document
+    strong: ClassVar[str]
+    reference: ClassVar[str]
+    figure_number: ClassVar[str] = "{number}"
+    figure_title: ClassVar[str]
+    citation: ClassVar[str]
+    place_in_source: ClassVar[str] = ", {}"
 
     def __init__(self, document: Document, pen: LatexPen) -> None:
         self.document = document
@@ -61,20 +62,19 @@ class NotePrinter:
             "subtitle": self.words(document.subtitle),
             "byline": self.words(" · ".join(document.byline)),
             "sources": [
-                {"key": self.key(place), "text": self.words(source)}
+                {"key": self.label(f"source-{place}"), "text": self.words(source)}
                 for place, source in enumerate(document.sources, start=1)
             ],
         }
 
     def body(self, section: Section) -> str:
-        return self.separator.join(map(self.block, section.blocks))
-
-    def formula_of(self, formula: Formula) -> str:
-        """A formula among words."""
-        return f"${self.pen.write(formula).text}$"
+        return "\n".join(map(self.block, section.blocks))
 
     def block(self, block: NoteBlock) -> str:
         return str(getattr(self, type(block).__name__.lower())(block))
+
+    def label(self, label: str) -> str:
+        return self.words(label)
 
     def text(self, text: Text) -> str:
         return "".join(map(self.span, text))
@@ -84,42 +84,45 @@ class NotePrinter:
             case str():
                 return self.words(span)
             case Formula():
-                return self.formula_of(span)
+                return self.formula(span)
             case Code(text):
                 return self.code(text)
             case Strong(text):
-                return self.strong(text)
+                return self.strong.format(self.words(text))
             case EquationReference(label):
-                return self.reference(label)
+                number = self.document.number(label)
+                return self.reference.format(label=self.label(label), number=number)
             case FigureReference(number):
-                return self.figure_number(number)
+                return self._of_figure(self.figure_number, number)
             case Cited():
-                return self.citation(self.document.source_number(span), span.place)
+                number = self.document.source_number(span)
+                place = self.place_in_source.format(self.words(span.place)) if span.place else ""
+                label = self.label(f"source-{number}")
+                return self.citation.format(label=label, number=number, place=place)
 
-    def announced(self, equation: Equation, done: Done) -> str:
+    def formula(self, formula: Formula) -> str:
+        """A formula among words."""
+        return f"${self.pen.write(formula).text}$"
+
+    def announced(self, equation: Equation) -> str:
         """What is said before an equation of the way it is set."""
-        return self.text(announcement(equation, done))
+        return self.text(announcement(equation, self.shown[equation].done))
 
     def claims(self, equation: Equation) -> Iterator[str]:
         """What was proved of an equation, and what was not."""
-        kinds = (("Proved", equation.proved), (self.strong("Unproved"), equation.unproved))
-        for kind, claims in kinds:
+        unproved = self.strong.format("Unproved")
+        for kind, claims in (("Proved", equation.proved), (unproved, equation.unproved)):
             if claims:
                 yield f"{kind}: {', '.join(map(self.claim, claims))}"
 
     def claim(self, claim: Formula) -> str:
-        return self.span(claim)
+        return self.formula(claim)
 
     def figure_words(self, figure: Figure) -> str:
         """What is said below a figure."""
         number = self.document.figures.index(figure) + 1
         words = self.text((*figure.caption, " ", *figure.description))
-        return f"{self.figure_title(number)} {words}"
+        return f"{self._of_figure(self.figure_title, number)} {words}"
 
-    def figure_title(self, number: int) -> str:
-        """What a caption begins with."""
-        return self.strong(f"Figure {number}.")
-
-    def figure_number(self, number: int) -> str:
-        """A figure in the text."""
-        return str(number)
+    def _of_figure(self, form: str, number: int) -> str:
+        return form.format(label=self.label(f"figure-{number}"), number=number)
