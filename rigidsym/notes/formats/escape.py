@@ -30,6 +30,7 @@ _SPECIAL = {
     '"': r"\textquotedbl{}",
     "`": r"\textasciigrave{}",
     "\u2011": r"\mbox{-}",  # no line ends there
+    "\u00a0": "~",
 }
 _MATH = {
     "′": "'",
@@ -49,63 +50,38 @@ _MATH = {
 }
 _SCRIPTS = {"<super>": "^", "<sub>": "_"}  # as Unicode tells of ², ₀, ₊ and ₐ
 _PLAIN = frozenset(f"{ascii_letters}{digits}+-=()")  # what LaTeX writes there as it is
-_TEXT_ACCENTS = {"\u0307": r"\.", "\u0308": r"\""}
-_MATH_ACCENTS = {"\u0307": r"\dot", "\u0308": r"\ddot"}
 _PUNCTUATION = "–—‘’“”„…€"
 _MISSING = set("ĦħĸĿŀŉŦŧſ")  # in the range of Latin letters, but not in the T1 fonts
 _LIGATURES = re.compile(r"([-,'])(?=\1)")
-_CLUSTERS = re.compile(r"(?s)(.)([\u0300-\u036f]*)")
 
 
 def escape(text: str) -> str:
     """The text in LaTeX; a character that no font has appears as its code, [U+4E2D]."""
-    clusters = _CLUSTERS.findall(unicodedata.normalize("NFC", text))
-    written = "".join(_cluster(base, marks) for base, marks in clusters)
-    return _LIGATURES.sub(r"\1{}", written)
+    characters = unicodedata.normalize("NFC", text)
+    return _LIGATURES.sub(r"\1{}", "".join(map(_character, characters)))
 
 
 @cache
-def _cluster(base: str, marks: str) -> str:
-    """One character with the accents above it."""
-    if not marks:
-        return _character(base)
-    if len(marks) == 1 and marks in _MATH_ACCENTS:
-        if base in GREEK:
-            return rf"\ensuremath{{{_MATH_ACCENTS[marks]}{{{GREEK[base]}}}}}"
-        return f"{_TEXT_ACCENTS[marks]}{{{_character(base)}}}"
-    return _character(base) + "".join(map(_code, marks))
-
-
 def _character(character: str) -> str:
     if character in _SPECIAL:
         return _SPECIAL[character]
     if formula := _formula(character):
         return rf"\ensuremath{{{formula}}}"
-    if character == "\u00a0":
-        return "~"
     if character.isspace() or unicodedata.category(character).startswith("C"):
         return " "
     is_letter = character <= "\u017e" and character not in _MISSING
-    if is_letter or character in _PUNCTUATION:  # the font has it
-        return character
-    parts = unicodedata.normalize("NFD", character)
-    return _cluster(parts[0], parts[1:]) if len(parts) > 1 else _code(character)
+    is_in_font = is_letter or character in _PUNCTUATION
+    return character if is_in_font else f"[U+{ord(character):04X}]"
 
 
 def _formula(character: str) -> str:
     """A character of formulas, also above or below the line, in LaTeX; empty for others."""
-    if character in _MATH:
-        return _MATH[character]
     place, *codes = unicodedata.decomposition(character).split() or [""]
-    if place in _SCRIPTS and len(codes) == 1:
+    if character not in _MATH and place in _SCRIPTS and len(codes) == 1:
         base = chr(int(codes[0], 16))
         written = base if base in _PLAIN else _formula(base)
         return f"{_SCRIPTS[place]}{{{written}}}" if written else ""
-    return GREEK.get(character, "")
-
-
-def _code(character: str) -> str:
-    return f"[U+{ord(character):04X}]"
+    return _MATH.get(character) or GREEK.get(character, "")
 
 
 # controls, formats such as a change of direction, surrogates, unassigned; line separators
