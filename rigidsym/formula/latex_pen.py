@@ -6,7 +6,6 @@ compares.
 
 from __future__ import annotations
 
-import unicodedata
 from collections.abc import Iterable
 from dataclasses import replace
 from itertools import pairwise
@@ -14,7 +13,7 @@ from typing import ClassVar
 
 from rigidsym.formula import tree
 from rigidsym.formula.pen import BREAKS, Binding, Height, Pen, Piece, atom
-from rigidsym.formula.reader import FUNCTIONS, LETTERS, SIGNS
+from rigidsym.formula.reader import FUNCTIONS, GREEK, LETTERS, SIGNS, VARIANTS
 
 SCRIPT = 0.8  # size of indices and exponents
 OPERATOR_SPACE = 0.34  # thin spaces on both sides of a function
@@ -68,15 +67,12 @@ _BIG = {"∑": r"\sum", "∫": r"\int"}
 _RAISED = tree.Row | tree.Fraction | tree.Power | tree.FunctionCall  # in brackets, as a base
 
 
-def _macro(letter: str) -> str:
-    kind, _, name = unicodedata.name(letter).partition(" LETTER ")
-    macro = name.lower().replace("lamda", "lambda")
-    return f"\\{macro.title() if kind == 'GREEK CAPITAL' else macro}"
-
-
-# without omicron and the capitals that look like Latin letters, which have no macro
-GREEK = {letter: _macro(letter) for letter in _GREEK_WIDTHS}
-_LETTERS = GREEK | {letter: macro for macro, letter in LETTERS.items()} | {"∗": "*"}
+_MACROS = {letter: f"\\{name}" for name, letter in (*GREEK.items(), *VARIANTS.items())}
+_MACROS |= {"λ": r"\lambda", "Λ": r"\Lambda"}
+# omicron and the capitals that look like Latin letters have no macro
+_MACROS |= {g: rf"\mathrm{{{x}}}" for g, x in zip("ΑΒΕΖΗΙΚΜΝΟΡΤΧο", "ABEZHIKMNOPTXo", strict=True)}
+GREEK_MACROS = {letter: _MACROS[letter] for letter in _GREEK_WIDTHS}
+_LETTERS = _MACROS | {letter: macro for macro, letter in LETTERS.items()} | {"∗": "*"}
 
 
 class LatexPen(Pen):
@@ -88,12 +84,12 @@ class LatexPen(Pen):
     after_accent: ClassVar[str] = "{}"  # a prime on the accent would stand too high
 
     def symbol(self, node: tree.Symbol) -> Piece:
-        text = node.macro or _LETTERS.get(node.letter, node.letter)
+        text = _LETTERS.get(node.letter, node.letter)
         is_word = len(node.letter) > 1
         face, factor = _FACES[node.face]
         if node.face == "bold" and text.startswith("\\"):
             face = r"\boldsymbol{{{}}}"
-        elif node.face == "italic" and is_word and not node.macro:
+        elif node.face == "italic" and is_word:
             face = r"\mathit{{{}}}"
         text = _DOTS[node.dots].format(face.format(text))
         if node.dots and node.prime:

@@ -15,20 +15,25 @@ behind `\,` it is a factor.
 from __future__ import annotations
 
 import re
-import unicodedata
 from collections.abc import Iterable
 from dataclasses import replace
 from functools import lru_cache
 from typing import Any, Literal, TypeVar
 
-import sympy as sp
 from sympy.printing.conventions import split_super_sub
-from sympy.printing.pretty.pretty_symbology import pretty_symbol, pretty_use_unicode
 
 from rigidsym.errors import AlgebraError
 from rigidsym.formula import tree
 from rigidsym.formula.tree import Formula
 
+_NAMES = (
+    "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi omicron pi rho sigma "
+    "tau upsilon phi chi psi omega"
+)
+GREEK = dict(zip(_NAMES.split(), "αβγδεζηθικλμνξοπρστυφχψω", strict=True))
+GREEK |= {name.title(): letter.upper() for name, letter in GREEK.items()}
+GREEK |= {"lamda": "λ", "Lamda": "Λ"}  # in SymPy, since `lambda` is a keyword of Python
+VARIANTS = {"varphi": "ϕ", "vartheta": "ϑ", "varepsilon": "ϵ", "varrho": "ϱ", "varsigma": "ς"}
 FUNCTIONS = ("sin", "cos", "tan", "cot", "det", "exp", "arctan")
 _TOKEN = re.compile(
     r"\\text\{(?P<text>[^{}]*)\}|\\mathit\{(?P<word>[^{}]*)\}|\\operatorname\{(?P<name>\w+)\}"
@@ -88,17 +93,6 @@ def decimal(value: float, most: int = 6) -> tree.Formula:
         ten = rf"10^{{{int(power)}}}"
         found = formula(ten) if digits == "1" else formula(rf"#1\cdot {ten}", found)
     return tree.row(tree.MINUS, found) if value < 0 else found
-
-
-@lru_cache(maxsize=256)
-def greek_letter(name: str) -> str:
-    """The letter with a name such as Omega; empty where there is none."""
-    kind = "CAPITAL" if name[0].isupper() else "SMALL"
-    letter = name.upper().replace("LAMBDA", "LAMDA")
-    try:
-        return unicodedata.lookup(f"GREEK {kind} LETTER {letter}")
-    except KeyError:
-        return ""
 
 
 class _TexReader:
@@ -227,7 +221,7 @@ class _TexReader:
             return tree.Fraction(above, below)
         if token == r"\sqrt":
             return tree.Radical(self._argument())
-        letter = greek_letter(token[1:])
+        letter = GREEK.get(token[1:])
         return tree.Symbol(letter) if letter else None
 
     def _call(self, function: str) -> tree.Formula:
@@ -269,9 +263,6 @@ def _faced(inside: tree.Formula, face: tree.Face) -> tree.Formula:
     return inside
 
 
-_VARIANTS = {"varphi": "φ", "vartheta": "ϑ", "varepsilon": "ε", "varrho": "ϱ", "varsigma": "ς"}
-
-
 @lru_cache(maxsize=1024)
 def named(label: str, order: int = 0) -> tree.Formula:
     """A name, or its derivative with respect to time: φ̇₁, and d yaw₁/dt.
@@ -280,42 +271,21 @@ def named(label: str, order: int = 0) -> tree.Formula:
     derivative of a word is a quotient in every notation.
     """
     head, above, below = split_super_sub(label)
-    index = tuple(map(_part, below))
+    index = tree.row(*map(_part, below)) if below else None
     prime: tree.Prime = "′" if head.endswith("'") else ""  # I'_12: of the body
-    head = head.removesuffix("'")
-    symbol = tree.Symbol(
-        _letter(head),
-        prime=prime,
-        index=(index[0] if len(index) == 1 else tree.Row(index)) if index else None,
-        macro=_macro(head),
-    )
-    is_word = len(symbol.letter) > 1 and not symbol.macro
-    if not is_word:
-        symbol = replace(symbol, dots=order)
+    symbol = _letter(head.removesuffix("'"))
+    is_word = len(symbol.letter) > 1
+    symbol = replace(symbol, prime=prime, index=index, dots=0 if is_word else order)
     raised = tree.Power(symbol, tree.Row(tuple(map(_part, above)))) if above else symbol
     return tree.Rate(raised, order) if is_word and order else raised
 
 
 def _part(text: str) -> tree.Formula:
-    return tree.Numeral(text) if text.isdigit() else tree.Symbol(_letter(text), macro=_macro(text))
+    return tree.Numeral(text) if text.isdigit() else _letter(text)
 
 
-def _letter(name: str) -> str:
-    """The letter, also if standard output is ASCII, from which SymPy would take no letters."""
-    before = pretty_use_unicode(True)
-    try:
-        return _VARIANTS.get(name) or greek_letter(name) or str(pretty_symbol(name))
-    finally:
-        pretty_use_unicode(before)
-
-
-def _macro(name: str) -> str:
-    """LaTeX of a name that is neither a letter of an alphabet nor a word; empty for others."""
-    latex = str(sp.latex(sp.Symbol(name)))
-    is_greek = (
-        len(name) > 1 and greek_letter(name) and latex == f"\\{name}".replace("lamda", "lambda")
-    )
-    return "" if latex == name or is_greek else latex
+def _letter(name: str) -> tree.Symbol:
+    return tree.Symbol(GREEK.get(name) or VARIANTS.get(name, name))
 
 
 _Span = TypeVar("_Span")

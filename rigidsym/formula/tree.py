@@ -51,7 +51,6 @@ class Symbol(Formula):
     dots: int = 0
     prime: Prime = ""
     index: Formula | None = None
-    macro: str = ""  # LaTeX of the letter, where it is not the usual one
 
 
 @dataclass(frozen=True, slots=True, repr=False)

@@ -18,7 +18,7 @@ from rigidsym.formula.latex_pen import LatexPen, MarkdownPen, WebPen
 from rigidsym.formula.letters import Letters, VectorLength
 from rigidsym.formula.notation import Notation
 from rigidsym.formula.pen import break_lines
-from rigidsym.formula.reader import formula
+from rigidsym.formula.reader import formula, named
 from rigidsym.formula.scalars import factored, formula_of, listed_entries
 from rigidsym.formula.tree import (
     Bracket,
@@ -168,7 +168,7 @@ def forms() -> Iterator[tuple[str, Formula]]:
         ("word with dots", heading),
         ("word of two letters", Symbol("ab")),
         ("unit", Symbol("&", "italic")),
-        ("macro", Symbol("φ", macro=r"\varphi")),
+        ("names", row(*map(named, ("varphi", "Alpha_lamda", "hbar", "I'_12", "x__2")))),
         ("double dots", row(Symbol("M", dots=2), Symbol("x", dots=2), Symbol("Ω", "bold", 2, "′"))),
     )
     yield from ((str(scalar), formula_of(scalar, LETTERS)) for scalar in SCALARS[:40])

@@ -11,17 +11,10 @@ import unicodedata
 from functools import cache
 from string import ascii_letters, digits
 
-from rigidsym.formula.latex_pen import GREEK
+from rigidsym.formula.latex_pen import GREEK_MACROS
 
-_SPECIAL = {
+_SPECIAL = {character: f"\\{character}" for character in "{}$&#%_"} | {
     "\\": r"\textbackslash{}",
-    "{": r"\{",
-    "}": r"\}",
-    "$": r"\$",
-    "&": r"\&",
-    "#": r"\#",
-    "%": r"\%",
-    "_": r"\_",
     "^": r"\textasciicircum{}",
     "~": r"\textasciitilde{}",
     "<": r"\textless{}",
@@ -81,7 +74,7 @@ def _formula(character: str) -> str:
         base = chr(int(codes[0], 16))
         written = base if base in _PLAIN else _formula(base)
         return f"{_SCRIPTS[place]}{{{written}}}" if written else ""
-    return _MATH.get(character) or GREEK.get(character, "")
+    return _MATH.get(character) or GREEK_MACROS.get(character, "")
 
 
 # controls, formats such as a change of direction, surrogates, unassigned; line separators
