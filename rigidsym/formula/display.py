@@ -17,7 +17,6 @@ from rigidsym.formula.letters import Letters
 from rigidsym.formula.pen import Segment, break_lines
 from rigidsym.formula.scalars import factored, formula_of, listed_entries, matrix_of
 from rigidsym.formula.tree import NOTHING, Formula, equal, indexed, row
-from rigidsym.formula.unicode_pen import UnicodePen
 
 PAGE = 39.2  # ems of a display on a page, beside a number such as (13)
 BOX = 0.96  # ems that the box around a result takes
@@ -101,17 +100,6 @@ def _displayed(equation: Equation, letters: Letters, width: float, pen: LatexPen
             usual = len(listed_entries(equation.names, equation.matrix))
         is_broken = shown.lines > usual
     return shown._replace(is_broken=is_broken)
-
-
-@lru_cache(maxsize=512)
-def spoken(equation: Equation, letters: Letters) -> str:
-    """The equation on one line of Unicode; a matrix row by row."""
-    value: list[Formula] = []
-    if equation.scalar is not None:
-        value = [formula_of(equation.scalar, letters)]
-    elif equation.matrix is not None:
-        value = [matrix_of(equation.matrix, letters)]
-    return UnicodePen(letters.notation).write(equal(*equation.sides, *value)).text
 
 
 def pack(equations: Sequence[Equation], letters: Letters, width: float, pen: LatexPen) -> str:

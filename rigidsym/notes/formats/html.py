@@ -12,12 +12,11 @@ from itertools import pairwise
 
 from math_core import LatexToMathML
 
-from rigidsym.formula.display import Display, spoken
+from rigidsym.formula.display import Display
 from rigidsym.formula.latex_pen import WebPen
 from rigidsym.formula.pen import Height
 from rigidsym.formula.reader import text_of
 from rigidsym.formula.tree import Formula
-from rigidsym.formula.unicode_pen import UnicodePen
 from rigidsym.notes.document import (
     Document,
     Equation,
@@ -37,7 +36,7 @@ TEMPLATE = "note.html.jinja"
 BLOCKS = "blocks.html.jinja"
 _PAGE = 39.5  # ems of a display on a page, some less than there are: browsers differ in fonts
 _PHONE = 19.0  # ems of a display on a screen 360 pixels wide
-_POINTS = ".,;:)"
+_WITH_POINTS = re.compile(r"\(<math .*?</math>[.,;:)]*|<math (?:(?!</math>).)*</math>[.,;:)]+")
 _INLINE = 13.0  # ems of a formula between words on a phone
 
 
@@ -75,8 +74,8 @@ _MENDED = (
 )
 
 
-def math(latex: str, spoken: str, *, is_display: bool = False, is_tall: bool = False) -> str:
-    """A `math` element, with `spoken` for readers that know no MathML.
+def math(latex: str, *, is_display: bool = False, is_tall: bool = False) -> str:
+    """A `math` element, with its LaTeX for readers that know no MathML.
 
     Fractions between words keep the height of a display if `is_tall`.
     """
@@ -84,7 +83,8 @@ def math(latex: str, spoken: str, *, is_display: bool = False, is_tall: bool = F
     for written, mended in _MENDED:
         text = re.sub(written, mended, text)
     kind = ' class="tall"' if is_tall else ""
-    return text.replace("<math", f'<math alttext="{escape_markup(spoken)}"{kind}', 1)
+    source = escape_markup(" ".join(latex.split()))
+    return text.replace("<math", f'<math alttext="{source}"{kind}', 1)
 
 
 class HtmlPrinter(NotePrinter):
@@ -98,8 +98,7 @@ class HtmlPrinter(NotePrinter):
     def __init__(self, document: Document) -> None:
         super().__init__(document, WebPen(document.letters.notation))
         self.math = {
-            equation: math(shown.text, spoken(equation, document.letters), is_display=True)
-            for equation, shown in self.shown.items()
+            equation: math(shown.text, is_display=True) for equation, shown in self.shown.items()
         }
         self._blocks = resources.environment().get_template(BLOCKS).module
 
@@ -133,47 +132,18 @@ class HtmlPrinter(NotePrinter):
 
     def text(self, text: Text) -> str:
         """No line may part a formula from the brackets and points beside it."""
-        written: list[str] = []
-        kept_points = 0  # points of the words that stand with the formula before
-        for place, span in enumerate(text):
-            if isinstance(span, str):
-                written.append(escape(span[kept_points:]))
-                kept_points = 0
-            elif isinstance(span, Formula):
-                after = text[place + 1] if place + 1 < len(text) else ""
-                words = after if isinstance(after, str) else ""
-                kept_points = len(words) - len(words.lstrip(_POINTS))
-                parts = self._parts(span)
-                if written and written[-1].endswith("("):
-                    written[-1] = written[-1][:-1]
-                    parts[0] = f'<span class="whole">({parts[0]}</span>'
-                if kept_points:
-                    parts[-1] = f'<span class="whole">{parts[-1]}{words[:kept_points]}</span>'
-                written.append(" ".join(parts))
-            else:
-                written.append(self.span(span))
-        return "".join(written)
+        return _WITH_POINTS.sub(r'<span class="whole">\g<0></span>', super().text(text))
 
     def formula(self, formula: Formula) -> str:
-        return " ".join(self._parts(formula))
-
-    def _parts(self, formula: Formula) -> list[str]:
-        """As elements; one too wide for a phone is cut before each sign outside all brackets."""
-        texts: list[list[str]] = []
+        """One too wide for a phone is cut before each sign outside all brackets."""
         piece = self.pen.write(formula)
-        for written in (piece, UnicodePen(self.pen.notation).write(formula)):
-            parts: list[str] = []
-            for chunk in written.chunks:
-                if parts and (chunk.level or piece.width <= _INLINE):
-                    parts[-1] += f" {chunk.text}"
-                else:
-                    parts.append(chunk.text)
-            texts.append([part.rstrip() for part in parts])
-        latex, words = texts
-        if len(latex) != len(words):
-            latex, words = [piece.text], [formula.text]
-        is_tall = piece.height > Height.FLAT
-        return [math(part, said, is_tall=is_tall) for part, said in zip(latex, words, strict=True)]
+        parts: list[str] = []
+        for chunk in piece.chunks:
+            if parts and (chunk.level or piece.width <= _INLINE):
+                parts[-1] += f" {chunk.text}"
+            else:
+                parts.append(chunk.text)
+        return " ".join(math(part, is_tall=piece.height > Height.FLAT) for part in parts)
 
     def code(self, text: str) -> str:
         # a line may end within the long name of a function
