@@ -15,7 +15,7 @@ from rigidsym.formula.notation import CHOICES as CHOICES, DEFAULT as DEFAULT, No
 from rigidsym.formula.tree import Words
 from rigidsym.kernels.lowering.derivatives import Asked
 from rigidsym.kernels.module import KernelModule as KernelModule, generate
-from rigidsym.mechanics.derivation import Derivation, Proof
+from rigidsym.mechanics.derivation import Derivation, Proof, Step
 from rigidsym.mechanics.derive import Body, derive as derivation_of
 from rigidsym.mechanics.prove import identity
 from rigidsym.mechanics.quantities.catalogue import NAMES
@@ -26,7 +26,6 @@ from rigidsym.system.processes import time_limit
 
 if TYPE_CHECKING:
     from rigidsym.mechanics.conversions.conversions import Conversions
-    from rigidsym.notes.formats.jupyter import EquationPrinter
     from rigidsym.notes.note import Note
     from rigidsym.simulation.trajectory import Trajectory
 
@@ -43,14 +42,14 @@ class Motion(Derivation):
     notation: Notation = DEFAULT
 
     def __post_init__(self) -> None:
-        steps = tuple(replace(step, printer=self._printer) for step in self.steps)
+        steps = tuple(replace(step, printer=self._printed) for step in self.steps)
         object.__setattr__(self, "steps", steps)
 
-    def _printer(self) -> EquationPrinter:
+    def _printed(self, step: Step, form: str) -> str:
         # the notes are imported when something is printed
-        from rigidsym.notes.formats.jupyter import EquationPrinter
+        from rigidsym.notes.formats.terminal import printed_step
 
-        return EquationPrinter(arguments=self.arguments, model=self.model, notation=self.notation)
+        return printed_step(step, form, self, self.notation)
 
     def __repr__(self) -> str:
         """One line, since the steps themselves would fill pages."""
@@ -159,9 +158,13 @@ class Motion(Derivation):
 
     def _repr_mimebundle_(self, **_: object) -> dict[str, str]:
         """What Jupyter shows: the note, the equations, or the text of the terminal."""
-        from rigidsym.notes.formats.jupyter import bundle_of
+        from rigidsym.notes.formats.terminal import show
 
-        return bundle_of(self, self.note(with_kernels=False).markdown(), self.notation)
+        return {
+            "text/markdown": self.note(with_kernels=False).markdown(),
+            "text/latex": "\n\n".join(step._repr_latex_() for step in self.steps),
+            "text/plain": show(self, notation=self.notation),
+        }
 
     def _repr_latex_(self) -> str:
         return self._repr_mimebundle_()["text/latex"]

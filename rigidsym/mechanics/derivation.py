@@ -220,7 +220,7 @@ class Step:
     recursion: Formula | None = None  # shown for the entries, if these are names of its parts
     words: str = ""  # a sentence in place of that of the quantity's reason
     # of equations, in the notation of the motion
-    printer: Callable[[], Any] | None = field(default=None, repr=False, compare=False)
+    printer: Callable[[Step, str], str] | None = field(default=None, repr=False, compare=False)
 
     def __repr__(self) -> str:
         """One line, for a prompt; `text` shows the equation."""
@@ -234,16 +234,16 @@ class Step:
 
     def latex(self) -> str:
         """The equation in LaTeX, without its number."""
-        return str(self._printer().latex(self))
+        return self._printed("latex")
 
     def text(self) -> str:
         """The equation as the terminal shows it."""
-        return str(self._printer().text(self))
+        return self._printed("text")
 
-    def _printer(self) -> Any:
+    def _printed(self, form: str) -> str:
         if self.printer is None:
             raise DerivationError("only a step of rs.derive(...) can print itself")
-        return self.printer()
+        return self.printer(self, form)
 
     def _repr_mimebundle_(self, **_: object) -> dict[str, str]:
         """What Jupyter shows: the equation with its number, or plain text."""

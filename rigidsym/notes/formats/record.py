@@ -52,7 +52,7 @@ _KEYS: Mapping[type, str] = {
     VectorTerm: "coefficient vector",
     Statement: "number name section sides summands because source proofs",
     Step: "number name=quantity.name about=quantity.about unit=quantity.unit "
-    "symbol=quantity.symbol inputs=quantity.inputs shape=quantity.shape expression vector_form "
+    "symbol=quantity.symbol inputs=quantity.inputs shape expression vector_form "
     "because source=quantity.source proofs",
     Singularities: "rank measure determinant minors is_solved points",
     Singularity: "at=places rank lost_direction_space=lost_axis_space "
@@ -140,12 +140,9 @@ def _attributes(thing: Any) -> dict[str, Any]:
                 terms = [*form.terms, *([form.last] if form.last else [])]
                 length = str(form.length)
                 found["vector_form"] = {"vector": form.components, "length": length, "terms": terms}
-            flat = expression.flat()
-            if found["shape"] == "vector":
-                return found | {"shape": [len(flat)], "expression": flat}
-            if found["shape"] == "scalar":
-                return found | {"shape": [], "expression": flat[0]}
-            return found | {"shape": expression.shape}
+            if len(thing.shape) < 2:
+                flat = expression.flat()
+                found["expression"] = flat if thing.shape else flat[0]
     return found
 
 

@@ -8,17 +8,18 @@ from itertools import groupby
 from typing import TYPE_CHECKING
 
 from rigidsym.formula.console import INDENT, Block, Headline, Line, Style, lines_of, unstyled
+from rigidsym.formula.display import display
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.formula.reader import formula, sentence
 from rigidsym.formula.tree import equal
 from rigidsym.mechanics.derivation import Argument, Derivation, Step
 from rigidsym.mechanics.quantities.kinematics import BODY, ROTATION, SPACE
-from rigidsym.models.rotation import RotationModel
 from rigidsym.notes.document import Equation, Paragraph
 from rigidsym.notes.equations import columns_of_matrix, equation_of, sums
 from rigidsym.notes.facts.rotation import facts_of_rotation, product_of
 from rigidsym.notes.facts.singular import singular_facts
+from rigidsym.notes.fitting import as_vectors
 from rigidsym.notes.letters import RESIDUAL, letters_of
 from rigidsym.notes.template import blocks_of, texts_of
 from rigidsym.notes.vectors import sum_of_vectors
@@ -31,6 +32,8 @@ from rigidsym.notes.words import (
 if TYPE_CHECKING:
     from rigidsym.mechanics.conversions.conversions import Conversions
 
+_WIDTH = 88  # columns
+_EMS = 44.0  # of an equation by itself in LaTeX
 _COLUMNS = formula(r"\mathbf{K}")
 _OMEGA = {"Ω": SPACE.omega, "Ω′": BODY.omega}
 
@@ -38,7 +41,7 @@ _OMEGA = {"Ω": SPACE.omega, "Ω′": BODY.omega}
 def show(
     derivation: Derivation,
     *,
-    width: int = 88,
+    width: int = _WIDTH,
     style: Style = unstyled,
     notation: Notation = DEFAULT,
     conversions: Conversions | None = None,
@@ -53,17 +56,14 @@ def show(
     return "\n".join(lines_of(blocks, letters, width, style))
 
 
-def show_step(
-    step: Step,
-    arguments: Sequence[Argument],
-    *,
-    width: int = 88,
-    notation: Notation = DEFAULT,
-    model: RotationModel | None = None,
-) -> str:
-    """One step of a derivation as plain text."""
-    letters = letters_of(arguments, notation, model)
-    return "\n".join(lines_of(list(_blocks_of(step, arguments, letters)), letters, width))
+def printed_step(step: Step, form: str, derivation: Derivation, notation: Notation) -> str:
+    """One step of a derivation: "latex", its equation without a number, or "text"."""
+    arguments = derivation.arguments
+    letters = letters_of(arguments, notation, derivation.model)
+    if form == "text":
+        return "\n".join(lines_of(list(_blocks_of(step, arguments, letters)), letters, _WIDTH))
+    equation = as_vectors(equation_of(step, arguments), step, letters)
+    return display(equation, letters, _EMS).text
 
 
 def _blocks_of(step: Step, arguments: Sequence[Argument], letters: Letters) -> Iterator[Block]:
