@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from enum import IntEnum
 from functools import lru_cache
@@ -61,20 +61,12 @@ def _shortened(node: sp.Expr, length: VectorLength) -> sp.Expr:
     if not whole.is_Add:
         return whole
     for short, terms in length.sums:
-        whole = _without(whole, terms.args, short)
+        coefficients = whole.as_coefficients_dict()
+        numbers = {coefficients.get(term) for term in terms.args}
+        if len(numbers) == 1 and None not in numbers:  # all of them have one coefficient
+            (number,) = numbers
+            whole += number * short - sp.Add(*(number * term for term in terms.args))
     return whole
-
-
-def _without(whole: sp.Expr, terms: Sequence[sp.Expr], short: sp.Expr) -> sp.Expr:
-    """The sum with `short` in place of these terms, where all of them have one coefficient."""
-    parts = (term.as_coeff_Mul() for term in sp.Add.make_args(whole))
-    held = {rest: number for number, rest in parts}
-    numbers = {held.get(term) for term in terms}
-    if len(numbers) != 1 or None in numbers:
-        return whole
-    (number,) = numbers
-    rest = [factor * term for term, factor in held.items() if term not in terms]
-    return sp.Add(*rest, number * short)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

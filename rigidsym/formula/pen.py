@@ -210,13 +210,11 @@ def break_lines(piece: Piece, width: float, indent: float, blank: float = 0.0) -
     `indent` is what a line loses for each open bracket, `blank` the width between two chunks.
     What has no place to break stays whole, so that a line may still be too wide.
     """
+    lines = _lines(piece.chunks, width, indent, blank)
+    levels = [0, *(line[0].level % DIVISOR + line[0].level // DIVISOR for line in lines[1:])]
     return [
-        Segment(
-            " ".join(chunk.text for chunk in chunks),
-            _width(chunks, blank),
-            0 if not place else chunks[0].level % DIVISOR + chunks[0].level // DIVISOR,
-        )
-        for place, chunks in enumerate(_lines(piece.chunks, width, indent, blank))
+        Segment(" ".join(chunk.text for chunk in line), _width(line, blank), level)
+        for line, level in zip(lines, levels, strict=True)
     ]
 
 
