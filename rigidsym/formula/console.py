@@ -13,7 +13,7 @@ from rigidsym.formula.display import Equation
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.pen import break_lines
 from rigidsym.formula.scalars import formula_of, listed_entries, matrix_of
-from rigidsym.formula.tree import Formula, Matrix
+from rigidsym.formula.tree import Formula
 from rigidsym.formula.unicode_pen import UnicodePen, columns
 
 INDENT = "  "
@@ -32,10 +32,9 @@ class Headline(NamedTuple):
 
 
 class Line(NamedTuple):
-    """Words and formulas on one line, however long, before a matrix if there is one."""
+    """Words and formulas on one line, however long."""
 
     spans: Spans
-    matrix: Matrix | None = None
 
 
 Block = str | Headline | Line | Equation | Spans  # a line as it is; spans are a sentence
@@ -69,9 +68,8 @@ class _Console:
                 return [block]
             case Headline():
                 return self.headline(block)
-            case Line(spans, matrix):
-                head = "".join(s if isinstance(s, str) else self.text(s) for s in spans)
-                return grid(head, self._texts(matrix.rows)) if matrix else [head]
+            case Line(spans):
+                return ["".join(s if isinstance(s, str) else self.text(s) for s in spans)]
             case Equation():
                 return self.equation(block)
         return self.sentence(block)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from itertools import groupby
 from typing import TYPE_CHECKING
 
 from rigidsym.formula.console import INDENT, Block, Headline, Line, Style, lines_of, unstyled
@@ -16,7 +15,7 @@ from rigidsym.formula.tree import equal
 from rigidsym.mechanics.derivation import Argument, Derivation, Step
 from rigidsym.mechanics.quantities.kinematics import BODY, ROTATION, SPACE
 from rigidsym.notes.document import Equation, Paragraph
-from rigidsym.notes.equations import columns_of_matrix, equation_of, sums
+from rigidsym.notes.equations import columns_of_matrix, equation_of
 from rigidsym.notes.facts.rotation import facts_of_rotation, product_of
 from rigidsym.notes.facts.singular import singular_facts
 from rigidsym.notes.fitting import as_vectors
@@ -90,7 +89,6 @@ def _screen(
     yield Headline((derivation.title,))
     if not is_body_alone(derivation):
         yield ""
-        yield from _theory(derivation, letters)
         yield from texts_of("en/convention", letters, **facts)
         if model.turns:
             yield Line((INDENT, equal(ROTATION, product_of(model.turns, letters))))
@@ -143,19 +141,6 @@ def _screen(
         if proof.residual is not None:
             yield f"{2 * INDENT}left over:"
             yield Equation(sides=(RESIDUAL,), matrix=proof.residual)
-
-
-def _theory(derivation: Derivation, letters: Letters) -> Iterator[Block]:
-    """The equations for every body and rotation, under their headings."""
-    for title, statements in groupby(derivation.theory, key=lambda s: s.section):
-        yield Headline((title,))
-        for statement in statements:
-            yield statement.because
-            number = f"({statement.number})" if statement.number else ""
-            matrix = sums(statement, letters)
-            head = (f"{2 * INDENT}{number:<6}", equal(*statement.sides))
-            yield Line((*head, " = ") if matrix else head, matrix)
-            yield ""
 
 
 def _under(heading: str) -> Iterator[Block]:
