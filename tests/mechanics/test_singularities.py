@@ -179,6 +179,8 @@ def test_rotation_vector_and_axis_fail_at_whole_turns_only(angle):
     assert rank(rate_matrix("rotation_vector", axis * angle)) == (1 if is_whole else 3)
     (point,) = record(motion_of("rotation_vector"), {})["singularities"]["points"]
     assert {point["at"][0][key] for key in ("value", "modulo", "least")} == {"2*pi"}
+    point, _ = record(motion_of("ZXZ"), {})["singularities"]["points"]
+    assert [point["at"][0][key] for key in ("value", "modulo", "least")] == ["0", "2*pi", None]
 
 
 INVERSES = [

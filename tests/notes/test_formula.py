@@ -267,6 +267,17 @@ def test_a_listing_is_aligned_at_its_signs_and_definitions_stand_in_the_middle()
         assert ("&" in shown.inside) == (environment == "aligned")
 
 
+@pytest.mark.parametrize(("gaps", "beside"), [(1.9, 0), (2.0, 3), (3.9, 3), (4.0, 4)])
+def test_short_definitions_share_a_line_as_far_as_they_fit(gaps, beside):
+    names = tuple(formula(f"k_{k}") for k in range(6))
+    matrix = sp.ImmutableMatrix([sp.Symbol("a")] * 6)
+    own = display(Equation(sides=(), matrix=matrix, entries=names), LETTERS, 1.0).width
+    count = 2 if gaps < 3 else 3
+    width = count * own + gaps + 1e-9
+    shown = display(Equation(sides=(), matrix=matrix, entries=names), LETTERS, width)
+    assert shown.inside.count(r"\qquad") == beside
+
+
 BRACKET = r"a\,(b + c\,(d + e + f + g))"
 BRACKET_OF_WORD = r"a\,(b + \mathit{ccc}\,(d + e + f))"
 QUOTIENT = r"\frac{4\,(a + b)}{(1 + n^2)^2}"
