@@ -14,6 +14,7 @@ from rigidsym.commands.cli import commands
 from rigidsym.errors import EditedFiles
 
 NAME = "euler_zxz_intrinsic"
+ONLY = "--only", "rotation_matrix"
 
 
 def _run(*arguments: str) -> str:
@@ -41,7 +42,7 @@ def test_another_target_or_page_joins_what_is_there(tmp_path):
 
 
 def test_another_rotation_replaces_what_was_printed_but_not_what_was_edited(tmp_path):
-    out = "--out", str(tmp_path)
+    out = *ONLY, "--out", str(tmp_path)
     each = "--target", "numpy", "--target", "javascript"  # as "numpy,javascript"
     _run("derive", "ZXZ", *each, "--certificates", *out)
     edited = tmp_path / NAME / f"{NAME}.d.mts"
@@ -59,30 +60,26 @@ def test_another_rotation_replaces_what_was_printed_but_not_what_was_edited(tmp_
 def test_a_record_of_a_stranger_removes_nothing_elsewhere(tmp_path):
     outside = tmp_path / "precious.txt"
     outside.write_text("mine")
-    _run("derive", "ZXZ", "--out", str(tmp_path / "out"))
+    out = *ONLY, "--out", str(tmp_path / "out")
+    _run("derive", "ZXZ", *out)
     record = tmp_path / "out" / NAME / f"{NAME}.json"
     content = json.loads(record.read_text())
     for name in ("../../precious.txt", str(outside)):
         content["files"][name] = sha256(b"mine").hexdigest()
     record.write_text(json.dumps(content))
-    _run("derive", "ZXZ", "--angles", "a,b,c", "--out", str(tmp_path / "out"))
+    _run("derive", "ZXZ", "--angles", "a,b,c", *out)
     assert outside.read_text() == "mine"
 
 
-def test_what_is_refused_writes_over_nothing_and_does_not_say_so(tmp_path):
+def test_what_is_refused_or_would_lose_an_edit_writes_over_nothing(tmp_path):
     out = "--out", str(tmp_path)
     _run("derive", "ZXZ", *out)
+    wrong = "--angles", "a,b,c", "--derivative", "angular_velocity_body:z"
     before = (tmp_path / NAME / f"{NAME}.json").read_bytes()
-    wrong = "--derivative", "angular_velocity_body:z"
-    done = CliRunner().invoke(commands, ["derive", "ZXZ", "--angles", "a,b,c", *wrong, *out])
+    done = CliRunner().invoke(commands, ["derive", "ZXZ", *wrong, *out])
     assert isinstance(done.exception, rs.RigidsymError), done.output
     assert "replacing" not in done.stderr
     assert (tmp_path / NAME / f"{NAME}.json").read_bytes() == before
-
-
-def test_an_edited_file_is_named_and_kept_unless_forced(tmp_path):
-    out = "--out", str(tmp_path)
-    _run("derive", "ZXZ", *out)
     module = tmp_path / NAME / f"{NAME}.py"
     before = {path: path.read_bytes() for path in (tmp_path / NAME).iterdir()} | {
         module: module.read_bytes() + b"# mine\n"
@@ -99,21 +96,18 @@ def test_an_edited_file_is_named_and_kept_unless_forced(tmp_path):
     assert _checked(tmp_path) == _files(tmp_path)
 
 
-def test_a_damaged_record_is_named(tmp_path):
-    (tmp_path / "half.json").write_text('{"schema":\n')
-    said = call("check", "half.json", cwd=tmp_path, status=1).stdout
-    assert said.startswith("half.json: cannot be read as the record of a derivation")
-    done = call("run", "half.json", cwd=tmp_path, status=3)
-    assert "half.json: 1 fault, nothing written\n  expected a derivation file" in done.stderr
-
-
-def test_a_damaged_request_keeps_no_other_record_from_being_checked(tmp_path):
+def test_a_damaged_record_is_named_and_keeps_no_other_from_being_checked(tmp_path):
     for rotation in ("xyz", "ZXZ"):
-        _run("derive", rotation, "--only", "rotation_matrix", "--out", str(tmp_path))
+        _run("derive", rotation, *ONLY, "--out", str(tmp_path))
     record = tmp_path / "euler_xyz_extrinsic" / "euler_xyz_extrinsic.json"
     content = json.loads(record.read_text())
     content["request"] = {"rotation": {"sequence": 1}}
     record.write_text(json.dumps(content))
-    printed = call("check", str(tmp_path), cwd=tmp_path, status=1).stdout
+    half = tmp_path / "half.json"
+    half.write_text('{"schema":\n')
+    printed = call("check", str(tmp_path), str(half), cwd=tmp_path, status=1).stdout
     assert f"{record}: a damaged request: " in printed
+    assert f"{half}: cannot be read as the record of a derivation" in printed
     assert f"{NAME}.py: up to date" in printed
+    done = call("run", "half.json", cwd=tmp_path, status=3)
+    assert "half.json: 1 fault, nothing written\n  expected a derivation file" in done.stderr
