@@ -186,10 +186,10 @@ class RingMatrix:
             pairs = combinations(self.rows, 2)
             normal = next(n for u, v in pairs if any(n := cross(self.ring, u, v)))
             return RingMatrix.column(self.ring, primitive(self.ring, normal))
-        # With the regular square part A of the pivot columns and the column a of a free unknown, A
-        # x + a = 0 has the solution x = −adj(A) a / det A. The multiple by det A is a kernel vector
-        # without divisions, (−adj(A) a, det A). It vanishes where det A does, so all regular parts
-        # contribute a vector, unless one determinant is a number.
+        # With the regular square part A of the pivot columns and the column a of a free unknown,
+        # A x + a = 0 has the solution x = −adj(A) a / det A. Times det A, this is the kernel vector
+        # (−adj(A) a, det A), without divisions. It vanishes where A is singular, so all regular
+        # parts contribute a vector, unless one determinant is a number.
         parts: list[tuple[RingMatrix, Sequence[Row], Sequence[int]]] = []
         for rows, pivots in product(
             combinations(self.rows, rank), combinations(range(width), rank)
@@ -225,8 +225,8 @@ class RingMatrix:
         if count == 3 and bound is None:
             return _if_regular(self.adjugate(), self.det())
         # W Wᵀ adj(W Wᵀ) = det(W Wᵀ) 1, so G = Wᵀ adj(W Wᵀ) and d = det(W Wᵀ). Rates in the row
-        # space of W have the least norm. For a unit quaternion they also keep |q| constant, and J G
-        # = 0 comes for free.
+        # space of W have the least norm. Those of a unit quaternion also keep |q| constant:
+        # J G = 0 holds without further work.
         gram = self.gram()
         least = _if_regular(self.T @ gram.adjugate(), gram.det())
         if least is None or bound is None or (bound @ least[0]).is_zero():

@@ -72,6 +72,8 @@ def configurations(
     _check(name, bound, dict(example))
     points: list[Configuration] = []
     reason: NotReal | None = None
+    # Expressions such as √(1 − x²) and √(x − 5) are real only for small or only for large values,
+    # so points of several scales and both signs are tried.
     for seed in range(len(_SCALES) * 2):
         point = Configuration(_with_rates(bound, dict(example), seed), digits, seed)
         try:
@@ -254,6 +256,7 @@ class Witness:
 
 def _value(values: Sequence[Any], number: Any, element: PolyElement) -> Any:
     """The value of an element, a number or an interval, from those of its generators."""
+    # Evaluation respects sums and products, so one function serves numbers and intervals.
     total = number(0)
     for monomial, coefficient in element.items():
         term = number(int(coefficient.numerator)) / int(coefficient.denominator)

@@ -78,8 +78,8 @@ def initial_values(model: RotationModel, given: Mapping[str, Any]) -> dict[str, 
 def no_rotation(model: RotationModel) -> dict[str, float]:
     """Coordinates of R = 1: all 0, or one of them 1."""
     q = model.coordinates
-    # Angles and vectors vanish for R = 1; for −1 no coordinate is set. A quaternion has its scalar
-    # at one, wherever that stands among the coordinates.
+    # Angles and vectors vanish for R = 1, which is the case place = −1. A quaternion
+    # has its scalar at one, wherever that stands among the coordinates.
     for place in range(-1, len(q)):
         values = {x: sp.S.One if k == place else sp.S.Zero for k, x in enumerate(q)}
         if model.matrix.xreplace(values) == sp.eye(3):
@@ -310,6 +310,7 @@ def _read(given: sp.Expr | str | int, names: Mapping[str, sp.Expr]) -> sp.Expr:
 
 def _with_roots(value: sp.Expr) -> sp.Expr:
     """√x² for |x|, which exact algebra holds: its square is x², its rate x ẋ/√x²."""
+    # The ring knows (√x²)² = x², and of |x| nothing.
     return value.replace(sp.Abs, lambda x: sp.sqrt(x**2))
 
 
@@ -318,6 +319,8 @@ def _check_spelling(name: str, names: Mapping[str, sp.Expr]) -> None:
     # thetadot and Theta_dot are meant for theta_dot. As constants they would turn a force that
     # damps into one that does not, without an error.
     plain = name.replace("_", "").lower()
+    # Names of digits differ by intention, theta_1 and theta_2, so only names of letters are
+    # compared by their likeness.
     near = [known for known in names if known.replace("_", "").lower() == plain != known]
     if len(name) >= _LONG and not any(letter.isdigit() for letter in name):
         near += get_close_matches(name, names, n=1, cutoff=_ALIKE)

@@ -211,6 +211,8 @@ class RotationModel:
         numbers = set().union(*(part.atoms(*_NUMBERS) for part in self._parts))
         if sp.I in numbers:
             yield "a rotation is real, but the matrix contains the number i"
+        # π and e are transcendental, and no algebraic equation between them is known. The golden
+        # ratio, say, is algebraic, and the ring would not know its equation.
         for number in numbers - {sp.pi, sp.E}:
             yield (
                 f"the matrix contains the number {number}, which is not in the ring; "

@@ -96,6 +96,7 @@ def shaped(
         return [parse_expression(part.strip(), names) for part in text.split(",")]
 
     bounds = [bound.split("..") for bound in shape.bounds.split(",")]
+    # "0..2*pi, -h/2..h/2" holds the bounds of u and of v.
     return Solid(
         title=shape.title,
         coordinates=tuple(coordinates.values())[: len(bounds)],

@@ -70,11 +70,13 @@ class Conversions:
     def quaternion(self) -> Step | None:
         """The unit quaternion; None if it has no short closed form."""
         model, rule = self.model, self.inverse
-        # R = R₁ R₂ ⋯ has the quaternion p₁ p₂ ⋯, with cos(β/2) + sin(β/2) e for the turn by β about
-        # e.
+        # R = R₁ R₂ ⋯ has the quaternion p₁ p₂ ⋯, and the turn by β about e has
+        # cos(β/2) + sin(β/2) e.
         factors = [half_turn(turn.direction, turn.angle) for turn in model.turns]
         if rule is not None and rule.quaternion:
             factors = [rule.quaternion]
+        # Each factor has two terms, cos and sin, so a product of n turns has up to 2ⁿ terms an
+        # entry.
         if not 0 < len(factors) <= LONGEST_CHAIN:
             return None
         entries = [*model.matrix, *chain.from_iterable(factors)]
@@ -133,7 +135,7 @@ def _read_off() -> Proof:
     """4 p pᵀ = K(R): sums and differences of the entries of R, for every unit quaternion p."""
     model = parametrised("unit_quaternion")
     column = sp.Matrix(model.coordinates)
-    # K(R) is linear in R, and R is quadratic in p.
+    # R is quadratic in p, so each entry is a polynomial that vanishes by p·p = 1.
     residual = outer_product(model.matrix) - 4 * column * column.T
     return vanishing(model, [(tuple(residual), formula(r"4\,\p\p^T = \mathbf{K}"))])[0]
 
@@ -183,6 +185,8 @@ def _to_quaternion(q: Argument, rule: Rule, remarks: Sequence[str]) -> Conversio
 def _from_quaternion(rule: Rule) -> ConversionFunction:
     parts = symbols(PARTS)
     values = NamedValues(parts[0])
+    # The way back holds for every length but zero, so the quaternion is scaled and not normalised:
+    # the sum of sizes needs no root, and no square can overflow.
     coordinates = rule.from_quaternion(values, values.scaled(parts))
     listed = scalar_last(parts) if rule.is_scalar_last else parts
     kind = f"scalar {'last' if rule.is_scalar_last else 'first'}"
@@ -192,6 +196,7 @@ def _from_quaternion(rule: Rule) -> ConversionFunction:
 def _from_matrix(rule: Rule) -> ConversionFunction:
     entries, is_passive = symbols(MATRIX), rule.model.passive
     values, matrix = NamedValues(entries[0]), sp.Matrix(3, 3, entries)
+    # The rules are about R; a passive model presents A = Rᵀ.
     coordinates = rule.from_matrix(values, matrix.T if is_passive else matrix)
     kind = "A, the transpose of R" if is_passive else "R"
     return _to_coordinates("rotation_matrix", entries, kind, values, coordinates, rule)

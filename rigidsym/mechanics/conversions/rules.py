@@ -291,8 +291,8 @@ def _gibbs_vector(q: Vector) -> dict[str, Any]:
 
 def _modified_rodrigues(q: Vector) -> dict[str, Any]:
     size = square(q)
-    # s = e tan(β/4), and the half-angle formulas give p_0 = (1 − s·s)/(1 + s·s), p_v = 2 s/(1 +
-    # s·s).
+    # s = e tan(β/4), so by the half-angle formulas
+    # p_0 = (1 − s·s)/(1 + s·s) and p_v = 2 s/(1 + s·s).
     scalar, vector = (1 - size) / (1 + size), _along(2 / (1 + size), q)
 
     def back(values: NamedValues, quaternion: Vector) -> Vector:

@@ -123,8 +123,8 @@ def _symmetric(
     yield _consequence(subject, "symmetric_body", r"\kappa", kappa, (claim, residual))
     angle, precession = sp.Dummy("beta"), _LENGTH / across
     spin = -kappa.xreplace({third: _LENGTH * sp.cos(angle) / along})
-    # Regular precession: with the third axis of space along L, α̇ = |L|/A, β is constant and γ̇ =
-    # −κ.
+    # Regular precession: with the third axis of space along L, the angle β is constant,
+    # α̇ = |L|/A and γ̇ = −κ.
     alpha, beta, gamma = map(elementary, "zxz", (precession * TIME, angle, spin * TIME))
     rotation = alpha * beta * gamma
     skew = rotation.T * rotation.diff(TIME)

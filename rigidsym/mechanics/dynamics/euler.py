@@ -81,8 +81,8 @@ class EulerEquations(Flow):
         acting = [q - v for q, v in zip(self._forces, self._gradient, strict=True)]
         if not any(acting):
             return given, self.codec.ring.one
-        # Equal powers, N′·Ω′ = (Q − ∂V/∂q)·q̇ = (Q − ∂V/∂q)·W′⁻¹ Ω′ for every Ω′, give N′ = W′⁻ᵀ (Q
-        # − ∂V/∂q).
+        # The powers are equal for every Ω′, N′·Ω′ = (Q − ∂V/∂q)·q̇ = (Q − ∂V/∂q)·W′⁻¹ Ω′, so
+        # N′ = W′⁻ᵀ (Q − ∂V/∂q).
         below = self.codec.encode(self.divisor)
         turning = self.codec.matrix(self._inverse).T @ self.codec.column(acting)
         return given.scale(below) + turning, below

@@ -181,6 +181,7 @@ class Flow(Workspace):
     def excess_torque(self, slopes: sp.MatrixBase) -> sp.MatrixBase:
         """I′ dΩ′/dt + Ω′ × I′ Ω′ − N′."""
         omega, torque = (sp.Matrix(self.arguments[n].symbols) for n in ("omega_body", "torque"))
+        # Euler's equations read as a residual: zero if the slopes are right.
         inertia = self.body.inertia
         return inertia * slopes + omega.cross(inertia * omega) - torque
 
@@ -221,6 +222,7 @@ class LagrangeForm(Flow):
         if self.power.is_zero() and self.driving.is_zero():
             proof = self.energy_is_constant(claims.is_constant(claims.ENERGY))
             yield FirstIntegral("energy", claims.ENERGY, self.whole, proof)
+        # Noether's theorem in its simplest case: pₖ is constant if nothing depends on qₖ.
         momenta, symbols = self._printed(self.momenta), self.arguments["momenta"].notation
         for k, q in enumerate(self.q):
             constant = self.momentum_is_constant(k, claims.momentum_is_constant(k + 1))

@@ -88,8 +88,8 @@ class LagrangeEquations(LagrangeForm):
 
     def slopes(self, element: PolyElement) -> RingMatrix:
         """The derivatives by q, a column, by the chain rule over the generators of the ring."""
-        # ∂f/∂qₖ = Σ_g (∂f/∂g)(∂g/∂qₖ) over the generators g that depend on q. Since ġ = Σₖ (∂g/∂qₖ)
-        # q̇ₖ, the ring's own derivation gives ∂g/∂qₖ as the coefficient of q̇ₖ in ġ.
+        # ∂f/∂qₖ = Σ_g (∂f/∂g)(∂g/∂qₖ) over the generators g that depend on q. The ring's derivation
+        # gives ġ = Σₖ (∂g/∂qₖ) q̇ₖ, so ∂g/∂qₖ is the coefficient of q̇ₖ in ġ.
         ring, rates = self.ring, [self.ring.index[rate] for rate in self.rates]
         last = {*rates, *(ring.index[a] for a in self.accelerations)}
         moving = [k for k in range(len(ring.generators)) if k not in last]
@@ -163,9 +163,8 @@ class LagrangeEquations(LagrangeForm):
         if len(self.rates) == 3:
             # by Euler's equations: W′ q̈ = dΩ′/dt − dW′/dt q̇
             jacobian, tensor = self.jacobian, self.inertia
-            # q̈ = W′⁻¹ (I′⁻¹ (W′⁻ᵀ (Q − ∂V/∂q) − Ω′ × I′ Ω′) − Ẇ′ q̇), with each inverse as
-            # adjugate over determinant. det M = det² W′ det I′ would be harder to take apart after
-            # it is multiplied out.
+            # q̈ = W′⁻¹ (I′⁻¹ (W′⁻ᵀ (Q − ∂V/∂q) − Ω′ × I′ Ω′) − Ẇ′ q̇), each inverse as the
+            # adjugate over the determinant.
             back, divisor, size = jacobian.adjugate(), jacobian.det(), tensor.det()
             slopes = jacobian.dt() @ self.q_dot
             inner = tensor.adjugate() @ turned(tensor, self.omega) + slopes.scale(size)

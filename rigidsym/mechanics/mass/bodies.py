@@ -57,6 +57,8 @@ def rigid_body(body: RigidBody | BodyDescription | Distribution) -> RigidBody:
         allow=given.allow,
     )
     if not given.keeps_numbers and is_measured(made):
+        # Forces may use the lengths and masses of the description, though the formulas no longer
+        # do.
         of_all = (*made.declared, *made.parameters)
         made = replace(in_parameters(made), drawn=made.distribution, declared=of_all)
     return replace(made, request=given.request)

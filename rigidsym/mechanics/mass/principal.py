@@ -85,8 +85,8 @@ def _about(inertia: sp.ImmutableMatrix, k: int) -> Principal:
     """The k-th coordinate axis is principal; the other two are turned about it."""
     i, j = (k + 1) % 3, (k + 2) % 3
     # The block (p r; r q) has the eigenvalues (p + q)/2 ± w/2 with w² = (p − q)² + 4 r². Its first
-    # axis is at the angle α with tan 2α = 2 r/(p − q), so cos² α = ½ + (p − q)/(2 w) and sin α cos
-    # α = r/w.
+    # axis is at the angle α with tan 2α = 2 r/(p − q), so that
+    # cos² α = ½ + (p − q)/(2 w) and sin α cos α = r/w.
     p, q, r = inertia[i, i], inertia[j, j], inertia[i, j]
     field = Rationals.of([p, q, r])  # which knows that sin² + cos² = 1
     half, apart, product = map(field.read, ((p + q) / 2, p - q, 2 * r))
