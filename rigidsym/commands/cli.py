@@ -10,6 +10,7 @@ import gc
 import io
 import os
 import sys
+import warnings
 from difflib import get_close_matches
 from importlib import import_module
 from typing import Any
@@ -34,6 +35,7 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # a terminal that cannot show φ shows a ?
             stream.reconfigure(errors="replace")
+    warnings.showwarning = lambda text, *_: message(str(text))
     try:
         status = commands.main(standalone_mode=False)
     except click.ClickException as error:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -162,6 +163,14 @@ def test_mathml_is_what_browsers_and_validators_know():
     assert '<mrow class="tall"><mfrac>' in written
     assert not re.search("menclose|scriptlevel", written)
     assert html.math("a", is_tall=True) == '<math alttext="a" class="tall"><mi>a</mi></math>'
+
+
+def test_a_note_without_scipy_lacks_the_picture_of_its_examples_and_says_so(monkeypatch):
+    monkeypatch.setitem(sys.modules, "scipy.integrate", None)
+    (single,) = read_file("heavy_symmetric_top").singles()
+    with pytest.warns(UserWarning, match=r"without the picture of its examples: .*simulate"):
+        output = output_of(replace(single, note=("html",)))
+    assert "equations of motion" in output.files[f"{single.name}.html"]
 
 
 WIDE = """

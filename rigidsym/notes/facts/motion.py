@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import reduce
@@ -9,6 +10,7 @@ from typing import NamedTuple
 
 import sympy as sp
 
+from rigidsym.errors import MissingExtra
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import decimal, formula
 from rigidsym.formula.scalars import formula_of
@@ -65,7 +67,11 @@ class MotionFacts:
     @property
     def picture(self) -> Figure | None:
         """The examples, with their numbers, in common and apart, in the caption."""
-        picture = motion_picture(self.derivation, self.letters)
+        try:
+            picture = motion_picture(self.derivation, self.letters)
+        except MissingExtra as error:
+            warnings.warn(f"a note without the picture of its examples: {error}", stacklevel=2)
+            return None
         if picture is None:
             return None
         numbers = [self._numbers(example) for example in self.forces.examples[: picture.told]]
