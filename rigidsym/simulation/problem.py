@@ -205,6 +205,8 @@ class Problem:
         if lost.any():
             # Ω′ for each rate by itself is a column of W′
             rows = self._at("angular_velocity_body", q[lost][:, None], np.eye(self.count))
+            # q̇ᵀ rows = Ω′ᵀ; the pseudoinverse gives the solution of least norm, or the nearest to
+            # one.
             least = np.einsum("nj,njk->nk", omega[lost], np.linalg.pinv(rows))
             error = np.linalg.norm(np.einsum("nk,nkj->nj", least, rows) - omega[lost], axis=1)
             far = error > _UNIT * np.linalg.norm(omega[lost], axis=1)
@@ -269,9 +271,12 @@ class Problem:
             w * b + z * a - x * c,
             w * c + x * b - y * a,
         )
+        # The torque of the equation is L′ × Ω′ = −Ω′ × I′ Ω′.
         p, q, r = (self.inertia @ state[4:]).tolist()
         torque = np.array([q * c - r * b, r * a - p * c, p * b - q * a])  # L′ × Ω′
         if self._torque is not None:
+            # The errors of the integrator change |q| a little; only the torque needs a unit
+            # quaternion here.
             unit = state[:4] / np.linalg.norm(state[:4])
             coordinates = self.kernels.from_quaternion_scalar(*unit.tolist())
             torque += self._torque(t, *coordinates, a, b, c, *self.parameters)

@@ -130,6 +130,8 @@ def _integrated(
         remark = "integrated as a unit quaternion"
     start = problem.quaternion(state)
     course = _solved(problem.quaternion_slopes, start, rest, at, None, progress, options)
+    # The last state in coordinates belongs to no sample time, but it is the nearest one from which
+    # the angles of the quaternion can be continued.
     before = np.concatenate([states, state[None]])
     states = np.concatenate([states, problem.states(before, course.states)])
     return problem.trajectory(times[: len(states)], states, course.ended, [remark])
@@ -160,6 +162,8 @@ def _solved(
                 f"the equations of motion give no finite rates at t = {at:.6g} s; expected a state "
                 "away from poles of the coordinates, and rates whose squares do not overflow"
             )
+        # The steps are taken one by one, not by solve_ivp, because the end of the motion in
+        # coordinates, the progress and motions that become ever faster must be seen between steps.
         kind = getattr(integrate, options["method"])
         solver = kind(slopes, at, start, times[-1], rtol=options["rtol"], atol=options["atol"])
         count = int(np.searchsorted(times, at, side="right"))  # times reached so far
@@ -197,6 +201,7 @@ def _exact(problem: Problem, times: Array) -> Trajectory:
     omega, rotation = free_motion(
         problem.inertia, problem.omega(start), problem.rotation(start), times
     )
+    # SciPy returns (x, y, z, w).
     quaternions = Rotation.from_matrix(rotation).as_quat()[:, [3, 0, 1, 2]]
     states = problem.states(start[None], np.concatenate([quaternions, omega], axis=1))
     return problem.trajectory(times, states)

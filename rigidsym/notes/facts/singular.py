@@ -81,6 +81,7 @@ class PointFacts:
         fixed = {place.coordinate for place in self.at.places}
         leaves = not fixed.isdisjoint(self._moved_by(null_rates.tolist()))
         named = [q.diff(TIME) for q in self.coordinates] if leaves else self.coordinates
+        # A combination c·q is kept if c·n = 0 for every null vector n of the rates.
         kept = sp.Matrix(null_rates.T).nullspace()
         sums = (sp.Add(*(n * q for n, q in zip(_whole(row), named, strict=True))) for row in kept)
         return [combination for combination in sums if combination not in fixed]

@@ -121,6 +121,7 @@ def _facets(shape: Shape) -> Iterator[Facet]:
     parts = [_Part(face.corners, unit(area_of(face.corners)), face.color) for face in shape]
     for corners, normal, color in _from_the_back(parts):
         if _TOWARD @ normal > _FLAT:
+            # Lambert's law for 38 % of the light; the rest is ambient, so that no face is black.
             bright = 0.62 + 0.38 * max(0.0, float(normal @ _LIGHT))
             red, green, blue = (round(part * bright) for part in color)
             yield Facet(points=tuple(map(_projected, corners)), color=(red, green, blue))

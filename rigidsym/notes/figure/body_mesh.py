@@ -96,6 +96,8 @@ def lengths_of(
     lengths = _FEW_LENGTHS.get(len(missing), _LENGTHS[: len(missing)])
     if len(missing) > len(lengths):
         return None
+    # The order in which lengths fit is unknown, such as an inner radius below the outer one. All
+    # orders are tried, the first ones with the preferred proportions.
     for chosen in islice(permutations(lengths), _MOST_TRIES):
         pairs = {**known, **dict(zip(missing, chosen, strict=True))}
         numbers = {symbol: sp.Float(value) for symbol, value in pairs.items()}
@@ -214,6 +216,8 @@ def _is_proper(solid: Solid, numbers: Numbers) -> bool:
     lengths = (sp.S(high - low).xreplace(numbers) for low, high in solid.bounds)
     if not all(float(length) >= 0 for length in lengths if length.is_number):
         return False
+    # The Jacobian may vanish on the sides of the box, as at the centre of a ball, but it must keep
+    # its sign inside.
     shares = np.ix_(*[[0.1, 0.5, 0.9]] * 3)
     return len(solid.coordinates) < 3 or len({*_is_outward(solid, numbers, *shares).flat}) == 1
 
@@ -242,6 +246,8 @@ def _of_solid(
         grid = _map(solid, numbers, *np.ix_(*steps))
         yield from ((grid, tiles), (grid[:, ::-1], tiles))
         return
+    # The columns and rows of a side run along k and j. e_j × e_k = e_i points outward on the upper
+    # side if the map preserves the orientation; elsewhere the order of the rows is reversed.
     outward = 1 if _is_outward(solid, numbers, 0.5, 0.5, 0.5) else -1
     for axis in range(3):
         j, k = (axis + 1) % 3, (axis + 2) % 3
@@ -290,6 +296,7 @@ def _tube(line: Vector) -> Iterator[Vector]:
     is_open = np.abs(line[0] - line[-1]).max() > 1e-9
     for k, (start, end) in enumerate(pairwise(line)):
         along = unit(end - start)
+        # The auxiliary axis must not be nearly parallel to the line.
         u = unit(np.cross(along, np.eye(3)[0 if abs(along[0]) < 0.8 else 1]))
         v = np.cross(along, u)
         around = _THICK * np.array([u + v, v - u, -u - v, u - v, u + v])

@@ -38,6 +38,7 @@ def unit(a: Vector) -> Vector:
 
 def turned(a: Vector, axis: Vector, angle: float) -> Vector:
     """The vector rotated right-handedly about a unit axis, by an angle in radians (Rodrigues)."""
+    # a cos α + (n × a) sin α + n (n·a)(1 − cos α)
     along = (1 - cos(angle)) * dot(axis, a)
     return combined((cos(angle), sin(angle), along), (a, cross(axis, a), axis))
 

@@ -54,6 +54,7 @@ class Range(NamedTuple):
             low, high = low - 1, high + 1
         power = 10.0 ** floor(log10((high - low) / most))
         step = next(f * power for f in (1, 2, 5, 10) if (high - low) <= most * f * power)
+        # The 1e-6 keeps ticks at the ends that rounding has moved outside.
         first, last = -floor(-low / step + 1e-6), floor(high / step + 1e-6)
         return cls(low, high, tuple(float(f"{k * step:.9g}") for k in range(first, last + 1)))
 
@@ -135,6 +136,8 @@ class _Surface(NamedTuple):
     @property
     def toward(self) -> Vector:
         """The normal of the plane, in the unit sphere, of what is seen edge on."""
+        # A point S u of the ellipsoid has the normal S⁻¹ u. It is seen edge on if toward·S⁻¹ u = 0,
+        # that is, if u lies in the plane with the normal S⁻¹ toward.
         return unit(_TOWARD / self.size)
 
     def parts(self, kind: Kind, path: Vector) -> Iterator[Stroke]:
@@ -153,6 +156,7 @@ class _Surface(NamedTuple):
 
 def circle(normal: Vector, height: float) -> Vector:
     """The circle (n, 3) of the unit sphere at this height along a normal."""
+    # The axis with the smallest component of the normal is the farthest from parallel to it.
     across = unit(np.cross(normal, np.eye(3)[np.abs(normal).argmin()]))
     frame = np.array([normal, across, np.cross(normal, across)])
     radius = max(0.0, 1 - height * height) ** 0.5

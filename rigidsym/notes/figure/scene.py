@@ -221,6 +221,8 @@ def scene_of(model: RotationModel, letters: Letters) -> Scene | None:
     for k, (turn, axis, radius) in enumerate(zip(turns, axes, RADII, strict=False)):
         # the line that is carried along: the axis of the next turn, or of the one before
         lines = [*(axes[k + 1 : k + 2] or axes[:k][-1:]), *STANDARD]
+        # A line at less than about 41° to the axis would sweep a cone too narrow to read an angle
+        # from.
         start = next((line for line in lines if abs(dot(line, axis)) < 0.75), STANDARD[0])
         names = (n for n, other in zip(_SPACE, STANDARD, strict=True) if is_same(start, other))
         name = formula_of(turn.angle, letters)

@@ -155,6 +155,7 @@ class Surd:
         return Surd({n: one.get(n, 0) + two.get(n, Fraction(0)) for n in {**one, **two}})
 
     def __mul__(self, other: Exact) -> Surd:
+        # √n √m = g √(nm/g²) with g = gcd(n, m), since n and m are products of different primes.
         products = [
             Surd({n * m // gcd(n, m) ** 2: one * two * gcd(n, m)})
             for n, one in self.terms.items()
@@ -203,6 +204,7 @@ class Number:
 
     def __mul__(self, other: Number) -> Number:
         one, two = self.parts, other.parts
+        # The Cauchy product, broken off at the order to which both factors are known.
         pairs = (zip(one[: k + 1], two[k::-1], strict=True) for k in range(min(len(one), len(two))))
         return Number(*(sum(a * b for a, b in pair if a and b) for pair in pairs))
 
@@ -212,6 +214,7 @@ class Number:
     def inverse(self) -> Number:
         if not self.parts[0]:
             raise Refused("a divisor is zero")
+        # 1/(c + h) = 1/c − h/c² + h²/c³
         inverse = Fraction(1) / self.parts[0]
         return self.changed(inverse, -1 * inverse * inverse, inverse * inverse * inverse)
 
@@ -275,6 +278,8 @@ class Matrix:
             place = next((k for k, row in enumerate(rows) if row[0].parts[0]), None)
             if place is None:
                 return ZERO
+            # Moving row k to the top is k exchanges of neighbours, each with a change of sign. The
+            # rows that remain hold the Schur complement of the pivot.
             pivot, *first = rows[place]
             product *= pivot * MINUS if place % 2 else pivot
             others = ((row[0] / pivot, row[1:]) for k, row in enumerate(rows) if k != place)
@@ -524,11 +529,13 @@ class Point:
         length = self.lengths.get(frozenset(self.record.vector(tree)))
         if length is None:
             raise Unreadable("a root that may be of either sign")
+        # √(l² + h) = l + h/(2 l) − h²/(8 l³)
         slope = Fraction(1, 2 * length)
         return self.value(tree).changed(length, slope, -(slope**3))
 
     def turn(self, angle: Tree) -> tuple[Number, Number]:
         """The cosine and the sine of an angle."""
+        # cos(a + h) = cos a − h sin a − h²/2 cos a, and sin(a + h) = sin a + h cos a − h²/2 sin a
         value, (cosine, sine) = self.value(angle), self.circle(angle, Fraction(self.record.parts))
         cosines = value.changed(cosine, -sine, -cosine / 2)
         return cosines, value.changed(sine, cosine, -sine / 2)
@@ -553,6 +560,8 @@ class Point:
                 raise Unreadable("an angle that may be a multiple of another one")
         if count.denominator > 1 or abs(count) > MOST_PARTS:
             raise Unreadable("too large a multiple of an angle")
+        # The drawn t is the tangent of half of the smallest part. The addition theorems give the
+        # cosine and the sine of its multiples, so that angles that depend on one another agree.
         t = self.circles.setdefault(name, drawn())
         part = Fraction(1 - t**2, 1 + t**2), Fraction(2 * t if count > 0 else -2 * t, 1 + t**2)
         return reduce(sum_of_turns, [part] * abs(int(count)), (Fraction(1), Fraction(0)))
@@ -589,6 +598,8 @@ class Motion:
         self.factors = [*self.factors_at(self.point)]
         R = self.R = reduce(mul, self.factors)
         omega = self.omega = spin(R)
+        # Ω = W q̇ is linear in the rates: column k of W is Ω for the rate 1 of q_k, and 0 of the
+        # others.
         spins = [spin(reduce(mul, self.factors_at(self.point.along(q)))) for q in record.q]
         W = self.W = {frame: Matrix(spin[frame].entries for spin in spins).T for frame in OMEGA}
         shown = R.T if self.content["presentation"] == "passive" else R
@@ -621,6 +632,8 @@ class Motion:
             yield point.read(self.record.rotation["matrix"])
         for _, texts in self.record.turns:
             *axis, cosine, sine = point.read(texts).entries
+            # Rodrigues' formula R = 1 + s C(v) + (1 − c) C(v)²; whether R is a rotation is tested
+            # separately, since v and the numbers c and s come from the record.
             operator = Matrix([part] for part in axis).hat()
             yield IDENTITY + operator * sine + operator * operator * (ONE - cosine)
 
@@ -671,9 +684,11 @@ class Motion:
         potential = self.position.read(motion["potential"])
         courses = map(self.point.only(*q).along, q)
         slopes = [course.read(motion["potential"]).rate().entries for course in courses]
+        # In the body, the rate of L in space components is dL′/dt + Ω′ × L′.
         turning = momentum.rate() + self.omega["body"].hat() * momentum
         inertial = W.T * turning + Matrix(slopes)
         mass_matrix, momenta = W.T * inertia * W, W.T * momentum
+        # The inertial forces are M q̈ + h at the drawn q̈; h is what remains without M q̈.
         bias = inertial - mass_matrix * self.still.read(self.record.seconds)
         self.values |= {
             "potential_energy": potential,
@@ -712,6 +727,7 @@ class Motion:
                 A.determinant().inverse()  # which refuses a singular A
             yield A * x, B
         elif kind == "rate_matrix" and frame in OMEGA:
+            # x holds no rates, and q̇ is random: x q̇ = Ω then holds for all q̇, and x = W.
             yield x * self.still.read(self.record.rates), self.omega[frame]
         elif name in PRINCIPAL and "inertia_tensor" in self.values:
             printed = (self.record.printed[each] for each in PRINCIPAL)
@@ -719,6 +735,8 @@ class Motion:
             yield axes * axes.T, IDENTITY
             yield Matrix([[axes.determinant()]]), Matrix([[ONE]])
             pairs = [zip(row, moments.entries, strict=True) for row in axes.rows]
+            # With A = (e₁ e₂ e₃) in SO(3), I A = A diag(I₁, I₂, I₃) says that the columns are
+            # eigenvectors.
             scaled = Matrix([one * two for one, two in pair] for pair in pairs)
             yield self.values["inertia_tensor"] * axes, scaled
         else:

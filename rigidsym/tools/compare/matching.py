@@ -249,10 +249,14 @@ def _decided(
     if equal := next((each for each in meanings if each.is_equal), None):
         return _proved(equal, (), asked)
     is_mirror, of_angles = is_orthogonal(formula, -1), are_angles(formula)
+    # Inverse functions are not changed as a whole: transposes, orders and senses of the angles are
+    # already among their conventions.
     wholes: Iterator[tuple[Reading, Repair]] = iter(())
     if is_mirror or not (is_in_program or of_angles):
         wholes = ((m, r) for m in meanings for r in whole_repairs(m, asked))
     whole = next(wholes, None)
+    # The negative of a reflection may be the wanted rotation. If it is not, det = −1 is the
+    # finding, and no repair of entries is looked for.
     if is_mirror and not whole:
         return Comparison(formula=formula, asked=asked, is_reflection=True)
     some = next((each for each in meanings if each.is_right_for_some), None)
@@ -381,6 +385,7 @@ def entry_repairs(reading: Reading) -> tuple[Repair, ...]:
     if formula.shape != goal.matrix.shape:
         return ()
     wrong = [(int(i), int(j)) for i, j in np.argwhere(~reading.agreement.all(axis=0))]
+    # Two exchanged entries are one mistake, not two.
     if len(wrong) == 2:
         one, two = wrong
         changed = formula.as_mutable()
@@ -432,6 +437,7 @@ def _entry(reading: Reading, place: tuple[int, int]) -> tuple[str, sp.Expr]:
     ):
         if near(reading.numbers(sp.Matrix([[after]])), wanted).all():
             return kind, after
+    # No single change is enough: the entry of the goal is written in the names of the formula.
     back = {meant: symbol for symbol, meant in reading.names.items()}
     return "entry", goal.matrix[place].xreplace(back)
 
@@ -495,6 +501,7 @@ def _here(
         yield from (("term", expression - term) for term in expression.args)
     if expression.is_Pow and expression.exp == 2:
         yield "square", expression.base
+        # If x y is mistyped as x x, SymPy holds x²; one of the two equal factors is changed.
         for kind, changed in variants(expression.base, groups, inside=inside):
             yield kind, expression.base * changed
     if inside:

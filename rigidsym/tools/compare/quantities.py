@@ -50,6 +50,8 @@ def _points() -> Array:
     near = random.uniform(0.2, 1.3, (5, 64, NEAR_POINTS))
     size = (5, 64, 8 * (POINTS - NEAR_POINTS))
     drawn = random.choice([0.5, np.pi, 20.0], size) * random.uniform(-1, 1, size)
+    # |sin 2x| is small near the zeros of both sin x and cos x. About one number in ten is rejected,
+    # so that 8 candidates for each place always suffice.
     is_far_from_poles = np.abs(np.sin(2 * drawn)) > 0.15
     order = np.argsort(~is_far_from_poles, axis=-1, kind="stable")[..., : POINTS - NEAR_POINTS]
     far = np.take_along_axis(drawn, order, axis=-1)
@@ -577,6 +579,8 @@ def _values_of(
             count[row] += 1
     for condition in conditions:
         q = [s for s in dict(inputs)["q"] if condition.has(s)]
+        # q is scaled to unit length, and q̇ loses its part along q, since q·q̇ = 0 follows from
+        # |q|² = 1.
         length = np.sqrt(sum(values[s] ** 2 for s in q))
         values |= {s: values[s] / length for s in q}
         if "q_dot" in dict(inputs):  # rates along v are taken away
@@ -600,6 +604,8 @@ def evaluated(matrix: sp.MatrixBase, values: Values) -> Array:
 def near(one: Array, other: Array) -> NDArray[np.bool_]:
     """Whether numbers are equal within rounding errors."""
     with np.errstate(all="ignore"):
+        # The error is absolute for small numbers: entries that are zero by cancellation have no
+        # digits.
         return np.asarray(np.abs(one - other) <= _TOLERANCE * np.maximum(1, np.abs(other)))
 
 

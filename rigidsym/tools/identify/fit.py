@@ -183,6 +183,7 @@ def _everything(layouts: tuple[bool | None, ...]) -> ReadingTable:
 
 def _narrowed(few: Samples, asked: float | None, scale: float) -> tuple[Tolerance, list[Reading]]:
     """The readings that fit a few samples, or only the nearest, and the tolerance for the rest."""
+    # Orientations are narrowed first: only with the few that fit, all conventions for Ω are tried.
     table = _everything(few.columns.layouts)
     angles = table.residuals(few.angles, few.orientation())
     readings = np.array(table.readings)

@@ -224,6 +224,9 @@ def distinct(layouts: Sequence[bool | None]) -> Iterator[Reading]:
     signs and unit, each function of the angles is four; 1152 are left for every entry of
     `layouts` (None: a matrix; whether the scalar of a quaternion stands last).
     """
+    # The other manner reverses the columns and the signs; the other manner and direction together
+    # make all signs opposite and leave the columns. One order of each reversed pair and one pattern
+    # of each opposite pair of signs are therefore one reading of each four.
     for sequence, columns, signs, extrinsic, passive, degrees, scalar_last in product(
         SEQUENCES,
         _PLAIN_COLUMNS,

@@ -48,6 +48,7 @@ class ReadingTable:
         `angles` and `rates` (n, 3) are columns of the data.
         """
         q, omega = self._turned(angles, rates)
+        # With the vector v of q, q* Ω q = Ω − 2 w v × Ω + 2 v × (v × Ω).
         across = np.cross(q[1:], omega, axis=0)
         in_body = omega - 2 * q[0] * across + 2 * np.cross(q[1:], across, axis=0)  # q* Ω q
         return np.where(self._is_in_body, in_body, omega) * self._factors
@@ -69,6 +70,8 @@ class ReadingTable:
                 strict=True,
             ):
                 if rates is not None:
+                    # Ω grows by ȧ q e q*, with q before this turn: its axis e has been moved by the
+                    # turns before it.
                     omega[..., places] += _image(axis, turn) * (rates[:, columns] * signs)
                 which = (slice(None), columns, self._units[places])
                 turn = _then_about(axis, turn, cosines[which], sines[which] * signs)
@@ -78,6 +81,7 @@ class ReadingTable:
 
 def _then_about(axis: int, turn: Array, cosine: Array, sine: Array) -> Array:
     """The quaternion product of a turn (4, ...) and one about an axis, from half its angle."""
+    # With p = cos(a/2) + e sin(a/2), q p = (w c − v·e s, v c + w s e + s v × e).
     along, first, second = (1 + (axis + k) % 3 for k in range(3))
     product = turn * cosine
     product[0] -= turn[along] * sine
@@ -103,6 +107,8 @@ def angle_between(p: Array, q: Array, axis: int = -1) -> Array:
 
     Taken from the chord, so that angles far below the square root of eps are still right.
     """
+    # |p − q| = 2 sin(α/4) for the angle α between the rotations. arccos of p·q would lose half of
+    # the digits near α = 0.
     same = np.sum(p * q, axis=axis, keepdims=True) >= 0
     chord = np.sqrt(np.sum((p - np.where(same, q, -q)) ** 2, axis=axis))
     return np.asarray(4 * np.arcsin(np.minimum(chord / 2, 1)))
