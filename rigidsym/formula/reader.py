@@ -102,6 +102,7 @@ class _TexReader:
         self.text = text
         self.parts = parts
         tokens = (match[0] for match in _TOKEN.finditer(text))
+        # Reversed, so that the list is a stack from which pop() takes the next token.
         self.tokens = [_NORMAL.get(t, t[:2] if t[:2] == r"\\" else t) for t in tokens][::-1]
 
     @property
@@ -182,6 +183,7 @@ class _TexReader:
             return tree.Numeral(token)
         if token.startswith("#"):
             return self.parts[int(token[1:]) - 1]
+        # In dR/dt and d\mathbf{R} the d is a differential; a d before a space is a letter.
         if token == "d" and (self.next[:1].isalpha() or self.next[:1] in ("\\", "#")):
             return tree.Differential() if self.next != r"\," else tree.Symbol("d")
         if token.isalpha() and len(token) == 1:
@@ -214,6 +216,8 @@ class _TexReader:
             return replace(inside, dots=inside.dots + _DOTS[token])
         if token in (r"\frac", r"\tfrac"):
             above, below = self._argument(), self._argument()
+            # The derivative with respect to time is a node of its own, since notations write it as
+            # a dot, too.
             by_time = tree.row(tree.Differential(), tree.Symbol("t"))
             match above:
                 case tree.Row((tree.Differential("d"), *differentiated)) if below == by_time:

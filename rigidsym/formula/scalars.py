@@ -64,6 +64,7 @@ def signs_outside(node: sp.Expr) -> sp.Expr:
     if node.is_Mul:
         flipped = [part for part in parts if part.is_Add and all(map(is_negative, part.args))]
         kept = [-part if part in flipped else part for part in parts]
+        # The factors flipped contribute (−1)^k.
         if flipped:
             return sp.Mul(*kept) if len(flipped) % 2 == 0 else sp.Mul(-1, *kept)
     return node.func(*parts)
@@ -82,6 +83,7 @@ def factored(matrix: sp.ImmutableMatrix) -> tuple[sp.Expr, sp.ImmutableMatrix]:
     if divisor == 1 and not any(map(_has_ratios, entries)) and _constants_in_all(entries) == 1:
         return sp.S.One, matrix
     contents = [_over(entry, divisor).as_content_primitive() for entry in matrix]
+    # Zeros divide by anything, and are left out of the common divisor.
     number = sp.gcd_list([content for content, rest in contents if rest != 0])
     constants = _constants_in_all([rest for _, rest in contents if rest != 0])
     if divisor == 1 and number.is_Integer and constants == 1:
@@ -251,6 +253,7 @@ def _rational(number: sp.Rational) -> tree.Formula:
 
 def _at_least(bound: Bound, formula: tree.Formula) -> tree.Formula:
     """The formula, in brackets where it is held together less tightly."""
+    # A row with a sign in it, such as a + b or −a, is held together as a sum.
     own = _BOUND.get(type(formula), Bound.NAME)
     if isinstance(formula, tree.Row):
         is_sum = any(isinstance(part, tree.Sign) for part in formula.parts)

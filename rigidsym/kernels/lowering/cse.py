@@ -137,6 +137,7 @@ class Graph:
         if exponent.is_Integer:
             times, (coefficient, factors) = int(exponent), self._monomial(base)
         else:
+            # x^(k/2) = (√x)^k, so that all half-integer powers of a base share one root.
             times, coefficient = int(2 * exponent), Fraction(1)
             factors = (self._node("sqrt", (self.weighted(base),)),)
         factors = factors if times > 0 else tuple(~factor for factor in factors)
@@ -160,6 +161,7 @@ class Graph:
         """The product of nodes (~node divides); a node over itself goes away."""
         counted: Counter[int] = Counter()
         for factor in factors:
+            # ~n = −n − 1 has the other sign, so that the larger one of the two is the node.
             counted[max(factor, ~factor)] += 1 if factor >= 0 else -1
         counted.pop(self.one, None)
         flat = tuple(sorted(n if k > 0 else ~n for n, k in counted.items() for _ in range(abs(k))))
@@ -223,6 +225,7 @@ class Graph:
         return [node for node in sorted(self.reachable(roots)) if self.nodes[node][0] == kind]
 
     def _without_factors(self, used: list[int], a: int, b: int) -> None:
+        # For a = b, each common part is a square and takes two factors.
         common = self._product((a, b))
         for node in used:
             factors = Counter(self.nodes[node][1])
@@ -232,6 +235,7 @@ class Graph:
             self._redefine(node, tuple(sorted(factors.elements())))
 
     def _without_terms(self, used: list[int], a: int, b: int, ratio: Fraction) -> None:
+        # c a + d b = c (a + (d/c) b): pairs of terms are the same if the ratio d/c is.
         _, common = self._sum(((Fraction(1), a), (ratio, b)))
         for node in used:
             terms = {part: c for c, part in self.nodes[node][1]}
@@ -262,6 +266,7 @@ def _factor_pairs(factors: Factors) -> Counter[tuple[int, int]]:
     """Pairs of factors, and how often each can be taken out of the product at once."""
     counted = Counter(factors)
     pairs = {(a, b): min(counted[a], counted[b]) for a, b in combinations(sorted(counted), 2)}
+    # aⁿ holds n // 2 squares. Taking them out round by round computes a power by repeated squaring.
     squares = {(a, a): times // 2 for a, times in counted.items() if times > 1}
     return Counter(pairs | squares)
 

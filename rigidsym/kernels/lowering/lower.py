@@ -146,6 +146,8 @@ class _Lowering:
         if len(minors) == 1:
             value = sp.Abs(minors[0] / scale, evaluate=False)
         else:
+            # By the Cauchy-Binet formula, Σ minors² = det(W Wᵀ), the square of the product of
+            # singular values.
             value = sp.sqrt(sp.Add(*(minor**2 for minor in minors)))
         is_free = self._symbols(value).isdisjoint(self.derivation.model.constants)
         inputs = [self._vectors[n] for n in (("q",) if is_free else ("q", "parameters"))]

@@ -60,6 +60,8 @@ class Bounded:
     @classmethod
     def rounded(cls, size: float, error: float = 0.0) -> Bounded:
         """The float nearest to a number that is at most `size` and has an error already."""
+        # 2^(e−1) ≤ size < 2^e. The least power of two that is not below the size is 2^e, or 2^(e−1)
+        # if the size is this power itself.
         mantissa, exponent = frexp(size)
         power = 2.0 ** (exponent - (mantissa == _HALF))
         is_float = (mantissa * 2**24).is_integer()  # in single precision too
@@ -122,6 +124,7 @@ def numbers_and_angles(kernel: Kernel) -> tuple[set[str], set[str]]:
         if not (isinstance(value, Guarded) or _is_sine(value))
         for name in names_in(value)
     }
+    # From the last one to the first, since a half may be taken of a half.
     for name, source in reversed(halves.items()):
         if name in plain:
             plain.add(source)
@@ -172,9 +175,13 @@ def _bounded(expression: Expression, values: Mapping[str, Bounded]) -> Bounded:
                 reduce(_product, (_bounded(part, values) for part in side), _ONE)
                 for side in (factors, divisors)
             )
+            # The error of 1/b is that of b over b². The error of the quotient is rounded once, in
+            # the product.
             inverse = Bounded(1 / below.size, below.error / below.size**2, below.is_scale)
             return _product(above, inverse)
         case Call("sin" | "cos", argument):
+            # The slope of sine and cosine is at most 1 in size, so that they pass the error of the
+            # angle on.
             angle = values.get(argument.text, Bounded(0.0, 0.0))  # an input is exact as given
             return Bounded(1.0, SINE + angle.error)
         case Call("abs", argument):
@@ -187,6 +194,7 @@ def _bounded(expression: Expression, values: Mapping[str, Bounded]) -> Bounded:
 
 
 def _product(a: Bounded, b: Bounded) -> Bounded:
+    # |â b̂ − a b| ≤ δa |b| + |a| δb + δa δb; the last term is of the order eps².
     size, error = a.size * b.size, a.error * b.size + b.error * a.size
     if a.is_scale or b.is_scale:
         return Bounded(size, error, a.is_scale and b.is_scale)
@@ -261,9 +269,11 @@ class _Guard:
             case Call("sin" | "cos", angle):
                 return angle, 1
             case Call("c0", square):
+                # c₀ = cos n has the slope ±1 at its zeros and is off by 4 eps n there.
                 root = self._new(Call("sqrt", square))
                 return self._new(Product((_ROUNDINGS, root))), 1
             case Call("c1"):
+                # c₁ = sin n/n: an error of 4 eps n in the sine is one of 4 eps.
                 return _ROUNDINGS, 1
             case Call("c2"):
                 return _DOUBLE_ZERO, 2
@@ -283,6 +293,8 @@ class _Guard:
 
     def _reach(self) -> Name:
         """The square of how far rounding reaches where sines and cosines are squared, over eps²."""
+        # Near its zeros, a sine or a cosine of a may be wrong by 4 eps (1 + |a|), rounding of a
+        # included.
         called = {v.argument: None for v in self._values.values() if _is_sine(v)}
         sizes = [self._new(Call("abs", angle)) for angle in called]
         reach = self._new(Product((_ROUNDINGS, Sum((Number(Fraction(1)), *sizes)))))
@@ -305,6 +317,7 @@ class _Guard:
 
     def _is_positive(self, part: Expression) -> bool:
         """Whether it is a positive number, or a number times squares."""
+        # An even number of equal factors is a square.
         factors = list(self._flat(part, Product))
         return all(
             factor.value > 0 if isinstance(factor, Number) else factors.count(factor) % 2 == 0

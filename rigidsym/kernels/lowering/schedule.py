@@ -102,6 +102,7 @@ class _Writer:
             case Sum(terms):
                 return self._sum([self._negated(term) for term in terms])
             case Product(factors, divisors):
+                # −(a − b) = b − a needs no operation, −(a + b) does.
                 for place, factor in enumerate(factors):
                     if isinstance(factor, Sum) and any(
                         isinstance(term, Negative) for term in factor.terms

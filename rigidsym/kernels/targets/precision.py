@@ -90,9 +90,12 @@ _SIZES = {"double": (64, 53, 21, 2, 6, 12, "dQ"), "float": (32, 24, 13, 3, 3, 5,
 def numbers(precision: Precision) -> dict[str, Any]:
     """The numbers of sine, cosine and arctangent in one precision."""
     bits, digits, turns, short, terms, flat_terms, letters = _SIZES[precision.real]
+    # Adding and subtracting this number rounds to a whole number. With 1.5 in place of 1, the sum
+    # keeps its exponent for negative numbers, too.
     magic = 1.5 * 2.0 ** (digits - 1)  # a float of this size has no fraction
     (word,) = struct.unpack(letters[1], struct.pack(letters[0], magic))
     with mp.workdps(60):
+        # The functions are 0/0 at z = 0, but the points of Chebyshev are inside the interval.
         top = (_MARGIN * mp.pi / 4) ** 2
         sine = mp.chebyfit(lambda z: (mp.sinc(mp.sqrt(z)) - 1) / z, [0, top], terms)
         cosine = mp.chebyfit(lambda z: (mp.cos(mp.sqrt(z)) - 1 + z / 2) / z**2, [0, top], terms)
@@ -101,6 +104,7 @@ def numbers(precision: Precision) -> dict[str, Any]:
         )
         eighth = _cut(mp.pi / 4, digits - 3)
         low, rest, parts = mp.pi / 4 - eighth, mp.pi / 2, []
+        # n has at most `turns` bits, and a part of `digits − turns` bits: their product is a float.
         for width in (*[digits - turns] * short, digits):
             parts.append(_cut(rest, width))
             rest -= parts[-1]
