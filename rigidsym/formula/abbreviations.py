@@ -87,8 +87,10 @@ class Namer:
             whole = value.xreplace(written)
             width = self._width(whole)
             is_bound = whole.is_Add or whole.is_Pow or any(p.is_Pow for p in whole.args)
+            # A name saves its value at every place but one, which is the definition.
             saved = (times[symbol] - 1) * (width - _NAME) - _OVERHEAD
             if width >= _LEAST[bool(is_bound)] and saved > 0:
+                # The sign stays before the name, so that a part and its negative share it.
                 sign = -1 if whole.as_coeff_Mul()[0].is_negative or -whole in self._known else 1
                 name = self._name_of(sign * whole)
                 written[symbol] = sign * name

@@ -75,6 +75,7 @@ def _applied(node: tree.Formula, notation: Notation) -> tree.Formula:
     match node:
         case tree.Symbol():
             return _symbol(node, notation)
+        # A letter has one superscript only, and an exponent would be the second.
         case tree.Power(tree.Symbol(prime="′"), exponent) if notation.body == "superscript":
             return tree.Power(tree.Bracket(_applied(node.base, notation)), exponent)
         case tree.Power(tree.Symbol(dots=dots), exponent) if dots and notation.rates == "fraction":

@@ -125,6 +125,8 @@ class Pen:
                 is_binary = before is not None and not isinstance(before, tree.Sign)
                 sign = self.sign(part, is_binary=is_binary and not is_tight)
                 if is_binary and part.character in BREAKS:
+                    # An empty chunk before a sign between two terms is a place where a line may
+                    # end.
                     sign = sign._replace(chunks=(_EMPTY, *sign.chunks))
                 pieces.append(sign)
             else:
@@ -155,6 +157,8 @@ class Pen:
         text, width, level = _EMPTY
         height = Height.FLAT
         for piece in pieces:
+            # No line may end between two pieces: the last chunk of one and the first of the next
+            # are joined.
             first, *others = piece.chunks
             text, width = text + first.text, width + first.width
             height = max(height, piece.height)
@@ -211,6 +215,7 @@ def break_lines(piece: Piece, width: float, indent: float, blank: float = 0.0) -
     What has no place to break stays whole, so that a line may still be too wide.
     """
     lines = _lines(piece.chunks, width, indent, blank)
+    # Brackets in a divisor count DIVISOR in a level; both kinds indent by one step.
     levels = [0, *(line[0].level % DIVISOR + line[0].level // DIVISOR for line in lines[1:])]
     return [
         Segment(" ".join(chunk.text for chunk in line), _width(line, blank), level)
@@ -227,6 +232,7 @@ def _lines(
 ) -> list[Sequence[Segment]]:
     if len(chunks) == 1 or _width(chunks, blank) <= width:
         return [chunks]
+    # The outermost signs break first, and as many terms as fit share a line.
     level = min(chunk.level for chunk in chunks[1:])
     cuts = [0, *(k for k, chunk in enumerate(chunks) if k and chunk.level == level), len(chunks)]
     lines: list[Sequence[Segment]] = []

@@ -299,6 +299,7 @@ class Kernel:
     def delicate(self) -> frozenset[str]:
         """Names whose relative error is the result's: factors of a divisor or of a size."""
         reached = {name for divisor in self.divisors for name in _factors_in(divisor)}
+        # From the last one back, since a factor is assigned before the product that it is in.
         for assignment in reversed(self.assignments):
             is_size = isinstance(assignment.value, Call) and assignment.value.function == "abs"
             if is_size or assignment.name in reached:

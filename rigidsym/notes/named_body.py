@@ -89,6 +89,7 @@ def _named(body: RigidBody) -> tuple[Parts, RigidBody]:
     tensor, parts = body.inertia, []
     if not _is_short(body) and tensor.is_diagonal():
         pairs = [*zip(_MOMENTS, tensor.diagonal(), strict=True)]
+        # Reversed, so that equal moments have the first of their names: (I₁, I₁, I₃).
         letters = {moment: name for name, moment in reversed(pairs)}
         parts = [(name, moment) for moment, name in reversed(letters.items()) if moment]
         tensor = sp.diag(*(letters[moment] if moment else moment for moment in tensor.diagonal()))

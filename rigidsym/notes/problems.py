@@ -100,6 +100,8 @@ def which_convention(rng: Random) -> Problem:
     sequence = rng.choice(SEQUENCES)
     found = derive(EulerAngles(sequence), ("rotation_matrix",))
     first, middle, last = map(str.lower, sequence)
+    # With the first axis i and the last axis j, R_ij = e_i·R e_j depends on the middle angle only:
+    # the outer rotations leave e_i and e_j as they are.
     i, j = ("xyz".index(axis) for axis in (first, last))
     return _problem(
         "which_convention",
@@ -122,6 +124,7 @@ def angular_velocity(rng: Random) -> Problem:
     name = f"angular_velocity_{frame.name}"
     found = derive(EulerAngles(sequence), ("angular_velocity_space", name))
     q, q_dot = found.argument("q"), found.argument("q_dot")
+    # The middle angle keeps away from 0° and 90°, one of which is gimbal lock.
     angles = [rng.randrange(-170, 171, 10), rng.randrange(20, 80, 5), rng.randrange(-170, 171, 10)]
     rates = [rng.choice(_RATES) for _ in range(3)]
     value = found.step(name).expression.xreplace(dict(zip(q_dot.symbols, rates, strict=True)))
@@ -148,6 +151,7 @@ def gimbal_lock(rng: Random) -> Problem:
     assert facts is not None
     assert facts.found.determinant is not None
     away = rng.randrange(1, 16)  # degrees from gimbal lock
+    # |det W| is sin θ for proper Euler angles and cos θ for Tait-Bryan angles.
     theta = away if sequence[0] == sequence[2] else 90 - away
     angle = sp.Float(radians(theta))
     size = abs(float(facts.found.determinant.xreplace({found.model.coordinates[1]: angle})))
@@ -192,6 +196,7 @@ def rotational_energy(rng: Random) -> Problem:
     omega = sp.Matrix([rng.choice(_RATES) for _ in range(3)])
     momentum = sp.diag(*moments) * omega
     size, twice_the_energy = momentum.norm(), omega.dot(momentum)
+    # cos α = L·Ω/(|L| |Ω|), and L·Ω is twice the energy.
     angle = sp.deg(sp.acos(twice_the_energy / (omega.norm() * size)))
     return _problem(
         "rotational_energy",

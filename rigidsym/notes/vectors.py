@@ -48,6 +48,7 @@ def by_half_angle(coefficient: sp.Expr) -> sp.Expr:
         if cosine.func is not sp.cos:
             continue
         sine, rest = sp.sin(*cosine.args), sp.Symbol("rest")
+        # The numerator is `over` (1 − cos n) + `times` sin n, and sin n/(1 − cos n) = cot(n/2).
         over, left = sp.div(sp.expand(above).xreplace({sine: rest}), factor, cosine)
         times, none = sp.div(left, rest, rest)
         if none == 0 and not over.has(rest) and not times.has(rest, cosine):

@@ -120,6 +120,7 @@ def _more(derivation: Derivation) -> Iterator[Step]:
         yield _function("turns", rows, about, ("q", "q_dot", *constants))
     conditions = sp.Matrix(model.constraints)
     if model.pullback is not None:  # of a matrix: R Rᵀ = 1
+        # R Rᵀ is symmetric, so that R Rᵀ = 1 has six different entries.
         excess = model.matrix * model.matrix.T - sp.eye(3)
         conditions = sp.Matrix([excess[i, j] for i in range(3) for j in range(i, 3)])
     if conditions:

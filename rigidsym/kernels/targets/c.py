@@ -226,4 +226,5 @@ def _comment(paragraphs: Sequence[remarks.Paragraph]) -> str:
 
 def _safe(text: str) -> str:
     """Text that neither ends a comment nor escapes anything in it."""
+    # Two question marks may begin a trigraph.
     return text.replace("*/", "* /").replace("/*", "/ *").replace("\\", "\\\\").replace("??", "? ?")

@@ -143,6 +143,8 @@ def _scalar_body(kernel: Kernel) -> Iterator[str]:
         yield python.statement(8, name, value, _OF_FLOATS)
     entries = outputs(kernel, 8 + 4 * len(kernel.shape))
     yield f"        return {nested(entries, kernel.shape, 8, is_open=True)}"
+    # Python's floats raise exceptions where those of IEEE 754 become NaN or infinite; the function
+    # of arrays then computes the orientation.
     points = [nested(a.components, (len(a.components),), 12) for a in kernel.arguments]
     given = [f"_{kernel.name}", str(kernel.shape), *points]
     yield "    except (ValueError, ZeroDivisionError):"

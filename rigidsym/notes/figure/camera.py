@@ -80,5 +80,7 @@ def camera(azimuth: float, elevation: float, *, z_down: bool = False, scale: flo
     """
     a, e, up = radians(azimuth), radians(elevation), -1 if z_down else 1
     toward = (cos(e) * cos(a), cos(e) * sin(a), up * sin(e))
+    # toward × right has the vertical component ±cos e with the sign of `up`: the side of the ground
+    # from which the viewer looks is up in the picture.
     right = (-up * sin(a) * scale, up * cos(a) * scale, 0.0)
     return Camera(right, cross(toward, right), toward)

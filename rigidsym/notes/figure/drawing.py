@@ -152,6 +152,7 @@ def _circle(kind: Kind, arc: Arc, seen: Camera) -> Iterator[Stroke]:
     """
     across, along, depth = map(seen.depth, (arc.start, arc.side, arc.centre))
     nearest, swing = atan2(along, across), hypot(across, along)
+    # Circles entirely in front of the plane of the picture, or behind it, have no point of depth 0.
     half = pi if depth >= swing else 0.0 if depth <= -swing else acos(-depth / swing)
     for is_hidden, start, end in (
         (False, nearest - half, nearest + half),
@@ -194,6 +195,7 @@ Named = tuple[Kind, Formula, Sequence[Place]]  # a label, and where it may go
 
 def labelled(named: Iterable[Named], strokes: Sequence[Stroke]) -> tuple[Label, ...]:
     """Labels at their first free places, the nearest first; else where they touch the least."""
+    # Labels are placed one by one and never moved again; the first ones have the widest choice.
     named, points = tuple(named), [*_sampled(strokes)]
     taken: list[Box] = []
 

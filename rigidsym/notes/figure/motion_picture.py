@@ -116,6 +116,8 @@ def _over_time(
 
 def _polhodes(motions: Sequence[Trajectory], letters: Letters) -> Drawing:
     """Each on the ellipsoid of its own energy, scaled to one size."""
+    # With 2E = Σ I_k Ω′_k², the vector of √I_k Ω′_k has the length √(2E): its direction is a point
+    # of the unit sphere, and the ellipsoid of energy has semi-axes in proportion to 1/√I_k.
     roots = np.sqrt(motions[0].inertia.diagonal())
     turning = (roots * motion.angular_velocity_body for motion in motions)
     paths = [

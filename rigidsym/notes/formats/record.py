@@ -159,6 +159,7 @@ def _rotation(model: RotationModel, names: Names) -> dict[str, Any]:
     """R as a certificate's checker builds it: turns from left to right, or nine entries."""
     matrix, conditions = model.matrix, list(model.constraints)
     if model.pullback:
+        # Six conditions, since R Rᵀ is symmetric; det R = 1 excludes reflections.
         products = matrix * matrix.T - sp.eye(3)
         conditions = [products[i, j] for i in range(3) for j in range(i + 1)] + [matrix.det() - 1]
     turns = [text for turn in model.turns for text in _turn(turn, names)]

@@ -329,6 +329,7 @@ class _Section:
             yield f"Definition {self.letter(name)} t := {self.text(text)}."
         yield from self._turning()
         words = ["F", *["inertia"] * ("body" in self.record), *map(self.letter, self.definitions)]
+        # dF/dt = C(Ω) F gives d(Fᵀ)/dt = −Fᵀ C(Ω) = C(−Fᵀ Ω) Fᵀ.
         if self.shown != "F":
             yield "Definition shown s := transpose (F s)."
             velocity = f"(scale (-1) (apply (transpose (F t)) {self.velocity}))"
@@ -401,6 +402,7 @@ class _Section:
         for k, factor in enumerate(self.factors, start=1):
             yield f"Lemma step_{k} t : turns (fun s => {factor.text}) t {factor.velocity}."
             yield f"Proof. known t; {factor.proof}. Qed."
+        # If A and B turn with Ω_A and Ω_B in space components, A B turns with Ω_A + A Ω_B.
         velocity, proof = self.factors[-1].velocity, f"(step_{len(self.factors)} t)"
         for k in range(len(self.factors) - 1, 0, -1):
             factor = self.factors[k - 1]

@@ -113,6 +113,8 @@ def combined(operator: str, left: Any, right: Any) -> Any:
         case "/" if not matrices[1] and right != 0:
             return _bounded(left / right)
         case "**" if right == -1 and max(left.shape) <= _LARGEST_INVERSE:
+            # Berkowitz' algorithm does not divide, so that no symbolic pivot has to be told from
+            # zero.
             return _bounded(left.adjugate() / left.det(method="berkowitz"))
         case "**" if right in range(1, 9):
             return reduce(lambda a, b: _bounded(a * b), [left] * int(right))

@@ -169,6 +169,7 @@ class _Walk:
     def _call(self, function: str) -> str:
         power = self._argument() if self.take("^") else ""
         if power.strip("()") == "-1":
+            # sin⁻¹ is the inverse function, although sin² is a power.
             function, power = f"a{function}", ""
         is_number = self.next().isdigit()
         argument = self._argument() if function == "sqrt" else self._power()

@@ -298,6 +298,7 @@ def _assigned_value(text: str, suffix: str) -> Node | None:
         line = line.replace("\n", " ")
     if suffix == ".py":  # in Python, ^ would bind less than +
         line = line.replace("^", "**")
+    # First as the value of a new name, which needs a type in C++, and then as an assignment itself.
     for program in (f"{'auto ' * (suffix == '.cpp')}x = {line};", f"{line};"):
         root = parsed(program, suffix)
         value = next((n for n in below([root]) if STATEMENTS.get(n.type) == "_assignment"), None)
@@ -651,6 +652,7 @@ class _Interpreter:
         """Run each block from the same state, and merge: differing values are unreadable."""
         self._emit_groups()
         start, before = self.state, before or self.state
+        # If no block is sure to run, all of them may be skipped.
         paths = [] if is_sure else [before]
         for block in blocks:
             self.state = start.copy()
@@ -671,6 +673,8 @@ class _Interpreter:
         self, alive: list[_State], start: _State, before: _State, node: Node, *, is_case: bool
     ) -> None:
         """One state for all paths: where they differ, a name has a case for each of them."""
+        # In gimbal lock, programs set one angle to a number. Only the branch with the formula
+        # counts.
         alive = [p for p in alive if not any(self._is_pole(p, q) for q in alive)]
         self.state = (alive or [before])[0].copy()
         self.state.is_over = not alive

@@ -98,6 +98,7 @@ def search(path: Path) -> Iterator[FormulaInFile]:
             if formula.unread:
                 reason = f"{_in_lines(formula.unread)} cannot be read"
         is_known = comparison is not None and comparison.found is not None
+        # A formula with the values of all branches at once may be no quantity, while one branch is.
         for form in () if is_known else formula.cases:
             case = _identified(form, is_equal=True)
             if case.is_equal:
@@ -142,6 +143,8 @@ def disappointment(
 def _block(matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
     """The rotation in a homogeneous transformation; a row as a column; angles in radians."""
     matrix = matrix.T if matrix.rows == 1 else matrix
+    # π mostly converts degrees. With names, or angles, in the other unit it cancels; if it does
+    # not, the formula is left as it is.
     if matrix.has(sp.pi):
         scale = {s: s * 180 / sp.pi for s in matrix.free_symbols}
         in_radians = matrix * sp.pi / 180 if are_angles(matrix) else matrix.xreplace(scale)

@@ -125,6 +125,7 @@ class Samples:
         """
         finite = {name: np.isfinite(part).all(axis=1) for name, part in self.parts.items()}
         defects, sizes = self.defects(), np.linalg.norm(self.attitude, axis=1)
+        # Rows that are not finite have their own message, and are no wrong rotations.
         wrong = np.all([*finite.values()], axis=0) & ~(defects <= slack)
         if (m := self.matrices) is not None:
             sizes = np.linalg.det(m)

@@ -128,6 +128,7 @@ def quaternion_of(matrix: Array) -> Array:
     k[..., 0, 0] = trace
     k[..., 0, 1:] = k[..., 1:, 0] = (matrix - transpose)[..., [2, 0, 1], [1, 2, 0]]
     k[..., 1:, 1:] = matrix + transpose - trace[..., None, None] * np.eye(3)
+    # The longest column is the one of the largest diagonal entry 4 q_k² of 4 q qᵀ.
     projector = k + np.eye(4)
     longest = np.argmax(np.diagonal(projector, axis1=-2, axis2=-1), axis=-1)
     q = np.take_along_axis(projector, longest[..., None, None], axis=-1)
