@@ -67,7 +67,7 @@ def _in_principal_axes(
     # Ω_c = ±size_c dn keeps its sign. For both orders of a, b, c, B dΩ_b/dt = |C − A| Ω_c Ω_a, and
     # with Ω_a = size_a cn this gives Ω_b = ±size_b sn with the same sign.
     sign = np.copysign(1.0, start[c])
-    # The elliptic functions take u = F(first | m) + rate t; `first` is their amplitude at the start.
+    # The elliptic functions take u = F(first | m) + rate t; `first` is the amplitude at t = 0.
     # Rounding may lift the parameter m above 1, its value on the separatrix.
     rate = np.sqrt((C - B) * of_a / (A * B * C))
     m = min((B - A) * of_c / ((B - C) * of_a), 1.0)
