@@ -177,6 +177,7 @@ def _term_key(term: sp.Expr, letters: Letters) -> Key:
     has_bracket = any(power_of(factor)[0].is_Add for factor in factors)
     rates = _rates(term, letters)
     keys = [_factor_key(factor, letters) for factor in ordered_factors(factors, letters)]
+    # Products before brackets, the highest derivatives first, then short terms before long ones.
     return (has_bracket, rates, len(factors), keys)
 
 

@@ -99,6 +99,8 @@ class UnicodePen(Pen):
     def fraction(self, node: tree.Fraction) -> Piece:
         top, below = self._at_least(Binding.PRODUCT, self.node(node.above)), self.node(node.below)
         if below.binding < Binding.POWER:
+            # Breaking a line inside a divisor is the last resort, and DIVISOR is the depth that
+            # says so.
             below = self.within(_atom("("), below, _atom(")"), DIVISOR)
         else:  # with brackets of its own
             below = below.deeper(DIVISOR - 1)

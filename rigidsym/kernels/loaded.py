@@ -43,6 +43,8 @@ def load(
     if not kept.is_dir():
         with TemporaryDirectory(dir=home, prefix=".", ignore_cleanup_errors=True) as folder:
             draft = Path(folder)
+            # Built beside its final place and renamed, so that no process imports half of a
+            # package.
             for name, text in {"__init__.py": "", **files}.items():
                 (draft / name).write_text(text, encoding="utf-8")
             if build is not None:

@@ -131,6 +131,8 @@ class Fitter:
             return plain
         scalar = equation.scalar
         matrix = sp.ImmutableMatrix([scalar]) if equation.matrix is None else equation.matrix
+        # In a listing each entry stands behind its name, and a symmetric one behind both of its
+        # names.
         names = 1.5 if matrix.rows > 1 and matrix == matrix.T else 1.0  # I₁₂ = I₂₁
         parts, short = self._namer.named(matrix, PAGE - names * _ROOM_OF_A_NAME)
         value = {"scalar": short[0]} if equation.matrix is None else {"matrix": short}
@@ -144,6 +146,7 @@ class Fitter:
     def _is_shorter(self, named: _Form, plain: _Form) -> bool:
         """Whether names save lines; two more are worth it where nothing is broken then."""
         shown = display(named.equation, self.letters, PAGE)
+        # Too wide even when broken: names are the only way.
         if display(plain.equation, self.letters, PAGE).width > PAGE:
             return True
         lines = sum(map(self._lines, self._blocks(named)))

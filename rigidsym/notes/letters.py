@@ -65,6 +65,8 @@ def length_of(model: RotationModel) -> VectorLength | None:
         return None
     taken = {q.func.__name__ for q in model.coordinates} | {c.name for c in model.constants}
     letter = next(letter for letter in _LENGTHS if letter not in taken)
+    # First |q|, which a matrix divides by if q need not be of unit length, then |v|. The first one
+    # whose square comes up in R is the length.
     for components in (model.coordinates, model.vector):
         is_of_vector = components == model.vector and letter == LENGTH.name
         symbol = LENGTH if is_of_vector else sp.Symbol(f"{letter}_q", positive=True)

@@ -82,6 +82,7 @@ def _printed(_: Context, value: Any) -> Markup:
     elif type(value) is tuple and value and isinstance(value[0], _BLOCKS):
         value = [*value]  # blocks; other tuples are texts
     marks.things.append(value)
+    # The mark of the k-th thing is the k-th letter of the private use area.
     return Markup(chr(_FIRST + len(marks.things) - 1))
 
 

@@ -70,6 +70,8 @@ def controls_of(
                 continue
             _, reach, unit, factor, is_periodic = limits
             begin = start[name] / factor if name in start else limits.start
+            # An angle is brought into its period [−reach, reach); the reach of anything else grows
+            # to its value.
             begin = (begin + reach) % (2 * reach) - reach if is_periodic else begin
             reach = max(reach, abs(begin))
             yield {
@@ -130,6 +132,8 @@ def period_of(symbol: sp.Expr, model: RotationModel) -> float:
     slopes = [angle.diff(symbol) for angle in angles if angle.has(symbol)]
     if not slopes or rest.has(symbol) or not all(slope.is_Rational for slope in slopes):
         return 0.0
+    # R depends on sines and cosines of p/q times the angle, with whole p and q; each repeats after
+    # 2π q.
     return 2 * pi * lcm(*(int(slope.q) for slope in slopes))
 
 

@@ -93,6 +93,7 @@ def print_page(
         "copies": dict(_latex(document)),
     }
     script = _script(functions, data)
+    # The policy of the page names the digest of its only script, and blocks any other.
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     return rendered(
         TEMPLATE,
@@ -190,6 +191,8 @@ def _script(functions: Functions, data: object) -> str:
         f"\nconst kernels = {{ {names} }};\nconst page = {literal};\n",
         *(resources.text("templates", f"page/{name}.js") for name in SCRIPTS),
     ]
+    # In a string of JavaScript `<\/` is `</`; HTML would end the script at `</script`, and read
+    # `<!--` as the start of a comment.
     return "\n".join(parts).replace("</", "<\\/").replace("<!--", "<\\!--")
 
 

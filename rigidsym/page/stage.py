@@ -107,6 +107,7 @@ def body_of(derivation: Derivation, functions: Functions) -> dict[str, Any]:
     """
     moments, own = moments_of(derivation.body), own_shape(derivation.body)
     axes = [turn.axis for turn in derivation.model.turns]
+    # A sequence such as ZXZ: precession about z, nutation, and spin about z′.
     is_about_z = len(axes) == 3 and axes[0] == axes[2] == "z"
     if not own and is_about_z and (not functions.is_motion or _is_top(derivation)):
         own = spinning_top()

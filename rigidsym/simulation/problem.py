@@ -289,6 +289,7 @@ class Problem:
     def states(self, before: Array, quaternions: Array) -> Array:
         """States, continuous after those `before`, from (quaternion, Ω′)."""
         unit = quaternions[:, :4] / np.linalg.norm(quaternions[:, :4], axis=1)[:, None]
+        # The conversion takes principal values; unwrap continues them from the states before.
         q = self.kernels.from_quaternion(unit)
         if hasattr(self.kernels, "unwrap"):
             q = self.kernels.unwrap(np.concatenate([before[:, : self.count], q]))[len(before) :]

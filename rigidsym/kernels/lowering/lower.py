@@ -146,8 +146,8 @@ class _Lowering:
         if len(minors) == 1:
             value = sp.Abs(minors[0] / scale, evaluate=False)
         else:
-            # By the Cauchy-Binet formula, Σ minors² = det(W Wᵀ), the square of the product of
-            # singular values.
+            # By the Cauchy-Binet formula, Σ minors² is the square of the product of those singular
+            # values that can differ from 0.
             value = sp.sqrt(sp.Add(*(minor**2 for minor in minors)))
         is_free = self._symbols(value).isdisjoint(self.derivation.model.constants)
         inputs = [self._vectors[n] for n in (("q",) if is_free else ("q", "parameters"))]
@@ -184,6 +184,7 @@ class _Lowering:
         if found is None or found.determinant is None or len(found.minors) < 2:
             return {}
         number, base = found.determinant.as_content_primitive()
+        # The determinant of W Wᵀ or Wᵀ W is Σ minors² by the Cauchy-Binet formula.
         squares = sp.Add(*(minor**2 for minor in found.minors)) / number
         return {base: squares, -base: -squares}
 

@@ -187,6 +187,8 @@ def _bounded(expression: Expression, values: Mapping[str, Bounded]) -> Bounded:
         case Call("abs", argument):
             return values[argument.text]
         case Call(_, argument) if expression.order is not None:
+            # c_k takes n²: its error, and one eps of its size for the rounding of n, pass on with
+            # the slope.
             size, slope, own = entire_bounds(expression.order)
             square = values[argument.text]
             return Bounded(size, own * size + slope * (square.error + square.size))

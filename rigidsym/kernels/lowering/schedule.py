@@ -176,6 +176,7 @@ class _Writer:
     def _sum(self, terms: list[Expression]) -> Expression:
         if len(terms) == 1:
             return terms[0]
+        # A term with a plus comes first, so that a sum with one begins without a minus.
         by_sign = sorted(terms, key=lambda term: (isinstance(term, Negative), self._rank(term)))
         return Sum(tuple(by_sign))
 

@@ -190,6 +190,8 @@ def _statements(kernel: Kernel, precision: Precision, *, is_lean: bool) -> Itera
             case Call("sin" | "cos", argument) if not is_lean:
                 both, angle = kernel.sines[argument], argument.text
                 if name == next(iter(both.values())):
+                    # Both are computed in one call; one that the kernel does not use gets a name of
+                    # its own.
                     sine, cosine = (both.get(f, f"_{f}_{angle}") for f in ("sin", "cos"))
                     yield f"SIN_COS({angle}, {sine}, {cosine});"
             case _:

@@ -87,6 +87,7 @@ def _rows(kernel: Kernel) -> Iterator[str]:
     yield f"    lost = False\n    {loop}"
     yield bracketed(8, f"values = _{kernel.name}(", ["_sin_cos_near", "eps", *columns], ")")
     yield "        lost |= _give(values, out, i)"
+    # A second loop for the orientations that the first one, without a branch, left as NaN.
     yield f"    if lost:\n        {loop}\n            if np.any(np.isnan(out[:, i])):"
     yield bracketed(16, f"values = _{kernel.name}(", ["_sin_cos", "eps", *columns], ")")
     yield "                _give(values, out, i)"

@@ -146,6 +146,7 @@ def count(expressions: Iterable[Expression]) -> Counter[str]:
                 counts["divisions"] += bool(divisors)
             case Sum(terms):
                 counts["additions"] += len(terms) - 1
+                # A negative term after the first is a subtraction, which its sum has counted.
                 counts["negations"] -= sum(isinstance(term, Negative) for term in terms[1:])
             case Negative():
                 counts["negations"] += 1

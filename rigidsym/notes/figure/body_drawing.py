@@ -77,6 +77,7 @@ def _principal_axes(derivation: Derivation) -> Sequence[Vector]:
         known = {symbol: sp.Float(x) for symbol, x in values.items() if x is not None}
         chosen = lengths_of(body.distribution, values) if body.distribution else None
         numbers = known if chosen is None else chosen
+        # Parameters that are no lengths, such as densities, do not change the shape; 1 will do.
         others = {p.symbol: sp.Float(1) for p in body.parameters if p.symbol not in numbers}
         matrix = expressions["principal_axes"].xreplace({**numbers, **others})
         if not matrix.free_symbols:
@@ -144,6 +145,8 @@ def _from_the_back(parts: Sequence[_Part]) -> Iterator[_Part]:
         for part in group:
             if part is plane:
                 continue
+            # Signed distances of the corners from the plane. A part that crosses it is cut, one
+            # half each side.
             heights = (part.corners - plane.corners[0]) @ plane.normal
             if np.abs(heights).max() <= _FLAT:
                 here.append(part)
@@ -163,5 +166,6 @@ def _cut(corners: Vector, heights: Vector) -> Iterator[Vector]:
         if height >= -_FLAT:
             yield corner
         if height * level < 0 and min(abs(height), abs(level)) > _FLAT:
+            # The edge crosses the plane where its height, linear along it, is zero.
             share = height / (height - level)
             yield (1 - share) * corner + share * following

@@ -179,6 +179,7 @@ class Scene:
         if posed.line_of_nodes:
             x, y = seen.project(posed.line_of_nodes.direction)
             ends.append((-x, -y))
+        # An arc looks closed if its angle is near 0 or 180°, and if its plane is seen edge on.
         openings = [1.5 * abs(sin(arc.angle) * seen.depth(arc.axis)) for arc in posed.arcs]
         lengths = [hypot(*end) for end in ends]
         return min(*openings, *lengths, *(_separation(*pair) for pair in combinations(ends, 2)))

@@ -90,6 +90,7 @@ def svg(drawing: Drawing, *, title: str, description: str, name: str) -> str:
         if not stroke.has_arrow:
             return whole
         (x0, y0), (x1, y1) = stroke.points[-2:]
+        # The head is a triangle along the last piece of the line, two thirds as wide as it is long.
         size = _ARROW / _SCALE / (hypot(x1 - x0, y1 - y0) or 1.0)
         dx, dy = size * (x1 - x0), size * (y1 - y0)
         x, y = x1 - dx, y1 - dy  # the foot of a slim head

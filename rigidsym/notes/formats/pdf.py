@@ -82,6 +82,7 @@ def _run(folder: str, timeout: float) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         _COMMAND,
         cwd=folder,
+        # What confines TeX comes last, so that the environment of the user cannot undo it.
         env=_SAME_EVERY_TIME | os.environ | _CONFINED,
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,

@@ -495,6 +495,7 @@ class _Section:
         W = f"rate_matrix_{frame}"
         self.need(W)
         rates = [f"(dot {self.text(row)} (V a b c))" for row in self.printed[name]]
+        # For arbitrary a, b and c this is W W⁻¹ = 1.
         claim = f"{self.combination(self.printed[W], rates)} = V a b c"
         return _Statement(self.divisors(name, W) + claim, letters=" a b c")
 
@@ -589,8 +590,11 @@ class _Section:
         masses, rates = self.printed[name], [self.name(rate) for rate in self.names.rates]
         n = range(len(rates))
         entry = [[self.text(each) for each in row] for row in masses]
+        # A symmetric M is determined by its quadratic form, so that 2 T = q̇ᵀ M q̇ for all q̇ says
+        # all.
         square = " + ".join(f"{entry[j][k]} * {rates[j]} * {rates[k]}" for j in n for k in n)
         symmetry = (f"{entry[j][k]} = {entry[k][j]}" for j in n for k in range(j))
+        # 2 T = Ω′·I′ Ω′
         twice = f"dot w (apply inertia w) = {square}"
         return self.for_velocity(" /\\ ".join((twice, *symmetry)), name)
 

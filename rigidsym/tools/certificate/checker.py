@@ -704,6 +704,8 @@ class Motion:
         self.points["hamiltonian"] = self.position.having(self.position.values | values)
         forces += W.T * torque
         self.equations["accelerations"] = mass_matrix, forces - bias
+        # A constant has a rate that vanishes along every motion: that of a cyclic momentum is a row
+        # of the balance, and dE/dt = q̇·balance.
         balance = inertial - forces  # zero along a motion
         self.rates = {
             f"constant momentum_{n}": Matrix([r]) for n, r in zip(q, balance.rows, strict=True)

@@ -291,6 +291,7 @@ def _in_other_senses(formula: sp.ImmutableMatrix) -> Comparison | None:
     if formula.shape != (4, 1) and not is_orthogonal(formula, 1):
         return None
     all_senses = sorted(product((1, -1), repeat=len(angles)), key=lambda s: s.count(-1))
+    # Every choice of senses but the given one, those with few opposite angles first.
     for senses in all_senses[1:]:
         turned = {s: sense * s for s, sense in zip(angles, senses, strict=True)}
         comparison = identified(formula.xreplace(turned), only_equal=True)

@@ -384,6 +384,8 @@ def _angles(axes: str, matrix: sp.ImmutableMatrix, *, is_transposed: bool) -> tu
     r = matrix.T if is_transposed else matrix
     i, j, k = map("XYZ".index, axes)
     other = 3 - i - j
+    # e is the sign of the permutation of the axes; for k = i, `other` is the axis that no turn is
+    # about.
     e = 1 if (j - i) % 3 == 1 else -1
     if i == k:
         first, last = sp.atan2(r[j, i], -e * r[other, i]), sp.atan2(r[i, j], e * r[i, other])

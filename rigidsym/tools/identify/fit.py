@@ -57,6 +57,7 @@ def tolerances(asked: float | None, block: Samples, scale: float) -> Iterator[To
     attitude = max(floor, _attitude(block))
     velocity = floor
     if block.omega is not None and scale:
+        # Three components, each off by half a unit, make a vector off by √3 halves.
         velocity = max(floor, sqrt(3) * _largest(rounding_of(block.omega)) / scale)
     yield Tolerance(
         radians=attitude,
