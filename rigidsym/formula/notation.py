@@ -78,6 +78,7 @@ def _applied(node: tree.Formula, notation: Notation) -> tree.Formula:
         # A letter has one superscript only, and an exponent would be the second.
         case tree.Power(tree.Symbol(prime="′"), exponent) if notation.body == "superscript":
             return tree.Power(tree.Bracket(_applied(node.base, notation)), exponent)
+        # A power of φ̇ becomes one of dφ/dt, which needs brackets as a base.
         case tree.Power(tree.Symbol(dots=dots), exponent) if dots and notation.rates == "fraction":
             return tree.Power(tree.Bracket(_applied(node.base, notation)), exponent)
         case tree.Fraction(above, tree.Row((tree.Differential("∂"), by))):

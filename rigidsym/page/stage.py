@@ -149,6 +149,8 @@ def as_data(shape: Shape) -> dict[str, Any]:
         [
             colors.setdefault(face.color, len(colors)),
             *(
+                # Rounding makes one point of the corners that faces share; + 0.0 turns −0.0 into
+                # 0.0.
                 points.setdefault((*p,), len(points))
                 for p in (np.round(face.corners, 3) + 0.0).tolist()
             ),

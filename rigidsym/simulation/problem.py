@@ -69,6 +69,7 @@ class Problem:
         self.names = {argument.name: argument.names for argument in derivation.arguments}
         self.coordinates = self.names["q"]
         self.count = len(self.coordinates)
+        # The state of Euler's equations ends in Ω′, that of Lagrange's equations in q̇.
         self.is_euler = self.names["y"][self.count :] == self.names["omega_body"]
         # so that a quaternion can take the place of the coordinates
         self.is_alone = not self.forces.parts

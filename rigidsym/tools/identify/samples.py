@@ -334,6 +334,7 @@ def _shaped(name: str, value: ArrayLike) -> tuple[NDArray[Any], list[str]]:
         return array, [f"{name}: expected real numbers, got {what}"]
     shapes: list[tuple[int, ...]] = [(3, 3)] if name == "matrix" else []
     shapes += [(SIZES[name],)]
+    # A single sample may come without the axis of samples.
     for rows in (array[None], array):
         if rows.shape[1:] in shapes:
             return rows.reshape(len(rows), SIZES[name]), []
