@@ -84,7 +84,9 @@ def no_rotation(model: RotationModel) -> dict[str, float]:
         values = {x: sp.S.One if k == place else sp.S.Zero for k, x in enumerate(q)}
         if model.matrix.xreplace(values) == sp.eye(3):
             return {x.func.__name__: float(value) for x, value in values.items()}
-    return dict.fromkeys((x.func.__name__ for x in q), 0.0)
+    # The nine entries of R itself are those of 1; the rotation vector has no value at 0, but is 0.
+    start = map(float, sp.eye(3)) if [*model.matrix] == [*q] else (0.0 for _ in q)
+    return dict(zip((x.func.__name__ for x in q), start, strict=True))
 
 
 METHODS = ("lagrange", "euler")

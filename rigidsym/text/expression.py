@@ -254,9 +254,9 @@ class _Reader:
 def _number(token: _Token) -> Sized:
     mantissa, _, power = token.text.lower().partition("e")
     digits = len(mantissa.replace(".", ""))
-    # Five characters decide for an exponent without leading zeros; Python refuses to read a text of
-    # thousands of digits as a number.
-    if digits > _MOST_DIGITS or abs(int(power[:5] or 0)) > _MOST_DIGITS:
+    # Five characters decide; Python refuses to read a text of thousands of digits as a number.
+    size = power.lstrip("+-").lstrip("0")[:5]
+    if max(digits, int(size or 0)) > _MOST_DIGITS:
         raise ExpressionError(
             f"a number of more than {_MOST_DIGITS} digits, or a larger power of ten",
             column=token.start + 1,

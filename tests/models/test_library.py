@@ -107,6 +107,8 @@ def test_an_argument_of_the_wrong_type_is_a_type_error_that_says_what_was_expect
 def test_without_coordinates_of_no_rotation_all_are_zero():
     assert no_rotation(rs.rotation_from("x(pi/2) z(a)")) == {"a": 0.0}
     assert no_rotation(rs.rotation_from("quaternion")) == {"w": 1.0, "x": 0.0, "y": 0.0, "z": 0.0}
+    entries = no_rotation(rs.rotation_from("direction_cosines"))
+    assert [*entries.values()] == [1, 0, 0, 0, 1, 0, 0, 0, 1]
 
 
 def test_arguments_of_other_kinds_that_mean_the_same():
