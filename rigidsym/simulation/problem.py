@@ -27,7 +27,7 @@ from rigidsym.mechanics.derive import derive
 from rigidsym.mechanics.dynamics.euler import EulerEquations
 from rigidsym.mechanics.dynamics.lagrange import is_bound
 from rigidsym.mechanics.quantities.dynamics import EULER_QUANTITIES, FLOW_QUANTITIES
-from rigidsym.models.body import RigidBody
+from rigidsym.models.body import RigidBody, check_moments
 from rigidsym.models.forces import OMEGA, OMEGA_COMPONENTS, Forces, initial_values
 from rigidsym.models.rotation import as_typed
 from rigidsym.simulation.trajectory import Array, Trajectory
@@ -35,6 +35,8 @@ from rigidsym.simulation.trajectory import Array, Trajectory
 # from which a motion is computed
 NEEDED = ("rotation_matrix", "angular_velocity_body", "state_derivative", "first_integrals")
 _RATES = "rates_from_angular_velocity_body"
+_GRAVITY = "m/s^2"  # the unit by which the acceleration in a weight is known
+_ORIENTATIONS = 12  # at which a weight is told from other potentials; c has three components
 _UNIT = 1e-9  # by which the entries of R Rᵀ − 1 may be off at the start
 
 
@@ -101,7 +103,38 @@ class Problem:
         _check("parameters", parameters, constants)
         values = {name: float(parameters.get(name, 1.0)) for name in constants}
         described = (replace(p, value=values[p.symbol.name]) for p in body.parameters)
-        return replace(body, parameters=tuple(described)), [*values.values()]
+        body = replace(body, parameters=tuple(described))
+        if not body.allow and body.distribution is None and not self.forces.parts:
+            self._check_about_centre(body)
+        return body, [*values.values()]
+
+    def _check_about_centre(self, body: RigidBody) -> None:
+        """Raises BodyError for moments about the fixed point that leave no body about its centre.
+
+        A weight, V = m g c·e with the third axis e of space in the axes of the body, tells the
+        centre of mass c; about it the tensor is less by m (|c|² 1 − c cᵀ). The potential is
+        evaluated at some orientations: it is a weight if one c serves for all.
+        """
+        gravity = [body.values[p.symbol] for p in body.parameters if p.unit == _GRAVITY]
+        mass, potential = body.in_numbers(body.mass), body.in_numbers(self.forces.potential)
+        if len(gravity) != 1 or not gravity[0] or not mass.is_number:
+            return
+        orientations = np.random.default_rng(1).uniform(-1, 1, (_ORIENTATIONS, self.count))
+        heights, axes = [], []  # c·e and e
+        for q in orientations.tolist():
+            values = dict(zip(self.model.coordinates, q, strict=True)) | body.values
+            height, *axis = (e.xreplace(values) for e in (potential, *self.model.matrix.row(2)))
+            if not all(e.is_number for e in (height, *axis)):
+                return  # it holds the time
+            heights.append(float(height / mass / gravity[0]))
+            axes.append([float(e) for e in axis])
+        centre = np.linalg.lstsq(np.array(axes), np.array(heights))[0].round(12) + 0.0  # m, no -0
+        if np.abs(axes @ centre - heights).max() <= _UNIT * np.abs(heights).max():
+            moved = centre @ centre * np.eye(3) - np.outer(centre, centre)
+            inertia = np.array(body.in_numbers(body.inertia).tolist(), float)
+            at = ", ".join(f"{part:.6g}" for part in centre)
+            where = f"{body.name}, about its centre of mass at ({at}) m"
+            check_moments(where, inertia - float(mass) * moved)
 
     @cached_property
     def _functions(self) -> Derivation:

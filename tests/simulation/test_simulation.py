@@ -197,6 +197,17 @@ def test_what_a_simulation_cannot_begin_with_is_said(initial, values, t_end, mes
         top().simulate(initial, values, t_end)
 
 
+@pytest.mark.parametrize(("moment", "status"), [("0.49", 3), ("0.51", 0)])
+def test_moments_about_the_tip_leave_a_body_about_the_centre_of_mass(moment, status, tmp_path):
+    """A is at least m l² + C/2 = 0.5 kg m²"""
+    words = ["simulate", "heavy_symmetric_top", "--set=C=0.5", "--set=m=1", "--set=l=0.5"]
+    done = call(
+        *words, f"--set=A={moment}", "--time=0.1", "--samples=2", cwd=tmp_path, status=status
+    )
+    refusal = "about its centre of mass at (0, 0, 0.5) m: no body has the principal moments 0.24"
+    assert (refusal in done.stderr) == bool(status)
+
+
 def test_what_cannot_be_simulated_is_said():
     start = REST | {"theta": 1}
     for kind, options, message in (
