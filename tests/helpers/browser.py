@@ -10,7 +10,7 @@ import subprocess
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from importlib.util import find_spec
+from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -68,7 +68,7 @@ class Page:
         self.call("Emulation.setEmulatedMedia", features=media)
         self.events.clear()
         self.call("Page.navigate", url=path.as_uri())
-        while not any(event.get("method") == "Page.loadEventFired" for event in self.events):
+        while not self.sent("Page.loadEventFired"):
             self.events.append(self._next())
         self.call("Page.bringToFront")
 
@@ -84,11 +84,8 @@ class Page:
         return done["result"].get("value")
 
     def faults(self) -> list[str]:
-        """What axe finds; a package for Playwright carries its script, and nothing is imported."""
-        spec = find_spec("axe_core_python")
-        assert spec is not None
-        assert spec.origin is not None
-        axe = Path(spec.origin).with_name("axe.min.js").read_text(encoding="utf-8")
+        """What axe finds; a package for Playwright carries its script."""
+        axe = files("axe_core_python").joinpath("axe.min.js").read_text(encoding="utf-8")
         self.run(f"{axe}; undefined")
         return self.run(_AXE)
 
@@ -114,17 +111,20 @@ class Page:
             time.sleep(0.05)
         raise AssertionError(f"never true: {script}")
 
+    def sent(self, *kinds: str) -> list[dict[str, Any]]:
+        """What the page reported of some kinds."""
+        return [e["params"] for e in self.events if e.get("method") in kinds]
+
     @property
     def requests(self) -> list[str]:
         """What the page asked for beside itself."""
-        sent = [e for e in self.events if e.get("method") == "Network.requestWillBeSent"]
-        return [event["params"]["request"]["url"] for event in sent][1:]
+        return [one["request"]["url"] for one in self.sent("Network.requestWillBeSent")][1:]
 
     @property
     def complaints(self) -> list[str]:
         """The messages in the console."""
-        kinds = {"Runtime.exceptionThrown", "Runtime.consoleAPICalled", "Log.entryAdded"}
-        return [str(event["params"]) for event in self.events if event.get("method") in kinds]
+        kinds = ("Runtime.exceptionThrown", "Runtime.consoleAPICalled", "Log.entryAdded")
+        return list(map(str, self.sent(*kinds)))
 
 
 @contextmanager

@@ -104,11 +104,6 @@ def carried(page: str) -> dict[str, Any]:
     return json.loads(data)
 
 
-def script_of(page: str) -> str:
-    (script,) = re.findall(r'<script type="module">(.*)</script>', page, re.DOTALL)
-    return script
-
-
 def note_in(html: str) -> str:
     """The note in a page or a file, without the buttons that copy."""
     text = re.sub(r'\n?<p class="copy".*?</p>', "", html)
