@@ -4,12 +4,14 @@ Every change of one sign, operator or constant of it was seen here.
 
 from __future__ import annotations
 
+import pytest
 import sympy as sp
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import codec_for
 from rigidsym.algebra.matrix import RingMatrix, cross, hat, unhat
 from rigidsym.algebra.ring import Quotient, Ring
+from rigidsym.errors import AlgebraError
 from rigidsym.models.rotation import TIME, time_function
 
 PHI, X = time_function("phi"), time_function("x")
@@ -86,3 +88,30 @@ def test_the_ring_its_quotients_and_its_matrices_are_right():
 
 def minor(of: RingMatrix) -> RingMatrix:
     return RingMatrix(of.ring, tuple(row[:2] for row in of.rows[:2]))
+
+
+def test_what_the_ring_cannot_do_is_said():
+    codec = codec_for([sp.sin(PHI), X], order=1)
+    ring = codec.ring
+    s, c = (ring.generator(ring.index[e]) for e in (sp.sin(PHI), sp.cos(PHI)))
+    with pytest.raises(AlgebraError, match=r"time derivative of Derivative\(phi\(t\), t\)"):
+        ring.dt(codec.encode(sp.diff(PHI, TIME)))
+    with pytest.raises(AlgebraError, match="zero in the ring"):
+        Quotient(ring, s, ring.reduce(s**2 + c**2 - 1))
+    with pytest.raises(AlgebraError, match=r"^the relations contradict one another: .*1 = 0$"):
+        ring.set_relations([s - 1, s - 2])
+
+
+def test_members_of_the_ideal_and_they_alone_are_zero():
+    """Also after new relations, which replace what was remembered."""
+    w, x, y, z = map(time_function, "wxyz")
+    unit = w**2 + x**2 + y**2 + z**2 - 1
+    ring = codec_for([w, x, y, z], order=1, constraints=[unit]).ring
+    for k, relation in enumerate(ring.relations):
+        member = relation * (ring.generator(k % 4) ** 2 * 3 - 1)
+        assert ring.is_zero(member)
+        assert not ring.is_zero(member + ring.generator(0))
+    square = ring.generator(ring.index[w]) ** 2
+    assert ring.reduce(square) != ring.one * 2
+    ring.set_relations([square - 2])
+    assert ring.reduce(square) == ring.one * 2

@@ -12,7 +12,6 @@ from sympy import Rational, cos, cot, sin, sqrt, tan
 from helpers.witness import TOLERANCE, mp, number, paths, values_along
 from rigidsym.algebra import present
 from rigidsym.algebra.codec import Codec, codec_for
-from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.present import Presenter, Rationals, presenter_for
 from rigidsym.algebra.ring import Quotient
 from rigidsym.errors import AlgebraError
@@ -88,15 +87,6 @@ def test_a_form_has_the_value_of_the_element_and_is_not_longer(codec, data):
     if codec is CODEC:
         assert PRESENTER.quotient(codec.encode_quotient(form)) == form
         assert abs(number(form, dict(VALUES)) - number(plain, dict(VALUES))) <= 1000 * TOLERANCE
-
-
-def test_matrix_is_presented_entry_by_entry():
-    entries = [sin(a) ** 2 + cos(a) ** 2, m * sin(a), cos(a) * m**2, 1 - sin(b) ** 2]
-    encoded = [CODEC.encode(entry) for entry in entries]
-    matrix = RingMatrix.of(CODEC.ring, [encoded[:2], encoded[2:]])
-    assert PRESENTER.matrix(matrix) == sp.Matrix([[1, m * sin(a)], [cos(a) * m**2, cos(b) ** 2]])
-    divided = PRESENTER.matrix(matrix, CODEC.encode(m))
-    assert divided == sp.Matrix([[1 / m, sin(a)], [cos(a) * m, cos(b) ** 2 / m]])
 
 
 def forgetful(_ring, element):

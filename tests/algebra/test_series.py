@@ -8,14 +8,11 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from helpers.samples import ROTATIONS
 from helpers.witness import mp
 from rigidsym.algebra.codec import codec_for
 from rigidsym.algebra.stable_forms import (
     FIRST_SERIES,
     Stumpff,
-    at_zero,
-    closed_form,
     halved,
     rewriter_of,
     series_of,
@@ -36,15 +33,6 @@ def exact(order: int, x) -> mp.mpf:
         return mp.cos(n)
     weight = mp.factorial(order - 1)
     return mp.quad(lambda t: (1 - t) ** (order - 1) * mp.cos(n * t), [0, 1]) / weight
-
-
-@pytest.mark.parametrize("order", range(5))
-def test_closed_forms_are_the_functions(order):
-    n = sp.Symbol("n")
-    closed = closed_form(order, n)
-    for x in (mp.mpf("0.3"), mp.mpf(4), mp.mpf(50)):
-        value = closed.subs(n, sp.Float(str(mp.sqrt(x)), 45)).evalf(40)
-        assert abs(mp.mpf(str(value)) - exact(order, x)) < mp.mpf(10) ** -30
 
 
 @pytest.mark.parametrize("order", ORDERS)
@@ -111,27 +99,6 @@ def rewritten(expression: sp.Expr) -> sp.Expr | None:
 )
 def test_removable_singularities_are_written_in_entire_functions(expression, form):
     assert rewritten(expression) == form
-
-
-def test_every_quantity_of_the_rotation_vector_is_regular_at_zero():
-    motion = derive(ROTATIONS["rotation vector"])
-    inputs = [s for vector in motion.arguments for s in vector.symbols]
-    rewriter = rewriter_of([*motion.model.matrix, *inputs])
-    for step in motion.steps:
-        for entry in step.expression:
-            form = rewriter.rewritten(entry)
-            assert not form.atoms(sp.sin, sp.cos)
-            assert at_zero(sp.denom(form)) != 0
-
-
-def test_half_of_a_length_has_its_own_functions():
-    """The quaternion of a rotation vector: sin(n/2)/n = ½ c₁(n²/4)."""
-    rewriter = rewriter_of([sp.sin(NORM / 2) / NORM, X])
-    quarter = (NORM / 2) ** 2
-    assert rewriter.rewritten(X * sp.sin(NORM / 2) / NORM) == X * Stumpff(1, quarter) / 2
-    form = rewriter.rewritten((1 - sp.cos(NORM)) / NORM**2)
-    assert form.atoms(Stumpff) <= {Stumpff(k, quarter) for k in range(5)}
-    assert at_zero(form) == sp.Rational(1, 2)
 
 
 def test_a_divisor_of_one_minus_a_cosine_goes_over_to_half_the_angle():

@@ -80,14 +80,6 @@ def hat(vector: Matrix) -> Matrix:
     return mp.matrix([[0, -c, b], [c, 0, -a], [-b, a, 0]])
 
 
-def dot(u: Matrix, v: Matrix) -> Any:
-    return (u.T * v)[0]
-
-
-def cross(u: Matrix, v: Matrix) -> Matrix:
-    return hat(u) * v
-
-
 @dataclass(frozen=True)
 class Path:
     """q(t) = q + q̇ t + q̈ t²/2, with q, q̇ and q̈ at t = 0."""

@@ -46,10 +46,3 @@ def test_the_stated_angles_are_all(m: Moving):
 
 
 # Forms
-
-
-@every_case
-@in_both_frames
-def test_velocity_is_short(m: Moving, frame: str):
-    """At most 36 operations, the best that other tools reach in their better frame."""
-    assert sp.count_ops(m.motion.step(f"angular_velocity_{frame}").expression) <= 36

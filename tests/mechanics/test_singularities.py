@@ -17,7 +17,6 @@ from scipy.spatial.transform import Rotation
 from helpers.parametrisations import CHAINS, LONG, WITNESSES, constants_of, motion_of
 from helpers.witness import evaluate, mp, number
 from rigidsym.models.library import PARAMETRISATIONS
-from rigidsym.notes.formats.record import record
 
 Array = np.ndarray[Any, Any]
 
@@ -169,18 +168,6 @@ def test_on_a_grid_the_rank_falls_at_the_stated_points_only(text):
             away = ((q - at(text, point)) * per_turn)[fixed]
             is_stated |= bool(fixed) and np.allclose(np.exp(1j * away), 1)
         assert (rank(rate_matrix(text, q)) < stated.rank) == is_stated, q
-
-
-@pytest.mark.parametrize("angle", np.arange(-2, 11, 2) * np.pi / 2)
-def test_rotation_vector_and_axis_fail_at_whole_turns_only(angle):
-    axis, is_whole = np.array([2, -1, 2]) / 3, np.isclose(np.cos(angle), 1)
-    assert rank(rate_matrix("axis_angle", np.array([*axis, angle]))) == (1 if is_whole else 3)
-    is_whole &= angle != 0
-    assert rank(rate_matrix("rotation_vector", axis * angle)) == (1 if is_whole else 3)
-    (point,) = record(motion_of("rotation_vector"), {})["singularities"]["points"]
-    assert {point["at"][0][key] for key in ("value", "modulo", "least")} == {"2*pi"}
-    point, _ = record(motion_of("ZXZ"), {})["singularities"]["points"]
-    assert [point["at"][0][key] for key in ("value", "modulo", "least")] == ["0", "2*pi", None]
 
 
 INVERSES = [
