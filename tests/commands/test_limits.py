@@ -55,7 +55,13 @@ def test_no_message_commands_a_terminal(tmp_path, words):
     assert "\\x1b" in done.stderr or "\\u001b" in done.stderr
 
 
-FOUR = '[rotation]\nsequence = ["ZXZ", "xyz", "ZYX", "zxz"]\n[output]\nnote = ["html", "page"]\n'
+FOUR = """\
+[rotation]
+sequence = ["ZXZ", "xyz", "ZYX", "zxz"]
+[output]
+note = ["html", "page"]
+quantities = ["rotation_matrix"]
+"""
 
 
 def run_of_four(folder, cores, monkeypatch) -> tuple[str, dict[str, bytes]]:
@@ -95,8 +101,8 @@ def test_results_come_in_order_and_errors_where_they_arise(cores: int, monkeypat
 
 def test_a_run_that_stops_says_how_much_is_kept(tmp_path: Path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    text = FOUR + 'quantities = ["rotation_matrix"]\nkernels = []\n'
-    Path("four.toml").write_text(text.replace('"html", "page"', '"md"'), encoding="utf-8")
+    text = FOUR.replace('"html", "page"', '"md"') + "kernels = []\n"
+    Path("four.toml").write_text(text, encoding="utf-8")
     command = ["run", "four.toml"]
     assert CliRunner().invoke(commands, command).exit_code == 0
     Path("out/euler_zyx_intrinsic/euler_zyx_intrinsic.md").write_text("mine", encoding="utf-8")

@@ -156,11 +156,15 @@ def test_turns_are_read_left_to_right():
         assert all(text[column - 1 :].startswith(angle) for _, angle, column in parse_turns(text))
     with pytest.raises(ExpressionError, match=f"3000 characters; .* most {MOST_CHARACTERS}"):
         parse_turns("z(a" * 1000)
+    with pytest.raises(ExpressionError, match=r"expected a turn: .* found the end"):
+        parse_turns("")
 
 
 def test_names_of_coordinates():
     taken = {"φ1": "phi1", "ϕ": "phi", "θ_1": "theta_1", "λ": "lambda", "\u00b5": "mu", "i": "i"}
     assert {text: check_name(text) for text in taken} == taken
+    for text in ("", "phi\n"):
+        assert outcome(text, check_name)[1] is not None
     for letter in GREEK_LETTERS:
         if spelled(letter) != "pi":
             assert parse_expression(letter, {spelled(letter): M}) == M
