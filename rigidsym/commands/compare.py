@@ -82,7 +82,7 @@ def _searched(paths: Sequence[Path], options: Options) -> bool:
     if options["format"] == "json":
         click.echo(_json(records))
     elif options["format"] != "text":
-        template = environment().get_template(f"compare/{options['form']}.jinja")
+        template = environment().get_template(f"compare/{options['format']}.jinja")
         click.echo(template.render(faults=faults), nl=False)
     count = counted(len(records), "formula") if records else "no known formula"
     hint = "" if options["why"] or not unreadable else "; --why lists them"
