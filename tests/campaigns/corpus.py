@@ -7,14 +7,12 @@ GitHub. The files are read at the listed commit and never stored here.
 
 A table of recall by kind and by language is printed, every formula that was missed, and every
 finding without a label, which a person should look at. The exit code is 1 if a formula is called
-wrong that is not labelled so, or if one labelled wrong is called right. `--mutations N` changes N
-recognised formulas, each in one place, and counts how many changes are found and repaired.
+wrong that is not labelled so, or if one labelled wrong is called right.
 """
 
 from __future__ import annotations
 
 import argparse
-import random
 import subprocess
 import sys
 import tempfile
@@ -24,9 +22,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-import sympy as sp
-
-from rigidsym.tools.compare.matching import against
 from rigidsym.tools.compare.search import FormulaInFile, search
 
 CORPUS = Path(__file__).with_name("corpus.toml")
@@ -92,59 +87,13 @@ def matched(
     return [(label, recognised[pairs[i]] if i in pairs else None) for i, label in enumerate(labels)]
 
 
-def mutants(expression: sp.Expr) -> Iterator[sp.Expr]:
-    """One change each: a sign, sine for cosine, another name, a factor, arguments exchanged."""
-    names = sorted(expression.free_symbols, key=str)
-    for function in sorted(expression.atoms(sp.sin, sp.cos), key=str):
-        other = sp.cos if function.func == sp.sin else sp.sin
-        yield expression.xreplace({function: other(*function.args)})
-        angles = sorted(function.free_symbols, key=str)
-        for name in names if len(angles) == 1 else ():
-            yield expression.xreplace({function: function.xreplace({angles[0]: name})})
-    for function in sorted(expression.atoms(sp.atan2), key=str):
-        yield expression.xreplace({function: sp.atan2(*function.args[::-1])})
-        above, below = function.args
-        for term in sp.Add.make_args(above):
-            yield expression.xreplace({function: sp.atan2(above - 2 * term, below)})
-    if not expression.has(sp.atan2, sp.asin, sp.acos):
-        for term in sp.Add.make_args(expression):
-            yield expression - 2 * term
-            yield expression + term
-
-
-def mutations(recognised: list[FormulaInFile], count: int) -> tuple[int, int, int]:
-    """(tried, found, repaired) changes."""
-    chosen = random.Random(1775)
-    tried = found = repaired = 0
-    while tried < count:
-        comparison = chosen.choice(recognised).comparison
-        assert comparison is not None
-        assert comparison.found is not None
-        place = chosen.randrange(len(comparison.formula))
-        entry = comparison.formula[place]
-        changes = [m for m in dict.fromkeys(mutants(entry)) if (m - entry).expand() != 0]
-        if not changes:
-            continue
-        changed = comparison.formula.as_mutable()
-        changed[place] = chosen.choice(changes)
-        answer = against(sp.ImmutableMatrix(changed), comparison.found)
-        tried += 1
-        found += not answer.is_equal
-        repaired += bool(answer.repairs) and all(r.kind != "entry" for r in answer.repairs)
-        if answer.is_equal or not answer.repairs:
-            print(f"  not repaired: {entry} -> {changed[place]}: {answer.text()}")
-    return tried, found, repaired
-
-
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--clones", type=Path, required=True, metavar="DIR")
-    parser.add_argument("--mutations", type=int, default=0, metavar="N")
     parser.add_argument("--only", default="", metavar="TEXT", help="repositories with this name")
     options = parser.parse_args()
     known, all_labels = Counter[str](), Counter[str]()
     faults: list[str] = []
-    recognised: list[FormulaInFile] = []
     for name, path, text, labels in files(options.clones):
         if options.only not in name:
             continue
@@ -160,7 +109,6 @@ def main() -> int:
             is_equal = finding.comparison is not None and finding.comparison.is_equal
             if is_equal == label.is_wrong:
                 faults.append(f"{name} {path}: {finding}")
-            recognised += [finding] * is_equal
         for finding in open_findings:
             comparison = finding.comparison
             print(f"without a label: {name} {path}:{str(finding).partition(':')[2]}", flush=True)
@@ -172,10 +120,6 @@ def main() -> int:
     print(f"recognised {right} of {total} ({right / max(total, 1):.0%})")
     for fault in faults:
         print(f"FAULT: {fault}")
-    if options.mutations:
-        tried, found, repaired = mutations(recognised, options.mutations)
-        print(f"mutations: {found} of {tried} found, {repaired} repaired")
-        return bool(faults) or found < tried
     return bool(faults)
 
 

@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import ast
 import copy
+import json
+import shutil
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 
 import rigidsym as rs
 from helpers.certificates import NEEDS, of_motion, of_top, plain, printed, record_of, run_coq
 from helpers.command import call
+from rigidsym.commands.cli import commands
 from rigidsym.errors import CheckError
 from rigidsym.notes.formats.record import record
 from rigidsym.tools.certificate import checker
@@ -140,16 +144,10 @@ def test_the_files_are_written_and_checked(tmp_path):
     done = subprocess.run(alone, cwd=tmp_path, capture_output=True, text=True, check=True)
     assert "R is {'turns': ['z(phi)', 'x(theta)', 'z(psi)']" in done.stdout
     assert "  proved: R is a rotation, rotation_matrix" in done.stdout
-    path = folder / f"{NAME}.json"
-    text = path.read_text()
-    for before, after, message in (
-        ("-sin(phi)*sin(psi)", "sin(phi)*sin(psi)", "rotation_matrix: entry 1 is false"),
-        ('"title"', '"title": "", "title"', "a name is there twice"),
-    ):
-        path.write_text(text.replace(before, after, 1))
-        done = subprocess.run(alone, cwd=tmp_path, capture_output=True, text=True, check=False)
-        assert done.returncode == 1
-        assert f"REFUSED: {message}" in done.stdout
+    edit(folder / RECORD, "-sin(phi)*sin(psi)", "sin(phi)*sin(psi)")
+    done = subprocess.run(alone, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 1
+    assert "REFUSED: rotation_matrix: entry 1 is false" in done.stdout
     nothing = [*alone[:-1], "none"]
     assert subprocess.run(nothing, cwd=tmp_path, check=False).returncode == 1
 
@@ -203,3 +201,106 @@ def test_coq_accepts_a_heavy_symmetric_top_and_nothing_false_about_it(tmp_path):
     )
     assert wrong != certificate.text
     assert run_coq(tmp_path, wrong) != 0
+
+
+# Files of certificates beside a record
+
+WRITTEN = "--only", "rotation_matrix,angular_velocity_body", "--certificates", "--quiet"
+
+
+def answered(*words: str) -> tuple[int, str]:
+    done = CliRunner().invoke(commands, words, catch_exceptions=False)
+    return done.exit_code, done.output
+
+
+@pytest.fixture(scope="module")
+def certified(tmp_path_factory) -> Path:
+    out = tmp_path_factory.mktemp("certified")
+    assert answered("derive", "ZXZ", *WRITTEN, "--out", str(out))[0] == 0
+    return out
+
+
+@pytest.fixture
+def folder(certified, tmp_path) -> Path:
+    return shutil.copytree(certified, tmp_path / "out") / NAME
+
+
+def problems(out: Path) -> dict[str, str]:
+    """What `check` says of each file that is not as derived."""
+    status, said = answered("check", str(out))
+    lines = (line.split(": ", 1) for line in said.splitlines() if line.startswith(str(out)))
+    found = {Path(name).name: finding for name, finding in lines if finding != "up to date"}
+    assert status == bool(found)
+    return found
+
+
+def edit(path: Path, before: str, after: str) -> None:
+    text = path.read_text(encoding="utf-8")
+    assert before in text
+    path.write_text(text.replace(before, after, 1), encoding="utf-8")
+
+
+COQ, RECORD = f"{NAME}.v", f"{NAME}.json"
+
+
+@pytest.mark.parametrize(
+    ("name", "before", "after", "expected"),
+    [
+        (COQ, "", "", {}),
+        (
+            *(RECORD, "cos(phi)*cos(psi)", "sin(phi)*cos(psi)"),
+            {
+                COQ: f"{RECORD} is refused: rotation_matrix: entry 1 is false",
+                RECORD: "differs from the derivation",
+            },
+        ),
+        (COQ, "Qed.", "Admitted.", {COQ: "differs from the derivation at line"}),
+        (COQ, None, "", {COQ: "missing"}),
+        (RECORD, '"title"', "{", {RECORD: "cannot be read as the record"}),
+    ],
+)
+def test_a_damaged_or_missing_file_is_named(folder, name, before, after, expected):
+    if before is None:
+        (folder / name).unlink()
+    else:
+        edit(folder / name, before, after)
+    found = problems(folder.parent)
+    assert found.keys() == expected.keys()
+    assert all(found[name].startswith(problem) for name, problem in expected.items())
+
+
+def test_a_certificate_joins_what_is_derived_again(folder):
+    only = WRITTEN[:2]
+    answered("derive", "ZXZ", *only, "--target", "c", "--out", str(folder.parent))
+    assert problems(folder.parent) == {}
+    assert json.loads((folder / RECORD).read_text())["files"].keys() >= {COQ, "Rotation.v"}
+
+
+@pytest.mark.parametrize("is_edited", [False, True])
+def test_a_certificate_of_other_angles_leaves_unless_it_was_edited(folder, is_edited):
+    if is_edited:
+        edit(folder / COQ, "Qed.", "Admitted.")
+    answered("derive", "ZXZ", "--angles", "a,b,c", "--quiet", "--out", str(folder.parent))
+    assert (folder / COQ).exists() == is_edited
+    unknown = {COQ: f"unknown to {RECORD}: derive again with --certificates"}
+    assert problems(folder.parent) == (unknown if is_edited else {})
+
+
+def test_a_theorem_that_was_edited_is_not_overwritten(folder):
+    edit(folder / COQ, "Qed.", "Admitted.")
+    words = "derive", "ZXZ", *WRITTEN, "--out", str(folder.parent)
+    done = CliRunner().invoke(commands, words)
+    assert COQ in str(done.exception)
+    assert answered(*words, "--force")[0] == 0
+    assert problems(folder.parent) == {}
+
+
+def test_a_derivation_file_asks_for_certificates(tmp_path):
+    file = tmp_path / "a.toml"
+    file.write_text(
+        '[rotation]\nsequence = "ZXZ"\n[output]\nquantities = ["rotation_matrix"]\n'
+        "certificates = true\n"
+    )
+    assert answered("run", str(file), "--quiet", "--out", str(tmp_path / "out"))[0] == 0
+    assert problems(tmp_path / "out") == {}
+    assert (tmp_path / "out" / "a" / "a.v").is_file()

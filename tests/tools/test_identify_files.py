@@ -13,7 +13,6 @@ import rigidsym as rs
 from helpers.command import call
 from helpers.conventions import GENERIC, attitude, holds, omega, rotation, sample
 from rigidsym.errors import DataError
-from rigidsym.tools.identify.fit import rounding_of
 from rigidsym.tools.identify.identification import identify_file
 from rigidsym.tools.identify.readings import VELOCITIES, Reading
 from rigidsym.tools.identify.samples import SampleError
@@ -40,17 +39,12 @@ def written(path, table: np.ndarray, header: str = "", separator: str = ",", for
 HEADERS = {
     "numbered": "a1,a2,a3," + ",".join(MATRIX) + ",a1_dot,a2_dot,a3_dot,omega1,omega2,omega3",
     "named": "yaw,pitch,roll," + ",".join(MATRIX) + ",yaw_rate,pitch_rate,roll_rate,wx,wy,wz",
-    "other": "angle1,angle2,angle3,"
-    + ",".join(name.replace("r", "dcm") for name in MATRIX)
-    + ",rate1,rate2,rate3,p,q,r",
 }
 
 
 @pytest.mark.parametrize("header", HEADERS.values(), ids=HEADERS)
 @pytest.mark.parametrize("separator", [",", " "], ids=["comma", "blank"])
 def test_columns_by_name(tmp_path, header, separator):
-    if separator == " ":
-        header = header.replace(" [deg]", "").replace(" dot", "dot")
     path = written(tmp_path / "log.csv", rows(30), header.replace(",", separator), separator)
     (answer,) = identify_file(path).answers
     assert holds(answer, AEROSPACE)
@@ -155,7 +149,6 @@ def test_a_data_frame_is_read_by_its_names():
         ),
         ("HEADER\n0,0,0,1,0,0,0,1,0,0,0,nan\n", ["line 2: matrix: a number that is miss"]),
         ("HEADER\n0,0,1°,1,0,0,0,1,0,0,0,1\n", ["'1°' is not a number"]),
-        ("a1;a2;a3;w;x;y;z\n0;0,5;0;1.0;0;0;0\n", ["line 2: field 2: '0,5' is not a number"]),
     ],
 )
 def test_texts_that_do_not_read(tmp_path, text, messages):
@@ -165,19 +158,6 @@ def test_texts_that_do_not_read(tmp_path, text, messages):
         identify_file(path)
     assert [message for message in messages if message not in str(error.value)] == []
     assert (len(str(error.value).splitlines()) == 1) == (len(messages) == 1)
-
-
-@pytest.mark.parametrize(
-    ("row", "rounding"),
-    [
-        ([0.123, 0.5, 0.01], 5e-4),
-        ([0.1234, 0.00001234], 5e-5),  # %.4g
-        ([12.5, 3.0], 0.05),
-        ([0.0, 0.0], 0.0),
-    ],
-)
-def test_the_rounding_of_printed_numbers(row, rounding):
-    assert rounding_of(np.array([row])) == pytest.approx(rounding)
 
 
 YAW_PITCH_ROLL = Reading(sequence="ZYX", columns=(2, 1, 0), passive=True, degrees=True)
