@@ -34,28 +34,22 @@ def load(kernels: KernelModule) -> ModuleType:
 
 
 def module(name: str, source: str) -> ModuleType:
-    """The functions of a module on arrays with components last; their other axes broadcast.
-
-    Those of many orientations, ..._batch, take and give flat arrays as they do in JavaScript.
-    """
+    """The functions of a module on arrays with components last; their other axes broadcast."""
     made = ModuleType(name)
     shapes = {n: (int(size) // int(c), int(c)) for n, c, size in _MATRIX.findall(source)}
     for function, listed in _EXPORTED.findall(source):
         names = [name.split(" ")[0].rstrip("_") for name in listed.split(", ")]
         time = str(names.index("t")) if "t" in names else ""
         run = partial(_run, source, function, time)
-        is_flat = function.endswith("_batch")
-        setattr(made, function, _caller(run, names, shapes, is_flat=is_flat))
+        setattr(made, function, _caller(run, names, shapes))
     return made
 
 
 def _caller(
-    run: Run, names: list[str], shapes: Mapping[str, tuple[int, int]], *, is_flat: bool
+    run: Run, names: list[str], shapes: Mapping[str, tuple[int, int]]
 ) -> Callable[..., Any]:
     def call(*vectors: ArrayLike) -> Any:
         arrays = [np.asarray(vector, float) for vector in vectors]
-        if is_flat:
-            return run([array.reshape(1, -1) for array in arrays])[0]
         for k, (name, array) in enumerate(zip(names, arrays, strict=False)):
             if name in shapes and array.shape[-2:] == shapes[name]:
                 arrays[k] = array.reshape(*array.shape[:-2], prod(shapes[name]))

@@ -8,7 +8,7 @@ const results = [];
 for (let start = 0; start < Math.max(numbers.length, 1); start += Math.max(count, 1)) {
   let place = start;
   const vectors = sizes.map((size) => numbers.subarray(place, (place += Number(size))));
-  if (time && !name.endsWith("_batch")) vectors[time] = vectors[time][0]; // a number
+  if (time) vectors[time] = vectors[time][0]; // a number
   results.push(kernels[name](...vectors));
 }
 const shape = (value) => (Array.isArray(value) ? [value.length, ...shape(value[0])] : []);

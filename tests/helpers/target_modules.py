@@ -11,15 +11,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-import sympy as sp
 
 import rigidsym as rs
 from helpers.motions import derived
 from helpers.node import load
 from helpers.witness import evaluate, mp
 from rigidsym.kernels.targets import TARGETS
-from rigidsym.models.rotation import RotationModel, elementary, lecture, time_function
-from rigidsym.motion import derive
 
 FEW = (  # with and without a divisor
     "rotation_matrix",
@@ -40,9 +37,6 @@ EVERY = [
     pytest.param(name, marks=pytest.mark.skipif(bool(missing), reason=missing))
     for name, missing in MISSING.items()
 ]
-SPECIAL = np.array([*itertools.product(np.pi / 4 * np.arange(-4, 5), repeat=3)])
-STRICT = ("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wshadow", "-Wconversion")
-STRICT += ("-Wdouble-promotion",)
 _COMPILED = {"c", "numba", "jax"}  # in a second or so for each function
 
 
@@ -73,11 +67,11 @@ def _inputs(rotation: str, name: str) -> tuple[str, ...]:
     return ("q",) if name == "singularity_margin" else motion(rotation).step(name).quantity.inputs
 
 
-def exact(rotation: str, name: str, arrays) -> list[list[Any]]:
+def exact(motion: rs.Motion, name: str, arrays) -> list[list[Any]]:
     """The expression at 50 digits, entry by entry, orientation by orientation."""
-    step = motion(rotation).step(name)
-    symbols = [s for n in step.quantity.inputs for s in motion(rotation).argument(n).symbols]
-    spelled = motion(rotation).spelled(step.expression)
+    step = motion.step(name)
+    symbols = [s for n in step.quantity.inputs for s in motion.argument(n).symbols]
+    spelled = motion.spelled(step.expression)
     points = zip(*(array.tolist() for array in arrays), strict=True)
     values = (map(mp.mpf, itertools.chain(*point)) for point in points)
     return [list(evaluate(spelled, dict(zip(symbols, v, strict=True)))) for v in values]
@@ -122,29 +116,3 @@ def _jitted(function: Callable[..., Any]) -> Callable[..., Any]:
             jax.config.update("jax_enable_x64", before)
 
     return call
-
-
-def one_by_one(name: str, arrays: list[np.ndarray]) -> np.ndarray:
-    """The function of ZXZ by its scalar twin, after NumPy's own broadcasting."""
-    scalar = getattr(module(), f"{name}_scalar")
-    shape = np.broadcast_shapes(*(a.shape for a in arrays))
-    wide = [np.broadcast_to(a, shape).reshape(-1, 3).tolist() for a in arrays]
-    values = [scalar(*itertools.chain(*point)) for point in zip(*wide, strict=True)]
-    return np.array(values, float).reshape(*shape[:-1], *motion("ZXZ").step(name).shape)
-
-
-def turned_by(name: str, *angles: str, axes: str = "zxz") -> rs.Motion:
-    """Three turns by angles of any names."""
-    first, second, third = map(time_function, angles)
-    a, b, c = axes
-    matrix = elementary(a, first) * elementary(b, second) * elementary(c, third)
-    return derive(
-        RotationModel(
-            name=name,
-            title='Turns "by" any \\name """',
-            convention=(),
-            coordinates=(first, second, third),
-            matrix=sp.ImmutableMatrix(matrix),
-            source=lecture("17"),
-        )
-    )

@@ -18,7 +18,6 @@ from helpers.target_modules import EVERY, row_by_row
 from helpers.witness import distance, mp, rotation as exact_rotation
 from rigidsym.mechanics.conversions.conversions import Conversions
 from rigidsym.models.library import PARAMETRISATIONS, rotation_from
-from rigidsym.models.parametrisations import given, parametrised
 
 EPS = 10 * np.finfo(np.float64).eps  # ten times what is stated, for other processors
 EULER = ("ZXZ", "zyx")
@@ -118,7 +117,7 @@ def test_inverse_conversions_are_accurate_near_poles_too(text):
 
 @pytest.mark.parametrize("target", [each for each in EVERY if each.values != ("numpy",)])
 def test_every_target_is_as_accurate_and_has_the_numbers_of_numpy(target):
-    for text in ("zyx",) if target == "numba" else ("zyx", "rotation_vector"):  # slow to compile
+    for text in ("zyx",) if target == "numba" else ("zyx", "rotation_vector"):
         p = near_poles(text, 12)
         assert_accurate(text, target, p)
         q = module(text).from_quaternion(p)
@@ -187,14 +186,6 @@ def test_the_scalar_comes_first_or_last_and_any_length_is_a_rotation(text, scala
     assert_allclose(np.abs((found * quaternion).sum(axis=-1)), 1.0, atol=8 * EPS)
 
 
-def test_a_quaternion_of_any_length_is_a_rotation_and_zero_is_none():
-    functions, quaternion = module("quaternion"), quaternions(ANY)
-    long = np.logspace(-100, 100, len(quaternion))[:, np.newaxis] * quaternion
-    assert_allclose(functions.rotation_matrix(long), ANY.as_matrix(), atol=8 * EPS)
-    assert np.isnan(functions.rotation_matrix_scalar(0.0, 0.0, 0.0, 0.0)).all()
-    assert np.isnan(functions.quaternion(np.zeros(4))).all()
-
-
 def test_half_turns_of_a_gibbs_vector_are_infinite():
     functions = module("gibbs_vector")
     found = functions.from_rotation_matrix(np.diag([1.0, -1.0, -1.0]))
@@ -237,27 +228,18 @@ def test_every_conversion_is_proved_and_short_chains_have_a_quaternion(text):
     if text not in CHAINS:
         return
     functions = rs.derive(model, ["rotation_matrix"]).kernels(conversions=True).load()
-    assert "scipy.optimize" in conversions.without
     assert conversions.without in " ".join(functions.__doc__.split())
     assert not hasattr(functions, "from_quaternion")
     assert hasattr(functions, "quaternion") == (text not in LONG)
     if text in LONG:
-        assert "`from_rotation_matrix` of the functions of `unit_quaternion`" in " ".join(
-            functions.__doc__.split()
-        )
         return
     q = np.random.default_rng(4).uniform(-3, 3, (30, len(model.coordinates)))
     numbers = [0.6, 0.8][: len(model.constants)]
-    constants = [numbers] if numbers else []
+    constants = [numbers] * bool(numbers)
     expected = Rotation.from_matrix(functions.rotation_matrix(q, *constants))
     found = functions.quaternion(q, *constants)
     assert_same_turn(found, quaternions(expected), atol=16 * EPS)
     assert_allclose(functions.quaternion_scalar(*q[0], *numbers), found[0], atol=16 * EPS)
-
-
-def test_a_matrix_of_ones_own_converts_by_what_it_is():
-    vector = given(parametrised("rotation_vector").matrix, name="mine")
-    assert Conversions(vector).inverse.kind == "rotation_vector"
 
 
 # --- along a trajectory
@@ -266,22 +248,6 @@ def test_a_matrix_of_ones_own_converts_by_what_it_is():
 def steps(values: np.ndarray) -> float:
     """The longest step from one sample to the next."""
     return float(np.abs(np.diff(values, axis=0)).max())
-
-
-@pytest.mark.parametrize("text", EULER)
-def test_angles_are_those_of_the_path_through_poles_and_whole_turns(text):
-    """The middle angle swings through both poles, the others turn many times."""
-    functions = module(text)
-    path = np.stack([3 * TIMES, 4 * np.sin(2 * TIMES) + 0.1, 1 - 2 * TIMES], axis=-1)
-    wrapped = functions.from_rotation_matrix(functions.rotation_matrix(path))
-    found = functions.unwrap(wrapped)
-    assert steps(wrapped) > 1
-    assert steps(found) < 0.1
-    # The other set of angles goes the same way, its middle angle backwards.
-    assert_allclose(*(np.abs(np.diff(angles, axis=0)) for angles in (found, path)), atol=1e-8)
-    assert_array_equal(found[0], wrapped[0])
-    expected = functions.rotation_matrix(path)
-    assert_allclose(functions.rotation_matrix(found), expected, atol=1e-13)
 
 
 def nearest(functions, q: np.ndarray) -> np.ndarray:

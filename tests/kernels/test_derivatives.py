@@ -16,7 +16,7 @@ from helpers.node import load
 from helpers.target_modules import EVERY, row_by_row
 from helpers.witness import evaluate, mp
 from rigidsym.algebra.stable_forms import FIRST_SERIES, series_of
-from rigidsym.errors import KernelError, QuantityError
+from rigidsym.errors import KernelError
 
 
 @cache
@@ -24,14 +24,10 @@ def motion(name: str) -> rs.Motion:
     return derived(name) if name in rs.EULER_SEQUENCES else rs.derive(name)
 
 
-def of(name: str, quantity: str, *vectors: str, target: str = "numpy"):
-    """The functions of the derivatives of one quantity."""
-    return _module(name, target, tuple(f"{quantity} by {vector}" for vector in vectors))
-
-
 @cache
-def _module(name: str, target: str, asked: tuple[str, ...]):
-    return load(motion(name).kernels(target, derivatives=asked))
+def of(name: str, quantity: str, vector: str):
+    """The functions of the derivatives of one quantity."""
+    return motion(name).kernels(derivatives=[f"{quantity} by {vector}"]).load()
 
 
 def arrays_for(name: str, quantity: str, leading: tuple[int, ...] = (), size: float = 1.0):
@@ -67,45 +63,33 @@ def numerical(motion, quantity: str, vector: str, point: dict) -> np.ndarray:
     return np.array(columns, float).T
 
 
-CASES = [
-    ("ZXZ", "angular_velocity_body", "q"),
-    ("ZXZ", "rotation_matrix", "q"),
-    ("ZXZ", "rates_from_angular_velocity_space", "q"),
-    ("zyx", "angular_acceleration_space", "q_dot"),
-    ("quaternion", "angular_velocity_body", "q"),
-    ("modified_rodrigues", "angular_velocity_body", "q_dot"),
-    ("z(phi) [a,b,c](beta)", "angular_velocity_space", "parameters"),
+SWITCHES = [float(series_of(k).switch) ** 0.5 for k in range(FIRST_SERIES, FIRST_SERIES + 3)]
+SIZES = (1e-9, *(switch * side for switch in SWITCHES for side in (1 - 1e-9, 1 + 1e-9)))
+VECTOR = ("inverse_rate_matrix_body", "rotation_matrix")
+CASES = [  # sizes of q where series stand in for quotients that cancel, or as it comes
+    ("ZXZ", "angular_velocity_body", "q", ()),
+    ("ZXZ", "rotation_matrix", "q", ()),
+    ("ZXZ", "rates_from_angular_velocity_space", "q", ()),
+    ("zyx", "angular_acceleration_space", "q_dot", ()),
+    ("quaternion", "angular_velocity_body", "q", ()),
+    ("modified_rodrigues", "angular_velocity_body", "q_dot", ()),
+    ("z(phi) [a,b,c](beta)", "angular_velocity_space", "parameters", ()),
+    *(("rotation_vector", quantity, "q", SIZES) for quantity in VECTOR),
 ]
 
 
-@pytest.mark.parametrize(("name", "quantity", "vector"), CASES)
-def test_jacobians_are_those_of_differences_at_50_digits(name, quantity, vector):
-    point = arrays_for(name, quantity)
-    functions = of(name, quantity, vector)
-    jacobian = getattr(functions, f"{quantity}_jacobian_{vector}")(*point.values())
-    slopes = numerical(motion(name), quantity, vector, point)
-    assert jacobian.shape == (*motion(name).step(quantity).shape, len(point[vector]))
-    assert_allclose(jacobian.reshape(slopes.shape), slopes, rtol=1e-12, atol=1e-13)
-    numbers = np.concatenate([*point.values()]).tolist()
-    twin = getattr(functions, f"{quantity}_jacobian_{vector}_scalar")(*numbers)
-    assert_allclose(twin, jacobian, atol=1e-13)
-
-
-SWITCHES = [float(series_of(k).switch) ** 0.5 for k in range(FIRST_SERIES, FIRST_SERIES + 3)]
-
-
-@pytest.mark.parametrize(
-    "size", [1e-9, *(s * side for s in SWITCHES for side in (1 - 1e-9, 1 + 1e-9))]
-)
-def test_jacobians_are_right_on_both_sides_of_every_switch(size):
-    """Series stand in for quotients that cancel at small angles."""
-    for quantity in ("angular_velocity_body", "inverse_rate_matrix_body", "rotation_matrix"):
-        point = arrays_for("rotation_vector", quantity)
+@pytest.mark.parametrize(("name", "quantity", "vector", "sizes"), CASES)
+def test_jacobians_are_those_of_differences_at_50_digits(name, quantity, vector, sizes):
+    functions, point = of(name, quantity, vector), arrays_for(name, quantity)
+    jacobian, twin = (
+        getattr(functions, f"{quantity}_jacobian_{vector}{end}") for end in ("", "_scalar")
+    )
+    for size in sizes or (np.linalg.norm(point["q"]),):
         point["q"] *= size / np.linalg.norm(point["q"])
-        functions = of("rotation_vector", quantity, "q")
-        jacobian = getattr(functions, f"{quantity}_jacobian_q")(*point.values())
-        slopes = numerical(motion("rotation_vector"), quantity, "q", point)
-        assert_allclose(jacobian.reshape(slopes.shape), slopes, rtol=1e-12, atol=2e-14)
+        found, slopes = jacobian(*point.values()), numerical(motion(name), quantity, vector, point)
+        assert found.shape == (*motion(name).step(quantity).shape, len(point[vector]))
+        assert_allclose(found.reshape(slopes.shape), slopes, rtol=1e-12, atol=2e-14)
+    assert_allclose(twin(*np.concatenate([*point.values()]).tolist()), found, atol=1e-13)
 
 
 @pytest.mark.parametrize("size", [0.0, 1e-200])
@@ -139,18 +123,9 @@ def test_every_target_gives_the_derivative_with_three_axes_too(target):
     assert plain.rotation_matrix_jacobian_q.signature == "(3)->(3,3,3)"
 
 
-REFUSED = [
-    ("angular_velocity_body", KernelError, "no derivative 'angular_velocity_body'; expected"),
-    ("a by b c d", KernelError, "no derivative 'a by b c d'; expected"),
-    ("rotation_matrix by q_dot", KernelError, "rotation_matrix by q_dot: .* depends only on q$"),
-    ("speed by q", QuantityError, "no quantity 'speed'"),
-]
-
-
-@pytest.mark.parametrize(("text", "kind", "message"), REFUSED)
-def test_what_has_no_derivative_is_refused(text, kind, message):
-    with pytest.raises(kind, match=message):
-        motion("ZXZ").kernels(derivatives=[text])
+def test_what_has_no_derivative_is_refused():
+    with pytest.raises(KernelError, match=r"rotation_matrix by q_dot: .* depends only on q$"):
+        motion("ZXZ").kernels(derivatives=["rotation_matrix by q_dot"])
 
 
 @pytest.mark.parametrize(("rotation", "is_bound"), [("unit_quaternion", True), ("ZXZ", False)])

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-import inspect
 import re
+import shutil
 import subprocess
 import sys
 
 import pytest
-from numpy.testing import assert_array_equal
+from numpy.testing import assert_allclose
 
 import rigidsym as rs
 from helpers.motions import derived
+from helpers.node import load
 from helpers.printed_lines import LEAN, of_rotations
-from helpers.target_modules import inputs, module, turned_by
+from helpers.target_modules import EVERY, inputs, module
 from rigidsym import __version__
 from rigidsym.errors import KernelError
 from rigidsym.kernels.module import generate
@@ -64,17 +65,40 @@ def test_a_written_module_needs_numpy_alone(tmp_path):
     assert "sympy" not in done.stdout
 
 
-def test_names_that_clash_are_kept_apart():
-    for names in (("x0", "out", "np"), ("phi", "sin_phi", "phi_dot"), ("lambda", "q", "sin")):
-        functions = generate(turned_by("clash", *names)).load()
-        assert functions.__doc__.startswith('Turns "by" any \\name """: functions of NumPy arrays.')
-        q, q_dot = inputs("ZXZ", "angular_velocity_body", (4,))
-        for name in ("rotation_matrix", "angular_velocity_body", "angular_acceleration_space"):
-            arrays = [q, q_dot, q_dot][: len(derived("ZXZ").step(name).quantity.inputs)]
-            found = getattr(functions, name)(*arrays)
-            assert_array_equal(found, getattr(module(), name)(*arrays))
-    parameters = inspect.signature(functions.rotation_matrix_scalar).parameters
-    assert list(parameters) == ["lambda_", "q", "sin_"]
+WORDS = [
+    ("x0", "least", "body"),
+    ("phi", "sin_phi", "M_PI"),
+    ("lambda", "eps", "y0"),
+    ("λ", "double", "far"),
+    ("new", "this", "arguments"),
+    ("signed", "j1", "NULL"),
+    ("def", "class", "None"),
+]
+
+
+LOADED = [pytest.param(*p.values, marks=[*p.marks, pytest.mark.campaign]) for p in EVERY[1:]]
+
+
+@pytest.mark.parametrize("target", [*EVERY[:1], *LOADED])
+def test_names_that_clash_are_kept_apart(target):
+    q, q_dot = inputs("ZXZ", "angular_velocity_body", (4,))
+    expected = module().angular_velocity_body(q, q_dot)
+    for names in WORDS:
+        motion = rs.derive(rs.EulerAngles("ZXZ", angles=names), only=["angular_velocity_body"])
+        titled = rs.Motion(**{**vars(motion), "title": 'Turns "by" any \\name """'})
+        functions = load(titled.kernels(target, conversions=True))
+        assert 'Turns "by" any \\name """' in (functions.__doc__ or titled.title)
+        assert_allclose(functions.angular_velocity_body(q, q_dot), expected, rtol=1e-5, atol=1e-5)
+
+
+@pytest.mark.skipif(not shutil.which("g++"), reason="no g++")
+def test_a_c_header_is_taken_by_cpp_beside_cmath(tmp_path):
+    motion = rs.derive(rs.EulerAngles("ZXZ", angles=("M_PI", "NULL", "j1")), ["rotation_matrix"])
+    header = motion.kernels("c", conversions=True).write(tmp_path).with_suffix(".h")
+    source = tmp_path / "use.cpp"
+    source.write_text(f'#include <cmath>\n#include "{header.name}"\nint main() {{}}\n', "utf-8")
+    command = ["g++", "-Wall", "-Wextra", "-Wshadow", "-Werror", "-fsyntax-only", str(source)]
+    subprocess.run(command, check=True)
 
 
 OPTIONS = [

@@ -10,11 +10,12 @@ import pytest
 import rigidsym as rs
 from benchmarks.bounds import PUBLISHED, bounded_kernels, gappa_bound, rigid_body
 from helpers.motions import derived
-from helpers.target_modules import SPECIAL, row_by_row
-from helpers.witness import evaluate, mp
+from helpers.target_modules import exact, row_by_row, worst_error
+from helpers.witness import mp
 from rigidsym.kernels.ir import Assignment, Call, Kernel, KernelArgument, Name, Number, Product, Sum
 from rigidsym.kernels.lowering.lower import lower
 from rigidsym.kernels.lowering.rounding import Bounded, largest_error, rounding
+from rigidsym.kernels.targets.precision import DOUBLE, numbers
 from rigidsym.models.library import PARAMETRISATIONS
 
 A, B, ONE, TENTH = Name("a"), Name("b"), Number(Fraction(1)), Number(Fraction(1, 10))
@@ -100,11 +101,21 @@ def test_measured_errors_are_within_the_bounds(rotation):
         arrays = [random.uniform(-1.0, 1.0, (8, len(a.components))) for a in kernel.arguments]
         if "q" in bound.of_any_size:
             arrays[0] *= 1e4
-            arrays[0][::4] = SPECIAL[:: len(SPECIAL) // 2, : arrays[0].shape[1]][:2]
+            arrays[0][::4] = np.pi * np.array([[-1], [0.25]])
         rows = row_by_row("numpy", getattr(module, kernel.name))(*arrays)
-        step = motion.step(kernel.name)
-        symbols = [s for n in step.quantity.inputs for s in motion.argument(n).symbols]
-        for row, point in zip(rows.tolist(), np.hstack(arrays).tolist(), strict=True):
-            truth = evaluate(step.expression, dict(zip(symbols, map(mp.mpf, point), strict=True)))
-            errors = [abs(mp.mpf(x) - y) for x, y in zip(row, truth, strict=True)]
-            assert max(errors) <= bound.error * 2.0**-52, kernel.name
+        truth = exact(motion, kernel.name, arrays)
+        assert worst_error(rows, truth, np.ones(len(rows))) <= bound.error, kernel.name
+
+
+def test_the_angle_of_a_point_is_within_one_and_a_half_eps():
+    """In all octants and sizes, on the axes and diagonals, and where the formula changes."""
+    pytest.importorskip("numba")
+    angle_of = rs.derive("ZXZ").kernels("numba", conversions=True).load()._angle_of
+    random = np.random.default_rng(3)
+    points = random.normal(size=(1000, 2)) * 10.0 ** random.uniform(-15, 15, size=(1000, 2))
+    edge = float(numbers(DOUBLE)["edge"]) * (1 + np.linspace(-1e-7, 1e-7, 41))
+    for near in np.concatenate([np.linspace(0, 1, 200), edge]):
+        points = np.append(points, [[near, 1], [1, near], [-near, -1]], axis=0)
+    for y, x in points.tolist():
+        exact = mp.atan2(mp.mpf(y), mp.mpf(x))
+        assert abs(mp.mpf(angle_of(y, x)) - exact) <= 1.5 * 2.0**-52 * abs(exact)
