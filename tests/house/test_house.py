@@ -129,9 +129,9 @@ def test_kernels_and_notes_know_nothing_of_one_another_nor_the_representation_of
 
 
 BUDGETS = {  # what was reached; who makes the house smaller lowers them
-    "files": 198,
-    "lines of code": 29_100,
-    "lines of tests": 18_230,
+    "files": 193,
+    "lines of code": 25_740,
+    "lines of tests": 16_000,
     "lines of benchmarks": 2_500,
 }
 
