@@ -6,6 +6,7 @@ folder (XDG_CACHE_HOME). Without such a folder it is in one that goes away with 
 
 from __future__ import annotations
 
+import atexit
 import os
 import shutil
 from collections.abc import Callable, Mapping
@@ -14,7 +15,7 @@ from functools import cache
 from hashlib import sha256
 from importlib import import_module, invalidate_caches
 from pathlib import Path
-from tempfile import TemporaryDirectory
+from tempfile import TemporaryDirectory, mkdtemp
 from types import ModuleType
 
 from rigidsym.system.files import cache_folder
@@ -36,7 +37,7 @@ def load(
     """
     digest = sha256(repr([*files.items(), *depends]).encode()).hexdigest()
     package = f"kernels_{digest[:32]}"
-    home = cache_folder("kernels") or Path(_own().name)
+    home = cache_folder("kernels") or _own()
     if str(home) not in __path__:
         __path__.append(str(home))  # where Python looks for the packages
     kept = home / package
@@ -61,9 +62,11 @@ def load(
 
 
 @cache
-def _own() -> TemporaryDirectory[str]:
+def _own() -> Path:
     """The folder of this process, if there is no other."""
-    return TemporaryDirectory(prefix="rigidsym-")
+    home = Path(mkdtemp(prefix="rigidsym-"))
+    atexit.register(shutil.rmtree, home, ignore_errors=True)
+    return home
 
 
 _CACHE = cache_folder("kernels")  # where another process may have put what is unpickled here
