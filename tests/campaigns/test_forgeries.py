@@ -87,8 +87,10 @@ def with_an_argument_defined(content: Content) -> None:
     put(VELOCITY, 2, "phi_dot + psi_dot*cos(theta) + K")(content)
 
 
-def with_another_centre(content: Content) -> None:
-    content["body"]["centre"] = ["0", "0", "l"]
+def with_two_units(content: Content) -> None:
+    angles = copy.deepcopy(next(g for g in content["arguments"] if g["name"] == "q"))
+    content["arguments"].append(angles | {"name": "again"})
+    content["arguments"][0]["components"][0]["unit"] = "deg"
 
 
 def with_other_angles(content: Content) -> None:
@@ -119,7 +121,11 @@ def with_a_moment_too_many(content: Content) -> None:
 KNOWN: dict[str, tuple[str, Change]] = {
     "a parameter of the body that is defined": ("top", with_a_parameter_defined),
     "an argument that is defined": ("ZXZ", with_an_argument_defined),
-    "a centre beside the fixed point": ("top", with_another_centre),
+    "two units of one name": ("ZXZ", with_two_units),
+    "a centre beside the fixed point": (
+        "top",
+        lambda content: content["body"].update(centre=["0", "0", "l"]),
+    ),
     "turns about other angles than the name says": ("ZXZ", with_other_angles),
     "a principal moment too many": ("top", with_a_moment_too_many),
     "a constant angle in degrees": ("ZXZ", with_a_constant_angle_in_degrees),
@@ -310,6 +316,7 @@ OF_ZXZ: dict[str, Change] = {  # forgeries of what the record of ZXZ says beside
     "a constant turn that is none": turned("constant_turn(0, 0, 1, 1, 1)"),
     "no turns": turned(),
     "the transpose": of_whole("presentation", "passive"),
+    "neither active nor passive": of_whole("presentation", "Passive"),
     "another convention": of_whole("name", "euler_zyx_intrinsic"),
     "R by entries that are none": lambda content: content.update(
         rotation={"matrix": [["1", "0", "0"]] * 3, "conditions": []}

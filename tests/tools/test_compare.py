@@ -66,17 +66,16 @@ def exchanged(formula: sp.Matrix) -> sp.Matrix:
     return formula
 
 
+ZXZ, RATES = ("ZXZ", "rotation_matrix"), ("xyz", "inverse_rate_matrix_body")
+OMEGA = ("zxz", "angular_velocity_body")
 WHOLE = {  # kind of error: case, and the formula that is written
-    "transpose": (("ZXZ", "rotation_matrix"), lambda: right("ZXZ", "rotation_matrix").T),
-    "sign": (("zxz", "angular_velocity_body"), lambda: -right("zxz", "angular_velocity_body")),
-    "factor": (
-        ("xyz", "inverse_rate_matrix_body"),
-        lambda: right("xyz", "inverse_rate_matrix_body") / 2,
-    ),
-    "exchange": (("ZXZ", "rotation_matrix"), lambda: exchanged(right("ZXZ", "rotation_matrix"))),
-    "frame": (("zxz", "angular_velocity_body"), lambda: right("zxz", "angular_velocity_space")),
-    "inverse": (("xyz", "rate_matrix_body"), lambda: right("xyz", "inverse_rate_matrix_body")),
-    "order of the turns": (("ZXZ", "rotation_matrix"), lambda: right("zxz", "rotation_matrix")),
+    "transpose": (ZXZ, lambda: right(*ZXZ).T),
+    "sign": (OMEGA, lambda: -right(*OMEGA)),
+    "factor": (RATES, lambda: right(*RATES) / 2),
+    "exchange": (ZXZ, lambda: exchanged(right(*ZXZ))),
+    "frame": (OMEGA, lambda: right("zxz", "angular_velocity_space")),
+    "inverse": (("xyz", "rate_matrix_body"), lambda: right(*RATES)),
+    "order of the turns": (ZXZ, lambda: right("zxz", "rotation_matrix")),
 }
 
 
