@@ -257,16 +257,24 @@ def is_never_negative(expression: sp.Expr, bounds: Mapping[sp.Symbol, Bounds]) -
     """Whether the form of an expression tells that it is never negative within bounds.
 
     Symbols without bounds are constants, and positive. SymPy decides by the signs of the parts;
-    the sine of a variable has one if it stays within half a turn.
+    the sine of a multiple of one variable has one if it stays within half a turn.
     """
     # Dummies with assumptions in place of the symbols; SymPy then knows the signs of sums and
     # products.
     plain: dict[sp.Expr, sp.Expr] = {}
+    # sin u ≥ 0 for 0 ≤ u ≤ π, as in the volume element r² sin θ, and cos u ≥ 0 for |u| ≤ π/2, as in
+    # r² cos(latitude).
+    for function in expression.atoms(sp.sin, sp.cos):
+        number, variable = function.args[0].as_coeff_Mul()
+        ends = [number * end for end in bounds.get(variable, ())]
+        first = sp.S.Zero if isinstance(function, sp.sin) else -sp.pi / 2
+        if ends and all(end.is_number and first <= end <= first + sp.pi for end in ends):
+            plain[function] = sp.Dummy(nonnegative=True)
     for symbol in expression.free_symbols:
         low, high = bounds.get(symbol, (sp.S.Zero, sp.oo))
         is_positive = symbol not in low.free_symbols and is_never_negative(low, bounds)
-        plain[symbol] = sp.Dummy(real=True, nonnegative=is_positive or None)
-        # sin u ≥ 0 for 0 ≤ u ≤ π, as in the volume element r² sin θ.
-        if is_positive and high.is_number and high <= sp.pi:
-            plain[sp.sin(symbol)] = sp.Dummy(nonnegative=True)
+        is_negative = not is_positive and is_never_negative(-high, bounds)
+        plain[symbol] = sp.Dummy(
+            real=True, nonnegative=is_positive or None, nonpositive=is_negative or None
+        )
     return bool(expression.xreplace(plain).is_nonnegative)

@@ -18,6 +18,7 @@ from rigidsym.algebra.evaluate import (
     context,
     evaluate,
     function_of,
+    is_never_negative,
 )
 
 X, Y = sp.symbols("x y")
@@ -70,3 +71,21 @@ def test_intervals_have_no_value_where_there_is_none(expression):
 def test_a_symbol_without_a_value_is_named():
     with pytest.raises(Unknown, match="y"):
         evaluate(X + Y, Floats(math), {X: 1.0})
+
+
+R = sp.Symbol("R")
+
+
+@pytest.mark.parametrize(
+    ("expression", "bounds", "is_told"),
+    [
+        (X**2 * sp.cos(Y), {X: (sp.S.Zero, R), Y: (-sp.pi / 2, sp.pi / 2)}, True),  # latitude
+        (X * sp.sin(Y), {X: (sp.S.Zero, R), Y: (sp.S.Zero, sp.pi)}, True),
+        (sp.sin(2 * X), {X: (sp.S.Zero, sp.pi / 2)}, True),
+        (sp.sin(2 * X), {X: (sp.S.Zero, sp.pi)}, False),
+        (-X, {X: (-R, sp.S.Zero)}, True),
+        (X, {X: (-R, sp.S.Zero)}, False),
+    ],
+)
+def test_signs_within_bounds(expression, bounds, is_told):
+    assert is_never_negative(expression, bounds) == is_told
