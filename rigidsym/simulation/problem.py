@@ -124,8 +124,8 @@ class Problem:
         for q in orientations.tolist():
             values = dict(zip(self.model.coordinates, q, strict=True)) | body.values
             height, *axis = (e.xreplace(values) for e in (potential, *self.model.matrix.row(2)))
-            if not all(e.is_number for e in (height, *axis)):
-                return  # it holds the time
+            if not all(e.is_number and e.is_real for e in (height, *axis)):
+                return  # it holds the time, or the root of a negative number
             heights.append(float(height / mass / gravity[0]))
             axes.append([float(e) for e in axis])
         centre = np.linalg.lstsq(np.array(axes), np.array(heights))[0].round(12) + 0.0  # m, no -0

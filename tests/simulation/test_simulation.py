@@ -14,6 +14,7 @@ from scipy.spatial.transform import Rotation
 import rigidsym as rs
 from helpers.command import call
 from rigidsym.errors import LimitReached
+from rigidsym.models.body import Parameter
 from rigidsym.models.library import rotation_from
 from rigidsym.simulation.free_body import free_motion
 from rigidsym.simulation.problem import NEEDED
@@ -190,6 +191,13 @@ def test_moments_about_the_tip_leave_a_body_about_the_centre_of_mass(moment, sta
     )
     refusal = "about its centre of mass at (0, 0, 0.5) m: no body has the principal moments 0.24"
     assert (refusal in done.stderr) == bool(status)
+
+
+def test_a_potential_that_is_not_real_everywhere_is_no_weight():
+    g = Parameter(symbol=sp.Symbol("g"), unit="m/s^2")
+    body = rs.principal_moments(A, A, C, mass=sp.Symbol("m"), parameters=[g])
+    motion = rs.derive("ZXZ", body=body, potential="m*g*l*sqrt(theta)")
+    assert len(motion.simulate(REST | {"theta": 1}, TOP, 0.01, samples=2).t) == 2
 
 
 def test_what_cannot_be_simulated_is_said():
