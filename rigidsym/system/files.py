@@ -61,13 +61,12 @@ def whole_file(path: Path) -> Iterator[BinaryIO]:
             yield file
         draft.replace(path)
     except OSError as error:
-        draft.unlink(missing_ok=True)
         if error.errno is None or error.filename not in (None, str(draft)):
             raise
         raise OSError(error.errno, error.strerror, str(path)) from error
-    except BaseException:
-        draft.unlink(missing_ok=True)
-        raise
+    finally:
+        with suppress(OSError):  # it has its place, or was never made
+            draft.unlink()
 
 
 @contextmanager

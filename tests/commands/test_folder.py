@@ -6,12 +6,14 @@ import json
 from hashlib import sha256
 from pathlib import Path
 
+import pytest
 from click.testing import CliRunner
 
 import rigidsym as rs
 from helpers.command import call
 from rigidsym.commands.cli import commands
 from rigidsym.errors import EditedFiles
+from rigidsym.system.files import whole_file
 
 NAME = "euler_zxz_intrinsic"
 ONLY = "--only", "rotation_matrix"
@@ -111,3 +113,10 @@ def test_a_damaged_record_is_named_and_keeps_no_other_from_being_checked(tmp_pat
     assert f"{NAME}.py: up to date" in printed
     done = call("run", "half.json", cwd=tmp_path, status=3)
     assert "half.json: 1 fault, nothing written\n  expected a derivation file" in done.stderr
+
+
+def test_an_error_of_writing_names_the_file_and_not_its_draft(tmp_path):
+    path = tmp_path / ("a" * 249)  # for which there is room, but not for the name of a draft
+    with pytest.raises(OSError, match=r"too long") as caught, whole_file(path):
+        pass
+    assert caught.value.filename == str(path)
