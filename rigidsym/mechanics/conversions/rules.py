@@ -64,9 +64,13 @@ class Rule:
     quarters: int = 0  # of Euler angles: the quarter turns from the middle angle 0 to a pole
 
     @property
+    def is_quaternion(self) -> bool:
+        return self.kind in ("quaternion", "unit_quaternion")
+
+    @property
     def is_scalar_last(self) -> bool:
         """Whether quaternions are (x, y, z, w), as the coordinates are."""
-        return len(self.order) == 4 and self.order[0] == 3
+        return self.is_quaternion and self.order[0] == 3
 
     @property
     def words(self) -> Mapping[str, str]:
@@ -102,8 +106,8 @@ class Rule:
         if self.kind == "direction_cosines":
             return tuple(matrix[place] for place in self.order)
         parts = shepperd(values, matrix)
-        is_signed = self.kind in ("quaternion", "unit_quaternion")
-        return self.from_quaternion(values, short_way(values, parts) if is_signed else parts)
+        short = short_way(values, parts) if self.is_quaternion else parts
+        return self.from_quaternion(values, short)
 
 
 def rule_of(model: RotationModel) -> Rule | None:
