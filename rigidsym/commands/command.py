@@ -98,8 +98,9 @@ class _Command(click.Command):
         try:
             return super().parse_args(context, args)
         except click.NoSuchOption as error:
-            substitute = DECLARED["removed"].get(error.option_name)
-            if substitute is None:
+            removed = DECLARED["removed"].items()
+            old = (text for names, text in removed if error.option_name in names.split())
+            if (substitute := next(old, None)) is None:
                 raise
             message = f"there is no {error.option_name}: {substitute}"
             raise click.UsageError(message, context) from None

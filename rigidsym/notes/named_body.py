@@ -29,7 +29,6 @@ _MOMENTS = sp.symbols("I_1:4")
 OFFSET = tuple(sp.Symbol(f"d_{axis}") for axis in "xyz")
 _DISTANCE = formula(r"\mathbf{d}")
 _STEINER = formula(STEINER, INERTIA, MASS, _DISTANCE, _DISTANCE)
-_TURNED = formula(r"\boldsymbol{\Omega}")
 
 
 def in_names(derivation: Derivation) -> tuple[Derivation, Parts]:

@@ -51,7 +51,7 @@ def body_drawing(derivation: Derivation) -> tuple[Drawing, bool] | None:
     ]
     outer = [
         _stroke(at * axis, max(_REACH, at + _BEYOND) * axis, is_hidden=False)
-        for _, at, axis in zip(names, exits, axes, strict=False)
+        for at, axis in zip(exits, axes, strict=True)
     ]
     named: list[Named] = [
         ("space", name, beyond(((0.0, 0.0), stroke.points[-1])))
