@@ -75,7 +75,7 @@ def is_identically_zero(expression: sp.Expr) -> bool:
     if not expression.is_number or not expression.is_algebraic:
         return False
     # Zero is the only algebraic number whose minimal polynomial is x. To find that polynomial is
-    # slow, so a number that is clearly not zero is told by its value.
+    # slow, so the value decides first: it shows that most numbers are not zero.
     return bool(
         abs(sp.N(expression, 30)) < _NEARLY_ZERO and sp.minimal_polynomial(expression).is_Symbol
     )

@@ -4,7 +4,7 @@ A normal form is for deciding, not for reading. The shortest of the equivalent p
 (`ring.shortest`), and quotients of sine and cosine become tan and cot. Then
 
 1. `_folded`: cos α cos β − sin α sin β is written cos(α + β). Terms come in over the generators of
-   a ring and leave over more places: after the generators stand, for every two angles, the cosine
+   a ring and leave over more places: behind the generators are, for every two angles, the cosine
    and sine of their sum and of their difference.
 2. `_sum`: common factors are taken out, in the order of what they save. Terms are Laurent monomials
    (a negative power divides), and a sum of products may hold sums in turn.
@@ -202,7 +202,7 @@ class Presenter:
         return sp.Add(self._product(number, common, rest), self._sum(outside))
 
     def _best_factor(self, terms: Terms) -> tuple[int, int] | None:
-        """(place, sign of its power) that saves most, of those that occur in several terms.
+        """The place and the sign of the power that save most when taken out of several terms.
 
         A term saves the factor where its lowest power takes all of it; what is taken out is written
         once. Ties go to the place that comes first.

@@ -1,6 +1,7 @@
 """How an equation is set so that it fits: on one line, on two, in shorthand, or entry by entry.
 
-The choice is by estimated width, in this order. A reader who has to know of it is told.
+The choice is by estimated width, in this order. Where entries are abbreviated or listed, the note
+says so.
 """
 
 from __future__ import annotations

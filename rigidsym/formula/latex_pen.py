@@ -47,7 +47,7 @@ _WIDTHS = {
     **dict.fromkeys("MW", 1.16),
     **dict.fromkeys("0123456789", DIGIT),
 }
-_WORD = 0.87  # width of letters in a word, which stand closer
+_WORD = 0.87  # width of letters in a word, which are set closer
 _CAPITAL, _UNKNOWN = 0.92, 1.0
 _SIGN_WIDTHS = {"+": 1.23, "−": 1.23, "±": 1.23, "=": EQUAL}
 _SIGN_WIDTHS |= {"·": 0.8, "/": 0.5, ",": 0.45, ";": 0.45}
@@ -81,7 +81,7 @@ class LatexPen(Pen):
     thin: ClassVar[str] = r"\,"
     row_end: ClassVar[str] = r" \\[{}pt]" + "\n"
     script: ClassVar[str] = ""  # what stands before an index
-    after_accent: ClassVar[str] = "{}"  # a prime on the accent would stand too high
+    after_accent: ClassVar[str] = "{}"  # a prime on the accent would be too high
 
     def symbol(self, node: tree.Symbol) -> Piece:
         text = _LETTERS.get(node.letter, node.letter)
@@ -146,7 +146,7 @@ class LatexPen(Pen):
         return self.glued((atom(head, width), argument))
 
     def _is_short(self, part: tree.Formula) -> bool:
-        """Whether a function is abbreviated to a letter, and so stands as one among factors."""
+        """Whether a function is abbreviated to a letter, and spaced like one."""
         return (
             self.short and isinstance(part, tree.FunctionCall) and part.function in ("sin", "cos")
         )
@@ -174,7 +174,7 @@ class LatexPen(Pen):
         return _quotient(above, below, max(above.height, below.height, Height.TALL))
 
     def rate(self, node: tree.Rate) -> Piece:
-        """The quotient of differentials; the whole of a bracket stands behind it."""
+        """The quotient of differentials; it comes before what is in brackets."""
         if isinstance(node.of, tree.Bracket):
             return self.glued((self.rate(tree.Rate(tree.row(), node.order)), self.node(node.of)))
         whole = _quotient(*self.differentials(node), Height.RATE)
@@ -283,7 +283,7 @@ def _braced(script: str) -> str:
 
 
 def _is_thin(before: tree.Formula, after: tree.Formula) -> bool:
-    """A thin space stands between letters; numbers, functions and signs bring their own."""
+    """There is a thin space between letters; numbers, functions and signs bring their own."""
     if isinstance(before, tree.Words) or isinstance(after, tree.Words | tree.FunctionCall):
         return False
     if isinstance(before, tree.Bracket) and isinstance(after, tree.Bracket):

@@ -85,8 +85,8 @@ def derivatives_of(
 ) -> Iterator[Jacobian]:
     """The derivatives that are asked for, ready to be lowered.
 
-    Inputs are independent of each other, so that each stands for itself while they are
-    differentiated by: a rate does not follow its coordinate.
+    Inputs are independent of each other: in a derivative by one of them all others are constant,
+    the rate of a coordinate too.
 
     Raises QuantityError for a quantity that is not in the derivation, and KernelError for a
     vector that it does not take.
