@@ -11,6 +11,7 @@ import sympy as sp
 import trimesh
 
 import rigidsym as rs
+from rigidsym.algebra.integrate import Integrator, integration_codec
 from rigidsym.errors import BodyError, QuantityError
 from rigidsym.mechanics.mass.bodies import body_of, solid
 from rigidsym.mechanics.mass.moments import moments_of
@@ -287,3 +288,32 @@ def test_a_body_that_cannot_be_is_refused_with_its_place():
     with pytest.raises(BodyError, match="its points are in a plane") as caught:
         rs.derive("ZXZ", ("rotational_energy",), body=NESTED)
     assert caught.value.place == ("parts", 0, "parts", 0)
+
+
+@pytest.mark.parametrize(
+    "integrand", ["u**2*cos(u)**3", "u*sin(u)*cos(u)**2", "sin(2*u)*cos(u)", "a*u*h*cos(u/2)**4"]
+)
+def test_an_antiderivative_is_one_and_agrees_with_numerical_quadrature(integrand):
+    mpmath = pytest.importorskip("mpmath")
+    function = sp.sympify(integrand)
+    codec = integration_codec([function], (U,), ((sp.S.Zero, sp.pi / 2),))
+    work = Integrator(codec, U)
+    element = codec.encode(function)
+    found = work.antiderivative(element)
+    assert codec.ring.reduce(work.derivative(found) - element) == 0
+    exact = codec.decode(work.between(found, (sp.S.Zero, sp.pi / 2))).subs({a: 2, h: 3})
+    plain = sp.lambdify(U, function.subs({a: 2, h: 3}), "mpmath")
+    with mpmath.workdps(30):
+        assert abs(mpmath.quad(plain, [0, mpmath.pi / 2]) - mpmath.mpf(exact.evalf(30))) < 1e-25
+
+
+def test_kernels_evaluate_the_body():
+    motion = rs.derive("ZXZ", body=rs.solid("cylinder"))
+    module, values = motion.kernels().load(), {"M": 2.0, "a": 3.0, "h": 5.0}
+    parameters = [values[s.name] for s in motion.argument("parameters").symbols]
+    tensor = module.inertia_tensor(parameters)
+    assert np.allclose(tensor, np.diag([2 * (27 + 25) / 12] * 2 + [9]))
+    assert np.isclose(module.moment_of_inertia([3, 0, 0], [0, 0, 1], parameters), 27)
+    assert np.allclose(module.radii_of_gyration(parameters)[2], 3 / np.sqrt(2))
+    space = module.inertia_tensor_space([0.3, 1.3, 2.3], parameters)
+    assert np.allclose(np.linalg.eigvalsh(space), np.linalg.eigvalsh(tensor))

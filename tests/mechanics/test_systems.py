@@ -234,3 +234,31 @@ def test_a_zero_that_is_not_written_as_one_is_a_zero(acting, conserved):
     motion = rs.derive(model, ["first_integrals"], body=rs.principal_moments(A, A, C), **acting)
     assert [integral.name for integral in motion.first_integrals] == conserved
     assert all(integral.proof.is_exact for integral in motion.first_integrals)
+
+
+def test_the_quadcopter_has_the_equations_that_sympy_finds():
+    space, _, _, body = frame(("z", PSI), ("y", THETA), ("x", PHI))
+    thrusts, k = sp.symbols("F_1:5"), sp.Symbol("k")
+    torque = [l * (thrusts[3] - thrusts[1]), l * (thrusts[0] - thrusts[2])]
+    torque.append(k * (thrusts[0] - thrusts[1] + thrusts[2] - thrusts[3]))
+    omega = sp.Matrix([body.ang_vel_in(space).dot(axis) for axis in (body.x, body.y, body.z)])
+    q = [PSI, THETA, PHI]
+    forces = omega.jacobian([x.diff(T) for x in q]).T * sp.Matrix(torque)
+    assert satisfied(shipped("quadcopter_attitude"), kinetic(space, body, (A, B, C)), q, forces)
+
+
+def test_the_angular_velocity_in_a_force_is_that_of_the_body_in_every_place():
+    """A torque N₃′ about the third axis of the body has the generalised forces N₃′ (cos θ, 0, 1)"""
+    body = rs.principal_moments(A, A, C)
+    model = rs.EulerAngles("ZXZ", angles=("phi", "theta", "psi"))
+    motions = [
+        rs.derive(model, ["accelerations"], body=body, **acting)
+        for acting in (
+            {"torque": ["0", "0", "-k*omega_body_3"]},
+            {"torque": ["0", "0", "-k*angular_velocity_body_3"]},
+            {"forces": {"phi": "-k*omega_body_3*cos(theta)", "psi": "-k*omega_body_3"}},
+        )
+    ]
+    values = values_for(motions[0])
+    one, *others = (evaluate(motion.accelerations, values) for motion in motions)
+    assert all(agree(one, other) for other in others)

@@ -12,8 +12,9 @@ import sympy as sp
 
 import rigidsym as rs
 from helpers.browser import Page, chromium
-from helpers.pages import ODD, OTHERS, carried, motion_of, odd_page, page_of
+from helpers.pages import ODD, OTHERS, carried, motion_of, note_in, odd_page, page_of
 from rigidsym.kernels.lowering.lower import MARGIN
+from rigidsym.page.print_page import MOST_BYTES
 
 pytestmark = [pytest.mark.campaign, pytest.mark.usefixtures("chromium")]
 
@@ -95,6 +96,8 @@ def compare_with_numpy(tab: Page, motion: rs.Motion, page: str) -> None:
 @pytest.mark.parametrize("name", ["ZXZ", "zyx", *OTHERS])
 def test_numbers_agree_with_numpy_and_nothing_is_scrolled_sideways(tab, name, tmp_path):
     motion, page = motion_of(name), page_of(name)
+    assert len(page.encode()) <= MOST_BYTES
+    assert note_in(page) == note_in(motion.note().html())
     opened(tab, page, tmp_path)
     compare_with_numpy(tab, motion, page)
     rng = np.random.default_rng(3)
