@@ -263,7 +263,8 @@ def test_it_needs_nothing_and_keeps_nothing(sources):
 @pytest.mark.parametrize("dtype", [np.float64, np.float32])
 @pytest.mark.parametrize("rotation", ["ZYX", "rotation_vector", "z(a) [1,2,3](b) y(c) x(d)"])
 def test_compilers_are_silent_and_results_are_those_of_numpy(tmp_path, rotation, dtype):
-    motion = rs.derive(rotation, only=SOME)
+    some = SOME[:2] if "[" in rotation else SOME  # of a long chain there is no inverse
+    motion = rs.derive(rotation, only=some)
     real = {np.float64: "double", np.float32: "float"}[dtype]
     asked = {"conversions": len(rotation) < 4, "derivatives": ["angular_velocity_body by q"]}
     kernels, functions = motion.kernels("c", lean=real, **asked), motion.kernels(**asked).load()
@@ -272,7 +273,7 @@ def test_compilers_are_silent_and_results_are_those_of_numpy(tmp_path, rotation,
     for compiler in ("clang", "gcc"):
         subprocess.run([compiler, *STRICT, *flags], check=True)
     library, random = ctypes.CDLL(str(made)), np.random.default_rng(7)
-    for name in (*SOME, "angular_velocity_body_jacobian_q"):
+    for name in (*some, "angular_velocity_body_jacobian_q"):
         inputs = motion.step(name.removesuffix("_jacobian_q")).quantity.inputs
         sizes = [len(motion.argument(n).names) for n in inputs]
         given = [random.uniform(0.2, 1.2, size).astype(dtype) for size in sizes]
