@@ -10,7 +10,6 @@ from typing import Any
 import click
 
 from rigidsym.commands.command import Options, command as make
-from rigidsym.system.processes import bar
 from rigidsym.tools.identify.identification import Identification, identify, identify_file
 from rigidsym.tools.identify.readings import ANGLE_NAMES
 from rigidsym.tools.identify.samples import SIZES, SampleError, parts_missing
@@ -29,14 +28,12 @@ def command(context: click.Context, /, file: Path | None, **options: Any) -> Non
     if file is None:
         result = _from_options(options)
     else:
-        with bar(file.name) as progress:
-            result = identify_file(
-                file,
-                columns=options["columns"] or None,
-                tolerance=options["tolerance"],
-                drops_missing=options["missing"] == "drop",
-                progress=progress,
-            )
+        result = identify_file(
+            file,
+            columns=options["columns"] or None,
+            tolerance=options["tolerance"],
+            drops_missing=options["missing"] == "drop",
+        )
     if options["json"]:
         click.echo(json.dumps(result.record(), indent=1, ensure_ascii=False))
     else:

@@ -277,6 +277,8 @@ def _by_name(arguments: Sequence[_Input], header: ColumnNames) -> list[int]:
                 ", or --angles the coordinates in the order of the turns, "
                 "such as `--angles yaw,pitch,roll`"
             )
+        if {*missing} == {n for a in arguments if a.name == "q_dot" for n in a.names}:
+            remedy = "without rates, --quantity rotation_matrix gives the attitude; " + remedy
         raise DataError(f"no column {', '.join(missing)} among {header.listed}; {remedy}")
     return columns
 

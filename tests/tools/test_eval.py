@@ -97,7 +97,11 @@ def test_columns_are_found_by_names_with_units_in_any_order(tmp_path):
     [
         ("phi,theta,psi,phi_dot,theta_dot,psi_dot\n1,2,3,4,5,6\n1,2,x,4,5,6\n", "line 3: field 3"),
         ("phi,theta,psi,phi_dot,theta_dot,psi_dot\n1,2,3\n", "line 2: 3 fields, expected 6"),
-        ("phi,theta,psi\n1,2,3\n", "no column phi_dot, theta_dot, psi_dot among phi, theta, psi"),
+        (
+            "phi,theta,psi\n1,2,3\n",
+            "no column phi_dot, theta_dot, psi_dot among phi, theta, psi; "
+            "without rates, --quantity rotation_matrix gives the attitude",
+        ),
         ("1,2,3\n", "3 columns without names: expected 6"),
         ("\n\n", "no rows"),
     ],

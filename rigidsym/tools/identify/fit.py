@@ -2,33 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cache
 from math import pi, sqrt
+from typing import NamedTuple
 
 import numpy as np
 
 from rigidsym.system.resources import environment
 from rigidsym.tools.identify.readings import (
+    RADIANS_PER_DEGREE,
     VELOCITIES,
     Reading,
+    Velocity,
     distinct,
 )
-from rigidsym.tools.identify.samples import SLACK, SampleError, Samples
-from rigidsym.tools.identify.turns import (
-    Array,
-    ReadingTable,
-)
+from rigidsym.tools.identify.samples import SLACK, Array, SampleError, Samples
 
 FLOOR = 1e-6  # the least tolerance, since data may have been in single precision
 _EXACT = 1e-9  # a matrix this close to orthogonal was not rounded
 _FEW = 64  # samples that are looked at first
 _MOST_FOR_ANGLES = 0.05  # radians; angles as coarse as that are taken to be exact
+_MOST_PLACES = 17  # decimal places that tell one double of size 1 from the next
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Tolerance:
+class Tolerance(NamedTuple):
     """Radians for orientations, by the unit of the angles; a share of the largest |Ω| for Ω."""
 
     radians: float  # if a reading takes the angles to be radians
@@ -40,81 +38,97 @@ class Tolerance:
     def orientation(self) -> float:
         return max(self.radians, self.degrees)
 
-    def of(self, in_degrees: np.ndarray) -> Array:
-        return np.where(in_degrees, self.degrees, self.radians)
 
-
-def tolerances(asked: float | None, block: Samples, scale: float) -> Iterator[Tolerance]:
+def tolerances(asked: float | None, block: Samples, scale: float) -> list[Tolerance]:
     """Tolerances to try, one after the other, until a reading fits.
 
     If the user asks for none, first the angles are taken to be exact, then to be rounded as
     they are printed. `scale` is the largest |Ω|.
     """
     if asked is not None:
-        yield Tolerance(radians=asked, degrees=asked, velocity=asked, because="as asked")
-        return
+        return [Tolerance(asked, asked, asked, "as asked")]
     floor = max(FLOOR, 64 * block.eps)  # computing in a precision below double leaves that open
-    attitude = max(floor, _attitude(block))
-    velocity = floor
-    if block.omega is not None and scale:
-        # Three components, each off by half a unit, make a vector off by √3 halves.
-        velocity = max(floor, sqrt(3) * _largest(rounding_of(block.omega)) / scale)
-    yield Tolerance(
-        radians=attitude,
-        degrees=attitude,
-        velocity=velocity,
-        because="from the digits of the data"
-        if max(attitude, velocity) > FLOOR
-        else "for exact data",
-    )
-    rounding = 3 * _largest(rounding_of(block.angles))
-    slow = 0.0 if block.rates is None else 3 * _largest(rounding_of(block.rates))
-    in_radians, in_degrees = (
-        attitude + extra if extra <= _MOST_FOR_ANGLES else attitude
-        for extra in (rounding, rounding * pi / 180)
-    )
-    if max(in_radians, in_degrees) > attitude:
-        more = max(in_radians, in_degrees) - attitude
-        yield Tolerance(
-            radians=in_radians,
-            degrees=in_degrees,
-            velocity=velocity + more + min(slow / scale if scale else 0.0, _MOST_FOR_ANGLES),
-            because="from the digits of the data and of the angles",
-        )
-
-
-def _attitude(block: Samples) -> float:
-    """The largest rotation by which rounding has moved one of the matrices or quaternions."""
+    # the largest rotation by which rounding has moved one of the matrices or quaternions
     defects = block.defects()
-    rounding = np.where(
-        defects <= _EXACT, 0.0, np.maximum(rounding_of(block.attitude), defects / 2)
+    moved = np.where(defects <= _EXACT, 0, np.maximum(rounding_of(block.attitude), defects / 2))
+    attitude = max(floor, float(moved.max()) * (3 if "matrix" in block.parts else 4))
+    angles, rates, omega = (
+        float(rounding_of(block.parts[part]).max()) if part in block.parts else 0.0
+        for part in ("angles", "rates", "omega")
     )
-    return (4 if block.matrices is None else 3) * _largest(rounding)
-
-
-def _largest(rounding: Array) -> float:
-    return float(rounding.max(initial=0.0))
+    # Three components, each off by half a unit, make a vector off by √3 halves.
+    velocity = max(floor, sqrt(3) * omega / scale)
+    is_rounded = max(attitude, velocity) > FLOOR
+    because = "from the digits of the data" if is_rounded else "for exact data"
+    first = Tolerance(attitude, attitude, velocity, because)
+    turned = [3 * angles, 3 * angles * RADIANS_PER_DEGREE]
+    extra = [each if each <= _MOST_FOR_ANGLES else 0.0 for each in turned]
+    if not any(extra):
+        return [first]
+    velocity += max(extra) + min(3 * rates / scale, _MOST_FOR_ANGLES)
+    because = "from the digits of the data and of the angles"
+    return [first, Tolerance(attitude + extra[0], attitude + extra[1], velocity, because)]
 
 
 def rounding_of(rows: Array) -> Array:
     """Half a unit in the last place of the numbers of each row, as they print; 0 for integers."""
-    return np.array([_rounding(row) for row in rows.tolist()])
+    places = np.full(rows.shape, _MOST_PLACES)
+    for count in reversed(range(_MOST_PLACES)):
+        places[np.round(rows, count) == rows] = count
+    # With %.4g, small numbers have more decimal places: those of the largest size tell. If these
+    # are integers, such as the ones of a turn about one axis, the others do.
+    sizes = np.abs(rows)
+    are_large = sizes >= sizes.max(axis=1, keepdims=True) / 10
+    most = np.where(are_large, places, 0).max(axis=1)
+    most = np.where(most > 0, most, places.max(axis=1))
+    return np.where(most > 0, 0.5 * 10.0**-most, 0.0)
 
 
-def _rounding(row: list[float]) -> float:
-    """By the numbers of the largest size: with %.4g, small ones have more decimal places."""
-    least = max(map(abs, row)) / 10
-    places = max(_places(number) for number in row if abs(number) >= least)
-    if places <= 0:  # such as the ones of a turn about one axis
-        places = max(map(_places, row))
-    return 0.5 * 10.0**-places if places > 0 else 0.0
+class Misfit(NamedTuple):
+    """How far readings are from samples: (readings, n) each."""
+
+    angles: Array  # between orientations, in radians
+    slips: Array  # |difference of Ω|, over the scale
 
 
-def _places(number: float) -> int:
-    """Decimal places of a number as Python prints it: 1.25e-05 has 7, 3.0 has none."""
-    digits, _, exponent = repr(number).partition("e")
-    fraction = digits.partition(".")[2].rstrip("0")
-    return len(fraction) - int(exponent or 0) if fraction or exponent else 0
+def misfit(readings: Sequence[Reading], samples: Samples, scale: float) -> Misfit:
+    """How far each reading is from each sample.
+
+    A turning frame is a pair (R, Ω). Turning on about a body axis e by the angle a gives the pair
+    (R T(e, a), Ω + ȧ R e); three such steps are a reading.
+    """
+    turns = [(r.in_other_direction() if r.passive else r).intrinsic() for r in readings]
+    groups: dict[tuple[str, bool | None, Velocity | None], list[int]] = {}
+    for k, turn in enumerate(turns):
+        groups.setdefault((turn.sequence, turn.scalar_last, turn.velocity), []).append(k)
+    matrices = {each: samples.orientation(each).T[..., None] for each in {key[1] for key in groups}}
+    angles, rates = samples.parts["angles"], samples.parts.get("rates", np.zeros((1, 3)))
+    result = Misfit(*np.zeros((2, len(turns), len(samples))))
+    for (sequence, scalar_last, velocity), group in groups.items():
+        columns = np.array([turns[k].columns for k in group]).T
+        signs = np.array([turns[k].signs for k in group]).T
+        factors = np.array([turns[k].factor for k in group])
+        # The columns of R, and Ω: (3, n, readings), or (3, 1, 1) if they are the same for all.
+        frame, omega = [*np.eye(3)[..., None, None]], np.zeros((3, 1, 1))
+        for axis, column, sign in zip(map("XYZ".index, sequence), columns, signs, strict=True):
+            omega = omega + frame[axis] * (rates[:, column] * sign)
+            turned = angles[:, column] * (sign * factors)
+            cosine, sine = np.cos(turned), np.sin(turned)
+            second, third = (axis + 1) % 3, (axis + 2) % 3
+            b, c = frame[second], frame[third]
+            frame[second], frame[third] = b * cosine + c * sine, c * cosine - b * sine
+        # Σ rₖ × mₖ = 2 e sin α and Σ rₖ·mₖ = 1 + 2 cos α for the columns of R and M = T(e, α) R:
+        # no digits are lost near α = 0, and rounding of M that keeps it symmetric does not count.
+        pairs = [*zip(frame, matrices[scalar_last], strict=True)]
+        sine = np.linalg.norm(sum(np.cross(r, m, axis=0) for r, m in pairs), axis=0)
+        cosine = sum(np.sum(r * m, axis=0) for r, m in pairs) - 1
+        result.angles[group] = np.arctan2(sine, cosine).T
+        if velocity:
+            if velocity.frame == "body":
+                omega = np.stack([np.sum(column * omega, axis=0) for column in frame])
+            off = velocity.factor * omega - samples.parts["omega"].T[..., None]
+            result.slips[group] = np.linalg.norm(off, axis=0).T / scale
+    return result
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -164,71 +178,54 @@ def fit(samples: Samples, asked: float | None = None) -> tuple[tuple[Answer, ...
     if asked is not None and not 0 < asked < pi:
         raise SampleError([f"the tolerance is an angle between 0 and π radians, got {asked:g}"])
     samples.check(max(SLACK, 2 * (asked or 0)))
-    scale = 1.0
-    if samples.omega is not None and samples.rates is not None:
-        sizes = [float(np.linalg.norm(p, axis=1).max()) for p in (samples.omega, samples.rates)]
-        scale = next(filter(None, sizes), 1.0)  # the largest |Ω|, or rate if all Ω are zero
-    tolerance, candidates = _narrowed(samples.some(_FEW), asked, scale)
-    answers = sorted(
-        (_answer(reading, samples, tolerance, scale) for reading in candidates),
-        key=lambda answer: (-answer.fitting, answer.share),
-    )
+    has_velocity = "omega" in samples.parts
+    velocities = [samples.parts[part] for part in ("omega", "rates") if has_velocity]
+    sizes = (float(np.linalg.norm(each, axis=1).max()) for each in velocities)
+    scale = next(filter(None, sizes), 1.0)  # the largest |Ω|, or rate if all Ω are zero
+    few = samples.some(_FEW)
+    table = distinct(samples.columns.layouts)
+    off = misfit(table, few, scale)
+    for tolerance in tolerances(asked, few, scale):
+        # Orientations first: only with the few that fit, all conventions for Ω are tried.
+        candidates, fits = _best(table, off, tolerance)
+        if has_velocity:
+            candidates = [replace(r, velocity=v) for r in candidates for v in VELOCITIES]
+            candidates, is_close = _best(candidates, misfit(candidates, few, scale), tolerance)
+            fits = fits and is_close
+        if fits:
+            break
+    plainest = [min((r, *r.aliases()), key=Reading.plainness) for r in candidates]
+    answers = [_answer(reading, samples, tolerance, scale) for reading in plainest]
+    answers.sort(key=lambda answer: (-answer.fitting, answer.share, answer.reading.plainness()))
     answers = [each for each in answers if each.fits] or answers[:1]
     return tuple(sorted(answers, key=lambda answer: answer.reading.plainness())), tolerance
 
 
-@cache
-def _everything(layouts: tuple[bool | None, ...]) -> ReadingTable:
-    return ReadingTable(sorted(distinct(layouts), key=Reading.plainness))
+def _shares(readings: Sequence[Reading], off: Misfit, tolerance: Tolerance) -> Array:
+    """How much of the tolerance each reading needs for each sample, (readings, n)."""
+    limits = [tolerance.degrees if reading.degrees else tolerance.radians for reading in readings]
+    return np.maximum(off.angles / np.array(limits)[:, None], off.slips / tolerance.velocity)
 
 
-def _narrowed(few: Samples, asked: float | None, scale: float) -> tuple[Tolerance, list[Reading]]:
-    """The readings that fit a few samples, or only the nearest, and the tolerance for the rest."""
-    # Orientations are narrowed first: only with the few that fit, all conventions for Ω are tried.
-    table = _everything(few.columns.layouts)
-    angles = table.residuals(few.angles, few.orientation())
-    readings = np.array(table.readings)
-    in_degrees = np.array([reading.degrees for reading in readings])
-    for tolerance in tolerances(asked, few, scale):
-        off = angles > tolerance.of(in_degrees)
-        orientations = readings[~off.any(axis=0)].tolist()
-        if candidates := _with_velocities(orientations, few, scale, tolerance.velocity):
-            return tolerance, candidates
-    if not orientations:
-        orientations = [readings[np.lexsort((angles.max(axis=0), off.sum(axis=0)))[0]]]
-    return tolerance, _with_velocities(orientations[:1], few, scale, None)
-
-
-def _with_velocities(
-    orientations: Sequence[Reading], few: Samples, scale: float, tolerance: float | None
-) -> list[Reading]:
-    """Each reading of the orientation with every reading of Ω that fits, or with the nearest."""
-    if few.omega is None or not orientations:
-        return list(orientations)
-    candidates = ReadingTable([replace(r, velocity=v) for r in orientations for v in VELOCITIES])
-    worst = _slips(candidates, few, scale).max(axis=0)
-    chosen = np.flatnonzero(worst <= tolerance) if tolerance is not None else [worst.argmin()]
-    return [candidates.readings[k] for k in chosen]
-
-
-def _slips(table: ReadingTable, samples: Samples, scale: float) -> Array:
-    """|difference of Ω| over the scale, (n, readings)."""
-    if samples.rates is None or samples.omega is None:
-        return np.zeros((len(samples), len(table.readings)))
-    omega = table.angular_velocities(samples.angles, samples.rates)
-    return np.asarray(np.linalg.norm(omega - samples.omega.T[..., None], axis=0) / scale)
+def _best(
+    readings: Sequence[Reading], off: Misfit, tolerance: Tolerance
+) -> tuple[list[Reading], bool]:
+    """The readings that fit, or only the nearest ones; and whether any fits."""
+    missed = (_shares(readings, off, tolerance) > 1).sum(axis=1)
+    worst = off.angles.max(axis=1) + off.slips.max(axis=1)
+    is_best = missed == missed.min()
+    if missed.any(where=is_best):
+        is_best &= worst <= worst.min(where=is_best, initial=np.inf) + _EXACT
+    return [readings[k] for k in np.flatnonzero(is_best).tolist()], not missed.min()
 
 
 def _answer(reading: Reading, samples: Samples, tolerance: Tolerance, scale: float) -> Answer:
-    table = ReadingTable([reading])
-    angles = table.residuals(samples.angles, samples.orientation())[:, 0]
-    slips = _slips(table, samples, scale)[:, 0]
-    allowed = tolerance.degrees if reading.degrees else tolerance.radians
-    shares = np.maximum(angles / allowed, slips / tolerance.velocity)
+    off = misfit([reading], samples, scale)
+    (shares,) = _shares([reading], off, tolerance)
     return Answer(
         reading=reading,
-        residual=float(angles.max()),
-        velocity_residual=float(slips.max()) if reading.velocity else None,
+        residual=float(off.angles.max()),
+        velocity_residual=float(off.slips.max()) if reading.velocity else None,
         worst=samples.place(int(samples.rows[shares.argmax()])),
         share=float(shares.max()),
         fitting=int((shares <= 1).sum()),

@@ -12,13 +12,8 @@ from typing import Any
 from numpy.typing import ArrayLike
 
 from rigidsym.data.columns import counted
-from rigidsym.system.processes import Progress
 from rigidsym.system.resources import environment
-from rigidsym.tools.identify.fit import (
-    Answer,
-    Tolerance,
-    fit,
-)
+from rigidsym.tools.identify.fit import Answer, Tolerance, fit
 from rigidsym.tools.identify.readings import ANGLE_NAMES, VELOCITIES, Reading, distinct
 from rigidsym.tools.identify.samples import Columns, Samples, from_arrays, from_file
 
@@ -55,19 +50,6 @@ class Identification:
         """Whether noise could be why nothing fits."""
         return self.distance <= _NEAR
 
-    @property
-    def differ_in_velocity(self) -> bool:
-        """Whether all answers take the angles and the attitude alike."""
-        return len({answer.reading.orientation for answer in self.answers}) == 1
-
-    @property
-    def common(self) -> str:
-        """In words, what all answers have in common: unit, order of the quaternion, Ω."""
-        readings = [answer.reading for answer in self.answers]
-        words = [(r.unit, r.scalar_words, r.velocity.words if r.velocity else "") for r in readings]
-        columns = [{*column} for column in zip(*words, strict=True)]
-        return ", ".join(word for column in columns if len(column) == 1 for word in column if word)
-
     def text(self, *, everything: bool = False) -> str:
         """The report of `rigidsym identify`; with `everything`, that of --all.
 
@@ -94,7 +76,7 @@ class Identification:
             "samples": self.samples,
             "tried": self.tried,
             "angle_names": list(names),
-            "tolerance": asdict(self.tolerance),
+            "tolerance": self.tolerance._asdict(),
             "answers": [_answer(answer, names) for answer in self.answers],
             "nearest": self.nearest and _answer(self.nearest, names),
         }
@@ -104,11 +86,9 @@ class Identification:
 
 
 def _wrapped(words: str, head: str = "") -> str:
-    """Words after a head, in lines of 79 characters that end with a comma."""
-    parts, margin = words.replace(" ", "\N{NO-BREAK SPACE}"), " " * len(head)
-    text = parts.replace(",\N{NO-BREAK SPACE}", ", ")
-    lines = fill(text, 79, initial_indent=head, subsequent_indent=margin, break_long_words=False)
-    return lines.replace("\N{NO-BREAK SPACE}", " ")
+    """Words after a head, in lines of 79 characters."""
+    margin = " " * len(head)
+    return fill(words, 79, initial_indent=head, subsequent_indent=margin, break_long_words=False)
 
 
 def _answer(answer: Answer, names: Sequence[str]) -> dict[str, Any]:
@@ -187,30 +167,26 @@ def identify_file(
     columns: Sequence[str] | None = None,
     tolerance: float | None = None,
     drops_missing: bool = False,
-    progress: Progress | None = None,
 ) -> Identification:
     """The same for an NPY, Parquet or text file, which is read as a whole.
 
     `columns` names the columns if the file does not, with `-` for a column to leave out. A sample
-    that lacks a number is an error, unless `drops_missing`. `progress` is called with the fraction
-    of the file that is done.
+    that lacks a number is an error, unless `drops_missing`.
     """
-    samples = from_file(Path(path), columns, drops_missing=drops_missing, progress=progress)
-    return identified(samples, tolerance)
+    return identified(from_file(Path(path), columns, drops_missing=drops_missing), tolerance)
 
 
 def identified(samples: Samples, tolerance: float | None) -> Identification:
     """The same for samples that were read."""
     answers, chosen = fit(samples, tolerance)
     best = answers[0]
-    has_velocity = samples.omega is not None
-    count = sum(1 for _ in distinct(samples.columns.layouts))
+    has_velocity = "omega" in samples.parts
     return Identification(
         answers=answers if best.fits else (),
         nearest=None if best.fits else best,
         tolerance=chosen,
         samples=best.samples,
-        tried=count * (len(VELOCITIES) if has_velocity else 1),
+        tried=len(distinct(samples.columns.layouts)) * (len(VELOCITIES) if has_velocity else 1),
         columns=samples.columns,
         has_velocity=has_velocity,
     )

@@ -6,27 +6,19 @@ data, and lists the different ones.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import product
+from functools import cache
+from itertools import permutations, product
 from math import pi
 from typing import Literal
 
-Three = tuple[int, int, int]
+Three = tuple[int, ...]  # three of them
 Frame = Literal["space", "body"]
 
-SEQUENCES = tuple(
-    first + second + third
-    for first, second, third in product("XYZ", repeat=3)
-    if first != second != third
-)
+SEQUENCES = tuple("".join(axes) for axes in product("XYZ", repeat=3) if axes[1] not in axes[::2])
 ANGLE_NAMES = ("a1", "a2", "a3")
 RADIANS_PER_DEGREE = pi / 180
-
-# Of two column orders that are each other's reverse, the one that moves fewer columns.
-_PLAIN_COLUMNS: tuple[Three, ...] = ((0, 1, 2), (0, 2, 1), (1, 0, 2))
-# Of two patterns of signs that are each other's opposite, the one with fewer flips.
-_PLAIN_SIGNS: tuple[Three, ...] = ((1, 1, 1), (-1, 1, 1), (1, -1, 1), (1, 1, -1))
 _OTHER: dict[Frame, Frame] = {"space": "body", "body": "space"}
 _FACTORS = {
     "": 1.0,
@@ -53,10 +45,6 @@ class Velocity:
         """ "Ω in body components" """
         return f"{'−Ω' if self.is_opposite else 'Ω'} in {self.frame} components"
 
-    @property
-    def words(self) -> str:
-        return f"{self.of_what}, {self.units}" if self.units else self.of_what
-
     def of_the_inverse(self) -> Velocity:
         """The same numbers, as the velocity of Rᵀ: its Ω is −Ω′ of R, and its Ω′ is −Ω."""
         return replace(self, frame=_OTHER[self.frame], is_opposite=not self.is_opposite)
@@ -64,9 +52,7 @@ class Velocity:
 
 VELOCITIES = tuple(
     Velocity(frame=frame, is_opposite=is_opposite, units=units)
-    for units in _FACTORS
-    for is_opposite in (False, True)
-    for frame in _OTHER
+    for units, is_opposite, frame in product(_FACTORS, (False, True), _OTHER)
 )
 
 
@@ -89,19 +75,8 @@ class Reading:
     velocity: Velocity | None = None
 
     @property
-    def is_intrinsic(self) -> bool:
-        return self.sequence.isupper()
-
-    @property
     def unit(self) -> str:
         return "degrees" if self.degrees else "radians"
-
-    @property
-    def scalar_words(self) -> str:
-        """The position of the scalar of a quaternion; empty for a matrix."""
-        if self.scalar_last is None:
-            return ""
-        return "scalar last" if self.scalar_last else "scalar first"
 
     @property
     def factor(self) -> float:
@@ -109,24 +84,10 @@ class Reading:
         return RADIANS_PER_DEGREE if self.degrees else 1.0
 
     @property
-    def is_plain(self) -> bool:
-        """Whether the columns are the angles of the turns as they are."""
-        return not (self.flips or _displaced(self.columns))
-
-    @property
     def taken(self) -> str:
         """How Python takes the turns from the columns: "[..., [2, 1, 0]] * [1, -1, 1]"."""
-        columns = f"[..., {[*self.columns]}]" if _displaced(self.columns) else ""
-        return columns + (f" * {[*self.signs]}" if self.flips else "")
-
-    @property
-    def flips(self) -> int:
-        return self.signs.count(-1)
-
-    @property
-    def orientation(self) -> Reading:
-        """The reading without Ω."""
-        return self if self.velocity is None else replace(self, velocity=None)
+        columns = f"[..., {[*self.columns]}]" if self.columns != (0, 1, 2) else ""
+        return columns + (f" * {[*self.signs]}" if -1 in self.signs else "")
 
     def in_other_manner(self) -> Reading:
         """The same R with the other kind of axes: intrinsic ZYX is extrinsic xyz, reversed."""
@@ -151,11 +112,7 @@ class Reading:
 
     def intrinsic(self) -> Reading:
         """The same R by turns about the turning axes, in the order of multiplication."""
-        return self if self.is_intrinsic else self.in_other_manner()
-
-    def active(self) -> Reading:
-        """The same data, read without transposing."""
-        return self.in_other_direction() if self.passive else self
+        return self if self.sequence.isupper() else self.in_other_manner()
 
     def aliases(self) -> tuple[Reading, ...]:
         """The other readings that are this function of the data, the plainest first."""
@@ -165,82 +122,60 @@ class Reading:
 
     def plainness(self) -> tuple[object, ...]:
         """Sorts readings: few signs flipped, columns as given, active, intrinsic, radians."""
-        opposite = self.velocity is not None and self.velocity.is_opposite
+        velocity = self.velocity
         return (
-            self.flips + opposite,
-            _displaced(self.columns),
+            self.signs.count(-1) + (velocity is not None and velocity.is_opposite),
+            sum(column != place for place, column in enumerate(self.columns)),
             self.passive,
-            not self.is_intrinsic,
+            self.sequence.islower(),
             bool(self.scalar_last),
             self.degrees,
-            self.velocity.units if self.velocity else "",
+            velocity.units if velocity else "",
             self.sequence,
             self.signs,
         )
 
-    def words(self, names: Sequence[str] = ANGLE_NAMES) -> str:
-        """ "ZYX intrinsic, passive, degrees, columns (yaw, −pitch, roll), scalar first" """
-        turns, direction, columns = self._parts(names)
-        parts = [turns, direction, self.unit, columns, self.scalar_words]
-        parts += [self.velocity.words] if self.velocity else []
-        return ", ".join(filter(None, parts))
+    def words(self, names: Sequence[str] = ANGLE_NAMES, *, is_brief: bool = False) -> str:
+        """ "ZYX intrinsic, passive, degrees, columns (yaw, −pitch, roll), scalar first"
 
-    def brief(self, names: Sequence[str] = ANGLE_NAMES) -> str:
-        """The parts in which it differs from its aliases."""
-        velocity = [self.velocity.of_what] if self.velocity else []
-        return ", ".join([*self._parts(names), *velocity])
-
-    def _parts(self, names: Sequence[str]) -> tuple[str, str, str]:
-        return (
-            f"{self.sequence} {'intrinsic' if self.is_intrinsic else 'extrinsic'}",
+        If brief, only the parts in which it differs from its aliases.
+        """
+        scalar = {None: "", True: "scalar last", False: "scalar first"}[self.scalar_last]
+        parts = [
+            f"{self.sequence} {'extrinsic' if self.sequence.islower() else 'intrinsic'}",
             "passive" if self.passive else "active",
+            "" if is_brief else self.unit,
             f"columns ({', '.join(self._angles(names))})",
-        )
+            "" if is_brief else scalar,
+            self.velocity.of_what if self.velocity else "",
+            self.velocity.units if self.velocity and not is_brief else "",
+        ]
+        return ", ".join(filter(None, parts))
 
     def product(self, names: Sequence[str] = ANGLE_NAMES) -> str:
         """ "Rz(yaw) Ry(pitch) Rx(roll)", or its transpose if the reading is passive."""
         turns = self.intrinsic()
-        angles = turns._angles(names)
-        text = " ".join(
-            f"R{axis}({angle})" for axis, angle in zip(turns.sequence.lower(), angles, strict=True)
-        )
+        pairs = zip(turns.sequence.lower(), turns._angles(names), strict=True)
+        text = " ".join(f"R{axis}({angle})" for axis, angle in pairs)
         return f"({text})ᵀ" if self.passive else text
 
     def _angles(self, names: Sequence[str]) -> list[str]:
-        return [
-            ("−" if sign < 0 else "") + names[column]
-            for column, sign in zip(self.columns, self.signs, strict=True)
-        ]
+        pairs = zip(self.columns, self.signs, strict=True)
+        return [("−" if sign < 0 else "") + names[column] for column, sign in pairs]
 
 
-def _displaced(columns: Three) -> int:
-    return sum(column != place for place, column in enumerate(columns))
-
-
-def distinct(layouts: Sequence[bool | None]) -> Iterator[Reading]:
-    """The readings that differ as functions of the angles, each in its plainest words.
+@cache
+def distinct(layouts: tuple[bool | None, ...]) -> tuple[Reading, ...]:
+    """The readings that differ as functions of the data, each active and intrinsic.
 
     Of the 12 · 2 · 2 · 6 · 8 · 2 = 4608 combinations of sequence, manner, direction, order,
-    signs and unit, each function of the angles is four; 1152 are left for every entry of
-    `layouts` (None: a matrix; whether the scalar of a quaternion stands last).
+    signs and unit, each function of the angles is four, of which one is active and intrinsic; 1152
+    are left for every entry of `layouts` (None: a matrix; whether the scalar of a quaternion is
+    last).
     """
-    # The other manner reverses the columns and the signs; the other manner and direction together
-    # make all signs opposite and leave the columns. One order of each reversed pair and one pattern
-    # of each opposite pair of signs are therefore one reading of each four.
-    for sequence, columns, signs, extrinsic, passive, degrees, scalar_last in product(
-        SEQUENCES,
-        _PLAIN_COLUMNS,
-        _PLAIN_SIGNS,
-        (False, True),
-        (False, True),
-        (False, True),
-        layouts,
-    ):
-        yield Reading(
-            sequence=sequence.lower() if extrinsic else sequence,
-            columns=columns,
-            signs=signs,
-            passive=passive,
-            degrees=degrees,
-            scalar_last=scalar_last,
-        )
+    signs = [*product((1, -1), repeat=3)]
+    ways = product(SEQUENCES, permutations(range(3)), signs, (False, True), layouts)
+    return tuple(
+        Reading(sequence=axes, columns=columns, signs=flips, degrees=degrees, scalar_last=layout)
+        for axes, columns, flips, degrees, layout in ways
+    )

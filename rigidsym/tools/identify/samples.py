@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 from math import ceil
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,9 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from rigidsym.data.columns import ColumnNames, counted, names_for
 from rigidsym.data.tables import MOST_SHOWN, ArrayTable, Table, listed, names_of, open_table
 from rigidsym.errors import DataError
-from rigidsym.system.processes import Progress
 from rigidsym.tools.identify.readings import ANGLE_NAMES
-from rigidsym.tools.identify.turns import Array, quaternion_of
 from rigidsym.tools.spellings import (
     ANGLES,
     MATRICES,
@@ -27,6 +25,7 @@ from rigidsym.tools.spellings import (
     Names,
 )
 
+Array = NDArray[np.float64]
 SLACK = 0.05  # how far M Mᵀ may be from 1, and |q| from 1, before data are refused
 SIZES = {"angles": 3, "matrix": 9, "quaternion": 4, "rates": 3, "omega": 3}  # numbers in a sample
 _WITHOUT_HEADER = {
@@ -35,7 +34,7 @@ _WITHOUT_HEADER = {
     13: ("angles", "quaternion", "rates", "omega"),
     18: ("angles", "matrix", "rates", "omega"),
 }
-_LACKING = {"rates": "an angular velocity", "omega": "rates of the angles"}
+_PER = {"angles": "", "rates": "/s", "omega": "/s"}  # what their units are of radians
 _NUMBERED_RATES: Names = ("rate1", "rate2", "rate3")
 
 
@@ -46,15 +45,14 @@ class SampleError(DataError):
         super().__init__(listed(source, faults, count))
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Columns:
+class Columns(NamedTuple):
     """Where the parts of a sample are in the columns of a table, counted from 0."""
 
     parts: Mapping[str, Sequence[int]]
     names: Names = ANGLE_NAMES  # of the angles
     scalar_last: bool | None = None  # of a quaternion whose names tell which is the scalar
-    factors: tuple[float, ...] = (1.0,)  # of all columns used, in order
-    converted: tuple[str, ...] = ()  # the columns that they convert
+    factors: Sequence[float] = (1.0,)  # of all columns used, in order
+    converted: Names = ()  # the columns that they convert
     unused: str = ""  # columns of rates without Ω, or of Ω without rates, in words
 
     @property
@@ -80,24 +78,8 @@ class Samples:
         return len(self.rows)
 
     @property
-    def angles(self) -> Array:
-        return self.parts["angles"]
-
-    @property
-    def matrices(self) -> Array | None:
-        return self.parts["matrix"].reshape(-1, 3, 3) if "matrix" in self.parts else None
-
-    @property
     def attitude(self) -> Array:
         return self.parts["matrix" if "matrix" in self.parts else "quaternion"]
-
-    @property
-    def rates(self) -> Array | None:
-        return self.parts.get("rates")
-
-    @property
-    def omega(self) -> Array | None:
-        return self.parts.get("omega")
 
     def some(self, count: int) -> Samples:
         """About so many of them, evenly spaced."""
@@ -107,15 +89,20 @@ class Samples:
 
     def defects(self) -> Array:
         """How far each matrix is from orthogonal, or each quaternion from unit length: (n,)."""
-        if (m := self.matrices) is None:
+        if "quaternion" in self.parts:
             return np.asarray(np.abs(np.linalg.norm(self.attitude, axis=1) - 1))
+        m = self.attitude.reshape(-1, 3, 3)
         return np.asarray(np.abs(m @ m.swapaxes(1, 2) - np.eye(3)).max(axis=(1, 2)))
 
-    def orientation(self) -> Array:
-        """Unit quaternions (n, 4): of the nearest rotations, or those of the data."""
-        if (m := self.matrices) is not None:
-            return quaternion_of(m)
-        return np.asarray(self.attitude / np.linalg.norm(self.attitude, axis=1, keepdims=True))
+    def orientation(self, scalar_last: bool | None) -> Array:
+        """The matrices, or those of the quaternions: (n, 3, 3)."""
+        if scalar_last is None:
+            return self.attitude.reshape(-1, 3, 3)
+        q = self.attitude / np.linalg.norm(self.attitude, axis=1, keepdims=True)
+        q, one = np.roll(q, int(scalar_last), axis=1)[..., None], np.eye(3)
+        w, column, row = q[:, :1], q[:, 1:], q[:, 1:].swapaxes(1, 2)
+        # R = (2 w² − 1) 1 + 2 v vᵀ + 2 w C(v), and row k of C(v) is e_k × v.
+        return np.asarray((2 * w**2 - 1) * one + 2 * column @ row + 2 * w * np.cross(one, row))
 
     @np.errstate(all="ignore")  # numbers that overflow here are far from a rotation
     def check(self, slack: float) -> None:
@@ -123,33 +110,34 @@ class Samples:
 
         `slack` is how far M Mᵀ may be from 1, and |q| from 1.
         """
-        finite = {name: np.isfinite(part).all(axis=1) for name, part in self.parts.items()}
-        defects, sizes = self.defects(), np.linalg.norm(self.attitude, axis=1)
+        infinite = {name: ~np.isfinite(part).all(axis=1) for name, part in self.parts.items()}
+        defects = self.defects()
         # Rows that are not finite have their own message, and are no wrong rotations.
-        wrong = np.all([*finite.values()], axis=0) & ~(defects <= slack)
-        if (m := self.matrices) is not None:
-            sizes = np.linalg.det(m)
-            wrong |= np.isfinite(m).all(axis=(1, 2)) & (sizes <= 0)
+        wrong = ~np.any([*infinite.values()], axis=0) & ~(defects <= slack)
+        if is_matrix := "matrix" in self.parts:
+            sizes = np.linalg.det(self.attitude.reshape(-1, 3, 3))
+            wrong |= ~infinite["matrix"] & (sizes <= 0)
+        else:
+            sizes = np.linalg.norm(self.attitude, axis=1)
         faults = [  # the first of each kind, since a log may have millions
             (k, f"{name}: a number that is missing or not finite")
-            for name, good in finite.items()
-            for k in np.flatnonzero(~good)[:MOST_SHOWN].tolist()
+            for name, rows in infinite.items()
+            for k in np.flatnonzero(rows)[:MOST_SHOWN].tolist()
         ]
         for k in np.flatnonzero(wrong)[:MOST_SHOWN].tolist():
             fault = f"quaternion: its length is {sizes[k]:.4g}, expected 1"
-            if m is not None and sizes[k] < 0 and defects[k] <= SLACK:
+            if is_matrix and sizes[k] < 0 and defects[k] <= SLACK:
+                reflects = "not a rotation but a reflection, its determinant is"
+                fault = f"matrix: {reflects} {sizes[k]:.4g}"
+            elif is_matrix:
                 fault = (
-                    f"matrix: not a rotation but a reflection, its determinant is {sizes[k]:.4g}"
-                )
-            elif m is not None:
-                fault = (
-                    f"matrix: not a rotation, M Mᵀ differs from 1 by {defects[k]:.2g} in an entry"
-                    f" (det M = {sizes[k]:.4g})"
+                    f"matrix: not a rotation, M Mᵀ differs from 1 by {defects[k]:.2g} in an entry "
+                    f"(det M = {sizes[k]:.4g})"
                 )
             faults.append((k, fault))
         if faults or not len(self):
             messages = [f"{self.place(int(self.rows[k]))}: {fault}" for k, fault in sorted(faults)]
-            count = int(wrong.sum()) + sum(int((~good).sum()) for good in finite.values())
+            count = int(sum(rows.sum() for rows in (wrong, *infinite.values())))
             raise SampleError(messages or ["no samples"], count=count, source=self.source)
 
 
@@ -164,7 +152,7 @@ def by_width(width: int) -> Columns:
         raise SampleError([f"{names}: expected {widths}; or name them with --columns"])
     columns = iter(range(width))
     parts = _WITHOUT_HEADER[width]
-    return Columns(parts={part: [next(columns) for _ in range(SIZES[part])] for part in parts})
+    return Columns({part: [next(columns) for _ in range(SIZES[part])] for part in parts})
 
 
 def by_name(names: Sequence[str]) -> Columns:
@@ -177,8 +165,8 @@ def by_name(names: Sequence[str]) -> Columns:
     """
     header = ColumnNames(names)
 
-    def column(name: str) -> int:
-        return (header.find([name]) or 0) if header.has(name) else len(header.names)
+    def in_order(group: Names) -> Names:
+        return tuple(sorted(group, key=lambda name: header.find([name]) or 0))
 
     def share(group: Names) -> float:
         return sum(map(header.has, group)) / len(group)
@@ -186,72 +174,63 @@ def by_name(names: Sequence[str]) -> Columns:
     def nearest(groups: Iterable[Names]) -> Names:
         return max(groups, key=share)  # the first of equals
 
-    angles = tuple(sorted(nearest(ANGLES), key=column))
-    matrix, quaternion = nearest(MATRICES), nearest(QUATERNIONS)
-    in_order = tuple(sorted(quaternion, key=column))
-    if _scalar_last(in_order) is not None or quaternion not in NAMED_QUATERNIONS:
-        quaternion = in_order
-    is_matrix = share(matrix) >= share(quaternion)
-    groups = {"angles": angles} | ({"matrix": matrix} if is_matrix else {"quaternion": quaternion})
+    matrix, quaternion, scalar_last = nearest(MATRICES), nearest(QUATERNIONS), None
+    has_two = share(matrix) == share(quaternion) == 1
+    if quaternion in NAMED_QUATERNIONS:
+        w, *vector = quaternion
+        scalar_last = in_order(quaternion) == (*vector, w)
+        quaternion = (*vector, w) if scalar_last else quaternion
+    else:
+        quaternion = in_order(quaternion)
+    angles = in_order(nearest(ANGLES))
+    groups = {"angles": angles, "matrix": matrix}
+    if share(quaternion) > share(matrix):
+        groups = {"angles": angles, "quaternion": quaternion}
     rates = nearest([*(tuple(f.format(a) for a in angles) for f in RATES), _NUMBERED_RATES])
     velocity = {"rates": rates, "omega": nearest(OMEGAS)}
-    alone = {part: group for part, group in velocity.items() if share(group) == 1}
-    if len(alone) == 2:
-        groups, alone = groups | velocity, {}
-    faults: list[str] = []
+    complete = [part for part, group in velocity.items() if share(group) == 1]
+    groups |= velocity if len(complete) == 2 else {}
+    faults = ["both a matrix and a quaternion are named; leave one out"] if has_two else []
     if missing := [n for group in groups.values() for n in group if not header.has(n)]:
         lacking = ", ".join(missing)
         lacking = lacking.replace(", ".join(MATRICES[0]), "r11, ..., r33 or qw, qx, qy, qz")
         remedy = "--columns names the columns in order"
         faults.append(f"no column {lacking} among {header.listed}; {remedy}")
-    if share(matrix) == share(quaternion) == 1:
-        faults.append("both a matrix and a quaternion are named; leave one out")
     if faults:
         raise SampleError(faults)
-    parts = {part: tuple(map(column, group)) for part, group in groups.items()}
-    factors: list[float] = []
+
+    def columns_of(group: Names) -> list[int]:
+        return [column for name in group if (column := header.find([name])) is not None]
+
+    parts = {part: columns_of(group) for part, group in groups.items()}
+    factors: dict[int, float] = {}
     for part, columns in parts.items():
-        per = {"angles": "", "rates": "/s", "omega": "/s"}.get(part)
-        factors += [1.0] * len(columns) if per is None else _factors(header, columns, per)
-    used = [header.names[k] for columns in parts.values() for k in columns]
+        # to radians if a unit is a multiple of them, and else to degrees
+        units = [header.unit(column).casefold().lstrip("numµ") for column in columns]
+        base = "rad" if any(unit.startswith("rad") for unit in units) else "deg"
+        for k in columns:
+            factor = header.factor(k, base + _PER[part]) if part in _PER else None
+            factors[k] = factor or 1.0
+    unused = ""
+    if len(complete) == 1:
+        named = ", ".join(header.names[k] for k in columns_of(velocity[complete[0]]))
+        other = {"rates": "an angular velocity", "omega": "rates of the angles"}[complete[0]]
+        unused = f"{named}, since there are no columns for {other}"
     return Columns(
         parts=parts,
         names=angles,
-        scalar_last=None if is_matrix else _scalar_last(quaternion),
-        factors=tuple(factors),
-        converted=tuple(n for n, factor in zip(used, factors, strict=True) if factor != 1),
-        unused="".join(
-            f"{', '.join(header.names[column(name)] for name in group)}, since there are no "
-            f"columns for {_LACKING[part]}"
-            for part, group in alone.items()
-        ),
+        scalar_last=scalar_last,
+        factors=[*factors.values()],
+        converted=tuple(header.names[k] for k, factor in factors.items() if factor != 1),
+        unused=unused,
     )
-
-
-def _factors(header: ColumnNames, columns: Sequence[int], per: str) -> list[float]:
-    """To radians if a unit is a multiple of them, and else to degrees."""
-    stated = [header.unit(column).casefold() for column in columns]
-    in_radians = any(unit.lstrip("numµ").startswith("rad") for unit in stated)
-    unit = ("rad" if in_radians else "deg") + per
-    factors = [header.factor(column, unit) or 1.0 for column in columns]
-    return [1.0 if abs(factor - 1) < 1e-15 else factor for factor in factors]
-
-
-def _scalar_last(names: Names) -> bool | None:
-    """Whether w comes after x, y, z; None if names or order do not tell."""
-    for scalar, *vector in NAMED_QUATERNIONS:
-        if names in ((scalar, *vector), (*vector, scalar)):
-            return names[-1] == scalar
-    return None
 
 
 # Reading
 
 
-def _samples(
-    table: Table, columns: Columns, *, drops_missing: bool = False, progress: Progress | None = None
-) -> Samples:
-    batch = table.read([k for part in columns.parts.values() for k in part], progress)
+def _samples(table: Table, columns: Columns, *, drops_missing: bool = False) -> Samples:
+    batch = table.read([k for part in columns.parts.values() for k in part])
     if drops_missing:
         batch = batch.at(np.asarray(~np.isnan(batch.table).any(axis=1)))
     numbers = np.asarray(batch.table, float) * columns.factors
@@ -267,11 +246,7 @@ def _samples(
 
 
 def from_file(
-    path: Path,
-    names: Sequence[str] | None = None,
-    *,
-    drops_missing: bool = False,
-    progress: Progress | None = None,
+    path: Path, names: Sequence[str] | None = None, *, drops_missing: bool = False
 ) -> Samples:
     """Samples from an NPY, Parquet or text file.
 
@@ -285,7 +260,7 @@ def from_file(
     except DataError as error:
         place = "" if str(path) in str(error) else f"{path}: "
         raise SampleError([f"{place}{error}"]) from None
-    return _samples(table, columns, drops_missing=drops_missing, progress=progress)
+    return _samples(table, columns, drops_missing=drops_missing)
 
 
 def from_arrays(parts: Mapping[str, Any], names: Sequence[str] = ANGLE_NAMES) -> Samples:
@@ -302,44 +277,37 @@ def from_arrays(parts: Mapping[str, Any], names: Sequence[str] = ANGLE_NAMES) ->
         "its columns have names; expected an array without names, or one table "
         "with the columns of all parts, as the only argument"
     )
-    faults = [f"{name}: {expected}" for name in labelled]
-    arrays: dict[str, NDArray[Any]] = {}
-    for name, value in present.items():
-        if name not in labelled:
-            arrays[name], fault = _shaped(name, value)
-            faults += fault
-    faults += parts_missing(set(present))
-    if not faults and len({*map(len, arrays.values())}) > 1:
-        sizes = ", ".join(f"{len(array)} of {name}" for name, array in arrays.items())
-        faults.append(f"expected one row per sample in every array, got {sizes}")
-    if len(names) != 3 or len(set(names)) != 3:
+    faults = [f"{name}: {expected}" for name in labelled] + parts_missing(present.keys())
+    if not len(names) == len({*names}) == 3:
         faults.append(f"expected three different names of angles, got {', '.join(names)}")
     if faults:
         raise SampleError(faults)
-    order = [name for name in SIZES if name in arrays]
-    columns = replace(by_width(sum(SIZES[name] for name in order)), names=tuple(names))
-    return _samples(ArrayTable(*(arrays[name] for name in order)), columns)
+    arrays = {name: _rows(name, present[name]) for name in SIZES if name in present}
+    if len({*map(len, arrays.values())}) > 1:
+        sizes = ", ".join(f"{len(array)} of {name}" for name, array in arrays.items())
+        raise SampleError([f"expected one row per sample in every array, got {sizes}"])
+    columns = by_width(sum(SIZES[name] for name in arrays))
+    return _samples(ArrayTable(*arrays.values()), columns._replace(names=tuple(names)))
 
 
-def _shaped(name: str, value: ArrayLike) -> tuple[NDArray[Any], list[str]]:
+def _rows(name: str, value: ArrayLike) -> NDArray[Any]:
     """The array with samples on the first axis and numbers on the second."""
     if hasattr(value, "as_matrix") and hasattr(value, "as_quat"):  # a Rotation of SciPy
         value = value.as_quat() if name == "quaternion" else value.as_matrix()
     try:
         array = np.asanyarray(value)
     except ValueError as error:  # rows of different lengths
-        return np.empty(0), [f"{name}: not an array of numbers ({error})"]
+        raise SampleError([f"{name}: not an array of numbers ({error})"]) from None
     if array.dtype.kind not in "fiub" or np.ma.is_masked(array):
         what = "masked entries" if np.ma.is_masked(array) else array.dtype
-        return array, [f"{name}: expected real numbers, got {what}"]
-    shapes: list[tuple[int, ...]] = [(3, 3)] if name == "matrix" else []
-    shapes += [(SIZES[name],)]
+        raise SampleError([f"{name}: expected real numbers, got {what}"])
+    shapes = [(3, 3), (9,)] if name == "matrix" else [(SIZES[name],)]
     # A single sample may come without the axis of samples.
     for rows in (array[None], array):
         if rows.shape[1:] in shapes:
-            return rows.reshape(len(rows), SIZES[name]), []
+            return rows.reshape(len(rows), SIZES[name])
     expected = " or ".join(str(("n", *shape)).replace("'", "") for shape in shapes)
-    return array, [f"{name}: expected the shape {expected}, got {array.shape}"]
+    raise SampleError([f"{name}: expected the shape {expected}, got {array.shape}"])
 
 
 def parts_missing(parts: Set[str]) -> list[str]:
