@@ -5,7 +5,7 @@ from __future__ import annotations
 import keyword
 import re
 import sys
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
@@ -53,11 +53,13 @@ class DerivationSpec:
 
     def __post_init__(self) -> None:
         place = Place({})
-        models = place.at("models")
+        models = place.at("rotation")
         if not self.models:
-            models.fault("expected at least one rotation")
-        for k, message in repeated(self.models).items():
-            models.at(k).fault(message)
+            models.fault("expected at least one")
+        first: dict[str, int] = {}  # names are lower case, so that every system keeps them apart
+        for k, model in enumerate(self.models):
+            if (earlier := first.setdefault(model.name, k)) != k:
+                models.at(k).fault(f"writes the folder {model.name}, as entry {earlier} does")
         own = {parameter.symbol.name for parameter in self.body.parameters} if self.body else set()
         for k, model in enumerate(self.models):
             used = {coordinate.func.__name__ for coordinate in model.coordinates}
@@ -69,7 +71,7 @@ class DerivationSpec:
                 with models.at(k).noting():
                     self.notation.check(model)
         if len(self.models) == 1 and (message := fault_of_name(self.name)):
-            place.at("name").fault(message)
+            place.fault(f"a derivation has the name of its file: {message}")
         place.raise_faults(self.source or self.name)
 
     def singles(self) -> tuple[DerivationSpec, ...]:
@@ -81,7 +83,7 @@ class DerivationSpec:
         )
 
     def to_data(self) -> dict[str, Any]:
-        """The specification as plain data, which `derivation_file.from_data` reads back.
+        """The specification as plain data, which `derivation_file.read_record` reads back.
 
         Raises ModelError for a rotation that was made in Python and cannot be written as text.
         """
@@ -125,20 +127,6 @@ def spec_for(
         rotation, names=angles, constants=constants, scalar_last=scalar_last, passive=passive
     )
     return DerivationSpec(name=model.name, models=(model,))
-
-
-def repeated(models: Iterable[RotationModel]) -> dict[int, str]:
-    """{position: fault} of the models whose folder an earlier one already writes.
-
-    A model's name is lower case, so that different names are different folders on every system.
-    """
-    first: dict[str, int] = {}
-    faults: dict[int, str] = {}
-    for place, model in enumerate(models):
-        earlier = first.setdefault(model.name, place)
-        if earlier != place:
-            faults[place] = f"writes the folder {model.name}, as entry {earlier} does"
-    return faults
 
 
 def fault_of_name(name: str) -> str:

@@ -39,6 +39,12 @@ class Place(NamedTuple):
         """Note an error of the block as a fault some steps below this place."""
         return Noting(self, self.at(*steps))
 
+    @property
+    def is_clean(self) -> bool:
+        """Whether no fault is noted here or below."""
+        depth = len(self.path)
+        return not any(path[:depth] == self.path for path, _ in self.faults)
+
     def raise_faults(self, source: str) -> None:
         """Raise SpecError with all faults of the file `source`, if there are any."""
         if self.faults:
@@ -57,8 +63,7 @@ class Noting(NamedTuple):
     def __exit__(self, _kind: object, error: BaseException | None, _trace: object) -> bool:
         if not isinstance(error, RigidsymError) or isinstance(error, MissingExtra):
             return False
-        depth = len(self.scope.path)
-        if not any(path[:depth] == self.scope.path for path, _ in self.scope.faults):
+        if self.scope.is_clean:
             column = error.column if isinstance(error, ExpressionError) else 1
             self.place.fault(f"column {column}: {error}" if column > 1 else str(error))
         return True

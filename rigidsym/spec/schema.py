@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import tomllib
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import cache
 from math import isfinite
 from pathlib import Path
@@ -16,14 +16,18 @@ from typing import Any
 from unicodedata import category
 
 from rigidsym.errors import offer
+from rigidsym.kernels.lowering.derivatives import read_request
 from rigidsym.kernels.targets import TARGETS
+from rigidsym.models.library import read_part, turned_by
 from rigidsym.models.solids import SHAPES
 from rigidsym.motion import CHOICES, QUANTITIES
+from rigidsym.notes.note import check_style
 from rigidsym.spec.derivation_spec import NOTES
 from rigidsym.spec.faults import Place, dotted, shortened
 from rigidsym.text.names import check_name
 
 Schema = dict[str, Any]
+LENGTHS = {length.key: length for shape in SHAPES.values() for length in shape.lengths}
 
 _TYPES: Mapping[str, tuple[type, ...]] = {
     "string": (str,),
@@ -41,6 +45,13 @@ _WORDS = {  # in messages
     "array": "a list",
     "object": "a table",
 }
+_FORMATS: Mapping[str, Callable[[str], object]] = {  # that raise an error for other texts
+    "name": check_name,
+    "expression": lambda text: read_part(text, ()),
+    "turns": turned_by,
+    "style": check_style,
+    "derivative": read_request,
+}
 _LARGEST = 1e300  # sums and products of numbers in a file stay finite
 
 
@@ -50,15 +61,14 @@ def schema_of(kind: str) -> Schema:
     text = Path(__file__).with_name("keys.toml").read_text(encoding="utf-8")
     declared = tomllib.loads(text)
     definitions = declared["definitions"]
-    lengths = {length.key: length for shape in SHAPES.values() for length in shape.lengths}
     distribution = definitions["distribution"]["properties"]
-    for key, length in lengths.items():
+    for key, length in LENGTHS.items():
         distribution.setdefault(key, {"use": "lengths" if length.names[1:] else "length"})
     for key, names in CHOICES.items():
         choice = {"type": "string", "enum": [*names], "description": f"by default {names[0]}"}
         definitions["notation"]["properties"][key] = choice
     enums: dict[str, Iterable[Any]] = {
-        "shapes": (*SHAPES, "given"),
+        "shapes": SHAPES,
         "quantities": QUANTITIES,
         "kernels": TARGETS,
         "note": NOTES,
@@ -79,8 +89,8 @@ def schema_of(kind: str) -> Schema:
             own["enum"] = [*enums[names]]
         merged: Schema = {}
         for part in (*(expanded(definitions[name]) for name in bases), own):
-            properties = merged.get("properties", {}) | part.get("properties", {})
-            merged |= part | ({"properties": properties} if properties else {})
+            both = {key: merged.get(key, {}) | part.get(key, {}) for key in ("properties", "kinds")}
+            merged |= part | {key: entries for key, entries in both.items() if entries}
         if "properties" in merged:
             merged |= {"type": "object", "additionalProperties": False}
         return merged
@@ -98,7 +108,8 @@ def schema_of(kind: str) -> Schema:
 def checked(value: Any, schema: Schema, place: Place) -> Any:
     """The value at a place of a file, as far as it is right; every fault is noted.
 
-    A key that is not known is left out; a value that is wrong becomes None.
+    A key that is not known is left out; a value that is wrong becomes None. Every value is checked
+    by itself: what is wrong with several together is found by those who read them.
     """
     kinds = [schema] if "type" in schema else schema["anyOf"]
     kind = next((kind for kind in kinds if _is_of(value, kind["type"])), None)
@@ -110,10 +121,12 @@ def checked(value: Any, schema: Schema, place: Place) -> Any:
         return _checked_list(value, kind, place)
     elif isinstance(value, str):
         return _checked_text(value, kind, place)
-    elif isfinite(value) and abs(value) < _LARGEST:
-        return value
-    else:
+    elif not (isfinite(value) and abs(value) < _LARGEST):
         place.fault(f"expected a finite number, got {value:.3g}")
+    elif value <= kind.get("exclusiveMinimum", -_LARGEST):
+        place.fault(f"expected a positive number, got {value:g}")
+    else:
+        return value
     return None
 
 
@@ -126,14 +139,32 @@ def _is_of(value: object, types: str | list[str]) -> bool:
     )
 
 
+def kind_of(table: Mapping[str, Any], name: str = "body") -> str:
+    """The key that tells the kind of a body, or of a part of one; "" without one."""
+    kinds = schema_of("file")["properties"][name]["kinds"]
+    return next((kind for kind in kinds if kind in table), "")
+
+
 def _checked_table(value: Mapping[str, Any], schema: Schema, place: Place) -> dict[str, Any]:
-    keys = schema.get("properties", dict.fromkeys(value, schema["additionalProperties"]))
+    value = {key: entry for key, entry in value.items() if entry is not None}  # null in JSON
+    all_keys = schema.get("properties", dict.fromkeys(value, schema.get("additionalProperties")))
+    keys = dict(all_keys)
+    if kinds := schema.get("kinds"):
+        present = [kind for kind in kinds if kind in value]
+        if len(present) != 1:
+            got = " and ".join(present) or "none"
+            place.fault(f"expected one of {', '.join(kinds)}; got {got}")
+        own = {key for kind in present for key in (kind, *kinds[kind])}
+        if (shape := value.get("shape")) in [*SHAPES]:
+            own |= {length.key for length in SHAPES[shape].lengths}
+        others = {*kinds, *LENGTHS}.union(*kinds.values()) - own
+        keys = {key: entry for key, entry in keys.items() if key not in others}
     for key in value.keys() - keys.keys():
-        place.at(key).fault(f"unknown key; {schema.get('hints', {}).get(key) or offer(key, keys)}")
-    # null in JSON is as good as nothing; a missing key that is required is noted as None
-    required = schema.get("required", ())
-    present = [key for key in keys if value.get(key) is not None or key in required]
-    return {key: checked(value.get(key), keys[key], place.at(key)) for key in present}
+        hint = schema.get("hints", {}).get(key) if key not in all_keys else None
+        place.at(key).fault(f"unknown key; {hint or offer(key, keys)}")
+    # a missing key that is required is noted as None
+    wanted = {*value, *schema.get("required", ())}
+    return {key: checked(value.get(key), keys[key], place.at(key)) for key in keys if key in wanted}
 
 
 def _checked_list(value: list[Any], schema: Schema, place: Place) -> list[Any] | None:
@@ -157,9 +188,10 @@ def _checked_text(value: str, schema: Schema, place: Place) -> str | None:
         if category(character) in ("Cc", "Cs") and character not in allowed:
             place.fault(f"the text contains the control character U+{ord(character):04X}")
             return None
-    if schema.get("format") == "name":  # of a symbol: phi for φ
+    if check := _FORMATS.get(schema.get("format", "")):
         with place.noting():
-            return check_name(value)
+            result = check(value)
+            return value if schema["format"] != "name" else str(result)  # phi for φ
         return None
     return value
 

@@ -74,19 +74,6 @@ def body_in(text: str) -> RigidBody:
     return found
 
 
-def test_a_solid_by_its_bounds():
-    text = """
-        [body]
-        shape = "given"
-        coordinates = ["u", "v", "w"]
-        place = ["u*cos(v)", "u*sin(v)", "w"]
-        bounds = [["0", "a"], ["0", "2*pi"], ["0", "h"]]
-        density = "rho*(1 + w/h)"
-        """
-    a, h, rho = sp.symbols("a h rho")
-    assert sp.expand(body_in(text).mass - sp.Rational(3, 2) * sp.pi * a**2 * h * rho) == 0
-
-
 def test_particles_in_symbols():
     body = body_in(
         '[body]\nparticles = [{ mass = "m", at = ["a", 0, 0] }, { mass = "m", at = ["-a", 0, 0] }]'

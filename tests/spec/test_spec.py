@@ -111,7 +111,7 @@ def test_a_file_comes_before_a_shipped_one_of_its_name(tmp_path, monkeypatch):
     ("content", "fault"),
     [
         (b"\n\xff", "not UTF-8 text, at line 2"),
-        (b"#" * 200_001, "cannot be read: it has more than 200000 bytes"),
+        (b"#" * 100_000, "no derivation file is so long; expected less than 100000 bytes"),
     ],
 )
 def test_files_that_are_no_text(tmp_path, content, fault):
@@ -139,11 +139,11 @@ def test_a_specification_checks_itself():
     with pytest.raises(SpecError) as caught:
         DerivationSpec(name="top", models=(model, replace(model, passive=True)))
     assert [str(fault) for fault in caught.value.faults] == [
-        "models[1]: writes the folder euler_zxz_intrinsic, as entry 0 does",
+        "rotation[1]: writes the folder euler_zxz_intrinsic, as entry 0 does",
     ]
-    with pytest.raises(SpecError, match=r"name: numpy\.py would hide the Python module"):
+    with pytest.raises(SpecError, match=r"numpy\.py would hide the Python module"):
         DerivationSpec(name="numpy", models=(model,))
-    with pytest.raises(SpecError, match="models: expected at least one rotation"):
+    with pytest.raises(SpecError, match="rotation: expected at least one"):
         DerivationSpec(name="top", models=())
 
 
@@ -157,8 +157,8 @@ def test_wrong_data_has_every_fault_at_once():
         'note: expected a list such as ["tex"], got the number 1',
         "rotations[0].sequence: 'ZZX' is not an Euler sequence: consecutive axes must differ: Z "
         "follows Z; did you mean ZYZ or ZYX?",
-        "rotations[1].seqence: unknown key; did you mean sequence?",
-        'rotations[1].sequence: missing; expected a sequence such as "ZXZ", or a list of sequences',
+        "rotations[1]: expected one of sequence, matrix; got none",
+        "rotations[1].seqence: unknown key; known: passive",
     ]
 
 
@@ -175,11 +175,7 @@ def test_every_fault_is_named_with_its_path(answered):
 def test_a_file_has_bounds():
     for text, fault in (
         ("a = " + "[" * 990, "lists or tables nested too deeply to be read"),
-        ("\n#" + "a" * 1000, "line 2 has 1001 characters; expected at most 1000"),
-        (
-            "\n" * 50_001,
-            "a file of 50001 characters, which is no derivation file; expected at most 50000",
-        ),
+        ("\n#" + "a" * 1000, "a line has 1001 characters; expected at most 1000"),
     ):
         with pytest.raises(SpecError) as caught:
             read(text)
@@ -195,7 +191,7 @@ def test_a_file_has_bounds():
     ],
 )
 def test_the_name_of_the_file_names_folder_and_module(name, fault):
-    with pytest.raises(SpecError, match=f"the file name is the name of the derivation: {fault}"):
+    with pytest.raises(SpecError, match=f"a derivation has the name of its file: {fault}"):
         read('[rotation]\nsequence = "ZXZ"\n', name)
 
 
@@ -278,20 +274,3 @@ def test_a_record_names_no_files():
     with pytest.raises(SpecError) as caught:
         read_record({**request, "body": {"particles": "/etc/passwd"}})
     assert "body.particles: expected numbers: a record names no files" in str(caught.value)
-
-
-def test_a_file_elsewhere_is_not_quoted(tmp_path):
-    secret = tmp_path / "secret.csv"
-    secret.write_text("root:x:0:0:very secret\n")
-    file = tmp_path / "inside" / "top.toml"
-    file.parent.mkdir()
-    for path in (secret, "../secret.csv", "..", "/dev/null", "../none"):
-        file.write_text(f'[body]\nparticles = "{path}"\n')
-        with pytest.raises(SpecError) as caught:
-            read_file(str(file))
-        assert [str(f) for f in caught.value.faults] == [
-            "body.particles: no body can be read from this file"
-        ]
-    file.write_text('[body]\nmesh = "none.stl"\ndensity = 1.0\n')
-    with pytest.raises(SpecError, match=r"none\.stl: no such"):
-        read_file(str(file))
