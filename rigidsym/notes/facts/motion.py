@@ -83,7 +83,6 @@ class MotionFacts:
             [each for part in one for each in part if each not in (*parameters, *initial)]
             for one in numbers
         ]
-        quantities = {step.quantity.name for step in self.derivation.steps}
         return figure_with(
             "en/motion_picture",
             picture.drawing,
@@ -92,10 +91,9 @@ class MotionFacts:
             parameters=parameters,
             initial=initial,
             differing=[reduce(lambda a, b: formula("#1, #2", a, b), each) for each in own if each],
-            traces=picture.traces,
+            polhodes=picture.polhodes,
             # whether θ goes to and fro between the roots of the effective potential
-            is_bounded="effective_potential" in quantities,
-            is_on_a_surface=bool(picture.traces),
+            is_bounded=any(s.quantity.name == "effective_potential" for s in self.derivation.steps),
         )
 
     def _numbers(self, example: Example) -> tuple[list[Formula], list[Formula]]:

@@ -1,33 +1,42 @@
-"""The pictures of examples: coordinates in time, and a trace on a sphere or an ellipsoid."""
+"""The pictures of examples: polhodes on an ellipsoid, traces of the third body axis on spheres."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from itertools import count
-from typing import NamedTuple
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import count, pairwise
+from math import cos, pi, sin
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rigidsym.errors import ModelError
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import formula
-from rigidsym.formula.scalars import formula_of
+from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Derivation
-from rigidsym.models.forces import OMEGA_BODY, Example
-from rigidsym.notes.figure.chart import chart, circle, in_a_row, on_ellipsoid
-from rigidsym.notes.figure.drawing import Drawing
-from rigidsym.notes.figure.scene import BODY
+from rigidsym.models.forces import Example
+from rigidsym.notes.figure.body_mesh import Vector, unit
+from rigidsym.notes.figure.camera import Point, camera
+from rigidsym.notes.figure.drawing import Drawing, Label, Stroke
+from rigidsym.notes.figure.scene import BODY, Kind
 from rigidsym.simulation.solver import simulate
 from rigidsym.simulation.trajectory import Trajectory
+
+Curve = NDArray[Any]  # points (n, 2) of the picture
 
 _NEEDED = {"state_derivative", "angular_velocity_body"}
 _SAMPLES = 401
 _RTOL, _ATOL = 1e-6, 1e-9  # no eye sees a thousandth of the range
 _MOST_STEPS = 5_000  # of the integrator: more oscillations would be one black stripe
-_TURN = 6.3  # rad: angles that go further are left out of the chart
-_WIDE, _NARROW, _HEIGHT = 4.6, 2.5, 1.7  # of a chart
 _IN_A_ROW = 3  # spheres
 _LOW = 0.02  # between the bounding circles of a trace
+_GAP = 0.3  # between drawings in a row
+_FINEST = 0.012  # between the points of a curve
+_CAMERA = np.array(camera(azimuth=55, elevation=26))
+_RADIUS = 0.88  # of the largest semi-axis of an ellipsoid
+_REACH = 1.35  # of its axes
+_SIDES = 72  # of the polygon that a circle is
 
 
 class MotionPicture(NamedTuple):
@@ -35,7 +44,7 @@ class MotionPicture(NamedTuple):
 
     drawing: Drawing
     told: int  # of how many examples the caption needs the numbers
-    traces: tuple[str, ...]  # "axis", "polhode", "polhodes"
+    polhodes: int
 
 
 def motion_picture(derivation: Derivation, letters: Letters) -> MotionPicture | None:
@@ -49,28 +58,17 @@ def motion_picture(derivation: Derivation, letters: Letters) -> MotionPicture | 
         return None
     first = _motion(derivation, forces.examples[0])
     # polhodes are drawn along principal axes, and a body at rest has none
-    is_poinsot = (
+    has_polhodes = (
         forces.leave_free(derivation.model)
         and not np.any(first.inertia - np.diag(first.inertia.diagonal()))
         and bool(first.angular_velocity_body[0].any())
     )
-    most = None if is_poinsot else _IN_A_ROW  # all polhodes are on one ellipsoid
+    most = None if has_polhodes else _IN_A_ROW  # all polhodes are on one ellipsoid
     motions = [first, *(_motion(derivation, e) for e in forces.examples[1:most])]
-    traces: list[tuple[str, Drawing]] = []  # what is traced, with its drawing
-    if is_poinsot:
-        kind = "polhode" if len(motions) == 1 else "polhodes"
-        traces.append((kind, _polhodes(motions, letters)))
-    turns = derivation.model.turns
-    if turns and turns[-1].axis == "z":
-        traces += [("axis", _axis(motion)) for motion in motions[: 1 if is_poinsot else None]]
-    drawings = [drawing for _, drawing in traces]
-    if not drawings:
-        width = _WIDE if len(motions) == 1 else _NARROW
-        drawings = [_over_time(derivation, motion, letters, width) for motion in motions]
-    elif len(drawings) == 1:
-        drawings.insert(0, _over_time(derivation, first, letters, _NARROW))
-    kinds = tuple(dict.fromkeys(kind for kind, _ in traces))
-    return MotionPicture(in_a_row(drawings), 1 if is_poinsot else len(motions), kinds)
+    if has_polhodes:
+        both = (_polhodes(motions, letters), _trace(first))
+        return MotionPicture(_in_a_row(both), told=1, polhodes=len(motions))
+    return MotionPicture(_in_a_row(map(_trace, motions)), told=len(motions), polhodes=0)
 
 
 def _motion(derivation: Derivation, example: Example) -> Trajectory:
@@ -99,21 +97,6 @@ def _motion(derivation: Derivation, example: Example) -> Trajectory:
     return motion
 
 
-def _over_time(
-    derivation: Derivation, motion: Trajectory, letters: Letters, width: float
-) -> Drawing:
-    """The angles that stay within a turn, or the components of Ω′ if there are no angles."""
-    if motion.is_in_angles:
-        pairs = [*zip(map(letters.name, derivation.model.coordinates), motion.q.T, strict=True)]
-        pairs = [pair for pair in pairs if np.ptp(pair[1]) < _TURN] or pairs
-    else:
-        names = (formula_of(omega, letters) for omega in OMEGA_BODY)
-        pairs = [*zip(names, motion.angular_velocity_body.T, strict=True)]
-    curves = [np.stack([motion.t, column], axis=1) for _, column in pairs]
-    names_of = [name for name, _ in pairs]
-    return chart(curves, (width, _HEIGHT), formula(r"t / \mathrm{s}"), names=names_of)
-
-
 def _polhodes(motions: Sequence[Trajectory], letters: Letters) -> Drawing:
     """Each on the ellipsoid of its own energy, scaled to one size."""
     # With 2E = Σ I_k Ω′_k², the vector of √I_k Ω′_k has the length √(2E): its direction is a point
@@ -123,15 +106,88 @@ def _polhodes(motions: Sequence[Trajectory], letters: Letters) -> Drawing:
     paths = [
         path / np.linalg.norm(path, axis=1, keepdims=True) for path in turning if path[0].any()
     ]
-    circles = [circle(axis, 0.0) for axis in np.eye(3)]
-    axes = [(letters.notation.applied(name), k) for k, name in enumerate(BODY)]
-    return on_ellipsoid(paths, circles, roots.min() / roots, axes)
+    names = [letters.notation.applied(name) for name in BODY]
+    return on_ellipsoid(paths, [circle(e, 0.0) for e in np.eye(3)], roots.min() / roots, names)
 
 
-def _axis(motion: Trajectory) -> Drawing:
+def _trace(motion: Trajectory) -> Drawing:
     """The trace of the third axis of the body, with the circles that bound its height."""
     path = motion.rotation_matrix[:, :, 2]
     low, high = path[:, 2].min(), path[:, 2].max()
     bounds = [low] if high - low < _LOW else [low, high]
     circles = [circle(np.eye(3)[2], height) for height in (0.0, *bounds)]
-    return on_ellipsoid([path], circles, np.ones(3), [(formula("z"), 2)])
+    return on_ellipsoid([path], circles, np.ones(3), [formula("z")])
+
+
+def on_ellipsoid(
+    paths: Iterable[Vector], circles: Iterable[Vector], size: Vector, names: Sequence[Formula]
+) -> Drawing:
+    """Curves and circles on an ellipsoid, as points (n, 3) of the unit sphere; dashed behind.
+
+    `size` holds the semi-axes, the largest being 1; `names` are those of its last axes, which are
+    drawn.
+    """
+    to_picture = _RADIUS * size[:, None] * _CAMERA[:2].T
+    # A point S u of the ellipsoid has the normal S⁻¹ u. It is seen edge on if toward·S⁻¹ u = 0,
+    # that is, if u lies in the plane with the normal S⁻¹ toward.
+    toward = unit(_CAMERA[2] / size)
+
+    def pieces(kind: Kind, path: Vector) -> Iterator[Stroke]:
+        """The path in pieces, each in front or behind; they share their ends."""
+        is_front = path[:-1] @ toward > -1e-9
+        cuts = [0, *(np.flatnonzero(np.diff(is_front)) + 1), len(is_front)]
+        for start, end in pairwise(cuts):
+            points = _thinned(path[start : end + 1] @ to_picture)
+            is_hidden = not is_front[start]
+            is_thin = kind == "guide" or is_hidden
+            yield Stroke(kind, points, is_thin=is_thin, is_hidden=is_hidden)
+
+    strokes = [piece for line in (circle(toward, 0.0), *circles) for piece in pieces("guide", line)]
+    labels = []
+    for name, axis in zip(reversed(names), np.eye(3)[::-1], strict=False):
+        foot, tip, beyond = (_point(r * axis @ to_picture) for r in (1.0, _REACH, _REACH + 0.16))
+        strokes.append(Stroke("space", (foot, tip), has_arrow=True))
+        labels.append(Label("space", name, beyond))
+    strokes += [piece for path in paths for piece in pieces("body", path)]
+    return Drawing(tuple(strokes), tuple(labels))
+
+
+def circle(normal: Vector, height: float) -> Vector:
+    """The circle (n, 3) of the unit sphere at this height along a normal."""
+    # The axis with the smallest component of the normal is the farthest from parallel to it.
+    across = unit(np.cross(normal, np.eye(3)[np.abs(normal).argmin()]))
+    frame = np.array([normal, across, np.cross(normal, across)])
+    radius = max(0.0, 1 - height * height) ** 0.5
+    turns = (2 * pi * k / _SIDES for k in range(_SIDES + 1))
+    return np.array([(height, radius * cos(turn), radius * sin(turn)) for turn in turns]) @ frame
+
+
+def _thinned(curve: Curve) -> tuple[Point, ...]:
+    """Without points that no eye could tell from their neighbours; the ends stay."""
+    points = [_point(curve[0])]
+    for row in curve[1:-1]:
+        if np.hypot(*(row - points[-1])) >= _FINEST:
+            points.append(_point(row))
+    return (*points, _point(curve[-1]))
+
+
+def _point(row: Curve) -> Point:
+    x, y = row.tolist()
+    return (x, y)
+
+
+def _in_a_row(drawings: Iterable[Drawing]) -> Drawing:
+    """Side by side, their middles at the same height."""
+    strokes: list[Stroke] = []
+    labels: list[Label] = []
+    right = 0.0
+    for drawing in drawings:
+        (left, low), (end, high) = drawing.bounds
+        dx, dy = right - left, -(low + high) / 2
+        strokes += [
+            stroke._replace(points=tuple((x + dx, y + dy) for x, y in stroke.points))
+            for stroke in drawing.strokes
+        ]
+        labels += [x._replace(place=(x.place[0] + dx, x.place[1] + dy)) for x in drawing.labels]
+        right += end - left + _GAP
+    return Drawing(tuple(strokes), tuple(labels))
