@@ -16,6 +16,7 @@ from rigidsym.motion import Motion
 from rigidsym.notes.document import Figure
 from rigidsym.notes.figure.body_drawing import body_drawing
 from rigidsym.notes.figure.body_mesh import HOLE
+from rigidsym.notes.figure.drawing import Facet
 from rigidsym.notes.formats.terminal import show
 from rigidsym.notes.named_body import in_names
 from rigidsym.pipeline import motion_of, read_spec
@@ -158,10 +159,11 @@ def test_the_body_is_drawn_from_the_back_with_its_holes_and_its_principal_axes()
     drawing, is_principal = body_drawing(drilled())
     assert is_principal
     assert [label.symbol.text for label in drawing.labels] == ["x′", "y′", "z′"]
-    holes = [max(facet.color) <= max(HOLE) for facet in drawing.facets]
+    facets = [shape for shape in drawing.body if isinstance(shape, Facet)]
+    holes = [max(facet.color) <= max(HOLE) for facet in facets]
     assert any(holes)
     assert not all(holes)
-    for x, y in (np.array(facet.points).T for facet in drawing.facets):
+    for x, y in (np.array(facet.points).T for facet in facets):
         assert np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)) > 0  # each is seen from outside
     (row,) = (line for line in drilled().note().markdown().splitlines() if "(hole)" in line)
     assert row.split("|")[2].startswith(" −")
@@ -169,7 +171,7 @@ def test_the_body_is_drawn_from_the_back_with_its_holes_and_its_principal_axes()
 
 def test_principal_axes_are_named_after_moments_and_angles_without_inertia_are_chosen():
     """Of a rod across a cylinder that is turned about its own axis"""
-    part = '{ shape = "cylinder", radius = 0.5, density = 2, turned = "y(beta) z(alpha)" }'
+    part = '{ shape = "cylinder", radius = 0.5, density = "rho", turned = "y(beta) z(alpha)" }'
     rod = '{ shape = "rod", length = 2, mass = 1.5, turned = "y(beta) z(theta)" }'
     head = '[rotation]\nsequence = "zxz"\n[output]\nquantities = ["body"]\n'
     text = f"{head}[body]\nparts = [{part}, {rod}]\n"

@@ -30,7 +30,7 @@ from rigidsym.models.body import (
 )
 from rigidsym.notes.document import Figure
 from rigidsym.notes.figure.body_drawing import body_drawing
-from rigidsym.notes.figure.body_mesh import lengths_of
+from rigidsym.notes.figure.body_mesh import lengths_in, numbers_of
 from rigidsym.notes.template import figure_with
 from rigidsym.notes.words import number, unit_in_words
 
@@ -52,8 +52,9 @@ class MassFacts:
         if drawn is None:
             return None
         drawing, are_own = drawn
-        values = {p.symbol: p.value for p in self.body.parameters}
-        numbers = lengths_of(self.body.distribution, values) if self.body.distribution else None
+        of_all = {p.symbol: p.value for p in (*self.body.declared, *self.body.parameters)}
+        numbers = numbers_of(self.body) or {}
+        chosen = [s for s in numbers if s in lengths_in(self.body) and of_all.get(s) is None]
         return figure_with(
             "en/body_figure",
             drawing,
@@ -61,10 +62,8 @@ class MassFacts:
             axes=[label.symbol for label in drawing.labels],
             are_own=are_own,
             is_to_scale=self.body.distribution is not None,
-            lengths=[  # that were chosen for the drawing
-                equal(formula_of(symbol, self.letters), decimal(float(number)))
-                for symbol, number in (numbers or {}).items()
-                if values.get(symbol) is None
+            lengths=[
+                equal(formula_of(s, self.letters), decimal(float(numbers[s]))) for s in chosen
             ],
         )
 

@@ -7,7 +7,6 @@ those that shrink to lines and those that meet, as at the angles 0 and 2π.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from itertools import islice, pairwise, permutations, product
 from typing import Any, NamedTuple
 
@@ -33,8 +32,7 @@ BLUE, GOLD, GREY = (58, 110, 190), (226, 182, 74), (176, 182, 190)
 RED, BRONZE, HOLE = (204, 72, 58), (196, 146, 56), (52, 54, 60)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Face:
+class Face(NamedTuple):
     """A flat polygon."""
 
     corners: Vector  # (n, 3), counterclockwise as seen from outside
@@ -61,29 +59,38 @@ _OCTAHEDRON = [  # its faces: signs of the corners on the axes, in counterclockw
 
 def own_shape(body: RigidBody | None) -> Shape:
     """The faces of a body, its centre of mass at the origin; none if only its moments are known."""
-    what = _described(body)
-    if body is None or what is None:
+    numbers = numbers_of(body) if body else None
+    if body is None or numbers is None:
         return ()
-    numbers = lengths_of(what, {p.symbol: p.value for p in (*body.declared, *body.parameters)})
-    if numbers is None:
-        return ()
-    middle = body.centre.xreplace(numbers)
-    centre = _floats(middle) if not middle.free_symbols else 0.0  # else about its origin
-    moved = [(face.corners - centre, face.color) for face in meshed(what, numbers)]
-    reach = max((np.linalg.norm(corners, axis=1).max() for corners, _ in moved), default=0.0)
+    centre = _floats(body.centre.xreplace(numbers))
+    faces = meshed(_described(body), numbers)
+    distances = (np.linalg.norm(face.corners - centre, axis=1).max() for face in faces)
+    reach = max(distances, default=0.0)
     if not (reach and np.isfinite(reach)):
         return ()
-    return tuple(Face(_SIZE / reach * corners, color) for corners, color in moved)
+    return tuple(Face(_SIZE / reach * (corners - centre), color) for corners, color in faces)
+
+
+def numbers_of(body: RigidBody) -> Numbers | None:
+    """The parameters of a body with their values, or with others that give it a proper shape.
+
+    None if only its moments are known.
+    """
+    if not _described(body):
+        return None
+    values = {p.symbol: p.value for p in (*body.declared, *body.parameters)}
+    lengths = lengths_of(_described(body), values)
+    # Parameters that are no lengths, such as densities, do not change the shape; 1 will do.
+    return None if lengths is None else lengths | dict.fromkeys({*values} - {*lengths}, sp.Float(1))
 
 
 def lengths_in(body: RigidBody | None) -> set[sp.Basic]:
     """The constants that the shape of a body is made of; none if only its moments are known."""
-    what = _described(body)
-    return _constants(what) if what else set()
+    return _constants(_described(body)) if body and _described(body) else set()
 
 
-def _described(body: RigidBody | None) -> Distribution | None:
-    return None if body is None else body.distribution or body.drawn
+def _described(body: RigidBody) -> Any:
+    return body.distribution or body.drawn
 
 
 def lengths_of(

@@ -94,14 +94,12 @@ class Drawing(NamedTuple):
 
     strokes: tuple[Stroke, ...]
     labels: tuple[Label, ...]
-    behind: tuple[Stroke, ...] = ()  # what the facets hide
-    facets: tuple[Facet, ...] = ()  # of a body, the farthest first
+    body: tuple[Facet | Stroke, ...] = ()  # the farthest first
 
     @property
     def bounds(self) -> tuple[Point, Point]:
         """The lower left and the upper right corner of all that is drawn."""
-        points = [point for stroke in (*self.strokes, *self.behind) for point in stroke.points]
-        points += [point for facet in self.facets for point in facet.points]
+        points = [point for shape in (*self.strokes, *self.body) for point in shape.points]
         for box in boxes(self.labels):
             x, y = box.centre
             points += [

@@ -33,8 +33,7 @@ def _shapes(
 ) -> list[str]:
     """All of a drawing from the back to the front; a sector has no color of its own."""
     return [
-        *map(line, drawing.behind),
-        *(area(facet.points, facet.color) for facet in drawing.facets),
+        *(line(x) if isinstance(x, Stroke) else area(x.points, x.color) for x in drawing.body),
         *(area((x.centre, *x.points), None) for x in drawing.strokes if x.centre is not None),
         *map(line, drawing.strokes),
         *map(label, drawing.labels),
