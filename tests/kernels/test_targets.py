@@ -46,7 +46,13 @@ def types(target: str) -> tuple[type, ...]:
 
 
 @pytest.mark.parametrize("target", EVERY)
-@pytest.mark.parametrize("rotation", ROTATIONS)
+@pytest.mark.parametrize(
+    "rotation",
+    [
+        pytest.param(name, marks=[pytest.mark.campaign] if name == "rotation_vector" else [])
+        for name in ROTATIONS
+    ],
+)
 def test_functions_have_the_values_of_their_expressions(rotation, target):
     for dtype in types(target):
         for name in names(rotation, target):

@@ -32,7 +32,7 @@ ROTATIONS = (  # one of each kind
         "quaternion",
         "unit_quaternion",
         "axis_angle",
-        "rotation_vector",
+        pytest.param("rotation_vector", marks=pytest.mark.campaign),
         "z(phi) x(theta) [0,b,c](psi)",
     ),
     *("z(2*phi - psi) x(theta) z(psi/3)", "z(phi) [1,1,0](theta) x(pi/4)"),

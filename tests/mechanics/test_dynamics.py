@@ -43,7 +43,10 @@ def values_for(motion: rs.Motion, seed: int = 3) -> dict:
     [
         ("ZXZ", (A, A, C), TOP, {}),
         ("ZXZ", (A, B, C), ANYWHERE, {"theta": "-c*theta_dot", "psi": "k"}),
-        ("zyx", (A, B, C), "m*g*l*sin(theta)*cos(psi)", {"phi": "-c*phi_dot**2"}),
+        pytest.param(
+            *("zyx", (A, B, C), "m*g*l*sin(theta)*cos(psi)", {"phi": "-c*phi_dot**2"}),
+            marks=pytest.mark.campaign,
+        ),
         ("ZXZ", (A, A, C), "m*(g + a*sin(omega*t))*cos(theta) - b*t*psi", {"phi": "k*exp(-t)"}),
     ],
 )
@@ -93,7 +96,9 @@ def test_the_jacobian_of_the_state_is_its_slope():
         assert column == pytest.approx(np.array(exact[:, k], float), abs=1e-12)
 
 
-@pytest.mark.parametrize("target", ["numpy", "c", "numba", "jax", "javascript"])
+@pytest.mark.parametrize(
+    "target", ["numpy", "c", "numba", pytest.param("jax", marks=pytest.mark.campaign), "javascript"]
+)
 def test_every_language_has_the_derivative_of_the_state_for_one_and_for_many(target, request):
     """state_derivative(t, y, parameters) = (q̇, q̈) and the first integrals; the accelerations of a
     driven top take the time as well

@@ -119,7 +119,13 @@ def numbers(matrix: sp.ImmutableMatrix, text: str, q: Array) -> Array:
     return np.array(evaluate(matrix, values | constants_of(motion_of(text))).tolist(), float)
 
 
-@pytest.mark.parametrize("text", EVERY)
+@pytest.mark.parametrize(
+    "text",
+    [
+        pytest.param(text, marks=[pytest.mark.campaign] if text == UNDECIDED else [])
+        for text in EVERY
+    ],
+)
 def test_the_rank_and_the_directions_are_the_stated_ones(text):
     motion = motion_of(text)
     stated = motion.singularities

@@ -77,6 +77,7 @@ def gimbal() -> rs.Motion:
     )
 
 
+@pytest.mark.campaign
 def test_the_gimbal_with_a_payload_off_its_axes_has_the_equations_that_sympy_finds():
     space, outer, inner, payload = frame(("z", PHI), ("x", THETA), ("y", PSI))
     lagrangian = kinetic(space, outer, sp.symbols("O_1:4"))
@@ -93,6 +94,7 @@ def test_the_gimbal_with_a_payload_off_its_axes_has_the_equations_that_sympy_fin
     assert satisfied(motion, lagrangian, q, forces + sp.Matrix([0, 0, sp.Symbol("u")]))
 
 
+@pytest.mark.campaign
 def test_the_dual_spin_satellite_has_the_equations_that_sympy_finds():
     space, _, _, platform, rotor = frame(("z", PHI), ("x", THETA), ("z", PSI), ("z", SIGMA))
     across, along, torque = sp.symbols("J_1 J_3 u")

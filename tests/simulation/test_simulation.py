@@ -248,7 +248,9 @@ def test_wrong_options_of_the_command_are_refused(wrong, message, tmp_path):
 # --- motions that reach a pole of their coordinates
 
 
-@pytest.mark.parametrize("rotation", ["rotation_vector", "ZXZ"])
+@pytest.mark.parametrize(
+    "rotation", [pytest.param("rotation_vector", marks=pytest.mark.campaign), "ZXZ"]
+)
 def test_a_heavy_body_is_carried_through_the_poles_of_its_coordinates(rotation):
     """V = k R₃₃, about the fixed point: N′ = −k e₃′ × Rᵀ e₃"""
     model = rs.derive(rotation, "rotation_matrix").model
