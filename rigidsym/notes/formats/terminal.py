@@ -1,17 +1,21 @@
-"""Derivation -> text for a terminal: convention, quantities, what fails, what was proved."""
+"""Derivation -> text for a terminal: convention, quantities, singular orientations, proofs."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import textwrap
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from itertools import product
+from typing import TYPE_CHECKING, Any, Literal
 
-from rigidsym.formula.console import INDENT, Block, Headline, Line, Style, lines_of, unstyled
 from rigidsym.formula.display import display
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.notation import DEFAULT, Notation
+from rigidsym.formula.pen import break_lines
 from rigidsym.formula.reader import formula, sentence
-from rigidsym.formula.tree import equal
+from rigidsym.formula.scalars import formula_of, listed_entries, matrix_of
+from rigidsym.formula.tree import Formula, equal
+from rigidsym.formula.unicode_pen import UnicodePen, columns
 from rigidsym.mechanics.derivation import Argument, Derivation, Step
 from rigidsym.mechanics.quantities.kinematics import BODY, ROTATION, SPACE
 from rigidsym.notes.document import Equation, Paragraph
@@ -22,11 +26,7 @@ from rigidsym.notes.fitting import as_vectors
 from rigidsym.notes.letters import RESIDUAL, letters_of
 from rigidsym.notes.template import blocks_of, texts_of
 from rigidsym.notes.vectors import sum_of_vectors
-from rigidsym.notes.words import (
-    is_body_alone,
-    unit_in_words,
-    with_symbols,
-)
+from rigidsym.notes.words import is_body_alone, unit_in_words, with_symbols
 
 if TYPE_CHECKING:
     from rigidsym.mechanics.conversions.conversions import Conversions
@@ -35,13 +35,18 @@ _WIDTH = 88  # columns
 _EMS = 44.0  # of an equation by itself in LaTeX
 _COLUMNS = formula(r"\mathbf{K}")
 _OMEGA = {"Ω": SPACE.omega, "Ω′": BODY.omega}
+_INDENT = "  "
+_NO_BREAK = "\u00a0"
+
+Style = Callable[[str, Literal["heading", "dim"]], str]
+Spans = Iterable[Any]  # words, formulas, and what else has a text
 
 
 def show(
     derivation: Derivation,
     *,
     width: int = _WIDTH,
-    style: Style = unstyled,
+    style: Style = lambda words, _: words,
     notation: Notation = DEFAULT,
     conversions: Conversions | None = None,
 ) -> str:
@@ -51,8 +56,9 @@ def show(
     `conversions` adds a section on the unit quaternion and the matrix, and its proofs.
     """
     letters = letters_of(derivation.arguments, notation, derivation.model)
-    blocks = list(_screen(derivation, letters, conversions))
-    return "\n".join(lines_of(blocks, letters, width, style))
+    screen = _Screen(letters, width, style)
+    screen.derivation(derivation, conversions)
+    return screen.whole
 
 
 def printed_step(step: Step, form: str, derivation: Derivation, notation: Notation) -> str:
@@ -60,88 +66,198 @@ def printed_step(step: Step, form: str, derivation: Derivation, notation: Notati
     arguments = derivation.arguments
     letters = letters_of(arguments, notation, derivation.model)
     if form == "text":
-        return "\n".join(lines_of(list(_blocks_of(step, arguments, letters)), letters, _WIDTH))
+        screen = _Screen(letters, _WIDTH, lambda words, _: words)
+        screen.step(step, arguments)
+        return screen.whole
     equation = as_vectors(equation_of(step, arguments), step, letters)
     return display(equation, letters, _EMS).text
 
 
-def _blocks_of(step: Step, arguments: Sequence[Argument], letters: Letters) -> Iterator[Block]:
-    """(5) angular velocity, body components           angular_velocity_body, rad/s"""
-    quantity = step.quantity
-    unit = f", {unit_in_words(quantity.unit)}" if quantity.unit else ""
-    about = with_symbols(quantity.about, _OMEGA)
-    yield Headline((f"({step.number}) ", *about), quantity.name + unit)
-    yield equation_of(step, arguments)
-    for proof in step.proofs:
-        if proof.status != "exact":
-            yield Line((f"{INDENT}✗ unproved: ", proof.claim))
-    if step.vector_form is not None:  # Ω = v̇ + ...
-        yield (equal(quantity.symbol, sum_of_vectors(step.vector_form, letters)),)
+class _Screen:
+    """Lines of Unicode in one width, written from top to bottom."""
+
+    def __init__(self, letters: Letters, width: int, style: Style) -> None:
+        self.letters = letters
+        self.width = width
+        self.style = style
+        self.pen = UnicodePen(letters.notation)
+        self.lines: list[str] = []
+
+    @property
+    def whole(self) -> str:
+        return "\n".join(self.lines).replace(_NO_BREAK, " ")
+
+    def text(self, spans: Spans) -> str:
+        """Words and formulas on one line; no line may end at the blanks of a formula."""
+        return "".join(
+            self.pen.write(span).text.replace(" ", _NO_BREAK)
+            if isinstance(span, Formula)
+            else (span if isinstance(span, str) else span.text)
+            for span in spans
+        )
+
+    def line(self, *spans: Any) -> None:
+        """Words and formulas on one line, however long."""
+        self.lines.append(self.text(spans))
+
+    def heading(self, *spans: Any, aside: str = "") -> None:
+        """A heading, with an aside at the right margin, on its own line if there is no room."""
+        heading = self.text(spans)
+        room = self.width - columns(heading)
+        is_below = room - columns(aside) < len(_INDENT)
+        self.lines.append(self.style(heading, "heading"))
+        if aside and is_below:
+            self.lines.append(self.style(aside.rjust(self.width), "dim"))
+        elif aside:
+            self.lines[-1] += self.style(aside.rjust(room), "dim")
+
+    def section(self, heading: str) -> None:
+        self.line()
+        self.heading(heading)
+
+    def sentence(self, spans: Spans) -> None:
+        """A sentence on as many lines as it needs."""
+        self.lines += textwrap.wrap(
+            self.text(spans),
+            self.width,
+            initial_indent=_INDENT,
+            subsequent_indent=2 * _INDENT,
+            break_long_words=False,
+            break_on_hyphens=False,
+        )
+
+    def equation(self, equation: Equation) -> None:
+        """The sides with their value: beside them, or below, or else a line an entry."""
+        matrix, sides = equation.matrix, list(equation.sides)
+        if equation.scalar is not None:
+            sides.append(formula_of(equation.scalar, self.letters))
+        value = sides.pop() if matrix is None else None
+        names = [*filter(None, dict.fromkeys(self.text([side]) for side in sides))][:2]
+        whole = f"{_INDENT}{' = '.join(names)} = "
+        head = f"{_INDENT}{names[0]} = " if names else ""
+        if value is not None:
+            if len(names) == 2 and columns(whole + self.text([value])) > self.width:
+                self.lines.append(whole.removesuffix(" = "))
+                whole = " " * columns(head.removesuffix("= ")) + "= "
+            self.hang(whole, value)
+            return
+        assert matrix is not None
+        if sides:
+            rows = [[self.text([e]) for e in row] for row in matrix_of(matrix, self.letters).rows]
+            below = [whole.rstrip()]
+            places = (([], whole), ([], head), (below, 2 * _INDENT))
+            for (above, start), is_tight in product(places, (False, True)):
+                lines = [*above, *grid(start, rows, is_tight=is_tight)]
+                if max(map(columns, lines)) <= self.width:
+                    self.lines += lines
+                    return
+        for name, entry in listed_entries(equation.names, matrix):
+            self.hang(f"{_INDENT}{self.text([name])} = ", formula_of(entry, self.letters))
+
+    def hang(self, head: str, value: Formula) -> None:
+        """A value behind a head; where it is long, its other lines hang below its start."""
+        start = columns(head)
+        room = self.width - start
+        first, *others = break_lines(self.pen.write(value), room, len(_INDENT), self.pen.blank)
+        self.lines.append(head + first.text)
+        self.lines += [" " * start + _INDENT * line.level + line.text for line in others]
+
+    def step(self, step: Step, arguments: Sequence[Argument]) -> None:
+        """(5) angular velocity, body components           angular_velocity_body, rad/s"""
+        quantity = step.quantity
+        unit = f", {unit_in_words(quantity.unit)}" if quantity.unit else ""
+        about = with_symbols(quantity.about, _OMEGA)
+        self.heading(f"({step.number}) ", *about, aside=quantity.name + unit)
+        self.equation(equation_of(step, arguments))
+        for proof in step.proofs:
+            if proof.status != "exact":
+                self.line(f"{_INDENT}✗ unproved: ", proof.claim)
+        if step.vector_form is not None:  # Ω = v̇ + ...
+            self.sentence([equal(quantity.symbol, sum_of_vectors(step.vector_form, self.letters))])
+
+    def derivation(self, derivation: Derivation, conversions: Conversions | None) -> None:
+        model, steps, letters = derivation.model, derivation.steps, self.letters
+        facts = facts_of_rotation(derivation, letters)
+        facts |= {"angles": None, "has_dots": letters.notation.rates == "dot"}
+        self.heading(derivation.title)
+        if not is_body_alone(derivation):
+            self.line()
+            for text in texts_of("en/convention", letters, **facts):
+                self.sentence(text)
+            if model.turns:
+                self.line(_INDENT, equal(ROTATION, product_of(model.turns, letters)))
+        for step in steps:
+            self.line()
+            self.step(step, derivation.arguments)
+        if integrals := derivation.first_integrals:
+            self.section("Constant along every motion (first integrals)")
+            for integral in integrals:
+                self.equation(Equation(sides=(integral.symbol,), scalar=integral.expression))
+
+        singular = singular_facts(derivation)
+        if singular is not None:
+            facts["singular"] = singular
+            gimbal_lock = " (gimbal lock)" if singular.is_gimbal_lock else ""
+            self.section(f"Singular orientations{gimbal_lock}")
+            if singular.found.determinant is not None:
+                for block in blocks_of("en/singular_measure", letters, **facts):
+                    if isinstance(block, Equation):
+                        self.equation(block)
+                    elif isinstance(block, Paragraph) and singular.found.measure == "minors":
+                        self.sentence(block.text)  # or Σ₁ would have no meaning
+            for text in texts_of("en/singular", letters, **facts):
+                self.sentence(text)
+
+        if derivation.body is not None:
+            from rigidsym.notes.facts.mass import MassFacts
+
+            lines = list(MassFacts(derivation, derivation.body, letters).lines())
+            if lines:
+                self.section("In numbers")
+                self.lines += [_INDENT + line for line in lines]
+
+        back = conversions and conversions.inverse
+        if conversions:  # to the unit quaternion and back, or why there is no way back
+            self.section("Conversions")
+            if conversions.quaternion:  # its number is the next one, as in the note
+                quaternion = replace(conversions.quaternion, number=len(steps) + 1)
+                steps = (*steps, quaternion)
+                self.step(quaternion, derivation.arguments)
+            self.sentence(sentence("Each column of {} is a multiple of the quaternion.", _COLUMNS))
+            self.equation(Equation(sides=(_COLUMNS,), matrix=columns_of_matrix()))
+            for text in (back.because, back.branch) if back else ((conversions.without,),):
+                self.sentence(text)
+
+        self.section("Identities verified")
+        proofs = [(stated.number, proof) for stated in derivation.theory for proof in stated.proofs]
+        proofs += [(step.number, proof) for step in steps for proof in step.proofs]
+        proofs += [(0, proof) for proof in (back.proofs if back else ())]
+        proofs += [(0, conversions.from_matrix)] if conversions else []
+        for number, proof in proofs:
+            mark, label = "✓" if proof.is_exact else "✗", f"({number})" if number else ""
+            self.line(f"{_INDENT}{mark} {label:<5}{proof.status:<10}", proof.claim)
+            if proof.residual is not None:
+                self.line(f"{2 * _INDENT}left over:")
+                self.equation(Equation(sides=(RESIDUAL,), matrix=proof.residual))
 
 
-def _screen(
-    derivation: Derivation, letters: Letters, conversions: Conversions | None
-) -> Iterator[Block]:
-    """The blocks of a derivation from top to bottom."""
-    model, steps = derivation.model, derivation.steps
-    facts = facts_of_rotation(derivation, letters)
-    facts |= {"angles": None, "has_dots": letters.notation.rates == "dot"}
-    yield Headline((derivation.title,))
-    if not is_body_alone(derivation):
-        yield ""
-        yield from texts_of("en/convention", letters, **facts)
-        if model.turns:
-            yield Line((INDENT, equal(ROTATION, product_of(model.turns, letters))))
-    for step in steps:
-        yield ""
-        yield from _blocks_of(step, derivation.arguments, letters)
-    if integrals := derivation.first_integrals:
-        yield from _under("Constant along every motion (first integrals)")
-        yield from (Equation(sides=(i.symbol,), scalar=i.expression) for i in integrals)
+def grid(prefix: str, rows: Sequence[Sequence[str]], *, is_tight: bool) -> list[str]:
+    """The lines of `prefix` followed by a matrix in brackets; the prefix stands half-way down.
 
-    singular = singular_facts(derivation)
-    if singular is not None:
-        facts["singular"] = singular
-        gimbal_lock = " (gimbal lock)" if singular.is_gimbal_lock else ""
-        yield from _under(f"Singular orientations{gimbal_lock}")
-        if singular.found.determinant is not None:
-            for block in blocks_of("en/singular_measure", letters, **facts):
-                if isinstance(block, Equation):
-                    yield block
-                elif isinstance(block, Paragraph) and singular.found.measure == "minors":
-                    yield block.text  # or Σ₁ would have no meaning
-        yield from texts_of("en/singular", letters, **facts)
-
-    if derivation.body is not None:
-        from rigidsym.notes.facts.mass import MassFacts
-
-        lines = list(MassFacts(derivation, derivation.body, letters).lines())
-        yield from _under("In numbers") if lines else ()
-        yield from (INDENT + line for line in lines)
-
-    back = conversions and conversions.inverse
-    if conversions:  # to the unit quaternion and back, or why there is no way back
-        yield from _under("Conversions")
-        if conversions.quaternion:  # its number is the next one, as in the note
-            quaternion = replace(conversions.quaternion, number=len(steps) + 1)
-            steps = (*steps, quaternion)
-            yield from _blocks_of(quaternion, derivation.arguments, letters)
-        yield sentence("Each column of {} is a multiple of the quaternion.", _COLUMNS)
-        yield Equation(sides=(_COLUMNS,), matrix=columns_of_matrix())
-        yield from (back.because, back.branch) if back else ((conversions.without,),)
-
-    yield from _under("Identities verified")
-    proofs = [(stated.number, proof) for stated in derivation.theory for proof in stated.proofs]
-    proofs += [(step.number, proof) for step in steps for proof in step.proofs]
-    proofs += [(0, proof) for proof in (back.proofs if back else ())]
-    proofs += [(0, conversions.from_matrix)] if conversions else []
-    for number, proof in proofs:
-        mark, label = "✓" if proof.is_exact else "✗", f"({number})" if number else ""
-        yield Line((f"{INDENT}{mark} {label:<5}{proof.status:<10}", proof.claim))
-        if proof.residual is not None:
-            yield f"{2 * INDENT}left over:"
-            yield Equation(sides=(RESIDUAL,), matrix=proof.residual)
-
-
-def _under(heading: str) -> Iterator[Block]:
-    yield from ("", Headline((heading,)))
+    A single column is set flush left, several columns are centred.
+    """
+    gap, margin = ("  ", "") if is_tight else ("   ", " ")
+    widths = [max(map(columns, column)) for column in zip(*rows, strict=True)]
+    inside: list[str] = []
+    for row in rows:
+        rooms = [width - columns(text) for text, width in zip(row, widths, strict=True)]
+        before = [room // 2 if len(widths) > 1 else 0 for room in rooms]
+        cells = zip(row, before, rooms, strict=True)
+        inside.append(gap.join(" " * b + text + " " * (room - b) for text, b, room in cells))
+    last = len(rows) - 1
+    brackets = ["⎡⎤", *["⎢⎥"] * (last - 1), "⎣⎦"] if last else ["[]"]
+    blank = " " * columns(prefix)
+    return [
+        f"{prefix if place == last // 2 else blank}{left}{margin}{line}{margin}{right}"
+        for place, (line, (left, right)) in enumerate(zip(inside, brackets, strict=True))
+    ]
