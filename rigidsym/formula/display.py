@@ -7,7 +7,7 @@ says so.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import Literal, NamedTuple
 
@@ -30,17 +30,20 @@ _MOST_INDENTS = 5
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Equation:
-    """One display: sides that are equal, the last of them a matrix or a scalar that is given."""
+    """One display: sides that are equal, the last of them a matrix or a scalar that is given.
+
+    Equations are equal if they look alike.
+    """
 
     sides: tuple[Formula, ...]
     matrix: sp.ImmutableMatrix | None = None
     scalar: sp.Expr | None = None
     entries: tuple[Formula, ...] = ()  # a name an entry, if these are not those of the first side
     number: int | None = None
-    label: str = ""
-    function: str = ""  # of the kernel module, as it is called
-    proved: tuple[Formula, ...] = ()
-    unproved: tuple[Formula, ...] = ()
+    label: str = field(default="", compare=False)
+    function: str = field(default="", compare=False)  # of the kernel module, as it is called
+    proved: tuple[Formula, ...] = field(default=(), compare=False)
+    unproved: tuple[Formula, ...] = field(default=(), compare=False)
     is_result: bool = False  # what a reader looks up stands in a box
 
     @property
@@ -60,7 +63,6 @@ class Display(NamedTuple):
     environment: Literal["", "aligned", "gathered"] = ""  # of lines below one another
     done: Done = ""
     lines: int = 1  # of a listing
-    height: float = 0.0  # of a listing, in lines of text
     is_broken: bool = False  # whether a value of the equation, or an entry, fits on no line
     is_boxed: bool = False
 
@@ -70,11 +72,7 @@ class Display(NamedTuple):
         return rf"\boxed{{{text}}}" if self.is_boxed else text
 
 
-class _Row(NamedTuple):
-    text: str
-    is_high: bool = False
-
-
+@lru_cache(maxsize=512)  # what was fitted is printed, often in several formats
 def display(
     equation: Equation, letters: Letters, width: float, pen: LatexPen | None = None
 ) -> Display:
@@ -83,168 +81,145 @@ def display(
     A result is in a box, which is part of its width. `pen` is that of LaTeX by default, in the
     notation of the letters.
     """
-    inside = replace(equation, number=None, label="", function="", proved=(), unproved=())
-    return _displayed(inside, letters, width, pen or LatexPen(letters.notation))
+    pen, box = pen or LatexPen(letters.notation), BOX if equation.is_result else 0.0
+    forms = _matrix_forms if equation.matrix is not None and equation.sides else _forms
+    for shown in forms(equation, letters, width - box, pen):
+        if shown.width <= width - box:
+            break  # or else the last one, which is a listing
+    is_value = equation.matrix is not None or equation.scalar is not None
+    is_broken = is_value and (shown.is_broken or shown.width > width - box)
+    return shown._replace(width=shown.width + box, is_broken=is_broken, is_boxed=equation.is_result)
 
 
-@lru_cache(maxsize=512)  # what was fitted is printed, often in several formats
-def _displayed(equation: Equation, letters: Letters, width: float, pen: LatexPen) -> Display:
-    box = BOX if equation.is_result else 0.0
-    inside = _Setter(letters, pen).display(equation, width - box)
-    shown = inside._replace(width=inside.width + box, is_boxed=equation.is_result)
-    is_broken = shown.width > width
-    if equation.matrix is None and equation.scalar is None:
-        is_broken = False
-    elif shown.lines > 1 and not is_broken:
-        usual = min(len(equation.sides), 2)
-        if equation.matrix is not None:
-            usual = len(listed_entries(equation.names, equation.matrix))
-        is_broken = shown.lines > usual
-    return shown._replace(is_broken=is_broken)
+def _forms(equation: Equation, letters: Letters, width: float, pen: LatexPen) -> Iterator[Display]:
+    """Of an equation without a matrix, and of definitions."""
+    # in another notation a rate may be its own definition
+    sides = tuple(dict.fromkeys(map(letters.notation.applied, equation.sides)))
+    if equation.matrix is not None:
+        values = [formula_of(value, letters) for value in equation.matrix]
+        yield _definitions(equation.entries, values, width, pen)
+        return
+    if equation.scalar is not None:
+        # a value stands on one line with its sides, or below them
+        definition = [equal(*sides[1:])] if sides[1:] else []
+        sides = (sides[0], *definition, formula_of(equation.scalar, letters))
+    whole = pen.write(equal(*sides))
+    yield Display(whole.text, whole.width)
+    head, *values = sides
+    if values:
+        heads = [head, *[NOTHING] * (len(values) - 1)]
+        yield _listing(heads, values, width, pen, is_high=True)
+
+
+def _matrix_forms(
+    equation: Equation, letters: Letters, width: float, pen: LatexPen
+) -> Iterator[Display]:
+    """On one line; broken before its last equals sign, then farther left; short; listed."""
+    matrix = equation.matrix
+    assert matrix is not None
+    sides = tuple(dict.fromkeys(map(letters.notation.applied, equation.sides)))
+    factor, rest = factored(matrix)  # a fraction that all entries hold
+    full: Formula = matrix_of(rest, letters)
+    full = full if factor == 1 else row(formula_of(factor, letters), full)
+    shorthand: tuple[tuple[bool, Done], ...] = ((False, ""), (True, "abbreviated"))
+    for is_short, done in shorthand[: matrix.cols]:  # a column is listed instead
+        pen = replace(pen, short=is_short)
+        whole = pen.write(equal(*sides, full))
+        yield Display(whole.text, whole.width, done=done)
+        if len(sides) > 1:
+            first, above, last = map(pen.write, (sides[0], equal(*sides[1:]), full))
+            needed = first.width + EQUAL + max(above.width, last.width)
+            lines = (f"{first.text} &= {above.text}", f"&= {last.text}")
+            yield Display(pen.joined(lines, True), needed, "aligned", done)
+            needed = EQUAL + max(first.width + above.width, QUAD + last.width)
+            lines = (f"&{first.text} = {above.text}", rf"&{INDENT} {{}} = {last.text}")
+            yield Display(pen.joined(lines, True), needed, "aligned", done)
+    names, entries = zip(*listed_entries(equation.names, matrix), strict=True)
+    values = [formula_of(entry, letters) for entry in entries]
+    pen = replace(pen, short=False)
+    yield _listing(names, values, width, pen)._replace(done="listed")
 
 
 def pack(equations: Sequence[Equation], letters: Letters, width: float, pen: LatexPen) -> str:
     """Short equations, as many on a line as fit into `width` ems."""
     displays = [display(equation, letters, width, pen) for equation in equations]
-    rows = _packed((((_Row(shown.text),), shown.width) for shown in displays), width)
-    texts = [text for text, _ in rows]
-    return texts[0] if len(texts) == 1 else environment("gathered", pen.joined(texts, True))
+    lines = _packed((([shown.text], shown.width) for shown in displays), width)
+    return lines[0] if len(lines) == 1 else environment("gathered", pen.joined(lines, True))
 
 
-def _packed(blocks: Iterable[tuple[Sequence[_Row], float]], width: float) -> list[_Row]:
-    """Blocks below one another, given with their widths; short ones side by side."""
-    rows: list[_Row] = []
+def _packed(blocks: Iterable[tuple[list[str], float]], width: float) -> list[str]:
+    """Blocks of lines below one another, given with their widths; short ones side by side."""
+    lines: list[str] = []
     room = 0.0
     for block, own in blocks:
         if len(block) == 1 and own + 2 * QUAD <= room:
-            last, first = rows[-1], block[0]
-            is_high = last.is_high or first.is_high
-            rows[-1] = _Row(f"{last.text} {WIDE_GAP}{first.text}", is_high)
+            lines[-1] += f" {WIDE_GAP}{block[0]}"
             room -= own + 2 * QUAD
         else:
-            rows += block
+            lines += block
             room = width - own if len(block) == 1 else 0.0
-    return rows
+    return lines
+
+
+def _listing(
+    names: Sequence[Formula],
+    values: Sequence[Formula],
+    width: float,
+    pen: LatexPen,
+    *,
+    is_high: bool = False,
+) -> Display:
+    """Each value behind its name and a sign, long ones broken at + and −."""
+    heads = [pen.write(name) for name in names]
+    head = max(piece.width for piece in heads) + EQUAL
+    hung = [broken(value, width - head, pen) for value in values]
+    lines: list[str] = []
+    for name, (first, *others) in zip(heads, hung, strict=True):
+        lines.append(f"{name.text} &= {first.text}".strip())
+        lines += [f"&{_indented(line)}" for line in others]
+    is_broken = len(lines) > len(hung)
+    needed = head + max(map(widest, hung))
+    inside = pen.joined(lines, is_high)
+    return Display(inside, needed, "aligned", lines=len(lines), is_broken=is_broken)
+
+
+def _definitions(
+    names: Sequence[Formula], values: Sequence[Formula], width: float, pen: LatexPen
+) -> Display:
+    """Short ones side by side, as many as fit on a line; long ones broken."""
+    blocks: list[tuple[list[str], float]] = []
+    for name, value in zip(names, values, strict=True):
+        head = pen.write(name)
+        room = head.width + EQUAL
+        hung = broken(value, width - room, pen)
+        lines = [f"{head.text} = {hung[0].text}", *map(_indented, hung[1:])]
+        blocks.append((lines, room + widest(hung)))
+    needed = max(own for _, own in blocks)
+    lines = _packed(blocks, width)
+    return Display(pen.joined(lines, False), needed, "gathered", lines=len(lines))
+
+
+def _indented(line: Segment) -> str:
+    return rf"{INDENT * (1 + line.level)} {{}}{line.text}"
 
 
 def broken(formula: Formula, width: float, pen: LatexPen) -> list[Segment]:
-    """The lines of a formula; within high brackets it is broken only if nothing else will do."""
-    lines = break_lines(pen.write(formula), width, QUAD)
-    if widest(lines) <= width:
-        return lines
-    loose = break_lines(replace(pen, loose=True).write(formula), width, QUAD)
-    return min(lines, loose, key=widest)
+    """The lines of a formula; within high brackets it is broken only if nothing else will do.
+
+    Lines after the first are indented, see `widest`.
+    """
+    for indents in range(1, _MOST_INDENTS):  # its lines are to fit with their indents
+        room = width - indents * QUAD
+        lines = break_lines(pen.write(formula), room, QUAD)
+        if widest(lines) > room:
+            loose = break_lines(replace(pen, loose=True).write(formula), room, QUAD)
+            lines = min(lines, loose, key=widest)
+        if widest(lines) <= width:
+            break
+    return lines
 
 
 def widest(lines: Sequence[Segment]) -> float:
     """The width of the widest line; those after the first are indented."""
     first, *others = lines
     return max(first.width, *(QUAD * (1 + line.level) + line.width for line in others), 0.0)
-
-
-class _Setter:
-    """Sets equations with one pen."""
-
-    def __init__(self, letters: Letters, pen: LatexPen) -> None:
-        self.letters = letters
-        self.pen = pen
-
-    def display(self, equation: Equation, width: float) -> Display:
-        # in another notation a rate may be its own definition
-        sides = tuple(dict.fromkeys(map(self.letters.notation.applied, equation.sides)))
-        matrix = equation.matrix
-        if equation.scalar is not None:
-            # a value stands on one line with its sides, or below them
-            definition = [equal(*sides[1:])] if sides[1:] else []
-            sides = (sides[0], *definition, formula_of(equation.scalar, self.letters))
-        if equation.scalar is not None or matrix is None:
-            whole = self.pen.write(equal(*sides))
-            if whole.width <= width or len(sides) == 1:
-                return Display(whole.text, whole.width)
-            first, *others = sides
-            heads = [first, *[NOTHING] * (len(others) - 1)]
-            return self._listing(heads, others, width, is_high=True)
-        if not sides:
-            return self._definitions(equation.entries, matrix, width)
-        factor, rest = factored(matrix)  # a fraction that all entries hold
-        full: Formula = matrix_of(rest, self.letters)
-        full = full if factor == 1 else row(formula_of(factor, self.letters), full)
-        for form in self._forms(sides, full, self.pen):
-            if form.width <= width:
-                return form
-        if matrix.shape[1] > 1:
-            for form in self._forms(sides, full, replace(self.pen, short=True)):
-                if form.width <= width:
-                    return form._replace(done="abbreviated")
-        names, entries = zip(*listed_entries(equation.names, matrix), strict=True)
-        values = [formula_of(entry, self.letters) for entry in entries]
-        return self._listing(names, values, width)._replace(done="listed")
-
-    def _forms(self, sides: Sequence[Formula], matrix: Formula, pen: LatexPen) -> Iterator[Display]:
-        """The equation on one line; broken before its last equals sign; and then farther left."""
-        whole = pen.write(equal(*sides, matrix))
-        yield Display(whole.text, whole.width)
-        if len(sides) > 1:
-            first, above, last = map(pen.write, (sides[0], equal(*sides[1:]), matrix))
-            needed = first.width + EQUAL + max(above.width, last.width)
-            lines = (f"{first.text} &= {above.text}", f"&= {last.text}")
-            yield Display(pen.joined(lines, True), needed, "aligned")
-            needed = EQUAL + max(first.width + above.width, QUAD + last.width)
-            lines = (f"&{first.text} = {above.text}", rf"&{INDENT} {{}} = {last.text}")
-            yield Display(pen.joined(lines, True), needed, "aligned")
-
-    def _listing(
-        self,
-        names: Sequence[Formula],
-        values: Sequence[Formula],
-        width: float,
-        *,
-        is_high: bool = False,
-    ) -> Display:
-        """Each value behind its name and a sign, long ones broken at + and −."""
-        heads = [self.pen.write(name) for name in names]
-        head = max(piece.width for piece in heads) + EQUAL
-        rows: list[_Row] = []
-        needed = 0.0
-        for name, value in zip(heads, values, strict=True):
-            (first, *others), own = self._hanging(value, width - head)
-            rows.append(first._replace(text=f"{name.text} &= {first.text}".strip()))
-            rows += [row._replace(text=f"&{row.text}") for row in others]
-            needed = max(needed, own)
-        return self._below_one_another("aligned", rows, head + needed, is_high)
-
-    def _definitions(
-        self, names: Sequence[Formula], matrix: sp.ImmutableMatrix, width: float
-    ) -> Display:
-        """Short ones side by side, as many as fit on a line; long ones broken."""
-        blocks: list[tuple[Sequence[_Row], float]] = []
-        for name, value in zip(names, matrix, strict=True):
-            head = self.pen.write(name)
-            room = head.width + EQUAL
-            value_rows, own = self._hanging(formula_of(value, self.letters), width - room)
-            first = value_rows[0]._replace(text=f"{head.text} = {value_rows[0].text}")
-            blocks.append(((first, *value_rows[1:]), room + own))
-        needed = max(own for _, own in blocks)
-        return self._below_one_another("gathered", _packed(blocks, width), needed)
-
-    def _below_one_another(
-        self,
-        kind: Literal["aligned", "gathered"],
-        rows: Sequence[_Row],
-        width: float,
-        is_high: bool = False,
-    ) -> Display:
-        inside = self.pen.joined((row.text for row in rows), is_high)
-        height = sum(2.4 if row.is_high else 1.3 for row in rows)
-        return Display(inside, width, kind, lines=len(rows), height=height)
-
-    def _hanging(self, formula: Formula, room: float) -> tuple[list[_Row], float]:
-        """A formula, broken at + and − where it is long; with the greatest width."""
-        for indents in range(1, _MOST_INDENTS):  # its lines are to fit with their indents
-            lines = broken(formula, room - indents * QUAD, self.pen)
-            if widest(lines) <= room:
-                break
-        first, *others = lines
-        is_high = bool(self.pen.write(formula).height)
-        indented = [rf"{INDENT * (1 + line.level)} {{}}{line.text}" for line in others]
-        return [_Row(text, is_high) for text in (first.text, *indented)], widest(lines)

@@ -34,7 +34,7 @@ _DELIMITERS = {
 _LINE = 41.5  # ems: 160 mm at 11 points
 _LINE_OF_A_SOURCE = 95  # letters
 _TOGETHER = 8  # lines of a table that stay on one page
-_TALL = 30  # lines of text, of about fifty on a page: more than these may part
+_TALL = 14  # lines of a display, of about 25 high ones on a page: more than these may part
 
 
 def render(document: Document) -> str:
@@ -116,7 +116,7 @@ class _LatexPrinter(NotePrinter):
         if equation.number and equation.number - 1 not in (0, *numbers):
             # the numbers of a theory leave some out, and TeX counts the equations
             lines.append(rf"\setcounter{{equation}}{{{equation.number - 1}}}")
-        if shown.height > _TALL:
+        if shown.lines > _TALL:
             # lines between which a page may end, which a box would keep together
             environment = shown.environment.replace("ed", "*")  # align* for aligned
             lines += [rf"{{\freely\begin{{{environment}}}", shown.inside]
