@@ -204,16 +204,10 @@ def _indented(line: Segment) -> str:
 
 
 def broken(formula: Formula, width: float, pen: LatexPen) -> list[Segment]:
-    """The lines of a formula; within high brackets it is broken only if nothing else will do.
-
-    Lines after the first are indented, see `widest`.
-    """
+    """The lines of a formula; those after the first are indented, see `widest`."""
     for indents in range(1, _MOST_INDENTS):  # its lines are to fit with their indents
         room = width - indents * QUAD
         lines = break_lines(pen.write(formula), room, QUAD)
-        if widest(lines) > room:
-            loose = break_lines(replace(pen, loose=True).write(formula), room, QUAD)
-            lines = min(lines, loose, key=widest)
         if widest(lines) <= width:
             break
     return lines

@@ -7,7 +7,6 @@ compares.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
 from itertools import pairwise
 from typing import ClassVar
 
@@ -28,6 +27,8 @@ BRACKET = 0.39
 COLUMN_GAP = 0.92
 TALL_BRACKETS = 1.62
 BIG = 1.45
+LARGE = 0.25  # by which a large bracket is wider
+WIDE_GAP = r"\qquad "
 
 _GREEK_WIDTHS = {
     **dict.fromkeys("ιεδ", 0.49),
@@ -49,7 +50,7 @@ _WIDTHS = {
 }
 _WORD = 0.87  # width of letters in a word, which are set closer
 _CAPITAL, _UNKNOWN = 0.92, 1.0
-_SIGN_WIDTHS = {"+": 1.23, "−": 1.23, "±": 1.23, "=": EQUAL}
+_SIGN_WIDTHS = {"+": 1.23, "−": 1.23, "±": 1.23, "=": EQUAL, "": 2 * QUAD}
 _SIGN_WIDTHS |= {"·": 0.8, "/": 0.5, ",": 0.45, ";": 0.45}
 _FUNCTION_WIDTHS = {"sin": 1.24, "cos": 1.34, "tan": 1.46, "cot": 1.34, "det": 1.39}
 _FACES = {  # and how much wider they are
@@ -59,10 +60,9 @@ _FACES = {  # and how much wider they are
     "sans": (r"\mathsf {}", 1.05),
     "italic": ("{}", 1.0),
 }
-_SIGNS = {"−": "-"} | {sign: f"{macro} " for macro, sign in SIGNS.items()}
-_PRIMES = {"": ("", 0.0), "′": ("'", PRIME), "ᴮ": (r"^{\mathrm{B}}", SCRIPT)}
+_SIGNS = {"−": "-", "": WIDE_GAP} | {sign: f"{macro} " for macro, sign in SIGNS.items()}
 _DOTS = ("{}", r"\dot{{{}}}", r"\ddot{{{}}}")
-_FLAT, _LARGE, _STRETCHED = ("", "", 0.0), (r"\Bigl", r"\Bigr", 0.25), (r"\left", r"\right", 0.35)
+_ROW_GAPS = (2, 5, 10)  # points between the rows of a matrix, by the height of their entries
 _BIG = {"∑": r"\sum", "∫": r"\int"}
 _RAISED = tree.Row | tree.Fraction | tree.Power | tree.FunctionCall  # in brackets, as a base
 
@@ -94,9 +94,10 @@ class LatexPen(Pen):
         text = _DOTS[node.dots].format(face.format(text))
         if node.dots and node.prime:
             text += self.after_accent
-        prime, room = _PRIMES[node.prime]
-        width = sum(map(_letter_width, node.letter)) * factor * (_WORD if is_word else 1.0) + room
-        piece = atom(text + prime, width)
+        if node.prime:
+            text += "'"
+        width = sum(map(_letter_width, node.letter)) * factor * (_WORD if is_word else 1.0)
+        piece = atom(text, width + (PRIME if node.prime else 0.0))
         return piece if node.index is None else self._with_index(piece, node.index)
 
     def indexed(self, node: tree.Indexed) -> Piece:
@@ -157,14 +158,11 @@ class LatexPen(Pen):
         if isinstance(base, _RAISED):
             base = tree.Bracket(base)
         if isinstance(base, tree.Bracket):
-            within = self.node(base.inside)
-            if self._size_around(within) != _STRETCHED:
-                return self.around(within, base.kind, exponent, room)
+            return self.around(self.node(base.inside), base.kind, exponent, room)
         inside = self.node(base)
         # a prime is a superscript, and TeX takes one superscript only
         is_whole = isinstance(base, tree.Rate | tree.Radical) or (
-            isinstance(base, tree.Symbol)
-            and (base.prime == "ᴮ" or (base.prime and base.index is not None))
+            isinstance(base, tree.Symbol) and base.prime and base.index is not None
         )
         text = f"{{{inside.text}}}" if is_whole else inside.text
         return atom(text + exponent, inside.width + room, Binding.POWER, inside.height)
@@ -177,54 +175,32 @@ class LatexPen(Pen):
         """The quotient of differentials; it comes before what is in brackets."""
         if isinstance(node.of, tree.Bracket):
             return self.glued((self.rate(tree.Rate(tree.row(), node.order)), self.node(node.of)))
-        whole = _quotient(*self.differentials(node), Height.RATE)
-        return atom(whole.text, whole.width * (SCRIPT if self.small else 1.0), height=Height.RATE)
-
-    def bracket(self, node: tree.Bracket) -> Piece:
-        return self.around(self.node(node.inside), node.kind)
+        return _quotient(*self.differentials(node), Height.RATE)
 
     def around(self, inside: Piece, kind: str, exponent: str = "", room: float = 0.0) -> Piece:
-        size = left, right, larger = self._size_around(inside)
-        width = BRACKET + larger
+        # Brackets of a fixed size may stand on different lines, unlike those of \left and \right.
+        left, right = (r"\Bigl", r"\Bigr") if inside.height else ("", "")
+        width = BRACKET + (LARGE if inside.height else 0.0)
         # the last line may hold nothing else of the bracket
         end = atom(right + kind[1] + exponent, width + room)
-        whole = self.within(atom(left + kind[0], width), inside, end)
-        return whole.solid() if size == _STRETCHED else whole
-
-    def _size_around(self, inside: Piece) -> tuple[str, str, float]:
-        """No line can end within brackets that are stretched."""
-        if inside.height == Height.FLAT:
-            return _FLAT
-        return _LARGE if inside.height == Height.RATE or self.loose else _STRETCHED
+        return self.within(atom(left + kind[0], width), inside, end)
 
     def radical(self, node: tree.Radical) -> Piece:
         inside = self.node(node.inside)
-        height = Height.ROOTED if inside.height >= Height.TALL else inside.height
-        return atom(rf"\sqrt{{{inside.text}}}", inside.width + ROOT, height=height)
+        return atom(rf"\sqrt{{{inside.text}}}", inside.width + ROOT, height=inside.height)
 
     def matrix(self, node: tree.Matrix) -> Piece:
-        small = replace(self, small=True)
-        rows: list[list[Piece]] = []
-        for line in node.rows:
-            # a rate in a matrix is in small type, unless a fraction beside it is not
-            pieces = ((small.write(entry), entry) for entry in line)
-            rows.append([p if p.height <= Height.RATE else self.write(e) for p, e in pieces])
+        rows = [[self.write(entry) for entry in line] for line in node.rows]
         columns = [max(entry.width for entry in column) for column in zip(*rows, strict=True)]
         width = sum(columns) + COLUMN_GAP * (len(columns) - 1) + TALL_BRACKETS
         # fractions in their full height, but for those within others
-        high = {True: r"\displaystyle ", False: ""}
-        texts = [" & ".join(high[e.height >= Height.TALL] + e.text for e in row) for row in rows]
-        text = texts[0]
-        for (above, below), next_line in zip(pairwise(rows), texts[1:], strict=True):
-            upper, lower = (max(entry.height for entry in cells) for cells in (above, below))
-            # points: dots want some air, fractions more, and roots in them most
-            if max(upper, lower) == Height.RATE:
-                distance = 5
-            elif upper:
-                distance = 13 if Height.ROOTED in (upper, lower) else 10
-            else:
-                distance = 7 if lower else 2
-            text += self.row_end.format(distance) + next_line
+        size = {True: r"\displaystyle ", False: ""}
+        first, *others = (
+            " & ".join(size[e.height == Height.TALL] + e.text for e in row) for row in rows
+        )
+        gaps = map(max, pairwise(max(entry.height for entry in row) for row in rows))
+        ends = (self.row_end.format(_ROW_GAPS[height]) for height in gaps)
+        text = first + "".join(map("".join, zip(ends, others, strict=True)))
         return atom(environment("pmatrix", text), width, Binding.BRACKET, Height.TALL)
 
     def big(self, node: tree.Big) -> Piece:
@@ -237,9 +213,6 @@ class LatexPen(Pen):
 
     def differential(self, node: tree.Differential) -> Piece:
         return atom(r"\partial " if node.letter == "∂" else node.letter, 0.62)
-
-    def gap(self, _: tree.Gap) -> Piece:
-        return atom(WIDE_GAP, 2 * QUAD)
 
     def joined(self, lines: Iterable[str], is_high: bool) -> str:
         """Lines below one another; whether they are high."""
@@ -260,9 +233,6 @@ class WebPen(LatexPen):
 
     row_end: ClassVar[str] = " \\\\\n"
     after_accent: ClassVar[str] = ""
-
-
-WIDE_GAP = r"\qquad "
 
 
 def environment(name: str, inside: str) -> str:

@@ -16,7 +16,6 @@ from rigidsym.formula import tree
 CHOICES: Mapping[str, tuple[str, ...]] = {
     "rates": ("dot", "fraction"),
     "vectors": ("bold", "arrow"),
-    "body": ("prime", "superscript"),
     "angular_velocity": ("Omega", "omega"),
 }
 
@@ -36,7 +35,6 @@ class Notation:
 
     rates: str = "dot"
     vectors: str = "bold"
-    body: str = "prime"
     angular_velocity: str = "Omega"
     vector: str = "v"  # the letter of the vector that the coordinates are components of
 
@@ -75,9 +73,6 @@ def _applied(node: tree.Formula, notation: Notation) -> tree.Formula:
     match node:
         case tree.Symbol():
             return _symbol(node, notation)
-        # A letter has one superscript only, and an exponent would be the second.
-        case tree.Power(tree.Symbol(prime="′"), exponent) if notation.body == "superscript":
-            return tree.Power(tree.Bracket(_applied(node.base, notation)), exponent)
         # A power of φ̇ becomes one of dφ/dt, which needs brackets as a base.
         case tree.Power(tree.Symbol(dots=dots), exponent) if dots and notation.rates == "fraction":
             return tree.Power(tree.Bracket(_applied(node.base, notation)), exponent)
@@ -108,8 +103,6 @@ def _symbol(symbol: tree.Symbol, notation: Notation) -> tree.Formula:
         symbol = replace(symbol, letter=notation.vector)
     if notation.angular_velocity == "omega" and symbol.letter == "Ω":
         symbol = replace(symbol, letter="ω")
-    if notation.body == "superscript" and symbol.prime:
-        symbol = replace(symbol, prime="ᴮ")
     if notation.vectors == "arrow" and symbol.face == "bold" and symbol.letter in _VECTORS:
         symbol = replace(symbol, face="arrow")
     if notation.rates == "fraction" and symbol.dots:

@@ -17,8 +17,7 @@ from rigidsym.formula import tree
 from rigidsym.formula.notation import DEFAULT, Notation
 
 DIVISOR = 50  # a divisor's brackets are as deep as so many others: 1/(1 + n²) is broken last
-RELATIONS = "=≤<⇔"
-BREAKS = f"+−±{RELATIONS}"
+BREAKS = "+−±=≤<⇔"  # signs that may begin a line
 
 
 class Binding(IntEnum):
@@ -38,9 +37,8 @@ class Height(IntEnum):
     """How high a piece stands beside a line of letters."""
 
     FLAT = 0
-    RATE = 1  # dφ/dt, which large brackets of a fixed size embrace
+    RATE = 1  # dφ/dt, which is in small type within a matrix
     TALL = 2
-    ROOTED = 3  # with a root, which is deeper
 
 
 class Segment(NamedTuple):
@@ -52,7 +50,7 @@ class Segment(NamedTuple):
 
 
 _EMPTY = Segment("", 0.0)
-_NO_FACTORS, _TIMES = (tree.Sign, tree.Gap, tree.Words), tree.Sign("·")
+_NO_FACTORS, _TIMES = (tree.Sign, tree.Words), tree.Sign("·")
 
 
 class Piece(NamedTuple):
@@ -66,10 +64,6 @@ class Piece(NamedTuple):
     @property
     def text(self) -> str:
         return " ".join(chunk.text for chunk in self.chunks).rstrip()
-
-    def solid(self) -> Piece:
-        """The same, which nothing can break."""
-        return self._replace(chunks=(Segment(self.text, self.width),))
 
     def deeper(self, level: int) -> Piece:
         """The same, so many brackets deeper."""
@@ -95,9 +89,7 @@ class Pen:
 
     notation: Notation = DEFAULT
     _: KW_ONLY
-    loose: bool = False  # whether a line may end within high brackets
     short: bool = False  # whether s_θ and c_θ stand for sine and cosine
-    small: bool = False  # whether dφ/dt is in small type, as within a matrix
 
     blank: ClassVar[float] = 0.0  # width of the blank between two chunks
     sign: ClassVar[Callable[..., Piece]]  # of a Sign; `is_binary` between two parts
@@ -121,17 +113,16 @@ class Pen:
         pieces: list[Piece] = []
         before: tree.Formula | None = None
         for place, part in enumerate(node.parts):
+            is_behind_sign = before is None or isinstance(before, tree.Sign)
             if isinstance(part, tree.Sign):
-                is_binary = before is not None and not isinstance(before, tree.Sign)
-                sign = self.sign(part, is_binary=is_binary and not is_tight)
-                if is_binary and part.character in BREAKS:
+                sign = self.sign(part, is_binary=not (is_behind_sign or is_tight))
+                if not is_behind_sign and part.character in BREAKS:
                     # An empty chunk before a sign between two terms is a place where a line may
                     # end.
                     sign = sign._replace(chunks=(_EMPTY, *sign.chunks))
                 pieces.append(sign)
             else:
-                is_beside = before is not None and not isinstance(before, tree.Sign | tree.Gap)
-                if is_beside and not is_tight:
+                if not (is_behind_sign or is_tight):
                     pieces.append(self.between(before, part))
                 beside = (*node.parts[:place][-1:], *node.parts[place + 1 :][:1])
                 is_alone = all(isinstance(p, _NO_FACTORS) and p != _TIMES for p in beside)
@@ -153,19 +144,13 @@ class Pen:
 
     def glued(self, pieces: Iterable[Piece], binding: Binding = Binding.CALL) -> Piece:
         """Pieces side by side, which break where each of them does."""
-        chunks: list[Segment] = []
-        text, width, level = _EMPTY
-        height = Height.FLAT
+        chunks, height = [_EMPTY], Height.FLAT
         for piece in pieces:
             # No line may end between two pieces: the last chunk of one and the first of the next
             # are joined.
-            first, *others = piece.chunks
-            text, width = text + first.text, width + first.width
+            (text, width, level), (first, *others) = chunks.pop(), piece.chunks
+            chunks += (Segment(text + first.text, width + first.width, level), *others)
             height = max(height, piece.height)
-            if others:
-                chunks += (Segment(text, width, level), *others)
-                text, width, level = chunks.pop()
-        chunks.append(Segment(text, width, level))
         return Piece(tuple(chunks), _width(chunks, self.blank), binding, height)
 
     def within(self, opening: Piece, inside: Piece, closing: Piece, level: int = 1) -> Piece:
@@ -179,6 +164,9 @@ class Pen:
     def apply(self, node: tree.Apply) -> Piece:
         applied = self.around(self.node(node.inside), "()")
         return self.glued((self.node(node.head), applied), Binding.BRACKET)
+
+    def bracket(self, node: tree.Bracket) -> Piece:
+        return self.around(self.node(node.inside), node.kind)
 
     def differentials(self, rate: tree.Rate) -> tuple[Piece, Piece]:
         """What stands above and below the line: d²x and dt²."""
@@ -216,7 +204,7 @@ def break_lines(piece: Piece, width: float, indent: float, blank: float = 0.0) -
     """
     lines = _lines(piece.chunks, width, indent, blank)
     # Brackets in a divisor count DIVISOR in a level; both kinds indent by one step.
-    levels = [0, *(line[0].level % DIVISOR + line[0].level // DIVISOR for line in lines[1:])]
+    levels = [0, *(sum(divmod(line[0].level, DIVISOR)) for line in lines[1:])]
     return [
         Segment(" ".join(chunk.text for chunk in line), _width(line, blank), level)
         for line, level in zip(lines, levels, strict=True)

@@ -54,8 +54,8 @@ _ATOMS: dict[str, tree.Formula] = {
     r"\sum": tree.Big("∑"),
     r"\int": tree.Big("∫"),
     r"\partial": tree.Differential("∂"),
-    r"\quad": tree.Gap(),
-    r"\qquad": tree.Gap(),
+    r"\quad": tree.GAP,
+    r"\qquad": tree.GAP,
 }
 _FACES: dict[str, tree.Face] = {
     r"\mathbf": "bold",

@@ -12,7 +12,7 @@ from itertools import product
 from typing import Any, Literal
 
 Face = Literal["italic", "bold", "arrow", "upright", "sans"]
-Prime = Literal["", "′", "ᴮ"]
+Prime = Literal["", "′"]
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -63,11 +63,6 @@ class Sign(Formula):
     """An operation or a relation between two parts of a row, or a comma: + − = × · / , ≤."""
 
     character: str
-
-
-@dataclass(frozen=True, slots=True, repr=False)
-class Gap(Formula):
-    """Wide space between two equations on a line."""
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -165,6 +160,7 @@ class Matrix(Formula):
 
 WRITERS: dict[str, Callable[[], Any]] = {}  # the package enters its pens here
 NOTHING = Row(())
+GAP = Sign("")  # wide space between two equations on a line
 EQUALS, PLUS, MINUS, COMMA = Sign("="), Sign("+"), Sign("−"), Sign(",")
 TRANSPOSE = Symbol("T", "sans")
 

@@ -110,9 +110,6 @@ class UnicodePen(Pen):
         above, below = self.differentials(node)
         return self.glued((above, _atom("/"), below))
 
-    def bracket(self, node: tree.Bracket) -> Piece:
-        return self.around(self.node(node.inside), node.kind)
-
     def around(self, inside: Piece, kind: str = "()") -> Piece:
         return self.within(_atom(kind[0]), inside, _atom(kind[1]))
 
@@ -133,9 +130,6 @@ class UnicodePen(Pen):
 
     def differential(self, node: tree.Differential) -> Piece:
         return _atom(node.letter)
-
-    def gap(self, _: tree.Gap) -> Piece:
-        return _atom("")
 
     def _at_least(self, binding: Binding, piece: Piece) -> Piece:
         """The piece, in brackets where it is held together less tightly."""

@@ -137,12 +137,7 @@ def test_a_file_chooses_the_style_and_the_record_knows_it():
     assert "style" not in replace(spec, style="lecture").to_data()
 
 
-OTHER = {
-    "rates": "fraction",
-    "vectors": "arrow",
-    "body": "superscript",
-    "angular_velocity": "omega",
-}
+OTHER = {"rates": "fraction", "vectors": "arrow", "angular_velocity": "omega"}
 
 
 def test_symbols_in_another_notation(answered):
@@ -172,7 +167,7 @@ def test_no_symbol_is_left_in_the_old_notation():
         motion.note().html().split("</style>")[1],
         show(motion, notation=motion.notation),
     )
-    tex, characters = (r"\dot{", r"\ddot{", r"\Omega", "x'", r"\boldsymbol"), "\u0307\u0308Ω′˙𝛀"
+    tex, characters = (r"\dot{", r"\ddot{", r"\Omega", r"\boldsymbol"), "\u0307\u0308Ω˙𝛀"
     assert [old for old in tex for text in shown[:2] if old in text] == []
     assert [old for old in characters for text in shown[2:] if old in text] == []
     bundle = motion.step("angular_velocity_body")._repr_mimebundle_()
@@ -182,7 +177,7 @@ def test_no_symbol_is_left_in_the_old_notation():
 
 
 @pytest.mark.usefixtures("tex")
-@pytest.mark.parametrize("choices", [OTHER, {"rates": "fraction"}, {"body": "superscript"}])
+@pytest.mark.parametrize("choices", [OTHER, {"rates": "fraction"}])
 def test_notes_compile_without_a_warning_in_every_notation(choices):
     motions = (derived("ZXZ"), derived("xyz", passive=True))
     notes = [motion.with_notation(**choices).note().latex() for motion in motions]
@@ -221,12 +216,12 @@ def test_an_angle_called_omega_is_not_mistaken_for_the_angular_velocity(name):
 
 
 def test_options_go_before_the_file_and_check_knows_them(tmp_path: Path):
-    text = '[rotation]\nsequence = "ZXZ"\n[notation]\nrates = "fraction"\nbody = "superscript"\n'
+    text = '[rotation]\nsequence = "ZXZ"\n[notation]\nrates = "fraction"\nvectors = "arrow"\n'
     (tmp_path / "top.toml").write_text(text, "utf-8")
     done = call("run", "top.toml", "--rates", "dot", "--out", "out", cwd=tmp_path)
     assert "φ̇ sin θ sin ψ" in done.stdout
-    assert "Ωᴮ" in done.stdout
+    assert "Ω⃗′" in done.stdout
     record = json.loads((tmp_path / "out/top/top.json").read_text("utf-8"))
     notation = record["request"]["notation"]
-    assert (notation["rates"], notation["body"]) == ("dot", "superscript")
+    assert (notation["rates"], notation["vectors"]) == ("dot", "arrow")
     call("check", "out", cwd=tmp_path)
