@@ -144,9 +144,9 @@ class _Screen:
         assert matrix is not None
         if sides:
             rows = [[self.text([e]) for e in row] for row in matrix_of(matrix, self.letters).rows]
-            below = [whole.rstrip()]
-            places = (([], whole), ([], head), (below, 2 * _INDENT))
-            for (above, start), is_tight in product(places, (False, True)):
+            below = 2 * _INDENT
+            for start, is_tight in product((whole, head, below), (False, True)):
+                above = [whole.rstrip()] if start == below else []
                 lines = [*above, *grid(start, rows, is_tight=is_tight)]
                 if max(map(columns, lines)) <= self.width:
                     self.lines += lines
@@ -255,9 +255,9 @@ def grid(prefix: str, rows: Sequence[Sequence[str]], *, is_tight: bool) -> list[
         cells = zip(row, before, rooms, strict=True)
         inside.append(gap.join(" " * b + text + " " * (room - b) for text, b, room in cells))
     last = len(rows) - 1
-    brackets = ["⎡⎤", *["⎢⎥"] * (last - 1), "⎣⎦"] if last else ["[]"]
+    lefts, rights = (f"⎡{'⎢' * (last - 1)}⎣", f"⎤{'⎥' * (last - 1)}⎦") if last else ("[", "]")
     blank = " " * columns(prefix)
     return [
         f"{prefix if place == last // 2 else blank}{left}{margin}{line}{margin}{right}"
-        for place, (line, (left, right)) in enumerate(zip(inside, brackets, strict=True))
+        for place, (left, line, right) in enumerate(zip(lefts, inside, rights, strict=True))
     ]
