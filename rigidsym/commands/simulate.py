@@ -17,7 +17,6 @@ from rigidsym.motion import Motion
 from rigidsym.pipeline import motion_of, read
 from rigidsym.simulation.problem import NEEDED
 from rigidsym.simulation.solver import METHODS
-from rigidsym.simulation.trajectory import PICTURES, check_picture
 from rigidsym.system.files import write_text
 from rigidsym.system.processes import bar
 
@@ -28,12 +27,11 @@ if TYPE_CHECKING:
 @make("simulate", method=METHODS)
 def command(source: str, **options: Any) -> None:
     """Simulate the motion that a derivation file with [dynamics] describes."""
-    out, plot, animate = (options[name] for name in ("out", "plot", "animate"))
+    out, animate = options["out"], options["animate"]
     if out is not None:
         check_ending(out)
-    for path, endings in ((plot, PICTURES), (animate, (".html",))):
-        if path is not None:
-            check_picture(path, endings)
+    if animate is not None and animate.suffix != ".html":
+        raise ModelError(f"{animate}: expected a file that ends in .html")
     motion = _motion(source, is_page=animate is not None)
     examples = motion.forces.examples if motion.forces else ()
     example = examples[0] if examples else Example({}, {}, 10.0)
@@ -52,8 +50,6 @@ def command(source: str, **options: Any) -> None:
     click.echo(result.report())
     if out is not None:
         _write(result, out)
-    if plot is not None:
-        click.echo(result.plot(plot))
     if animate is not None:
         start = dict(constants)
         for k, name in enumerate(result.coordinates):

@@ -153,7 +153,7 @@ def check_shown(derivation: Derivation) -> None:
         raise ModelError(
             f"{derivation.name}: there is no live page of this motion, since its figure is one "
             "body about a fixed point, and other parts move with this body; expected a note "
-            "(`rigidsym run`) or a picture of the motion (`rigidsym simulate --plot`)"
+            "(`rigidsym run`) or a table of the motion (`rigidsym simulate --out`)"
         )
 
 

@@ -353,7 +353,6 @@ class Problem:
             rotation_matrix=self.rotation(states),
             first_integrals=integrals,
             inertia=self.inertia,
-            is_in_angles={*self.model.coordinate_units} == {"rad"},
             ended=ended,
             remarks=tuple(remarks),
         )

@@ -147,7 +147,6 @@ def test_each_error_is_provoked(kind, tmp_path, monkeypatch):
     [
         ("polars", "data", "inertia a.parquet"),
         ("scipy.integrate", "simulate", "simulate heavy_symmetric_top --out r.csv"),
-        ("matplotlib.figure", "plot", "simulate heavy_symmetric_top --plot r.svg"),
     ],
 )
 def test_a_missing_package_is_named_by_its_extra(package, extra, command, tmp_path, monkeypatch):
