@@ -4,8 +4,7 @@ First the free body: Poinsot's construction, its principal axes and the exact so
 Lifshitz, Mechanics, sections 33, 36 and 37). Then the motion in one dimension that remains if all
 momenta but one are constant, as for the heavy top: the coordinate θ moves in its effective
 potential, which also gives the rates of the others, dq_j/dt = ∂V_eff/∂p_j. If θ occurs in sines and
-cosines only, u = cos θ makes the energy u̇² = f(u); if f is a cubic polynomial, u is Jacobi's sn,
-and a hyperbolic function if two of its roots meet.
+cosines only, u = cos θ makes the energy u̇² = f(u), for a top with a cubic polynomial f.
 
 The sentences are the macros of these names in templates/notes/en/consequences.md.jinja.
 """
@@ -13,7 +12,7 @@ The sentences are the macros of these names in templates/notes/en/consequences.m
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from functools import cached_property, partial
+from functools import partial
 from typing import Any, TypeAlias
 
 import sympy as sp
@@ -30,7 +29,6 @@ from rigidsym.models.rotation import TIME, elementary
 Written: TypeAlias = str | Formula | sp.Expr  # a formula, as it is typed or read, or an expression
 _LENGTH, _ENERGY = claims.LENGTH_SYMBOL, claims.ENERGY_SYMBOL
 _LONGEST = 40  # operations of a condition for steady motion that tells a reader anything
-_LAMBDA, _FIRST, _SECOND, _THIRD, _MODULUS = sp.symbols("lambda u_1 u_2 u_3 k")
 
 
 def _consequence(
@@ -174,28 +172,20 @@ def _asymmetric(subject: str, moments: Sequence[sp.Expr]) -> Consequence:
     )
 
 
-def _name(coordinate: sp.Expr, order: int = 0) -> Formula:
-    """Of a coordinate or one of its time derivatives."""
-    return named(coordinate.func.__name__, order)
-
-
 class OneDimension:
     """The coordinate θ and its effective potential; the other momenta are constant."""
 
     def __init__(self, work: Any, k: int) -> None:
         """Of the k-th coordinate in `dynamics.lagrange.LagrangeEquations`."""
-        q, symbols = work.model.coordinates, work.arguments["momenta"].symbols
-        momenta, others = work.present.matrix(work.momenta), [*range(len(q))]
+        q, momenta = work.model.coordinates, work.present.matrix(work.momenta)
         # All but the k-th coordinate are ignorable.
-        others.remove(k)
-        self.name, self.q = work.model.name, q[k]
-        self.rate = sp.diff(self.q, TIME)
+        others = [j for j in range(len(q)) if j != k]
+        self.subject, self.q, self.rate = work.model.name, q[k], sp.diff(q[k], TIME)
         self.mass = work.present.matrix(work.mass_matrix)[k, k]  # m, of ½ m θ̇²
         self.potential = work.effective  # V_eff in θ and p_j
         self.acceleration = work.present.matrix(*work.solved)[k]
-        self.ignorable = [q[j] for j in others]
-        self.rates = [sp.diff(x, TIME) for x in self.ignorable]
-        self.momenta = {symbols[j]: momenta[j] for j in others}  # p_j
+        self.momenta = {work.arguments["momenta"].symbols[j]: momenta[j] for j in others}  # p_j
+        self.rates = {sp.diff(q[j], TIME): q[j] for j in others}
         # the energy, cos θ, and all momenta if they are equal, in letters that nobody has taken
         taken = {symbol.name for symbol in work.whole.free_symbols}
         self.E, self.u, self.p = (sp.Symbol(n + "_0" * (n in taken)) for n in ("E", "u", "p"))
@@ -203,13 +193,23 @@ class OneDimension:
 
     def consequences(self) -> Iterator[Consequence]:
         value = self.mass * self.rate**2 / 2 + self.potential
-        claim, residual = r"E = \tfrac{1}{2}m\dot{q}^2 + V_{\mathrm{eff}}", self.E - value
-        yield self._follows("effective_potential", "E", value, claim, residual, q=self.q)
-        yield from self._others()
-        yield from self._steady()
-        if self.in_cosine is not None and not self.mass.has(self.q):
-            yield from self._sleeping(self.in_cosine)
-            yield from self._nutation(self.in_cosine)
+        claim = r"E = \tfrac{1}{2}m\dot{q}^2 + V_{\mathrm{eff}}"
+        yield self._follows("effective_potential", "E", value, claim, self.E - value, q=self.q)
+        name, claim = "other_coordinates", r"\dot{q} = \frac{\partial V_{\mathrm{eff}}}{\partial p}"
+        for (rate, q), p in zip(self.rates.items(), self.momenta, strict=True):
+            # each term as one fraction, with its factors if that is shorter
+            terms = sp.Add.make_args(sp.diff(self.potential, p))
+            value = sp.Add(*(min(sp.cancel(e), sp.factor(e), key=sp.count_ops) for e in terms))
+            spans = {"own": _name(self.q), "angle": _name(q), "rate": _name(q, order=1)}
+            yield self._follows(name, rate, value, claim, rate - value, **spans)
+            name = "another_coordinate"
+        if len(self.rates) == 2:
+            yield from self._steady()
+        in_cosine = self._in_cosine()
+        if in_cosine is not None and not self.mass.has(self.q):
+            if len(self.rates) == 2:
+                yield from self._sleeping(in_cosine)
+            yield from self._cubic(in_cosine)
 
     def _follows(
         self,
@@ -218,29 +218,15 @@ class OneDimension:
         value: sp.Expr,
         claim: Written,
         residual: sp.Expr,
-        **more: Any,
+        **spans: Any,
     ) -> Consequence:
         """A consequence; in a residual with θ(t), E and p_j are those of the motion, else free."""
         if residual.has(self.q):
             residual = residual.xreplace(self.values)
-        return _consequence(self.name, name, left, value, (claim, [residual]), **more)
-
-    def _others(self) -> Iterator[Consequence]:
-        """The rates of the ignorable coordinates, and what is left to integrate."""
-        name = "other_coordinates"
-        for q, rate, p in zip(self.ignorable, self.rates, self.momenta, strict=True):
-            # each term as one fraction, with its factors if that is shorter
-            terms = sp.Add.make_args(sp.diff(self.potential, p))
-            forms = ((sp.cancel(term), sp.factor(term)) for term in terms)
-            value = sp.Add(*(min(pair, key=sp.count_ops) for pair in forms))
-            spans = {"own": _name(self.q), "angle": _name(q)}
-            spans["rate"] = _name(q, order=1)
-            claim = r"\dot{q} = \frac{\partial V_{\mathrm{eff}}}{\partial p}"
-            yield self._follows(name, rate, value, claim, rate - value, **spans)
-            name = "another_coordinate"
+        return _consequence(self.subject, name, left, value, (claim, [residual]), **spans)
 
     def _steady(self) -> Iterator[Consequence]:
-        """θ at rest: a condition on the rates of the others, quadratic for a top."""
+        """θ at rest: a condition on the rate of the precession, quadratic for a top."""
         at_rest, x = self.acceleration.xreplace({self.rate: sp.S.Zero}), sp.Dummy()
         for spin, turning, (p, momentum) in zip(
             self.rates, reversed(self.rates), self.momenta.items(), strict=True
@@ -248,7 +234,7 @@ class OneDimension:
             # The spin is eliminated by its constant momentum, ψ̇ = (p − rest)/slope, so that the
             # condition is one on the rate of precession and p.
             slope = sp.diff(momentum, spin)
-            if len(self.rates) != 2 or slope.has(self.q):  # no spin about an axis of the body
+            if slope.has(self.q):  # no spin about an axis of the body
                 continue
             own = (p - momentum.xreplace({spin: sp.S.Zero})) / slope
             of_spin = at_rest.xreplace({spin: own})
@@ -261,44 +247,20 @@ class OneDimension:
             # best.
             if condition.LC().could_extract_minus_sign():
                 condition = -condition
-            if sp.count_ops(condition.as_expr()) > _LONGEST:
-                return
             value = condition.as_expr().xreplace({x: turning})
-            residual = of_spin - sp.cancel(of_spin / value) * value
-            value = sp.collect(value, turning)
-            yield self._follows("steady_motion", "0", value, r"\ddot{q} = 0", residual, q=self.q)
-            yield from self._both_rates(condition, turning, p)
+            if sp.count_ops(value) <= _LONGEST:
+                residual = of_spin - sp.cancel(of_spin / value) * value
+                value, claim = sp.collect(value, turning), r"\ddot{q} = 0"
+                yield self._follows("steady_motion", "0", value, claim, residual, q=self.q)
             return
 
-    def _both_rates(
-        self, condition: sp.Poly, turning: sp.Expr, spin: sp.Symbol
-    ) -> Iterator[Consequence]:
-        """The roots of the quadratic equation for steady motion, with when there are any."""
-        a, b, c = condition.all_coeffs()
-        below = sp.factor(b**2 - 4 * a * c)
-        # For a large spin b² ≫ 4 a c, the roots are nearly −c/b and −b/a: slow and fast precession.
-        single, claim = sp.cancel(-c / b), r"a x^2 + b x + c = 0"
-        spans = {"lead": a, "discriminant": below, "momentum": spin}
-        spans |= {"slow": single, "fast": sp.cancel(-b / a)}
-        r = sp.Dummy("r")  # the root of the discriminant
-        for name, sign in (("slow_precession", -1), ("fast_precession", 1)):
-            x = (-b + sign * r) / (2 * a)
-            # With r free, a x² + b x + c = (r² − (b² − 4 a c))/(4 a), which is zero for the root r.
-            residual = a * x**2 + b * x + c - (r**2 - (b**2 - 4 * a * c)) / (4 * a)
-            value = x.xreplace({r: sp.sqrt(below)})
-            yield self._follows(name, turning, value, claim, residual, **spans)
-        if a.has(self.q):
-            claim, residual = "b x + c = 0", b * single + c
-            yield self._follows("single_precession", turning, single, claim, residual, **spans)
-
-    @cached_property
-    def in_cosine(self) -> sp.Expr | None:
+    def _in_cosine(self) -> sp.Expr | None:
         """V_eff in terms of u; None if it cannot be written so."""
         # an even power of the root is a polynomial, and an odd one stays
-        sine, u = sp.sqrt(1 - self.u**2), self.u
+        sine = sp.sqrt(1 - self.u**2)
         plain = self.potential.replace(sp.tan, lambda x: sp.sin(x) / sp.cos(x))
         plain = plain.replace(sp.cot, lambda x: sp.cos(x) / sp.sin(x))
-        plain = plain.xreplace({sp.sin(self.q): sine, sp.cos(self.q): u})
+        plain = plain.xreplace({sp.sin(self.q): sine, sp.cos(self.q): self.u})
         value = sp.Add(*map(sp.cancel, sp.Add.make_args(plain)))
         return None if value.has(self.q) or value.has(sine) else value
 
@@ -308,14 +270,13 @@ class OneDimension:
         # at u = 1 then cancels, and V_eff has a minimum there if κ > 0.
         u, upright = self.u, {self.u: sp.S.One}
         equal = sp.cancel(in_cosine.xreplace(dict.fromkeys(self.momenta, self.p)))
-        below = (sp.denom(sp.together(value)) for value in (in_cosine, equal))
-        poles = [divisor.xreplace(upright) == 0 for divisor in below]
-        if len(self.momenta) != 2 or poles != [True, False]:
+        poles = [sp.denom(sp.together(e)).xreplace(upright) == 0 for e in (in_cosine, equal)]
+        if poles != [True, False]:
             return
         height, slope = (e.xreplace(upright) for e in (equal, sp.diff(equal, u)))
         bend = equal - height - (u - 1) * slope
         rest = sp.cancel(bend / (1 - u) ** 2)  # regular at u = 1
-        names = (formula("p_{#1}", _name(q)) for q in self.ignorable)
+        names = (formula("p_{#1}", _name(q)) for q in self.rates.values())
         yield self._follows(
             "upright_motion",
             r"\kappa",
@@ -327,8 +288,8 @@ class OneDimension:
             momenta=formula("#1 = #2 = #3", *names, named(self.p.name)),
         )
 
-    def _nutation(self, in_cosine: sp.Expr) -> Iterator[Consequence]:
-        """u̇² = f(u) = 2 (1 − u²)(E − V)/m, and u(t) if f is a cubic polynomial."""
+    def _cubic(self, in_cosine: sp.Expr) -> Iterator[Consequence]:
+        """u̇² = f(u) = 2 (1 − u²)(E − V_eff)/m, if f is a cubic polynomial."""
         u, regular, singular = self.u, sp.S.Zero, sp.S.Zero
         # u̇ = −θ̇ sin θ, so u̇² = (1 − u²) θ̇² = (1 − u²) 2 (E − V_eff)/m. The factor 1 − u²
         # cancels the poles of the centrifugal terms at u = ±1.
@@ -338,30 +299,15 @@ class OneDimension:
             else:
                 regular += part
         value = 2 * ((1 - u**2) * (self.E - regular) - singular) / self.mass
-        f = sp.expand(sp.cancel(value)).as_poly(u)
-        if f is None or f.degree() != 3:
-            return
-        name = named(u.name)
-        spans: dict[str, Any] = {
-            "u": name,
-            "cosine": formula(r"#1 = \cos #2", name, _name(self.q)),
-            "equation": formula(r"\dot{#1}^2 = f(#1)", name),
-        }
-        left, cosine = formula("f(#1)", name), sp.cos(self.q)
-        residual = (sp.sin(self.q) * self.rate) ** 2 - value.xreplace({u: cosine})
-        claim = spans["equation"]
-        yield self._follows("cubic_for_cosine", left, value, claim, residual, **spans)
-        # u(t) between the roots u₁ ≤ u₂ of the cubic f; its third root is u₃
-        one, two, three = _FIRST, _SECOND, _THIRD
-        sn, a = sp.Dummy("sn"), sp.Dummy("a")
-        # u = u₁ + (u₂ − u₁) sn²(λt, k) has u̇² = 4 λ² (u₂ − u₁)² sn² cn² dn², with cn² = 1 − sn²
-        # and dn² = 1 − k² sn². It equals a (u − u₁)(u − u₂)(u − u₃) for 4 λ² = a (u₃ − u₁).
-        between = one + (two - one) * sn**2
-        modulus = (two - one) / (three - one)
-        rate_squared = a * (three - one) / 4
-        slope_squared = 4 * (two - one) ** 2 * sn**2 * (1 - sn**2) * (1 - modulus * sn**2)
-        residual = slope_squared * rate_squared
-        residual -= a * (between - one) * (between - two) * (between - three)
-        oscillating = between.xreplace({sn: sp.Function("sn")(_LAMBDA * TIME, _MODULUS)})
-        where = ((_LAMBDA**2, rate_squared.xreplace({a: f.LC()})), (_MODULUS**2, modulus))
-        yield self._follows("nutation", cosine, oscillating, claim, residual, where=where, **spans)
+        f, name = sp.expand(sp.cancel(value)).as_poly(u), named(u.name)
+        if f is not None and f.degree() == 3:
+            cosine = formula(r"#1 = \cos #2", name, _name(self.q))
+            claim, left = formula(r"\dot{#1}^2 = f(#1)", name), formula("f(#1)", name)
+            residual = (sp.sin(self.q) * self.rate) ** 2 - value.xreplace({u: sp.cos(self.q)})
+            spans = {"cosine": cosine, "equation": claim}
+            yield self._follows("cubic_for_cosine", left, value, claim, residual, **spans)
+
+
+def _name(coordinate: sp.Expr, order: int = 0) -> Formula:
+    """Of a coordinate or one of its time derivatives."""
+    return named(coordinate.func.__name__, order)
