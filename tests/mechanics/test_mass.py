@@ -225,8 +225,7 @@ TENSORS = {  # with words of the sentence
     "sphere": (sp.diag(a, a, a), "every axis through the centre"),
     "two equal": (sp.diag(a, c, a), "every axis perpendicular to y"),
     "one axis apart": (sp.Matrix([[a, d, 0], [d, b, 0], [0, 0, c]]), "The z-axis is principal"),
-    "corner of a cube": (sp.Matrix([[a, -d, -d], [-d, a, -d], [-d, -d, a]]), "moments are equal"),
-    "numbers": (sp.Matrix([[3, 1, 0], [1, 3, 0], [0, 0, 5]]), "polynomial factors"),
+    "numbers": (sp.Matrix([[3, 1, 0], [1, 3, 0], [0, 0, 5]]), "roots of a quadratic"),
 }
 
 

@@ -1,21 +1,18 @@
 """Principal moments and axes in symbols.
 
-If all moments are rational functions of the entries, the axes solve linear equations. If one axis
-of the description is principal, the other two moments are the roots of a quadratic equation. Other
-tensors have no closed form that anyone would read.
+If one axis of the description is principal, the other two moments are the roots of a quadratic
+equation. Other tensors have no closed form that anyone would read.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import sympy as sp
 
 from rigidsym.algebra.present import Rationals
 from rigidsym.mechanics.derivation import sentence_of
 
-_LAMBDA = sp.Symbol("lambda")
-_MOST_OPERATIONS = 200  # of a tensor whose characteristic polynomial is tried
 _MOST_OF_AXES = 1000  # operations of axes: longer ones fill pages, and take minutes to prove
 _LETTERS, _BASIS = ("x", "y", "z"), [sp.eye(3).col(k) for k in range(3)]
 
@@ -48,37 +45,9 @@ def principal_of(inertia: sp.ImmutableMatrix) -> Principal | None:
             reasons=({0: "diagonal_sphere", 1: "diagonal_symmetric", 3: "diagonal"}[len(single)],),
             axis=_LETTERS[single[0]] if single else "",
         )
-    moments = _rational_moments(inertia)
-    apart = [k for k, unit in enumerate(_BASIS) if inertia * unit == inertia[k, k] * unit]
-    if len(moments) == 3:
-        principal = _factored(inertia, moments)
-    elif apart:
-        principal = _about(inertia, apart[0])
-    else:
-        return None
-    if sp.count_ops(principal.axes) <= _MOST_OF_AXES:
-        return principal
-    return replace(principal, axes=None, reasons=(*principal.reasons, "axes_too_long"))
-
-
-def _rational_moments(inertia: sp.ImmutableMatrix) -> list[sp.Expr]:
-    """The roots of the characteristic polynomial in its linear factors."""
-    # The polynomial is monic, so that its factors at a point would be those in symbols, there.
-    symbols = sorted(inertia.free_symbols, key=str)
-    there = inertia.xreplace({symbol: sp.prime(k) for k, symbol in enumerate(symbols, 5)})
-    is_known = all(entry.is_Rational for entry in there)
-    if sp.count_ops(inertia) > _MOST_OPERATIONS or (
-        is_known and there.charpoly(_LAMBDA).is_irreducible
-    ):
-        return []
-    # det(I − λ 1) = 0. Only linear factors give a moment without roots.
-    matrix = sp.Matrix(inertia - _LAMBDA * sp.eye(3))
-    polynomial = sp.together(sp.expand(matrix.det(method="berkowitz")))
-    return [
-        -factor.coeff(_LAMBDA, 0) / factor.coeff(_LAMBDA, 1)
-        for factor, times in sp.factor_list(polynomial, _LAMBDA)[1]
-        for _ in range(times if sp.degree(factor, _LAMBDA) == 1 else 0)
-    ]
+    apart = (k for k, unit in enumerate(_BASIS) if inertia * unit == inertia[k, k] * unit)
+    k = next(apart, None)
+    return None if k is None else _about(inertia, k)
 
 
 def _about(inertia: sp.ImmutableMatrix, k: int) -> Principal:
@@ -101,44 +70,11 @@ def _about(inertia: sp.ImmutableMatrix, k: int) -> Principal:
     cosine = sp.sqrt(sp.Rational(1, 2) + field.write(apart) / (2 * root))
     sine, mean = r / (root * cosine), field.write(half)
     x, y = _BASIS[i], _BASIS[j]
-    axes = [cosine * x + sine * y, cosine * y - sine * x, _BASIS[k]]
+    axes = sp.ImmutableMatrix.hstack(cosine * x + sine * y, cosine * y - sine * x, _BASIS[k])
+    is_long = sp.count_ops(axes) > _MOST_OF_AXES
     return Principal(
         moments=sp.ImmutableMatrix([mean + root / 2, mean - root / 2, inertia[k, k]]),
-        axes=sp.ImmutableMatrix(sp.Matrix.hstack(*axes)),
-        reasons=("one_axis_apart",),
+        axes=None if is_long else sp.ImmutableMatrix(axes),
+        reasons=("one_axis_apart", *(["axes_too_long"] if is_long else [])),
         axis=_LETTERS[k],
     )
-
-
-def _factored(inertia: sp.ImmutableMatrix, moments: list[sp.Expr]) -> Principal:
-    """All moments are rational, and so are the directions of the axes."""
-    moments = [sp.factor(moment) for moment in moments]
-    shares = {moment: sp.cancel(moment / sum(moments)) for moment in moments}
-    is_ordered = all(share.is_Rational for share in shares.values())
-    moments = sorted(
-        moments,  # a single one last, the others by their size if it is known
-        key=lambda m: (moments.count(m) == 1, shares[m] if is_ordered else 0, str(m)),
-    )
-    # With two equal moments every direction across the third axis is principal; one is chosen.
-    is_symmetric = moments[0] == moments[1]
-    last = _null_vector(inertia, moments[2])
-    across = (last.cross(unit).applyfunc(sp.cancel) for unit in _BASIS)
-    first = next(filter(any, across)) if is_symmetric else _null_vector(inertia, moments[0])
-    x, z = (vector / sp.sqrt(sp.factor(sp.cancel(vector.dot(vector)))) for vector in (first, last))
-    return Principal(
-        moments=sp.ImmutableMatrix(moments),
-        axes=sp.ImmutableMatrix(sp.Matrix.hstack(x, z.cross(x), z)),
-        reasons=("factored_symmetric" if is_symmetric else "factored",),
-    )
-
-
-def _null_vector(inertia: sp.ImmutableMatrix, moment: sp.Expr) -> sp.Matrix:
-    """The axis of a single moment λ, a column of the adjugate of I − λ 1, in lowest terms."""
-    # (I − λ 1) adj(I − λ 1) = det(I − λ 1) 1 = 0, so each column of the adjugate is an eigenvector
-    # or 0. For a single eigenvalue the rank of I − λ 1 is two, and some column is not 0.
-    adjugate = (inertia - moment * sp.eye(3)).adjugate().applyfunc(sp.cancel)
-    column = next(column for k in range(3) if any(column := sp.Matrix(adjugate[:, k])))
-    lead = next(entry for entry in column if entry != 0)
-    plain = (column / lead).applyfunc(sp.cancel)
-    divisor = sp.lcm_list([sp.fraction(entry)[1] for entry in plain])
-    return sp.Matrix((plain * divisor).applyfunc(sp.cancel))
