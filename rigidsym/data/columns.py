@@ -6,9 +6,9 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
-from math import pi, prod
+from math import pi
 
 from rigidsym.errors import DataError
 
@@ -36,16 +36,9 @@ _SUPERSCRIPTS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻µμ.·⋅∙×", "
 _FACTOR = re.compile(r"([^\d*/^ ()-]+)(?:\^|\*\*)?(-?\d+)?")
 
 
-@dataclass(frozen=True, slots=True)
-class Unit:
-    """A multiple of a product of powers of rad, m, kg and s."""
-
-    factor: float
-    powers: tuple[tuple[str, int], ...]  # in alphabetical order, none of them 0
-
-
-_KNOWN = {name: Unit(factor, (("rad", 1), ("s", -1))) for name, factor in _RATES.items()} | {
-    prefix + name: Unit(_PREFIXES[prefix] * multiple, ((base, 1),))
+Unit = tuple[float, dict[str, int]]  # a multiple of a product of powers of rad, m, kg and s
+_KNOWN: dict[str, Unit] = {n: (factor, {"rad": 1, "s": -1}) for n, factor in _RATES.items()} | {
+    prefix + name: (_PREFIXES[prefix] * multiple, {base: 1})
     for names, prefixes, base, multiple in _SPELLINGS
     for name in names.split()
     for prefix in ("", *prefixes)
@@ -58,25 +51,20 @@ def unit_of(text: str) -> Unit:
     Raises DataError, with its name, for one that is not known.
     """
     plain = re.sub(r"\bper\b", "/", text.casefold().translate(_SUPERSCRIPTS)).strip()
-    if plain in ("", "-", "1"):
-        return Unit(1.0, ())
-    units: list[tuple[Unit, int]] = []
     sign = -1 if plain.startswith("1/") else 1
-    rest = plain.removeprefix("1/").strip()
+    rest = "" if plain in ("-", "1") else plain.removeprefix("1/").strip()
+    size, powers = 1.0, Counter[str]()
     while rest:
-        factor = _FACTOR.match(rest)
-        if not factor or factor[1] not in _KNOWN:
+        match = _FACTOR.match(rest)
+        if not match or match[1] not in _KNOWN:
             raise DataError(f"unknown unit {text!r}")
-        units.append((_KNOWN[factor[1]], sign * int(factor[2] or 1)))
-        rest = rest[factor.end() :].strip()
+        exponent, (multiple, bases) = sign * int(match[2] or 1), _KNOWN[match[1]]
+        size *= multiple**exponent
+        powers.update({base: power * exponent for base, power in bases.items()})
+        rest = rest[match.end() :].strip()
         sign = {"/": -1, "*": 1}.get(rest[:1], sign)  # a blank keeps it: rad/s s is rad/s²
         rest = rest.lstrip("*/() ")
-    powers: dict[str, int] = {}
-    for unit, exponent in units:
-        for base, power in unit.powers:
-            powers[base] = powers.get(base, 0) + power * exponent
-    size = prod((unit.factor**exponent for unit, exponent in units), start=1.0)
-    return Unit(size, tuple(sorted((base, power) for base, power in powers.items() if power)))
+    return size, {base: power for base, power in powers.items() if power}
 
 
 def conversion(text: str, expected: str) -> float:
@@ -84,18 +72,19 @@ def conversion(text: str, expected: str) -> float:
 
     Raises DataError for an unknown unit, and for one of another quantity.
     """
-    unit, wanted = unit_of(text), unit_of(expected)
-    if unit.powers != wanted.powers:
+    (size, powers), (wanted, expected_powers) = unit_of(text), unit_of(expected)
+    if powers != expected_powers:
         raise DataError(f"expected a unit such as {expected or '1'}, got {text}")
-    return unit.factor / wanted.factor
+    return size / wanted
 
 
-def is_angular(text: str) -> bool:
-    """Whether a text is a unit of angles or of their rates."""
+def is_unit(text: str, base: str = "") -> bool:
+    """Whether a text is a known unit, perhaps one with a base: `rad` of angles and their rates."""
     try:
-        return ("rad", 1) in unit_of(text).powers
+        powers = unit_of(text)[1]
     except DataError:
         return False
+    return not base or powers.get(base) == 1
 
 
 # Names
@@ -142,26 +131,31 @@ class ColumnNames:
         """The names, for messages; a single column, which may be prose, is only counted."""
         return ", ".join(self.names) if len(self.names) > 1 else "1 column"
 
+    def _columns(self, name: str) -> list[int]:
+        """The columns with a name, or else those at whose path or before whose unit it is."""
+        key = plain(name)
+        exact = [k for k, column in enumerate(self.plain) if column == key]
+        return exact or [k for k, others in enumerate(self._others) if key in others]
+
     def find(self, spellings: Iterable[str]) -> int | None:
         """The column with one of these names, the first of which is preferred.
 
         Raises DataError for two columns of one name.
         """
-        keys = [plain(spelling) for spelling in spellings]
-        for key in keys:
-            exact = [k for k, name in enumerate(self.plain) if name == key]
-            columns = exact or [k for k, others in enumerate(self._others) if key in others]
+        for name in spellings:
+            columns = self._columns(name)
             if len(columns) > 1:
                 same = ", ".join(self.names[k] for k in columns)
-                raise DataError(f"two columns are named {key}: {same}; --columns renames them")
+                raise DataError(
+                    f"two columns are named {plain(name)}: {same}; --columns renames them"
+                )
             if columns:
                 return columns[0]
         return None
 
     def has(self, name: str) -> bool:
         """Whether a column has this name."""
-        key = plain(name)
-        return key in self.plain or any(key in others for others in self._others)
+        return bool(self._columns(name))
 
     def unit(self, column: int) -> str:
         """The unit that the name of a column states; empty without one."""
@@ -219,7 +213,7 @@ def names_for(
 def _other_keys(name: str) -> Iterator[tuple[str, str]]:
     """The name without a unit at its end, and without the path before it, with the unit."""
     unit = unit_in(name)
-    if not unit and (tail := _TAIL.fullmatch(name.strip("\"' "))) and is_angular(tail[2]):
+    if not unit and (tail := _TAIL.fullmatch(name.strip("\"' "))) and is_unit(tail[2], "rad"):
         name, unit = tail[1], tail[2]
         yield plain(name), unit
     segments = re.split(r"[./]", _BRACKETS.sub("", _INDEX.sub(r"_\1", name)))
@@ -227,12 +221,3 @@ def _other_keys(name: str) -> Iterator[tuple[str, str]]:
         key = plain("".join(segments[start:]))
         if start < len(segments) - 1 or len(key) > 2:  # x and w are too short to stand for much
             yield key, unit
-
-
-def is_unit(text: str) -> bool:
-    """Whether a text, perhaps in brackets, is a known unit."""
-    try:
-        unit_of(text.strip().strip("[]()"))
-    except DataError:
-        return False
-    return True

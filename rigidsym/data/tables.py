@@ -10,27 +10,28 @@ import csv
 import errno
 import io
 import re
-from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import chain, islice
 from pathlib import Path
 from tokenize import TokenError
-from typing import Any, BinaryIO, Literal
+from typing import Any, BinaryIO, Literal, TypeAlias
 
 import numpy as np
 from numpy.lib import format as npy
 from numpy.typing import NDArray
 
+from rigidsym.data.columns import is_unit
 from rigidsym.errors import DataError, MissingExtra, RequestError
 from rigidsym.system.files import whole_file
 from rigidsym.system.processes import Progress
 
 Numbers = NDArray[Any]  # float32 or float64, (rows, columns)
 Missing = Literal["error", "nan", "drop"]
+# Columns of numbers, columns that are kept as they are, and the share of the table read so far
+Block: TypeAlias = tuple[Sequence[NDArray[Any]], Sequence[NDArray[Any]], float]
 ROWS = 65_536  # in memory at once
-ENDINGS = (".npy", ".csv", ".txt", ".parquet", ".pq")  # that are written
 MOST_SHOWN = 10  # faults in one message
 _NUMERIC = "fiub"
 
@@ -44,13 +45,13 @@ class Batch:
     share: float  # of the table that has been read with this batch
     kept: tuple[NDArray[Any], ...] = ()  # columns passed through as they are, (rows,) each
 
-    def at(self, which: slice | NDArray[Any]) -> Batch:
+    def at(self, which: NDArray[np.bool_]) -> Batch:
         """Some of its rows."""
         kept = tuple(column[which] for column in self.kept)
         return Batch(self.table[which], self.rows[which], self.share, kept)
 
 
-class Table(ABC):
+class Table:
     """Rows that can be read from the beginning, in batches."""
 
     source = ""  # what messages call the table: the path of its file, or empty for an array
@@ -59,7 +60,10 @@ class Table(ABC):
     dtype: np.dtype[Any] = np.dtype(np.float64)  # float32 if the table holds nothing finer
     eps = 0.0  # relative precision of the numbers if it is below double
 
-    @abstractmethod
+    def _blocks(self, columns: Sequence[int], kept: Sequence[int], rows: int) -> Iterator[Block]:
+        """All rows, at most `rows` at a time."""
+        raise NotImplementedError
+
     def batches(
         self, columns: Sequence[int], rows: int = ROWS, kept: Sequence[int] = ()
     ) -> Iterator[Batch]:
@@ -67,6 +71,11 @@ class Table(ABC):
 
         Raises DataError, with the line, for a field that is not a number.
         """
+        first = 0
+        for numbers, others, share in self._blocks(columns, kept, rows):
+            table = np.stack([column.astype(self.dtype) for column in numbers], axis=1)
+            places = np.arange(first, first := first + len(table))
+            yield Batch(table, places, share, tuple(others))
 
     def read(self, columns: Sequence[int], progress: Progress | None = None) -> Batch:
         """The whole table."""
@@ -91,9 +100,8 @@ def open_table(path: Path) -> Table:
     if not path.is_file():
         fault = "not a regular file"
         raise DataError(f"{path}: {fault if path.exists() else 'no such file'}")
-    if path.suffix.lower() == ".npy":
-        return NpyTable(path)
-    return (ParquetTable if path.suffix.lower() in (".parquet", ".pq") else TextTable)(path)
+    kinds = {".npy": NpyTable, ".parquet": ParquetTable, ".pq": ParquetTable}
+    return kinds.get(path.suffix.lower(), TextTable)(path)
 
 
 def without_missing(
@@ -131,7 +139,11 @@ class ArrayTable(Table):
 
     def __init__(self, *arrays: Any) -> None:
         if len(arrays) == 1 and (names := names_of(arrays[0])):
-            self.names, arrays = _named(arrays[0], names)
+            columns = {name: np.asanyarray(arrays[0][name]) for name in names}
+            numbers = {n: c[:, None] for n, c in columns.items() if c.dtype.kind in _NUMERIC}
+            if not numbers:
+                raise DataError("no column holds numbers")
+            self.names, arrays = tuple(numbers), tuple(numbers.values())
         arrays = tuple(map(np.asarray, arrays))
         for array in arrays:
             if array.ndim != 2 or array.dtype.kind not in _NUMERIC:
@@ -146,21 +158,13 @@ class ArrayTable(Table):
         self.dtype = np.dtype(np.float32 if is_single else np.float64)
         self.eps = max((float(np.finfo(k).eps) for k in floats if k.itemsize < 8), default=0.0)
 
-    def __len__(self) -> int:
-        return self._length
-
-    def batches(
-        self, columns: Sequence[int], rows: int = ROWS, kept: Sequence[int] = ()
-    ) -> Iterator[Batch]:
-        """As `Table.batches`."""
-        for first in range(0, len(self), rows):
-            some = slice(first, min(first + rows, len(self)))
-            yield Batch(
-                np.stack([self._columns[k][some].astype(self.dtype) for k in columns], axis=1),
-                np.arange(some.start, some.stop),
-                some.stop / len(self),
-                tuple(self._columns[k][some].copy() for k in kept),
+    def _blocks(self, columns: Sequence[int], kept: Sequence[int], rows: int) -> Iterator[Block]:
+        for first in range(0, self._length, rows):
+            end = min(first + rows, self._length)
+            numbers, others = (
+                [self._columns[k][first:end].copy() for k in which] for which in (columns, kept)
             )
+            yield numbers, others, end / self._length
 
 
 class NpyTable(ArrayTable):
@@ -168,11 +172,6 @@ class NpyTable(ArrayTable):
 
     def __init__(self, path: Path) -> None:
         self.source, self._path = str(path), path
-        with path.open("rb") as file:
-            begins = file.read(6)
-        if begins != b"\x93NUMPY":
-            kind = "another kind of file" if begins else "an empty file"
-            raise DataError(f"{path}: not an NPY file of numbers, but {kind}")
         try:
             super().__init__(np.load(path, mmap_mode="r", allow_pickle=False))
         except DataError as error:
@@ -183,12 +182,10 @@ class NpyTable(ArrayTable):
             message = f"{path}: not an NPY file of numbers, or damaged ({size} bytes)"
             raise DataError(message) from None
 
-    def batches(
-        self, columns: Sequence[int], rows: int = ROWS, kept: Sequence[int] = ()
-    ) -> Iterator[Batch]:
-        """As `Table.batches`; the file is mapped anew for each, which frees what was read."""
-        for batch in super().batches(columns, rows, kept):
-            yield batch
+    def _blocks(self, columns: Sequence[int], kept: Sequence[int], rows: int) -> Iterator[Block]:
+        for block in super()._blocks(columns, kept, rows):
+            yield block
+            # mapped anew, which frees what was read
             ArrayTable.__init__(self, np.load(self._path, mmap_mode="r", allow_pickle=False))
 
 
@@ -199,20 +196,6 @@ def names_of(data: Any) -> list[str]:
     names = getattr(getattr(data, "dtype", None), "names", None) if names is None else names
     names = [] if names is None else list(names)
     return names if any(isinstance(name, str) for name in names) else []
-
-
-def _named(data: Any, names: Sequence[str]) -> tuple[tuple[str, ...], tuple[NDArray[Any], ...]]:
-    """The columns of numbers and their names; a field of several numbers is q[0], q[1], ..."""
-    arrays: dict[str, NDArray[Any]] = {}
-    for name in names:
-        column = np.asanyarray(data[name])
-        if column.dtype.kind in _NUMERIC:
-            parts = column.reshape(len(column), -1).T
-            keys = [name] if len(parts) == 1 else [f"{name}[{k}]" for k in range(len(parts))]
-            arrays |= dict(zip(keys, parts, strict=True))
-    if not arrays:
-        raise DataError("no field of the structured array holds numbers")
-    return tuple(arrays), tuple(column[:, None] for column in arrays.values())
 
 
 # Parquet
@@ -233,37 +216,31 @@ class ParquetTable(Table):
         self._polars, self.source = _polars(), str(path)
         with self._reported():
             self._scan = self._polars.scan_parquet(path)
-            schema = self._scan.collect_schema()
+            self._schema = self._scan.collect_schema()
             self._length = self._scan.select(self._polars.len()).collect().item()
-        self._names = self.names = tuple(schema.names())
-        self.width = len(self._names)
-        self._is_number = [kind.is_numeric() for kind in schema.dtypes()]
-        if all(kind == self._polars.Float32 for kind in schema.dtypes()):
+        self.names, self.width = tuple(self._schema), len(self._schema)
+        if all(kind == self._polars.Float32 for kind in self._schema.values()):
             self.dtype = np.dtype(np.float32)
 
-    def batches(
-        self, columns: Sequence[int], rows: int = ROWS, kept: Sequence[int] = ()
-    ) -> Iterator[Batch]:
-        """As `Table.batches`."""
-        if wrong := [self._names[k] for k in columns if not self._is_number[k]]:
+    def _blocks(self, columns: Sequence[int], kept: Sequence[int], rows: int) -> Iterator[Block]:
+        used, others = ([[*self._schema][k] for k in which] for which in (columns, kept))
+        if wrong := [name for name in used if not self._schema[name].is_numeric()]:
             raise DataError(f"{self.source}: no numbers in the columns {', '.join(wrong)}")
-        chosen = [self._names[k] for k in dict.fromkeys([*columns, *kept])]
-        for start in range(0, self._length, rows):
-            with self._reported():
-                frame = self._scan.select(chosen).slice(start, rows).collect()
-            yield Batch(
-                frame.select(self._names[k] for k in columns).to_numpy().astype(self.dtype),
-                np.arange(start, start + len(frame)),
-                (start + len(frame)) / self._length,
-                tuple(frame[self._names[k]].to_numpy() for k in kept),
-            )
+        chosen, done = self._scan.select([*dict.fromkeys([*used, *others])]), 0
+        with self._reported():
+            for frame in chosen.collect_batches(chunk_size=rows, maintain_order=True):
+                for part in frame.iter_slices(rows):
+                    done += len(part)
+                    numbers, more = ([part[n].to_numpy() for n in each] for each in (used, others))
+                    yield numbers, more, done / self._length
 
     @contextmanager
     def _reported(self) -> Iterator[None]:
-        """Failures of polars, as DataError."""
+        """Failures of polars, as DataError; of a damaged file its Rust code may panic."""
+        errors = self._polars.exceptions
         try:
             yield
-        except (self._polars.exceptions.PolarsError, OSError):
+        except (errors.PolarsError, errors.PanicException, OSError):
             raise DataError(f"{self.source}: not a Parquet file, or a damaged one") from None
 
 
@@ -273,6 +250,12 @@ _MISSING = ["", "-", "na", "n/a", "nan", "null", "none", "#n/a"]
 _WIDEST = 10_000  # columns
 _TOO_WIDE = f"more than {_WIDEST} columns"
 _QUOTES = "quotes that do not end where the field does; expected one row per line"
+_OTHER_KINDS = {  # by which files that are no plain text begin
+    b"\xff\xfe": "text in UTF-16",
+    b"\xfe\xff": "text in UTF-16",
+    b"\x1f\x8b": "compressed by gzip",
+    b"PK": "an archive or a spreadsheet",
+}
 
 
 class TextTable(Table):
@@ -291,8 +274,11 @@ class TextTable(Table):
         self._path, self._content = path, content
         comments: list[str] = []
         with self._open() as file:
-            if b"\0" in file.read(4096):
-                raise DataError(f"{path} holds no text; expected text in UTF-8, NPY or Parquet")
+            start = file.read(4096)
+            kinds = (kind for begin, kind in _OTHER_KINDS.items() if start.startswith(begin))
+            kind = next(kinds, "no text" if b"\0" in start else None)
+            if kind is not None:
+                raise DataError(f"{path} is {kind}; expected text in UTF-8, NPY or Parquet")
             file.seek(0)
             line, first = next(_rows(file, comments), (0, ""))
             self._size = file.seek(0, io.SEEK_END)
@@ -339,22 +325,17 @@ class TextTable(Table):
         with self._open() as file:
             return f"line {next(islice(_rows(file), self._header + row, None))[0]}"
 
-    def batches(
-        self, columns: Sequence[int], rows: int = ROWS, kept: Sequence[int] = ()
-    ) -> Iterator[Batch]:
-        """As `Table.batches`; columns that are kept are texts."""
-        first = 0
+    def _blocks(self, columns: Sequence[int], kept: Sequence[int], rows: int) -> Iterator[Block]:
         with self._open() as file:
             lines = islice(_rows(file), self._header, None)
             while block := dict(islice(lines, rows)):
-                table, texts = self._read(block, columns, kept)
-                numbers = np.arange(first, first := first + len(table))
-                yield Batch(table, numbers, file.tell() / self._size, texts)
+                numbers, others = self._read(block, columns, kept)
+                yield numbers, others, file.tell() / self._size
 
     def _read(
         self, lines: Mapping[int, str], columns: Sequence[int], kept: Sequence[int]
-    ) -> tuple[Numbers, tuple[NDArray[Any], ...]]:
-        """The numbers in the rows by their lines, NaN for those that are missing, and kept texts.
+    ) -> tuple[list[Numbers], list[NDArray[Any]]]:
+        """Numbers in the rows by their lines, NaN for those that are missing, and kept texts.
 
         Raises DataError, with the lines, for rows of another length and fields that are no numbers.
         """
@@ -372,24 +353,29 @@ class TextTable(Table):
             count = counts[row]
             fault = _QUOTES if count is None else f"{count} fields, expected {self.width}"
             faults.append((places[row], fault))
-        texts = [fields.list.get(k, null_on_oob=True).str.strip_chars() for k in columns]
+        texts, others = (
+            [fields.list.get(k, null_on_oob=True).str.strip_chars() for k in which]
+            for which in (columns, kept)
+        )
         # 1,234 beside 0.5 may be a thousand: then it is no number
         has_points = any(column.str.contains(".", literal=True).any() for column in texts)
         has_commas = self.separator != "," and not has_points
-        table = np.empty((len(lines), len(columns)))
-        for k, column in enumerate(texts):
-            numbers = self._numbers(column, has_commas=has_commas)
-            if numbers.has_nulls():
-                is_gap = column.str.to_lowercase().is_in(_MISSING)
-                for row in (numbers.is_null() & ~is_gap & ~is_wrong).arg_true():
-                    text = f": {column[row][:40]!r}" if self.quotes else ""
-                    fault = f"field {columns[k] + 1}{text} is not a number"
-                    faults.append((places[row], fault))
-            table[:, k] = numbers.to_numpy()
+        numbers = [self._numbers(column, has_commas=has_commas) for column in texts]
+        for k, column, values in zip(columns, texts, numbers, strict=True):
+            if not values.has_nulls():
+                continue
+            is_gap = column.str.to_lowercase().is_in(_MISSING)
+            for row in (values.is_null() & ~is_gap & ~is_wrong).arg_true():
+                text = column[row][:40]
+                fault = f"field {k + 1}{f': {text!r}' if self.quotes else ''} is not a number"
+                if is_unit(text):
+                    name = self.names[k] if self.names else "angle"
+                    fault += f"; a unit belongs to the name of its column, as in {name} [{text}]"
+                faults.append((places[row], fault))
         if faults:
             messages = [f"line {line}: {fault}" for line, fault in sorted(faults)]
             raise DataError(listed(self.source, messages))
-        return table, tuple(fields.list.get(k).str.strip_chars().to_numpy() for k in kept)
+        return [values.to_numpy() for values in numbers], [text.to_numpy() for text in others]
 
 
 def _rows(file: BinaryIO, comments: list[str] | None = None) -> Iterator[tuple[int, str]]:
@@ -414,14 +400,13 @@ def listed(source: Path | str, faults: Sequence[str], count: int = 0) -> str:
 # Writing
 
 Rows = tuple[Numbers, Sequence[NDArray[Any]]]  # numbers, and kept columns that go before them
-_EXACT = 1 << 53  # a larger integer may not be a double
 
 
 def check_ending(path: Path) -> None:
     """Raise RequestError for an ending that is not written."""
-    if path.suffix.lower() not in ENDINGS:
+    if path.suffix.lower() not in _WRITERS:
         ending = f"the ending {path.suffix}" if path.suffix else "no ending"
-        raise RequestError(f"{path} has {ending}; expected {', '.join(ENDINGS)}")
+        raise RequestError(f"{path} has {ending}; expected {', '.join(_WRITERS)}")
 
 
 def write_table(
@@ -446,9 +431,8 @@ def write_table(
     if stream is not None:
         _write_text(stream, names, dtype, tallied())
         return count
-    write = {".npy": _write_npy, ".parquet": _write_parquet, ".pq": _write_parquet}
     with whole_file(path) as file:
-        write.get(path.suffix.lower(), _write_text)(file, names, dtype, tallied())
+        _WRITERS[path.suffix.lower()](file, names, dtype, tallied())
     return count
 
 
@@ -460,23 +444,12 @@ def _write_npy(
     npy.write_array_header_1_0(file, header)
     count = 0
     for table, kept in rows:
-        columns = [_as_number(column, dtype) for column in kept]
-        whole = np.column_stack([*columns, table]) if columns else table
-        file.write(np.ascontiguousarray(whole, dtype).tobytes())
+        if kept:
+            raise DataError("an NPY file has no columns to keep; expected .csv or .parquet")
+        file.write(np.ascontiguousarray(table, dtype).tobytes())
         count += len(table)
     file.seek(0)
     npy.write_array_header_1_0(file, header | {"shape": (count, len(names))})
-
-
-def _as_number(column: NDArray[Any], dtype: np.dtype[Any]) -> Numbers:
-    is_number = column.dtype.kind in _NUMERIC
-    numbers = column.astype(dtype) if is_number else np.empty(0)
-    if not is_number or np.abs(numbers).max(initial=0) > _EXACT:
-        raise DataError(
-            "a column of --keep has texts or integers beyond 2^53, which an NPY file of floats "
-            "cannot contain; expected .csv or .parquet"
-        )
-    return numbers
 
 
 def _frames(names: Sequence[str], dtype: np.dtype[Any], rows: Iterable[Rows]) -> Iterator[Any]:
@@ -512,3 +485,7 @@ def _write_parquet(
         source.sink_parquet(file)
     except pl.exceptions.ComputeError as error:  # of a full disk
         raise OSError(errno.EIO, str(error)) from error
+
+
+_WRITERS = {".npy": _write_npy, ".csv": _write_text, ".txt": _write_text}
+_WRITERS |= {".parquet": _write_parquet, ".pq": _write_parquet}

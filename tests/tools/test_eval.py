@@ -104,10 +104,16 @@ def test_columns_are_found_by_names_with_units_in_any_order(tmp_path):
         ),
         ("1,2,3\n", "3 columns without names: expected 6"),
         ("\n\n", "no rows"),
+        (
+            "phi,theta,psi,phi_dot,theta_dot,psi_dot\n-,deg,-,-,-,-\n",
+            r"line 2.* as in theta \[deg\]",
+        ),
+        (b"\xff\xfep\0h\0i\0", "is text in UTF-16; expected text in UTF-8"),
+        (b"\x1f\x8b\x08\0", "is compressed by gzip; expected text"),
     ],
 )
 def test_what_is_wrong_with_a_text_is_said(motion, tmp_path, text, message):
-    (tmp_path / "log.csv").write_text(text, encoding="utf-8")
+    (tmp_path / "log.csv").write_bytes(text if isinstance(text, bytes) else text.encode())
     with pytest.raises(DataError, match=message):
         evaluate(motion, VELOCITY, tmp_path / "log.csv", tmp_path / "result.npy")
     assert [path.name for path in tmp_path.iterdir()] == ["log.csv"]
@@ -130,6 +136,17 @@ def test_what_is_no_table_of_numbers_is_refused(tmp_path):
     for path in sorted(tmp_path.iterdir()):
         with pytest.raises(DataError, match=path.name):
             open_table(path)
+
+
+def test_a_panic_of_polars_is_a_damaged_file(tmp_path, monkeypatch):
+    (tmp_path / "log.parquet").write_bytes(b"PAR1")
+
+    def panic(_):
+        raise pl.exceptions.PanicException("called `Option::unwrap()` on a `None` value")
+
+    monkeypatch.setattr(pl, "scan_parquet", panic)
+    with pytest.raises(DataError, match="not a Parquet file, or a damaged one"):
+        open_table(tmp_path / "log.parquet")
 
 
 def test_what_no_row_changes_stands_in_every_row(motion, table, tmp_path):
