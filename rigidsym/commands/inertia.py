@@ -9,6 +9,7 @@ from typing import Any
 import click
 
 from rigidsym.commands.command import command as make
+from rigidsym.data.columns import counted
 from rigidsym.data.mass import ENDINGS, inertia_of, mesh_inertia, read_mesh_file
 from rigidsym.system.processes import bar
 
@@ -31,5 +32,7 @@ def command(file: Path, allow: bool, **options: Any) -> None:
     else:
         mesh = read_mesh_file(file, scale=scale or 1.0)
         body = mesh_inertia(mesh, mass=mass, density=density, allow=allow)
-    noun = "face" if is_mesh else "particle"
-    click.echo(json.dumps(body.record(), indent=1) if options["json"] else body.text(noun))
+    if options["json"]:
+        click.echo(json.dumps(body.record(), indent=1))
+    else:
+        click.echo(f"{counted(body.count, 'face' if is_mesh else 'particle')}\n{body}")

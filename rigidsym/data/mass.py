@@ -13,15 +13,12 @@ from warnings import catch_warnings
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rigidsym.data.columns import ColumnNames, counted, names_for
+from rigidsym.data.columns import ColumnNames, names_for
 from rigidsym.data.tables import ArrayTable, Table, TextTable, open_table
 from rigidsym.errors import BodyError, DataError, MissingExtra
 from rigidsym.system.processes import Progress
 
 Array = NDArray[np.float64]
-_EQUAL_PAIR = "The {} two principal moments are equal: all axes normal to the {} are principal."
-_EQUAL = 1e-9  # of the largest moment: closer moments count as equal
-_ROUNDING = 1e-14  # relative to the largest moment: smaller numbers are rounding errors
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -30,19 +27,6 @@ class PrincipalAxes:
 
     moments: Array  # (3,), kg m²
     axes: Array  # (3, 3), the columns are unit vectors, right-handed
-
-    @property
-    def repeated(self) -> str:
-        """A sentence on equal moments and the axes they leave free; empty if all differ."""
-        low, middle, high = self.moments
-        slack = _EQUAL * abs(high)
-        if high - low <= slack:
-            return "All principal moments are equal: every axis through the centre is principal."
-        if middle - low <= slack:
-            return _EQUAL_PAIR.format("first", "third")
-        if high - middle <= slack:
-            return _EQUAL_PAIR.format("last", "first")
-        return ""
 
 
 def principal_axes_of(inertia: ArrayLike) -> PrincipalAxes:
@@ -87,7 +71,7 @@ def principal_axes_of(inertia: ArrayLike) -> PrincipalAxes:
     return PrincipalAxes(moments=moments, axes=axes)
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
+@dataclass(frozen=True, kw_only=True, slots=True, repr=False)
 class MassProperties:
     """Mass, centre, inertia tensor and principal axes of a body, in SI units."""
 
@@ -105,16 +89,9 @@ class MassProperties:
         """Radii of gyration about the principal axes, (3,), m: √(Iₖ/M)."""
         return np.sqrt(np.maximum(self.principal.moments, 0) / self.mass)
 
-    def text(self, noun: str = "particle") -> str:
-        """A few lines for a terminal; `noun` is particle or face."""
-        return f"{counted(self.count, noun)}\n{self._in_numbers()}"
-
-    def _repr_mimebundle_(self, **_: object) -> dict[str, str]:
-        """The text for Jupyter."""
-        return {"text/plain": self._in_numbers()}
-
-    def _in_numbers(self) -> str:
-        rows: dict[str, Array] = {
+    def __repr__(self) -> str:
+        """A few lines for a terminal."""
+        matrices: dict[str, Array] = {
             "mass M, kg": np.array([[self.mass]]),
             "centre of mass c, m": self.centre[None],
             "inertia tensor about the centre of mass, kg m²": self.inertia,
@@ -123,24 +100,15 @@ class MassProperties:
             "radii of gyration, m": self.radii[None],
         }
         lines: list[str] = []
-        for title, matrix in rows.items():
+        for title, matrix in matrices.items():
             numbers = ("".join(f"{x + 0.0:20.12g}" for x in row) for row in matrix)  # −0 + 0 is 0
             lines += [title, *numbers]
-        return "\n".join([*lines, self.principal.repeated]).rstrip()
+        return "\n".join(lines)
 
     def as_table(self) -> dict[str, object]:
-        """The values of [body] in a derivation file, without rounding errors of zeros."""
-
-        def clean(values: Array, scale: float) -> list[float]:
-            return [0 if abs(v) <= scale * _ROUNDING else v for v in values.tolist()]
-
-        scale = float(np.abs(self.inertia).max())
-        size = float(np.abs(self.centre).max()) + (scale / self.mass) ** 0.5
-        return {
-            "inertia": [clean(row, scale) for row in self.inertia],
-            "mass": self.mass,
-            "centre": clean(self.centre, size),
-        }
+        """The values of [body] in a derivation file."""
+        tensor, centre = self.inertia.tolist(), self.centre.tolist()
+        return {"inertia": tensor, "mass": self.mass, "centre": centre}
 
     def record(self) -> dict[str, Any]:
         """The properties as plain data."""
@@ -152,7 +120,6 @@ class MassProperties:
             "principal_moments": self.principal.moments.tolist(),
             "principal_axes": self.principal.axes.tolist(),
             "radii_of_gyration": self.radii.tolist(),
-            "repeated": self.principal.repeated,
         }
 
 
@@ -224,18 +191,16 @@ def _properties(rows: Array, table: Table, *, allow: bool) -> MassProperties:
         raise BodyError("expected at least one particle, got none")
     positions = rows[:, :3]
     masses = rows[:, 3] if rows.shape[1] == 4 else np.ones(len(rows))
-
-    def refuse(wrong: NDArray[np.bool_], expected: str) -> None:
+    is_finite = np.isfinite(rows).all(axis=1)
+    for wrong, expected in (
+        (~is_finite, "finite numbers"),
+        ((masses < 0) & (not allow), "a mass that is not negative"),
+    ):
         if wrong.any():
             row = int(np.argmax(wrong))
-            name = f"{table.source}, {table.place(row)}" if table.source else table.place(row)
-            x, y, z = positions[row]
-            fault = f"expected {expected}, got mass {masses[row]:g} at ({x:g}, {y:g}, {z:g})"
-            raise BodyError(f"{name}: {fault}")
-
-    refuse(np.asarray(~np.isfinite(rows).all(axis=1)), "finite numbers")
-    if not allow:
-        refuse(masses < 0, "a mass that is not negative")
+            place = ", ".join(filter(None, (table.source, table.place(row))))
+            at = ", ".join(f"{x:g}" for x in positions[row])
+            raise BodyError(f"{place}: expected {expected}, got mass {masses[row]:g} at ({at})")
     with np.errstate(all="ignore"):  # what overflows is refused
         mass = float(masses.sum())
         if not 0 < mass < np.inf:
@@ -251,7 +216,7 @@ def _properties(rows: Array, table: Table, *, allow: bool) -> MassProperties:
     inertia = -(second + second.T) / 2
     for k in range(3):
         inertia[k, k] = second[(k + 1) % 3, (k + 1) % 3] + second[(k + 2) % 3, (k + 2) % 3]
-    return MassProperties(count=len(rows), mass=mass, centre=about + rest / mass, inertia=inertia)
+    return MassProperties(count=len(rows), mass=mass, centre=about, inertia=inertia)
 
 
 def _columns(table: Table, names: Sequence[str] | None) -> tuple[list[int], Array]:
@@ -288,16 +253,8 @@ ENDINGS = (".stl", ".obj", ".ply")
 MOST_DRAWN, _MOST_CELLS = 400, 24
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Mesh:
-    """Vertices (n, 3), in m, and triangles (k, 3) of their numbers."""
-
-    vertices: Array
-    faces: NDArray[np.int64]
-
-
-def read_mesh_file(path: Path, *, scale: float = 1.0) -> Mesh:
-    """A mesh from a file; lengths in it times `scale` are metres.
+def read_mesh_file(path: Path, *, scale: float = 1.0) -> Any:
+    """A `trimesh.Trimesh` from a file; lengths in it times `scale` are metres.
 
     Raises MissingExtra without trimesh, BodyError for a file that holds no mesh of finite numbers.
     """
@@ -317,20 +274,20 @@ def read_mesh_file(path: Path, *, scale: float = 1.0) -> Mesh:
                 raise BodyError(f"{path}: a triangle has a corner that is none of {count} vertices")
             loaded.process()
             loaded.merge_vertices(merge_tex=True, merge_norm=True)
-            vertices = np.asarray(loaded.vertices, dtype=float).reshape(-1, 3) * scale
-            faces = np.asarray(loaded.faces, dtype=np.int64).reshape(-1, 3)
+            loaded.apply_scale(scale)
     except ImportError as error:
         raise MissingExtra(f"reading {path.name} ({error})", "mesh") from None
     # trimesh trusts the counts and types in a file, so that a damaged one fails anywhere.
     except (ValueError, TypeError, LookupError, ArithmeticError, RuntimeError) as error:
         kind, size = path.suffix[1:].upper(), path.stat().st_size
         raise BodyError(f"{path}: its {size} bytes cannot be read as a mesh in {kind}") from error
-    if not len(faces):
+    if not len(loaded.faces):
         raise BodyError(f"{path}: expected a mesh with triangles, found none")
-    if not np.isfinite(vertices).all():
-        wrong = int(np.argmin(np.isfinite(vertices).all(axis=1)))
-        raise BodyError(f"{path}: vertex {wrong} is not finite: {vertices[wrong].tolist()}")
-    return Mesh(vertices=vertices, faces=faces)
+    is_finite = np.isfinite(loaded.vertices).all(axis=1)
+    if not is_finite.all():
+        wrong = int(np.argmin(is_finite))
+        raise BodyError(f"{path}: vertex {wrong} is not finite: {loaded.vertices[wrong].tolist()}")
+    return loaded
 
 
 def _trimesh() -> Any:
@@ -342,9 +299,9 @@ def _trimesh() -> Any:
 
 
 def mesh_inertia(
-    mesh: Mesh, *, mass: float | None = None, density: float | None = None, allow: bool = False
+    mesh: Any, *, mass: float | None = None, density: float | None = None, allow: bool = False
 ) -> MassProperties:
-    """Mass, centre, inertia tensor and principal axes of a uniform solid bounded by a mesh.
+    """Mass, centre, inertia tensor and principal axes of a uniform solid in a `trimesh.Trimesh`.
 
     `mass` in kg or `density` in kg/m³. Raises BodyError for a surface that is open, whose faces
     are not oriented alike, or that is inside out; `allow` accepts the first two.
@@ -354,8 +311,10 @@ def mesh_inertia(
     for what, value, unit in (("mass", mass, "kg"), ("density", density, "kg/m³")):
         if value is not None and not (np.isfinite(value) and value > 0):
             raise BodyError(f"mesh: the {what} is {value:g} {unit}; expected a positive number")
-    if not allow:
-        check_closed(mesh)
+    if not (allow or mesh.is_watertight):
+        raise BodyError("mesh: the surface is open: some edges do not join two faces")
+    if not (allow or mesh.is_winding_consistent):
+        raise BodyError("mesh: some faces are turned over: neighbours have opposite orientations")
     # Integrals of x² about the origin lose all digits of a body that is far from it.
     inside = mesh.vertices.mean(axis=0)
     triangles = (mesh.vertices - inside)[mesh.faces]
@@ -380,38 +339,18 @@ def mesh_inertia(
     )
 
 
-def outline_of(mesh: Mesh) -> dict[str, list[list[float]] | list[list[int]]]:
+def outline_of(mesh: Any) -> dict[str, Any]:
     """Corners, in m, and at most MOST_DRAWN faces that show what the mesh looks like.
 
     The vertices of a finer mesh are merged in cells of a grid (Rossignac and Borrel, 1993).
     """
-    vertices, faces = mesh.vertices, mesh.faces
-    low, size = vertices.min(axis=0), float(np.ptp(vertices, axis=0).max())
-    cells = _MOST_CELLS
-    while len(faces) > MOST_DRAWN:
-        places = np.floor((mesh.vertices - low) * (cells / size))
-        _, cell, count = np.unique(places, axis=0, return_inverse=True, return_counts=True)
-        cell = cell.ravel()
-        merged = cell[mesh.faces]
-        merged = merged[(merged != np.roll(merged, 1, axis=1)).all(axis=1)]
-        first = merged.argmin(axis=1)[:, None]  # each triangle from its least corner
-        faces = np.unique(np.take_along_axis(merged, (first + np.arange(3)) % 3, axis=1), axis=0)
-        sums = [np.bincount(cell, weights=column) for column in mesh.vertices.T]
-        vertices = np.stack(sums, axis=1) / count[:, None]
-        cells -= 1
-    corners = [[float(f"{x:.4g}") for x in vertex] for vertex in vertices.tolist()]
-    return {"corners": corners, "faces": faces.tolist()}
-
-
-def check_closed(mesh: Mesh) -> None:
-    """Raises BodyError, with a corner, unless every edge joins two faces of one orientation."""
-    count = len(mesh.vertices)
-    edges = mesh.faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
-    directed, times = np.unique(edges @ (count, 1), return_counts=True)
-    for wrong, what in (
-        (directed[times > 1], "some faces are turned over: {} edges have the same direction twice"),
-        (np.setdiff1d(edges @ (1, count), directed), "the surface is open: {} edges have one face"),
-    ):
-        if len(wrong):
-            corner = ", ".join(f"{x:.6g}" for x in mesh.vertices[wrong[0] // count])
-            raise BodyError(f"mesh: {what.format(len(wrong))}; the first begins at ({corner})")
+    coarse, cells = mesh, _MOST_CELLS / mesh.extents.max()
+    while len(coarse.faces) > MOST_DRAWN:
+        coarse = mesh.copy().apply_scale(cells)
+        coarse.merge_vertices(digits_vertex=0)
+        coarse.update_faces(coarse.unique_faces() & coarse.nondegenerate_faces())
+        coarse.remove_unreferenced_vertices()
+        coarse.apply_scale(1 / cells)
+        cells *= 0.9
+    corners = [[float(f"{x:.4g}") for x in vertex] for vertex in coarse.vertices.tolist()]
+    return {"corners": corners, "faces": coarse.faces.tolist()}

@@ -17,7 +17,7 @@ from scipy.spatial.transform import Rotation
 
 import rigidsym as rs
 from rigidsym.commands.cli import commands
-from rigidsym.data.mass import Mesh, inertia_of, mesh_inertia, principal_axes_of, read_mesh_file
+from rigidsym.data.mass import inertia_of, mesh_inertia, principal_axes_of, read_mesh_file
 from rigidsym.errors import BodyError, MissingExtra, RigidsymError
 from rigidsym.tools.evaluate import evaluate
 from rigidsym.tools.identify.identification import identify_file
@@ -62,7 +62,8 @@ def test_a_cloud_loses_nothing_that_the_data_hold(table):
     bound = (len(table) + 32) * EPS
     size = float(np.abs(table[:, 1:] - np.median(table[:, 1:], axis=0)).max())
     assert abs(found.mass - mass) <= bound * float(mass)
-    assert max(abs(found.centre - centre)) <= EPS * float(max(abs(centre))) + bound * size
+    half = np.spacing(np.abs(found.centre)) / 2  # the centre is correctly rounded
+    assert (abs(found.centre - centre) <= half + bound * size).all()
     assert max(abs((found.inertia - inertia).ravel())) <= bound * float(max(abs(inertia.ravel())))
 
 
@@ -90,7 +91,7 @@ def test_units_are_converted_and_a_negative_mass_may_be_allowed(tmp_path):
     (tmp_path / "cloud.csv").write_text("x [mm],y [mm],z [mm],mass [g]\n0,0,0,-500\n2e3,0,0,1e3\n")
     found = inertia_of(tmp_path / "cloud.csv", allow=True)
     np.testing.assert_allclose([found.mass, found.centre[0]], [0.5, 4.0], rtol=1e-15)
-    assert "-0" not in found.text().replace("-0.", "")
+    assert "-0" not in repr(found).replace("-0.", "")
 
 
 @pytest.mark.parametrize(
@@ -118,21 +119,19 @@ def test_what_is_no_cloud_is_described_and_not_quoted(tmp_path, cloud, fault):
 
 
 @pytest.mark.parametrize(
-    ("inertia", "sentence"),
+    "inertia",
     [
-        (rows(3)[:, 1:] @ rows(3)[:, 1:].T + np.eye(3) * 9, ""),
-        (np.eye(3) * 2, "All principal moments are equal"),
-        (np.diag([1.0, 1.0, 1.5]), "The first two principal moments are equal"),
+        rows(3)[:, 1:] @ rows(3)[:, 1:].T + np.eye(3) * 9,
+        np.eye(3) * 2,
+        np.diag([1.0, 1.5, 1.0]),
     ],
 )
-def test_principal_axes_are_right_handed_and_diagonalise(inertia, sentence):
+def test_principal_axes_are_right_handed_and_diagonalise(inertia):
     found = principal_axes_of(inertia)
     assert np.linalg.det(found.axes) == pytest.approx(1)
     diagonal = found.axes.T @ inertia @ found.axes
     assert np.allclose(diagonal, np.diag(found.moments), atol=1e-12 * inertia.max())
     assert (np.diff(found.moments) >= 0).all()
-    assert found.repeated.startswith(sentence)
-    assert bool(found.repeated) == bool(sentence)
 
 
 MESHES = {
@@ -156,35 +155,26 @@ def test_meshes_agree_with_trimesh(tmp_path, name, ending):
 
 
 def test_a_mesh_far_away_keeps_its_digits():
-    near = mesh_inertia(mesh_of("box"), mass=6.0)
-    moved = mesh_of("box")
-    far = mesh_inertia(Mesh(vertices=moved.vertices + 2.0**20, faces=moved.faces), mass=6.0)
+    near = mesh_inertia(MESHES["box"], mass=6.0)
+    far = mesh_inertia(MESHES["box"].copy().apply_translation([2.0**20] * 3), mass=6.0)
     assert np.allclose(far.inertia, near.inertia, rtol=1e-13, atol=1e-13)
 
 
-def mesh_of(name: str) -> Mesh:
-    mesh = MESHES[name]
-    return Mesh(vertices=np.array(mesh.vertices), faces=np.array(mesh.faces, dtype=np.int64))
-
-
 def test_open_torn_and_inverted_meshes_are_refused():
-    box = mesh_of("box")
+    box = MESHES["box"]
     torn = np.vstack([box.faces[:1, ::-1], box.faces[1:]])
     for vertices, faces, fault in (
-        (
-            box.vertices,
-            box.faces[1:],
-            r"open: 3 edges have one face; the first begins at \(-0.5, -1",
-        ),
+        (box.vertices, box.faces[1:], "the surface is open"),
         (box.vertices, torn, "some faces are turned over"),
         (box.vertices, box.faces[:, ::-1], "inside out: its volume is -6 m³"),
         (box.vertices * (1, 1, 0), box.faces, "its volume is zero"),
     ):
         with pytest.raises(BodyError, match=fault):
-            mesh_inertia(Mesh(vertices=vertices, faces=faces), mass=1.0)
+            mesh_inertia(trimesh.Trimesh(vertices, faces, process=False), mass=1.0)
     with pytest.raises(BodyError, match="expected either the mass or the density"):
         mesh_inertia(box)
-    assert mesh_inertia(Mesh(vertices=box.vertices, faces=box.faces[1:]), mass=1.0, allow=True)
+    hole = trimesh.Trimesh(box.vertices, box.faces[1:], process=False)
+    assert mesh_inertia(hole, mass=1.0, allow=True)
 
 
 def test_the_command_shows_and_prints_as_json(tmp_path):
@@ -192,8 +182,7 @@ def test_the_command_shows_and_prints_as_json(tmp_path):
     shown = CliRunner().invoke(commands, ["inertia", str(tmp_path / "cloud.npy")])
     assert shown.exit_code == 0
     assert "500 particles" in shown.output
-    in_jupyter = inertia_of(tmp_path / "cloud.npy")._repr_mimebundle_()
-    assert in_jupyter["text/plain"] in shown.output
+    assert repr(inertia_of(tmp_path / "cloud.npy")) in shown.output
     assert "principal axes as columns, right-handed" in shown.output
     MESHES["ring"].export(tmp_path / "ball.stl")
     ball = [str(tmp_path / "ball.stl"), "--density", "1000", "--json"]

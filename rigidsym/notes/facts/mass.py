@@ -146,8 +146,6 @@ class MassFacts:
         for axis in self.principal:
             about = ", ".join(axis["components"])
             yield f"principal moment {axis['moment']} kg m² about ({about})"
-        if self.numbers and self.numbers.principal.repeated:
-            yield self.numbers.principal.repeated
 
 
 def mass_facts(derivation: Derivation, letters: Letters) -> MassFacts | None:
