@@ -7,7 +7,6 @@ usage, 3 for a file with wrong content, 4 if an outside tool is missing.
 from __future__ import annotations
 
 import copyreg
-import re
 from collections.abc import Iterable, Sequence
 from typing import ClassVar, NamedTuple
 
@@ -112,11 +111,6 @@ class Fault(NamedTuple):
     message: str  # what was found and what was expected
     path: str = ""  # "rotation.angles[1]", in the file's own keys; "" for the file as a whole
 
-    def place(self) -> list[tuple[int, str]]:
-        """By path, where entry 2 comes before entry 10."""
-        parts = re.findall(r"\d+|\D+", self.path)
-        return [(int(part) if part.isdigit() else 0, part) for part in parts]
-
     def __str__(self) -> str:
         return f"{self.path}: {self.message}" if self.path else self.message
 
@@ -128,7 +122,7 @@ class SpecError(RigidsymError):
 
     def __init__(self, source: str, faults: Sequence[Fault]) -> None:
         self.source = source
-        self.faults = tuple(sorted(faults, key=Fault.place))
+        self.faults = tuple(sorted(faults, key=lambda fault: fault.path))
         lines = "\n".join(f"  {fault}" for fault in self.faults)
         count = "1 fault" if len(self.faults) == 1 else f"{len(self.faults)} faults"
         super().__init__(f"{source}: {count}, nothing written\n{lines}")

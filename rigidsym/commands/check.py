@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import zip_longest
 from pathlib import Path
 
 import click
@@ -66,7 +65,9 @@ def _findings(record: Path) -> Iterator[tuple[Path, str, str]]:
         return
     for name, text in fresh.files.items():
         path = record.with_name(name)
-        problem, note = difference(path, text), ""
+        is_same = path.is_file() and path.read_bytes() == text.encode("utf-8")
+        differs = "differs from the derivation" if path.is_file() else "missing"
+        problem, note = "" if is_same else differs, ""
         if name == f"{record.stem}.{CERTIFICATE}" and path.is_file():
             try:
                 proved, reasons = verify(load(record))
@@ -79,15 +80,3 @@ def _findings(record: Path) -> Iterator[tuple[Path, str, str]]:
     path = record.with_suffix(f".{CERTIFICATE}")
     if path.name not in fresh.files and path.exists():
         yield path, f"unknown to {record.name}: derive again with --certificates", ""
-
-
-def difference(path: Path, expected: str) -> str:
-    """What is wrong with one file; empty if its bytes are those expected."""
-    if not path.is_file():
-        return "missing"
-    content = path.read_bytes()
-    if content == expected.encode("utf-8"):
-        return ""
-    lines = zip_longest(content.decode("utf-8", "replace").split("\n"), expected.split("\n"))
-    line = next((place for place, (a, b) in enumerate(lines, start=1) if a != b), 1)
-    return f"differs from the derivation at line {line}"

@@ -133,6 +133,12 @@ def command(name: str, **choices: Sequence[str]) -> Callable[[Callable[..., Any]
     )
 
 
+def of_rotation(options: Options) -> dict[str, Any]:
+    """The options of ROTATION that were given, as `spec_for` takes them."""
+    keys = ("angles", "constants", "scalar_last", "passive")
+    return {key: options[key] for key in keys if options[key]}
+
+
 def message(text: str) -> None:
     """A message on standard error; if nobody can read it, the exit code still tells."""
     with suppress(OSError):

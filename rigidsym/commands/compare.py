@@ -10,8 +10,7 @@ from typing import Any
 
 import click
 
-from rigidsym.commands.command import Options, command as make, message
-from rigidsym.commands.options import of_rotation
+from rigidsym.commands.command import Options, command as make, message, of_rotation
 from rigidsym.data.columns import counted
 from rigidsym.errors import DataError
 from rigidsym.motion import Motion, derive

@@ -1,20 +1,21 @@
-"""`rigidsym derive`, and what `run` shares with it: derive, print, write, show."""
+"""`rigidsym derive`, and what `run` and `page` share with it: derive, print, write, show."""
 
 from __future__ import annotations
 
 import json
 import shutil
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import click
 
-from rigidsym.commands.command import Options, command as make, message
-from rigidsym.commands.options import MOST_LINES, applied, of_rotation
+from rigidsym.commands.command import Options, command as make, message, of_rotation
 from rigidsym.commands.output_folder import printed, with_existing_files, write
 from rigidsym.errors import RigidsymError
-from rigidsym.formula.notation import CHOICES
+from rigidsym.formula.notation import CHOICES, DEFAULT
+from rigidsym.kernels.lowering.derivatives import read_requests
 from rigidsym.notes.formats.pdf import typeset
 from rigidsym.notes.formats.record import record
 from rigidsym.notes.formats.terminal import show
@@ -39,6 +40,32 @@ def command(rotation: str, **options: Any) -> None:
         click.echo("\n\n".join(s.latex() if is_latex else s.text() for s in motion.steps))
 
 
+def applied(options: Options, spec: DerivationSpec) -> DerivationSpec:
+    """The specification with the choices of the command line; those left open stay its own."""
+    chosen = {key: value for key, value in options.items() if value}
+    changes = {
+        key: chosen[key] for key in ("style", "conversions", "certificates") if key in chosen
+    }
+    if notation := {key: chosen[key] for key in CHOICES if key in chosen}:
+        changes["notation"] = replace(spec.notation or DEFAULT, **notation)
+    kernels, note = chosen.get("target", spec.kernels), spec.note
+    if "lean" in chosen:
+        kernels = (*kernels, "c")
+        changes["target_options"] = {**spec.target_options, "c": {"lean": "double"}}
+    if "pdf" in chosen:
+        note = (*note, PDF)
+    return replace(
+        spec,
+        quantities=tuple(dict.fromkeys(chosen.get("only", spec.quantities))),
+        kernels=tuple(dict.fromkeys(kernels)),
+        note=tuple(dict.fromkeys(note)),
+        derivatives=tuple(
+            map(str, read_requests([*spec.derivatives, *chosen.get("derivative", ())]))
+        ),
+        **changes,
+    )
+
+
 def produce(specs: Iterable[DerivationSpec], options: Options) -> None:
     """Derive, print, write and show each rotation of some specifications."""
     out = options["out"]
@@ -51,20 +78,13 @@ def produce(specs: Iterable[DerivationSpec], options: Options) -> None:
             )
     wanted = [with_existing_files(single, out) for single in singles.values()]
     missing: list[RigidsymError] = []
-    count = 0
-    try:
-        for output, paper in in_processes(_made, wanted):
-            written = write(output, out, force=options["force"])
-            if isinstance(paper, bytes):
-                written.append(write_bytes(written[0].parent / f"{output.name}.pdf", paper))
-            elif paper is not None:
-                missing.append(paper)
-            _show(output, written, options, is_only=len(wanted) == 1)
-            count += 1
-    finally:
-        if 0 < count < len(wanted):
-            finished = f"{count} of {len(wanted)} derivations are finished"
-            message(f"{finished} and kept in {out}")
+    for output, paper in in_processes(_made, wanted):
+        written = write(output, out, force=options["force"])
+        if isinstance(paper, bytes):
+            written.append(write_bytes(written[0].parent / f"{output.name}.pdf", paper))
+        elif paper is not None:
+            missing.append(paper)
+        _show(output, written, options, is_only=len(wanted) == 1)
     if missing:
         raise missing[0]
 
@@ -84,20 +104,16 @@ def _show(output: Output, written: Sequence[Path], options: Options, *, is_only:
     """The files, the record, the derivation or one line of it on standard output."""
     if output.uncovered:
         message(f"{output.name}: the certificate does not cover {', '.join(output.uncovered)}")
-    proved = sum(proof.is_exact for proof in output.proofs)
-    claims = f"{proved} of {len(output.proofs)} claims proved"
     if options["quiet"]:
         click.echo("\n".join(map(str, written)))
     elif options["json"]:
         click.echo(output.record_text, nl=False)
-    elif not is_only:
-        click.echo(f"{output.name:<28} {claims}  {written[0].parent}")
-    else:
+    elif is_only:
         width = min(shutil.get_terminal_size((88, 24)).columns, 120)
         motion, conversions = output.motion, output.conversions
-        text = show(motion, width=width, notation=motion.notation, conversions=conversions)
-        lines = text.split("\n")
-        if len(lines) > MOST_LINES and not options["full"]:
-            more = f"... and {len(lines) - MOST_LINES} more lines: use --full, or read the note"
-            lines = [*lines[:MOST_LINES], "", f"{more}; {claims}"]
-        click.echo("\n".join([*lines, "", "Written: " + "\n         ".join(map(str, written))]))
+        click.echo(show(motion, width=width, notation=motion.notation, conversions=conversions))
+        click.echo("\nWritten: " + "\n         ".join(map(str, written)))
+    else:
+        proved = sum(proof.is_exact for proof in output.proofs)
+        claims = f"{proved} of {len(output.proofs)} claims proved"
+        click.echo(f"{output.name:<28} {claims}  {written[0].parent}")

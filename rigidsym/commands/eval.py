@@ -8,8 +8,7 @@ from typing import Any
 
 import click
 
-from rigidsym.commands.command import command as make, message
-from rigidsym.commands.options import of_rotation
+from rigidsym.commands.command import command as make, message, of_rotation
 from rigidsym.data.columns import counted
 from rigidsym.errors import ModelError
 from rigidsym.motion import derive

@@ -11,7 +11,7 @@ from rigidsym.commands.command import message
 from rigidsym.errors import EditedFiles, SpecError
 from rigidsym.pipeline import PDF, Output, digest, output_of, read_record
 from rigidsym.spec.derivation_spec import DerivationSpec
-from rigidsym.system.files import locked, read_bytes, write_text
+from rigidsym.system.files import read_bytes, write_text
 
 CERTIFICATE = "v"  # NAME.v, theorems for Coq
 
@@ -36,10 +36,8 @@ def with_existing_files(spec: DerivationSpec, out: Path) -> DerivationSpec:
     describes all of them and `rigidsym check` sees them.
     """
     before = _spec_of(content_of(out / spec.name / f"{spec.name}.json"))
-    if before is None:
-        return spec
     files = {key: getattr(spec, key) for key in ("kernels", "note", "certificates")}
-    if replace(before, **files) != spec:  # they differ in more than the files they print
+    if before is None or replace(before, **files) != spec:  # more than the files differs
         return spec
     notes = [name for name in before.note if name != PDF]  # it is typeset when it is asked for
     return replace(
@@ -53,37 +51,33 @@ def with_existing_files(spec: DerivationSpec, out: Path) -> DerivationSpec:
 def write(output: Output, out: Path, *, force: bool) -> list[Path]:
     """Write the files of a derivation to out/NAME/, the record last.
 
-    Each file is whole or as it was before; another process that writes there is waited for. What
-    an earlier run printed there and this one does not is removed, unless it was edited. Raises
-    EditedFiles, before anything is written, for edited files that would be overwritten, unless
-    `force` is set.
+    Each file is whole or as it was before. What an earlier run printed there and this one does not
+    is removed, unless it was edited. Raises EditedFiles, before anything is written, for edited
+    files that would be overwritten, unless `force` is set.
     """
     folder = out / output.spec.name
-    with locked(folder):
-        content = content_of(folder / f"{folder.name}.json")
-        known = content["files"] if isinstance(content.get("files"), dict) else {}
-        own = [folder / name for name in known if Path(name).name == name]  # none elsewhere
-        contents = {path: path.read_bytes() for path in own if path.is_file()}
-        edited = {path for path, text in contents.items() if digest(text) != known[path.name]}
-        lost = sorted(
-            path
-            for path in edited
-            if path.name in output.files and contents[path] != output.files[path.name].encode()
+    record = content_of(folder / f"{folder.name}.json")
+    known = record["files"] if isinstance(record.get("files"), dict) else {}
+    own = [folder / name for name in known if Path(name).name == name]  # none elsewhere
+    contents = {path: path.read_bytes() for path in own if path.is_file()}
+    edited = {path for path, text in contents.items() if digest(text) != known[path.name]}
+    new = {folder / name: text for name, text in output.files.items()}
+    lost = [path for path in edited & new.keys() if contents[path] != new[path].encode()]
+    if lost and not force:
+        raise EditedFiles(
+            f"{', '.join(sorted(map(str, lost)))} changed since it was generated; use --force to "
+            "overwrite it, or --out for another folder"
         )
-        if lost and not force:
-            raise EditedFiles(
-                f"{', '.join(map(str, lost))} changed since it was generated; use --force to "
-                "overwrite it, or --out for another folder"
-            )
-        before = _spec_of(content)
-        if before is not None and before.models != output.spec.models:
-            message(f"replacing {folder}, which held another rotation (use --out to keep both)")
-        gone = sorted({path.name for path in contents.keys() - edited} - output.files.keys())
-        if gone and (before is None or before.models == output.spec.models):
-            message(f"removing {', '.join(gone)} from {folder} (use --out to keep both)")
-        for name in gone:
-            (folder / name).unlink()
-        return [write_text(folder / name, text) for name, text in output.files.items()]
+    before = _spec_of(record)
+    gone = sorted(contents.keys() - edited - new.keys())
+    if before is not None and before.models != output.spec.models:
+        message(f"replacing {folder}, which held another rotation (use --out to keep both)")
+    elif gone:
+        names = ", ".join(path.name for path in gone)
+        message(f"removing {names} from {folder} (use --out to keep both)")
+    for path in gone:
+        path.unlink()
+    return [write_text(path, text) for path, text in new.items()]
 
 
 def _spec_of(content: dict[str, Any]) -> DerivationSpec | None:

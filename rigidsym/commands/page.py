@@ -7,8 +7,8 @@ from typing import Any
 
 import click
 
-from rigidsym.commands.command import command as make
-from rigidsym.commands.options import applied, of_rotation
+from rigidsym.commands.command import command as make, of_rotation
+from rigidsym.commands.derive import applied
 from rigidsym.commands.output_folder import printed, with_existing_files, write
 from rigidsym.formula.notation import CHOICES
 from rigidsym.pipeline import PAGE, integrated, page_name, read

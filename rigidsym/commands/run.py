@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from rigidsym.commands.command import command as make, message
-from rigidsym.commands.derive import produce
-from rigidsym.commands.options import applied
+from rigidsym.commands.derive import applied, produce
 from rigidsym.errors import SpecError
 from rigidsym.formula.notation import CHOICES
 from rigidsym.pipeline import read_file

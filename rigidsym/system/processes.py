@@ -11,7 +11,6 @@ import sys
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from functools import partial
 from math import isfinite
 from types import FrameType
 from typing import TypeVar
@@ -21,7 +20,6 @@ from rigidsym.errors import LimitReached, RequestError, printable
 T = TypeVar("T")
 R = TypeVar("R")
 _TICK = 1.0  # seconds from a stop that was lost to the next
-_PATIENCE = 5.0  # seconds for a copy to end what it started
 
 
 def cores() -> int:
@@ -47,42 +45,24 @@ def in_processes(work: Callable[[T], R], items: Sequence[T]) -> Iterator[R]:
     done = 1
     with ProcessPoolExecutor(count, get_context("fork"), _obey_this_process) as pool:
         try:
-            for result in pool.map(partial(_done, work), items[1:]):
+            for result in pool.map(work, items[1:]):
                 yield result
                 done += 1
         except BrokenProcessPool:  # the system ended a copy, for want of memory for instance
             yield from map(work, items[done:])
         except BaseException:  # an interrupt does not wait for results
-            copies = active_children()
-            for copy in copies:
+            for copy in active_children():
                 copy.terminate()
-            for copy in copies:
-                copy.join(_PATIENCE)
-                copy.kill()
             raise
 
 
-def _done(work: Callable[[T], R], item: T) -> R:
-    try:
-        return work(item)
-    except SystemExit:  # the executor would go on with the next item
-        os._exit(1)
-
-
 def _obey_this_process() -> None:
-    """Ctrl-C reaches only the first process, which ends its copies and what they started.
+    """Ctrl-C reaches only the first process, which ends its copies.
 
     Errors are pickled; all that multiprocessing would print is that it was interrupted.
     """
     sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.signal(signal.SIGTERM, _end_once)
-
-
-def _end_once(_signal: int, _frame: FrameType | None) -> None:
-    # the executor ends the copies a second time, which must not stop their cleaning up
-    signal.signal(signal.SIGTERM, signal.SIG_IGN)
-    sys.exit(1)
 
 
 Progress = Callable[[float], None]  # receives the share done, from 0 to 1

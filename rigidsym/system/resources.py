@@ -25,7 +25,6 @@ from jinja2 import (
     TemplateSyntaxError,
     nodes,
 )
-from jinja2.runtime import Context
 from jinja2.sandbox import ImmutableSandboxedEnvironment
 
 from rigidsym.errors import TemplateFault, offer
@@ -127,8 +126,8 @@ def _located(name: str) -> tuple[str, str]:
 class SandboxedTemplates(ImmutableSandboxedEnvironment):
     """Templates in Jinja's sandbox, by a function that finds them: name -> text, file.
 
-    An undefined name, bad syntax or a forbidden access raises TemplateFault with the template, the
-    line and the names there are. `--timeout` ends a template that does not.
+    An undefined name, bad syntax or a forbidden access raises TemplateFault with the template and
+    the line. `--timeout` ends a template that does not.
     """
 
     def __init__(self, find: Callable[[str], tuple[str, str]], **options: Any) -> None:
@@ -162,32 +161,22 @@ class SandboxedTemplates(ImmutableSandboxedEnvironment):
 
         Jinja2 ignores such a block, so that a misspelt name would change nothing.
         """
-        tree = self.parse(text, name, file)
-        parent = next((e.template for e in tree.find_all(nodes.Extends)), None)
-        if not isinstance(parent, nodes.Const):
-            return
+        own = base = self.parse(text, name, file)
         known: set[str] = set()
-        while isinstance(parent, nodes.Const):
+        while extended := base.find(nodes.Extends):
             try:
-                base = self.parse(*self._find(parent.value))
-            except (FileNotFoundError, ValueError):  # Jinja2 says so, with the line
+                base = self.parse(*self._find(extended.template.as_const()))
+            except (FileNotFoundError, ValueError, nodes.Impossible):  # Jinja2 says so
                 return
             known |= {block.name for block in base.find_all(nodes.Block)}
-            parent = next((e.template for e in base.find_all(nodes.Extends)), None)
-        for block in tree.body:
+        for block in own.body if base is not own else ():
             if isinstance(block, nodes.Block) and block.name not in known:
-                fault = f"there is no block {block.name} to override"
-                raise TemplateFault(
-                    f"{file}, line {block.lineno}: {fault}; {offer(block.name, sorted(known))}"
-                )
+                fault = f"there is no block {block.name} to override; {offer(block.name, known)}"
+                raise TemplateFault(f"{file}, line {block.lineno}: {fault}")
 
     def handle_exception(self, source: str | None = None) -> NoReturn:
         """Jinja2 comes here with every exception from a template."""
-        frames = [frame for frame, _ in walk_tb(sys.exc_info()[2])]
-        contexts = (frame.f_locals.get("context") for frame in frames)
-        context = next((c for c in contexts if isinstance(c, Context)), None)
-        names = sorted(set(context.get_all()) - set(self.globals)) if context is not None else []
-        raised_in = frames[-1].f_globals
+        *_, (frame, _) = walk_tb(sys.exc_info()[2])
         try:
             super().handle_exception(source)
         except TemplateSyntaxError as error:
@@ -196,13 +185,12 @@ class SandboxedTemplates(ImmutableSandboxedEnvironment):
         except TemplateNotFound as error:
             raise TemplateFault(f"{_place(error)}: no template {error.name}") from error
         except TemplateError as error:
-            known = f"; names here: {', '.join(names)}" if names else ""
-            raise TemplateFault(f"{_place(error)}: {error}{known}") from error
+            raise TemplateFault(f"{_place(error)}: {error}") from error
         except RecursionError as error:
             raise TemplateFault(f"{_place(error)}: it includes itself") from error
         except (ArithmeticError, TypeError, ValueError) as error:
-            is_of_jinja = raised_in.get("__name__", "").startswith("jinja2.")
-            if not is_of_jinja and "__jinja_template__" not in raised_in:
+            is_of_jinja = frame.f_globals.get("__name__", "").startswith("jinja2.")
+            if not is_of_jinja and "__jinja_template__" not in frame.f_globals:
                 raise  # from a function that the template calls
             raise TemplateFault(f"{_place(error)}: {error}") from error
 

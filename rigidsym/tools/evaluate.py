@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import inspect
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 from math import pi
 from pathlib import Path
+from types import ModuleType
 from typing import Any, BinaryIO
 
 import numpy as np
@@ -25,11 +25,15 @@ from rigidsym.data.tables import (
     write_table,
 )
 from rigidsym.errors import DataError, QuantityError, RequestError, offer
-from rigidsym.motion import KernelModule, Motion
+from rigidsym.motion import Motion
 from rigidsym.system.processes import Progress
 from rigidsym.tools.spellings import groups_of, of_component
 
-CONVERSIONS = ("quaternion", "from_quaternion", "from_rotation_matrix")
+CONVERSIONS = {  # and what they take
+    "quaternion": "q",
+    "from_quaternion": "quaternion",
+    "from_rotation_matrix": "matrix",
+}
 _DEGREE = pi / 180
 
 
@@ -55,7 +59,6 @@ def evaluate(
     missing: Missing = "error",
     degrees: bool = False,
     threads: int = 1,
-    target: str = "numpy",
     rows: int = ROWS,
     progress: Progress | None = None,
 ) -> Evaluated:
@@ -83,8 +86,8 @@ def evaluate(
         if isinstance(source, Path) and where.resolve() == source.resolve():
             raise RequestError(f"{where}: the result would replace the file that is read")
     chosen = motion.select(derived_for(quantities))
-    kernels = chosen.kernels(target, conversions=not {*CONVERSIONS}.isdisjoint(quantities))
-    calls = {name: _arguments(chosen, kernels, name) for name in quantities}
+    module = chosen.kernels(conversions=not CONVERSIONS.keys().isdisjoint(quantities)).load()
+    calls = {name: _arguments(chosen, module, name) for name in quantities}
     taken = {argument for arguments in calls.values() for argument in arguments}
     known = [_Input(a.name, a.names, a.units) for a in chosen.arguments]
     inputs = [each for each in (*known, _QUATERNION, _MATRIX) if each.name in taken]
@@ -94,18 +97,29 @@ def evaluate(
         raise RequestError(f"{table.source}: no column is used; every row has the same result")
     components = [pair for each in free for pair in zip(each.names, each.units, strict=True)]
     try:
-        names = names_for(columns, table.width, table.names)
-        header = None if names is None else ColumnNames(names)
-        used = _by_order(components, table.width) if header is None else _by_name(free, header)
-        pairs = zip(used, components, strict=True)
-        scales = [_scale(header, column, unit, degrees) for column, (_, unit) in pairs]
-        kept = dict(_kept(header, name) for name in keep)
+        named = names_for(columns, table.width, table.names)
+        if named is None and table.width != len(components):
+            raise DataError(
+                f"{counted(table.width, 'column')} without names: expected {len(components)} "
+                f"({', '.join(name for name, _ in components)}); or name them with --columns"
+            )
+        header = ColumnNames(named or [name for name, _ in components])
+        used = _by_name(free, header)
+        scales = []
+        for column, (_, unit) in zip(used, components, strict=True):
+            stated = header.factor(column, unit)
+            unstated = _DEGREE if degrees and _is_angle(unit) else 1.0
+            scales.append(unstated if stated is None else stated)
+        kept = {}
+        for name in keep:
+            if (column := header.find([name])) is None:
+                raise DataError(f"no column {name}; {offer(name, header.names)}")
+            kept[column] = header.names[column]
     except DataError as error:
         raise DataError(f"{table.source}: {error}") from None
     results = [result for name in quantities for result in _results(chosen, name)]
     factors = [180 / pi if degrees and _is_angle(unit) else 1.0 for _, unit in results]
     ends = np.cumsum([len(each.names) for each in free])[:-1]
-    module = kernels.load()
 
     def computed() -> Iterator[Rows]:
         batches = table.batches(used, rows, [*kept])
@@ -130,7 +144,7 @@ def evaluate(
     unstated = [
         _title(name, unit, degrees=degrees)
         for column, (name, unit) in zip(used, components, strict=True)
-        if header is None or (unit and not header.unit(column))
+        if named is None or (unit and not header.unit(column))
     ]
     titles = (*kept.values(), *(_title(*result, degrees=degrees) for result in results))
     count = write_table(where, titles, table.dtype, computed(), stream)
@@ -172,24 +186,19 @@ def _is_angle(unit: str) -> bool:
     return unit.split("/")[0] == "rad"
 
 
-def _arguments(motion: Motion, kernels: KernelModule, name: str) -> tuple[str, ...]:
+def _arguments(motion: Motion, module: ModuleType, name: str) -> tuple[str, ...]:
     """The names of the arguments of a function; raises RequestError if it has none."""
-    if name not in CONVERSIONS:
-        if not (inputs := motion.step(name).quantity.inputs):
-            raise RequestError(f"{name} takes no input: it is the same for every row")
-        return inputs
-    function = getattr(kernels.load(), name, None)
-    if function is None:
+    if name in CONVERSIONS:
+        if hasattr(module, name):
+            return (CONVERSIONS[name],)
         raise QuantityError(
             f"this rotation has no function {name}: only the 24 Euler conventions and the named "
             "parametrisations have it; for other coordinates, fit rotation_matrix(q) to the matrix "
             "with scipy.optimize.least_squares"
         )
-    taken = [
-        p.name for p in inspect.signature(function).parameters.values() if p.kind != p.KEYWORD_ONLY
-    ]
-    first = {"from_quaternion": "quaternion", "from_rotation_matrix": "matrix"}.get(name, taken[0])
-    return (first, *taken[1:])
+    if not (inputs := motion.step(name).quantity.inputs):
+        raise RequestError(f"{name} takes no input: it is the same for every row")
+    return inputs
 
 
 def _results(derivation: Motion, name: str) -> Iterable[tuple[str, str]]:
@@ -236,28 +245,6 @@ def _constants(
     return constants
 
 
-def _scale(header: ColumnNames | None, column: int, unit: str, degrees: bool) -> float:
-    """What the numbers of a column are multiplied by to be in the unit of the functions.
-
-    They are in the unit that the name of the column states, or else in SI units, but angles in
-    degrees with `degrees`. Raises DataError for a unit that does not fit.
-    """
-    stated = None if header is None else header.factor(column, unit)
-    if stated is not None:
-        return stated
-    return _DEGREE if degrees and _is_angle(unit) else 1.0
-
-
-def _by_order(components: Sequence[tuple[str, str]], width: int) -> list[int]:
-    if width != len(components):
-        names = ", ".join(name for name, _ in components)
-        raise DataError(
-            f"{counted(width, 'column')} without names: expected {len(components)} ({names}); or "
-            "name them with --columns"
-        )
-    return [*range(width)]
-
-
 def _by_name(arguments: Sequence[_Input], header: ColumnNames) -> list[int]:
     columns: list[int] = []
     missing: list[str] = []
@@ -271,22 +258,11 @@ def _by_name(arguments: Sequence[_Input], header: ColumnNames) -> list[int]:
             else:
                 columns.append(column)
     if missing:
-        remedy = "if the file names them otherwise, --columns gives all its columns names, in order"
-        if any(a.name == "q" and len(a.names) == 3 and {*a.names} <= {*missing} for a in arguments):
-            remedy += (
-                ", or --angles the coordinates in the order of the turns, "
-                "such as `--angles yaw,pitch,roll`"
-            )
+        remedy = (
+            "if the file names them otherwise, --columns names all its columns, in order, or "
+            "--angles the coordinates, such as `--angles yaw,pitch,roll`"
+        )
         if {*missing} == {n for a in arguments if a.name == "q_dot" for n in a.names}:
             remedy = "without rates, --quantity rotation_matrix gives the attitude; " + remedy
         raise DataError(f"no column {', '.join(missing)} among {header.listed}; {remedy}")
     return columns
-
-
-def _kept(header: ColumnNames | None, name: str) -> tuple[int, str]:
-    """A column to keep, and its name in the file."""
-    if header is None:
-        raise DataError("--keep needs names of columns; --columns gives them")
-    if (column := header.find([name])) is None:
-        raise DataError(f"no column {name}; {offer(name, header.names)}")
-    return column, header.names[column]

@@ -97,17 +97,6 @@ def test_results_come_in_order_and_errors_where_they_arise(cores: int, monkeypat
     assert list(in_processes(inverse, [])) == []
 
 
-def test_a_run_that_stops_says_how_much_is_kept(tmp_path: Path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    text = FOUR.replace('"html", "page"', '"md"') + "kernels = []\n"
-    Path("four.toml").write_text(text, encoding="utf-8")
-    command = ["run", "four.toml"]
-    assert CliRunner().invoke(commands, command).exit_code == 0
-    Path("out/euler_zyx_intrinsic/euler_zyx_intrinsic.md").write_text("mine", encoding="utf-8")
-    done = CliRunner().invoke(commands, command)
-    assert "2 of 4 derivations are finished and kept in out" in done.output
-
-
 HERE = os.getpid()
 
 

@@ -119,7 +119,7 @@ def folder(tmp_path: Path) -> Path:
 def test_one_command_from_a_file_to_energies_kernels_and_note(folder):
     """I, principal axes, energies, kernels and note; and the record asks for the same again."""
     name = "both"
-    run = ["run", str(folder / f"{name}.toml"), "--full", "--out", str(folder / "out")]
+    run = ["run", str(folder / f"{name}.toml"), "--out", str(folder / "out")]
     result = CliRunner().invoke(commands, run)
     assert result.exit_code == 0, result.output
     assert "principal moment " in result.output

@@ -254,7 +254,7 @@ COQ, RECORD = f"{NAME}.v", f"{NAME}.json"
                 RECORD: "differs from the derivation",
             },
         ),
-        (COQ, "Qed.", "Admitted.", {COQ: "differs from the derivation at line"}),
+        (COQ, "Qed.", "Admitted.", {COQ: "differs from the derivation"}),
         (COQ, None, "", {COQ: "missing"}),
         (RECORD, '"title"', "{", {RECORD: "cannot be read as the record"}),
     ],

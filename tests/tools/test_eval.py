@@ -181,7 +181,6 @@ def test_the_body_of_a_derivation_file_is_known(table, tmp_path):
     [
         (VELOCITY, {"given": {"phi": 1.0}}, "expected numbers for all of phi, theta, psi, or"),
         (VELOCITY, {"given": {"alpha": 1.0}}, "alpha is not an input"),
-        (VELOCITY, {"keep": ("time",)}, "--keep needs names of columns; --columns gives"),
         (VELOCITY, {"keep": ("time",), "columns": NAMES}, "no column time; known: phi, theta"),
     ],
 )
