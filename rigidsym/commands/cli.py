@@ -11,13 +11,14 @@ import io
 import os
 import sys
 import warnings
+from difflib import get_close_matches
 from importlib import import_module
 from typing import Any
 
 import click
 
 from rigidsym.commands.command import DECLARED, message
-from rigidsym.errors import RigidsymError, offer
+from rigidsym.errors import RigidsymError
 from rigidsym.version import __version__
 
 _INTERRUPTED = 130
@@ -67,7 +68,9 @@ class _Commands(click.Group):
 
     def get_command(self, context: click.Context, name: str) -> click.Command | None:
         if name not in _SUMMARIES:
-            raise click.UsageError(f"no command {name!r}; {offer(name, _SUMMARIES)}", context)
+            near = get_close_matches(name, _SUMMARIES, n=1)
+            hint = f"; did you mean {near[0]}?" if near else ""
+            raise click.UsageError(f"no command {name!r}{hint}", context)
         command = import_module(f"rigidsym.commands.{name}").command
         assert isinstance(command, click.Command)
         return command

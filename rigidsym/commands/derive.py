@@ -43,9 +43,8 @@ def command(rotation: str, **options: Any) -> None:
 def applied(options: Options, spec: DerivationSpec) -> DerivationSpec:
     """The specification with the choices of the command line; those left open stay its own."""
     chosen = {key: value for key, value in options.items() if value}
-    changes = {
-        key: chosen[key] for key in ("style", "conversions", "certificates") if key in chosen
-    }
+    own = ("style", "conversions", "certificates")
+    changes: dict[str, Any] = {key: chosen[key] for key in own if key in chosen}
     if notation := {key: chosen[key] for key in CHOICES if key in chosen}:
         changes["notation"] = replace(spec.notation or DEFAULT, **notation)
     kernels, note = chosen.get("target", spec.kernels), spec.note

@@ -108,13 +108,14 @@ def evaluate(
         scales = []
         for column, (_, unit) in zip(used, components, strict=True):
             stated = header.factor(column, unit)
-            unstated = _DEGREE if degrees and _is_angle(unit) else 1.0
-            scales.append(unstated if stated is None else stated)
+            if stated is None:
+                stated = _DEGREE if degrees and _is_angle(unit) else 1.0
+            scales.append(stated)
         kept = {}
         for name in keep:
-            if (column := header.find([name])) is None:
+            if (place := header.find([name])) is None:
                 raise DataError(f"no column {name}; {offer(name, header.names)}")
-            kept[column] = header.names[column]
+            kept[place] = header.names[place]
     except DataError as error:
         raise DataError(f"{table.source}: {error}") from None
     results = [result for name in quantities for result in _results(chosen, name)]
