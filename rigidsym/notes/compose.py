@@ -17,7 +17,7 @@ import sympy as sp
 from jinja2 import TemplateRuntimeError
 
 from rigidsym.errors import offer
-from rigidsym.formula.display import PAGE, Display, display
+from rigidsym.formula.display import PAGE, display
 from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.formula.reader import formula, text_of
 from rigidsym.formula.scalars import formula_of
@@ -54,7 +54,7 @@ from rigidsym.notes.equations import claims_of, columns_of_matrix, equation_of, 
 from rigidsym.notes.facts.rotation import RotationFacts, facts_of_rotation, product_of
 from rigidsym.notes.facts.singular import singular_facts
 from rigidsym.notes.facts.symbols import SymbolFacts
-from rigidsym.notes.fitting import Fitter, as_vectors, definitions
+from rigidsym.notes.fitting import as_vectors, fitted
 from rigidsym.notes.letters import letters_of
 from rigidsym.notes.named_body import OFFSET, in_names, textbook_form
 from rigidsym.notes.template import blocks_of, sections_of
@@ -117,7 +117,6 @@ class Composer:
         self.letters = letters_of(derivation.arguments, notation, derivation.model)
         self.symbols = symbols_of(derivation)
         self.is_audit = is_audit
-        self.fitter = Fitter(self.derivation, self.letters, is_audit=is_audit)
         self.cited: set[Citation] = set()
 
     def document(self, name: str) -> Document:
@@ -211,15 +210,14 @@ class Composer:
         blocks: list[NoteBlock] = []
         for step in self.derivation.steps:
             if step.quantity.section == section:
-                first, *others = self.fitter.fitted(*self._displayed[step.quantity.name], step)
-                lead = self._lead(step)
-                if isinstance(first, Paragraph):  # on abbreviations
-                    *words, end = lead
-                    end = end.replace(":", ".") if isinstance(end, str) else end
-                    blocks.append(Paragraph((*words, end, " ", *first.text)))
-                else:
-                    blocks += [Paragraph(lead), first]
-                blocks += others
+                blocks.append(Paragraph(self._lead(step)))
+                blocks += fitted(
+                    self._displayed[step.quantity.name],
+                    step,
+                    self.derivation,
+                    self.letters,
+                    is_audit=self.is_audit,
+                )
         return blocks
 
     def equation(self, name: str) -> Equation:
@@ -230,14 +228,14 @@ class Composer:
         if name not in self._displayed:
             near = offer(name, [*self._displayed])
             raise TemplateRuntimeError(f"nothing is derived by the name {name!r}; {near}")
-        return self._displayed[name][0]
+        return self._displayed[name]
 
     def _reference(self, name: str) -> EquationReference:
         """To the equation of a quantity, or in the lecture to the one that it belongs to."""
         return EquationReference(_WHERE_SHOWN.get(name, name) if self.derivation.theory else name)
 
     @cached_property
-    def _displayed(self) -> Mapping[str, tuple[Equation, Display]]:
+    def _displayed(self) -> Mapping[str, Equation]:
         """The equations of all steps, with vectors if they have such a form, as they fit."""
         equations = {
             s.quantity.name: as_vectors(self._equation(s), s, self.letters)
@@ -247,7 +245,7 @@ class Composer:
             entries = equations["rotation_matrix"]
             entries = replace(entries, number=None, label="", is_result=False)
             equations["rotation_matrix"] = replace(entries, proved=(), function="")
-        return {name: (e, display(e, self.letters, PAGE)) for name, e in equations.items()}
+        return equations
 
     def _equation(self, step: Step) -> Equation:
         """The equation of a step; in the lecture some have no number of their own."""
@@ -300,9 +298,12 @@ class Composer:
         """The moments behind the names I₁, I₂, I₃."""
         if not self.moments:
             return []
-        blocks = list(self.fitter.whole(definitions(self.moments, self.letters)))
-        is_alone = not isinstance(blocks[0], Paragraph)  # nor abbreviations first
-        return [*([said("here")] if is_alone else []), *blocks]
+        names, values = zip(*self.moments, strict=True)
+        entries = tuple(formula_of(name, self.letters) for name in names)
+        return [
+            said("here"),
+            Equation(sides=(), matrix=sp.ImmutableMatrix(values), entries=entries),
+        ]
 
     # The lecture
 

@@ -131,19 +131,6 @@ def test_what_is_shown_in_names_has_the_value_that_was_derived():
     assert replaced > 8
 
 
-def test_components_of_the_angular_velocity_keep_their_names():
-    """E_R = ½ I′₁₁ Ω′₁² + ..., and no k is another name of Ω′₁."""
-    quantities = ("angular_velocity_body", "inertia_tensor", "rotational_energy")
-    motion = rs.derive("ZXZ", quantities, body=rs.general_inertia())
-    equations = {e.label: e for e in motion.note().document.equations}
-    energy = equations["rotational_energy"].scalar
-    names = motion.argument("omega_body").symbols
-    assert energy.free_symbols >= set(names)
-    omega = dict(zip(names, motion.angular_velocity_body, strict=True))
-    expected = motion.step("rotational_energy").expression[0]
-    assert sp.expand(energy.xreplace(omega) - expected) == 0
-
-
 def test_a_body_alone_has_a_note_and_a_text_without_a_rotation():
     motion = rs.derive("ZXZ", "body", body=rs.solid("cone"))
     document = motion.note().document
