@@ -15,7 +15,7 @@ from rigidsym.formula.notation import CHOICES as CHOICES, DEFAULT as DEFAULT, No
 from rigidsym.formula.tree import Words
 from rigidsym.kernels.lowering.derivatives import Asked
 from rigidsym.kernels.module import KernelModule as KernelModule, generate
-from rigidsym.mechanics.derivation import Derivation, Proof, Step
+from rigidsym.mechanics.derivation import Derivation, Proof
 from rigidsym.mechanics.derive import Body, derive as derivation_of
 from rigidsym.mechanics.prove import identity
 from rigidsym.mechanics.quantities.catalogue import NAMES
@@ -41,16 +41,6 @@ class Motion(Derivation):
 
     notation: Notation = DEFAULT
 
-    def __post_init__(self) -> None:
-        steps = tuple(replace(step, printer=self._printed) for step in self.steps)
-        object.__setattr__(self, "steps", steps)
-
-    def _printed(self, step: Step, form: str) -> str:
-        # the notes are imported when something is printed
-        from rigidsym.notes.formats.terminal import printed_step
-
-        return printed_step(step, form, self, self.notation)
-
     def __repr__(self) -> str:
         """One line, since the steps themselves would fill pages."""
         count = sum(not proof.is_exact for proof in self.proofs)
@@ -59,7 +49,17 @@ class Motion(Derivation):
 
     def latex(self, quantity: str) -> str:
         """The equation of one quantity in LaTeX; raises QuantityError for an unknown one."""
-        return self.step(quantity).latex()
+        return self._printed(quantity, "latex")
+
+    def text(self, quantity: str) -> str:
+        """The equation of one quantity as the terminal shows it."""
+        return self._printed(quantity, "text")
+
+    def _printed(self, quantity: str, form: str) -> str:
+        # the notes are imported when something is printed
+        from rigidsym.notes.formats.terminal import printed_step
+
+        return printed_step(self.step(quantity), form, self, self.notation)
 
     def kernels(
         self,
@@ -160,9 +160,11 @@ class Motion(Derivation):
         """What Jupyter shows: the note, the equations, or the text of the terminal."""
         from rigidsym.notes.formats.terminal import show
 
+        equations = [(self.latex(step.quantity.name), step.number) for step in self.steps]
+        numbered = (f"$$\n{equation}\n\\tag{{{number}}}\n$$" for equation, number in equations)
         return {
             "text/markdown": self.note(with_kernels=False).markdown(),
-            "text/latex": "\n\n".join(step._repr_latex_() for step in self.steps),
+            "text/latex": "\n\n".join(numbered),
             "text/plain": show(self, notation=self.notation),
         }
 

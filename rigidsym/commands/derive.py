@@ -36,8 +36,8 @@ def command(rotation: str, **options: Any) -> None:
     if options["format"] == "json":
         click.echo(json.dumps(record(motion, {})["quantities"], indent=1, ensure_ascii=False))
     else:
-        is_latex = options["format"] == "latex"
-        click.echo("\n\n".join(s.latex() if is_latex else s.text() for s in motion.steps))
+        one = motion.latex if options["format"] == "latex" else motion.text
+        click.echo("\n\n".join(one(step.quantity.name) for step in motion.steps))
 
 
 def applied(options: Options, spec: DerivationSpec) -> DerivationSpec:

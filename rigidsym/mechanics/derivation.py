@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Self
 import sympy as sp
 
 from rigidsym.algebra.zeros import Place as Place
-from rigidsym.errors import DerivationError, QuantityError, offer
-from rigidsym.formula.reader import Sentence, formula
+from rigidsym.errors import QuantityError, offer
+from rigidsym.formula.reader import Sentence, formula, named
 from rigidsym.formula.tree import NOTHING, Formula
 from rigidsym.models.rotation import Citation, RotationModel
 
@@ -164,6 +164,27 @@ class Argument(NamedTuple):
     is_scalar: bool = False  # one number, of shape ()
 
 
+def argument(
+    name: str,
+    symbols: Sequence[sp.Expr],
+    about: str,
+    *,
+    units: str | Sequence[str] = "",
+    names: Sequence[str] = (),
+    notation: Sequence[Formula] = (),
+) -> Argument:
+    """An argument; its components are called and printed by their symbols unless said otherwise."""
+    names = tuple(names or map(str, symbols))
+    return Argument(
+        name=name,
+        symbols=tuple(symbols),
+        names=names,
+        notation=tuple(notation or map(named, names)),
+        units=(units,) * len(names) if isinstance(units, str) else tuple(units),
+        about=about,
+    )
+
+
 class VectorTerm(NamedTuple):
     """coefficient · vector."""
 
@@ -219,11 +240,9 @@ class Step:
     vector_form: VectorForm | None = None  # where the coordinates form a vector
     recursion: Formula | None = None  # shown for the entries, if these are names of its parts
     words: str = ""  # a sentence in place of that of the quantity's reason
-    # of equations, in the notation of the motion
-    printer: Callable[[Step, str], str] | None = field(default=None, repr=False, compare=False)
 
     def __repr__(self) -> str:
-        """One line, for a prompt; `text` shows the equation."""
+        """One line, for a prompt; `Motion.text` shows the equation."""
         proved = all(proof.is_exact for proof in self.proofs)
         return f"<Step {self.quantity.name}, {'proved' if proved else 'not proved'}>"
 
@@ -231,27 +250,6 @@ class Step:
     def because(self) -> str:
         """A sentence: how the quantity follows from the steps before."""
         return self.words or sentence_of(self.quantity.reason)
-
-    def latex(self) -> str:
-        """The equation in LaTeX, without its number."""
-        return self._printed("latex")
-
-    def text(self) -> str:
-        """The equation as the terminal shows it."""
-        return self._printed("text")
-
-    def _printed(self, form: str) -> str:
-        if self.printer is None:
-            raise DerivationError("only a step of rs.derive(...) can print itself")
-        return self.printer(self, form)
-
-    def _repr_mimebundle_(self, **_: object) -> dict[str, str]:
-        """What Jupyter shows: the equation with its number, or plain text."""
-        equation = f"$$\n{self.latex()}\n\\tag{{{self.number}}}\n$$"
-        return {"text/latex": equation, "text/plain": self.text()}
-
-    def _repr_latex_(self) -> str:
-        return self._repr_mimebundle_()["text/latex"]
 
     @cached_property
     def shape(self) -> tuple[int, ...]:

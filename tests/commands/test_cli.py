@@ -199,7 +199,7 @@ def test_one_equation_is_printed_and_nothing_written(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     motion = rs.derive("ZXZ", BODY)
     latex = invoked("derive", "ZXZ", "--only", BODY, "--format", "latex").stdout
-    assert latex == motion.latex(BODY) + "\n" == motion.steps[0].latex() + "\n"
+    assert latex == motion.latex(BODY) + "\n"
     assert "Ω′ = Rᵀ Ω" in invoked("derive", "ZXZ", "--only", BODY, "--format", "text").stdout
     (found,) = json.loads(invoked("derive", "ZXZ", "--only", BODY, "--format", "json").stdout)
     assert found["name"] == BODY

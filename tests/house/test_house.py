@@ -19,7 +19,7 @@ import sympy as sp
 import rigidsym
 from rigidsym.algebra.integrate import Integrator
 from rigidsym.errors import DerivationError
-from rigidsym.mechanics.kinematics.vector_forms import FORMS
+from rigidsym.mechanics.kinematics.vector_forms import forms
 from rigidsym.mechanics.mass.moments import moments_of
 from rigidsym.models.body import Solid
 
@@ -231,10 +231,10 @@ def test_only_the_door_constructs_exact_proofs():
 
 
 def test_a_wrong_coefficient_of_a_vector_form_is_refused(monkeypatch):
-    form = FORMS["quaternion", 3]
+    form = forms()["quaternion", 3]
     one, *others = form.rotation
     wrong = (one, *(coefficient + 1 for coefficient in others))
-    monkeypatch.setitem(FORMS, ("quaternion", 3), form._replace(rotation=wrong))
+    monkeypatch.setitem(forms(), ("quaternion", 3), form._replace(rotation=wrong))
     with pytest.raises(DerivationError, match=r"in terms of v.* is false"):
         rigidsym.derive("gibbs_vector", ["angular_velocity_space"])
 

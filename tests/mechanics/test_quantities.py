@@ -135,4 +135,4 @@ def test_conversions_are_part_of_what_is_proved(monkeypatch):
     assert record(motion, {}, conversions)["is_proved"]
     open_claim = Proof(claim=conversions.from_matrix.claim, status="unproved")
     monkeypatch.setattr(Conversions, "from_matrix", open_claim)
-    assert not record(motion, {}, conversions)["is_proved"]
+    assert not record(motion, {}, Conversions(motion.model))["is_proved"]

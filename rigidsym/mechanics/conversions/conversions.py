@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cache, cached_property, reduce
+from functools import cached_property, reduce
 from itertools import chain
 
 import sympy as sp
@@ -27,15 +27,12 @@ from rigidsym.mechanics.conversions.function import (
     ConversionFunction,
     Converted,
     NamedValues,
-    argument_of,
     half_turn,
     outer_product,
     product,
-    scalar_last,
-    symbols,
 )
 from rigidsym.mechanics.conversions.rules import WORDS, Rule, rule_of, vanishing
-from rigidsym.mechanics.derivation import Argument, Derivation, Proof, Quantity, Step
+from rigidsym.mechanics.derivation import Derivation, Proof, Quantity, Step, argument
 from rigidsym.mechanics.prove import Prover
 from rigidsym.models.parametrisations import parametrised
 from rigidsym.models.rotation import SOURCES, RotationModel, rotation_of
@@ -49,7 +46,6 @@ QUATERNION = Quantity(
     shape="vector",
     source=SOURCES["Shuster"],
 )
-_ABOUT_LAST = QUATERNION.about.replace("first", "last")
 
 
 @dataclass(frozen=True)
@@ -98,9 +94,9 @@ class Conversions:
         if not all(proof.is_exact for proof in proofs):
             return None  # where it is a root of a root, the ring may not know that
         quantity = QUATERNION if is_fixed else QUATERNION._replace(inputs=("q", "parameters"))
-        if rule is not None and rule.is_scalar_last:
-            value = sp.ImmutableMatrix(scalar_last(tuple(value)))
-            quantity = quantity._replace(about=_ABOUT_LAST)
+        if rule is not None:
+            value = sp.ImmutableMatrix(rule.listed(tuple(value)))
+            quantity = quantity._replace(about=quantity.about.replace("first", rule.scalar))
         words = text_of(self.because)
         return Step(quantity=quantity, expression=value, words=words, proofs=proofs)
 
@@ -115,10 +111,14 @@ class Conversions:
         """What to use in place of an inverse; empty if there is one."""
         return "" if self.inverse else WORDS["without"]
 
-    @property
+    @cached_property
     def from_matrix(self) -> Proof:
-        """That 4 p pᵀ can be read off from R."""
-        return _read_off()
+        """4 p pᵀ = K(R): sums and differences of the entries of R, for every unit quaternion p."""
+        model = parametrised("unit_quaternion")
+        column = sp.Matrix(model.coordinates)
+        # R is quadratic in p, so each entry is a polynomial that vanishes by p·p = 1.
+        residual = outer_product(model.matrix) - 4 * column * column.T
+        return vanishing(model, [(tuple(residual), formula(r"4\,\p\p^T = \mathbf{K}"))])[0]
 
     @property
     def proofs(self) -> tuple[Proof, ...]:
@@ -130,94 +130,62 @@ class Conversions:
         return all(proof.is_exact for proof in self.proofs)
 
 
-@cache
-def _read_off() -> Proof:
-    """4 p pᵀ = K(R): sums and differences of the entries of R, for every unit quaternion p."""
-    model = parametrised("unit_quaternion")
-    column = sp.Matrix(model.coordinates)
-    # R is quadratic in p, so each entry is a polynomial that vanishes by p·p = 1.
-    residual = outer_product(model.matrix) - 4 * column * column.T
-    return vanishing(model, [(tuple(residual), formula(r"4\,\p\p^T = \mathbf{K}"))])[0]
-
-
 def converted(derivation: Derivation) -> Converted:
     """The functions of the conversions; where there are none, a remark says why."""
     conversions = Conversions(derivation.model)
     rule, step = conversions.inverse, conversions.quaternion
     number = len(derivation.steps) + 1  # in the note
-    functions: list[ConversionFunction] = []
-    if rule is not None:
-        if rule.forward is not None:
-            remark = [f"Equation ({number}) of the note."] if step else []
-            functions.append(_to_quaternion(derivation.argument("q"), rule, remark))
-            step = None
-        functions += [_from_quaternion(rule), _from_matrix(rule)]
-    remarks = [conversions.without] if conversions.without else []
-    if step is None and not functions:
-        remarks.append(WORDS["without_quaternion"])
+    steps = (replace(step, number=number),) if step else ()
+    if rule is None:
+        remarks = (WORDS["without"], *(() if step else (WORDS["without_quaternion"],)))
+        return Converted(steps=steps, remarks=remarks)
+    functions = [_to_coordinates(rule, source) for source in ("quaternion", "rotation_matrix")]
+    if rule.forward is not None:
+        q = derivation.argument("q")
+        values = NamedValues(q.symbols)
+        parts = rule.forward(values, tuple(q.symbols[place] for place in rule.order))
+        forward = ConversionFunction(
+            name="quaternion",
+            symbol="p",
+            argument=q,
+            values=tuple(values.lines),
+            outputs=rule.listed(parts),
+            about=QUATERNION.about.replace("first", rule.scalar),
+            remarks=(
+                *([f"Equation ({number}) of the note."] if step else []),
+                WORDS[rule.kind]["function"],
+            ),
+        )
+        steps, functions = (), [forward, *functions]
     continuity = None
-    if rule is not None and "continuity" in rule.words:  # the coordinates are not unique
+    if "continuity" in rule.words:  # the coordinates are not unique
         kind = rule.kind.replace("unit_", "")
         continuity = Continuity(kind, (rule.words["continuity"],), rule.quarters)
-    return Converted(
-        steps=(replace(step, number=number),) if step else (),
-        functions=tuple(functions),
-        continuity=continuity,
-        remarks=tuple(remarks),
-    )
+    return Converted(steps, tuple(functions), continuity)
 
 
-def _to_quaternion(q: Argument, rule: Rule, remarks: Sequence[str]) -> ConversionFunction:
-    values = NamedValues(q.symbols[0])
-    assert rule.forward is not None
-    parts = rule.forward(values, tuple(q.symbols[place] for place in rule.order))
-    return ConversionFunction(
-        name="quaternion",
-        symbol="p",
-        argument=q,
-        values=tuple(values.lines),
-        outputs=scalar_last(parts) if rule.is_scalar_last else parts,
-        about=_ABOUT_LAST if rule.is_scalar_last else QUATERNION.about,
-        remarks=(*remarks, WORDS[rule.kind]["function"]),
-    )
-
-
-def _from_quaternion(rule: Rule) -> ConversionFunction:
-    parts = symbols(PARTS)
-    values = NamedValues(parts[0])
-    # The way back holds for every length but zero, so the quaternion is scaled and not normalised:
-    # the sum of sizes needs no root, and no square can overflow.
-    coordinates = rule.from_quaternion(values, values.scaled(parts))
-    listed = scalar_last(parts) if rule.is_scalar_last else parts
-    kind = f"scalar {'last' if rule.is_scalar_last else 'first'}"
-    return _to_coordinates("quaternion", listed, kind, values, coordinates, rule)
-
-
-def _from_matrix(rule: Rule) -> ConversionFunction:
-    entries, is_passive = symbols(MATRIX), rule.model.passive
-    values, matrix = NamedValues(entries[0]), sp.Matrix(3, 3, entries)
-    # The rules are about R; a passive model presents A = Rᵀ.
-    coordinates = rule.from_matrix(values, matrix.T if is_passive else matrix)
-    kind = "A, the transpose of R" if is_passive else "R"
-    return _to_coordinates("rotation_matrix", entries, kind, values, coordinates, rule)
-
-
-def _to_coordinates(
-    source: str,
-    inputs: Sequence[sp.Symbol],
-    kind: str,
-    values: NamedValues,
-    coordinates: tuple[sp.Expr, ...],
-    rule: Rule,
-) -> ConversionFunction:
+def _to_coordinates(rule: Rule, source: str) -> ConversionFunction:
     """`from_quaternion` or `from_rotation_matrix`."""
+    is_matrix = source == "rotation_matrix"
+    inputs: Sequence[sp.Symbol] = tuple(map(sp.Dummy, MATRIX if is_matrix else PARTS))
+    values = NamedValues(inputs)
+    if is_matrix:
+        matrix, kind = sp.Matrix(3, 3, inputs), "R"
+        if rule.model.passive:  # The rules are about R; a passive model presents A = Rᵀ.
+            matrix, kind = matrix.T, "A, the transpose of R"
+        coordinates = rule.from_matrix(values, matrix)
+    else:
+        # The way back holds for every length but zero, so the quaternion is scaled and not
+        # normalised: the sum of sizes needs no root, and no square can overflow.
+        coordinates = rule.from_quaternion(values, values.scaled(inputs))
+        inputs, kind = rule.listed(inputs), f"scalar {rule.scalar}"
     texts, units = WORDS["functions"][source], rule.model.coordinate_units
-    argument = argument_of(source.removeprefix("rotation_"), inputs, texts["input"].format(kind))
     remarks = (rule.because, rule.branch, sentence(texts["remark"].format(SHEPPERD)))
+    name, about = source.removeprefix("rotation_"), texts["input"].format(kind)
     return ConversionFunction(
         name=f"from_{source}",
-        argument=argument,
-        is_matrix=source == "rotation_matrix",
+        argument=argument(name, inputs, about, names=[symbol.name for symbol in inputs]),
+        is_matrix=is_matrix,
         values=tuple(values.lines),
         outputs=coordinates,
         about=texts["about"].format(kind),

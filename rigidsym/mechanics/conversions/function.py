@@ -8,13 +8,11 @@ p = (w, x, y, z), scalar first.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from typing import NamedTuple, TypeVar
 
 import sympy as sp
 from sympy.polys.rings import PolyElement
 
-from rigidsym.formula.tree import Symbol
 from rigidsym.mechanics.derivation import Argument, Step
 from rigidsym.models.rotation import Citation
 
@@ -22,8 +20,7 @@ Vector = tuple[sp.Expr, ...]
 Line = tuple[sp.Symbol, sp.Expr]
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class ConversionFunction:
+class ConversionFunction(NamedTuple):
     """One conversion of a vector, or of a matrix (3, 3), its components row by row."""
 
     name: str
@@ -54,18 +51,6 @@ class Converted(NamedTuple):
     remarks: tuple[str, ...] = ()  # for the head of the module
 
 
-def argument_of(name: str, components: Sequence[sp.Symbol], about: str) -> Argument:
-    names = tuple(symbol.name for symbol in components)
-    return Argument(
-        name=name,
-        symbols=tuple(components),
-        names=names,
-        notation=tuple(map(Symbol, names)),
-        units=("",) * len(names),
-        about=about,
-    )
-
-
 class Where(sp.Function):
     """Where(condition, a, b): a where the comparison holds, else b."""
 
@@ -85,32 +70,24 @@ class Epsilon(sp.Function):
 
 
 class NamedValues:
-    """The named values of one function, in order.
+    """The named values of one function, in order, from its inputs."""
 
-    `given` is one of its inputs, for its type.
-    """
-
-    def __init__(self, given: sp.Expr) -> None:
+    def __init__(self, inputs: Sequence[sp.Expr]) -> None:
         self.lines: list[Line] = []
-        self._known: dict[sp.Expr, sp.Symbol] = {}
-        self._eps = Epsilon(given)
-
-    @property
-    def tiny(self) -> sp.Expr:
-        """Four times the distance from one to the next float."""
-        return 4 * self._eps
+        self._names: dict[sp.Expr, sp.Symbol] = {}
+        self.tiny = 4 * Epsilon(inputs[0])  # four times the distance from one to the next float
 
     def let(self, name: str, value: sp.Expr) -> sp.Expr:
         """A name for a value that is neither a number nor a symbol."""
         if value.is_number or value.is_Symbol or (-value).is_Symbol:
             return value
-        if value not in self._known:
-            symbol = self._known[value] = sp.Dummy(name)
+        if value not in self._names:
+            symbol = self._names[value] = sp.Dummy(name)
             self.lines.append((symbol, value))
-        return self._known[value]
+        return self._names[value]
 
     def each(self, names: Iterable[str], values: Iterable[sp.Expr]) -> Vector:
-        return tuple(self.let(name, value) for name, value in zip(names, values, strict=True))
+        return tuple(map(self.let, names, values))
 
     def length(self, name: str, vector: Sequence[sp.Expr]) -> sp.Expr:
         return self.let(name, sp.sqrt(square(vector)))
@@ -130,18 +107,8 @@ class NamedValues:
         return self.let(name, Where(angle > sp.pi, angle - 2 * sp.pi, turned))
 
 
-def symbols(names: Iterable[str]) -> tuple[sp.Dummy, ...]:
-    """Symbols that equal no other, even of the same name."""
-    return tuple(map(sp.Dummy, names))
-
-
-def dot(first: Iterable[sp.Expr], second: Iterable[sp.Expr]) -> sp.Expr:
-    """The sum of products, part by part, as it comes."""
-    return sp.Add(*(a * b for a, b in zip(first, second, strict=True)))
-
-
 def square(vector: Sequence[sp.Expr]) -> sp.Expr:
-    return dot(vector, vector)
+    return sp.Add(*(part * part for part in vector))
 
 
 # Quaternions: their products, and their matrices, and back
@@ -204,11 +171,6 @@ def shepperd(values: NamedValues, matrix: sp.Matrix) -> Vector:
         PARTS,
         [Where(lower > upper, Where(by_z, z[k], y[k]), Where(by_x, x[k], w[k])) for k in range(4)],
     )
-
-
-def scalar_last(quaternion: Vector) -> Vector:
-    """(x, y, z, w) from (w, x, y, z)."""
-    return (*quaternion[1:], quaternion[0])
 
 
 def short_way(values: NamedValues, quaternion: Sequence[sp.Expr]) -> Vector:

@@ -68,9 +68,14 @@ class Rule:
         return self.kind in ("quaternion", "unit_quaternion")
 
     @property
-    def is_scalar_last(self) -> bool:
-        """Whether quaternions are (x, y, z, w), as the coordinates are."""
-        return self.is_quaternion and self.order[0] == 3
+    def scalar(self) -> str:
+        """Whether quaternions are (w, x, y, z) or (x, y, z, w): as the coordinates are."""
+        return "last" if self.is_quaternion and self.order[0] == 3 else "first"
+
+    def listed(self, quaternion: Sequence[Any]) -> tuple[Any, ...]:
+        """A quaternion (w, x, y, z) in the order of the model."""
+        first, *vector = quaternion
+        return (*vector, first) if self.scalar == "last" else (first, *vector)
 
     @property
     def words(self) -> Mapping[str, str]:
@@ -322,11 +327,9 @@ def _direction_cosines(_: Vector) -> dict[str, Any]:
 
 
 _PARTS: dict[str, Callable[[Vector], dict[str, Any]]] = {
-    "quaternion": _quaternion,
-    "unit_quaternion": _unit_quaternion,
-    "axis_angle": _axis_angle,
-    "rotation_vector": _rotation_vector,
-    "gibbs_vector": _gibbs_vector,
-    "modified_rodrigues": _modified_rodrigues,
-    "direction_cosines": _direction_cosines,
+    parts.__name__.removeprefix("_"): parts
+    for parts in (
+        *(_quaternion, _unit_quaternion, _axis_angle, _rotation_vector),
+        *(_gibbs_vector, _modified_rodrigues, _direction_cosines),
+    )
 }

@@ -6,13 +6,12 @@ in v. Each form is proved equal to all entries for every v, as it is printed.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from functools import cache
 from typing import Any, NamedTuple
 
 import sympy as sp
-from sympy.polys.rings import PolyElement
 
-from rigidsym.algebra.matrix import RingMatrix, Row, hat
+from rigidsym.algebra.matrix import hat
 from rigidsym.algebra.ring import Quotient
 from rigidsym.formula.reader import formula
 from rigidsym.mechanics.derivation import Quantity, VectorForm, VectorTerm
@@ -39,7 +38,8 @@ class Form(NamedTuple):
     velocity: Coefficients = ()  # if it is not that of C(v) and of C(v)² in R
 
 
-def _forms() -> dict[tuple[str, int], Form]:
+@cache
+def forms() -> dict[tuple[str, int], Form]:
     """By the kind of definition and the number of coordinates."""
     n, w = LENGTH, _OTHER
     sine, rest = sp.sin(n), 1 - sp.cos(n)
@@ -67,9 +67,6 @@ def _forms() -> dict[tuple[str, int], Form]:
     }
 
 
-FORMS = _forms()
-
-
 def vector_form(k: Any, quantity: Quantity, value: Any) -> VectorForm | None:
     """The quantity in terms of the vector of the coordinates; None if there is no such form.
 
@@ -77,19 +74,16 @@ def vector_form(k: Any, quantity: Quantity, value: Any) -> VectorForm | None:
     """
     model, kind, symbol = k.model, quantity.vectors, quantity.symbol
     head = model.definition.partition("(")[0]
-    form = FORMS.get((head, len(model.coordinates))) if model.vector else None
+    form = forms().get((head, len(model.coordinates))) if model.vector else None
     others = [q for q in model.coordinates if q not in model.vector]
     if form is None or not kind or (kind == "rate_matrix" and others):
         return None
     v = k.codec.column(model.vector)
     names, bases = list(_BASES), [k.one, hat(v), hat(v) @ hat(v), v @ v.T, v.T]
-    coefficients = form.velocity or (*form.rotation[1:], 0)
+    by_kind = {"rotation": form.rotation, "inverse": form.inverse, "rates": form.inverse}
+    coefficients = by_kind.get(kind, form.velocity or (*form.rotation[1:], 0))
     text = r"#1\text{ in terms of }\v"
     factor = V_DOT  # that the matrices are applied to
-    if kind == "rotation":
-        coefficients = form.rotation
-    elif kind in ("inverse", "rates"):
-        coefficients = form.inverse
     if kind in ("velocity", "rates"):
         if kind == "velocity":
             coefficients = (*coefficients, *(form.along * sp.diff(q, TIME) for q in others))
@@ -114,11 +108,20 @@ def vector_form(k: Any, quantity: Quantity, value: Any) -> VectorForm | None:
     if not terms:
         return None
     matrix, divisor = value if isinstance(value, tuple) else (value, k.codec.ring.one)
-    residual = _residual(k, terms, vectors, matrix.rows[:3], divisor)
-    last = None
+    blocks, last = [(terms, vectors, matrix.rows[:3])], None
     if form.last and len(matrix.rows) > 3:
         last = VectorTerm(sp.Integer(form.last), names[4])
-        residual += _residual(k, [last], bases[4:], matrix.rows[3:], divisor)
+        blocks.append(([last], bases[4:], matrix.rows[3:]))
+    # The printed terms less the entries over their divisor, with |v| = √(v·v).
+    ring, length = k.codec.ring, sp.sqrt(sum(part**2 for part in model.vector))
+    residual: list[Quotient] = []
+    for own_terms, own_vectors, rows in blocks:
+        entries = [Quotient(ring, -entry, divisor) for row in rows for entry in row]
+        for term, vector in zip(own_terms, own_vectors, strict=True):
+            scale = k.codec.encode_quotient(term.coefficient.xreplace({LENGTH: length}))
+            for place, entry in enumerate(vector.entries):
+                entries[place] += scale * Quotient.whole(ring, entry)
+        residual += entries
     return VectorForm(
         terms=tuple(terms),
         components=model.vector,
@@ -126,20 +129,3 @@ def vector_form(k: Any, quantity: Quantity, value: Any) -> VectorForm | None:
         proof=k.prove.cancel(residual, formula(text, symbol, factor)),
         last=last,
     )
-
-
-def _residual(
-    k: Any,
-    terms: Sequence[VectorTerm],
-    vectors: Sequence[RingMatrix],
-    rows: Sequence[Row],
-    below: PolyElement,
-) -> list[Quotient]:
-    """The printed terms less rows/below, entry by entry, with |v| = √(v·v)."""
-    ring, length = k.codec.ring, sp.sqrt(sum(part**2 for part in k.model.vector))
-    total = [Quotient(ring, -entry, below) for row in rows for entry in row]
-    for term, vector in zip(terms, vectors, strict=True):
-        coefficient = k.codec.encode_quotient(term.coefficient.xreplace({LENGTH: length}))
-        for place, entry in enumerate(vector.entries):
-            total[place] += coefficient * Quotient.whole(ring, entry)
-    return total
