@@ -218,20 +218,6 @@ def _indexed(symbol: Formula, index: str) -> Formula:
     if isinstance(symbol, Rate) and isinstance(symbol.of, Symbol):
         symbol = replace(symbol.of, dots=symbol.order)
     if not isinstance(symbol, Symbol):
-        return Indexed(Bracket(_light(symbol)), number)
+        return Indexed(Bracket(symbol), number)
     own = symbol.index
     return replace(symbol, face="italic", index=number if own is None else row(own, COMMA, number))
-
-
-def _light(symbol: Formula) -> Formula:
-    """The symbol without bold face."""
-    if isinstance(symbol, Symbol):
-        return replace(symbol, face="italic")
-    if isinstance(symbol, Row):
-        return Row(tuple(map(_light, symbol.parts)))
-    changed = {
-        name: _light(part)
-        for name in ("base", "of", "inside")
-        if isinstance(part := getattr(symbol, name, None), Formula)
-    }
-    return replace(symbol, **changed) if changed else symbol
