@@ -52,22 +52,7 @@ def formula_of(expression: sp.Basic, letters: Letters) -> tree.Formula:
     """The expression or equation as a tree; raises AlgebraError for a node that has no form."""
     if isinstance(expression, sp.Eq):
         return tree.equal(*(formula_of(side, letters) for side in expression.args))
-    return _ScalarWalk(letters).expression(signs_outside(letters.shortened(expression)))
-
-
-@lru_cache(maxsize=8192)
-def signs_outside(node: sp.Expr) -> sp.Expr:
-    """The same with −a (b + c) for a (−b − c): the sign of a sum of negative terms before it."""
-    if not node.args or not node.has(sp.Add) or is_application(node) or node.is_Derivative:
-        return node
-    parts = [signs_outside(part) for part in node.args]
-    if node.is_Mul:
-        flipped = [part for part in parts if part.is_Add and all(map(is_negative, part.args))]
-        kept = [-part if part in flipped else part for part in parts]
-        # The factors flipped contribute (−1)^k.
-        if flipped:
-            return sp.Mul(*kept) if len(flipped) % 2 == 0 else sp.Mul(-1, *kept)
-    return node.func(*parts)
+    return _ScalarWalk(letters).expression(letters.shortened(expression))
 
 
 @lru_cache(maxsize=1024)

@@ -106,8 +106,7 @@ READABLE = (  # what depends on the order of factors and terms, on signs and on 
     *(phi_dot * (A + 1 / sin(theta)), sin(2 * theta), cos(theta / 2), sin(phi + psi) ** 2),
     *(cos(sp.exp(theta)) * theta_dot, tan(A * theta), sin(moment)),
     *(m * phi_dot**2 + A * phi_dot, m * (phi_dot + psi_dot) ** 2 + A * (phi_dot + psi_dot)),
-    *(m * sp.sqrt(phi_dot + psi_dot) + A * (1 + theta), (-A - m) * (-theta_dot - phi_dot)),
-    *((-A - m) * (-theta_dot - phi_dot) * (-1 - theta), tan(psi) - sin(phi) * cos(theta) ** 2 * A),
+    *(m * sp.sqrt(phi_dot + psi_dot) + A * (1 + theta), tan(psi) - sin(phi) * cos(theta) ** 2 * A),
 )
 
 
