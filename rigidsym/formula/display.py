@@ -1,7 +1,6 @@
-"""How an equation is set so that it fits: on one line, on two, in shorthand, or entry by entry.
+"""How an equation is set so that it fits: on one line, on two, or entry by entry.
 
-The choice is by estimated width, in this order. Where entries are abbreviated or listed, the note
-says so.
+The choice is by estimated width, in this order. Where entries are listed, the note says so.
 """
 
 from __future__ import annotations
@@ -21,8 +20,6 @@ from rigidsym.formula.tree import NOTHING, Formula, equal, indexed, row
 
 PAGE = 39.2  # ems of a display on a page, beside a number such as (13)
 BOX = 0.96  # ems that the box around a result takes
-
-Done = Literal["", "abbreviated", "listed"]
 
 INDENT = r"\quad"  # of a line that goes on; the next bracket adds another
 _MOST_INDENTS = 5
@@ -56,12 +53,12 @@ class Equation:
 
 
 class Display(NamedTuple):
-    """The inside of a display, how wide it is, and what was done that the reader must know."""
+    """The inside of a display, and how wide it is."""
 
     inside: str
     width: float  # ems; it may be more than was asked for, where there is no place to break
     environment: Literal["", "aligned", "gathered"] = ""  # of lines below one another
-    done: Done = ""
+    is_listed: bool = False  # entry by entry, in place of a matrix
     lines: int = 1  # of a listing
     is_broken: bool = False  # whether a value of the equation, or an entry, fits on no line
     is_boxed: bool = False
@@ -114,30 +111,26 @@ def _forms(equation: Equation, letters: Letters, width: float, pen: LatexPen) ->
 def _matrix_forms(
     equation: Equation, letters: Letters, width: float, pen: LatexPen
 ) -> Iterator[Display]:
-    """On one line; broken before its last equals sign, then farther left; short; listed."""
+    """On one line; broken before its last equals sign, then farther left; listed."""
     matrix = equation.matrix
     assert matrix is not None
     sides = tuple(dict.fromkeys(map(letters.notation.applied, equation.sides)))
     factor, rest = factored(matrix)  # a fraction that all entries hold
     full: Formula = matrix_of(rest, letters)
     full = full if factor == 1 else row(formula_of(factor, letters), full)
-    shorthand: tuple[tuple[bool, Done], ...] = ((False, ""), (True, "abbreviated"))
-    for is_short, done in shorthand[: matrix.cols]:  # a column is listed instead
-        pen = replace(pen, short=is_short)
-        whole = pen.write(equal(*sides, full))
-        yield Display(whole.text, whole.width, done=done)
-        if len(sides) > 1:
-            first, above, last = map(pen.write, (sides[0], equal(*sides[1:]), full))
-            needed = first.width + EQUAL + max(above.width, last.width)
-            lines = (f"{first.text} &= {above.text}", f"&= {last.text}")
-            yield Display(pen.joined(lines, True), needed, "aligned", done)
-            needed = EQUAL + max(first.width + above.width, QUAD + last.width)
-            lines = (f"&{first.text} = {above.text}", rf"&{INDENT} {{}} = {last.text}")
-            yield Display(pen.joined(lines, True), needed, "aligned", done)
+    whole = pen.write(equal(*sides, full))
+    yield Display(whole.text, whole.width)
+    if len(sides) > 1:
+        first, above, last = map(pen.write, (sides[0], equal(*sides[1:]), full))
+        needed = first.width + EQUAL + max(above.width, last.width)
+        lines = (f"{first.text} &= {above.text}", f"&= {last.text}")
+        yield Display(pen.joined(lines, True), needed, "aligned")
+        needed = EQUAL + max(first.width + above.width, QUAD + last.width)
+        lines = (f"&{first.text} = {above.text}", rf"&{INDENT} {{}} = {last.text}")
+        yield Display(pen.joined(lines, True), needed, "aligned")
     names, entries = zip(*listed_entries(equation.names, matrix), strict=True)
     values = [formula_of(entry, letters) for entry in entries]
-    pen = replace(pen, short=False)
-    yield _listing(names, values, width, pen)._replace(done="listed")
+    yield _listing(names, values, width, pen)._replace(is_listed=True)
 
 
 def pack(equations: Sequence[Equation], letters: Letters, width: float, pen: LatexPen) -> str:

@@ -124,16 +124,13 @@ class LatexPen(Pen):
         return atom(text, _SIGN_WIDTHS.get(node.character, _UNKNOWN))
 
     def between(self, before: tree.Formula, after: tree.Formula) -> Piece:
-        if _is_thin(before, after) or self._is_short(after):
+        if _is_thin(before, after):
             return atom(" " if isinstance(before, tree.Big) else self.thin, THIN)
         is_parted = isinstance(before, tree.Numeral | tree.Big)
         return atom(" " if is_parted or isinstance(after, tree.FunctionCall) else "", 0.0)
 
     def functioncall(self, node: tree.FunctionCall) -> Piece:
-        name, exponent = node.function, tree.Numeral(str(node.exponent))
-        if self._is_short(node):
-            letter = tree.Symbol(name[0], index=node.argument)
-            return self.node(letter if node.exponent == 1 else tree.Power(letter, exponent))
+        name = node.function
         width = _FUNCTION_WIDTHS.get(name) or sum(map(_letter_width, name))
         width += OPERATOR_SPACE
         head = f"\\{name}"
@@ -141,16 +138,10 @@ class LatexPen(Pen):
             head = rf"\operatorname{{{name.replace('_', '')}}}"
         if node.exponent != 1:
             width += SCRIPT * DIGIT
-            head += f"^{_braced(exponent.digits)}"
+            head += f"^{_braced(str(node.exponent))}"
         argument = self.node(node.argument)
         head += " " if argument.text[0].isalnum() else ""
         return self.glued((atom(head, width), argument))
-
-    def _is_short(self, part: tree.Formula) -> bool:
-        """Whether a function is abbreviated to a letter, and spaced like one."""
-        return (
-            self.short and isinstance(part, tree.FunctionCall) and part.function in ("sin", "cos")
-        )
 
     def power(self, node: tree.Power) -> Piece:
         base, raised = node.base, self.node(node.exponent)

@@ -7,7 +7,7 @@ sign between two terms, in how many brackets. Nobody has to read it again to fin
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import KW_ONLY, dataclass, replace
+from dataclasses import dataclass, replace
 from enum import IntEnum
 from functools import lru_cache
 from itertools import pairwise
@@ -88,8 +88,6 @@ class Pen:
     """
 
     notation: Notation = DEFAULT
-    _: KW_ONLY
-    short: bool = False  # whether s_θ and c_θ stand for sine and cosine
 
     blank: ClassVar[float] = 0.0  # width of the blank between two chunks
     sign: ClassVar[Callable[..., Piece]]  # of a Sign; `is_binary` between two parts

@@ -265,7 +265,7 @@ class Composer:
             equation = _ended(equation, end)
         if name in _IN_A_ROW and equation.matrix is not None:
             in_a_row = _ended(equation, self._in_a_row(equation.matrix))
-            equation = equation if display(in_a_row, self.letters, PAGE).done else in_a_row
+            equation = equation if display(in_a_row, self.letters, PAGE).is_listed else in_a_row
         return replace(equation, sides=(*equation.sides, *textbook_form(name, self.derivation)))
 
     def _lead(self, step: Step) -> Text:

@@ -1,8 +1,7 @@
 """Long quantities made to fit.
 
 An equation stands on one line, or on two that are parted at an equals sign. What is too wide for
-that is broken before a + or −, entries below one another; a matrix that cannot be broken gets the
-shorthand s_θ and c_θ where it then fits (`rigidsym.formula.display`). A tensor or
+that is broken before a + or −, entries below one another (`rigidsym.formula.display`). A tensor or
 momentum in space that would be broken is said in short, by what it is made of; so is any quantity
 that would take most of a page.
 """
@@ -66,10 +65,10 @@ def fitted(
     by_vectors = (bool(model.vector) and not is_of_body) or (
         name == "rotation_rate" and not is_audit
     )
-    is_matrix = equation.matrix is not None and shown.done != "listed"
+    is_matrix = equation.matrix is not None and not shown.is_listed
     lines = equation.matrix.rows if equation.matrix and is_matrix else shown.lines
     most = _MOST_OF_ROTATION if name == "rotation_matrix" else _MOST_LINES
-    if (by_vectors and shown.done) or (shown.is_broken and (by_vectors or name in _RATHER_SHORT)):
+    if (by_vectors and shown.is_listed) or (shown.is_broken and (by_vectors or name in _RATHER_SHORT)):
         yield short
     elif shown.width > PAGE or (shown.is_broken and lines > most):
         yield from (short, said("left_out"))  # the function evaluates it all the same
@@ -86,7 +85,7 @@ def as_vectors(equation: Equation, step: Step, letters: Letters) -> Equation:
         return equation
     sides = (*equation.sides, sum_of_vectors(step.vector_form, letters))
     whole = replace(equation, sides=sides)
-    fits = not (step.quantity.name.startswith("rates_") or display(whole, letters, PAGE).done)
+    fits = not (step.quantity.name.startswith("rates_") or display(whole, letters, PAGE).is_listed)
     return whole if fits else _without_entries(equation, sides[-1:])
 
 

@@ -7,7 +7,6 @@ from collections.abc import Mapping
 from functools import lru_cache
 from itertools import chain
 
-from rigidsym.formula.display import Done
 from rigidsym.formula.reader import formula, sentence
 from rigidsym.formula.tree import (
     Formula,
@@ -115,10 +114,8 @@ def number(value: float) -> str:
     return f"{float(value) + 0.0:.{_DIGITS}g}".replace("-", "−")
 
 
-def announcement(equation: Equation, done: Done) -> Text:
+def announcement(equation: Equation, is_listed: bool) -> Text:
     """What a reader has to be told of the way an equation is set, before it; often nothing."""
-    if done == "abbreviated":
-        return sentence(phrases("equations")["shorthand"])
-    if done == "listed":
+    if is_listed:
         return sentence(phrases("equations")["entries"], equal(*equation.sides))
     return ()

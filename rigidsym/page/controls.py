@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from functools import lru_cache
-from math import degrees, lcm, pi
+from math import degrees, lcm, pi, radians
 from typing import Any, NamedTuple
 
 import sympy as sp
 
 from rigidsym.formula.letters import Letters
-from rigidsym.mechanics.derivation import Argument, Derivation
+from rigidsym.mechanics.derivation import Derivation
 from rigidsym.models.body import RigidBody
 from rigidsym.models.forces import OMEGA_COMPONENTS
 from rigidsym.models.rotation import RotationModel
 from rigidsym.notes.figure.body_mesh import lengths_of
+from rigidsym.notes.figure.scene import turns_of
 from rigidsym.notes.words import unit_in_words
 
 _VECTOR = (0.4, 0.8, 0.8)  # along the axis in the figure of the note
@@ -22,7 +22,7 @@ _SCALAR = 0.84  # beside half of it, the quaternion of about 65°
 _NUMBERS = (0.5, -0.7, 0.5, 0.8, 0.6, 0.1, -0.4, 0.3, 0.8)  # of a matrix not far from a rotation
 _RATES = (0.4, 0.25, 0.7)
 _ANGLE_RATES = (40.0, 25.0, 60.0, 20.0, 35.0)  # degrees per second
-_ANGLE = 40.0  # degrees, if there is no clear view of a figure
+_ANGLE = radians(40.0)  # if there is no clear view of a figure
 _MOMENTS = (1.0, 0.6, 0.8)  # each is less than the sum of the others
 # of a weight, whose arm is short: moments about a fixed point are at least m l²
 _WEIGHT = {sp.Symbol("g"): 9.81, sp.Symbol("l"): 0.5}
@@ -56,16 +56,23 @@ def controls_of(
     for argument in derivation.arguments:
         names = OMEGA_COMPONENTS if argument.name == "omega_body" else argument.names
         for k, (symbol, name) in enumerate(zip(argument.symbols, names, strict=True)):
-            if argument.name == "q":
-                limits = _of_coordinate(symbol, k, argument.units[k], model, angles)
-            elif argument.name == second:
-                limits = _of_rate(k, argument, model)
-            elif argument.name == "parameters" and symbol in constants:
+            unit = argument.units[k]
+            is_coordinate, is_constant = argument.name == "q", argument.name == "parameters"
+            period = period_of(model.coordinates[k] if argument.name == "q_dot" else symbol, model)
+            if argument.name == second:
+                limits = _Range(_RATES[k % 3], 3.0 if unit == "rad/s" else 2.0, unit)
+                if period:
+                    limits = _Range(_ANGLE_RATES[k % 5], 180.0, "°/s", pi / 180)
+            elif is_constant and symbol in constants:
                 value = constants[symbol]
-                limits = _Range(value, max(2.0, 2 * value), argument.units[k])
-            elif argument.name == "parameters" and symbol in model.constants:
-                period = period_of(symbol, model)
-                limits = _turn(30.0, period) if period else _Range(_VECTOR[k % 3], 1.0, "")
+                limits = _Range(value, max(2.0, 2 * value), unit)
+            elif period and (is_coordinate or is_constant):
+                angle = round(degrees(angles.get(symbol, _ANGLE)))
+                limits = _Range(angle, round(degrees(period)) / 2, "°", pi / 180, is_periodic=True)
+            elif is_coordinate:
+                limits = _coordinate(symbol, k, unit, model)
+            elif is_constant and symbol in model.constants:
+                limits = _Range(_VECTOR[k % 3], 1.0, "")
             else:
                 continue
             _, reach, unit, factor, is_periodic = limits
@@ -89,29 +96,13 @@ def controls_of(
             }
 
 
-def _turn(start: float, period: float) -> _Range:
-    """An angle in degrees over its period, which is in radians."""
-    return _Range(start, round(degrees(period)) / 2, "°", pi / 180, is_periodic=True)
-
-
-def _of_coordinate(
-    q: sp.Expr, k: int, unit: str, model: RotationModel, angles: Mapping[sp.Expr, float]
-) -> _Range:
-    period = period_of(q, model)
-    if period:
-        return _turn(round(degrees(angles[q])) if q in angles else _ANGLE, period)
+def _coordinate(q: sp.Expr, k: int, unit: str, model: RotationModel) -> _Range:
+    """The range of a coordinate that is no angle."""
     reach = 6.5 if unit == "rad" else 1.0 if model.constraints or model.pullback else 3.0
     if q in model.vector:
         size = 1.0 if unit == "rad" else 0.5
         return _Range(size * _VECTOR[model.vector.index(q)], reach, unit)
     return _Range(_SCALAR if model.vector else _NUMBERS[k % len(_NUMBERS)], reach, unit)
-
-
-def _of_rate(k: int, argument: Argument, model: RotationModel) -> _Range:
-    if argument.name == "q_dot" and period_of(model.coordinates[k], model):
-        return _Range(_ANGLE_RATES[k % len(_ANGLE_RATES)], 180.0, "°/s", pi / 180)
-    unit = argument.units[k]
-    return _Range(_RATES[k % len(_RATES)], 3.0 if unit == "rad/s" else 2.0, unit)
 
 
 def constants_of(body: RigidBody | None) -> dict[sp.Symbol, float]:
@@ -125,20 +116,12 @@ def constants_of(body: RigidBody | None) -> dict[sp.Symbol, float]:
     return {s: chosen.get(s, 1.0) if value is None else value for s, value in values.items()}
 
 
-@lru_cache(maxsize=64)
 def period_of(symbol: sp.Expr, model: RotationModel) -> float:
-    """After how many radians R is as before; 0 if the symbol is no angle in R."""
-    angles, rest = _waves_in(model)
-    slopes = [angle.diff(symbol) for angle in angles if angle.has(symbol)]
-    if not slopes or rest.has(symbol) or not all(slope.is_Rational for slope in slopes):
-        return 0.0
+    """After how many radians R is as before; 0 if the symbol is not part of an angle of a turn."""
+    turns = turns_of(model)
+    slopes = [turn.angle.diff(symbol) for turn in turns if turn.angle.has(symbol)]
+    is_angle = slopes and not any(part.has(symbol) for turn in turns for part in turn.components)
     # R depends on sines and cosines of p/q times the angle, with whole p and q; each repeats after
     # 2π q.
-    return 2 * pi * lcm(*(int(slope.q) for slope in slopes))
-
-
-@lru_cache(maxsize=16)
-def _waves_in(model: RotationModel) -> tuple[list[sp.Expr], sp.Matrix]:
-    """The arguments of the sines and cosines in R, and R with a letter for each of these."""
-    waves = {wave: sp.Dummy() for wave in model.matrix.atoms(sp.sin, sp.cos)}
-    return [wave.args[0] for wave in waves], model.matrix.xreplace(waves)
+    is_repeated = is_angle and all(slope.is_Rational for slope in slopes)
+    return 2 * pi * lcm(*(int(slope.q) for slope in slopes)) if is_repeated else 0.0

@@ -124,11 +124,8 @@ def _more(derivation: Derivation) -> Iterator[Step]:
         excess = model.matrix * model.matrix.T - sp.eye(3)
         conditions = sp.Matrix([excess[i, j] for i in range(3) for j in range(i, 3)])
     if conditions:
-        slopes, inputs = (
-            conditions.jacobian([*model.coordinates, *model.constants]),
-            ("q", *constants),
-        )
-        yield _function("conditions", conditions, "constraints, which vanish", inputs)
-        yield _function("condition_slopes", slopes, "their derivatives by all inputs", inputs)
+        slopes = conditions.jacobian([*model.coordinates, *model.constants])
+        for name, values in (("conditions", conditions), ("condition_slopes", slopes)):
+            yield _function(name, values, "constraints and their slopes", ("q", *constants))
     if moments.free_symbols:
         yield _function("moments", moments, "principal moments", ("parameters",))

@@ -8,8 +8,7 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
-from collections.abc import Iterator, Mapping
-from dataclasses import replace
+from collections.abc import Mapping
 from math import pi
 from types import MappingProxyType
 from typing import Any
@@ -17,13 +16,12 @@ from typing import Any
 import sympy as sp
 
 from rigidsym.errors import ModelError
-from rigidsym.formula.display import display
 from rigidsym.formula.tree import Formula, Numeral, Symbol
 from rigidsym.kernels.lowering.lower import MARGIN
 from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.models.forces import OMEGA_COMPONENTS, initial_values
 from rigidsym.models.rotation import RotationModel
-from rigidsym.notes.document import Document, Equation
+from rigidsym.notes.document import Document
 from rigidsym.notes.facts.rotation import sum_of_turns
 from rigidsym.notes.figure.body_mesh import lengths_in
 from rigidsym.notes.figure.scene import scene_of
@@ -40,8 +38,11 @@ SCRIPTS = ("figure", "motion", "main")  # each uses those before it
 MOST_BYTES = 400_000
 
 _SHORTEST, _LONGEST = 30.0, 120.0  # seconds of a motion
-_PAPER = 30.0  # ems of a display on paper
 _DEGREE = pi / 180
+_UNITS = {
+    "energy": "J",
+    "angular_momentum_squared": "kg² m⁴/s²",
+}  # of first integrals that are no momenta
 _OF_SCRIPT = ("kind", "place", "start", "factor", "period", "high", "step")
 
 
@@ -63,6 +64,9 @@ def print_page(
     functions = functions_of(derivation)
     constants = constants_of(derivation.body)
     constants |= {s: start[s.name] for s in constants if s.name in start}
+    steps = functions.derivation.steps
+    used = {symbol for step in steps for symbol in step.expression.free_symbols}
+    sliding = used - lengths_in(derivation.body)  # the body is drawn with the lengths that it has
     controls = [
         *controls_of(
             functions.derivation,
@@ -70,11 +74,11 @@ def print_page(
             functions.second,
             shown_angles(model, letters),
             {**start, **_moving(derivation, functions, start, constants)},
-            _sliding(derivation, functions, constants),
+            {symbol: value for symbol, value in constants.items() if symbol in sliding},
         )
     ]
     in_degrees = any(control["unit"] == "°" for control in controls)
-    printer = PagePrinter(document)
+    printer = HtmlPrinter(document)
     stage, body = stage_of(model, letters), body_of(derivation, functions)
     seconds = examples[0].time if examples else 0.0
     values = [_value(step, in_degrees=in_degrees) for step in functions.live]
@@ -90,7 +94,6 @@ def print_page(
         "second": functions.second,
         "values": factors | ({"first_integrals": 1} if functions.integrals else {}),
         "passive": model.passive,
-        "copies": dict(_latex(document)),
     }
     script = _script(functions, data)
     # The policy of the page names the digest of its only script, and blocks any other.
@@ -103,7 +106,10 @@ def print_page(
         page=data,
         controls=controls,
         values=values,
-        integrals=[(i.symbol, _unit_of(i.name)) for i in functions.integrals],
+        integrals=[
+            (i.symbol, _UNITS.get(i.name, "kg m²/s" if "momentum_" in i.name else ""))
+            for i in functions.integrals
+        ],
         pole=next((k.symbol for k in functions.kernels if k.name == MARGIN), ""),
         is_motion=functions.is_motion,
         has_turns=has_turns(model),
@@ -137,16 +143,6 @@ def _moving(
     return dict(zip((*q, *wanted), begun.tolist(), strict=True))
 
 
-def _sliding(
-    derivation: Derivation, functions: Functions, constants: Mapping[sp.Symbol, float]
-) -> dict[sp.Symbol, float]:
-    """The constants that functions depend on, without the lengths of the body that is drawn."""
-    steps = functions.derivation.steps
-    used = {symbol for step in steps for symbol in step.expression.free_symbols}
-    used -= lengths_in(derivation.body)
-    return {symbol: value for symbol, value in constants.items() if symbol in used}
-
-
 def check_shown(derivation: Derivation) -> None:
     """Raises ModelError for a motion that the figure, one body about a fixed point, cannot show."""
     if derivation.forces is not None and derivation.forces.parts:
@@ -155,30 +151,6 @@ def check_shown(derivation: Derivation) -> None:
             "body about a fixed point, and other parts move with this body; expected a note "
             "(`rigidsym run`) or a table of the motion (`rigidsym simulate --out`)"
         )
-
-
-def _unit_of(integral: str) -> str:
-    """The unit of a first integral; none of a claimed one."""
-    if integral == "energy":
-        return "J"
-    if integral == "angular_momentum_squared":
-        return unit_in_words("kg^2 m^4/s^2")
-    return unit_in_words("kg m^2/s") if "momentum_" in integral else ""
-
-
-def _latex(document: Document) -> Iterator[tuple[str, str]]:
-    """The numbered equations as LaTeX, by label."""
-    for equation in document.equations:
-        plain = replace(equation, is_result=False)  # who copies it has boxes of their own
-        yield equation.label, f"\\[\n{display(plain, document.letters, _PAPER).text}\n\\]\n"
-
-
-class PagePrinter(HtmlPrinter):
-    """The note of a page, whose equations can be copied."""
-
-    def tools(self, equation: Equation) -> str:
-        """Where the script puts the button that copies the equation as LaTeX."""
-        return f'<p class="copy" data-of="{escape(equation.label)}">{equation.number}</p>'
 
 
 def _script(functions: Functions, data: object) -> str:

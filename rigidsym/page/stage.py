@@ -66,22 +66,22 @@ def label(symbol: Formula) -> str:
 
 def _rays(model: RotationModel, scene: Scene | None, letters: Letters) -> Iterator[dict[str, Any]]:
     """Those of the scene; or those of axes that are not numbers, or of the one turn that R is."""
+    rays: list[tuple[str, Formula, int, Vector | None]]
     if scene:
-        for ray in scene.rays:
-            is_axis = ray.kind in ("node", "vector")
-            yield _ray(ray.kind, ray.name, ray.frame, None if is_axis else ray.direction)
-        return
-    count = len(model.turns) if has_turns(model) else 1
-    for name, primed, direction in zip(AXES, BODY, STANDARD, strict=True):
-        yield _ray("space", Symbol(name), 0, direction)
-        yield _ray("body", letters.notation.applied(primed), count, direction)
-    for k in range(count):
-        axis = Symbol("N", index=Numeral(str(k + 1))) if has_turns(model) else Symbol("e", "bold")
-        yield _ray("node", axis, k, None)
-
-
-def _ray(kind: str, name: Formula, frame: int, direction: Vector | None) -> dict[str, Any]:
-    return {"kind": kind, "name": label(name), "frame": frame, "direction": direction}
+        moving = ("node", "vector")
+        rays = [
+            (r.kind, r.name, r.frame, None if r.kind in moving else r.direction) for r in scene.rays
+        ]
+    else:
+        count = len(model.turns) if has_turns(model) else 1
+        rays = [("space", Symbol(name), 0, d) for name, d in zip(AXES, STANDARD, strict=True)]
+        rays += [("body", name, count, d) for name, d in zip(BODY, STANDARD, strict=True)]
+        axes = [Symbol("N", index=Numeral(str(k + 1))) for k in range(count)]
+        axes = axes if has_turns(model) else [Symbol("e", "bold")]
+        rays += [("node", axis, k, None) for k, axis in enumerate(axes)]
+    for kind, name, frame, direction in rays:
+        shown = label(letters.notation.applied(name))
+        yield {"kind": kind, "name": shown, "frame": frame, "direction": direction}
 
 
 def _turns(model: RotationModel, scene: Scene | None, letters: Letters) -> Iterator[dict[str, Any]]:
@@ -106,10 +106,12 @@ def body_of(derivation: Derivation, functions: Functions) -> dict[str, Any]:
     of a cuboid with these moments, or of a top on its tip.
     """
     moments, own = moments_of(derivation.body), own_shape(derivation.body)
+    forces = derivation.forces
     axes = [turn.axis for turn in derivation.model.turns]
     # A sequence such as ZXZ: precession about z, nutation, and spin about z′.
     is_about_z = len(axes) == 3 and axes[0] == axes[2] == "z"
-    if not own and is_about_z and (not functions.is_motion or _is_top(derivation)):
+    is_heavy = forces is not None and forces.potential != 0 and moments[:1] == moments[1:2]
+    if not own and is_about_z and (is_heavy or not functions.is_motion):
         own = spinning_top()
     if own:
         return {"body": as_data(own)}
@@ -117,15 +119,6 @@ def body_of(derivation: Derivation, functions: Functions) -> dict[str, Any]:
         return {"moments": _SLAB}
     is_evaluated = any(kernel.name == "moments" for kernel in functions.kernels)
     return {"moments": None if is_evaluated else [*map(float, moments)]} if moments else {}
-
-
-def _is_top(derivation: Derivation) -> bool:
-    """Whether a weight is on the axis of symmetry, so that the angle about it is cyclic."""
-    moments, forces = moments_of(derivation.body), derivation.forces
-    conserved = {integral.name for integral in derivation.first_integrals}
-    is_heavy = forces is not None and forces.potential != 0
-    last = derivation.model.coordinates[-1].func.__name__
-    return is_heavy and moments[:1] == moments[1:2] and f"momentum_{last}" in conserved
 
 
 @cache

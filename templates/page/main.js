@@ -330,41 +330,6 @@ at("reset").addEventListener("click", () => {
   show();
 });
 
-// --- copying equations
-
-async function copy(text) {
-  try {
-    await navigator.clipboard.writeText(text);
-    return true;
-  } catch {
-    const field = document.createElement("textarea"); // without access to the clipboard
-    field.value = text;
-    document.body.append(field);
-    field.select();
-    const done = document.execCommand("copy");
-    field.remove();
-    return done;
-  }
-}
-
-/** Copy an equation, and say so: on its button and aloud. */
-async function copyFrom(button, text) {
-  const done = await copy(text);
-  at("said").textContent = done ? "Copied: LaTeX" : "It could not be copied.";
-  button.classList.toggle("done", done);
-  setTimeout(() => button.classList.remove("done"), 1500);
-  button.focus();
-}
-
-for (const place of document.querySelectorAll(".copy")) {
-  const button = document.createElement("button");
-  button.type = "button";
-  button.textContent = "Copy LaTeX";
-  button.setAttribute("aria-label", `Copy equation (${place.textContent}) as LaTeX`);
-  button.addEventListener("click", () => copyFrom(button, page.copies[place.dataset.of]));
-  place.replaceChildren(button);
-}
-
 setShown(shownAtFirst);
 recall();
 pause();

@@ -105,9 +105,8 @@ def carried(page: str) -> dict[str, Any]:
 
 
 def note_in(html: str) -> str:
-    """The note in a page or a file, without the buttons that copy."""
-    text = re.sub(r'\n?<p class="copy".*?</p>', "", html)
-    (main,) = re.findall(r'<main id="content">.*</main>', text, re.DOTALL)
+    """The note in a page or a file."""
+    (main,) = re.findall(r'<main id="content">.*</main>', html, re.DOTALL)
     return main
 
 

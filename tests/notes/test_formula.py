@@ -209,7 +209,6 @@ def test_the_forms_of_the_pens_are_as_they_were(golden):
         lines.append(name)
         for pen in (
             LatexPen(),
-            LatexPen(short=True),
             MarkdownPen(),
             WebPen(),
             UnicodePen(),

@@ -111,8 +111,7 @@ def _formulas_with_widths(angles: tuple[str, ...]) -> list[tuple[str, float]]:
             formulas = [step.quantity.symbol, *(proof.claim for proof in step.proofs)]
             matrix = matrix_of(step.expression, letters)
             formulas += [*chain(*matrix.rows), matrix]
-            for pen in (LatexPen(), LatexPen(short=True)):
-                widths |= {piece.text: piece.width for piece in map(pen.write, formulas)}
+            widths |= {piece.text: piece.width for piece in map(LatexPen().write, formulas)}
     return list(widths.items())
 
 

@@ -162,16 +162,6 @@ def test_no_request_can_leave_a_page_and_no_title_runs(tab, tmp_path):
     tab.events.clear()
 
 
-def test_buttons_copy(tab, tmp_path):
-    opened(tab, page_of("ZXZ"), tmp_path)
-    tab.call("Browser.grantPermissions", permissions=["clipboardReadWrite"])
-    tab.click('[data-of="angular_velocity_body"] button')
-    tab.wait_for("document.getElementById('said').textContent.startsWith('Copied: ')")
-    expected = carried(page_of("ZXZ"))["copies"]["angular_velocity_body"]
-    assert expected.startswith("\\[\n\\boldsymbol{\\Omega}'")
-    assert tab.run("navigator.clipboard.readText()") == expected
-
-
 LINES = """
 (root) => [...document.querySelectorAll(`${root} polyline`)].map((line) =>
   [line.getAttribute("class"), line.getAttribute("points").split(/[ ,]/).map(Number)])

@@ -113,10 +113,6 @@ class HtmlPrinter(NotePrinter):
     def block(self, block: NoteBlock) -> str:
         return str(getattr(self._blocks, type(block).__name__.lower())(self, block)).strip()
 
-    def tools(self, equation: Equation) -> str:  # noqa: ARG002  (a page has some)
-        """What stands behind a numbered equation, to be used on it."""
-        return ""
-
     def is_wide(self, shown: Display) -> bool:
         """Whether a phone has no room for a display in the size of its letters."""
         return shown.width > _PHONE

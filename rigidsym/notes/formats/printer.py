@@ -106,7 +106,7 @@ class NotePrinter:
 
     def announced(self, equation: Equation) -> str:
         """What is said before an equation of the way it is set."""
-        return self.text(announcement(equation, self.shown[equation].done))
+        return self.text(announcement(equation, self.shown[equation].is_listed))
 
     def claims(self, equation: Equation) -> Iterator[str]:
         """What was proved of an equation, and what was not."""
