@@ -68,7 +68,9 @@ def fitted(
     is_matrix = equation.matrix is not None and not shown.is_listed
     lines = equation.matrix.rows if equation.matrix and is_matrix else shown.lines
     most = _MOST_OF_ROTATION if name == "rotation_matrix" else _MOST_LINES
-    if (by_vectors and shown.is_listed) or (shown.is_broken and (by_vectors or name in _RATHER_SHORT)):
+    if (by_vectors and shown.is_listed) or (
+        shown.is_broken and (by_vectors or name in _RATHER_SHORT)
+    ):
         yield short
     elif shown.width > PAGE or (shown.is_broken and lines > most):
         yield from (short, said("left_out"))  # the function evaluates it all the same
