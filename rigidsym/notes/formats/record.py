@@ -15,27 +15,14 @@ import sympy as sp
 
 from rigidsym.formula.reader import text_of
 from rigidsym.formula.tree import Formula
-from rigidsym.mechanics.derivation import (
-    Argument,
-    Definition,
-    Derivation,
-    FirstIntegral,
-    Place,
-    Proof,
-    Singularities,
-    Singularity,
-    Statement,
-    Step,
-    VectorTerm,
-)
 from rigidsym.mechanics.dynamics.lagrange import is_bound
-from rigidsym.models.body import Parameter
 from rigidsym.models.forces import OMEGA_BODY
 from rigidsym.models.rotation import Citation
 from rigidsym.version import OWNERSHIP, __version__
 
 if TYPE_CHECKING:
     from rigidsym.mechanics.conversions.conversions import Conversions
+    from rigidsym.mechanics.derivation import Argument, Derivation
     from rigidsym.models.body import RigidBody
     from rigidsym.models.rotation import RotationModel, Turn
 
@@ -43,22 +30,25 @@ SCHEMA = "rigidsym.derivation"
 SCHEMA_VERSION = 2
 
 
-# attributes in the order of the record, with its own keys where they differ
-_KEYS: Mapping[type, str] = {
-    Proof: "claim status residual",
-    FirstIntegral: "name expression proof",
-    Definition: "name=symbol.name expression",
-    Parameter: "name=symbol.name about unit value",
-    VectorTerm: "coefficient vector",
-    Statement: "number name section sides summands because source proofs",
-    Step: "number name=quantity.name about=quantity.about unit=quantity.unit "
-    "symbol=quantity.symbol inputs=quantity.inputs shape expression vector_form "
+# attributes of each class in the order of the record, with its own keys where they differ
+_KEYS: Mapping[str, str] = {
+    "Proof": "claim status residual",
+    "FirstIntegral": "name expression proof",
+    "Definition": "name=symbol.name expression",
+    "Parameter": "name=symbol.name about unit value",
+    "Statement": "number name section sides summands because source proofs",
+    "Step": "number name=quantity.name about=quantity.about unit=quantity.unit "
+    "symbol=quantity.symbol inputs=quantity.inputs shape expression "
     "because source=quantity.source proofs",
-    Singularities: "rank measure determinant minors is_solved points",
-    Singularity: "at=places rank lost_direction_space=lost_axis_space "
+    "Singularities": "rank measure determinant minors is_solved points",
+    "Singularity": "at=places rank lost_direction_space=lost_axis_space "
     "lost_direction_body=lost_axis_body undetermined_rates=null_rates.T "
     "reached_direction_space=reachable_axis",
-    Place: "coordinate value modulo=period least=is_length",  # value + k modulo, for whole k
+    # value + k modulo, for whole k; a length is at least its value
+    "Place": "coordinate value modulo=period least=is_length",
+    # how coordinates go over into the unit quaternion, and come back from it and from R
+    "Conversions": "quaternion quaternion_from_matrix=from_matrix coordinates=inverse without",
+    "Rule": "because branch proofs",
 }
 
 Names = Mapping[sp.Expr, sp.Symbol]
@@ -99,7 +89,7 @@ def record(
         "singularities": derivation.singularities,
         **({"body": _body(derivation.body)} if derivation.body else {}),
         **_motion(derivation),
-        **({"conversions": _conversions(conversions)} if conversions else {}),
+        **({"conversions": conversions} if conversions else {}),
     }
     return dict(_plain(data, names))
 
@@ -107,7 +97,7 @@ def record(
 def _plain(data: Any, names: Names) -> Any:
     """Formulas in both markups, expressions in plain names, matrices as lists of rows."""
     match data:
-        case _ if type(data) in _KEYS:
+        case _ if type(data).__name__ in _KEYS:
             return _plain(_attributes(data), names)
         case Formula():
             return data.markup
@@ -125,25 +115,21 @@ def _plain(data: Any, names: Names) -> Any:
 
 
 def _attributes(thing: Any) -> dict[str, Any]:
-    entries = (entry.partition("=") for entry in _KEYS[type(thing)].split())
-    found = {key: attrgetter(path or key)(thing) for key, _, path in entries}
-    match thing:
-        case Place(value=value, is_length=is_length):
-            return found | {"least": value if is_length else None}
-        case Statement():
-            return found | {"because": text_of(thing.because)}
-        case Singularity():
-            axes = (key for key in found if "_direction_" in key)
-            return found | {key: _vector(found[key]) for key in axes}
-        case Step(expression=expression, vector_form=form):
-            if form:  # coefficients are expressions in the length n of the vector v
-                terms = [*form.terms, *([form.last] if form.last else [])]
-                length = str(form.length)
-                found["vector_form"] = {"vector": form.components, "length": length, "terms": terms}
-            if len(thing.shape) < 2:
-                flat = expression.flat()
-                found["expression"] = flat if thing.shape else flat[0]
-    return found
+    entries = (entry.partition("=") for entry in _KEYS[type(thing).__name__].split())
+    record = {key: attrgetter(path or key)(thing) for key, _, path in entries}
+    for key, value in record.items():
+        if key in ("because", "branch") and not isinstance(value, str):
+            record[key] = text_of(value)
+        elif "_direction_" in key:
+            record[key] = _vector(value)
+        elif key == "least":
+            record[key] = thing.value if value else None
+        elif key == "without":
+            record[key] = value or None
+        elif key == "shape" and len(value) < 2:
+            flat = thing.expression.flat()
+            record["expression"] = flat if value else flat[0]
+    return record
 
 
 @lru_cache(maxsize=4096)  # an entry comes up in several quantities, and again in other conventions
@@ -214,23 +200,6 @@ def _motion(derivation: Derivation) -> dict[str, Any]:
     coordinates = derivation.model.coordinates
     forces = [sp.sympify(acting.generalised.get(q, 0)) for q in coordinates]
     return {"motion": {"potential": acting.potential, "forces": forces, "torque": torque}}
-
-
-def _conversions(conversions: Conversions) -> dict[str, Any]:
-    """How the coordinates go over into the unit quaternion, and come back from it and from R."""
-    back = conversions.inverse
-    return {
-        "quaternion": conversions.quaternion,
-        "quaternion_from_matrix": conversions.from_matrix,
-        "coordinates": {
-            "because": text_of(back.because),
-            "branch": text_of(back.branch),
-            "proofs": back.proofs,
-        }
-        if back
-        else None,
-        "without": conversions.without or None,
-    }
 
 
 def _argument(argument: Argument) -> dict[str, Any]:
