@@ -13,7 +13,6 @@ from rigidsym.notes.document import (
     Figure,
     NoteTable,
     Paragraph,
-    Section,
     Text,
 )
 from rigidsym.notes.formats.drawings import tikz
@@ -32,30 +31,14 @@ _DELIMITERS = {
     "comment_end_string": "=))",
 }
 _LINE = 41.5  # ems: 160 mm at 11 points
-_LINE_OF_A_SOURCE = 95  # letters
-_TOGETHER = 8  # lines of a table that stay on one page
 _TALL = 14  # lines of a display, of about 25 high ones on a page: more than these may part
 
 
 def render(document: Document) -> str:
     """The note as a LaTeX file; the same document gives the same bytes."""
     printer = _LatexPrinter(document, LatexPen(document.letters.notation))
-    sections = [
-        {
-            "title": escape(section.title),
-            "body": printer.body(section),
-            # that stay on one page: more if it begins with a table
-            "lines": 14 if any(isinstance(b, NoteTable) for b in section.blocks[:2]) else 6,
-        }
-        for section in document.sections
-    ]
-    lines = 4 + sum(1 + len(source) // _LINE_OF_A_SOURCE for source in document.sources)
-    parts = {
-        "sections": sections,
-        "metadata": metadata(document),
-        "source_lines": min(30, lines),  # a list that is not long stays on one page
-        **printer.placed(),
-    }
+    sections = [(escape(s.title), printer.body(s)) for s in document.sections]
+    parts = {"sections": sections, "metadata": metadata(document), **printer.placed()}
     return resources.environment(**_DELIMITERS).get_template(TEMPLATE).render(parts)
 
 
@@ -76,7 +59,6 @@ def metadata(document: Document) -> str:
 
 
 class _LatexPrinter(NotePrinter):
-    heading = ""  # of the section; a table need not repeat it as its caption
     words = staticmethod(escape)
     width = _LINE
     beside_number = PAGE
@@ -87,10 +69,6 @@ class _LatexPrinter(NotePrinter):
     figure_title = r"\figuretitle{{Figure}}{{{label}}}"
     citation = r"\cite{place}{{{label}}}"
     place_in_source = "[{}]"
-
-    def body(self, section: Section) -> str:
-        self.heading = section.title
-        return super().body(section)
 
     def label(self, label: str) -> str:
         """Unique among the notes that may be bound together."""
@@ -142,13 +120,9 @@ class _LatexPrinter(NotePrinter):
         columns = "".join("T" if k == table.of_words else "l" for k in range(len(table.head)))
         rows = (" & ".join(map(self._cell, row)) for row in (table.head, *table.rows))
         lines = [rf"{row} \\" for row in rows]
-        is_repeated = table.caption.lower() in self.heading.lower()
-        caption = "" if is_repeated else escape(table.caption)
-        height = 3 + sum(2.5 if r"\tall" in line else 1.2 for line in lines)
-        is_short = bool(caption) and len(lines) <= _TOGETHER
-        room = [rf"\room{{{height:.1f}\baselineskip}}"] if is_short else []
+        caption = escape(table.caption)
         begin = rf"\begin{{ruled}}{{{columns}}}{{{len(table.head)}}}{{{caption}}}"
-        return "\n".join([*room, begin, f"{{{lines[0]}}}", *lines[1:], r"\end{ruled}"])
+        return "\n".join([begin, f"{{{lines[0]}}}", *lines[1:], r"\end{ruled}"])
 
     def _cell(self, text: Text) -> str:
         written = ""
