@@ -25,22 +25,8 @@ _SPECIAL = {character: f"\\{character}" for character in "{}$&#%_"} | {
     "\u2011": r"\mbox{-}",  # no line ends there
     "\u00a0": "~",
 }
-_MATH = {
-    "′": "'",
-    "ᵀ": r"^{\mathsf T}",
-    "−": "-",
-    "×": r"\times",
-    "·": r"\cdot",
-    "±": r"\pm",
-    "∂": r"\partial",
-    "√": r"\surd",
-    "∞": r"\infty",
-    "≤": r"\le",
-    "≥": r"\ge",
-    "≠": r"\ne",
-    "≈": r"\approx",
-    "→": r"\to",
-}
+_MACROS = r"' - \times \cdot \pm \partial \surd \infty \le \ge \ne \approx \to"
+_MATH = dict(zip("′−×·±∂√∞≤≥≠≈→", _MACROS.split(), strict=True)) | {"ᵀ": r"^{\mathsf T}"}
 _SCRIPTS = {"<super>": "^", "<sub>": "_"}  # as Unicode tells of ², ₀, ₊ and ₐ
 _PLAIN = frozenset(f"{ascii_letters}{digits}+-=()")  # what LaTeX writes there as it is
 _PUNCTUATION = "–—‘’“”„…€"
@@ -62,9 +48,8 @@ def _character(character: str) -> str:
         return rf"\ensuremath{{{formula}}}"
     if character.isspace() or unicodedata.category(character).startswith("C"):
         return " "
-    is_letter = character <= "\u017e" and character not in _MISSING
-    is_in_font = is_letter or character in _PUNCTUATION
-    return character if is_in_font else f"[U+{ord(character):04X}]"
+    is_in_font = character <= "\u017e" and character not in _MISSING
+    return character if is_in_font or character in _PUNCTUATION else f"[U+{ord(character):04X}]"
 
 
 def _formula(character: str) -> str:

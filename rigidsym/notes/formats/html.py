@@ -12,7 +12,6 @@ from itertools import pairwise
 
 from math_core import LatexToMathML
 
-from rigidsym.formula.display import Display
 from rigidsym.formula.latex_pen import WebPen
 from rigidsym.formula.pen import Height
 from rigidsym.formula.reader import text_of
@@ -35,7 +34,6 @@ from rigidsym.system import resources
 TEMPLATE = "note.html.jinja"
 BLOCKS = "blocks.html.jinja"
 _PAGE = 39.5  # ems of a display on a page, some less than there are: browsers differ in fonts
-_PHONE = 19.0  # ems of a display on a screen 360 pixels wide
 _WITH_POINTS = re.compile(r"\(<math .*?</math>[.,;:)]*|<math (?:(?!</math>).)*</math>[.,;:)]+")
 _INLINE = 13.0  # ems of a formula between words on a phone
 
@@ -112,10 +110,6 @@ class HtmlPrinter(NotePrinter):
 
     def block(self, block: NoteBlock) -> str:
         return str(getattr(self._blocks, type(block).__name__.lower())(self, block)).strip()
-
-    def is_wide(self, shown: Display) -> bool:
-        """Whether a phone has no room for a display in the size of its letters."""
-        return shown.width > _PHONE
 
     def drawing(self, figure: Figure) -> str:
         number = self.document.figures.index(figure) + 1
