@@ -12,10 +12,10 @@ from rigidsym.kernels.targets.compiling import build
 
 
 @make("build")
-def command(sources: tuple[str, ...], portable: bool) -> None:
+def command(sources: tuple[str, ...]) -> None:
     """Compile kernels in C into Python modules, NAME_c.py."""
     for source in map(Path, sources):
         if source.suffix != ".c":
             wanted = "expected NAME.c, which `rigidsym derive ROTATION --target c` writes"
             raise RequestError(f"{source}: {wanted}")
-        click.echo(build(source, portable=portable))
+        click.echo(build(source))

@@ -7,11 +7,11 @@ and a guarded divisor.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from math import isnan, prod
+from math import prod
 from typing import NamedTuple
 
 from rigidsym.errors import KernelError
@@ -137,22 +137,6 @@ def parts(expression: Expression) -> tuple[Expression, ...]:
             return (value,) if scale is None else (value, scale)
 
 
-def rebuilt(change: Callable[[Expression], Expression], expression: Expression) -> Expression:
-    """The node over other parts; a call and a guard stay as they are."""
-    match expression:
-        case Negative(operand):
-            return Negative(change(operand))
-        case Sum(terms):
-            return Sum(tuple(map(change, terms)))
-        case Product(factors, divisors):
-            return Product(tuple(map(change, factors)), tuple(map(change, divisors)))
-        case Compare(relation, left, right):
-            return Compare(relation, change(left), change(right))
-        case Choice():
-            return Choice(*map(change, parts(expression)))
-    return expression
-
-
 def walk(expression: Expression) -> Iterator[Expression]:
     """The expression and all that it is made of, the whole before its parts."""
     left = [expression]
@@ -270,11 +254,6 @@ class Kernel:
             if call.function in ("sin", "cos"):
                 found.setdefault(call.argument, {})[call.function] = name
         return found
-
-    @property
-    def gives_nan(self) -> bool:
-        """Whether NaN is among its numbers."""
-        return any(isinstance(node, Number) and isnan(node.value) for node in self.nodes)
 
     @property
     def statements(self) -> Iterator[tuple[str, Expression | dict[str, Call]]]:

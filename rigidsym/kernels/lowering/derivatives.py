@@ -17,10 +17,6 @@ from rigidsym.errors import KernelError
 from rigidsym.formula.tree import Symbol
 from rigidsym.mechanics.derivation import Derivation, Quantity, Step
 
-_FREE = (
-    "; bound components count as free, so that this is the derivative of the expression as "
-    "written, not projected onto what binds them"
-)
 _TEXT = re.compile(r"(\w+)(?: by |:)(\w+)")
 
 Asked = str | Iterable[str] | Mapping[str, str | Iterable[str]]
@@ -93,7 +89,7 @@ def derivatives_of(
     """
     for request in requests:
         step = derivation.step(request.quantity)
-        quantity, model = step.quantity, derivation.model
+        quantity = step.quantity
         if request.vector not in quantity.inputs:
             only = " and ".join(quantity.inputs)
             raise KernelError(f"{request}: {request.quantity} depends only on {only}")
@@ -103,15 +99,11 @@ def derivatives_of(
         back = {dummy: symbol for symbol, dummy in plain.items()}
         entries = derivation.spelled(step.expression).xreplace(plain)
         slopes = sp.Matrix([[sp.diff(entry, plain[s]) for s in by] for entry in entries])
-        # whether the vector, or the coordinates whose rates it holds, are bound by a constraint
-        bound = {*model.coordinates} if request.vector in ("q_dot", "q_ddot") else {*by}
-        is_bound = model.pullback is not None and not bound.isdisjoint(model.coordinates)
-        is_bound |= any(not bound.isdisjoint(sp.preorder_traversal(c)) for c in model.constraints)
         yield Jacobian(
             quantity=Quantity(
                 name=request.name,
                 symbol=Symbol(f"∂{quantity.symbol.text}/∂{request.vector}"),
-                about=f"Jacobian of {quantity.about} by {request.vector}{_FREE * is_bound}",
+                about=f"Jacobian of {quantity.about} by {request.vector}",
                 inputs=quantity.inputs,
                 unit=quantity.unit,
             ),

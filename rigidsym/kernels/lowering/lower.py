@@ -10,12 +10,13 @@ of the derivation.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from functools import cached_property, lru_cache
 from typing import Any
 
 import sympy as sp
 
-from rigidsym.algebra.stable_forms import Stumpff, at_zero, stable_forms
+from rigidsym.algebra.stable_forms import stable_forms
 from rigidsym.kernels import ir
 from rigidsym.kernels.lowering.cse import Graph, Weighted
 from rigidsym.kernels.lowering.derivatives import Jacobian
@@ -26,7 +27,6 @@ from rigidsym.mechanics.conversions.function import ConversionFunction, Converte
 from rigidsym.mechanics.derivation import (
     Argument as Vector,
     Derivation,
-    Singularities,
     Step,
 )
 
@@ -142,29 +142,21 @@ class _Lowering:
         if found is None or (found.is_solved and not any(p.places for p in found.points)):
             return
         (minors,) = self._stable([found.minors])
-        scale, about = _scaled(minors, found)
+        about = "how far the coordinates are from a singular orientation; 0 at one"
         if len(minors) == 1:
-            value = sp.Abs(minors[0] / scale, evaluate=False)
+            value = sp.Abs(minors[0], evaluate=False)
         else:
             # By the Cauchy-Binet formula, Σ minors² is the square of the product of those singular
             # values that can differ from 0.
             value = sp.sqrt(sp.Add(*(minor**2 for minor in minors)))
-        is_free = self._symbols(value).isdisjoint(self.derivation.model.constants)
-        inputs = [self._vectors[n] for n in (("q",) if is_free else ("q", "parameters"))]
+        inputs = [self._vectors[name] for name in ("q", "parameters") if name in self._vectors]
         size = f"√({found.measure})" if "ᵀ" in found.measure else f"|{found.measure}|"
-        size = "√Σ minors²" if found.measure == "minors" else size
-        symbol = size + ("" if scale == 1 else f"/({scale})")
-        yield self._kernel(MARGIN, inputs, [value], shape=(), symbol=symbol, about=about)
-
-    def _symbols(self, expression: sp.Expr) -> set[sp.Basic]:
-        """Those of the expression and of what it is defined by."""
-        found: set[sp.Basic] = set()
-        left = [expression]
-        while left:
-            new = left.pop().free_symbols - found
-            found |= new
-            left += [self._definitions[symbol] for symbol in new if symbol in self._definitions]
-        return found
+        symbol = "√Σ minors²" if found.measure == "minors" else size
+        kernel = self._kernel(MARGIN, inputs, [value], shape=(), symbol=symbol, about=about)
+        coordinates, *constants = kernel.arguments
+        if all(kernel.used.isdisjoint(each.components) for each in constants):
+            kernel = replace(kernel, arguments=(coordinates,))
+        yield kernel
 
     def _over_squares(self, entry: sp.Expr) -> sp.Expr:
         """The entry with the minors squared in place of the determinant that divides.
@@ -236,21 +228,3 @@ def _shared(
     weighted = list(map(graph.weighted, entries))
     graph.share(node for _, node in weighted)
     return graph, weighted
-
-
-def _scaled(minors: Sequence[sp.Expr], found: Singularities) -> tuple[sp.Rational, str]:
-    """The number that scales the margin to at most 1, and what the margin is in words.
-
-    A product of sines, cosines and Stumpff functions is largest where each of them is; of anything
-    else the determinant is taken as it is.
-    """
-    about = "how far the coordinates are from a singular orientation"
-    if found.measure not in ("det W", "det [W, J]"):
-        return sp.S.One, f"{about}, the product of the singular values of W; 0 at one"
-    number, rest = minors[0].as_coeff_Mul()
-    factors = [factor.as_base_exp()[0] for factor in sp.Mul.make_args(rest)]
-    if not all(isinstance(factor, sp.sin | sp.cos | Stumpff) for factor in factors):
-        return sp.S.One, f"{about}; 0 at one"
-    value = at_zero(rest) if rest.has(Stumpff) else sp.S.One
-    scale = abs(number) * (value if value.is_Rational and value else 1)
-    return scale, f"{about}; 1 at most, 0 at one"

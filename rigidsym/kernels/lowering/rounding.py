@@ -39,7 +39,6 @@ from rigidsym.kernels.ir import (
     Sum,
     names_in,
     parts,
-    rebuilt,
 )
 from rigidsym.kernels.lowering.naming import Names
 
@@ -248,10 +247,15 @@ class _Guard:
 
     def expression(self, whole: Expression) -> Expression:
         """The expression with its divisors guarded; what that takes is assigned before it."""
-        if isinstance(whole, Product):
-            factors = tuple(map(self.expression, whole.factors))
-            return Product(factors, tuple(map(self._divisor, whole.divisors)))
-        return rebuilt(self.expression, whole) if isinstance(whole, Negative | Sum) else whole
+        match whole:
+            case Product(factors, divisors):
+                divided = tuple(map(self._divisor, divisors))
+                return Product(tuple(map(self.expression, factors)), divided)
+            case Sum(terms):
+                return Sum(tuple(map(self.expression, terms)))
+            case Negative(operand):
+                return Negative(self.expression(operand))
+        return whole
 
     def _divisor(self, divisor: Expression) -> Expression:
         if divisor not in self._known:

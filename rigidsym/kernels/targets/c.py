@@ -22,9 +22,9 @@ from rigidsym.system import resources
 _NAMES = (
     "out far beyond sin_cos sin_cosf or_nan or_nanf entire entiref sqrtf fabs fabsf NULL angle_of "
     "angle_off SIZE_MAX PTRDIFF_MAX size_t ptrdiff_t uint32_t uint64_t TILE MOST SHUFFLED SHUFFLE "
-    "INLINED STREAMED STREAMS STREAM STREAMf END_STREAM HELPER CLONES CLONE "
-    "CLONED expected apart REAL WORD FN LIT EPS LEAST EVALUATE SIN_COS TILED GIVEN "
-    "PARAMETERS ORDERS AHEAD prefetch in given count"
+    "INLINED STREAMED STREAMS STREAM STREAMf END_STREAM "
+    "expected apart REAL WORD FN LIT EPS LEAST EVALUATE SIN_COS TILED "
+    "ORDERS AHEAD prefetch in given count"
 )
 RESERVED = numpy.RESERVED | {*_NAMES.split()}  # the Python module's, too
 _WIDTH = 92

@@ -37,17 +37,15 @@ _FLAGS = (
 # twentieth faster on Zen 4, no difference on Cascade Lake. There, vectors of 512 bits make Ω′ and R
 # 1.1 (by rows) to 1.4 (by columns) times as fast as those of 256.
 _OF_THIS_PROCESSOR = ("-march=native", "-mtune=icelake-server", "-mprefer-vector-width=512")
-_PORTABLE = ("-DCLONES", "-mprefer-vector-width=512")  # see the head of the source
 _LOG_LINES = 15
 
 
-def build(source: Path, *, portable: bool = False) -> Path:
+def build(source: Path) -> Path:
     """Compile NAME.c, beside which its other files stand, and return the module NAME_c.py.
 
-    The code is for this processor and those that know all its instructions. A portable one is for
-    any of its architecture; its array functions choose between AVX2, AVX-512 and neither.
-    Raises MissingTool without a C compiler, CheckError where a file is missing, and ToolFailed,
-    with the end of what the compiler says, where it stops.
+    The code is for this processor and those that know all its instructions. Raises MissingTool
+    without a C compiler, CheckError where a file is missing, and ToolFailed, with the end of what
+    the compiler says, where it stops.
     """
     name, folder = source.stem, source.parent
     needed = [folder / text.format(name) for text in (*_SOURCES, "{}.h", "{}_c.py")]
@@ -58,7 +56,7 @@ def build(source: Path, *, portable: bool = False) -> Path:
     library = folder / f"_{name}_c{sysconfig.get_config_var('EXT_SUFFIX')}"
     draft = library.with_name(f".{os.getpid()}{library.name}")  # whole or not at all
     try:
-        compile_library(needed[:2], str(draft), portable=portable)
+        compile_library(needed[:2], str(draft))
         draft.replace(library)
     finally:
         draft.unlink(missing_ok=True)
@@ -92,13 +90,13 @@ def compiler() -> str:
     )
 
 
-def compile_library(sources: Sequence[Path], library: str, *, portable: bool = False) -> None:
+def compile_library(sources: Sequence[Path], library: str) -> None:
     """A shared library of C sources. Raises MissingTool and ToolFailed as `build` does."""
     import numpy as np
 
     folders = [sysconfig.get_paths()["include"], np.get_include()]
     command = [compiler(), *_FLAGS, *(f"-I{folder}" for folder in folders), *map(str, sources)]
-    for tuned in (_PORTABLE if portable else _OF_THIS_PROCESSOR, ()):
+    for tuned in (_OF_THIS_PROCESSOR, ()):
         try:
             done = subprocess.run(
                 [*command, *tuned, "-o", library, "-lm"],

@@ -15,6 +15,7 @@ from rigidsym.kernels.ir import Call, Kernel, Program
 from rigidsym.kernels.targets import numpy, python
 from rigidsym.kernels.targets.precision import DOUBLE
 from rigidsym.kernels.targets.python import bracketed
+from rigidsym.system import resources
 
 RESERVED = numpy.RESERVED | {"njit", "sin_cos", "values", "lost"}
 _WORDS = {
@@ -27,20 +28,21 @@ _WORDS = {
 def render(program: Program) -> dict[str, str]:
     """The module."""
     kernels = program.kernels
+    template = resources.environment().get_template("numba/twins.py.jinja")
     functions = []
     for kernel in kernels:
-        core = bracketed(0, f"def _{kernel.name}(", ["sin_cos", "eps", *kernel.components], "):")
-        given = ["_sin_cos", f"{2.0**-52!r}", *kernel.components]
-        one = bracketed(4, f"values = _{kernel.name}(", given, ")")
         values = [f"values[{k}]" for k in range(len(kernel.outputs))]
-        twin = f"    return {numpy.nested(values, kernel.shape, 4, is_open=True)}"
-        twins = [
-            "\n".join(["@_jit", numpy.twin_head(kernel), one, twin]),
-            "\n".join(["@_inlined", core, *_body(kernel)]),
-            "\n".join(["@_jit", *_rows(kernel)]),
-        ]
+        columns = [f"{a.name}[{k}, i]" for a in kernel.arguments for k in range(len(a.components))]
+        twins = template.render(
+            kernel=kernel,
+            bracketed=bracketed,
+            head=numpy.twin_head(kernel),
+            twin=numpy.nested(values, kernel.shape, 4, is_open=True),
+            body="\n".join(_body(kernel)),
+            columns=columns,
+        )
         body = numpy.called(kernel, f"_{kernel.name}_rows", f"{kernel.name}_scalar")
-        functions.append(numpy.function(kernel, body, "\n\n\n".join(twins)))
+        functions.append(numpy.function(kernel, body, twins.rstrip()))
     text = numpy.module_text(
         program,
         "numba/module.py.jinja",
@@ -76,18 +78,3 @@ def _body(kernel: Kernel) -> Iterator[str]:
                 yield python.statement(4, name, value, _WORDS)
     outputs = numpy.outputs(kernel, 8)
     yield f"    return {numpy.nested(outputs, (len(outputs),), 4, is_open=True)}"
-
-
-def _rows(kernel: Kernel) -> Iterator[str]:
-    """The loop over columns."""
-    vectors = [argument.name for argument in kernel.arguments]
-    columns = [f"{a.name}[{k}, i]" for a in kernel.arguments for k in range(len(a.components))]
-    loop = "for i in range(out.shape[1]):"
-    yield bracketed(0, f"def _{kernel.name}_rows(", [*vectors, "out", "eps"], "):")
-    yield f"    lost = False\n    {loop}"
-    yield bracketed(8, f"values = _{kernel.name}(", ["_sin_cos_near", "eps", *columns], ")")
-    yield "        lost |= _give(values, out, i)"
-    # A second loop for the orientations that the first one, without a branch, left as NaN.
-    yield f"    if lost:\n        {loop}\n            if np.any(np.isnan(out[:, i])):"
-    yield bracketed(16, f"values = _{kernel.name}(", ["_sin_cos", "eps", *columns], ")")
-    yield "                _give(values, out, i)"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
-from math import prod
+from math import isnan, prod
 from types import ModuleType
 
 from rigidsym.kernels import loaded
@@ -14,6 +14,7 @@ from rigidsym.kernels.ir import (
     Choice,
     Kernel,
     Name,
+    Number,
     Program,
 )
 from rigidsym.kernels.lowering.naming import Names
@@ -43,7 +44,8 @@ def render(program: Program) -> dict[str, str]:
     kernels = program.kernels
     of_math = program.called.intersection(FUNCTIONS) - {"abs", "eps"}
     of_math |= {"sqrt", "tan"} if program.has_series else set()
-    of_math |= {"nan"} if any(kernel.gives_nan for kernel in kernels) else set()
+    numbers = (node.value for k in kernels for node in k.nodes if isinstance(node, Number))
+    of_math |= {"nan"} if any(map(isnan, numbers)) else set()
     functions = []
     for kernel in kernels:
         block, scalar = f"_{kernel.name}", f"{kernel.name}_scalar"
