@@ -40,7 +40,8 @@ SIGNS = {r"\times": "×", r"\cdot": "·", r"\pm": "±", r"\le": "≤", r"\in": "
 SIGNS |= {r"\Leftrightarrow": "⇔"}
 LETTERS = {r"\ldots": "…", r"\perp": "⊥", r"\parallel": "∥", r"\ast": "∗"}
 _TOKEN = re.compile(
-    r"\\(?:text|operatorname)\{[^{}]*\}|\\(?:begin|end)\{pmatrix\}|\\[A-Za-z]+|\\.|#\d+|\d+|\s+|."
+    r"\\(?:text|operatorname)\{[^{}]*\}|\\math[a-z]+\{\w+\}|\\(?:begin|end)\{pmatrix\}"
+    r"|\\[A-Za-z]+|\\.|#\d+|\d+|\s+|."
 )
 _BLANKS = (r"\,", "\\ ", r"\left", r"\right", r"\bigl", r"\bigr", r"\textstyle")
 _NORMAL = {**dict.fromkeys(_BLANKS, " "), r"\tfrac": r"\frac"}
@@ -185,8 +186,8 @@ class _TexReader:
             return tree.Numeral(token)
         if token.startswith("#"):
             return self.parts[int(token[1:]) - 1]
-        if token in _FACES:
-            return _faced(self.argument(), _FACES[token])
+        if token in _FACES and isinstance(inside := self.argument(), tree.Symbol):
+            return replace(inside, face=_FACES[token])
         if token in _DOTS and isinstance(inside := self.argument(), tree.Symbol):
             return replace(inside, dots=inside.dots + _DOTS[token])
         if token == r"\frac":
@@ -202,6 +203,8 @@ class _TexReader:
         if token == r"\begin{pmatrix}":
             return self.matrix()
         name, _, words = token.removesuffix("}").partition("{")
+        if words and name in _FACES:  # in which no d is a differential
+            return tree.Symbol(words, _FACES[name])
         if name == r"\text":
             return tree.Words(words)
         if name == r"\operatorname" or name[1:] in FUNCTIONS:
@@ -229,19 +232,6 @@ class _TexReader:
             mark = self.tokens.pop()
             rows += [[]] if mark == r"\\" else []
         return tree.Matrix(tuple(map(tuple, rows)))
-
-
-def _faced(inside: Formula, face: tree.Face) -> Formula:
-    """A letter, a word, or a bold 1 or 0, in another face."""
-    match inside:
-        case tree.Numeral(digits):
-            return tree.Symbol(digits, face)
-        case tree.Row(parts):
-            letters = (part.letter for part in parts if isinstance(part, tree.Symbol))
-            return tree.Symbol("".join(letters), face)
-        case tree.Symbol():
-            return replace(inside, face=face)
-    return inside
 
 
 @lru_cache(maxsize=1024)
