@@ -290,7 +290,8 @@ class GeneratorSet:
         terms = combination(argument)
         if sp.S.One in terms:
             raise AlgebraError(
-                f"sin and cos of {argument} are not in the ring; expected a symbol for the number"
+                f"sin and cos of {argument} have no exact form: expected a multiple of pi "
+                "(angles are in radians, 30° is pi/6), or a symbol for the number"
             )
         # By the addition theorem, sin(θ + π/4) = (sin θ + cos θ)/√2, so the ring needs these roots.
         if sp.pi in terms:

@@ -116,7 +116,7 @@ class _TexReader:
 
     def error(self) -> AlgebraError:
         rest = "".join(reversed(self.tokens)) or "the end"
-        return AlgebraError(f"no formula: {self.text!r}, at {rest!r}")
+        return AlgebraError(f"no formula: '{self.text}', at '{rest}'")
 
     def row(self, *ends: str) -> Formula:
         """Parts up to one of `ends`, which is not read; or up to the end of all."""

@@ -20,6 +20,7 @@ from jinja2 import TemplateRuntimeError, Undefined, pass_context
 from jinja2.runtime import Context
 from markupsafe import Markup
 
+from rigidsym.errors import AlgebraError, TemplateFault
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import formula, text_of
 from rigidsym.formula.scalars import formula_of
@@ -89,7 +90,8 @@ def _printed(_: Context, value: Any) -> Markup:
 def sections_of(name: str, letters: Letters, **facts: Any) -> Iterator[Section]:
     """The sections of a template: first what comes before any heading, with an empty title.
 
-    Raises TemplateFault, with the template and its line, for a fact that there is not.
+    Raises TemplateFault, with the template and its line, for a fact that there is not, and for a
+    formula that cannot be read.
     """
     marks = _Marks(letters, [])
     token = _MARKS.set(marks)
@@ -164,7 +166,11 @@ def _formula(typed: str, things: list[Any]) -> Formula:
     """A typed formula, with the facts in it."""
     parts = [things[ord(mark) - _FIRST] for mark in re.findall(_MARK, typed)]
     places = iter(range(1, 1 + len(parts)))
-    return formula(re.sub(_MARK, lambda _: f"#{next(places)}", typed.strip()), *parts)
+    try:
+        return formula(re.sub(_MARK, lambda _: f"#{next(places)}", typed.strip()), *parts)
+    except AlgebraError as error:
+        words = max(re.split(_MARK, typed), key=len)  # a fact is not written in the template so
+        raise TemplateFault(f"{resources.place_of(words)}: {error}") from error
 
 
 def _table(chunk: str, things: list[Any]) -> NoteTable:

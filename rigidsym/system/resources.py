@@ -73,16 +73,29 @@ def names(kind: str, suffix: str) -> tuple[str, ...]:
 def overridden_by(own: Path) -> Iterator[None]:
     """Inside, the templates in a folder of the user replace those of the same name.
 
-    Raises TemplateFault if the folder holds no template.
+    Raises TemplateFault if the folder holds none of these, and no style, LANGUAGE/NAME.md.jinja.
     """
-    if not any(own.rglob("*.jinja")):
-        copies = f"`rigidsym templates {own}` copies the shipped ones there"
-        raise TemplateFault(f"{own} contains no template; {copies}")
+    shipped = [f"{name}.jinja" for name in names(NOTES, ".jinja")]
+    if not any((own / name).is_file() for name in shipped) and not any(own.glob("*/*.md.jinja")):
+        raise TemplateFault(
+            f"{own} contains no template of notes: expected a style, such as en/handout.md.jinja, "
+            f"or one of {', '.join(shipped)}; `rigidsym templates {own}` copies these there"
+        )
     token = _OWN.set(own)
     try:
         yield
     finally:
         _OWN.reset(token)
+
+
+def place_of(words: str) -> str:
+    """The file and line among the user's own templates where words stand, or their folder."""
+    own = _OWN.get() or folder(NOTES)
+    for file in sorted(own.rglob("*.jinja")):
+        for number, line in enumerate(file.read_text(encoding="utf-8").splitlines(), start=1):
+            if words in line:
+                return f"{file}, line {number}"
+    return str(own)
 
 
 @cache

@@ -141,7 +141,7 @@ NO_RING = {  # and words of the refusal; floats are answered with the fraction t
     sin(a + 0.1): "a fraction such as 1/10",
     u**0.5: "a fraction such as 1/2",
     1 / (1.5 + u): "a fraction such as 3/2",
-    sin(a + 1): "not in the ring",
+    sin(a + 1): "expected a multiple of pi (angles are in radians, 30° is pi/6), or a symbol",
     cos(a + pi / 7): "pi/7",
     sp.zoo + a: "zoo",
     sp.gamma(a): "the derivatives of polygamma(",

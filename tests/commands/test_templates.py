@@ -28,6 +28,10 @@ def test_a_fault_is_named_with_its_template_and_line(answered, tmp_path: Path):
             derived("ZXZ").note(style="mine").html()
         return str(caught.value).replace(f"{tmp_path}/", "").partition(", are_proved, ")[0]
 
+    own(tmp_path, "lecture.md.jinja", "in no language")
+    missing = pytest.raises(TemplateFault, match=r"no template of notes: .* en/lecture\.md\.jinja,")
+    with missing, resources.overridden_by(tmp_path):
+        pass
     answered("commands/template_faults.txt", answer)
 
 
