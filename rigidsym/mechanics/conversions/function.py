@@ -100,11 +100,11 @@ class NamedValues:
         size = self.let("size", sp.Add(*quarters))
         return self.each(PARTS, [part / size for part in quaternion])
 
-    def wrapped(self, name: str, value: sp.Expr) -> sp.Expr:
-        """An angle between −2π and 2π, taken into (−π, π]."""
-        angle = self.let(name, value)
-        turned = Where(angle <= -sp.pi, angle + 2 * sp.pi, angle)
-        return self.let(name, Where(angle > sp.pi, angle - 2 * sp.pi, turned))
+    def angle(self, name: str, sine: sp.Expr, cosine: sp.Expr) -> sp.Expr:
+        """The angle in (−π, π] of a multiple of its sine and cosine."""
+        # A sine of −0 beside a negative cosine would give −π.
+        angle = self.let(name, sp.atan2(sine, cosine))
+        return self.let(name, Where(angle <= -sp.pi, -angle, angle))
 
 
 def square(vector: Sequence[sp.Expr]) -> sp.Expr:

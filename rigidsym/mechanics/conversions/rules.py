@@ -157,21 +157,23 @@ def _of_euler_angles(model: RotationModel, order: tuple[int, ...]) -> Rule:
     def back(values: NamedValues, quaternion: Vector) -> Vector:
         a = values.each(("a0", "a1", "a2", "a3"), map(sp.expand, in_frame(quaternion)))
         # a = κ (cos β'/2 cos σ, cos β'/2 sin σ, sin β'/2 cos δ, sin β'/2 sin δ), κ > 0. So β' is
-        # twice the angle of (far, near), and α = σ + δ, γ = σ − δ.
+        # twice the angle of (far, near), and α = σ + δ and γ = σ − δ are the angles of the complex
+        # numbers (a₀ + i a₁)(a₂ ± i a₃), which need no wrapping as sums of angles would.
         far, near = values.length("far", a[:2]), values.length("near", a[2:])
-        total = values.let("half_sum", sp.atan2(a[1], a[0]))
-        difference = values.let("half_difference", sp.atan2(a[3], a[2]))
         # Where a half of the quaternion vanishes, its angle is taken to be the other's, or minus
         # it, so that the last coordinate is zero, whether it is the first turn's or the third's.
         is_low, is_high = near <= values.tiny * far, far <= values.tiny * near
         other = -1 if order[0] == 2 else 1
-        chosen = values.let("half_difference", Where(is_low, other * total, difference))
-        total = values.let("half_sum", Where(is_high, other * difference, total))
+        c = values.let("a0", Where(is_high, a[2], a[0]))
+        s = values.let("a1", Where(is_high, other * a[3], a[1]))
+        u = values.let("a2", Where(is_low, a[0], a[2]))
+        v = values.let("a3", Where(is_low, other * a[1], a[3]))
         # The arc tangent keeps its digits near both poles, where an arc cosine would lose half of
         # them.
         middle = 2 * sp.atan2(near, far) - quarters_in_radians
-        outer = values.wrapped("first", total + chosen), values.wrapped("last", total - chosen)
-        return outer[0], sign * middle, outer[1]
+        first = values.angle("first", s * u + c * v, c * u - s * v)
+        last = values.angle("last", s * u - c * v, c * u + s * v)
+        return first, sign * middle, last
 
     quarters_in_radians = sp.Float(float(sp.pi / 2)) if quarters else sp.S.Zero
     alpha, beta, gamma = (turn.angle for turn in model.turns)
