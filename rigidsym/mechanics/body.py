@@ -44,16 +44,17 @@ from rigidsym.models.parametrisations import parametrised
 from rigidsym.models.rotation import RotationModel
 
 _MOST_TERMS = 60  # of a component that is worth being presented multiplied out
-_ONE = sp.eye(3)
 
 
 class BodyValues(Values):
     """A body in one rotation, over the ring of both."""
 
+    point, direction = sp.Matrix(POINT), sp.Matrix(DIRECTION)
+
     def __init__(self, model: RotationModel, body: RigidBody, *, has_fixed_point: bool) -> None:
         super().__init__(model, body, also=particles.SYMBOLS)
         self.body: RigidBody = body
-        self._has_fixed_point = has_fixed_point
+        self.has_fixed_point = has_fixed_point
 
     @cached_property
     def traits(self) -> frozenset[str]:
@@ -61,7 +62,7 @@ class BodyValues(Values):
             "distributed": self.is_distributed,
             "particles": isinstance(self.body.distribution, Particles),
             "composite": isinstance(self.body.distribution, Composite),
-            "fixed_point": self._has_fixed_point,
+            "fixed_point": self.has_fixed_point,
         }
         return super().traits | {trait for trait, holds in traits.items() if holds}
 
@@ -82,12 +83,12 @@ class BodyValues(Values):
     @staticmethod
     def steiner(mass: sp.Expr, by: sp.MatrixBase) -> sp.Matrix:
         """M (|d|² 1 − d dᵀ)."""
-        return mass * (by.dot(by) * _ONE - by * by.T)
+        return mass * (by.dot(by) * sp.eye(3) - by * by.T)
 
     @staticmethod
     def tensor(second: sp.MatrixBase) -> sp.Matrix:
         """tr(J) 1 − J of the second moments J."""
-        return second.trace() * _ONE - second
+        return second.trace() * sp.eye(3) - second
 
     def inertia_of_parts(self) -> sp.Matrix:
         """Σ (R I R ᵀ + m (|d|² 1 − d dᵀ)), a hole with a minus sign."""
@@ -99,30 +100,16 @@ class BodyValues(Values):
             total += self.steiner(mass, centre - self.body.centre)
         return total
 
-    @cached_property
-    def point(self) -> sp.Matrix:
-        return sp.Matrix(POINT)
-
-    @cached_property
-    def direction(self) -> sp.Matrix:
-        return sp.Matrix(DIRECTION)
-
-    @cached_property
+    @property
     def second_about_point(self) -> sp.Matrix:
         """∫ (x − p)(x − p)ᵀ dm."""
         m, p = self.moments, self.point
         return m.second - m.first * p.T - p * m.first.T + m.mass * p * p.T
 
     def shifted_inertia(self) -> sp.ImmutableMatrix:
-        """I′ + M (|d|² 1 − d dᵀ), each entry as short as it can be written."""
-        body, d = self.body, self.point - self.body.centre
-
-        def shifted(i: int, j: int) -> sp.Expr:
-            if i != j:
-                return body.inertia[i, j] - body.mass * d[i] * d[j]
-            return body.inertia[i, i] + body.mass * sum(d[k] ** 2 for k in range(3) if k != i)
-
-        return sp.ImmutableMatrix(3, 3, shifted)
+        """I′ + M (|d|² 1 − d dᵀ)."""
+        shift = self.steiner(self.body.mass, self.point - self.body.centre)
+        return sp.ImmutableMatrix(self.body.inertia + shift)
 
     def moment_about_line(self) -> sp.Expr:
         """nᵀ I′ n + M |n × (p − c)|²."""

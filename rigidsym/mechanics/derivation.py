@@ -330,6 +330,7 @@ class Derivation:
     first_integrals: tuple[FirstIntegral, ...] = ()  # where equations of motion were asked for
     consequences: tuple[Consequence, ...] = ()  # of the equations of motion
     forces: Forces | None = None  # where equations of motion were asked for
+    about_fixed_point: bool = False  # whether the tensor is about it, not the centre of mass
     functions: Mapping[str, Step] = field(default_factory=dict)  # for kernels: they repeat parts
 
     def step(self, quantity: str) -> Step:
@@ -368,17 +369,6 @@ class Derivation:
         if self.theory:
             return "The equations of the lecture, each with its proof"
         return "Kinematics of a rotation" if self.body is None else "Motion of a rigid body"
-
-    @property
-    def about_fixed_point(self) -> bool:
-        """Whether the inertia tensor is about a fixed point instead of the centre of mass."""
-        return (
-            self.forces is not None
-            and self.forces.fix_a_point
-            and self.body is not None
-            and self.body.distribution is None
-            and not any(step.quantity.of_centre for step in self.steps)
-        )
 
     def argument(self, name: str) -> Argument:
         return next(argument for argument in self.arguments if argument.name == name)

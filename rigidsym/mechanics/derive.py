@@ -11,19 +11,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Collection
 from dataclasses import replace
-from functools import partial
-from typing import TYPE_CHECKING, Any
+from itertools import count
+from typing import TYPE_CHECKING
 
 import sympy as sp
 
 from rigidsym.errors import QuantityError, offer
-from rigidsym.mechanics.derivation import OF_RATES, Consequence, Derivation, Step
+from rigidsym.mechanics.derivation import OF_RATES, Consequence, Derivation, FirstIntegral, Step
 from rigidsym.mechanics.kinematics.chain import Chain, is_shorter
 from rigidsym.mechanics.kinematics.workspace import Values
 from rigidsym.mechanics.quantities.catalogue import OF_BODY, OF_MOTION
-from rigidsym.mechanics.quantities.dynamics import FLOW_QUANTITIES
 from rigidsym.mechanics.quantities.kinematics import KINEMATICS
 from rigidsym.mechanics.quantities.mass import BODY_ALONE, OF_BODY_ALONE
 from rigidsym.mechanics.singularities import singularities_of
@@ -60,7 +59,14 @@ def derive(
 
         wanted = only and {*only, *NEEDED}
         return with_theory(derive(model, wanted, body=body, forces=forces))
-    _check_names(only, has_body=body is not None, has_forces=forces is not None)
+    of_body = (BODY_ALONE, *OF_BODY)
+    names = (*KINEMATICS, *(of_body if body else ()), *(OF_MOTION if forces else ()))
+    for name in only:
+        if name not in names:
+            why = offer(name, names)
+            if name in of_body or name in OF_MOTION:
+                why = f"it needs a body{'' if name in of_body else ' and forces or a potential'}"
+            raise QuantityError(f"no quantity {name}; {why}")
     if BODY_ALONE in only:
         only = {*only, *OF_BODY_ALONE}
     chain, values = Chain(model) if is_shorter(model) else None, Values(model)
@@ -89,87 +95,49 @@ def derive(
 
         values, moving, motion = steps_of_body(model, body, forces, only, chain)
         steps += moving
-    arguments = values.arguments
-    functions: Mapping[str, Callable[[], Step]] = {}
+    arguments, definer, is_driven = values.arguments, chain, False
+    functions: dict[str, Step] = {}
     consequences: tuple[Consequence, ...] = ()
+    integrals: tuple[FirstIntegral, ...] = ()
+    named = [step.expression for step in steps]
     if motion:
+        forces, definer = motion.forces, motion.names or chain
+        is_driven = forces.depend_on_time
         arguments = arguments | {argument.name: argument for argument in motion.added}
-        if not only or not {*only}.isdisjoint(FLOW_QUANTITIES):
-            makers = motion.functions()
-            functions = {n: makers[n] for n in makers if not only or n in only}
+        makers = motion.functions().items()
+        functions = {name: make() for name, make in makers if not only or name in only}
         if not only or "effective_potential" in only:
             consequences = tuple(motion.consequences())
-    integrals = motion.first_integrals if motion else ()
-    names = chain
-    named: list[sp.Basic] = [step.expression for step in steps]
-    if motion and motion.names is not None:
-        names = motion.names
-        named += [integral.expression for integral in integrals]
-        named += [make().expression for make in functions.values()]
-    definitions = names.definitions_of(named) if names else ()
+        integrals = motion.first_integrals
+        named += [step.expression for step in functions.values()]
+        named += [sp.Matrix([integral.expression]) for integral in integrals]
+    definitions = definer.definitions_of(named) if definer else ()
     constants = {*arguments["parameters"].symbols} if "parameters" in arguments else set()
     for symbol, expression in definitions:
         if not expression.free_symbols.isdisjoint(constants):
             constants.add(symbol)
-    finished = partial(_with_inputs, constants, motion is not None and motion.forces.depend_on_time)
+
+    def finished(step: Step, number: int = 0) -> Step:
+        """The step with its number, and with the time and the parameters that it depends on."""
+        quantity, inputs = step.quantity, step.quantity.inputs
+        if is_driven and "t" not in inputs and depends_on_time(step.expression):
+            inputs += ("t",)
+        if not step.expression.free_symbols.isdisjoint(constants):
+            inputs += ("parameters",)
+        return replace(step, number=number, quantity=quantity._replace(inputs=inputs))
+
     return Derivation(
         name=model.name,
         title=model.title,
         model=model,
         arguments=tuple(arguments.values()),
-        steps=tuple(finished(replace(step, number=k)) for k, step in enumerate(steps, start=1)),
-        functions=_LazySteps(functions, finished),
+        steps=tuple(map(finished, steps, count(1))),
+        functions={name: finished(step) for name, step in functions.items()},
         singularities=singularities,
         body=values.body,
-        forces=motion.forces if motion else None,
+        about_fixed_point=values.has_fixed_point,
+        forces=forces,
         definitions=definitions,
         first_integrals=integrals,
         consequences=consequences,
     )
-
-
-def _check_names(only: Collection[str], *, has_body: bool, has_forces: bool) -> None:
-    of_body = (BODY_ALONE, *OF_BODY)
-    known = (*KINEMATICS, *(of_body if has_body else ()), *(OF_MOTION if has_forces else ()))
-    for name in only:
-        if name in known:
-            continue
-        why = offer(name, known)
-        if name in of_body or name in OF_MOTION:
-            why = f"it needs a body{'' if name in of_body else ' and forces or a potential'}"
-        raise QuantityError(f"no quantity {name}; {why}")
-
-
-def _with_inputs(constants: Collection[sp.Symbol], is_driven: bool, step: Step) -> Step:
-    """The step with the time and the parameters among its inputs if it depends on them."""
-    inputs = step.quantity.inputs
-    if is_driven and "t" not in inputs and depends_on_time(step.expression):
-        inputs += ("t",)
-    if constants and not step.expression.free_symbols.isdisjoint(constants):
-        inputs += ("parameters",)
-    if inputs == step.quantity.inputs:
-        return step
-    return replace(step, quantity=step.quantity._replace(inputs=inputs))
-
-
-class _LazySteps(Mapping[str, Step]):
-    """Steps by name, each derived and finished when it is first asked for."""
-
-    def __init__(
-        self, makers: Mapping[str, Callable[[], Step]], finished: Callable[[Step], Step]
-    ) -> None:
-        self._makers, self._finished, self._steps = makers, finished, dict[str, Step]()
-
-    def __getitem__(self, name: str) -> Step:
-        if name not in self._steps:
-            self._steps[name] = self._finished(self._makers[name]())
-        return self._steps[name]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._makers)
-
-    def __len__(self) -> int:
-        return len(self._makers)
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return dict, (dict(self),)

@@ -295,27 +295,25 @@ class Chain(Names, Workspace):
     @cached_property
     def from_space(self) -> list[State]:
         """(B₁, u₁, u̇₁), ..., (Bₙ, uₙ, u̇ₙ) and (1, 0, 0)."""
-        # The recursion starts from the identity at rest, and each step applies the law to one more
-        # turn.
-        states = [State()]
-        for k in reversed(range(self.count)):
-            T, n, speed, later = self.turns[k], self.axes[k], self.speeds[k], states[-1]
-            omega = self.named(f"u{k + 1}", velocity(T, n * speed, later.omega))
-            alpha = acceleration(T, n * self.gains[k], n.cross(omega) * speed, later.alpha)
-            product, alpha = self.named(f"B{k + 1}", T * later.R), self.named(f"du{k + 1}", alpha)
-            states.append(State(product, omega, alpha))
-        return states[::-1]
+        return self._states(range(self.count - 1, -1, -1), "u", "B")[::-1]
 
     @cached_property
     def from_body(self) -> list[State]:
         """(1, 0, 0) and (P₁, w₁, ẇ₁), ..., (Pₙ, wₙ, ẇₙ)."""
+        return self._states(range(self.count), "w", "P")
+
+    def _states(self, places: Iterable[int], letter: str, product: str) -> list[State]:
+        """The recursion from the identity at rest; each step applies the law to one more turn."""
         states = [State()]
-        for k in range(self.count):
-            T, n, speed, earlier = self.turns[k], self.axes[k], self.speeds[k], states[-1]
-            omega = self.named(f"w{k + 1}", velocity(T.T, n * speed, earlier.omega))
-            alpha = acceleration(T.T, n * self.gains[k], n.cross(-omega) * speed, earlier.alpha)
-            product, alpha = self.named(f"P{k + 1}", earlier.R * T), self.named(f"dw{k + 1}", alpha)
-            states.append(State(product, omega, alpha))
+        for k in places:
+            T, n, speed, other = self.turns[k], self.axes[k], self.speeds[k], states[-1]
+            R, sign = (T * other.R, 1) if letter == "u" else (other.R * T, -1)
+            T = T if letter == "u" else T.T
+            omega = self.named(f"{letter}{k + 1}", velocity(T, n * speed, other.omega))
+            gained = n.cross(sign * omega) * speed
+            alpha = acceleration(T, n * self.gains[k], gained, other.alpha)
+            R, alpha = self.named(f"{product}{k + 1}", R), self.named(f"d{letter}{k + 1}", alpha)
+            states.append(State(R, omega, alpha))
         return states
 
     # What entries ask of a workspace
@@ -373,9 +371,10 @@ class Chain(Names, Workspace):
 
     # Steps
 
-    def recursion(self, quantity: Quantity) -> Formula | None:
+    def extras(self, quantity: Quantity, _value: Any, /) -> dict[str, Any]:
         text = quantity.recursion.replace("LAST", str(self.count))
-        return formula(text.replace("BEFORE", str(self.count - 1))) if text else None
+        text = text.replace("BEFORE", str(self.count - 1))
+        return {"recursion": formula(text) if text else None}
 
     def proofs(self, quantity: Quantity, _value: Any = None) -> tuple[Proof, ...]:
         """The laws of a quantity, and of those that its value is written with."""

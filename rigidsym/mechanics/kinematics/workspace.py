@@ -18,8 +18,7 @@ from rigidsym.algebra.matrix import Inverse, RingMatrix, hat, unhat
 from rigidsym.algebra.present import Presenter, presenter_for
 from rigidsym.algebra.witness import configurations
 from rigidsym.errors import DerivationError, NotARotation
-from rigidsym.formula.tree import Formula
-from rigidsym.mechanics.derivation import Argument, Proof, Quantity, Step, VectorForm
+from rigidsym.mechanics.derivation import Argument, Proof, Quantity, Step
 from rigidsym.mechanics.kinematics.vector_forms import vector_form
 from rigidsym.mechanics.prove import Prover, identity
 from rigidsym.mechanics.quantities.table import arguments_of
@@ -56,6 +55,7 @@ class Workspace:
     arguments: dict[str, Argument]
     rotation: Any
     rotation_rate: Any
+    has_fixed_point = False  # whether a body turns about a fixed point, not its centre of mass
 
     @cached_property
     def traits(self) -> frozenset[str]:
@@ -97,35 +97,31 @@ class Workspace:
         value = quantity.value(self)
         if value is None:
             return None
-        proofs = self.proofs(quantity, value)
-        form = self.vector_form(quantity, value)
+        proofs, extras = self.proofs(quantity, value), self.extras(quantity, value)
+        if form := extras.get("vector_form"):
+            proofs += (form.proof,)
         return Step(
             quantity=quantity.measured(self.arguments),
             expression=self._printed(value),
-            proofs=(*proofs, form.proof) if form else proofs,
-            vector_form=form,
-            recursion=self.recursion(quantity),
+            proofs=proofs,
             words=quantity.words(self) if quantity.words else "",
+            **extras,
         )
-
-    def vector_form(self, _quantity: Quantity, _value: Any, /) -> VectorForm | None:
-        """The quantity as a function of the vector of the coordinates, if it is one."""
-        return None
-
-    def recursion(self, _quantity: Quantity, /) -> Formula | None:
-        """How the entries follow turn by turn, if they are named."""
-        return None
 
     def _printed(self, value: Any) -> sp.ImmutableMatrix:
         """A value as it is shown: read from the ring, over its divisor, or as it is."""
         match value:
             case (matrix, below):
-                return self.present.matrix(matrix, below)
+                value = self.present.matrix(matrix, below)
             case RingMatrix():
-                return self.present.matrix(value)
-            case sp.MatrixBase():
-                return sp.ImmutableMatrix(value)
-        return sp.ImmutableMatrix([[value]])
+                value = self.present.matrix(value)
+            case sp.Expr():
+                value = sp.Matrix([value])
+        return sp.ImmutableMatrix(value)
+
+    def extras(self, _quantity: Quantity, _value: Any, /) -> dict[str, Any]:
+        """What else a step shows: its form by the vector of the coordinates, its recursion."""
+        return {}
 
     def proofs(self, quantity: Quantity, value: Any) -> tuple[Proof, ...]:
         """What a quantity rests on, and the proofs of its laws."""
@@ -289,5 +285,5 @@ class Values(Workspace):
         rows = [[sp.diff(c, q) for q in coordinates] for c in binding]
         return self.codec.matrix(sp.Matrix(rows)) if rows else None
 
-    def vector_form(self, quantity: Quantity, value: Any, /) -> VectorForm | None:
-        return vector_form(self, quantity, value)
+    def extras(self, quantity: Quantity, value: Any, /) -> dict[str, Any]:
+        return {"vector_form": vector_form(self, quantity, value)}
