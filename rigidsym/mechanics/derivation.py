@@ -270,8 +270,9 @@ class Statement(NamedTuple):
     source: Citation
     proofs: tuple[Proof, ...] = ()
     is_result: bool = False  # whether it is framed in the note
-    shows_summands: bool = False  # whether the matrix of the generic particle belongs to it
-    summands: sp.ImmutableMatrix | None = None  # that matrix; its sum is the last side
+    summands: sp.ImmutableMatrix | None = (
+        None  # of the generic particle; their sum is the last side
+    )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -9,8 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from functools import cache, cached_property, reduce
-from operator import add
+from functools import cache, cached_property
 
 import sympy as sp
 
@@ -19,6 +18,7 @@ from rigidsym.algebra.matrix import RingMatrix, hat, unhat
 from rigidsym.algebra.present import presenter_for
 from rigidsym.errors import ModelError
 from rigidsym.formula.reader import formula, sentence
+from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Derivation, Proof, Statement, Step, phrases
 from rigidsym.mechanics.particles import IN_BODY, MASS, ParticleSums
 from rigidsym.mechanics.prove import Conditions, Prover
@@ -34,32 +34,26 @@ _TENSOR = sp.Matrix(3, 3, lambda i, j: sp.Symbol(f"I_{min(i, j) + 1}{max(i, j) +
 
 
 @cache
-def statements() -> tuple[Statement, ...]:
-    """The equations in order, each with its claims."""
-    return tuple(
-        Statement(
+def theory() -> tuple[Statement, ...]:
+    """The equations in order, each with what was proved of its claims."""
+    work, statements = Equations(), []
+    for name, entry in phrases("lecture").items():
+        claims = tuple((key, formula(text)) for key, text in entry["claims"].items())
+        has_summands = entry.get("shows_summands", False)
+        statement = Statement(
             name=name,
             number=entry.get("number"),
             section=entry["section"],
             because=sentence(" ".join(entry["because"].split())),
             sides=tuple(map(formula, entry["sides"])),
-            claims=tuple((key, formula(text)) for key, text in entry["claims"].items()),
+            claims=claims,
             source=lecture(str(entry.get("number", "")), f"section {entry['place']}"),
+            proofs=work.proofs(claims),
             is_result=entry.get("is_result", False),
-            shows_summands=entry.get("shows_summands", False),
+            summands=work.summands() if has_summands else None,
         )
-        for name, entry in phrases("lecture").items()
-    )
-
-
-@cache
-def theory() -> tuple[Statement, ...]:
-    """The equations in order, each with what was proved of it."""
-    work = Equations()
-    return tuple(
-        statement._replace(proofs=work.proofs(statement), summands=work.summands(statement))
-        for statement in statements()
-    )
+        statements.append(statement)
+    return tuple(statements)
 
 
 def _rates(functions: Sequence[sp.Expr]) -> list[sp.Expr]:
@@ -88,28 +82,19 @@ class Equations:
         self.about_centre = dict.fromkeys(places, sp.S.Zero)
         self.about_origin = dict(zip(places, [*_CENTRE, *_rates(_CENTRE)], strict=True))
 
-    def proofs(self, statement: Statement) -> tuple[Proof, ...]:
-        """Each claim of a statement, put to the ring."""
-        claims = statement.claims
+    def proofs(self, claims: Sequence[tuple[str, Formula]]) -> tuple[Proof, ...]:
+        """Each claim, put to the ring."""
         return tuple(self.prover.vanishes(self.residuals[name], claim) for name, claim in claims)
 
-    def summands(self, statement: Statement) -> sp.ImmutableMatrix | None:
-        """The matrix of the generic particle, if the statement shows one."""
-        if not statement.shows_summands:
-            return None
+    def summands(self) -> sp.ImmutableMatrix:
+        """The matrix of the generic particle, whose sum is the inertia tensor."""
         tensor = self.inertia(self.codec.column(IN_BODY)).scale(self.m)
         return presenter_for(self.codec).matrix(tensor)
 
-    @property
-    def basis(self) -> list[RingMatrix]:
-        rows = RingMatrix.identity(self.codec.ring, 3).rows
-        return [RingMatrix.column(self.codec.ring, row) for row in rows]
-
-    def inertia(self, place: RingMatrix) -> RingMatrix:
+    @staticmethod
+    def inertia(place: RingMatrix) -> RingMatrix:
         """(e_j × x)·(e_k × x), the summand of equation 4 but for the mass."""
-        crossed = [unit.cross(place) for unit in self.basis]
-        rows = [[(u.T @ v)[0, 0] for v in crossed] for u in crossed]
-        return RingMatrix(self.codec.ring, tuple(map(tuple, rows)))
+        return hat(place).T @ hat(place)  # column j is x × e_j
 
     def sum_by(self, means: Mapping[sp.Expr, sp.Expr]) -> Callable[[RingMatrix], RingMatrix]:
         """Σ m of a matrix, for the means of the positions and velocities that are known."""
@@ -127,21 +112,10 @@ class Equations:
         tensor, mass = self.codec.matrix(_TENSOR), self.codec.encode(_WHOLE)
         principal = self.codec.matrix(sp.diag(*_TENSOR.diagonal()))
         R_dot, spin, two = R.dt(), R.dt() @ R.T, ring.one + ring.one
-        turning, carried, crossed = unhat(spin), omega.cross(x), [e.cross(x) for e in self.basis]
+        turning, carried = unhat(spin), omega.cross(x)
         total, about_origin = self.sum_by(self.about_centre), self.sum_by(self.about_origin)
         mean_rate = dict(zip(_rates(_PLACE), [part / _WHOLE for part in _V], strict=True))
         about_any = self.sum_by(mean_rate)  # Σ m ẋ = v
-        # sums over the basis
-        in_basis = reduce(add, (e.scale(omega[j, 0]) for j, e in enumerate(crossed)))
-        coefficients = reduce(
-            add,
-            (
-                (a.T @ b).scale(ring.reduce(omega[j, 0] * omega[k, 0]))
-                for j, a in enumerate(crossed)
-                for k, b in enumerate(crossed)
-            ),
-        )
-        components = reduce(add, ((R @ e).scale((omega.T @ (R @ e))[0, 0]) for e in self.basis))
 
         def square(vector: RingMatrix) -> RingMatrix:
             return vector.T @ vector
@@ -164,11 +138,11 @@ class Equations:
             - total(square(x_dot)),
             "skew": spin + spin.T,
             "turning": R_dot @ at_rest - turning.cross(R @ at_rest),
-            "in_the_basis": carried - in_basis,
-            "coefficients": square(carried) - coefficients,
+            "in_the_basis": carried + hat(x) @ omega,  # Σ ωⱼ (eⱼ × x)
+            "coefficients": square(carried) - form(inertia(x), omega),
             "energy_is_a_form": total(square(carried)) - total(form(inertia(x), omega)),
             "symmetric": inertia(x) - inertia(x).T,
-            "whole_vector": components - omega,
+            "whole_vector": R @ (R.T @ omega) - omega,  # Σ (ω·R eⱼ) R eⱼ
             "keeps_products": u.T @ v - (R @ u).T @ (R @ v),
             "goes_over": (R.T @ u).T @ v - u.T @ (R @ v),
             "components": R.T @ omega - (omega.T @ R).T,
@@ -186,7 +160,7 @@ class Equations:
                 ring, [ring.dot((tensor[k, k], omega[k, 0] ** 2) for k in range(3))]
             ),
             "four_products": (r + x).cross(r_dot + x_dot)
-            - reduce(add, (a.cross(b) for a in (r, x) for b in (r_dot, x_dot))),
+            - (r.cross(r_dot) + r.cross(x_dot) + x.cross(r_dot) + x.cross(x_dot)),
             "centre_outside": about_any(r.cross(r_dot + x_dot))
             - r.cross(r_dot).scale(mass)
             - r.cross(v),

@@ -159,7 +159,7 @@ def test_what_is_claimed_can_fail(statement: Statement):
     for name, claim in statement.claims:
         work.residuals[name] = work.residuals[name].map(lambda entry: entry + one)
         with pytest.raises(DerivationError, match="is false; left over"):
-            work.proofs(statement._replace(claims=((name, claim),)))
+            work.proofs([(name, claim)])
 
 
 def test_the_note_numbers_the_equations_as_the_lecture_does():

@@ -25,77 +25,69 @@ SPACE, BODY = (
 )
 ROTATION, COSINES, RATES = map(formula, (r"\R", r"\A", r"\dot\q"))
 SPIN, SPIN_OF_COSINES = (formula(rf"\frac{{d\{m}}}{{dt}}\{m}^T") for m in "RA")
-IS_SKEW, COSINES_ARE_SKEW = (
-    formula(r"#1 + \left(#1\right)^T = \0", spin) for spin in (SPIN, SPIN_OF_COSINES)
-)
-ORTHOGONAL, COSINES_ARE_ORTHOGONAL = (formula(rf"\{m}\{m}^T = \1") for m in "RA")
-# sections of the note
-TURNED, ANGULAR_VELOCITY, ACCELERATION = "rotation", "angular_velocity", "angular_acceleration"
-PASSIVE, CHAIN, WIDE = "passive", "chain", "wide"  # traits: see `Values.traits`
+PASSIVE, CHAIN, WIDE = "passive", "chain", "wide"  # traits: see `traits_of`
+
+# The matrix that is shown, R or A, with its derivative
 
 
-def _of_rotation(matrix: str, orthogonal: Formula) -> tuple[Law, ...]:
-    return (
-        Law(orthogonal, lambda k, x: x.gram() - k.one),
-        law(rf"\det \{matrix} = 1", lambda k, x: k.scalar(x.det() - 1)),
-    )
+def _of_matrix(m: str) -> dict[str, Any]:
+    is_orthogonal = law(rf"\{m}\{m}^T = \1", lambda k, x: x.gram() - k.one)
+    is_proper = law(rf"\det \{m} = 1", lambda k, x: k.scalar(x.det() - 1))
+    return {"symbol": formula(rf"\{m}"), "laws": (is_orthogonal, is_proper)}
+
+
+def _of_derivative(m: str, noun: str) -> dict[str, Any]:
+    """R Rᵀ is constant."""
+    claim = r"\frac{d\R}{dt}\R^T + \R\frac{d\R^T}{dt} = \0".replace("R", m)
+    keeps_length = law(claim, lambda k, _: k.shown_spin + k.shown_spin.T)
+    symbol, about = formula(rf"\frac{{d\{m}}}{{dt}}"), f"time derivative of the {noun}"
+    return {"symbol": symbol, "about": about, "laws": (keeps_length,)}
+
+
+def _of_spin(symbol: Formula, value: str) -> dict[str, Any]:
+    is_skew = law(r"#1 + \left(#1\right)^T = \0", lambda _, x: x + x.T, symbol)
+    return {"symbol": symbol, "definition": formula(value), "laws": (is_skew,)}
 
 
 rotation_matrix = Quantity(
-    symbol=ROTATION,
+    **_of_matrix("R"),
     about="rotation matrix, body to space components",
     inputs=("q",),
     value=lambda k: k.shown,
-    laws=_of_rotation("R", ORTHOGONAL),
     vectors="rotation",
     reason="product_of_turns",
-    section=TURNED,
+    section="rotation",
     is_result=True,
     variants=(
         when("one_turn", reason="single_turn"),
         when("given", reason="given_matrix"),
         when(
             PASSIVE,
-            symbol=COSINES,
+            **_of_matrix("A"),
             definition=formula(r"\R^T"),
             about="direction cosine matrix, space to body components",
-            laws=_of_rotation("A", COSINES_ARE_ORTHOGONAL),
             reason="transposed_product",
         ),
         when(PASSIVE, "given", reason="transposed_matrix"),
         when(CHAIN, reason="turn_by_turn", recursion=r"\P_{LAST}, \quad \P_k = \P_{k-1}\,\T_k"),
         when(
-            CHAIN,
-            PASSIVE,
+            *(CHAIN, PASSIVE),
             reason="turn_by_turn_transposed",
             recursion=r"\P_{LAST}^T, \quad \P_k = \P_{k-1}\,\T_k",
         ),
     ),
 )
 
-
-def _keeps_length(matrix: str) -> tuple[Law, ...]:
-    """R Rᵀ is constant."""
-    claim = r"\frac{d\R}{dt}\R^T + \R\frac{d\R^T}{dt} = \0".replace("R", matrix)
-    return (law(claim, lambda k, _: k.shown_spin + k.shown_spin.T),)
-
+_SPINNING: dict[str, Any] = {"inputs": ("q", "q_dot"), "section": "angular_velocity"}
 
 rotation_rate = Quantity(
-    symbol=formula(r"\frac{d\R}{dt}"),
-    about="time derivative of the rotation matrix",
+    **_SPINNING,
+    **_of_derivative("R", "rotation matrix"),
     unit="1/s",
-    inputs=("q", "q_dot"),
     value=lambda k: k.shown_rate,
-    laws=_keeps_length("R"),
     reason="chain_rule",
-    section=ANGULAR_VELOCITY,
     variants=(
-        when(
-            PASSIVE,
-            symbol=formula(r"\frac{d\A}{dt}"),
-            about="time derivative of the direction cosine matrix",
-            laws=_keeps_length("A"),
-        ),
+        when(PASSIVE, **_of_derivative("A", "direction cosine matrix")),
         when(
             CHAIN,
             also=("angular_velocity_space",),
@@ -106,27 +98,21 @@ rotation_rate = Quantity(
     ),
 )
 
+_COSINES = _of_spin(SPIN_OF_COSINES, r"-\C(\Om')")
+_COSINES["laws"] += (law(r"#1 = -\C(\Om')", lambda k, x: x + hat(k.omega_body), SPIN_OF_COSINES),)
 spin_matrix = Quantity(
-    symbol=SPIN,
+    **_SPINNING,
+    **_of_spin(SPIN, r"\C(\Om)"),
     about="spin matrix, the operator Ω × in space components",
     unit="rad/s",
-    inputs=("q", "q_dot"),
-    definition=formula(r"\C(\Om)"),
     source=SOURCES["Murray 2.4"],
     value=lambda k: k.shown_spin,
-    laws=(Law(IS_SKEW, lambda _, x: x + x.T),),
     reason="skew_matrix",
-    section=ANGULAR_VELOCITY,
     variants=(
         when(
             PASSIVE,
-            symbol=SPIN_OF_COSINES,
+            **_COSINES,
             about="spin matrix of the direction cosines, the operator −Ω′ × in body components",
-            definition=formula(r"-\C(\Om')"),
-            laws=(
-                Law(COSINES_ARE_SKEW, lambda _, x: x + x.T),
-                law(r"#1 = -\C(\Om')", lambda k, x: x + hat(k.omega_body), SPIN_OF_COSINES),
-            ),
             reason="skew_matrix_of_cosines",
         ),
         when(CHAIN, also=("angular_velocity_space",), reason="operator", recursion=r"\C(\Om)"),
@@ -135,8 +121,9 @@ spin_matrix = Quantity(
 )
 
 _VELOCITY: dict[str, Any] = {
-    **{"unit": "rad/s", "inputs": ("q", "q_dot"), "shape": "vector", "vectors": "velocity"},
-    **{"source": SOURCES["Murray 2.4"], "section": ANGULAR_VELOCITY, "is_result": True},
+    **_SPINNING,
+    **{"unit": "rad/s", "shape": "vector", "vectors": "velocity"},
+    **{"source": SOURCES["Murray 2.4"], "is_result": True},
 }
 
 angular_velocity_space = Quantity(
@@ -183,24 +170,24 @@ angular_velocity_body = Quantity(
 
 # The rates of the coordinates: in both frames the same, apart from reasons
 
+_OF_RATES: dict[str, Any] = {"source": SOURCES["Diebel 5"], "section": OF_RATES}
+
 
 def _rate_matrix(frame: Frame, *, of_chain: str, columns: str) -> Quantity:
     """W; `columns` are the axes of the turns of a chain."""
     name, symbols = frame.name, (frame.matrix, frame.omega)
+    claim = formula(r"#1\dot\q = #2", *symbols)
     return Quantity(
+        **_OF_RATES,
         frame=frame,
         symbol=frame.matrix,
         about=f"rate matrix to {name} components of the angular velocity",
         inputs=("q",),
         definition=formula(r"\frac{\partial #2}{\partial\dot\q}", *symbols),
-        source=SOURCES["Diebel 5"],
         value=lambda k: k.rate_matrix(name),
-        laws=(
-            law(r"#1\dot\q = #2", lambda k, x: x @ k.argument("q_dot") - k.omega(name), *symbols),
-        ),
+        laws=(Law(claim, lambda k, x: x @ k.argument("q_dot") - k.omega(name)),),
         vectors="rate_matrix",
         reason=f"coefficients_{name}",
-        section=OF_RATES,
         variants=(
             when("by_turns", reason=f"axes_of_turns_{name}"),
             when("one_coordinate", reason=f"axis_of_turn_{name}"),
@@ -214,28 +201,21 @@ def _inverse_rate_matrix(frame: Frame, **reasons: str) -> Quantity:
     """W⁻¹, or W⁺ where there are more coordinates than dimensions."""
     name = frame.name
 
-    def inverts(inverse: Formula) -> tuple[Law, ...]:
+    def by(inverse: Formula, noun: str) -> dict[str, Any]:
         claim = formula(r"#1 #2 = \1", frame.matrix, inverse)
-        return (Law(claim, lambda k, x: k.excess(name, *x, k.one)),)
+        laws = (Law(claim, lambda k, x: k.excess(name, *x, k.one)),)
+        return {"symbol": inverse, "about": f"{noun} from {name} components", "laws": laws}
 
     return Quantity(
+        **_OF_RATES,
+        **by(frame.inverse, "inverse rate matrix"),
         frame=frame,
-        symbol=frame.inverse,
-        about=f"inverse rate matrix from {name} components",
         inputs=("q",),
-        source=SOURCES["Diebel 5"],
         value=lambda k: k.inverse(name),
-        laws=inverts(frame.inverse),
         vectors="inverse",
         reason=f"inverse_{name}",
-        section=OF_RATES,
         variants=(
-            when(
-                WIDE,
-                symbol=frame.right_inverse,
-                about=f"right inverse of the rate matrix from {name} components",
-                laws=inverts(frame.right_inverse),
-            ),
+            when(WIDE, **by(frame.right_inverse, "right inverse of the rate matrix")),
             *(when(WIDE, trait, reason=reason) for trait, reason in reasons.items()),
         ),
     )
@@ -247,14 +227,12 @@ def _rates(frame: Frame) -> Quantity:
 
     def by(inverse: Formula) -> dict[str, Any]:
         claim = formula(r"#1\,(#2 #3) = #3", frame.matrix, inverse, omega)
-
-        def residual(k: Any, x: Any) -> Any:
-            return k.excess(name, *x, k.argument(f"omega_{name}"))
-
-        definition = formula("#1 #2", inverse, omega)
-        return {"definition": definition, "laws": (Law(claim, residual),)}
+        laws = (Law(claim, lambda k, x: k.excess(name, *x, k.argument(f"omega_{name}"))),)
+        return {"definition": formula("#1 #2", inverse, omega), "laws": laws}
 
     return Quantity(
+        **_OF_RATES,
+        **by(frame.inverse),
         frame=frame,
         symbol=RATES,
         about=f"rates of the coordinates from {name} components of the angular velocity",
@@ -262,12 +240,9 @@ def _rates(frame: Frame) -> Quantity:
         unit_of="q_dot",
         inputs=("q", f"omega_{name}"),
         shape="vector",
-        **by(frame.inverse),
-        source=SOURCES["Diebel 5"],
         value=lambda k: k.rates(name),
         vectors="rates",
         reason=f"rates_from_{name}",
-        section=OF_RATES,
         is_result=True,
         variants=(when(WIDE, **by(frame.right_inverse)),),
     )
@@ -279,10 +254,7 @@ rate_matrix_space = _rate_matrix(
     columns=r"\begin{pmatrix} \n_1 & \P_1\,\n_2 & \ldots & \P_{BEFORE}\,\n_{LAST} \end{pmatrix}",
 )
 inverse_rate_matrix_space = _inverse_rate_matrix(
-    SPACE,
-    wide="least_rates",
-    vector="constant_length",
-    bound="rates_within_conditions",
+    SPACE, wide="least_rates", vector="constant_length", bound="rates_within_conditions"
 )
 rates_from_angular_velocity_space = _rates(SPACE)
 rate_matrix_body = _rate_matrix(
@@ -296,7 +268,7 @@ rates_from_angular_velocity_body = _rates(BODY)
 
 _ACCELERATION: dict[str, Any] = {
     **{"unit": "rad/s^2", "inputs": ("q", "q_dot", "q_ddot"), "shape": "vector"},
-    **{"source": SOURCES["Diebel 5"], "section": ACCELERATION, "is_result": True},
+    **{"source": SOURCES["Diebel 5"], "section": "angular_acceleration", "is_result": True},
 }
 
 angular_acceleration_space = Quantity(
