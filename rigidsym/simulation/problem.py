@@ -18,6 +18,7 @@ from typing import Any
 
 import numpy as np
 import sympy as sp
+from sympy.simplify.fu import TR1, TR2
 
 from rigidsym.algebra.evaluate import Floats, evaluate
 from rigidsym.errors import ModelError, QuantityError, offer
@@ -29,7 +30,7 @@ from rigidsym.mechanics.dynamics.lagrange import is_bound
 from rigidsym.mechanics.quantities.dynamics import EULER_QUANTITIES, FLOW_QUANTITIES
 from rigidsym.models.body import RigidBody, check_moments
 from rigidsym.models.forces import OMEGA, OMEGA_COMPONENTS, Forces, initial_values
-from rigidsym.models.rotation import as_typed
+from rigidsym.models.rotation import as_typed, depends_on_time
 from rigidsym.simulation.trajectory import Array, Trajectory
 
 # from which a motion is computed
@@ -37,6 +38,7 @@ NEEDED = ("rotation_matrix", "angular_velocity_body", "state_derivative", "first
 _RATES = "rates_from_angular_velocity_body"
 _GRAVITY = "m/s^2"  # the unit by which the acceleration in a weight is known
 _ORIENTATIONS = 12  # at which a weight is told from other potentials; c has three components
+_NO_DIVISOR = (0, sp.zoo, sp.nan)
 _UNIT = 1e-9  # by which the entries of R Rᵀ − 1 may be off at the start
 
 
@@ -66,6 +68,7 @@ class Problem:
     ) -> None:
         """Raises ModelError for names that are missing or unknown, and for an impossible body."""
         self.derivation = derivation
+        self.remarks: list[str] = []  # on the initial values
         self.model, self.forces = derivation.model, derivation.forces or Forces()
         self.arguments = {argument.name: argument for argument in derivation.arguments}
         self.names = {argument.name: argument.names for argument in derivation.arguments}
@@ -79,6 +82,8 @@ class Problem:
         self.is_quaternion = bool(self.model.vector) and self.is_alone and not is_bound(self.model)
         self.body, self.parameters = self._with_values(parameters)
         self.inertia = np.array(self.body.in_numbers(self.body.inertia).tolist(), float)  # I′
+        if not self.body.allow and self.body.distribution is None and self.is_alone:
+            self._check_about_centre()
         self.kernels: ModuleType = generate(
             self._functions, "numpy", conversions=self.is_alone
         ).load()
@@ -86,55 +91,47 @@ class Problem:
         self._check_rotation()
 
     def _with_values(self, parameters: Mapping[str, float]) -> tuple[RigidBody, list[float]]:
-        """The body, whose moments are checked, and the values of all parameters."""
+        """The body with its values, and the values of all parameters."""
         body, constants = self.derivation.body, self.names.get("parameters", ())
         assert body is not None
-        # the mass of a body about a fixed point may not matter, nor some moments of parts
-        used = body.inertia.free_symbols.union(
-            self.model.constants, *(e.free_symbols for e in self.forces.acting)
-        )
-        if self.forces.parts:
-            slopes = self.derivation.step("state_derivative").expression
-            used |= self.derivation.spelled(slopes).free_symbols
-        names = {str(symbol) for symbol in used} & {*constants}
+        # the mass of a body about a fixed point may not matter
+        acting = (e.free_symbols for e in self.forces.expressions)
+        names = {str(symbol) for symbol in body.inertia.free_symbols.union(*acting)}
+        names |= {*map(str, self.model.constants)}
         missing = [name for name in constants if name in names - parameters.keys()]
         if missing:
             raise ModelError(f"missing parameters: {', '.join(missing)}")
         _check("parameters", parameters, constants)
         values = {name: float(parameters.get(name, 1.0)) for name in constants}
         described = (replace(p, value=values[p.symbol.name]) for p in body.parameters)
-        body = replace(body, parameters=tuple(described))
-        if not body.allow and body.distribution is None and not self.forces.parts:
-            self._check_about_centre(body)
-        return body, [*values.values()]
+        return replace(body, parameters=tuple(described)), [*values.values()]
 
-    def _check_about_centre(self, body: RigidBody) -> None:
+    def _check_about_centre(self) -> None:
         """Raises BodyError for moments about the fixed point that leave no body about its centre.
 
         A weight, V = m g c·e with the third axis e of space in the axes of the body, tells the
         centre of mass c; about it the tensor is less by m (|c|² 1 − c cᵀ). The potential is
         evaluated at some orientations: it is a weight if one c serves for all.
         """
+        body, potential = self.body, self.body.in_numbers(self.forces.potential)
         gravity = [body.values[p.symbol] for p in body.parameters if p.unit == _GRAVITY]
-        mass, potential = body.in_numbers(body.mass), body.in_numbers(self.forces.potential)
-        if len(gravity) != 1 or not gravity[0] or not mass.is_number:
+        mass = body.in_numbers(body.mass)
+        if len(gravity) != 1 or not gravity[0] or not mass.is_number or depends_on_time(potential):
             return
-        orientations = np.random.default_rng(1).uniform(-1, 1, (_ORIENTATIONS, self.count))
-        heights, axes = [], []  # c·e and e
-        for q in orientations.tolist():
-            values = dict(zip(self.model.coordinates, q, strict=True)) | body.values
-            height, *axis = (e.xreplace(values) for e in (potential, *self.model.matrix.row(2)))
-            if not all(e.is_number and e.is_real for e in (height, *axis)):
-                return  # it holds the time, or the root of a negative number
-            heights.append(float(height / mass / gravity[0]))
-            axes.append([float(e) for e in axis])
-        centre = np.linalg.lstsq(np.array(axes), np.array(heights))[0].round(12) + 0.0  # m, no -0
-        if np.abs(axes @ centre - heights).max() <= _UNIT * np.abs(heights).max():
+        some = np.random.default_rng(1).uniform(-1, 1, (self.count, _ORIENTATIONS))
+        values = dict(zip(self.model.coordinates, some, strict=True))
+        rows = (body.in_numbers(e) for e in (potential, *self.model.matrix.row(2)))
+        with np.errstate(invalid="ignore"):  # the root of a negative number is NaN
+            height, *axes = (evaluate(e, Floats(np), values) + 0 * some[0] for e in rows)
+        height = height / float(mass * gravity[0])  # c·e
+        if not np.isfinite([height, *axes]).all():
+            return
+        centre = np.linalg.lstsq(np.transpose(axes), height)[0].round(12) + 0.0  # m, no -0
+        if np.abs(centre @ axes - height).max() <= _UNIT * np.abs(height).max():
             moved = centre @ centre * np.eye(3) - np.outer(centre, centre)
-            inertia = np.array(body.in_numbers(body.inertia).tolist(), float)
             at = ", ".join(f"{part:.6g}" for part in centre)
             where = f"{body.name}, about its centre of mass at ({at}) m"
-            check_moments(where, inertia - float(mass) * moved)
+            check_moments(where, self.inertia - float(mass) * moved)
 
     @cached_property
     def _functions(self) -> Derivation:
@@ -176,31 +173,34 @@ class Problem:
         """
         rates = self.names["q_dot"]
         _check("initial values", initial, (*self.coordinates, *rates, OMEGA, *OMEGA_COMPONENTS))
-        turning = {OMEGA, *OMEGA_COMPONENTS}.intersection(initial)
-        if turning and not initial.keys().isdisjoint(rates):
+        given = dict(initial)
+        if OMEGA in given:
+            omega = np.ravel(given.pop(OMEGA)).tolist()
+            if len(omega) != 3:
+                raise ModelError(f"{OMEGA}: expected three components, got {initial[OMEGA]}")
+            given |= dict(zip(OMEGA_COMPONENTS, omega, strict=True))
+        is_turning = not given.keys().isdisjoint(OMEGA_COMPONENTS)
+        if is_turning and not given.keys().isdisjoint(rates):
             raise ModelError(f"initial values: expected rates or {OMEGA}, not both")
-        values = initial_values(self.model, {n: v for n, v in initial.items() if n != OMEGA})
-        q = np.array([values[name] for name in self.coordinates], float)
-        if not turning:
-            velocity = np.array([values[name] for name in rates], float)
-            if self.is_euler:
-                velocity = self._at("angular_velocity_body", q, velocity)
-            return np.concatenate([q, velocity])
-        given = initial[OMEGA] if OMEGA in initial else [values[n] for n in OMEGA_COMPONENTS]
-        velocity = np.asarray(given, float)
-        if velocity.shape != (3,):
-            raise ModelError(f"{OMEGA}: expected three components, got {given}")
-        if not self.is_euler:
-            if not hasattr(self.kernels, _RATES):
-                raise ModelError(
-                    f"{self.derivation.name}: the rates do not follow from {OMEGA}; expected rates"
-                )
-            velocity = self._at(_RATES, q, velocity)
+        values = initial_values(self.model, given)
+        q, velocity = (
+            np.array([values[name] for name in names], float)
+            for names in (self.coordinates, OMEGA_COMPONENTS if is_turning else rates)
+        )
+        for name, value, unit in zip(self.coordinates, q, self.model.coordinate_units, strict=True):
+            if unit == "rad" and abs(value) > 2 * np.pi:
+                degrees = f"{np.degrees(value):.6g} degrees"
+                self.remarks.append(f"{name} begins at {value:.6g} radians, which are {degrees}")
+        if self.is_euler and not is_turning:
+            velocity = self._at("angular_velocity_body", q, velocity)
+        if is_turning and not self.is_euler:
+            has_rates = hasattr(self.kernels, _RATES)
+            velocity = self._at(_RATES, q, velocity) if has_rates else np.array([np.nan])
             if not np.isfinite(velocity).all():
                 raise ModelError(
-                    f"{self.derivation.name}: the motion starts at a pole of the coordinates, "
-                    f"where the rates do not follow from {OMEGA}; expected rates, or a rotation "
-                    "without this pole, such as unit_quaternion"
+                    f"{self.derivation.name}: the rates do not follow from {OMEGA} at the start, "
+                    "as at a pole of the coordinates; expected rates, or a rotation without this "
+                    "pole, such as unit_quaternion"
                 )
         return np.concatenate([q, velocity])
 
@@ -270,11 +270,18 @@ class Problem:
         # Common factors are cancelled: the torque of m g l cos θ in ZXZ divides by nothing, and a
         # force −k φ̇ leaves 1/sin² θ, since φ̇ has no limit at θ = 0. The pole of a vector is at
         # infinity or at a whole turn, from which a unit quaternion gives coordinates far away.
-        powers = (power for entry in self.torque for power in entry.atoms(sp.Pow))
-        divides = any(
-            p.exp.could_extract_minus_sign() and p.has(*self.model.coordinates) for p in powers
-        )
-        if divides and self.model.turns and not self.model.vector:
+        poles = self._functions.singularities
+        if poles is None or not self.model.turns or self.model.vector:
+            return ""
+        divisors = [sp.denom(sp.together(TR2(TR1(entry)))) for entry in self.torque]
+        if not poles.is_solved and any(e.has(*self.model.coordinates) for e in divisors):
+            return "the torque may have no limit there"
+        there = [
+            {place.coordinate: place.value + k * place.period for place in point.places}
+            for point in poles.points
+            for k in (0, 1)
+        ]
+        if any(divisor.subs(at) in _NO_DIVISOR for divisor in divisors for at in there):
             names = ", ".join(as_typed(q) for q in self.forces.generalised)
             acting = f"forces on {names}" if names else "potential"
             return f"the torque of the {acting} has no limit there"
@@ -318,7 +325,7 @@ class Problem:
 
     @cached_property
     def _inverse_inertia(self) -> Array:
-        return np.asarray(np.linalg.inv(self.inertia), float)
+        return np.asarray(np.linalg.inv(self.inertia))
 
     def states(self, before: Array, quaternions: Array) -> Array:
         """States, continuous after those `before`, from (quaternion, Ω′)."""
@@ -354,7 +361,7 @@ class Problem:
             first_integrals=integrals,
             inertia=self.inertia,
             ended=ended,
-            remarks=tuple(remarks),
+            remarks=(*self.remarks, *remarks),
         )
 
 

@@ -303,6 +303,31 @@ def test_a_pole_at_which_a_force_has_no_limit_ends_the_motion_with_the_time_and_
     assert found.t[-1] == pytest.approx(time, abs=0.0031)
 
 
+@pytest.mark.parametrize(
+    ("sequence", "theta", "torque", "goes_on"),
+    [
+        ("ZXZ", 0.0, "k/(2 + cos(theta))", True),  # a divisor that is not 0 at the pole
+        ("ZXZ", 0.0, "k/(1 - cos(theta))", False),
+        ("ZYX", np.pi / 2, "k*tan(theta)", False),
+        ("ZYX", np.pi / 2, "k*sec(theta/2)", True),
+    ],
+)
+def test_a_torque_stops_a_motion_at_a_pole_only_if_it_has_no_limit_there(
+    sequence, theta, torque, goes_on
+):
+    model = rs.EulerAngles(sequence, angles=("phi", "theta", "psi"))
+    body = rs.principal_moments(1, 1, 2)
+    motion = rs.derive(model, NEEDED, body=body, torque=["0", "0", torque])
+    start = {"theta": theta - 1e-2, "theta_dot": 1.0}
+    found = motion.simulate(start, {"k": 1e-3}, 0.1, samples=11)
+    assert ("has no limit there" not in found.ended) is goes_on
+
+
+def test_large_angles_are_named_in_radians():
+    report = top().simulate(REST | {"theta": 30.0}, TOP, 0.01, samples=2).report()
+    assert "theta begins at 30 radians, which are 1718.87 degrees" in report
+
+
 def test_two_links_are_solved_for_their_accelerations_in_numbers():
     """The double pendulum, with its textbook equations"""
     links = rs.derive(
