@@ -33,6 +33,7 @@ class EulerEquations(Flow):
 
     table = claims.EULER_QUANTITIES
     second = "omega_body"
+    kind = ("euler",)
     lacking = ()
 
     def __init__(self, model: RotationModel, body: RigidBody, forces: Forces) -> None:
@@ -91,20 +92,12 @@ class EulerEquations(Flow):
     def blocks(self) -> tuple[StateBlock, StateBlock]:
         rates = self.codec.matrix(self._inverse) @ self.omega
         slopes, below = solved_euler(self.inertia, self.omega, *self.torque)
-        return (
-            StateBlock(self.model.coordinates, rates, self.codec.encode(self.divisor)),
-            StateBlock(OMEGA_BODY, slopes, below),
-        )
+        turning = (self.model.coordinates, rates, self.codec.encode(self.divisor))
+        return turning, (OMEGA_BODY, slopes, below)
 
     @cached_property
     def whole(self) -> sp.Expr:
         return half_form(self.present, self.inertia, self.omega) + self.forces.potential
-
-    @cached_property
-    def traits(self) -> frozenset[str]:
-        return frozenset(
-            ("euler", *self._shared_traits, *(() if any(self._gradient) else ("no_gradient",)))
-        )
 
     def energy_rate(self, value: sp.Expr) -> tuple[RingMatrix, PolyElement]:
         """dE/dt less ∂V/∂t and the power of what the potential does not account for."""
@@ -135,26 +128,24 @@ class EulerEquations(Flow):
         """Those of the energy and the angular momentum, in space and along the body's axes, that
         do not change.
         """
-        momentum = self.inertia @ self.omega
-        matrix = self.codec.matrix(self._matrix)
         # L = R I′ Ω′ in space is constant without a torque. The components along the axes of the
         # body are constant only by symmetry, as L′₃ of a symmetric top.
-        in_space = self.present.matrix(matrix @ momentum)
+        momentum = self.inertia @ self.omega
         in_body = self.present.matrix(momentum)
-        candidates = {"energy": (claims.ENERGY, self.whole)}
-        candidates["angular_momentum_squared"] = (
-            claims.MOMENTUM_SQUARED,
-            sp.Add(*(entry**2 for entry in in_body)),
-        )
-        along = [("angular_momentum_body", in_body, "L'_{}")]
+        squared = sp.Add(*(entry**2 for entry in in_body))
+        candidates = [
+            ("energy", claims.ENERGY, self.whole),
+            ("angular_momentum_squared", claims.MOMENTUM_SQUARED, squared),
+        ]
+        along = [("angular_momentum_body", "L'_{}", in_body)]
         if self.model.pullback is None:  # else R and its derivatives are long in this ring
-            along.insert(0, ("angular_momentum", in_space, "L_{}"))
-        for name, entries, typed in along:
-            for k in range(3):
-                candidates[f"{name}_{k + 1}"] = (formula(typed.format(k + 1)), entries[k])
-        for name, (symbol, value) in candidates.items():
+            in_space = self.present.matrix(self.codec.matrix(self._matrix) @ momentum)
+            along.insert(0, ("angular_momentum", "L_{}", in_space))
+        for name, typed, entries in along:
+            for k, entry in enumerate(entries, start=1):
+                candidates.append((f"{name}_{k}", formula(typed.format(k)), entry))
+        for name, symbol, value in candidates:
             residual, divisor = self.rate(value)
             if residual.is_zero():
-                claim = claims.is_constant(symbol)
-                proof = self.prove.vanishes(residual, claim, divisor)
+                proof = self.prove.vanishes(residual, claims.is_constant(symbol), divisor)
                 yield FirstIntegral(name=name, symbol=symbol, expression=value, proof=proof)

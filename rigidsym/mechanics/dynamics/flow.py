@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property, partial
-from math import prod
-from typing import Any, NamedTuple
+from typing import Any, TypeAlias
 
 import sympy as sp
 from sympy.polys.rings import PolyElement
@@ -40,13 +39,8 @@ from rigidsym.models.body import RigidBody
 from rigidsym.models.forces import Forces
 from rigidsym.models.rotation import TIME, RotationModel
 
-
-class StateBlock(NamedTuple):
-    """A part of the state, and its time derivative as numerators over one divisor."""
-
-    symbols: Sequence[sp.Expr]
-    numerators: RingMatrix
-    divisor: PolyElement
+# A part of the state, and its time derivative as numerators over one divisor.
+StateBlock: TypeAlias = tuple[Sequence[sp.Expr], RingMatrix, PolyElement]
 
 
 class Flow(Workspace):
@@ -58,6 +52,7 @@ class Flow(Workspace):
 
     table: Mapping[str, Quantity]
     second: str  # the argument beside q in the state
+    kind: tuple[str, ...] = ()  # traits of this form
     lacking: tuple[str, ...] = ("error_state_jacobian",)  # functions of the state
     names: Chain | None = None  # for parts of the expressions, if they have names
 
@@ -74,13 +69,15 @@ class Flow(Workspace):
         steps = (self.step(entry) for n, entry in self.table.items() if not only or n in only)
         return filter(None, steps)
 
-    @property
-    def _shared_traits(self) -> Iterator[str]:
-        """That both forms of the equations have."""
-        if not self.forces.potential:
-            yield "no_potential"
-        if not self.driving.is_zero():
-            yield "driven"
+    @cached_property
+    def traits(self) -> frozenset[str]:
+        potential = self.forces.potential
+        holds = {
+            "no_potential": not potential,
+            "no_gradient": not any(sp.diff(potential, q) for q in self.model.coordinates),
+            "driven": not self.driving.is_zero(),
+        }
+        return frozenset((*self.kind, *(trait for trait in holds if holds[trait])))
 
     @property
     def blocks(self) -> tuple[StateBlock, StateBlock]:
@@ -90,14 +87,12 @@ class Flow(Workspace):
         """dF/dt along the motion, as a numerator and its divisor."""
         # dF/dt = ∇₁F·n₁/d₁ + ∇₂F·n₂/d₂ + ∂F/∂t for the two blocks of the state, over d₁ d₂. The
         # common divisor keeps the residual a polynomial.
-        ring = self.codec.ring
-        parts = []
-        for block in self.blocks:
-            others = [other.divisor for other in self.blocks if other is not block]
-            slopes = self.codec.column(slopes_of(value, block.symbols, self.arguments["y"].symbols))
-            parts.append((slopes.T @ block.numerators).scale(prod(others, start=ring.one)))
-        divisor = prod((block.divisor for block in self.blocks), start=ring.one)
-        return parts[0] + parts[1] + self.explicit_rate(value).scale(divisor), ring.reduce(divisor)
+        (first, by_first, over_first), (second, by_second, over_second) = self.blocks
+        y, column = self.arguments["y"].symbols, self.codec.column
+        moving = (column(slopes_of(value, first, y)).T @ by_first).scale(over_second)
+        moving += (column(slopes_of(value, second, y)).T @ by_second).scale(over_first)
+        divisor = self.codec.ring.reduce(over_first * over_second)
+        return moving + self.explicit_rate(value).scale(divisor), divisor
 
     def explicit_rate(self, value: sp.Expr) -> RingMatrix:
         """∂F/∂t at a fixed state."""
@@ -161,7 +156,7 @@ class Flow(Workspace):
     @cached_property
     def state_derivative(self) -> sp.ImmutableMatrix:
         return sp.ImmutableMatrix(
-            [e for b in self.blocks for e in self.present.matrix(b.numerators, b.divisor)]
+            [e for _, above, below in self.blocks for e in self.present.matrix(above, below)]
         )
 
     @property
@@ -193,6 +188,7 @@ class LagrangeForm(Flow):
     second = "q_dot"
     kinetic: sp.Expr  # T
     momenta: Any  # p = ∂T/∂q̇
+    power: Any  # of the forces; 0 of gyroscopic ones as well
 
     def __init__(self, model: RotationModel, body: RigidBody, forces: Forces, codec: Codec) -> None:
         super().__init__(model, body, forces, codec)
@@ -202,11 +198,6 @@ class LagrangeForm(Flow):
     def whole(self) -> sp.Expr:
         """E = T + V."""
         return self.kinetic + self.forces.potential
-
-    @property
-    def power(self) -> RingMatrix:
-        """Of the forces; 0 of gyroscopic ones as well."""
-        raise NotImplementedError
 
     def energy_is_constant(self, claim: Formula) -> Proof:
         """The proof, if nothing does work."""

@@ -73,18 +73,23 @@ class LagrangeEquations(LagrangeForm):
         omega = self._jacobian * sp.Matrix(rates)
         in_rates = dict(zip(OMEGA_BODY, omega, strict=True))
         torque = sp.Matrix(forces.torque or [0, 0, 0]).xreplace(in_rates)
-        self._generalised = [
+        generalised = [
             forces.generalised.get(x, sp.S.Zero).xreplace(in_rates) + part
             for x, part in zip(q, self._jacobian.T * torque, strict=True)
         ]
-        self._gradient = [sp.diff(forces.potential, x) for x in q]
+        gradient = [sp.diff(forces.potential, x) for x in q]
         # One ring for everything that the steps below combine.
         entries = [*self._jacobian, *body.inertia, *omega, sp.Rational(1, 2), forces.potential]
-        entries += [*self._gradient, *self._generalised, *rates]
+        entries += [*gradient, *generalised, *rates]
         entries += [*forces.first_integrals.values(), *self.accelerations]
         codec = codec_for([e for e in entries if e != 0], order=2)
         super().__init__(model, body, forces, codec)
         self.ring = codec.ring
+        self.jacobian, self.inertia = codec.matrix(self._jacobian), codec.matrix(body.inertia)
+        self.q_dot, self.q_ddot = codec.column(rates), codec.column(self.accelerations)
+        self.omega = self.jacobian @ self.q_dot  # Ω′ of the body
+        self.gradient = codec.column(gradient)  # ∂V/∂q
+        self.generalised = codec.column(generalised)  # Q
 
     def slopes(self, element: PolyElement) -> RingMatrix:
         """The derivatives by q, a column, by the chain rule over the generators of the ring."""
@@ -96,28 +101,6 @@ class LagrangeEquations(LagrangeForm):
         parts = [(element.diff(k), ring.dt(ring.generator(k))) for k in moving]
         columns = ([(part, rate.diff(k)) for part, rate in parts if part] for k in rates)
         return RingMatrix.column(ring, map(ring.dot, columns))
-
-    @cached_property
-    def jacobian(self) -> RingMatrix:
-        """W′."""
-        return self.codec.matrix(self._jacobian)
-
-    @cached_property
-    def inertia(self) -> RingMatrix:
-        return self.codec.matrix(self.body.inertia)
-
-    @cached_property
-    def q_dot(self) -> RingMatrix:
-        return self.codec.column(self.rates)
-
-    @cached_property
-    def q_ddot(self) -> RingMatrix:
-        return self.codec.column(self.accelerations)
-
-    @cached_property
-    def omega(self) -> RingMatrix:
-        """Ω′ of the body."""
-        return self.jacobian @ self.q_dot
 
     @cached_property
     def momenta(self) -> RingMatrix:
@@ -134,16 +117,6 @@ class LagrangeEquations(LagrangeForm):
         # dΩ′/dt = W′ q̈ + Ẇ′ q̇; the first part belongs to M q̈, the second to h.
         inner = self.inertia @ (self.jacobian.dt() @ self.q_dot)
         return self.jacobian.T @ (inner + turned(self.inertia, self.omega))
-
-    @cached_property
-    def gradient(self) -> RingMatrix:
-        """∂V/∂q."""
-        return self.codec.column(self._gradient)
-
-    @cached_property
-    def generalised(self) -> RingMatrix:
-        """Q."""
-        return self.codec.column(self._generalised)
 
     @cached_property
     def bias(self) -> RingMatrix:
@@ -190,10 +163,7 @@ class LagrangeEquations(LagrangeForm):
 
     @cached_property
     def blocks(self) -> tuple[StateBlock, StateBlock]:
-        return (
-            StateBlock(self.q, self.q_dot, self.ring.one),
-            StateBlock(self.rates, *self.solved),
-        )
+        return (self.q, self.q_dot, self.ring.one), (self.rates, *self.solved)
 
     @cached_property
     def kinetic(self) -> sp.Expr:
@@ -212,10 +182,6 @@ class LagrangeEquations(LagrangeForm):
     def _slopes(self) -> RingMatrix:
         """∂T/∂q."""
         return self.slopes(self.codec.encode(self.kinetic))
-
-    @cached_property
-    def traits(self) -> frozenset[str]:
-        return frozenset(self._shared_traits)
 
     def energy_rate(self, value: sp.Expr) -> RingMatrix:
         """dE/dt − q̇·(M q̈ + h) − ∂V/∂t."""
@@ -280,7 +246,7 @@ class LagrangeEquations(LagrangeForm):
         """Ω′ = W′ q̇."""
         return value.xreplace(dict(zip(OMEGA_BODY, self.present.matrix(self.omega), strict=True)))
 
-    @property
+    @cached_property
     def power(self) -> RingMatrix:
         return self.q_dot.T @ self.generalised
 

@@ -90,6 +90,7 @@ class Solution(NamedTuple):
 class TreeEquations(LagrangeForm):
     """The steps of bodies on joints and of particles, in names."""
 
+    kind = ("tree",)
     lacking = ("state_jacobian", "error_state_jacobian")
     names: Chain
     hamiltonian = single = None  # which are shorter multiplied out
@@ -316,10 +317,6 @@ class TreeEquations(LagrangeForm):
 
     # What entries ask of a workspace
 
-    @property
-    def traits(self) -> frozenset[str]:
-        return frozenset(("tree", *self._shared_traits))
-
     @cached_property
     def kinetic(self) -> sp.Expr:
         """T = ½ Σ wᵀ I w + ½ Σ m v²."""
@@ -408,7 +405,7 @@ class TreeEquations(LagrangeForm):
 
     # First integrals
 
-    @property
+    @cached_property
     def power(self) -> RingMatrix:
         torque = zip(self.forces.torque, OMEGA_BODY, strict=False)
         forces = ((self.forces.generalised.get(q, sp.S.Zero), sp.diff(q, TIME)) for q in self.q)
