@@ -15,7 +15,7 @@ from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import codec_for
 from rigidsym.algebra.matrix import RingMatrix, hat
-from rigidsym.algebra.present import Rationals, agrees, half_form, half_of_squares, shortest_of
+from rigidsym.algebra.present import agrees, half_form, half_of_squares, shortest_of
 from rigidsym.errors import QuantityError
 from rigidsym.mechanics import particles
 from rigidsym.mechanics.derivation import Step
@@ -119,30 +119,8 @@ class BodyValues(Values):
         return about_centre + body.mass * crossed.dot(crossed)
 
     @cached_property
-    def diagonal(self) -> sp.Matrix:
-        return sp.Matrix(self.body.inertia.diagonal()).reshape(3, 1)
-
-    @cached_property
-    def radii(self) -> sp.ImmutableMatrix:
-        """√(I_jj/M)."""
-        field = Rationals.of([*self.diagonal, self.body.mass])
-        inverse = field.read(self.body.mass).inverse()
-        squares = [field.write(field.read(moment) * inverse) for moment in self.diagonal]
-        return sp.ImmutableMatrix([self._root(square) for square in squares])
-
-    @cached_property
     def principal(self) -> Principal | None:
         return principal_of(self.body.inertia)
-
-    def _root(self, square: sp.Expr) -> sp.Expr:
-        """The square root, in which √(a²) is a for a parameter that is positive."""
-        positive = {
-            p.symbol: sp.Symbol(p.symbol.name, positive=True)
-            for p in self.body.parameters
-            if p.positive
-        }
-        back = {new: old for old, new in positive.items()}
-        return sp.sqrt(square.xreplace(positive)).xreplace(back)
 
     @staticmethod
     def volume(columns: sp.MatrixBase) -> sp.Expr:

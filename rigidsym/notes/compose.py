@@ -74,7 +74,6 @@ _SECTIONS = (
     *("rotation", "angular_velocity", "rates", "angular_acceleration"),
     *("body", "inertia", "energy", "momentum", "motion"),
 )
-_IN_A_ROW = ("radii_of_gyration",)
 _DIAGONAL = formula("(I'_{11}, I'_{22}, I'_{33})")
 _WHERE_SHOWN = {  # what has no equation of its own in the lecture, and the one that it belongs to
     "rotation_rate": "velocity_by_the_rotation",
@@ -263,9 +262,6 @@ class Composer:
             # (I₁, I₁, I₃), or the entries of I′ if they differ
             end = _DIAGONAL if len(set(moments)) == 3 else self._in_a_row(moments)
             equation = _ended(equation, end)
-        if name in _IN_A_ROW and equation.matrix is not None:
-            in_a_row = _ended(equation, self._in_a_row(equation.matrix))
-            equation = equation if display(in_a_row, self.letters, PAGE).is_listed else in_a_row
         return replace(equation, sides=(*equation.sides, *textbook_form(name, self.derivation)))
 
     def _lead(self, step: Step) -> Text:

@@ -33,7 +33,7 @@ def record_of(text: str, quantities: tuple[str, ...] | None = None) -> dict[str,
 
 
 OF_BODY = ("rotation_matrix", "inertia_tensor", "inertia_tensor_space", "moment_of_inertia")
-OF_BODY += ("radii_of_gyration", "kinetic_energy", "angular_momentum")
+OF_BODY += ("kinetic_energy", "angular_momentum")
 OF_MOTION = ("potential_energy", "lagrangian", "energy", "generalised_momenta", "mass_matrix")
 OF_MOTION += ("bias_vector", "accelerations", "hamiltonian")
 PRINCIPAL = ("principal_moments", "principal_axes")

@@ -95,10 +95,7 @@ def test_roots_and_sums_of_angles_are_exact(one, two, is_true):
             certificate_of(changed)
 
 
-UNCOVERED = {
-    "box": ["radii_of_gyration"],
-    "whole top": ["effective_potential"],
-}
+UNCOVERED = {"whole top": ["effective_potential"]}
 
 
 @pytest.mark.parametrize("name", NEEDS)

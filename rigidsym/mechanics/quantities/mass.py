@@ -157,20 +157,6 @@ moment_of_inertia = Quantity(
     of_centre=True,
 )
 
-radii_of_gyration = Quantity(
-    symbol=formula(r"\left(k_x, k_y, k_z\right)"),
-    about="radii of gyration about the axes through the centre of mass",
-    unit="m",
-    shape="vector",
-    value=lambda k: k.radii,
-    laws=(
-        law("M k_j^2 = I'_{jj}", lambda k, x: k.body.mass * x.multiply_elementwise(x) - k.diagonal),
-    ),
-    reason="root_of_moment",
-    section=OF_INERTIA,
-    of_centre=True,
-)
-
 principal_moments = Quantity(
     symbol=formula(r"\left(I_1, I_2, I_3\right)"),
     about="principal moments of inertia",
