@@ -5,7 +5,7 @@ A body in numbers is integrated exactly, and keeps its sums as parameters that h
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -181,39 +181,29 @@ def in_parameters(body: RigidBody) -> RigidBody:
 
     The sums over its parts were made exactly; they are rounded once.
     """
-    values = {
-        p.symbol: sp.Rational(*p.value.as_integer_ratio())
-        for p in body.parameters
-        if p.value is not None
-    }
-
-    def rounded(entries: Iterable[sp.Expr]) -> list[float]:
-        return [float(entry.xreplace(values).evalf(_DIGITS)) for entry in entries]
-
-    (mass,), centre, inertia = map(rounded, ([body.mass], body.centre, body.inertia))
-    largest = max(map(abs, inertia))
+    entries = {f"I_{i + 1}{j + 1}": body.inertia[i, j] for i in range(3) for j in range(i, 3)}
+    entries |= {**dict(zip(("x_C", "y_C", "z_C"), body.centre, strict=True)), "M": body.mass}
+    exact = {p.symbol: sp.Rational(p.value) for p in body.parameters if p.value is not None}
+    values = {n: float(e.xreplace(exact).evalf(_DIGITS)) for n, e in entries.items()}
+    largest = max(abs(value) for name, value in values.items() if name[0] == "I")
     # A length of the body: √(I/M) is a radius of gyration. Coordinates that are tiny compared with
     # it are rounding errors.
-    size = max(map(abs, centre)) + (largest / mass) ** 0.5
-    parameters: dict[str, Parameter] = {}
-
+    size = max(abs(values[name]) for name in ("x_C", "y_C", "z_C")) + (largest / values["M"]) ** 0.5
     # An entry that is zero up to rounding becomes an exact zero, which keeps formulas short.
-    def named(name: str, value: float, scale: float) -> sp.Expr:
-        if abs(value) <= scale * _ROUNDING:
-            return sp.S.Zero
-        parameters[name] = Parameter(symbol=sp.Symbol(name), positive=value > 0, value=value)
-        return parameters[name].symbol
+    scales = {"M": 0.0, "I": largest}
+    parameters = {
+        name: Parameter(symbol=sp.Symbol(name), positive=value > 0, value=value)
+        for name, value in values.items()
+        if abs(value) > scales.get(name[0], size) * _ROUNDING
+    }
 
-    def moment(i: int, j: int) -> sp.Expr:
-        row, column = min(i, j), max(i, j)
-        return named(f"I_{row + 1}{column + 1}", inertia[3 * row + column], largest)
+    def named(name: str) -> sp.Expr:
+        return parameters[name].symbol if name in parameters else sp.S.Zero
 
-    moments = sp.ImmutableMatrix(3, 3, moment)
-    at = [named(name, v, size) for name, v in zip(("x_C", "y_C", "z_C"), centre, strict=True)]
     whole = given_inertia(
-        moments,
-        mass=named("M", mass, 0),
-        centre=sp.ImmutableMatrix(at),
+        sp.ImmutableMatrix(3, 3, lambda i, j: named(f"I_{min(i, j) + 1}{max(i, j) + 1}")),
+        mass=named("M"),
+        centre=sp.ImmutableMatrix([named("x_C"), named("y_C"), named("z_C")]),
         name=body.name,
         parameters=tuple(parameters.values()),
         allow=body.allow,
