@@ -17,7 +17,6 @@ import sympy as sp
 from jinja2 import TemplateRuntimeError
 
 from rigidsym.errors import offer
-from rigidsym.formula.display import PAGE, display
 from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.formula.reader import formula, text_of
 from rigidsym.formula.scalars import formula_of
