@@ -45,13 +45,6 @@ class VectorLength(NamedTuple):
         """The expression with n² in place of the sum of the squares, and n ṅ of its derivative."""
         return _shortened(expression, self)
 
-    @property
-    def sums(self) -> tuple[tuple[sp.Expr, sp.Expr], ...]:
-        """(what takes the place of a sum, the sum)."""
-        squares = sp.Add(*(part**2 for part in self.components))
-        moving = sp.Add(*(part * sp.diff(part, TIME) for part in self.components))
-        return ((self.symbol**2, squares), (self.symbol * self.rate, moving))
-
 
 @lru_cache(maxsize=4096)
 def _shortened(node: sp.Expr, length: VectorLength) -> sp.Expr:
@@ -60,7 +53,9 @@ def _shortened(node: sp.Expr, length: VectorLength) -> sp.Expr:
     whole = node.func(*(_shortened(argument, length) for argument in node.args))
     if not whole.is_Add:
         return whole
-    for short, terms in length.sums:
+    squares = sp.Add(*(part**2 for part in length.components))
+    moving = sp.Add(*(part * sp.diff(part, TIME) for part in length.components))
+    for short, terms in ((length.symbol**2, squares), (length.symbol * length.rate, moving)):
         coefficients = whole.as_coefficients_dict()
         numbers = {coefficients.get(term) for term in terms.args}
         if len(numbers) == 1 and None not in numbers:  # all of them have one coefficient

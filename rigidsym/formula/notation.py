@@ -46,15 +46,7 @@ class Notation:
 
     def applied(self, formula: tree.Formula) -> tree.Formula:
         """The formula in this notation; twice is the same as once."""
-        return formula if self.is_default else _applied(formula, self)
-
-    @property
-    def is_default(self) -> bool:
-        """Whether formulas stay as they were composed."""
-        if self is DEFAULT:
-            return True
-        chosen = all(getattr(self, name) == known[0] for name, known in CHOICES.items())
-        return chosen and self.vector == "v"
+        return formula if self == DEFAULT else _applied(formula, self)
 
     def check(self, model: HasNames) -> None:
         """Raises ModelError for a name in a model that looks like the angular velocity."""

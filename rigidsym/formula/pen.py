@@ -7,7 +7,7 @@ sign between two terms, in how many brackets. Nobody has to read it again to fin
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import IntEnum
 from functools import lru_cache
 from itertools import pairwise
@@ -171,10 +171,8 @@ class Pen:
         d, time = tree.Differential(), tree.Symbol("t")
         if rate.order == 1:
             return self.node(tree.row(d, rate.of)), self.node(tree.row(d, time))
-        order = tree.Numeral(str(rate.order))
-        return self.node(tree.row(tree.Power(d, order), rate.of)), self.node(
-            tree.row(d, tree.Power(time, order))
-        )
+        above, below = (tree.Power(base, tree.Numeral(str(rate.order))) for base in (d, time))
+        return self.node(tree.row(above, rate.of)), self.node(tree.row(d, below))
 
 
 @lru_cache(maxsize=16384)
@@ -184,14 +182,11 @@ def _written(pen: Pen, formula: tree.Formula) -> Piece:
 
 def _on_a_line(index: tree.Formula) -> tree.Formula:
     """√2/2 in place of a fraction, also within brackets."""
-    match index:
-        case tree.Fraction(above, below):
-            return tree.row(above, tree.Sign("/"), below)
-        case tree.Bracket(inside):
-            return replace(index, inside=_on_a_line(inside))
-        case tree.Row(parts):
-            return tree.row(*map(_on_a_line, parts))
-    return index
+    if isinstance(index, tree.Fraction):
+        return tree.row(index.above, tree.Sign("/"), index.below)
+    if isinstance(index, tree.Bracket):
+        return tree.Bracket(_on_a_line(index.inside), index.kind)
+    return tree.row(*map(_on_a_line, index.parts)) if isinstance(index, tree.Row) else index
 
 
 def break_lines(piece: Piece, width: float, indent: float, blank: float = 0.0) -> list[Segment]:

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from enum import IntEnum
 from functools import lru_cache
 
 import sympy as sp
@@ -26,25 +25,9 @@ from rigidsym.formula.letters import (
     power_of,
 )
 
-
-class Bound(IntEnum):
-    """How tightly the outermost operation of a formula holds it together."""
-
-    SUM = 0
-    PRODUCT = 1
-    CALL = 2
-    NUMBER = 3
-    FRACTION = 4  # whole as a factor, not as a base
-    NAME = 5
-
-
-_BOUND = {
-    tree.FunctionCall: Bound.CALL,
-    tree.Numeral: Bound.NUMBER,
-    tree.Fraction: Bound.FRACTION,
-    tree.Rate: Bound.FRACTION,
-    tree.Power: Bound.PRODUCT,
-}
+# Kinds that have brackets around them, beside sums, as the argument of a function and as a base.
+_ARGUMENTS = (tree.Row, tree.Power, tree.FunctionCall)
+_BASES = (*_ARGUMENTS, tree.Numeral, tree.Fraction, tree.Rate)
 
 
 @lru_cache(maxsize=8192)
@@ -155,7 +138,7 @@ class _ScalarWalk:
             argument = self.expression(angle)
             # a number and a name need no brackets: sin 2θ
             if not (number.is_Integer and number.is_positive and _is_name(rest)):
-                argument = _at_least(Bound.NUMBER, argument)
+                argument = _bracketed(argument, _ARGUMENTS)
             return tree.FunctionCall(FUNCTIONS[node.func], argument)
         if is_application(node):
             arguments = [self.expression(argument) for argument in node.args]
@@ -169,16 +152,15 @@ class _ScalarWalk:
         parts = [self.expression(first)]
         for term in others:
             minus = is_negative(term)
-            parts += [tree.MINUS if minus else tree.PLUS, self._term(-term if minus else term)]
+            parts += [
+                tree.MINUS if minus else tree.PLUS,
+                _bracketed(self.expression(-term if minus else term)),
+            ]
         return tree.row(*parts)
-
-    def _term(self, term: sp.Expr) -> tree.Formula:
-        """Within a sum; one that is a sum itself is bracketed."""
-        return _at_least(Bound.PRODUCT, self.expression(term))
 
     def _product(self, node: sp.Expr) -> tree.Formula:
         if is_negative(node):
-            return tree.row(tree.MINUS, self._term(-node))
+            return tree.row(tree.MINUS, _bracketed(self.expression(-node)))
         coefficient, rest = node.as_coeff_Mul()
         factors = ordered_factors(sp.Mul.make_args(rest), self.letters)
         below = [sp.Pow(f.base, -f.exp) for f in factors if _is_reciprocal(f)]
@@ -203,12 +185,7 @@ class _ScalarWalk:
         """The product of factors in order; a single factor is not bracketed."""
         if len(factors) < 2:
             return self.expression(factors[0] if factors else sp.S.One)
-        return tree.row(*(self._factor(factor) for factor in factors))
-
-    def _factor(self, node: sp.Expr) -> tree.Formula:
-        if node.is_Rational and not node.is_Integer:
-            return tree.Fraction(tree.Numeral(str(node.p)), tree.Numeral(str(node.q)))
-        return _at_least(Bound.PRODUCT, self.expression(node))
+        return tree.row(*(_bracketed(self.expression(factor)) for factor in factors))
 
     def _power(self, node: sp.Pow) -> tree.Formula:
         base, exponent = node.base, node.exp
@@ -220,12 +197,11 @@ class _ScalarWalk:
             call = self.expression(base)
             assert isinstance(call, tree.FunctionCall)
             return replace(call, exponent=int(exponent))
-        whole = _at_least(Bound.NAME, self.expression(base))
+        whole = _bracketed(self.expression(base), _BASES)
         if exponent.is_Integer:
             return tree.Power(whole, tree.Numeral(str(exponent.p)))
-        above, below = (tree.Numeral(str(n)) for n in (abs(exponent.p), exponent.q))
-        sign = (tree.MINUS,) if exponent.is_negative else ()
-        return tree.Power(whole, tree.Row((*sign, above, tree.Sign("/"), below)))
+        above, below = (tree.Numeral(str(n)) for n in (exponent.p, exponent.q))
+        return tree.Power(whole, tree.row(above, tree.Sign("/"), below))
 
 
 def _rational(number: sp.Rational) -> tree.Formula:
@@ -236,14 +212,12 @@ def _rational(number: sp.Rational) -> tree.Formula:
     return tree.Fraction(tree.Numeral(str(number.p)), tree.Numeral(str(number.q)))
 
 
-def _at_least(bound: Bound, formula: tree.Formula) -> tree.Formula:
-    """The formula, in brackets where it is held together less tightly."""
+def _bracketed(formula: tree.Formula, kinds: tuple[type, ...] = ()) -> tree.Formula:
+    """The formula, in brackets if it is a sum, or of one of these kinds."""
     # A row with a sign in it, such as a + b or −a, is held together as a sum.
-    own = _BOUND.get(type(formula), Bound.NAME)
-    if isinstance(formula, tree.Row):
-        is_sum = any(isinstance(part, tree.Sign) for part in formula.parts)
-        own = Bound.SUM if is_sum else Bound.PRODUCT
-    return formula if own >= bound else tree.Bracket(formula)
+    parts = formula.parts if isinstance(formula, tree.Row) else ()
+    is_sum = any(isinstance(part, tree.Sign) for part in parts)
+    return tree.Bracket(formula) if is_sum or isinstance(formula, kinds) else formula
 
 
 def _scaled(number: sp.Expr, factors: Sequence[sp.Expr]) -> list[sp.Expr]:

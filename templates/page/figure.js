@@ -320,8 +320,9 @@ function traceLines(trace, camera) {
 
 // --- labels: beyond the end of a line or beside its middle, clear of other labels and of lines
 
-const BENDS = [0, 35, -35, 70, -70, 110, -110]; // degrees off the wished direction
-const GAPS = [0.07, 0.2, 0.34];
+const BENDS = [0, 35, -35, 70, -70, 110, -110, 180]; // degrees off the wished direction
+const GAPS = [0.05, 0.12, 0.2];
+const FAR = 1; // length of crossed lines that a label may have so that it is nearer by 1
 const SIGHT = [1.6, 1.56]; // lengths from the middle of the picture to its edges
 const places = new Map(); // the name of a label -> the bend and the gap that it had
 
@@ -365,13 +366,14 @@ function labelsOf(lines) {
       const angle = direction + (bend * Math.PI) / 180;
       const [dx, dy] = [Math.cos(angle), Math.sin(angle)];
       const edge = Math.min(half[0] / Math.abs(dx), half[1] / Math.abs(dy), Math.hypot(...half));
-      return { ...line, centre: [at[0] + (edge + gap) * dx, at[1] + (edge + gap) * dy], half };
+      const centre = [at[0] + (edge + gap) * dx, at[1] + (edge + gap) * dy];
+      return { ...line, centre, half, far: FAR * gap };
     }));
     const isFree = (box) =>
       !taken.some((other) => meets(box, other)) &&
       box.centre.every((part, k) => Math.abs(part) + half[k] < SIGHT[k]);
     const crossed = (box) => segments.reduce((sum, segment) => sum + inside(segment, box), 0);
-    const free = boxes.filter(isFree).map((box) => ({ box, cost: crossed(box) }));
+    const free = boxes.filter(isFree).map((box) => ({ box, cost: crossed(box) + box.far }));
     const least = Math.min(...free.map(({ cost }) => cost)) + TYPE / 4;
     const before = boxes[places.get(line.name)];
     const fitting = free.filter(({ cost }) => cost <= least).map(({ box }) => box);

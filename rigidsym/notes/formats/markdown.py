@@ -30,7 +30,6 @@ _WIDTH = 40.0  # ems
 _SPECIAL = re.compile(r"([\\`*_{}\[\]<>#&~|!@])")
 _DOLLARS = re.compile(r"\$+")
 _LINE_START = re.compile(r"^(\s*)(?:([-+=])|(\d+)([.)]))")
-_TICKS = re.compile(r"`+")
 
 
 def render(document: Document) -> str:
@@ -67,17 +66,10 @@ def _inside(text: str) -> str:
     return _DOLLARS.sub(r"`\g<0>`", _SPECIAL.sub(r"\\\1", cleaned(text)))
 
 
-def _code(text: str) -> str:
-    """A code span, in more ticks than the text holds."""
-    ticks = "`" * (1 + max(map(len, _TICKS.findall(text)), default=0))
-    inside = f" {text} " if text.startswith("`") or text.endswith("`") else text
-    return f"{ticks}{inside}{ticks}"
-
-
 class _MarkdownPrinter(NotePrinter):
     width = _WIDTH
     words = staticmethod(_inside)
-    code = staticmethod(_code)
+    code = "`{}`".format
     strong = "**{}**"
     reference = "({number})"
     figure_title = "**Figure {number}.**"
@@ -97,7 +89,7 @@ class _MarkdownPrinter(NotePrinter):
     def equation(self, equation: Equation) -> str:
         shown = self.shown[equation]
         tag = f"\n\\tag{{{equation.number}}}" if equation.number else ""
-        function = [_code(equation.function)] if equation.function else []
+        function = [self.code(equation.function)] if equation.function else []
         remarks = " · ".join([*self.claims(equation), *function])
         return "\n\n".join(
             filter(None, [self.announced(equation), _display(shown.text + tag), remarks])

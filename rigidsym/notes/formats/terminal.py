@@ -12,14 +12,13 @@ from rigidsym.formula.display import display
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.formula.pen import break_lines
-from rigidsym.formula.reader import formula, sentence
 from rigidsym.formula.scalars import formula_of, listed_entries, matrix_of
 from rigidsym.formula.tree import Formula, equal
 from rigidsym.formula.unicode_pen import UnicodePen, columns
 from rigidsym.mechanics.derivation import Argument, Derivation, Step
 from rigidsym.mechanics.quantities.kinematics import BODY, ROTATION, SPACE
 from rigidsym.notes.document import Equation, Paragraph
-from rigidsym.notes.equations import columns_of_matrix, equation_of
+from rigidsym.notes.equations import equation_of
 from rigidsym.notes.facts.rotation import facts_of_rotation, product_of
 from rigidsym.notes.facts.singular import singular_facts
 from rigidsym.notes.fitting import as_vectors
@@ -33,7 +32,6 @@ if TYPE_CHECKING:
 
 _WIDTH = 88  # columns
 _EMS = 44.0  # of an equation by itself in LaTeX
-_COLUMNS = formula(r"\mathbf{K}")
 _OMEGA = {"Ω": SPACE.omega, "Ω′": BODY.omega}
 _INDENT = "  "
 _NO_BREAK = "\u00a0"
@@ -223,8 +221,6 @@ class _Screen:
                 quaternion = replace(conversions.quaternion, number=len(steps) + 1)
                 steps = (*steps, quaternion)
                 self.step(quaternion, derivation.arguments)
-            self.sentence(sentence("Each column of {} is a multiple of the quaternion.", _COLUMNS))
-            self.equation(Equation(sides=(_COLUMNS,), matrix=columns_of_matrix()))
             for text in (back.because, back.branch) if back else ((conversions.without,),):
                 self.sentence(text)
 
