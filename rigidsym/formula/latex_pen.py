@@ -109,8 +109,7 @@ class LatexPen(Pen):
         return atom(text, base.width + SCRIPT * index.width, height=base.height)
 
     def numeral(self, node: tree.Numeral) -> Piece:
-        text = node.digits.replace(",", "{,}")
-        return atom(text, DIGIT * len(node.digits), Binding.NUMBER)
+        return atom(node.digits, DIGIT * len(node.digits), Binding.NUMBER)
 
     def sign(self, node: tree.Sign, *, is_binary: bool = False) -> Piece:
         text = _SIGNS.get(node.character, node.character)

@@ -48,8 +48,6 @@ def factored(matrix: sp.ImmutableMatrix) -> tuple[sp.Expr, sp.ImmutableMatrix]:
     if len(entries) < 2 or len(below) > 1:
         return sp.S.One, matrix
     (divisor,) = below
-    if divisor == 1 and not any(map(_has_ratios, entries)) and _constants_in_all(entries) == 1:
-        return sp.S.One, matrix
     contents = [_over(entry, divisor).as_content_primitive() for entry in matrix]
     # Zeros divide by anything, and are left out of the common divisor.
     number = sp.gcd_list([content for content, rest in contents if rest != 0])
@@ -61,11 +59,6 @@ def factored(matrix: sp.ImmutableMatrix) -> tuple[sp.Expr, sp.ImmutableMatrix]:
         for content, primitive in contents
     ]
     return number * constants / divisor, sp.ImmutableMatrix(*matrix.shape, rest)
-
-
-@lru_cache(maxsize=8192)  # entries come up in several quantities
-def _has_ratios(entry: sp.Expr) -> bool:
-    return not all(number.is_Integer for number in entry.atoms(sp.Rational))
 
 
 @lru_cache(maxsize=8192)
@@ -138,7 +131,7 @@ class _ScalarWalk:
             argument = self.expression(angle)
             # a number and a name need no brackets: sin 2θ
             if not (number.is_Integer and number.is_positive and _is_name(rest)):
-                argument = _bracketed(argument, _ARGUMENTS)
+                argument = tree.bracketed(argument, _ARGUMENTS)
             return tree.FunctionCall(FUNCTIONS[node.func], argument)
         if is_application(node):
             arguments = [self.expression(argument) for argument in node.args]
@@ -154,13 +147,13 @@ class _ScalarWalk:
             minus = is_negative(term)
             parts += [
                 tree.MINUS if minus else tree.PLUS,
-                _bracketed(self.expression(-term if minus else term)),
+                tree.bracketed(self.expression(-term if minus else term)),
             ]
         return tree.row(*parts)
 
     def _product(self, node: sp.Expr) -> tree.Formula:
         if is_negative(node):
-            return tree.row(tree.MINUS, _bracketed(self.expression(-node)))
+            return tree.row(tree.MINUS, tree.bracketed(self.expression(-node)))
         coefficient, rest = node.as_coeff_Mul()
         factors = ordered_factors(sp.Mul.make_args(rest), self.letters)
         below = [sp.Pow(f.base, -f.exp) for f in factors if _is_reciprocal(f)]
@@ -185,7 +178,7 @@ class _ScalarWalk:
         """The product of factors in order; a single factor is not bracketed."""
         if len(factors) < 2:
             return self.expression(factors[0] if factors else sp.S.One)
-        return tree.row(*(_bracketed(self.expression(factor)) for factor in factors))
+        return tree.row(*(tree.bracketed(self.expression(factor)) for factor in factors))
 
     def _power(self, node: sp.Pow) -> tree.Formula:
         base, exponent = node.base, node.exp
@@ -197,7 +190,7 @@ class _ScalarWalk:
             call = self.expression(base)
             assert isinstance(call, tree.FunctionCall)
             return replace(call, exponent=int(exponent))
-        whole = _bracketed(self.expression(base), _BASES)
+        whole = tree.bracketed(self.expression(base), _BASES)
         if exponent.is_Integer:
             return tree.Power(whole, tree.Numeral(str(exponent.p)))
         above, below = (tree.Numeral(str(n)) for n in (exponent.p, exponent.q))
@@ -210,14 +203,6 @@ def _rational(number: sp.Rational) -> tree.Formula:
     if number.is_Integer:
         return tree.Numeral(str(number))
     return tree.Fraction(tree.Numeral(str(number.p)), tree.Numeral(str(number.q)))
-
-
-def _bracketed(formula: tree.Formula, kinds: tuple[type, ...] = ()) -> tree.Formula:
-    """The formula, in brackets if it is a sum, or of one of these kinds."""
-    # A row with a sign in it, such as a + b or −a, is held together as a sum.
-    parts = formula.parts if isinstance(formula, tree.Row) else ()
-    is_sum = any(isinstance(part, tree.Sign) for part in parts)
-    return tree.Bracket(formula) if is_sum or isinstance(formula, kinds) else formula
 
 
 def _scaled(number: sp.Expr, factors: Sequence[sp.Expr]) -> list[sp.Expr]:

@@ -188,9 +188,9 @@ def equal(*sides: Formula) -> Formula:
     return joined(sides, EQUALS)
 
 
-def bracketed(formula: Formula) -> Formula:
-    """A sum in brackets; anything else without."""
-    return Bracket(formula) if is_sum(formula) else formula
+def bracketed(formula: Formula, kinds: tuple[type, ...] = ()) -> Formula:
+    """A sum, or a formula of one of these kinds, in brackets; anything else without."""
+    return Bracket(formula) if is_sum(formula) or isinstance(formula, kinds) else formula
 
 
 def is_sum(formula: Formula) -> bool:

@@ -70,7 +70,12 @@ def controls_of(
                 angle = round(degrees(angles.get(symbol, _ANGLE)))
                 limits = _Range(angle, round(degrees(period)) / 2, "°", pi / 180, is_periodic=True)
             elif is_coordinate:
-                limits = _coordinate(symbol, k, unit, model)
+                size = 1.0 if unit == "rad" else 0.5
+                starts = dict(zip(model.vector, _VECTOR, strict=False))
+                begin = size * starts[symbol] if symbol in starts else _SCALAR
+                begin = begin if model.vector else _NUMBERS[k % len(_NUMBERS)]
+                is_unit = model.constraints or model.pullback
+                limits = _Range(begin, 6.5 if unit == "rad" else 1.0 if is_unit else 3.0, unit)
             elif is_constant and symbol in model.constants:
                 limits = _Range(_VECTOR[k % 3], 1.0, "")
             else:
@@ -94,15 +99,6 @@ def controls_of(
                 "factor": factor,
                 "period": 2 * reach if is_periodic else 0.0,  # after which all is as before
             }
-
-
-def _coordinate(q: sp.Expr, k: int, unit: str, model: RotationModel) -> _Range:
-    """The range of a coordinate that is no angle."""
-    reach = 6.5 if unit == "rad" else 1.0 if model.constraints or model.pullback else 3.0
-    if q in model.vector:
-        size = 1.0 if unit == "rad" else 0.5
-        return _Range(size * _VECTOR[model.vector.index(q)], reach, unit)
-    return _Range(_SCALAR if model.vector else _NUMBERS[k % len(_NUMBERS)], reach, unit)
 
 
 def constants_of(body: RigidBody | None) -> dict[sp.Symbol, float]:

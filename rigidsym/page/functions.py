@@ -50,15 +50,6 @@ class Functions:
         arguments = self.derivation.arguments
         return next((a.symbols for a in arguments if a.name == "parameters"), ())
 
-    @property
-    def source(self) -> str:
-        return javascript.bare(self.kernels)
-
-    @property
-    def inputs(self) -> dict[str, tuple[str, ...]]:
-        """The vectors that each function takes."""
-        return {k.name: tuple(argument.name for argument in k.arguments) for k in self.kernels}
-
 
 def is_live(quantity: Quantity) -> bool:
     """Whether the page shows it: a result that changes with the orientation and its rates."""

@@ -16,15 +16,13 @@ from typing import Any
 import sympy as sp
 
 from rigidsym.errors import ModelError
-from rigidsym.formula.tree import Formula, Numeral, Symbol
 from rigidsym.kernels.lowering.lower import MARGIN
+from rigidsym.kernels.targets import javascript
 from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.models.forces import OMEGA_COMPONENTS, initial_values
-from rigidsym.models.rotation import RotationModel
 from rigidsym.notes.document import Document
 from rigidsym.notes.facts.rotation import sum_of_turns
 from rigidsym.notes.figure.body_mesh import lengths_in
-from rigidsym.notes.figure.scene import scene_of
 from rigidsym.notes.formats.html import HtmlPrinter, escape, rendered
 from rigidsym.notes.words import unit_in_words
 from rigidsym.page.controls import constants_of, controls_of
@@ -79,23 +77,32 @@ def print_page(
     ]
     in_degrees = any(control["unit"] == "°" for control in controls)
     printer = HtmlPrinter(document)
-    stage, body = stage_of(model, letters), body_of(derivation, functions)
     seconds = examples[0].time if examples else 0.0
     values = [_value(step, in_degrees=in_degrees) for step in functions.live]
     factors = {value["name"]: value["factor"] for value in values}
-    data = {
-        "name": derivation.name,
-        "scene": stage,
-        **body,
+    factors |= {"first_integrals": 1} if functions.integrals else {}
+    data: dict[str, Any] = {
+        "scene": stage_of(model, letters),
+        **body_of(derivation, functions),
         "last": min(max(_SHORTEST, seconds), _LONGEST),
         "controls": [{key: control[key] for key in _OF_SCRIPT} for control in controls],
         "parameters": [constants.get(symbol, 0.0) for symbol in functions.constants],
-        "inputs": functions.inputs,
+        "inputs": {k.name: [a.name for a in k.arguments] for k in functions.kernels},
         "second": functions.second,
-        "values": factors | ({"first_integrals": 1} if functions.integrals else {}),
+        "values": factors,
         "passive": model.passive,
     }
-    script = _script(functions, data)
+    names = ", ".join(data["inputs"])
+    literal = json.dumps(data, ensure_ascii=False, separators=(",", ":"))
+    parts = [
+        "// --- the functions of the derivation: every number of this page comes from them\n",
+        javascript.bare(functions.kernels),
+        f"\nconst kernels = {{ {names} }};\nconst page = {literal};\n",
+        *(resources.text("templates", f"page/{name}.js") for name in SCRIPTS),
+    ]
+    # Nothing in the script can end its element. In a string of JavaScript `<\/` is `</`; HTML would
+    # end the script at `</script`, and read `<!--` as the start of a comment.
+    script = "\n".join(parts).replace("</", "<\\/").replace("<!--", "<\\!--")
     # The policy of the page names the digest of its only script, and blocks any other.
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     return rendered(
@@ -113,7 +120,6 @@ def print_page(
         pole=next((k.symbol for k in functions.kernels if k.name == MARGIN), ""),
         is_motion=functions.is_motion,
         has_turns=has_turns(model),
-        turns=_turns(model, document, stage),
         sum_of_turns=sum_of_turns(model, letters) if has_turns(model) else None,
         formula=printer.span,
         escape=escape,
@@ -151,35 +157,6 @@ def check_shown(derivation: Derivation) -> None:
             "body about a fixed point, and other parts move with this body; expected a note "
             "(`rigidsym run`) or a table of the motion (`rigidsym simulate --out`)"
         )
-
-
-def _script(functions: Functions, data: object) -> str:
-    """The script of the page; nothing in it can end its element."""
-    names = ", ".join(functions.inputs)
-    literal = json.dumps(data, ensure_ascii=False, separators=(",", ":"))
-    parts = [
-        "// --- the functions of the derivation: every number of this page comes from them\n",
-        functions.source,
-        f"\nconst kernels = {{ {names} }};\nconst page = {literal};\n",
-        *(resources.text("templates", f"page/{name}.js") for name in SCRIPTS),
-    ]
-    # In a string of JavaScript `<\/` is `</`; HTML would end the script at `</script`, and read
-    # `<!--` as the start of a comment.
-    return "\n".join(parts).replace("</", "<\\/").replace("<!--", "<\\!--")
-
-
-def _turns(
-    model: RotationModel, document: Document, stage: Mapping[str, Any]
-) -> list[tuple[str, Formula]]:
-    """The angle of each turn, and the axis that is seen in the figure."""
-    scene = scene_of(model, document.letters)
-    posed = scene.posed(scene.view.angles) if scene else None
-    rays = [posed.named(arc.axis) for arc in posed.arcs] if posed else [None] * len(model.turns)
-    axes = (
-        ray.name if ray else Symbol("N", index=Numeral(str(k)))
-        for k, ray in enumerate(rays, start=1)
-    )
-    return [(turn["name"], axis) for turn, axis in zip(stage["turns"], axes, strict=False)]
 
 
 def _value(step: Step, *, in_degrees: bool) -> dict[str, Any]:

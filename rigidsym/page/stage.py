@@ -19,7 +19,7 @@ from rigidsym.models.rotation import AXES, RotationModel
 from rigidsym.notes.figure.body_mesh import RED, Color, Face, Shape, own_shape, tiles
 from rigidsym.notes.figure.camera import STANDARD, Vector
 from rigidsym.notes.figure.scene import BODY, RADII, Scene, scene_of, turns_of
-from rigidsym.notes.formats.drawings import as_in_formulas
+from rigidsym.notes.formats.drawings import in_a_figure
 from rigidsym.page.functions import Functions, has_turns, moments_of
 
 _AZIMUTH, _ELEVATION = 35, 22  # degrees, if the note has no figure
@@ -55,13 +55,8 @@ def stage_of(model: RotationModel, letters: Letters) -> dict[str, Any]:
         "letters": AXES,
         "vector": [*map(model.coordinates.index, model.vector)],
         "angle": next((k for k, q in enumerate(model.coordinates) if q in angles), None),
-        "omega": label(letters.notation.applied(SPACE.omega)),
+        "omega": in_a_figure(letters.notation.applied(SPACE.omega)),
     }
-
-
-def label(symbol: Formula) -> str:
-    """A symbol in the picture; browsers do not place an arrow above a letter reliably."""
-    return as_in_formulas(symbol.text.replace("\u20d7", ""))
 
 
 def _rays(model: RotationModel, scene: Scene | None, letters: Letters) -> Iterator[dict[str, Any]]:
@@ -80,7 +75,7 @@ def _rays(model: RotationModel, scene: Scene | None, letters: Letters) -> Iterat
         axes = axes if has_turns(model) else [Symbol("e", "bold")]
         rays += [("node", axis, k, None) for k, axis in enumerate(axes)]
     for kind, name, frame, direction in rays:
-        shown = label(letters.notation.applied(name))
+        shown = in_a_figure(letters.notation.applied(name))
         yield {"kind": kind, "name": shown, "frame": frame, "direction": direction}
 
 
@@ -90,8 +85,8 @@ def _turns(model: RotationModel, scene: Scene | None, letters: Letters) -> Itera
     starts = [turn.start for turn in scene.turns] if scene and model.turns else [None] * len(turns)
     for turn, start, radius in zip(turns, starts, RADII, strict=False):
         rate = formula_of(generators.rate_of(turn.angle), letters) if model.turns else NOTHING
-        name = label(formula_of(turn.angle, letters))
-        yield {"name": name, "rate_name": label(rate), "start": start, "radius": radius}
+        name = in_a_figure(formula_of(turn.angle, letters))
+        yield {"name": name, "rate_name": in_a_figure(rate), "start": start, "radius": radius}
     if not turns:
         yield {"name": "", "rate_name": "", "start": None, "radius": RADII[0]}
 

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable
 from html import escape
 from math import hypot
 
+from rigidsym.formula.tree import Formula
 from rigidsym.notes.figure.camera import Point
 from rigidsym.notes.figure.drawing import TYPE_SIZE, Drawing, Label, Stroke
 from rigidsym.notes.formats.escape import cleaned
@@ -73,7 +74,8 @@ def tikz(drawing: Drawing) -> str:
 
 _SCALE = 18.0 / TYPE_SIZE  # pixels: an em of a label
 _PAD = 6.0  # pixels around all
-_AS_IN_FORMULAS = str.maketrans("φε", "ϕϵ")  # the forms of the letters that LaTeX has
+# the forms of the letters that LaTeX has, without arrows, which browsers do not place reliably
+_AS_IN_FORMULAS = str.maketrans("φε", "ϕϵ", "\u20d7")
 _ARROW = 9.0  # pixels, the length of a head
 
 
@@ -105,7 +107,7 @@ def svg(drawing: Drawing, *, title: str, description: str, name: str) -> str:
 
     def label(x: Label) -> str:
         left, top = path([x.place]).split(",")
-        text = escape(as_in_formulas(x.symbol.text))
+        text = escape(in_a_figure(x.symbol))
         return f'<text class="{x.kind}" x="{left}" y="{top}" dy=".32em">{text}</text>'
 
     (left, low), (right, high) = drawing.bounds
@@ -124,9 +126,9 @@ def svg(drawing: Drawing, *, title: str, description: str, name: str) -> str:
     )
 
 
-def as_in_formulas(text: str) -> str:
+def in_a_figure(symbol: Formula) -> str:
     """A symbol as the text of a label."""
-    return cleaned(text.translate(_AS_IN_FORMULAS))
+    return cleaned(symbol.text.translate(_AS_IN_FORMULAS))
 
 
 def _rounded(value: float, digits: int = 1) -> str:
