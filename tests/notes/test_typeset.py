@@ -62,7 +62,7 @@ def test_notes_of_all_conventions_and_of_chains_compile_without_a_warning():
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        ("[3,1,-1](psi) [0,-2,3](roll_rate) [2,1,-2](theta)", "The explicit components"),
+        ("[3,1,-1](psi) [0,-2,3](roll_rate) [2,1,-2](theta)", "is too long for this page"),
         ("[3,-1,-3](phi + pi/6) [-3,3,-3](theta)", r"{\freely\begin{align*}"),
         (
             "z(phi) x(theta) [0,b,c](psi)",
