@@ -191,7 +191,6 @@ CHANGES: dict[str, Callable[[str], str]] = {
     "a comment": lambda text: f"{text} # + 1",
     "a root of a negative number": lambda text: f"{text} + 0*sqrt(-1)",
     "the other root": lambda text: f"{text} + sqrt((1 + cos(phi))**2) + 1 + cos(phi)",
-    "a root of a square": lambda text: f"{text} + sqrt(sin(phi)**2) - sin(phi)",
     "a divisor that vanishes": lambda text: f"{text} + 0/(cos(phi)**2 + sin(phi)**2 - 1)",
     "a divisor of roots that vanishes": lambda text: f"{text} + 0/{ZERO}",
     "the sine of pi": lambda text: f"{text} + 0/sin(pi)",
@@ -270,15 +269,9 @@ def circle(content: Content) -> None:
     put(VELOCITY, 2, "a")(content)
 
 
-def root_by_definition(content: Content) -> None:
-    defined("a", "3*phi")(content)
-    defined("b", "4*phi")(content)
-    put(VELOCITY, 2, f"{TRUE} + sqrt(a**2 + b**2) - 5*phi")(content)
-
-
 def double_angle(content: Content) -> None:
     defined("a", "2*phi")(content)
-    put(VELOCITY, 2, f"{TRUE} + 0/(cos(a) - 2*cos(phi)**2 + 1)")(content)
+    put(VELOCITY, 2, f"{TRUE} + 0/(10**39*(cos(a) - 2*cos(phi)**2 + 1))")(content)
 
 
 def potential_by_definition(content: Content) -> None:
@@ -322,7 +315,6 @@ OF_ZXZ: dict[str, Change] = {  # forgeries of what the record of ZXZ says beside
         rotation={"matrix": [["1", "0", "0"]] * 3, "conditions": []}
     ),
     "turns and a matrix": of_rotation("matrix", IDENTITY),
-    "a root of a square by definition": root_by_definition,
     "a divisor of a double angle by definition": double_angle,
     "a definition of a rate": rate_by_definition,
     "a definition of a coordinate": defined("phi", "psi"),
@@ -404,8 +396,8 @@ SPOILED = (
     ("top", "constant energy", "cos(theta)", "sin(theta)"),
     ("top", "constant energy", "g*l*m", "2*g*l*m"),
     ("top", "constant energy", "A", "C"),
-    ("oblique axes", "principal_moments", "8", "12"),
-    ("oblique axes", "principal_axes", "sqrt", "-sqrt"),
+    ("oblique axes", "principal_moments", "50", "51"),
+    ("oblique axes", "principal_axes", "4/5", "-4/5"),
 )
 
 
@@ -417,7 +409,7 @@ def exchanged(*names: str) -> Change:
     return change
 
 
-def with_axes(*factors: str, moments: Any = ("4", "5", "8")) -> Change:
+def with_axes(*factors: str, moments: Any = ("25", "50", "60")) -> Change:
     """Principal axes times factors, which no theorem about lengths and volumes must miss."""
 
     def change(content: Content) -> None:
@@ -494,9 +486,11 @@ OTHERS = BESIDE | {name: (of, change) for name, of, change in of_motions()}
 PARTLY = {"a quantity named angular_velocity_moon": "angular_velocity_moon"}
 PARTLY |= {"a quantity named truth": "truth"}
 PARTLY |= {"a motion under conditions": "accelerations", "too many multiples of angles": VELOCITY}
-PARTLY |= {"a divisor that is zero": "rotation_matrix"}
+PARTLY |= {"a parameter of the body that is defined": "accelerations"}
+PARTLY |= {"a potential by definition, without its force": "accelerations"}
+PARTLY |= {"a divisor that is zero": "rotation_matrix", "sums of 32,768 roots": VELOCITY}
 PARTLY |= {"a divisor of a double angle by definition": VELOCITY}
-PARTLY |= {"a root of a square by definition": VELOCITY, "the negative branch of a root": VELOCITY}
+PARTLY |= {"a definition in a circle": VELOCITY, "the negative branch of a root": VELOCITY}
 
 
 @pytest.mark.parametrize("name", OTHERS)
@@ -514,15 +508,12 @@ def test_double_keys_are_refused(tmp_path):
 
 def false_claims(content: Content) -> list[str]:
     """What the checker refuses, each quantity on its own."""
-    motion = checker.Motion(checker.Record(content))
-    if "body" in content:
-        motion.read_body()
     false = []
     for name in checker.printed_in(content):
+        groups = ("quantities", "first_integrals")
+        one = content | {g: [q for q in content[g] if name.endswith(q["name"])] for g in groups}
         try:
-            checker.agree(name, motion.claims(name))
-        except checker.Unreadable:
-            continue
+            checker.verify(one)
         except checker.BROKEN:
             false.append(name)
     return false

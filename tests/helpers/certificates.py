@@ -74,11 +74,11 @@ NEEDS: dict[str, Callable[[], rs.Motion]] = {
         body=rs.principal_moments(A, A, C),
         torque=["l*F", "0", "k*F"],
     ),
-    # moments 4 and 8 about axes that lie between those of the description
+    # moments 25 and 50 about axes with the slopes 4/3 and -3/4
     "oblique axes": lambda: rs.derive(
         "ZXZ",
         PRINCIPAL,
-        body=given_inertia(sp.Matrix([[6, -2, 0], [-2, 6, 0], [0, 0, 5]]), mass=M),
+        body=given_inertia(sp.Matrix([[41, -12, 0], [-12, 34, 0], [0, 0, 60]]), mass=M),
     ),
 }
 

@@ -5,8 +5,8 @@ derivatives. F is the rotation. A theorem states what the record prints: that F 
 printed Ω, that p is the derivative of the printed L by q̇, that the printed energy has the
 derivative 0. Certified is what has a theorem here and is proved by the checker as well.
 
-Facts, by which all proofs calculate, precede the theorems: squares of cosines and roots, and
-conditions such as w² + x² + y² + z² = 1 with their derivatives.
+Facts, by which all proofs calculate, precede the theorems: squares of cosines, and conditions such
+as w² + x² + y² + z² = 1 with their derivatives.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ from typing import Any
 
 from rigidsym.errors import CheckError
 from rigidsym.tools.certificate.checker import (
-    ANGULAR,
     BROKEN,
     OMEGA,
     PRINCIPAL,
     Record,
     Tree,
+    Unproved,
     names_in,
     parts_of,
     printed_in,
@@ -99,19 +99,15 @@ def certificate_of(record: Mapping[str, Any]) -> Certificate:
     return theorems(record, proved[1:])
 
 
-class Unstated(ValueError):
-    """There is no theorem for this."""
-
-
 def theorems(record: Mapping[str, Any], claims: Sequence[str]) -> Certificate:
     """The theorems of those claims that can be stated, whether they are true or not."""
     head, stated = list[str](), dict[str, str]()
-    with suppress(Unstated):
+    with suppress(Unproved):
         section = _Section(record, claims, stated)
         head = [*section.head()]
         # R and Ω first: what follows is calculated from them as printed, which is shorter
         for name in sorted(claims, key=lambda name: name not in _FIRST):
-            with suppress(Unstated):
+            with suppress(Unproved):
                 stated[name] = section.theorem(name)
     uncovered = [name for name in printed_in(record) if name not in stated]
     rotation = " ".join(record["rotation"].get("turns", ())) or "the matrix of its entries"
@@ -151,13 +147,13 @@ class _Section:
     ) -> None:
         self.record, self.claims, self.stated = record, claims, stated
         if not claims:
-            raise Unstated
+            raise Unproved
         self.names, self.printed = Record(record), printed_in(record)
         inside = set().union(*map(names_in, self.trees(*claims)))
         definitions = self.names.definitions.items()
         self.definitions = {name: text for name, text in definitions if name in inside}
         if len(self.definitions) > _MOST_DEFINITIONS:
-            raise Unstated
+            raise Unproved
         is_passive = record["presentation"] == "passive"
         self.shown = "shown" if is_passive else "F"
         self.factors = [*self._factors()]
@@ -182,11 +178,8 @@ class _Section:
         first = self.real(parts[0], at, other)
         if kind == "**":
             return f"({' * '.join([first] * parts[1]) or '1'})"
-        if kind in ("cos", "sin", "sqrt"):
+        if kind in ("cos", "sin"):
             return f"({kind} {first})"
-        if kind in ANGULAR:
-            one, two = ("sin", "cos") if kind == "tan" else ("cos", "sin")
-            return f"(({one} {first}) / ({two} {first}))"
         second = self.real(parts[1], at, other)
         if kind == "-" and parts[0] == ("number", 0):
             return f"(- {second})"
@@ -218,7 +211,7 @@ class _Section:
     def trees(self, *names: str) -> list[Tree]:
         """All that is printed of some quantities, with the definitions that they need."""
         if not {*names} <= {*self.printed}:
-            raise Unstated
+            raise Unproved
         texts, trees = [self.printed[name] for name in names], dict[Tree, None]()
         while texts:
             text = texts.pop()
@@ -272,12 +265,12 @@ class _Section:
             elif len(rotation["turns"]) == 1:
                 yield self._as_printed(text, trees)
             else:
-                raise Unstated
+                raise Unproved
 
     def _as_printed(self, text: str, trees: list[Tree]) -> _Factor:
         """F whose entries Coq differentiates; that it turns with the printed Ω is the claim."""
         if "angular_velocity_space" not in self.claims:
-            raise Unstated
+            raise Unproved
         velocity = self.text(self.printed["angular_velocity_space"])
         return _Factor(text, velocity, "turning ltac:(calculation t)", trees)
 
@@ -294,7 +287,7 @@ class _Section:
             return f"({self.real(parts[0])} * {self._rate(parts[1])})"
         if kind == "/" and not names_in(parts[1]):
             return f"({self._rate(parts[0])} * / {self.real(parts[1])})"
-        raise Unstated
+        raise Unproved
 
     def head(self) -> Iterator[str]:
         """Coordinates as functions of time, facts, F, and its angular velocity."""
@@ -312,7 +305,7 @@ class _Section:
             yield f"Hypothesis {one}_is_differentiable : forall t, {slope}."
         for k, sphere in enumerate(names.spheres):
             yield from self._sphere(k, sphere)
-        yield from self._roots_and_divisors()
+        yield from self._divisors()
         using = f" [{' '.join(self.facts)}]" if self.facts else ""
         known = "; ".join(f"pose proof {fact}" for fact in self.known)
         yield f"Ltac known t := {known or 'idtac'}."
@@ -365,37 +358,20 @@ class _Section:
             self.facts += [f"(along_{k} t)", f"(across_{k} t)"]  # to be tried before the square
         self.facts.append(f"(square_{k} t)")
 
-    def _roots_and_divisors(self) -> Iterator[str]:
-        """Squares of cosines and roots; divisors in F are not 0, and its roots not of 0."""
-        of_rotation = self.trees_of_rotation
-        trees = [*of_rotation, *self.trees(*self.claims)]
-        angles = _arguments(trees, *ANGULAR)
-        self.facts += [f"(squares {text})" for text in dict.fromkeys(map(self.real, angles))]
-        numbers = [root for root in _arguments(trees, "sqrt") if root[0] == "number"]
-        self.roots = [*dict.fromkeys((*_arguments(of_rotation, "sqrt"), *numbers))]
-        for k, root in enumerate(self.roots):
-            text = self.real(root)
-            if root in numbers:
-                yield f"Lemma positive_{k} (t : R) : 0 < {text}. Proof. lra. Qed."
-            else:
-                yield f"Hypothesis positive_{k} : forall t, 0 < {text}."
-            yield f"Lemma root_{k} (t : R) : sqrt {text} * sqrt {text} = {text}."
-            yield f"Proof. apply sqrt_sqrt, Rlt_le, (positive_{k} t). Qed."
-            yield f"Lemma real_{k} (t : R) : sqrt {text} <> 0."
-            yield f"Proof. apply Rgt_not_eq, sqrt_lt_R0, (positive_{k} t). Qed."
-            self.facts.append(f"(root_{k} t)")
-            self.known += [f"(positive_{k} t)", f"(real_{k} t)"]
-            self.apart |= {self.summands(root), self.summands(("sqrt", root))}
-        for k, divisor in enumerate(_divisors(of_rotation)):
+    def _divisors(self) -> Iterator[str]:
+        """Squares of cosines; divisors in F are not 0."""
+        trees = [*self.trees_of_rotation, *self.trees(*self.claims)]
+        angles = dict.fromkeys(map(self.real, _angles(trees)))
+        self.facts += [f"(squares {text})" for text in angles]
+        for k, divisor in enumerate(_divisors(self.trees_of_rotation)):
             text = self.real(divisor)
-            if self.summands(divisor) not in self.apart:
-                is_above_one = text.startswith("((((1 * 1) + ")  # of 1 + g², by Gibbs' vector
-                yield f"{'Lemma' if is_above_one else 'Hypothesis'} nonzero_{k} :"
-                yield f"  forall t, {text} <> 0."
-                if is_above_one:
-                    yield "Proof. intro; nra. Qed."
-                self.known.append(f"(nonzero_{k} t)")
-                self.apart.add(self.summands(divisor))
+            is_above_one = text.startswith("((((1 * 1) + ")  # of 1 + g², by Gibbs' vector
+            yield f"{'Lemma' if is_above_one else 'Hypothesis'} nonzero_{k} :"
+            yield f"  forall t, {text} <> 0."
+            if is_above_one:
+                yield "Proof. intro; nra. Qed."
+            self.known.append(f"(nonzero_{k} t)")
+            self.apart.add(self.summands(divisor))
 
     def _turning(self) -> Iterator[str]:
         """That F turns with the sum of the angular velocities of its turns."""
@@ -416,7 +392,7 @@ class _Section:
     # The claims
 
     def theorem(self, name: str) -> str:
-        """A theorem about what is printed of a quantity; raises Unstated."""
+        """A theorem about what is printed of a quantity; raises Unproved."""
         kind, _, frame = name.rpartition("_")
         if name in _OF_BODY:
             statement = self.of_body(name)
@@ -427,14 +403,9 @@ class _Section:
         elif frame in _TURNS and (law := getattr(self, f"of_{kind}", None)):
             statement = law(name, frame)
         else:
-            raise Unstated
-        # The facts are about the roots and the angles of F
-        trees, of_rotation = self.trees(name), self.trees_of_rotation
-        angles = {*_arguments(of_rotation, *ANGULAR)}
-        if not {*_arguments(trees, "sqrt")} <= {*self.roots}:
-            raise Unstated
-        if not {*_arguments(trees, *ANGULAR)} <= angles:
-            raise Unstated
+            raise Unproved
+        if not {*_angles(self.trees(name))} <= {*_angles(self.trees_of_rotation)}:
+            raise Unproved  # the facts are about the angles of F
         return (
             f"Theorem {name.replace(' ', '_')} (t : R){statement.letters} : {statement.claim}.\n"
             f"Proof. intros. {statement.proof}. Qed."
@@ -454,9 +425,9 @@ class _Section:
         return "rewrite ?rotation_matrix; equal t" if is_stated else "equal t"
 
     def need(self, *names: str) -> None:
-        """Raise Unstated if there are no theorems about some other quantities."""
+        """Raise Unproved if there are no theorems about some other quantities."""
         if not {*names} <= {*self.stated}:
-            raise Unstated
+            raise Unproved
 
     def of_rotation_matrix(self, name: str) -> _Statement:
         return _Statement(f"{self.divisors(name)}{self.shown} t = {self.text(self.printed[name])}")
@@ -511,7 +482,7 @@ class _Section:
         velocity = f"angular_velocity_{frame}"
         self.need(velocity)
         if self.divisors(velocity):
-            raise Unstated
+            raise Unproved
         letters, premises = self.seconds
         claim = (
             f"{self.divisors(name)}{premises}exists w, (forall s, {_TURNS[frame]} F s (w s)) "
@@ -640,7 +611,7 @@ class _Section:
         """dp/dt - ∂L/∂q = Q."""
         motion = self.record["motion"]
         if {*motion["torque"]} != {"0"}:
-            raise Unstated
+            raise Unproved
         letters, premises = self.along_the_motion
         claim = self.equations([self.text(force) for force in motion["forces"]])
         return _Statement(premises + claim, "subst; lagrange t", letters)
@@ -654,23 +625,19 @@ class _Section:
         return _Statement(claim, "subst; derived t", letters)
 
 
-def _arguments(trees: Iterable[Tree], *functions: str) -> list[Tree]:
-    """The arguments of some functions, each once."""
+def _angles(trees: Iterable[Tree]) -> list[Tree]:
     parts = (part for tree in trees for part in parts_of(tree))
-    return [*dict.fromkeys(part[1] for part in parts if part[0] in functions)]
+    return [*dict.fromkeys(part[1] for part in parts if part[0] in ("cos", "sin"))]
 
 
 def _divisors(trees: Iterable[Tree]) -> list[Tree]:
     """The factors of all divisors, each once, without numbers, which are not zero."""
     divisors: dict[Tree, None] = {}
-    for part in (part for tree in trees for part in parts_of(tree)):
-        if part[0] in ("tan", "cot"):
-            divisors["cos" if part[0] == "tan" else "sin", part[1]] = None
-        factors = [part[2]] if part[0] == "/" else []
-        while factors:
-            factor = factors.pop()
-            if factor[0] in ("*", "**"):
-                factors += [each for each in factor[1:] if isinstance(each, tuple)]
-            elif factor[0] != "number":
-                divisors[factor] = None
+    factors = [part[2] for tree in trees for part in parts_of(tree) if part[0] == "/"]
+    while factors:
+        factor = factors.pop(0)
+        if factor[0] in ("*", "**"):
+            factors += [each for each in factor[1:] if isinstance(each, tuple)]
+        elif factor[0] != "number":
+            divisors[factor] = None
     return [*divisors]

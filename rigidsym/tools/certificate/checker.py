@@ -1,15 +1,15 @@
 """Checks records of rigidsym without rigidsym: `python checker.py FOLDER|RECORD...`
 
 A record NAME.json describes a rotation, perhaps with a body and a potential, and prints
-expressions. This program works out the same quantities from their definitions, at a random point
-and in exact numbers, and compares. It believes nothing but the description.
+expressions. This program works out the same quantities from their definitions, and compares. It
+believes nothing but the description.
 
-Why one point is enough. The cosine and the sine of an angle are (1 - t²)/(1 + t²) and
-2t/(1 + t²), and unit vectors are fractions of polynomials as well. So both sides of an identity
-are such fractions in the drawn numbers. Two different ones, of degree d, agree by chance at most d
-times in 2¹²⁸ if each number is one of 2¹²⁸ (the lemma of Schwartz and Zippel). MOST_DEGREE keeps
-d below 10⁹: of 10²⁹ runs, at most one accepts a false identity. A forger cannot choose the point,
-at which every divisor is shown not to be zero, and every root is real and positive.
+Every number is worked out at six random points. Five are real, with 60 digits: what is false there,
+or divides by zero, is refused. One is rational, where a cosine is (1 - t²)/(1 + t²) and the sine is
+2t/(1 + t²). Both sides of an identity are fractions of polynomials in the numbers that are drawn.
+Two different ones, of degree d, agree by chance at most d times in 2⁹⁶ if each number is one of 2⁹⁶
+(the lemma of Schwartz and Zippel). The degree is counted, and at most 10⁹; so of 10¹⁹ runs at most
+one accepts a false identity, and no forger can choose the point. Cofactors would say no more.
 """
 
 from __future__ import annotations
@@ -18,39 +18,43 @@ import ast
 import json
 import re
 import sys
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from copy import copy
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from decimal import Decimal, localcontext
 from fractions import Fraction
-from functools import cache, reduce
-from math import gcd, isqrt, lcm
+from functools import cache, partial, reduce
+from itertools import chain
 from operator import add, mul, sub, truediv
 from pathlib import Path
 from random import SystemRandom
 from typing import Any
 
-BITS, MOST_DEGREE, MOST_POWER = 128, 100_000, 60
-MOST_DIGITS, MOST_PARTS, MOST_ROOTS = 40, 12, 6
-ANGULAR = "cos", "sin", "tan", "cot"
+PLACES, DIGITS, CLOSE, SMALL = 5, 60, Decimal("1e-30"), Decimal("1e-40")
+BITS, MOST_DEGREE, MOST_BITS, MOST_POWER, MOST_DIGITS, MOST_TURNS = 96, 10**9, 10**6, 60, 40, 12
+PI = Decimal("3.1415926535897932384626433832795028841971693993751058209749446")
 OPERATORS = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/"}
+OPERATIONS = {"+": add, "-": sub, "*": mul, "/": truediv}
 OMEGA = {frame: [f"omega_{frame}_{k}" for k in (1, 2, 3)] for frame in ("space", "body")}
-PLACE, VELOCITY, AXIS = ["X", "Y", "Z"], ["X_dot", "Y_dot", "Z_dot"], ["n_x", "n_y", "n_z"]
-ABOUT, TORQUE = ["p_x", "p_y", "p_z"], ["torque_1", "torque_2", "torque_3"]
-LETTERS = *PLACE, *VELOCITY, *AXIS, *ABOUT, *TORQUE, *OMEGA["space"], *OMEGA["body"], "pi"
-PRINCIPAL = "principal_axes", "principal_moments"
-DESCRIBED = "matrix", "mass", "centre", "inertia", "potential", "forces", "torque"
-ROTATION = "R is a rotation"
-UNITS = {
-    "": ("rotation_matrix", "principal_axes", *AXIS),
-    "1/s": ("rotation_rate",),
-    "rad/s": ("spin_matrix", "angular_velocity", *OMEGA["space"], *OMEGA["body"]),
-    "rad/s^2": ("angular_acceleration", "angular_acceleration_from_torque"),
-    "kg": ("mass",),
-    "m": ("centre_of_mass", *PLACE),
-    "m/s": VELOCITY,
-    "kg m^2": ("inertia_tensor", "inertia_tensor_point", "moment_of_inertia", "principal_moments"),
-    "kg m^2/s": [f"angular_momentum{part}" for part in ("", "_centre", "_rotation")],
-    "N m": TORQUE,
-    "J": [f"{kind}_energy" for kind in ("translational", "rotational", "kinetic", "potential")],
+ROTATION, PRINCIPAL = "R is a rotation", ("principal_axes", "principal_moments")
+FUNCTIONS = "cos", "sin", "tan", "cot"
+LETTERS = {  # arguments besides coordinates and their rates, with their units
+    "omega_space": (OMEGA["space"], "rad/s"),
+    "omega_body": (OMEGA["body"], "rad/s"),
+    "centre": (["X", "Y", "Z"], "m"),
+    "centre_dot": (["X_dot", "Y_dot", "Z_dot"], "m/s"),
+    "point": (["p_x", "p_y", "p_z"], "m"),
+    "direction": (["n_x", "n_y", "n_z"], ""),
+    "torque": (["torque_1", "torque_2", "torque_3"], "N m"),
+}
+UNITS = {  # of quantities, by their names
+    "rotation_matrix|principal_axes": "",
+    "rotation_rate": "1/s",
+    "spin_matrix|angular_velocity_.*": "rad/s",
+    "angular_acceleration_.*": "rad/s^2",
+    "mass": "kg",
+    "centre_of_mass": "m",
+    "inertia_tensor.*|moment_of_inertia|principal_moments": "kg m^2",
+    "angular_momentum.*": "kg m^2/s",
+    ".*_energy": "J",
 }
 SQUARES = "({0}**2 + {1}**2 + {2}**2 + {3}**2)"
 TURNS = {  # a vector v and numbers c and s: R = 1 + s C(v) + (1 - c) C(v)²
@@ -67,16 +71,15 @@ TURNS = {  # a vector v and numbers c and s: R = 1 + s C(v) + (1 - c) C(v)²
     ),
 }
 Tree = tuple[Any, ...]
-Exact = Any  # a whole number, a fraction or a Surd
-Turn = tuple[Exact, Exact]  # a cosine and a sine
+Values = tuple[Any, ...]  # of a tree: its degree, its exact value, and five decimals
 
 
 class Refused(ValueError):
     """What is printed is false, or the record contradicts itself."""
 
 
-class Unreadable(ValueError):
-    """An expression or a quantity that this program does not know; it is not proved."""
+class Unproved(ValueError):
+    """An expression or a quantity that this program does not know."""
 
 
 BROKEN = (LookupError, ArithmeticError, AttributeError, TypeError, ValueError, RecursionError)
@@ -98,22 +101,23 @@ def tree_of(text: str) -> Tree:
 
 def _tree(node: ast.AST) -> Tree:
     match node:
-        case ast.Name(id=name):
+        case ast.Name(name):
             return ("name", name[:-1])
-        case ast.Constant(value=int(number)) if number < 10**MOST_DIGITS:
+        case ast.Constant(int(number)) if number < 10**MOST_DIGITS:
             return ("number", number)
-        case ast.Call(func=ast.Name(id=name), args=[argument], keywords=[]) if name[:-1] in (
-            *ANGULAR,
-            "sqrt",
-        ):
-            return (name[:-1], _tree(argument))
-        case ast.UnaryOp(op=ast.USub(), operand=operand):
-            return ("-", ("number", 0), _tree(operand))
-        case ast.BinOp(left=base, op=ast.Pow(), right=ast.Constant(value=int(power))) if (
-            type(power) is int and 0 < power <= MOST_POWER
-        ):
-            return ("**", _tree(base), power)
-        case ast.BinOp(left=one, op=operator, right=two) if type(operator) in OPERATORS:
+        case ast.Call(ast.Name("tan_"), [angle], []):
+            return ("/", ("sin", _tree(angle)), ("cos", _tree(angle)))
+        case ast.Call(ast.Name("cot_"), [angle], []):
+            return ("/", ("cos", _tree(angle)), ("sin", _tree(angle)))
+        case ast.Call(ast.Name("cos_" | "sin_" as name), [angle], []):
+            return (name[:-1], _tree(angle))
+        case ast.Call(ast.Name("sqrt_"), [_], []):
+            raise Unproved("a root")
+        case ast.UnaryOp(ast.USub(), operand):
+            return ("-", ZERO, _tree(operand))
+        case ast.BinOp(base, ast.Pow(), ast.Constant(int(n))) if 0 < n <= MOST_POWER:
+            return ("**", _tree(base), n)
+        case ast.BinOp(one, operator, two) if type(operator) in OPERATORS:
             return (OPERATORS[type(operator)], _tree(one), _tree(two))
     raise SyntaxError
 
@@ -130,113 +134,63 @@ def names_in(tree: Tree) -> set[str]:
     return {part[1] for part in parts_of(tree) if part[0] == "name"}
 
 
-def texts_in(printed: Any) -> list[str]:
-    """The texts of a scalar, a vector or a matrix."""
-    if isinstance(printed, list):
-        return [text for each in printed for text in texts_in(each)]
-    return [printed]
+ZERO, ONE, TWO, MINUS = (("number", n) for n in (0, 1, 2, -1))
+HALF = ("/", ONE, TWO)
 
 
-# Exact numbers that change along a path, and matrices of them
+def plus(one: Tree, two: Tree) -> Tree:
+    return two if one == ZERO else one if two == ZERO else ("+", one, two)
 
 
-class Surd:
-    """Sums of roots, such as 1/2 + 3√2: fractions by the number n below the root.
-
-    Every n is a product of different primes. Their roots are independent over the fractions, so
-    a sum is zero only without terms.
-    """
-
-    def __init__(self, terms: Mapping[int, Fraction]) -> None:
-        self.terms = {n: factor for n, factor in terms.items() if factor}
-
-    def __add__(self, other: Exact) -> Surd:
-        one, two = self.terms, terms_of(other)
-        return Surd({n: one.get(n, 0) + two.get(n, Fraction(0)) for n in {**one, **two}})
-
-    def __mul__(self, other: Exact) -> Surd:
-        # √n √m = g √(nm/g²) with g = gcd(n, m), since n and m are products of different primes.
-        products = [
-            Surd({n * m // gcd(n, m) ** 2: one * two * gcd(n, m)})
-            for n, one in self.terms.items()
-            for m, two in terms_of(other).items()
-        ]
-        return reduce(add, products, Surd({}))
-
-    __radd__, __rmul__ = __add__, __mul__
-
-    def __bool__(self) -> bool:
-        return bool(self.terms)
-
-    def __rtruediv__(self, one: Exact) -> Surd:
-        """By conjugation: (a + b√p)(a - b√p) is free of √p."""
-        roots = [n for n in self.terms if n > 1]
-        if not roots:
-            return Surd({1: 1 / self.terms[1]}) * one
-        prime = next(p for p in range(2, roots[0] + 1) if roots[0] % p == 0)
-        conjugate = Surd({n: -f if n % prime == 0 else f for n, f in self.terms.items()})
-        return conjugate * (one / (self * conjugate))
+def times(one: Tree, two: Tree) -> Tree:
+    if ZERO in (one, two):
+        return ZERO
+    return two if one == ONE else one if two == ONE else ("*", one, two)
 
 
-def terms_of(number: Exact) -> Mapping[int, Fraction]:
-    return number.terms if isinstance(number, Surd) else {1: Fraction(number)}
+def once(function: Callable[[Tree], Any]) -> Callable[[Tree], Any]:
+    """A function that is worked out once a tree, which is kept, so that its id stays its own."""
+    results = dict[int, tuple[Tree, Any]]()
+
+    def remembered(tree: Tree) -> Any:
+        if id(tree) not in results:
+            results[id(tree)] = tree, function(tree)
+        return results[id(tree)][1]
+
+    return remembered
 
 
-def root_of(number: int) -> Exact:
-    """The positive root of a small whole number."""
-    if not 0 < number <= 10**6:
-        raise Unreadable(f"the root of {number}")
-    whole = next(k for k in range(isqrt(number), 0, -1) if number % k**2 == 0)
-    return Surd({number // whole**2: Fraction(whole)})
+def derivative(rates: Mapping[str, Tree]) -> Callable[[Tree], Tree]:
+    """The derivative of trees, from those of names; all other names are constant."""
 
+    @once
+    def rate(tree: Tree) -> Tree:
+        match tree:
+            case ("name", name):
+                return rates.get(name, ZERO)
+            case ("+", one, two):
+                return plus(rate(one), rate(two))
+            case ("-", one, two):
+                return plus(rate(one), times(MINUS, rate(two)))
+            case ("*", one, two):
+                return plus(times(rate(one), two), times(one, rate(two)))
+            case ("/", one, two):
+                return times(plus(rate(one), times(MINUS, times(tree, rate(two)))), ("/", ONE, two))
+            case ("**", base, n):
+                return times(times(("number", n), rate(base)), ("/", tree, base))
+            case ("cos", angle):
+                return times(times(MINUS, rate(angle)), ("sin", angle))
+            case ("sin", angle):
+                return times(rate(angle), ("cos", angle))
+        return ZERO
 
-class Number:
-    """c₀ + c₁ s + c₂ s², as far as it is known; most of these are zero."""
-
-    def __init__(self, *parts: Exact) -> None:
-        self.parts = parts
-
-    def __add__(self, other: Number) -> Number:
-        return Number(*map(add, self.parts, other.parts))  # the shorter one is what is known
-
-    def __sub__(self, other: Number) -> Number:
-        return self + other * MINUS
-
-    def __mul__(self, other: Number) -> Number:
-        one, two = self.parts, other.parts
-        # The Cauchy product, broken off at the order to which both factors are known.
-        pairs = (zip(one[: k + 1], two[k::-1], strict=True) for k in range(min(len(one), len(two))))
-        return Number(*(sum(a * b for a, b in pair if a and b) for pair in pairs))
-
-    def __truediv__(self, other: Number) -> Number:
-        return self * other.inverse()
-
-    def inverse(self) -> Number:
-        if not self.parts[0]:
-            raise Refused("a divisor is zero")
-        # 1/(c + h) = 1/c − h/c² + h²/c³
-        inverse = Fraction(1) / self.parts[0]
-        return self.changed(inverse, -1 * inverse * inverse, inverse * inverse * inverse)
-
-    def rate(self) -> Number:
-        if len(self.parts) < 2:
-            raise Unreadable("a derivative that is not known")
-        return Number(*(k * part for k, part in enumerate(self.parts[1:], start=1)))
-
-    def changed(self, value: Exact, slope: Exact, bend: Exact) -> Number:
-        """f(c₀ + h) = f + f' h + f"/2 h², from f, f' and f"/2 at c₀."""
-        first, second = self.parts[1:2], self.parts[2:]
-        bent = (slope * part + bend * first[0] * first[0] for part in second)
-        return Number(value, *(slope * part for part in first), *bent)
-
-
-ZERO, ONE, MINUS, HALF = (Number(value, 0, 0) for value in (0, 1, -1, Fraction(1, 2)))
+    return rate
 
 
 class Matrix:
-    """Rows of numbers; a vector is a column, and a scalar one entry."""
+    """Rows of trees; a vector is a column, and a scalar one entry."""
 
-    def __init__(self, rows: Iterable[Iterable[Number]]) -> None:
+    def __init__(self, rows: Iterable[Iterable[Tree]]) -> None:
         self.rows = [list(row) for row in rows]
         self.entries = [entry for row in self.rows for entry in row]
 
@@ -245,50 +199,58 @@ class Matrix:
         return Matrix(zip(*self.rows, strict=True))
 
     def __add__(self, other: Matrix) -> Matrix:
-        pairs = zip(self.rows, other.rows, strict=True)
-        return Matrix([one + two for one, two in zip(*pair, strict=True)] for pair in pairs)
+        return Matrix(map(plus, *pair) for pair in zip(self.rows, other.rows, strict=True))
 
     def __sub__(self, other: Matrix) -> Matrix:
-        return self + other * MINUS
+        return self + other.times(MINUS)
 
-    def __mul__(self, other: Matrix | Number) -> Matrix:
-        if isinstance(other, Number):
-            return Matrix([entry * other for entry in row] for row in self.rows)
+    def __mul__(self, other: Matrix) -> Matrix:
+        if len(self.entries) == 1 and len(other.rows) > 1:  # a scalar
+            return other.times(self.entries[0])
         columns = other.T.rows
-        return Matrix([dot(row, column) for column in columns] for row in self.rows)
+        return Matrix([reduce(plus, map(times, row, c)) for c in columns] for row in self.rows)
 
-    def rate(self) -> Matrix:
-        return Matrix(map(Number.rate, row) for row in self.rows)
+    def times(self, factor: Tree) -> Matrix:
+        return self.each(lambda entry: times(factor, entry))
+
+    def each(self, function: Callable[[Tree], Tree]) -> Matrix:
+        return Matrix(map(function, row) for row in self.rows)
 
     def hat(self) -> Matrix:
         """C(v) of a vector v, the operator v ×."""
-        x, y, z = self.entries
-        return Matrix([[ZERO, z * MINUS, y], [z, ZERO, x * MINUS], [y * MINUS, x, ZERO]])
+        (x, y, z), (a, b, c) = self.entries, self.times(MINUS).entries
+        return Matrix([[ZERO, c, y], [z, ZERO, a], [b, x, ZERO]])
 
     def vee(self) -> Matrix:
         """v of a skew matrix C(v)."""
         return Matrix([[self.rows[2][1]], [self.rows[0][2]], [self.rows[1][0]]])
 
-    def determinant(self) -> Number:
-        """By elimination; zero where a column has no pivot, which is all that its readers ask."""
-        rows, product = self.rows, ONE
-        if any(len(row) != len(rows) for row in rows):
-            raise Refused("a matrix that is not square has no determinant")
-        while rows:
-            place = next((k for k, row in enumerate(rows) if row[0].parts[0]), None)
-            if place is None:
-                return ZERO
-            # Moving row k to the top is k exchanges of neighbours, each with a change of sign. The
-            # rows that remain hold the Schur complement of the pivot.
-            pivot, *first = rows[place]
-            product *= pivot * MINUS if place % 2 else pivot
-            others = ((row[0] / pivot, row[1:]) for k, row in enumerate(rows) if k != place)
-            rows = [[b - f * a for a, b in zip(first, rest, strict=True)] for f, rest in others]
-        return product
+    def diagonal(self) -> Matrix:
+        """The matrix with the entries of a vector on its diagonal."""
+        return Matrix(
+            [
+                [e if j == k else ZERO for j in range(len(self.rows))]
+                for k, e in enumerate(self.entries)
+            ]
+        )
+
+    def determinant(self) -> Tree:
+        """By the first column and its minors; 1 without rows."""
+        total = ZERO if self.rows else ONE
+        for row in reversed(self.rows):
+            minor = Matrix(other[1:] for other in self.rows if other is not row)
+            total = plus(times(row[0], minor.determinant()), times(MINUS, total))
+        return total
 
 
-def dot(row: Sequence[Number], column: Sequence[Number]) -> Number:
-    return reduce(add, [one * two for one, two in zip(row, column, strict=True)])
+def matrix_of(printed: Any) -> Matrix:
+    """A scalar, the column of a vector, or a matrix."""
+    rows = printed if isinstance(printed, list) else [printed]
+    return Matrix(map(tree_of, row if isinstance(row, list) else [row]) for row in rows)
+
+
+def column(names: Iterable[str]) -> Matrix:
+    return Matrix([("name", name)] for name in names)
 
 
 IDENTITY = Matrix([[ONE, ZERO, ZERO], [ZERO, ONE, ZERO], [ZERO, ZERO, ONE]])
@@ -296,7 +258,8 @@ IDENTITY = Matrix([[ONE, ZERO, ZERO], [ZERO, ONE, ZERO], [ZERO, ZERO, ONE]])
 # What a record describes
 
 
-def without_twins(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+def without_twins(pairs: Iterable[tuple[str, Any]]) -> dict[str, Any]:
+    pairs = [*pairs]
     if len(dict(pairs)) < len(pairs):
         raise Refused(f"a name is there twice: {[key for key, _ in pairs]}"[:200])
     return dict(pairs)
@@ -314,10 +277,9 @@ def printed_in(content: Mapping[str, Any]) -> dict[str, Any]:
 def turn_of(text: str) -> tuple[str, list[str]]:
     """What a turn such as "z(phi)" is about, and the five texts of TURNS."""
     kind, places = text.partition("(")[0], text.partition("(")[2][:-1].split(",")
-    if not text.endswith(")") or kind not in TURNS:
+    count = len({*re.findall("{.}", " ".join(TURNS.get(kind, ())))})
+    if not text.endswith(")") or len(places) != count:
         raise Refused(f"the turn {text!r}")
-    if len(places) != len({*re.findall("{.}", " ".join(TURNS[kind]))}):
-        raise Refused(f"the number of arguments of the turn {text!r}")
     for place in places:
         tree_of(place)  # each of them is an expression, and no piece of one
     return kind, [form.format(*(f"({place})" for place in places)) for form in TURNS[kind]]
@@ -328,428 +290,347 @@ class Record:
 
     def __init__(self, content: Mapping[str, Any]) -> None:
         self.content, self.printed = content, printed_in(content)
-        self.rotation, arguments = content["rotation"], content["arguments"]
-        definitions = [(each["name"], each["expression"]) for each in content["definitions"]]
-        components = [(g["name"], [c["name"] for c in g["components"]]) for g in arguments]
-        self.definitions, groups = without_twins(definitions), without_twins(components)
-        self.q, self.constants = groups["q"], groups.get("parameters", [])
-        self.rates, self.seconds = ([q + end for q in self.q] for end in ("_dot", "_ddot"))
-        self.momenta = [f"p_{q}" for q in self.q]
-        of_motion = {"q_dot": self.rates, "q_ddot": self.seconds, "momenta": self.momenta}
-        if any(groups.get(name, named) != named for name, named in of_motion.items()):
-            raise Refused("rates and momenta are not named after the coordinates, in their order")
-        own = [*self.q, *self.rates, *self.seconds, *self.constants, *self.definitions]
-        self.others = {*self.momenta, *LETTERS, *(n for group in groups.values() for n in group)}
-        for name in {*own, *self.others}:
-            if not re.fullmatch("[A-Za-z][A-Za-z0-9_]*", name, re.ASCII):
-                raise Refused(f"the name {name!r} is not plain ASCII")
-            if own.count(name) + (name in {*self.momenta, *LETTERS, *ANGULAR, "sqrt"}) > 1:
-                raise Refused(f"the name {name!r} has two meanings")
-        body = content.get("body", {})
-        parameters = {parameter["name"] for parameter in body.get("parameters", ())}
-        if (parameters | self.others).intersection(self.definitions):
-            raise Refused("an argument or a parameter of the body is defined as well")
-        about = {"inertia_tensor_point", "moment_of_inertia"}.intersection(self.printed)
-        if about and "hamiltonian" in self.printed and {*self.momenta}.intersection(ABOUT):
-            raise Refused("a momentum has the name of a place")
-        self.turns = [turn_of(turn) for turn in self.rotation.get("turns", ())]
-        self.refuse_words()
-        self.spheres = [*map(self.sphere, self.rotation["conditions"])]
-        without_twins([(name, "") for sphere in self.spheres for name in sphere])
-        parts = [self.rotation, body, content.get("motion", {})]
-        texts = [part[name] for part in parts for name in DESCRIBED if name in part]
-        if any(names_in(tree_of(text)).intersection(self.definitions) for text in texts_in(texts)):
-            raise Refused("what a record describes holds a name that it defines")
-        texts += [*self.printed.values(), *self.definitions.values()]
-        self.trees = [*map(tree_of, texts_in([*texts, *(forms for _, forms in self.turns)]))]
-        self.refuse_degrees()
-
-    def refuse_words(self) -> None:
-        """Refuse words beside the expressions that would give a true claim another meaning."""
-        name, presentation = self.content["name"], self.content["presentation"]
+        self.rotation, self.turns = content["rotation"], content["rotation"].get("turns", ())
         if ("matrix" in self.rotation) == bool(self.turns):
             raise Refused("a rotation has either turns or a matrix")
+        definitions = ((each["name"], each["expression"]) for each in content["definitions"])
+        self.definitions = without_twins(definitions)
+        groups = without_twins((g["name"], g["components"]) for g in content["arguments"])
+        names = {group: [c["name"] for c in components] for group, components in groups.items()}
+        self.q, self.constants = names["q"], names.get("parameters", [])
+        self.rates, self.seconds = ([q + end for q in self.q] for end in ("_dot", "_ddot"))
+        self.momenta = [f"p_{q}" for q in self.q]
+        letters = {group: letters for group, (letters, _) in LETTERS.items()}
+        letters |= {"q_dot": self.rates, "q_ddot": self.seconds, "momenta": self.momenta}
+        if any(names.get(group, own) != own for group, own in letters.items()):
+            raise Refused("arguments do not have the names that belong to them")
+        self.letters = {*chain(*letters.values())}
+        own = [*self.q, *self.constants, *self.definitions]
+        without_twins((name, "") for name in (*own, *self.letters, *FUNCTIONS, "sqrt", "pi"))
+        if not all(re.fullmatch("[A-Za-z][A-Za-z0-9_]*", name, re.ASCII) for name in own):
+            raise Refused("a name is not plain ASCII")
+        self.spheres = [*map(self.sphere, self.rotation["conditions"])]
+        without_twins((name, "") for sphere in self.spheres for name in sphere)
+        self.refuse_words([*chain(*groups.values())])
+        self.factors = [self.turn(turn_of(turn)[1]) for turn in self.turns]
+        self.factors = self.factors or [self.described(self.rotation["matrix"], *self.q)]
+        self.R = reduce(mul, self.factors)
+
+    def refuse_words(self, components: Sequence[Mapping[str, str]]) -> None:
+        """Refuse words beside the expressions that would give a true claim another meaning."""
+        name, presentation = self.content["name"], self.content["presentation"]
         if presentation not in ("active", "passive"):
             raise Refused(f"the presentation {presentation!r}")
         if spelled := re.match("euler_([xyz]+)_(..)trinsic$", name):
             turns = [f"{axis}({q})" for axis, q in zip(spelled[1], self.q, strict=True)]
-            if self.rotation.get("turns") != (turns[::-1] if spelled[2] == "ex" else turns):
+            if [*self.turns] != (turns[::-1] if spelled[2] == "ex" else turns):
                 raise Refused(f"the turns are not those of {name}")
-        components = [c for group in self.content["arguments"] for c in group["components"]]
-        units = {component["name"]: component["unit"] for component in components}
-        own = [c for c in components if c["name"] in {*self.q, *self.rates, *self.constants}]
-        if any(units[component["name"]] != component["unit"] for component in own):
-            raise Refused("a name has two units")
-        unit_of = {name: unit for unit, names in UNITS.items() for name in names}
-        things = [(q["name"], q["unit"]) for q in self.content["quantities"]]
-        things += [(name, unit) for name, unit in units.items() if name not in self.constants]
-        checks = [(n, u, unit_of.get(re.sub("_(space|body)$", "", n), u)) for n, u in things]
+        units = {c["name"]: c["unit"] for c in components}
+        expected = {letter: unit for letters, unit in LETTERS.values() for letter in letters}
         for q, rate, second in zip(self.q, self.rates, self.seconds, strict=True):
-            for name, unit in ((rate, f"{units[q] or '1'}/s"), (second, f"{units[q] or '1'}/s^2")):
-                checks.append((name, units.get(name, unit), unit))
-        for kind, (*_, sine) in self.turns:
+            expected |= {rate: f"{units[q] or '1'}/s", second: f"{units[q] or '1'}/s^2"}
+        for kind, (*_, sine) in map(turn_of, self.turns):
             if kind in ("x", "y", "z", "axis_angle"):
-                angles = names_in(tree_of(sine)).intersection({*self.q, *self.constants})
-                checks += [(name, units[name], "rad") for name in angles]
-        for name, unit, expected in checks:
-            if unit != expected:
-                raise Refused(f"{name} is in {unit!r}, not in {expected!r}")
+                expected |= dict.fromkeys(
+                    {*self.q, *self.constants} & names_in(tree_of(sine)), "rad"
+                )
+        for name, unit in [(c["name"], c["unit"]) for c in components]:
+            if unit != expected.setdefault(name, unit) or name in self.definitions:
+                raise Refused(f"{name} is in {unit!r}, not in {expected[name]!r}, or is defined")
+        for name, unit in [(q["name"], q["unit"]) for q in self.content["quantities"]]:
+            if any(re.fullmatch(of, name) and unit != expected for of, expected in UNITS.items()):
+                raise Refused(f"{name} is in {unit!r}")
 
     def sphere(self, condition: str) -> list[str]:
-        """The names of a condition x² + y² + ... - 1, which has real solutions."""
-        tree = tree_of(condition)
-        if tree[0] != "-" or tree[2] != ("number", 1) or not self.vector(tree[1]):
-            raise Unreadable(f"the condition {condition!r}, which is no sum of squares less 1")
-        return self.vector(tree[1])
-
-    def vector(self, tree: Tree) -> list[str]:
-        """The names of x² + y² + ..., if all are coordinates or all are constant."""
-        squares = [tree]
-        while squares[0][0] == "+":
-            squares[:1] = squares[0][1:]
-        names = [square[1][1] for square in squares if square[0] == "**" and square[2] == 2]
+        """The names of a condition x**2 + y**2 + ... - 1, which has real solutions."""
+        names = re.findall(r"\w+(?=\*\*2)", condition)
+        is_sum = condition == " + ".join(f"{name}**2" for name in names) + " - 1"
         is_alike = {*names} <= {*self.q} or {*names} <= {*self.constants}
-        return names if is_alike and 1 < len({*names}) == len(squares) else []
+        if not is_sum or not is_alike or len(names) < 2:
+            raise Unproved(f"the condition {condition!r}, which is no sum of squares less 1")
+        return names
 
-    def refuse_degrees(self) -> None:
-        """Refuse too large expressions and too small parts of angles."""
+    def letters_in(self, tree: Tree) -> set[str]:
+        """The names in a tree, and in the definitions of these."""
+        names = names_in(tree)
+        defined = names.intersection(self.definitions)
+        trees = (tree_of(self.definitions[name]) for name in defined)
+        return (names - defined).union(*map(self.letters_in, trees))
 
-        @cache
-        def degrees(tree: Tree) -> tuple[int, int]:
-            """Of numerator and denominator; numbers count, since their digits do."""
-            kind, *parts = tree
-            if kind == "name" and parts[0] in self.definitions:
-                return degrees(tree_of(self.definitions[parts[0]]))
-            if kind in ("name", "number", *ANGULAR):
-                return 1, int(kind in ("tan", "cot"))
-            one, below = degrees(parts[0])
-            if kind in ("**", "sqrt"):
-                power = parts[1] if kind == "**" else 1
-                return one * power, below * power
-            two, divisor = degrees(parts[1])
-            if kind in ("*", "/"):
-                return (one + two, below + divisor) if kind == "*" else (one + divisor, below + two)
-            return max(one + divisor, two + below), below + divisor
+    def described(self, printed: Any, *names: str) -> Matrix:
+        """What holds no other names than constants and these."""
+        matrix = matrix_of(printed)
+        self.refuse_others(set().union(*map(names_in, matrix.entries)), names)
+        return matrix
 
-        of_turns = sum(max(degrees(tree_of(form))) for _, forms in self.turns for form in forms)
-        if max(of_turns, *(max(degrees(tree)) for tree in self.trees)) > MOST_DEGREE:
-            raise Refused("the degree of an expression is too large")
-        parts = [part for tree in self.trees for part in parts_of(tree)]
-        numbers = {part[1] for part in parts if part[0] == "sqrt" and part[1][0] == "number"}
-        if len(numbers) > MOST_ROOTS:  # whose products are as many as the subsets of their primes
-            raise Refused(f"there are roots of more than {MOST_ROOTS} different numbers")
-        angles = {part[1] for part in parts if part[0] in ANGULAR}
-        divided = [part for angle in angles for part in parts_of(angle) if part[0] == "/"]
-        self.parts = lcm(*(part[2][1] for part in divided if part[2][0] == "number"))
-        if not 0 < self.parts <= MOST_PARTS:
-            raise Refused(f"an angle is divided by {self.parts}")
+    def refuse_others(self, inside: set[str], names: Iterable[str]) -> None:
+        if others := inside.difference(names, self.constants, ["pi"]):
+            raise Refused(f"{min(others)} must not be in an expression")
+
+    def turn(self, forms: Sequence[str]) -> Matrix:
+        """Rodrigues' formula R = 1 + s C(v) + (1 − c) C(v)²; whether R is a rotation is tested."""
+        *axis, cosine, sine = self.described([[*forms]], *self.q).entries
+        operator = Matrix([part] for part in axis).hat()
+        return IDENTITY + operator.times(sine) + (operator * operator).times(("-", ONE, cosine))
+
+
+# Values of trees
+
+
+def drawn(name: str, least: int = -3) -> Values:
+    random, scale = SystemRandom(), 10**DIGITS
+    reals = [Decimal(random.randrange(least * scale, 3 * scale)) / scale for _ in range(PLACES)]
+    return (1, Fraction(random.randrange(1, 2**BITS)), *([PI] * PLACES if name == "pi" else reals))
+
+
+def combined(operation: Callable[[Any, Any], Any], one: Values, two: Values) -> Values:
+    if operation is truediv and (not two[1] or min(map(abs, two[2:])) < SMALL):
+        raise Refused("a divisor is zero")
+    degree, exact = one[0] + two[0], operation(one[1], two[1])
+    if degree > MOST_DEGREE or abs(exact.numerator) >> MOST_BITS:
+        raise Unproved("too large an expression")
+    return (degree, exact, *map(operation, one[2:], two[2:]))
+
+
+def circle_of(angle: Decimal) -> tuple[Decimal, Decimal]:
+    """The cosine and the sine, by their series."""
+    sums, term, k = [Decimal(0)] * 4, Decimal(1), 0
+    while abs(term) > Decimal(10) ** -DIGITS:
+        sums[k % 4] += term
+        k += 1
+        term *= angle / k
+    return sums[0] - sums[2], sums[1] - sums[3]
+
+
+def multiples(angle: Tree, count: int) -> Iterator[tuple[str, int]]:
+    """The names in a sum of whole multiples, and how often each is in it."""
+    match angle:
+        case ("+" | "-" as sign, one, two):
+            yield from multiples(one, count)
+            yield from multiples(two, count if sign == "+" else -count)
+        case ("*", ("number", number), part):
+            yield from multiples(part, count * number)
+        case ("name", name) if abs(count) <= MOST_TURNS:
+            yield name, count
+        case ("number", number) if abs(count * number) <= MOST_TURNS:
+            yield "1", count * number
+        case _:
+            raise Unproved("an angle that may be a multiple of another one")
 
 
 class Point:
-    """Random values for the names of a record, such that its conditions hold.
-
-    Coordinates are drawn with their rates and accelerations. The length of a vector is drawn, and
-    its components follow. Other roots of names have no value, since √(x²) is x or -x.
-    """
+    """Random values for the names of a record, such that its conditions hold."""
 
     def __init__(self, record: Record) -> None:
-        self.record, self.trees = record, dict[Tree, Number]()
-        self.circles, self.lengths = dict[str, int](), dict[frozenset[str], int]()
-        self.values = {name: Number(drawn()) for name in record.others}
-        self.values |= {q: Number(drawn(), drawn(), drawn()) for q in record.q}
-        self.values |= {name: Number(drawn(), 0, 0) for name in [*record.constants, "pi"]}
-        roots = (part[1] for tree in record.trees for part in parts_of(tree) if part[0] == "sqrt")
-        for group in [*record.spheres, *filter(None, map(record.vector, roots))]:
-            if all(vector.isdisjoint(group) for vector in self.lengths):
-                length = ONE if group in record.spheres else self.values[group[0]]
-                self.lengths[frozenset(group)] = length.parts[0]
-                # (1 - u², 2 u)/(1 + u²) is a unit vector, by stereographic projection
-                u = [self.values[name] for name in group[1:]]
-                scale = length / (ONE + dot(u, u))
-                vector = [(ONE - dot(u, u)) * scale, *((each + each) * scale for each in u)]
-                self.values |= zip(group, vector, strict=True)
-        for q, rate, second in zip(record.q, record.rates, record.seconds, strict=True):
-            self.values |= {rate: self.values[q].rate(), second: self.values[q].rate().rate()}
+        self.value, self.circle = once(self.worked_out), cache(self.circle_at)
+        self.drawn, self.record = cache(drawn), record
+        self.names = {*record.q, *record.letters, *record.constants, "pi"}
+        self.trees = {name: tree_of(text) for name, text in record.definitions.items()}
+        for sphere in record.spheres:
+            self.trees |= {name: tree for name, tree in on_sphere(sphere) if name in self.names}
 
-    def having(self, values: Mapping[str, Number]) -> Point:
-        """The same point, with other values or fewer names."""
-        other = copy(self)
-        other.values, other.trees = {**values}, {}
-        return other
-
-    def only(self, *names: str) -> Point:
-        """Without other names than constants and these."""
-        names = *names, *self.record.constants, "pi"
-        return self.having({name: self.values[name] for name in names})
-
-    def still(self) -> Point:
-        """Without what follows from rates, which is faster."""
-        return self.having({name: Number(each.parts[0]) for name, each in self.values.items()})
-
-    def along(self, q: str) -> Point:
-        """Where one coordinate changes at the rate 1, and nothing else changes."""
-        values = self.values.items()
-        return self.having({name: Number(v.parts[0], int(name == q)) for name, v in values})
-
-    def read(self, printed: Any) -> Matrix:
-        """A scalar, the column of a vector, or a matrix."""
-        rows = printed if isinstance(printed, list) else [printed]
-        texts = [row if isinstance(row, list) else [row] for row in rows]
-        return Matrix([self.value(tree_of(text)) for text in row] for row in texts)
-
-    def value(self, tree: Tree) -> Number:
-        if tree not in self.trees:
-            self.trees[tree] = self.worked_out(*tree)
-        return self.trees[tree]
-
-    def worked_out(self, kind: str, *parts: Any) -> Number:
-        if kind == "number":
-            return Number(parts[0], 0, 0)
-        if kind == "name" and parts[0] in self.record.definitions:
-            return self.value(tree_of(self.record.definitions[parts[0]]))
-        if kind == "name":
-            if parts[0] not in self.values:
-                raise Refused(f"{parts[0]} must not be in an expression")
-            return self.values[parts[0]]
-        if kind == "sqrt":
-            return self.root(parts[0])
-        if kind in ANGULAR:
-            cosine, sine = self.turn(parts[0])
-            values = {"cos": (cosine, ONE), "sin": (sine, ONE), "tan": (sine, cosine)}
-            return truediv(*values.get(kind, (cosine, sine)))
-        if kind == "**":
-            return reduce(mul, [self.value(parts[0])] * parts[1], ONE)
-        operation = {"+": add, "-": sub, "*": mul, "/": truediv}[kind]
-        return operation(*map(self.value, parts))
-
-    def root(self, tree: Tree) -> Number:
-        """The positive root of a whole number, or the length of a vector."""
-        if tree[0] == "number":
-            return Number(root_of(tree[1]), 0, 0)
-        length = self.lengths.get(frozenset(self.record.vector(tree)))
-        if length is None:
-            raise Unreadable("a root that may be of either sign")
-        # √(l² + h) = l + h/(2 l) − h²/(8 l³)
-        slope = Fraction(1, 2 * length)
-        return self.value(tree).changed(length, slope, -(slope**3))
-
-    def turn(self, angle: Tree) -> tuple[Number, Number]:
-        """The cosine and the sine of an angle."""
-        # cos(a + h) = cos a − h sin a − h²/2 cos a, and sin(a + h) = sin a + h cos a − h²/2 sin a
-        value, (cosine, sine) = self.value(angle), self.circle(angle, Fraction(self.record.parts))
-        cosines = value.changed(cosine, -sine, -cosine / 2)
-        return cosines, value.changed(sine, cosine, -sine / 2)
-
-    def circle(self, angle: Tree, count: Fraction) -> Turn:
-        """The cosine and the sine of so many parts of an angle, in numbers drawn for a part."""
-        match angle:
-            case ("+" | "-" as sign, one, two):
-                other = self.circle(two, count if sign == "+" else -count)
-                return sum_of_turns(self.circle(one, count), other)
-            case ("*", ("number", number), part) | ("*", part, ("number", number)):
-                return self.circle(part, count * number)
-            case ("/", part, ("number", number)):
-                return self.circle(part, count / number)
+    def worked_out(self, tree: Tree) -> Values:
+        match tree:
             case ("number", number):
-                name, count = "", count * number
-            case ("name", name) if name in (*self.record.q, *self.record.constants):
-                pass
-            case ("sqrt", squares) if frozenset(self.record.vector(squares)) in self.lengths:
-                name = " ".join(sorted(self.record.vector(squares)))
-            case _:
-                raise Unreadable("an angle that may be a multiple of another one")
-        if count.denominator > 1 or abs(count) > MOST_PARTS:
-            raise Unreadable("too large a multiple of an angle")
-        # The drawn t is the tangent of half of the smallest part. The addition theorems give the
-        # cosine and the sine of its multiples, so that angles that depend on one another agree.
-        t = self.circles.setdefault(name, drawn())
-        part = Fraction(1 - t**2, 1 + t**2), Fraction(2 * t if count > 0 else -2 * t, 1 + t**2)
-        return reduce(sum_of_turns, [part] * abs(int(count)), (Fraction(1), Fraction(0)))
+                return (1, Fraction(number), *[Decimal(number)] * PLACES)
+            case ("name", name) if name in self.trees:
+                return self.value(self.trees[name])
+            case ("name", name) if name in self.names or " " in name:
+                return self.drawn(name, 0 if name in self.record.constants else -3)
+            case ("name", name):
+                raise Refused(f"{name} must not be in an expression")
+            case ("**", base, power):
+                return reduce(partial(combined, mul), [self.value(base)] * power)
+            case ("cos" | "sin" as function, angle):
+                return self.circle(angle)[function == "sin"]
+        operation, one, two = tree
+        return combined(OPERATIONS[operation], self.value(one), self.value(two))
+
+    def circle_at(self, angle: Tree) -> tuple[Values, Values]:
+        """The cosine and the sine of an angle, exact ones by the theorems of addition."""
+        (cosine, sine), degree = (Fraction(1), Fraction(0)), 1
+        for name, count in multiples(angle, 1):
+            if name not in ("1", *self.record.q, *self.record.constants):
+                raise Unproved(f"an angle that holds {name}")
+            t = self.drawn(f"half of {name}")[1]
+            c, s = (1 - t**2) / (1 + t**2), 2 * t / (1 + t**2) * (1 if count > 0 else -1)
+            for _ in range(abs(count)):
+                cosine, sine, degree = cosine * c - sine * s, cosine * s + sine * c, degree + 2
+        reals = zip(*map(circle_of, self.value(angle)[2:]), strict=True)
+        return (degree, cosine, *next(reals)), (degree, sine, *next(reals))
 
 
-def drawn() -> int:
-    """Above 0, since the lengths of vectors are."""
-    return SystemRandom().randrange(1, 2**BITS)
+def on_sphere(names: Sequence[str]) -> Iterator[tuple[str, Tree]]:
+    """(1 - u², 2 u)/(1 + u²), a unit vector by stereographic projection, and its derivatives."""
+    u = [f"u {name}" for name in names[1:]]
+    along = rate_along(*([name + end for name in u] for end in ("", "_dot", "_ddot")))
+    square = plus(ONE, (column(u).T * column(u)).entries[0])
+    vector = [("-", TWO, square), *column(u).times(TWO).entries]
+    vector = [("/", each, square) for each in vector]
+    for end in ("", "_dot", "_ddot"):
+        yield from zip((name + end for name in names), vector, strict=True)
+        vector = [*map(along, vector)]
 
 
-def sum_of_turns(one: Turn, two: Turn) -> Turn:
-    """The cosine and the sine of a sum."""
-    return one[0] * two[0] - one[1] * two[1], one[1] * two[0] + one[0] * two[1]
+def rate_along(*groups: Sequence[str]) -> Callable[[Tree], Tree]:
+    """The derivative by time, if each group of names has the rates of the next."""
+    pairs = zip(chain(*groups[:-1]), chain(*groups[1:]), strict=True)
+    return derivative({name: ("name", rate) for name, rate in pairs})
 
 
-# What is claimed: each quantity from its definition
+# What is claimed: matrices of a printed x, in pairs that are equal if x is right
 
 
-def spin(R: Matrix) -> dict[str, Matrix]:
-    """Ω of C(Ω) = dR/dt Rᵀ, and Ω' of C(Ω') = Rᵀ dR/dt."""
-    return {"space": (R.rate() * R.T).vee(), "body": (R.T * R.rate()).vee()}
+def is_rotation(A: Matrix) -> tuple[Matrix, ...]:
+    return A * A.T, IDENTITY, Matrix([[A.determinant()]]), Matrix([[ONE]])
+
+
+Law = Callable[[Any, Matrix], tuple[Matrix, ...]]
+OF_ROTATION: dict[str, Law] = {
+    "rotation_matrix": lambda m, x: (x, m.shown),
+    "rotation_rate": lambda m, x: (x, m.shown.each(m.rate)),
+    "spin_matrix": lambda m, x: (x, m.shown.each(m.rate) * m.shown.T),
+}
+OF_FRAME: dict[str, Law] = {  # with Ω in space, or in the body
+    "angular_velocity": lambda m, x: (x.hat(), m.spin),
+    "angular_acceleration": lambda m, x: (x, m.omega.each(m.rate)),
+    # x holds no rates, and these are random: x q̇ = Ω for all q̇, so that x = W
+    "rate_matrix": lambda m, x: (x * m.rates, m.omega),
+    # A is W, with a row for each condition
+    "inverse_rate_matrix": lambda m, x: (m.A * x, m.one),
+    "rates_from_angular_velocity": lambda m, x: (m.A * x, m.one * m.letters),
+}
+OF_BODY: dict[str, Law] = {
+    "mass": lambda m, x: (x, m.mass),
+    "centre_of_mass": lambda m, x: (x, m.centre),
+    "inertia_tensor": lambda m, x: (x, m.inertia),
+    "inertia_tensor_space": lambda m, x: (x, m.R * m.inertia * m.R.T),
+    "inertia_tensor_point": lambda m, x: (x, m.about_point),
+    "moment_of_inertia": lambda m, x: (x, m.direction.T * m.about_point * m.direction),
+    # E = (e₁ e₂ e₃) is a rotation, and I E = E diag(I₁, I₂, I₃): the e are eigenvectors
+    "principal_axes": lambda m, _: (*is_rotation(m.axes), m.inertia * m.axes, m.axes * m.moments),
+    "principal_moments": lambda m, _: (
+        *is_rotation(m.axes),
+        m.inertia * m.axes,
+        m.axes * m.moments,
+    ),
+    "translational_energy": lambda m, x: (x, m.translational),
+    "rotational_energy": lambda m, x: (x, m.energy),
+    "kinetic_energy": lambda m, x: (x, m.translational + m.energy),
+    "angular_momentum_centre": lambda m, x: (x, m.of_centre),
+    "angular_momentum_rotation_body": lambda m, x: (x, m.momentum),
+    "angular_momentum_rotation": lambda m, x: (x, m.R * m.momentum),
+    "angular_momentum": lambda m, x: (x, m.of_centre + m.R * m.momentum),
+    "angular_acceleration_from_torque": lambda m, x: (m.inertia * x, m.torque - m.gyroscopic),
+}
+OF_MOTION: dict[str, Law] = {
+    "potential_energy": lambda m, x: (x, m.potential),
+    "lagrangian": lambda m, x: (x, m.energy - m.potential),
+    "energy": lambda m, x: (x, m.energy + m.potential),
+    "generalised_momenta": lambda m, x: (x, m.momenta),
+    "mass_matrix": lambda m, x: (x, m.masses),
+    "bias_vector": lambda m, x: (x, m.bias),
+    "accelerations": lambda m, x: (m.masses * x + m.bias, m.forces, *m.regular),
+    # at p = M q̇, which may be any p if M is regular
+    "hamiltonian": lambda m, x: (x, m.energy + m.potential, *m.regular),
+    # M q̈ + h - Q, the balance, is zero along a motion; so are dE/dt and dp/dt of a cyclic q
+    "constant energy": lambda m, x: (x.each(m.rate), m.rates.T * m.balance),
+}
+ONLY = {  # groups of names that x may hold besides constants; others could hide a false term
+    "rate_matrix|inverse_rate_matrix": ["q"],
+    "rates_from_angular_velocity": ["q", "omega"],
+    "principal": [],
+    "hamiltonian": ["q", "momenta"],
+    "constant": ["q", "q_dot"],
+}
 
 
 class Motion:
-    """A rotation, its body and what moves it, at a point.
+    """A rotation, its body and what moves it, in the words of the laws.
 
-    A printed x is one of the `values`, or solves A x = B of `equations`, or has one of the `rates`.
-    What could hide a false term in other names is read at one of the `points`, without these names.
+    Ω has components in a frame. C(Ω) is the spin, and Ω = W q̇ is linear in the rates.
     """
 
-    def __init__(self, record: Record) -> None:
-        self.record, self.content, self.point = record, record.content, Point(record)
-        self.still, self.lack = self.point.still(), "it has no definition here"
-        self.factors = [*self.factors_at(self.point)]
-        R = self.R = reduce(mul, self.factors)
-        omega = self.omega = spin(R)
-        # Ω = W q̇ is linear in the rates: column k of W is Ω for the rate 1 of q_k, and 0 of the
-        # others.
-        spins = [spin(reduce(mul, self.factors_at(self.point.along(q)))) for q in record.q]
-        W = self.W = {frame: Matrix(spin[frame].entries for spin in spins).T for frame in OMEGA}
-        shown = R.T if self.content["presentation"] == "passive" else R
-        self.values = {
-            "rotation_matrix": shown,
-            "rotation_rate": shown.rate(),
-            "spin_matrix": shown.rate() * shown.T,
-            "angular_velocity_space": omega["space"],
-            "angular_velocity_body": omega["body"],
-            "angular_acceleration_space": omega["space"].rate(),
-            "angular_acceleration_body": omega["body"].rate(),
-        }
-        self.equations, self.rates = dict[str, tuple[Matrix, Matrix]](), dict[str, Matrix]()
-        self.position = self.still.only(*record.q)
-        self.points = dict.fromkeys(PRINCIPAL, self.still.only())
-        spheres = [sphere for sphere in record.spheres if sphere[0] in record.q]
-        radii = [[q if q in sphere else "0" for q in record.q] for sphere in spheres]
-        self.is_free = not radii
-        one = Matrix([*IDENTITY.rows, *([ZERO] * 3 for _ in radii)])
-        for frame, letters in OMEGA.items():  # rates along a radius would break a condition
-            A = Matrix([*W[frame].rows, *self.still.read(radii).rows])
-            inverse, rates = f"inverse_rate_matrix_{frame}", f"rates_from_angular_velocity_{frame}"
-            self.equations |= {inverse: (A, one), rates: (A, one * self.still.read(letters))}
-            self.points |= dict.fromkeys((inverse, f"rate_matrix_{frame}"), self.position)
-            self.points[rates] = self.still.only(*record.q, *letters)
+    def __init__(self, record: Record, frame: str) -> None:
+        self.record, self.rates = record, column(record.rates)
+        self.rate = rate_along(record.q, record.rates, record.seconds)
+        R, rate = record.R, record.R.each(self.rate)
+        self.R, self.shown = R, R.T if record.content["presentation"] == "passive" else R
+        self.spin = rate * R.T if frame == "space" else R.T * rate
+        self.omega, self.letters = self.spin.vee(), column(OMEGA[frame])
+        columns = (self.omega.each(derivative({name: ONE})).entries for name in record.rates)
+        self.W = Matrix(columns).T
+        # rates along a radius would leave the sphere of a condition
+        radii = [[("name", n) if n in s else ZERO for n in record.q] for s in record.spheres]
+        radii = [row for row in radii if any(entry != ZERO for entry in row)]
+        self.A, self.is_free = Matrix([*self.W.rows, *radii]), not radii
+        self.one = Matrix([*IDENTITY.rows, *([ZERO] * 3 for _ in radii)])
+        self.laws = OF_ROTATION | {f"{name}_{frame}": law for name, law in OF_FRAME.items()}
+        self.groups = {"q": record.q, "q_dot": record.rates, "momenta": record.momenta}
+        self.groups["omega"] = OMEGA[frame]
 
-    def factors_at(self, point: Point) -> Iterator[Matrix]:
-        """The turns whose product R is, or R itself."""
-        if "matrix" in self.record.rotation:
-            yield point.read(self.record.rotation["matrix"])
-        for _, texts in self.record.turns:
-            *axis, cosine, sine = point.read(texts).entries
-            # Rodrigues' formula R = 1 + s C(v) + (1 − c) C(v)²; whether R is a rotation is tested
-            # separately, since v and the numbers c and s come from the record.
-            operator = Matrix([part] for part in axis).hat()
-            yield IDENTITY + operator * sine + operator * operator * (ONE - cosine)
+    def read_body(self, body: Mapping[str, Any]) -> tuple[Matrix, ...]:
+        """Pairs that are equal if this can be a body."""
+        parts = (self.record.described(body[part]) for part in ("mass", "centre", "inertia"))
+        self.mass, self.centre, self.inertia = parts
+        letters = {group: column(names) for group, (names, _) in LETTERS.items()}
+        self.torque, self.direction = letters["torque"], letters["direction"]
+        arm, velocity = (letters["point"] - self.centre).hat(), letters["centre_dot"]
+        self.about_point = self.inertia + self.mass * (arm.T * arm)  # the parallel-axis theorem
+        self.momentum = self.inertia * self.omega
+        self.energy = (self.omega.T * self.momentum).times(HALF)
+        self.translational = (self.mass * velocity.T * velocity).times(HALF)
+        self.of_centre = self.mass * (letters["centre"].hat() * velocity)
+        self.gyroscopic = self.letters.hat() * self.inertia * self.letters
+        if {*PRINCIPAL} <= {*self.record.printed}:
+            self.axes, moments = (matrix_of(self.record.printed[name]) for name in PRINCIPAL)
+            self.moments = moments.diagonal()
+        self.laws = self.laws | OF_BODY
+        return self.inertia, self.inertia.T
 
-    def read_body(self) -> None:
-        """Tensors, energies and momenta."""
-        parts = (self.content["body"][part] for part in ("mass", "centre", "inertia"))
-        mass, centre, inertia = map(self.point.only().read, parts)
-        agree("the inertia tensor is not symmetric", [(inertia, inertia.T)])
-        if "motion" in self.content:  # about the fixed point, from which places are counted
-            agree("the centre of a body that turns about a fixed point", [(centre, centre * ZERO)])
-        R, omega = self.R, self.omega["body"]
-        momentum, energy = inertia * omega, omega.T * inertia * omega * HALF
-        place, velocity, axis, about = map(self.still.read, (PLACE, VELOCITY, AXIS, ABOUT))
-        momentum_of_centre = place.hat() * velocity * mass
-        translational = velocity.T * velocity * mass * HALF
-        arm = (about - centre).hat()
-        tensor = inertia + arm.T * arm * mass.entries[0]  # by the parallel-axis theorem
-        self.values |= {
-            "mass": mass,
-            "centre_of_mass": centre,
-            "inertia_tensor": inertia,
-            "inertia_tensor_space": R * inertia * R.T,
-            "inertia_tensor_point": tensor,
-            "moment_of_inertia": axis.T * tensor * axis,
-            "translational_energy": translational,
-            "rotational_energy": energy,
-            "kinetic_energy": translational + energy,
-            "angular_momentum_centre": momentum_of_centre,
-            "angular_momentum_rotation_body": momentum,
-            "angular_momentum_rotation": R * momentum,
-            "angular_momentum": momentum_of_centre + R * momentum,
-        }
-        free, torque = map(self.still.read, (OMEGA["body"], TORQUE))
-        equation = inertia, torque - free.hat() * inertia * free
-        self.equations["angular_acceleration_from_torque"] = equation
-        if "motion" in self.content:
-            self.read_motion(self.content["motion"], inertia, momentum, energy)
-
-    def read_motion(
-        self, motion: Mapping[str, Any], inertia: Matrix, momentum: Matrix, energy: Matrix
-    ) -> None:
-        """d'Alembert's principle: M q̈ + h = W'ᵀ (dL'/dt + Ω' × L') + ∂V/∂q = Q."""
-        if not self.is_free:
-            raise Unreadable("coordinates depend on one another")
-        q, rates, W = self.record.q, self.record.rates, self.W["body"]
-        causes = (motion["forces"], motion["torque"])
-        forces, torque = map(self.still.only(*q, *rates).read, causes)
-        potential = self.position.read(motion["potential"])
-        courses = map(self.point.only(*q).along, q)
-        slopes = [course.read(motion["potential"]).rate().entries for course in courses]
-        # In the body, the rate of L in space components is dL′/dt + Ω′ × L′.
-        turning = momentum.rate() + self.omega["body"].hat() * momentum
+    def read_motion(self, motion: Mapping[str, Any]) -> tuple[Matrix, ...]:
+        """d'Alembert's principle: W'ᵀ (dL'/dt + Ω' × L') + ∂V/∂q = Q, which is M q̈ + h = Q."""
+        record, read, q, W = self.record, self.record.described, self.record.q, self.W
+        if not self.is_free or record.definitions or {*record.momenta} & {*LETTERS["point"][0]}:
+            raise Unproved("coordinates that depend on one another, or names of two meanings")
+        self.potential, forces = read(motion["potential"], *q), [*q, *record.rates]
+        self.forces = read(motion["forces"], *forces) + W.T * read(motion["torque"], *forces)
+        turning = self.momentum.each(self.rate) + self.omega.hat() * self.momentum
+        slopes = (self.potential.each(derivative({name: ONE})).entries for name in q)
         inertial = W.T * turning + Matrix(slopes)
-        mass_matrix, momenta = W.T * inertia * W, W.T * momentum
-        # The inertial forces are M q̈ + h at the drawn q̈; h is what remains without M q̈.
-        bias = inertial - mass_matrix * self.still.read(self.record.seconds)
-        self.values |= {
-            "potential_energy": potential,
-            "lagrangian": energy - potential,
-            "energy": energy + potential,
-            "hamiltonian": energy + potential,
-            "generalised_momenta": momenta,
-            "mass_matrix": mass_matrix,
-            "bias_vector": bias,
-        }
-        # H(q, p) = E for p = M q̇, and so for all p
-        values = dict(zip(self.record.momenta, momenta.entries, strict=True))
-        self.points["hamiltonian"] = self.position.having(self.position.values | values)
-        forces += W.T * torque
-        self.equations["accelerations"] = mass_matrix, forces - bias
-        # A constant has a rate that vanishes along every motion: that of a cyclic momentum is a row
-        # of the balance, and dE/dt = q̇·balance.
-        balance = inertial - forces  # zero along a motion
-        self.rates = {
-            f"constant momentum_{n}": Matrix([r]) for n, r in zip(q, balance.rows, strict=True)
-        }
-        self.rates["constant energy"] = self.still.read([rates]) * balance
-        self.points |= dict.fromkeys(self.rates, self.point)
+        self.masses, self.momenta = W.T * self.inertia * W, W.T * self.momentum
+        self.bias = inertial - self.masses * column(record.seconds)
+        self.balance = inertial - self.forces
+        self.regular = (Matrix([[("/", ONE, self.masses.determinant())]]),) * 2  # or refused
+        self.laws = self.laws | OF_MOTION
+        for name, row in zip(q, self.balance.rows, strict=True):
+            self.laws[f"constant momentum_{name}"] = has_rate(Matrix([row]))
+        # The body turns about a fixed point, from which places are counted.
+        return self.centre, self.centre.times(ZERO)
 
-    def claims(self, name: str) -> Iterator[tuple[Matrix, Matrix]]:
-        """Pairs of matrices that are equal if what is printed as `name` is right."""
-        x = self.points.get(name, self.still).read(self.record.printed[name])
-        kind, _, frame = name.rpartition("_")
-        if name == "hamiltonian" and name in self.values:
-            self.values["mass_matrix"].determinant().inverse()  # which refuses a singular M
-        if name in self.values:
-            yield x, self.values[name]
-        elif name in self.rates:
-            yield x.rate(), self.rates[name]
-        elif name in self.equations:
-            A, B = self.equations[name]
-            if len(A.rows) == len(A.T.rows):
-                A.determinant().inverse()  # which refuses a singular A
-            yield A * x, B
-        elif kind == "rate_matrix" and frame in OMEGA:
-            # x holds no rates, and q̇ is random: x q̇ = Ω then holds for all q̇, and x = W.
-            yield x * self.still.read(self.record.rates), self.omega[frame]
-        elif name in PRINCIPAL and "inertia_tensor" in self.values:
-            printed = (self.record.printed[each] for each in PRINCIPAL)
-            axes, moments = map(self.points[name].read, printed)
-            yield axes * axes.T, IDENTITY
-            yield Matrix([[axes.determinant()]]), Matrix([[ONE]])
-            pairs = [zip(row, moments.entries, strict=True) for row in axes.rows]
-            # With A = (e₁ e₂ e₃) in SO(3), I A = A diag(I₁, I₂, I₃) says that the columns are
-            # eigenvectors.
-            scaled = Matrix([one * two for one, two in pair] for pair in pairs)
-            yield self.values["inertia_tensor"] * axes, scaled
-        else:
-            raise Unreadable(self.lack)
+    def claim(self, name: str) -> tuple[Matrix, ...]:
+        x = matrix_of(self.record.printed[name])
+        for names in (groups for names, groups in ONLY.items() if re.match(names, name)):
+            inside = set().union(*map(self.record.letters_in, x.entries))
+            self.record.refuse_others(inside, chain(*(self.groups[group] for group in names)))
+        return self.laws[name](self, x)
 
 
-def agree(name: str, pairs: Iterable[tuple[Matrix, Matrix]]) -> None:
-    for one, two in pairs:
-        for k, difference in enumerate((one - two).entries, start=1):
-            if difference.parts[0]:
+def has_rate(rate: Matrix) -> Law:
+    return lambda m, x: (x.each(m.rate), rate)
+
+
+def agree(name: str, matrices: Sequence[Matrix], point: Point) -> None:
+    for pair in zip(matrices[::2], matrices[1::2], strict=True):
+        if len({tuple(map(len, matrix.rows)) for matrix in pair}) > 1:
+            raise Refused(f"{name} has a wrong shape")
+        one, two = ([*map(point.value, matrix.entries)] for matrix in pair)
+        largest = max(abs(real) for values in (*one, *two) for real in (1, *values[2:]))
+        for k, values in enumerate(map(partial(combined, sub), one, two), start=1):
+            if max(map(abs, values[2:])) > CLOSE * largest:
                 raise Refused(f"{name}: entry {k} is false at a real point")
+            if values[1]:
+                raise Unproved("it is true to 30 digits, but not exactly")
 
 
 def verify(content: Mapping[str, Any]) -> tuple[list[str], dict[str, str]]:
@@ -757,25 +638,33 @@ def verify(content: Mapping[str, Any]) -> tuple[list[str], dict[str, str]]:
 
     Raises one of BROKEN for a record of which something is false.
     """
-    try:
-        motion = Motion(Record(content))
-    except Unreadable as error:
-        return [], dict.fromkeys(printed_in(content), str(error))
-    for turn in motion.factors:
-        agree(ROTATION, [(turn * turn.T, IDENTITY)])
-        agree(ROTATION, [(Matrix([[turn.determinant()]]), Matrix([[ONE]]))])
-    proved, reasons = [ROTATION], dict[str, str]()
-    try:
-        if "body" in content:
-            motion.read_body()
-    except Unreadable as error:
-        motion.lack = str(error)
-    for name in printed_in(content):
+    proved, reasons, lack = [ROTATION], dict[str, str](), "it has no definition here"
+    with localcontext() as context:
+        context.prec = DIGITS
         try:
-            agree(name, motion.claims(name))
-            proved.append(name)
-        except (Unreadable, RecursionError) as error:
-            reasons[name] = str(error)
+            record = Record(content)
+            space, body = (Motion(record, frame) for frame in OMEGA)
+            point = Point(record)
+            agree(ROTATION, [*chain(*map(is_rotation, record.factors))], point)
+        except Unproved as error:
+            return [], dict.fromkeys(printed_in(content), str(error))
+        try:
+            if "body" in content:
+                agree("the inertia tensor", body.read_body(content["body"]), point)
+            if "motion" in content:
+                agree("the centre", body.read_motion(content["motion"]), point)
+                point.trees |= zip(record.momenta, body.momenta.entries, strict=True)
+        except Unproved as error:
+            lack = str(error)
+        for name in record.printed:
+            motion = space if name in space.laws else body
+            try:
+                if name not in motion.laws:
+                    raise Unproved(lack)
+                agree(name, motion.claim(name), point)
+                proved.append(name)
+            except (Unproved, RecursionError) as error:
+                reasons[name] = str(error)
     return proved, reasons
 
 
@@ -785,27 +674,26 @@ def load(path: Path) -> Any:
     return json.loads(text, object_pairs_hook=without_twins, parse_float=str, parse_constant=str)
 
 
+def answer(path: Path, *, is_named: bool) -> str:
+    """What is proved of the record in a file; nothing for another file, unless it `is_named`."""
+    record = load(path)
+    if not isinstance(record, dict) or record.get("schema") != "rigidsym.derivation":
+        if is_named:
+            raise Refused("not the record of a derivation")
+        return ""
+    proved, reasons = verify(record)
+    lines = [f"{path}: R is {record['rotation']}", f"  proved: {', '.join(proved) or 'nothing'}"]
+    return "\n".join([*lines, *(f"  not proved: {n}, since {why}" for n, why in reasons.items())])
+
+
 if __name__ == "__main__":
-    status = count = 0
-    places = [Path(argument) for argument in sys.argv[1:]]
-    files = [[*place.rglob("*.json")] if place.is_dir() else [place] for place in places]
-    for path in sorted(path for each in files for path in each):
+    named, status, answers = [Path(argument) for argument in sys.argv[1:]], 0, list[str]()
+    files = [[*place.rglob("*.json")] if place.is_dir() else [place] for place in named]
+    for path in sorted(chain(*files)):
         try:
-            record = load(path)
-            is_record = isinstance(record, dict) and record.get("schema") == "rigidsym.derivation"
-            if not is_record and path not in places:
-                continue
-            count += 1
-            if not is_record:
-                raise Refused("not the record of a derivation")
-            proved, reasons = verify(record)
-            print(f"{path}: R is {record['rotation']}")
-            print(f"  proved: {', '.join(proved) or 'nothing'}")
-            for name, reason in reasons.items():
-                print(f"  not proved: {name}, since {reason}")
+            answers.append(answer(path, is_named=path in named))
         except (*BROKEN, OSError) as error:
             status = 1
-            print(f"{path}: REFUSED: {error}")
-    if not count:
-        print("REFUSED: there is no record of a derivation here")
-    sys.exit(status or int(not count))
+            answers.append(f"{path}: REFUSED: {error}")
+    print("\n".join(filter(None, answers)) or "REFUSED: there is no record of a derivation here")
+    sys.exit(status or not any(answers))
