@@ -481,12 +481,102 @@ def of_motions() -> Iterator[tuple[str, str, Change]]:
         yield f"the entry {text!r:.20}", "ZXZ", put("rotation_matrix", 0, 0, text)
 
 
-OTHERS = BESIDE | {name: (of, change) for name, of, change in of_motions()}
+def flat(name: str) -> Change:
+    def change(content: Content) -> None:
+        quantity = printed(content, name)
+        quantity["expression"] = [text for row in quantity["expression"] for text in row]
+
+    return change
+
+
+def row(name: str) -> Change:
+    def change(content: Content) -> None:
+        quantity = printed(content, name)
+        quantity["expression"] = [quantity["expression"]]
+
+    return change
+
+
+def together(*changes: Change) -> Change:
+    def change(content: Content) -> None:
+        for each in changes:
+            each(content)
+
+    return change
+
+
+def undefined(potential: str) -> Change:
+    """A potential that is nowhere defined, of which only the slopes are printed."""
+
+    def change(content: Content) -> None:
+        content["quantities"] = [printed(content, "accelerations")]
+        content["first_integrals"] = []
+        content["motion"]["potential"] += potential
+
+    return change
+
+
+def integrals(term: str) -> Change:
+    def change(content: Content) -> None:
+        for integral in content["first_integrals"]:
+            integral["expression"] += term
+
+    return change
+
+
+def by_degrees(content: Content) -> None:
+    """Angles in degrees, hidden in a turn with a constant axis."""
+    first = "constant_turn(0, 0, 1, cos(phi), sin(phi))"
+    content["rotation"]["turns"][0], content["name"] = first, "chain"
+    for group, unit in (("q", "deg"), ("q_dot", "deg/s"), ("q_ddot", "deg/s^2")):
+        _arguments(content, group)[0]["unit"] = unit
+
+
+def powers_of_powers(form: str) -> Change:
+    definitions = [defined("a0", "phi")]
+    definitions += [defined(f"a{k}", form.format(f"a{k - 1}")) for k in range(1, 9)]
+    return together(*definitions, put(VELOCITY, 2, f"{TRUE} + 0*a8"))
+
+
+P = "generalised_momenta"
+ATTACKS: dict[str, tuple[str, Change]] = {  # of two strangers who read the checker
+    "nine entries of R in a row": ("ZXZ", flat("rotation_matrix")),
+    "Ω as a row": ("ZXZ", row(VELOCITY)),
+    "momenta that are themselves": ("damped top", lambda c: put(P, 0, "p_phi")(c)),
+    "an undefined potential": ("top", undefined(" + 1/(A - A)")),
+    "a potential of unknown angles": ("top", undefined(" + 0*cot(pi)")),
+    "undefined integrals": ("top", integrals(" + 1/(A - A)")),
+    "integrals that hold a definition": ("top", together(integrals(" + a"), defined("a", "phi"))),
+    "integrals that hold an acceleration": ("top", integrals(" + phi_ddot")),
+    "degrees in a constant turn": ("ZXZ", by_degrees),
+    "a letter that is defined": ("ZXZ", defined("omega_space_1", "0")),
+    "kilojoules": ("top", lambda c: printed(c, "energy").update(unit="kJ")),
+    "a momentum in W": ("ZXZ", put(W, 2, 0, "cos(theta) + p_phi - p_phi")),
+    "the transpose of an inverse": (
+        "ZXZ",
+        lambda c: put("inverse_rate_matrix_body", 0, printed(c, W)["expression"][0])(c),
+    ),
+    "powers of powers": ("ZXZ", powers_of_powers("({} + 1)**60")),
+    "powers below a line": ("ZXZ", powers_of_powers("1/({} + 1)**60")),
+    "a difference of 1/10**78": ("ZXZ", put(VELOCITY, 2, f"{TRUE} + phi/10**39/10**39")),
+    "pi to 39 places": ("ZXZ", put(VELOCITY, 2, f"{TRUE} + phi*(pi - 314159265358979/10**14)")),
+    "rates in another order": ("ZXZ", lambda c: _arguments(c, "q_dot").reverse()),
+    "a turn about coordinates": ("ZXZ", turned("axis_angle(phi, theta, psi, 1)")),
+    "the inverse turn": ("unit_quaternion", turned("unit_quaternion(w, -x, -y, -z)")),
+    "a body that moves": ("box", in_body("centre", ["X", "0", "0"])),
+    "a mass that turns": ("box", in_body("mass", "M*phi")),
+}
+
+OTHERS = BESIDE | ATTACKS | {name: (of, change) for name, of, change in of_motions()}
 # True about the rest, so that only these are not accepted
 PARTLY = {"a quantity named angular_velocity_moon": "angular_velocity_moon"}
 PARTLY |= {"a quantity named truth": "truth"}
 PARTLY |= {"a motion under conditions": "accelerations", "too many multiples of angles": VELOCITY}
-PARTLY |= {"a parameter of the body that is defined": "accelerations"}
+PARTLY |= dict.fromkeys(["powers of powers", "powers below a line"], VELOCITY)
+PARTLY |= {"momenta that are themselves": P, "a difference of 1/10**78": VELOCITY}
+PARTLY |= dict.fromkeys(["a parameter of the body that is defined"], "accelerations")
+PARTLY |= {"a potential of unknown angles": "accelerations"}
+PARTLY |= {"integrals that hold a definition": "constant energy"}
 PARTLY |= {"a potential by definition, without its force": "accelerations"}
 PARTLY |= {"a divisor that is zero": "rotation_matrix", "sums of 32,768 roots": VELOCITY}
 PARTLY |= {"a divisor of a double angle by definition": VELOCITY}

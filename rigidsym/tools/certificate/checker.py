@@ -29,7 +29,7 @@ from random import SystemRandom
 from typing import Any
 
 PLACES, DIGITS, CLOSE, SMALL = 5, 60, Decimal("1e-30"), Decimal("1e-40")
-BITS, MOST_DEGREE, MOST_BITS, MOST_POWER, MOST_DIGITS, MOST_TURNS = 96, 10**9, 10**6, 60, 40, 12
+BITS, MOST_DEGREE, MOST_BITS, MOST_POWER, MOST_DIGITS, MOST_TURNS = 96, 10**9, 10**5, 60, 40, 12
 PI = Decimal("3.1415926535897932384626433832795028841971693993751058209749446")
 OPERATORS = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/"}
 OPERATIONS = {"+": add, "-": sub, "*": mul, "/": truediv}
@@ -54,7 +54,7 @@ UNITS = {  # of quantities, by their names
     "centre_of_mass": "m",
     "inertia_tensor.*|moment_of_inertia|principal_moments": "kg m^2",
     "angular_momentum.*": "kg m^2/s",
-    ".*_energy": "J",
+    ".*energy|lagrangian|hamiltonian": "J",
 }
 SQUARES = "({0}**2 + {1}**2 + {2}**2 + {3}**2)"
 TURNS = {  # a vector v and numbers c and s: R = 1 + s C(v) + (1 - c) C(v)²
@@ -218,7 +218,7 @@ class Matrix:
 
     def hat(self) -> Matrix:
         """C(v) of a vector v, the operator v ×."""
-        (x, y, z), (a, b, c) = self.entries, self.times(MINUS).entries
+        ((x,), (y,), (z,)), (a, b, c) = self.rows, self.times(MINUS).entries
         return Matrix([[ZERO, c, y], [z, ZERO, a], [b, x, ZERO]])
 
     def vee(self) -> Matrix:
@@ -311,10 +311,11 @@ class Record:
             raise Refused("a name is not plain ASCII")
         self.spheres = [*map(self.sphere, self.rotation["conditions"])]
         without_twins((name, "") for sphere in self.spheres for name in sphere)
-        self.refuse_words([*chain(*groups.values())])
+        self.described = list[Matrix]()
         self.factors = [self.turn(turn_of(turn)[1]) for turn in self.turns]
-        self.factors = self.factors or [self.described(self.rotation["matrix"], *self.q)]
+        self.factors = self.factors or [self.describe(self.rotation["matrix"], *self.q)]
         self.R = reduce(mul, self.factors)
+        self.refuse_words([*chain(*groups.values())])
 
     def refuse_words(self, components: Sequence[Mapping[str, str]]) -> None:
         """Refuse words beside the expressions that would give a true claim another meaning."""
@@ -329,11 +330,9 @@ class Record:
         expected = {letter: unit for letters, unit in LETTERS.values() for letter in letters}
         for q, rate, second in zip(self.q, self.rates, self.seconds, strict=True):
             expected |= {rate: f"{units[q] or '1'}/s", second: f"{units[q] or '1'}/s^2"}
-        for kind, (*_, sine) in map(turn_of, self.turns):
-            if kind in ("x", "y", "z", "axis_angle"):
-                expected |= dict.fromkeys(
-                    {*self.q, *self.constants} & names_in(tree_of(sine)), "rad"
-                )
+        trees = [part for R in self.factors for e in R.entries for part in parts_of(e)]
+        angles = chain(*(multiples(part[1], 1) for part in trees if part[0] in ("cos", "sin")))
+        expected |= dict.fromkeys(self.q, "") | {name: "rad" for name, _ in angles}
         for name, unit in [(c["name"], c["unit"]) for c in components]:
             if unit != expected.setdefault(name, unit) or name in self.definitions:
                 raise Refused(f"{name} is in {unit!r}, not in {expected[name]!r}, or is defined")
@@ -357,11 +356,11 @@ class Record:
         trees = (tree_of(self.definitions[name]) for name in defined)
         return (names - defined).union(*map(self.letters_in, trees))
 
-    def described(self, printed: Any, *names: str) -> Matrix:
+    def describe(self, printed: Any, *names: str) -> Matrix:
         """What holds no other names than constants and these."""
-        matrix = matrix_of(printed)
-        self.refuse_others(set().union(*map(names_in, matrix.entries)), names)
-        return matrix
+        self.described.append(matrix_of(printed))
+        self.refuse_others(set().union(*map(names_in, self.described[-1].entries)), names)
+        return self.described[-1]
 
     def refuse_others(self, inside: set[str], names: Iterable[str]) -> None:
         if others := inside.difference(names, self.constants, ["pi"]):
@@ -369,7 +368,7 @@ class Record:
 
     def turn(self, forms: Sequence[str]) -> Matrix:
         """Rodrigues' formula R = 1 + s C(v) + (1 − c) C(v)²; whether R is a rotation is tested."""
-        *axis, cosine, sine = self.described([[*forms]], *self.q).entries
+        *axis, cosine, sine = self.describe([[*forms]], *self.q).entries
         operator = Matrix([part] for part in axis).hat()
         return IDENTITY + operator.times(sine) + (operator * operator).times(("-", ONE, cosine))
 
@@ -387,7 +386,7 @@ def combined(operation: Callable[[Any, Any], Any], one: Values, two: Values) -> 
     if operation is truediv and (not two[1] or min(map(abs, two[2:])) < SMALL):
         raise Refused("a divisor is zero")
     degree, exact = one[0] + two[0], operation(one[1], two[1])
-    if degree > MOST_DEGREE or abs(exact.numerator) >> MOST_BITS:
+    if degree > MOST_DEGREE or max(abs(exact.numerator), exact.denominator) >> MOST_BITS:
         raise Unproved("too large an expression")
     return (degree, exact, *map(operation, one[2:], two[2:]))
 
@@ -507,13 +506,7 @@ OF_BODY: dict[str, Law] = {
     "inertia_tensor_space": lambda m, x: (x, m.R * m.inertia * m.R.T),
     "inertia_tensor_point": lambda m, x: (x, m.about_point),
     "moment_of_inertia": lambda m, x: (x, m.direction.T * m.about_point * m.direction),
-    # E = (e₁ e₂ e₃) is a rotation, and I E = E diag(I₁, I₂, I₃): the e are eigenvectors
-    "principal_axes": lambda m, _: (*is_rotation(m.axes), m.inertia * m.axes, m.axes * m.moments),
-    "principal_moments": lambda m, _: (
-        *is_rotation(m.axes),
-        m.inertia * m.axes,
-        m.axes * m.moments,
-    ),
+    **dict.fromkeys(PRINCIPAL, lambda m, _: m.principal()),
     "translational_energy": lambda m, x: (x, m.translational),
     "rotational_energy": lambda m, x: (x, m.energy),
     "kinetic_energy": lambda m, x: (x, m.translational + m.energy),
@@ -571,7 +564,7 @@ class Motion:
 
     def read_body(self, body: Mapping[str, Any]) -> tuple[Matrix, ...]:
         """Pairs that are equal if this can be a body."""
-        parts = (self.record.described(body[part]) for part in ("mass", "centre", "inertia"))
+        parts = (self.record.describe(body[part]) for part in ("mass", "centre", "inertia"))
         self.mass, self.centre, self.inertia = parts
         letters = {group: column(names) for group, (names, _) in LETTERS.items()}
         self.torque, self.direction = letters["torque"], letters["direction"]
@@ -582,15 +575,19 @@ class Motion:
         self.translational = (self.mass * velocity.T * velocity).times(HALF)
         self.of_centre = self.mass * (letters["centre"].hat() * velocity)
         self.gyroscopic = self.letters.hat() * self.inertia * self.letters
-        if {*PRINCIPAL} <= {*self.record.printed}:
-            self.axes, moments = (matrix_of(self.record.printed[name]) for name in PRINCIPAL)
-            self.moments = moments.diagonal()
         self.laws = self.laws | OF_BODY
         return self.inertia, self.inertia.T
 
+    def principal(self) -> tuple[Matrix, ...]:
+        """E = (e₁ e₂ e₃) is a rotation, and I E = E diag(I₁, I₂, I₃): the e are eigenvectors."""
+        if not {*PRINCIPAL} <= {*self.record.printed}:
+            raise Unproved("axes without moments, or moments without axes")
+        axes, moments = (matrix_of(self.record.printed[name]) for name in PRINCIPAL)
+        return *is_rotation(axes), self.inertia * axes, axes * moments.diagonal()
+
     def read_motion(self, motion: Mapping[str, Any]) -> tuple[Matrix, ...]:
         """d'Alembert's principle: W'ᵀ (dL'/dt + Ω' × L') + ∂V/∂q = Q, which is M q̈ + h = Q."""
-        record, read, q, W = self.record, self.record.described, self.record.q, self.W
+        record, read, q, W = self.record, self.record.describe, self.record.q, self.W
         if not self.is_free or record.definitions or {*record.momenta} & {*LETTERS["point"][0]}:
             raise Unproved("coordinates that depend on one another, or names of two meanings")
         self.potential, forces = read(motion["potential"], *q), [*q, *record.rates]
@@ -609,11 +606,14 @@ class Motion:
         return self.centre, self.centre.times(ZERO)
 
     def claim(self, name: str) -> tuple[Matrix, ...]:
-        x = matrix_of(self.record.printed[name])
+        x, record = matrix_of(self.record.printed[name]), self.record
+        inside = set().union(*map(record.letters_in, x.entries))
         for names in (groups for names, groups in ONLY.items() if re.match(names, name)):
-            inside = set().union(*map(self.record.letters_in, x.entries))
-            self.record.refuse_others(inside, chain(*(self.groups[group] for group in names)))
-        return self.laws[name](self, x)
+            record.refuse_others(inside, chain(*(self.groups[group] for group in names)))
+        if name != "hamiltonian" and "motion" in record.content and inside & {*record.momenta}:
+            raise Unproved("it holds momenta")  # p = p would say nothing
+        # A law may leave out a part of x that it multiplies by 0, so that x stands beside it.
+        return (x, x, *self.laws[name](self, x))
 
 
 def has_rate(rate: Matrix) -> Law:
@@ -644,7 +644,7 @@ def verify(content: Mapping[str, Any]) -> tuple[list[str], dict[str, str]]:
         try:
             record = Record(content)
             space, body = (Motion(record, frame) for frame in OMEGA)
-            point = Point(record)
+            point, kinematics = Point(record), body.laws
             agree(ROTATION, [*chain(*map(is_rotation, record.factors))], point)
         except Unproved as error:
             return [], dict.fromkeys(printed_in(content), str(error))
@@ -654,8 +654,13 @@ def verify(content: Mapping[str, Any]) -> tuple[list[str], dict[str, str]]:
             if "motion" in content:
                 agree("the centre", body.read_motion(content["motion"]), point)
                 point.trees |= zip(record.momenta, body.momenta.entries, strict=True)
+            agree(
+                "the description",
+                [*chain(*zip(record.described, record.described, strict=True))],
+                point,
+            )
         except Unproved as error:
-            lack = str(error)
+            lack, body.laws = str(error), kinematics
         for name in record.printed:
             motion = space if name in space.laws else body
             try:
