@@ -1,17 +1,17 @@
 """The formulas of a program: an abstract interpreter over its syntax tree.
 
-It runs each function with symbols in place of numbers, and keeps the value of each name, an
-expression or a matrix. A long value gets a symbol of its own, and so does one that cannot be read,
-or that a condition or a loop may change. A formula is therefore right for every value of what is
-not read, and says which that is. `nodes.toml` gives the meaning of each type of node. Programs are
-parsed, never run.
+It runs each function with symbols in place of numbers, and keeps a table of values for each name:
+{(): x} for a scalar, {(0, 1): x, ...} for a matrix. A long value gets a symbol of its own, and so
+does one that cannot be read, or that a condition or a loop may change. A formula is therefore right
+for every value of what is not read, and says which that is. `nodes.toml` gives the meaning of each
+type of node and of the words of libraries. Programs are parsed, never run.
 """
 
 from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import islice, product
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -39,7 +39,6 @@ from rigidsym.tools.compare.syntax import (
     EXPRESSIONS,
     PARTS,
     STATEMENTS,
-    WORDS,
     Call,
     below,
     call_of,
@@ -62,6 +61,7 @@ if TYPE_CHECKING:
     from tree_sitter import Node
 
 _SHARING = (".py", ".js", ".mjs", ".jsx", ".ts", ".java", ".cs")  # b = a is the same matrix
+_WITH_SWIZZLES = (".cs", ".cu", ".cuh")  # float4 v has v.x, and v * w is entry by entry
 _DEEPEST = 60  # nested nodes of an expression; formulas of real programs have fewer than 30
 _DEEPEST_BLOCK = 40
 _LONGEST_LIST = 64
@@ -69,6 +69,7 @@ _MOST_FORMULAS = 1_000  # of a file
 _MOST_STEPS = 18_000  # expressions of a file: what takes some ten seconds
 _MOST_NODES = 400_000  # of a file: a generated megabyte is not worth reading
 _MOST_CHARACTERS = 20_000  # of a formula
+_LONGEST_PLACE = 120  # characters
 _LONGEST = 40  # parts of a value without a symbol of its own
 _LONG_IN_LONG = 3  # symbols for long values that use other such symbols
 _MOST_PARTS = 2_000  # of a matrix
@@ -83,79 +84,71 @@ _MAY_BE_MATRIX = re.compile(r"[\[{].*,|(?i:sin|cos|mat|quat|dcm)", re.DOTALL)
 _BY_COLUMNS = re.compile(
     r"from_?col|^f?mat3x?3?$|float[34]x[34]|column_stack|hstack|^c_$", re.IGNORECASE
 )
-_HARMLESS = re.compile(
-    r"print|disp|log|assert|plot|show|append|push|test|check|expect", re.IGNORECASE
+_HARMLESS = re.compile("print|disp|log|assert|plot|show|append|push|test|check|expect", re.I)
+_TYPE = re.compile(r"[a-z]?vec[234]?|float[34]|Vec\w*|[a-z]*[qQ]uat\w*")  # of a vector
+_MODULE = re.compile(
+    r"(?:np|numpy|jnp|torch|tf|math|mx|cs|ca|F|self|this)\b|_?[A-Z]+[a-z]|[A-Z]{2,}"
 )
+_GETTER = re.compile(rf"(?:get)?_?([wxyz]|{ANGLE.pattern}|xyz|vec|imag)_?", re.IGNORECASE)
+_SWIZZLE = re.compile(r"[xyzw]{1,4}|[XYZW]")
+_INDEX_NAME = re.compile(r"^(?:#define )?(\w+)(?: *= *| +)(\d\d?);?$", re.MULTILINE)
+_MACRO = re.compile(r"macro_rules!\s*\w+\s*\{\s*\([^{}]*?\)\s*=>\s*\{")
+_PARTS_OF = dict.fromkeys(("vec", "imag", "v"), "xyz")
 _AXES = {"x": 0, "y": 1, "z": 2, "X": 0, "Y": 1, "Z": 2}
 _SHORT = (sp.sin, sp.cos, sp.tan)  # functions in values that get no symbol
 _INVERSE = (sp.atan2, sp.asin, sp.acos, sp.atan)
-_DEGREE = 180 / sp.pi
 _OPERATORS = ("+", "-", "*", "/", "**", "@")
 _ELEMENTWISE = {".*": "%", "./": "/", ".^": "**", "^": "**"}  # MATLAB
 _FLAT = {9: (3, 3), 12: (4, 3), 16: (4, 4)}
 _OF_NUMBERS = {*FUNCTIONS, "pow", "sq", "sind", "cosd", "tand", "deg2rad", "rad2deg"}
 _RESERVED = (*_OF_NUMBERS, *OF_MATRICES, *CALLS)  # names that no array has
+_OF_OBJECTS = [
+    "same",
+    "transpose",
+    "dot",
+    "cross",
+    "outer",
+    "norm",
+    "skew",
+    "inverse",
+    "clamp",
+    "least",
+    "pair",
+]
 _RETURNED, _ARGUMENT = "returned", "argument"  # in place of a name
-_LONGEST_PLACE = 120  # characters
 _ALL = slice(None)
-_MACRO = re.compile(r"macro_rules!\s*\w+\s*\{\s*\([^{}]*?\)\s*=>\s*\{")
-_GUARDED = {*PARTS["elif"], *(k for k, v in STATEMENTS.items() if v == "_directive")}
-_INDEX_NAME = re.compile(r"^(?:#define )?(\w+)(?: *= *| +)(\d\d?);?$", re.MULTILINE)
-_TYPE = re.compile(r"[a-z]?vec[234]?|float[34]|Vec\w*|[a-z]*[qQ]uat\w*")  # of a vector
-_MODULE = re.compile(
-    r"(?:np|numpy|jnp|torch|tf|math|mx|cs|ca|F|self|this)\b|_?[A-Z]+[a-z]|[A-Z]{2,}"
-)
-_METHODS = {
-    *(
-        "same",
-        "transpose",
-        "dot",
-        "cross",
-        "outer",
-        "norm",
-        "skew",
-        "inverse",
-        "clamp",
-        "least",
-        "pair",
-    )
-}
-_GETTER = re.compile(rf"(?:get)?_?([wxyz]|{ANGLE.pattern}|xyz|vec|imag)_?", re.IGNORECASE)
-_SWIZZLE = re.compile(r"[xyzw]{1,4}|[XYZW]")
-_PARTS_OF = dict.fromkeys(("vec", "imag", "v"), "xyz")
-_WITH_SWIZZLES = (".cs", ".cu", ".cuh")
+_BOOLEANS = {"0": False, "false": False, "False": False, "1": True, "true": True, "True": True}
 
-Key = tuple[int, ...]
+# Scalars that are one vector or matrix: patterns of a stem and an index, and the complete sets of
+# indices, in their order. The name of an angle is the index of its vector, r.phi beside r.theta.
+_GROUPS = (
+    re.compile(r"(?P<stem>.*?)_?(?P<index>[0-3]_?[0-3])"),
+    re.compile(r"(?P<stem>.*?)(?P<index>[abc]\.[xyz])"),  # Matrix3 of ArduPilot
+    re.compile(r"(?P<stem>.*m)(?P<index>\d\d?)"),
+    re.compile(r"(?P<stem>.*?)(?P<index>[wxyzWXYZ0-4])"),
+    re.compile(r"(?P<stem>)(?P<index>[pqrPQR])"),
+)
+_TRIPLES = (
+    *("roll pitch yaw", "phi theta psi", "alpha beta gamma", "x y z", "rx ry rz"),
+    *("heading attitude bank", "angle1 angle2 angle3"),
+)
+_PAIRS = (("012", "012"), ("123", "123"), ("abc", "xyz"))
+_ORDERS = [tuple(word) for word in ("xyz", "wxyz", "012", "123", "0123", "1234", "pqr")]
+_ORDERS += [tuple(i + j for i, j in product(*pair)) for pair in _PAIRS]
+_ORDERS += [tuple(str(4 * i + j) for i in range(3) for j in range(3)), tuple(map(str, range(16)))]
+_ORDERS += [tuple(triple.split()) for triple in _TRIPLES]
+_COMPLETE = {frozenset(order): order for order in _ORDERS}
+
+Indices = tuple[Any, ...]  # whole numbers and slices
+Table = dict[tuple[int, ...], sp.Expr]
+Values = dict[str, Table]
 
 
 class Place(NamedTuple):
     """A name or an entry: self.phi, p->x, m[0][1], R(1, 2), R.at(0, 1), q[1:]."""
 
     path: str  # with dots
-    indices: tuple[int | slice, ...] = ()
-
-
-# Conditions that hold always or never
-_BOOLEANS = {"0": False, "false": False, "False": False, "1": True, "true": True, "True": True}
-
-# Scalars that are one vector or matrix: a stem and an index, if all indices are there
-_ANGLES = "roll pitch yaw|phi theta psi|alpha beta gamma|x y z|rx ry rz|heading attitude bank"
-_TRIPLES = [line.split() for line in (*_ANGLES.split("|"), "angle1 angle2 angle3")]
-_GROUPS = {
-    "matrix": re.compile(r"(?P<stem>.*?)_?(?P<index>[0-3]_?[0-3])"),
-    "rows": re.compile(r"(?P<stem>.*?)(?P<index>[abc]\.[xyz])"),  # Matrix3 of ArduPilot
-    "flat": re.compile(r"(?P<stem>.*m)(?P<index>\d\d?)"),
-    "vector": re.compile(r"(?P<stem>.*?)(?P<index>[wxyzWXYZ0-4])"),
-    "rates": re.compile(r"(?P<stem>)(?P<index>[pqrPQR])"),
-}
-_PLACES = (product(rows, columns) for rows, columns in (("012",) * 2, ("123",) * 2, ("abc", "xyz")))
-_COMPLETE = [{*word} for word in ("xyz", "wxyz", "012", "123", "0123", "1234", "pqr")]
-_COMPLETE += [{i + j for i, j in places} for places in _PLACES]
-_FLAT_INDICES = [str(4 * i + j) for i in range(3) for j in range(3)]  # of sixteen entries
-
-
-class _Unreadable(ExpressionError):
-    """A part of a program that cannot be followed."""
+    indices: Indices = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -172,54 +165,6 @@ class Formula:
     @property
     def is_named(self) -> bool:
         return self.name not in (_RETURNED, _ARGUMENT)
-
-
-def _unflattened(matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
-    """Nine, twelve or sixteen numbers in a row are a matrix."""
-    is_flat = 1 in matrix.shape and len(matrix) in _FLAT
-    return matrix.reshape(*_FLAT[len(matrix)]) if is_flat else matrix
-
-
-@dataclass
-class _Grid:
-    """A matrix that may still change, or that is filled entry by entry."""
-
-    line: int
-    name: str
-    entries: dict[tuple[int, ...], sp.Expr]
-    is_whole: bool = False  # assigned at once
-
-    @classmethod
-    def of(cls, line: int, matrix: sp.MatrixBase, name: str = "") -> _Grid:
-        matrix = _unflattened(matrix)
-        places = product(range(matrix.rows), range(matrix.cols))
-        return cls(line, name, {place: matrix[place] for place in places}, is_whole=True)
-
-    def copy(self) -> _Grid:
-        return _Grid(self.line, self.name, dict(self.entries), self.is_whole)
-
-    def matrix(self) -> sp.ImmutableMatrix | None:
-        """The matrix, if no entry is missing."""
-        widths = {len(index) for index in self.entries}
-        grid = sorted(self.entries)
-        height = len({index[0] for index in grid})
-        width = len({index[-1] for index in grid}) if widths == {2} else 1
-        if len(widths) != 1 or height * width != len(grid):
-            return None
-        entries = [self.entries[index] for index in grid]
-        return _unflattened(sp.ImmutableMatrix(height, width, entries))
-
-
-@dataclass
-class _State:
-    """The values of all names at one place of a function."""
-
-    values: dict[str, sp.Expr | _Grid] = field(default_factory=dict)
-    is_over: bool = False  # after a return
-
-    def copy(self) -> _State:
-        grids = {id(v): v.copy() for v in self.values.values() if isinstance(v, _Grid)}
-        return _State({k: grids.get(id(v), v) for k, v in self.values.items()}, self.is_over)
 
 
 @dataclass(frozen=True)
@@ -246,10 +191,12 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
     if root.descendant_count > _MOST_NODES:
         return [Formula(line=1, name="", reason="the file is too long")]
     functions = [node for node in below([root]) if node.type in PARTS["function"]]
-    by_name = {name: node for node in functions if (name := function_name(node))}
-    is_numpy = suffix == ".py" and bool(_NUMPY.search(text)) and not _MATRICES.search(text)
-    constants = {m[1]: int(m[2]) for m in _INDEX_NAME.finditer(text)}
-    program = _Program(suffix, by_name, constants, is_numpy)
+    program = _Program(
+        suffix,
+        {name: node for node in functions if (name := function_name(node))},
+        {match[1]: int(match[2]) for match in _INDEX_NAME.finditer(text)},
+        suffix == ".py" and bool(_NUMPY.search(text)) and not _MATRICES.search(text),
+    )
     formulas: dict[Any, Formula] = {}
     for scope in (root, *functions):
         interpreter = _Interpreter(program)
@@ -261,7 +208,7 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
         named = {each.forms for each in interpreter.formulas if each.forms and each.is_named}
         for formula in interpreter.formulas:
             if formula.is_named or formula.forms not in named:  # a fault counts once
-                formulas.setdefault((formula.line, formula.name, formula.forms), formula)
+                formulas.setdefault((formula.line, formula.forms or formula.name), formula)
     return sorted(formulas.values(), key=lambda each: each.line)
 
 
@@ -313,37 +260,41 @@ class _Interpreter:
     """One function, or the code of a file outside of all functions."""
 
     def __init__(self, program: _Program, inlined: int = 0) -> None:
-        self.program = program
-        self.inlined = inlined
+        self.program, self.inlined = program, inlined
         self.is_matlab = program.suffix == ".m"
-        self.state = _State()
+        self.values: Values = {}
+        self.is_over = False  # after a return
         self.formulas: list[Formula] = []
         self.paths: dict[str, str] = {}  # name: its path in the program
+        self.lines: dict[str, int] = {}  # where a name was assigned
         self.inputs: set[str] = set()  # names that were read before anything was assigned
-        self.vectors: set[Any] = set()  # symbols that a cross or dot product has
         self.outputs: set[str] = set()  # pointers, to which results are written
         self.definitions: dict[sp.Symbol, sp.Expr | None] = {}  # what symbols stand for, if read
         self.choices: dict[sp.Expr, tuple[sp.Expr, ...]] = {}  # values of names that are cases
         self.components: set[Any] = set()  # symbols of components of a value, which are inputs
+        self.squares: dict[str, sp.Symbol] = {}  # |v|² of names without values
         self.later: dict[tuple[sp.Expr, str], sp.Dummy] = {}  # entries of an array assigned anew
-        self.lines: dict[str, int] = {}  # where a name was assigned
-        self.groups: dict[tuple[str, str], dict[str, str]] = {}  # names by (kind, stem) and index
-        self.emitted: set[tuple[Any, ...]] = set()  # kind, stem and values of a group
+        self.groups: dict[tuple[int, str], dict[str, str]] = {}  # names of scalars by index
+        self.emitted: set[tuple[Any, ...]] = set()
         self.untracked: set[str] = set()
         self.results: list[Any] = []  # None for one that is not read
         self.depth = 0
 
-    def unreadable(self, node: Node, reason: str = "is not understood") -> _Unreadable:
+    def unreadable(self, node: Node, reason: str = "is not understood") -> ExpressionError:
         text = re.sub(r"\s+", " ", text_of(node))
         text = text if len(text) <= 60 else f"{text[:57]}..."
         where = "" if self.program.is_formula else f" in line {line_of(node)}"
-        return _Unreadable(f"`{text}`{where} {reason}")
+        return ExpressionError(f"`{text}`{where} {reason}")
 
     # Statements
 
     def run_scope(self, scope: Node) -> None:
         """Run a function, or the whole file, and collect the formulas in it."""
-        self.untracked = {n for n, is_late in self._writes(scope.named_children) if is_late}
+        inner = [n for n in below(scope.named_children) if n.type in PARTS["function"]]
+        late = [n for n in below(scope.named_children) if n.type in PARTS["late"]]
+        if self.program.suffix != ".py":
+            late += [n for n in below(inner) if n.type not in PARTS["declaration"]]
+        self.untracked = self._writes(late)
         is_function = scope.type in PARTS["function"]
         body = (part(scope, "body") or child(scope, "block")) if is_function else scope
         if is_function:
@@ -357,13 +308,13 @@ class _Interpreter:
         last = children(body)[-1:] if self.program.suffix == ".rs" else []
         if last and not last[0].type.endswith(("statement", "declaration")):
             self._return(last[0])
-        if not self.state.is_over:
-            self._emit_all()
+        if not self.is_over:
+            self._emit(self.values)
 
     def run(self, node: Node) -> None:
         """One statement, or all statements in a block."""
-        self.state.is_over |= self.program.steps["read"] > _MOST_STEPS  # later values are unknown
-        if self.state.is_over or node.type in PARTS["function"]:
+        self.is_over |= self.program.steps["read"] > _MOST_STEPS  # later values are unknown
+        if self.is_over or node.type in PARTS["function"]:
             return
         self.depth += 1
         if self.depth > _DEEPEST_BLOCK:
@@ -396,57 +347,79 @@ class _Interpreter:
     def _assign(self, left: Node, right: Node) -> None:
         names = targets(left)
         try:
-            value = self.value(right)
-            if left in names:
-                self._store(left, value)
+            value = self.read(right)
+            if left not in names:
+                for name, entry in zip(names, self._unpacked(value, right, names), strict=True):
+                    self._store(name, entry)
                 return
-            for name, entry in zip(names, self._unpacked(value, right, len(names)), strict=True):
-                self._store(name, entry)
+            self._store(left, value)
+            one, other = self.place(left), self.place(right)
+            if one and other and not (one.indices or other.indices):
+                copy, name = map(self.name_of, (one.path, other.path))
+                table = self.values.get(name, {(): value})
+                if () not in table:
+                    self.lines[copy] = self.lines[name]
+                    if self.program.suffix in _SHARING:
+                        self.values[copy] = table
         except ExpressionError:
-            self._drop(left, is_input=left not in names)
+            self._drop(left)
+            if left not in names:  # components of a value, such as w, x, y, z = q.as_quat()
+                places = [self.name_of(each.path) for each in map(self.place, names) if each]
+                self.components |= {self.values[name].get(()) for name in places}
 
-    def _unpacked(self, value: sp.Expr | _Grid, node: Node, count: int) -> Sequence[sp.Expr]:
+    def _unpacked(self, value: Any, node: Node, names: Sequence[Node]) -> list[sp.Expr]:
         """The components of w, x, y, z = q, and of c, s, t = cos(v)."""
-        if isinstance(value, sp.Function):
-            parts = [_part(value, key) for key in range(count)]
-            if None not in parts:
-                return parts
-        matrix = value.matrix() if isinstance(value, _Grid) else None
-        if matrix is None or len(matrix) != count or 1 not in matrix.shape:
+        if isinstance(value, sp.Function | sp.Symbol):
+            parts = [_part(value, key) for key in range(len(names))]
+            if None not in parts and isinstance(value, sp.Function):
+                return [part for part in parts if part is not None]
+        matrix = as_matrix(value)
+        if len(matrix) != len(names) or 1 not in matrix.shape:
             raise self.unreadable(node)
         return list(matrix)
 
-    def _store(self, left: Node, value: sp.Expr | _Grid) -> None:
+    def _store(self, left: Node, value: Any) -> None:
         """An assignment to a name, a member, or an entry."""
-        place = self.place(left)
+        place, matrix = self.place(left), as_matrix(value)
         if place is None:
             raise self.unreadable(left)
-        name = self.name_of(place.path)
+        name, indices = self.name_of(place.path), place.indices
         self.outputs |= {name} if left.type == "pointer_expression" else set()
-        if any(index != _ALL for index in place.indices):
-            self._store_entries(left, name, place.indices, value)
+        if any(index != _ALL for index in indices):
+            self._store_entries(left, name, indices, matrix)
             return
-        if isinstance(value, _Grid) and len(value.entries) == 1:
-            (value,) = value.entries.values()
-        if not isinstance(value, _Grid):
-            self._store_scalar(name, value, line_of(left))
-            return
-        self._emit([name])
-        if not value.name:
-            value.line, value.name = line_of(left), name
-        elif self.program.suffix not in _SHARING:
-            value = value.copy()
-        self.state.values[name] = value
+        if () not in self.values.get(name, {(): 0}):
+            self._emit([name])
+        if len(matrix) == 1:
+            self._join_groups(name)
+            value = self._named_value(name, self._renamed(name, matrix[0]))
+        self.lines[name] = line_of(left)
+        self.values[name] = {(): value} if len(matrix) == 1 else _table(matrix)
 
-    def _store_scalar(self, name: str, value: sp.Expr, line: int) -> None:
-        self._join_groups(name)
-        self.lines[name] = line
-        value = self._renamed(name, value)
-        is_first = name not in self.inputs and name not in self.state.values
+    def _store_entries(
+        self, left: Node, name: str, indices: Indices, matrix: sp.ImmutableMatrix
+    ) -> None:
+        table = self.values.get(name, {(): sp.S.Zero})
+        if () in table:
+            table = self.values[name] = {}
+            self.lines[name] = line_of(left)
+        if len(matrix) > 1 and not any(isinstance(index, slice) for index in indices):
+            indices = (*indices, _ALL)  # a row
+        if len(matrix) == 1:  # of a batch
+            indices = tuple(index for index in indices if index != _ALL)
+        keys = self._keys(table, indices, len(matrix))
+        if len(keys) != len(matrix):
+            raise self.unreadable(left, "is a block of another size")
+        for key, entry in zip(keys, matrix, strict=True):
+            place = next((k for k in ((*key, 0), (0, *key)) if k in table), key)
+            table[place] = entry
+
+    def _named_value(self, name: str, value: sp.Expr) -> sp.Expr:
+        """A value, or a symbol for a long one."""
+        is_first = name not in self.inputs and name not in self.values
         is_sum = value.is_Add or value.is_number or value.atoms(sp.Function) - value.atoms(*_SHORT)
         is_long = _size(value) > _LONGEST or (value.is_Pow and value.exp == sp.Rational(1, 2))
-        is_named = is_long or (is_first and is_sum)
-        self.state.values[name] = self._symbol_for(name, value) if is_named else value
+        return self._symbol_for(name, value) if is_long or (is_first and is_sum) else value
 
     def _symbol_for(self, name: str, value: sp.Expr | None) -> sp.Symbol:
         """A symbol for a long value, or for one that is not read (None)."""
@@ -458,27 +431,27 @@ class _Interpreter:
 
     def _renamed(self, name: str, value: sp.Expr) -> sp.Expr:
         """The name itself for its value in another unit, or divided by the length of its vector."""
-        own = self.state.values.get(name, sp.Symbol(name, real=True))
-        if not isinstance(own, sp.Expr) or own.is_number or not value.is_Mul:
+        own = self.values.get(name, {(): sp.Symbol(name, real=True)}).get((), sp.S.One)
+        if own.is_number or not value.is_Mul:
             return value
         ratio = value / own
         is_read = all(self.definitions.get(s, s) is not None for s in ratio.free_symbols)
         if not is_read and len(ratio.free_symbols) == 1 and own not in ratio.free_symbols:
             return self._symbol_for(name, None)  # q0 *= recipNorm
         ratio = self._expanded(ratio)
-        is_unit = ratio.is_number and any(abs(ratio * c - 1) < 1e-3 for c in (_DEGREE, 1 / _DEGREE))
+        degree = 180 / sp.pi
+        is_unit = ratio.is_number and any(abs(ratio * c - 1) < 1e-3 for c in (degree, 1 / degree))
         is_divided = _is_length(1 / ratio) and own.free_symbols <= ratio.free_symbols
+        is_divided |= ratio.free_symbols == {self.squares.get(str(own))}
         return own if is_unit or is_divided else value
 
     def _expanded(self, value: Any, case: int | None = None) -> Any:
         """An expression or a matrix with long values, and those of a case, for their symbols."""
         for _ in range(_LONG_IN_LONG + (case is not None)):
-            parts = {s: v for s in value.free_symbols if (v := self.definitions.get(s)) is not None}
+            symbols = value.free_symbols
+            parts = {s: v for s in symbols if (v := self.definitions.get(s)) is not None}
             if case is not None:
-                parts |= {
-                    s: self.choices[s][min(case, len(self.choices[s]) - 1)]
-                    for s in value.free_symbols & self.choices.keys()
-                }
+                parts |= {s: v[min(case, len(v) - 1)] for s, v in self.choices.items()}
             if _size(value) > _MOST_PARTS:
                 break
             value = value.xreplace(parts)
@@ -492,109 +465,67 @@ class _Interpreter:
         if not wholes or not (is_read or are_angles):
             raise self.unreadable(node)
         wholes = _alive(wholes)
-        if all(whole == wholes[0] for whole in wholes):
+        if len(set(wholes)) == 1:
             return wholes[0]
         symbol = self._symbol_for("case", None)
         self.choices[symbol] = tuple(wholes)
         return symbol
 
-    def _store_entries(
-        self, left: Node, base: str, indices: Sequence[int | slice], value: sp.Expr | _Grid
-    ) -> None:
-        grid = self.state.values.get(base)
-        if not isinstance(grid, _Grid):
-            grid = _Grid(line_of(left), base, {})
-            self.state.values[base] = grid
-        if isinstance(value, _Grid) and not any(isinstance(index, slice) for index in indices):
-            indices = (*indices, _ALL)  # a row
-        of_grid: dict[Key, sp.Expr] = value.entries if isinstance(value, _Grid) else {(): value}
-        values = [of_grid[key] for key in sorted(of_grid)]
-        if len(values) == 1:  # of a batch
-            indices = [index for index in indices if index != _ALL]
-        keys = self._keys(base, indices, len(values))
-        if len(keys) != len(values):
-            raise self.unreadable(left, "is a block of another size")
-        for key, entry in zip(keys, values, strict=True):
-            place = (*key, 0) if grid.is_whole and (*key, 0) in grid.entries else key
-            if grid.is_whole and place not in grid.entries:
-                raise self.unreadable(left, "is an entry outside of the matrix")
-            grid.entries[place] = entry
-
     def _update(self, node: Node) -> None:
         """a += b, or a++."""
-        left, right, sign = left_of(node), part(node, "right"), operator(node)
+        left, right = left_of(node), part(node, "right")
         if left is None or right is None:
             raise self.unreadable(node)
-        both = combined(self._operation(node, sign[:-1]), self.read(left), self.read(right))
-        value = self._valued(node, both)
-        grid = self.state.values.get(self.written(left))
-        if isinstance(grid, _Grid) and isinstance(value, _Grid):
-            grid.entries = value.entries  # also of other names for this matrix
+        sign = self._operation(node, operator(node)[:-1])
+        value = combined(sign, self.read(left), self.read(right))
+        table = self.values.get(self.written(left), {(): value})
+        if () not in table and isinstance(value, sp.MatrixBase):
+            table.clear()  # also of other names for this matrix
+            table |= _table(value)
         else:
             self._store(left, value)
 
-    def _drop(self, left: Node, *, is_input: bool = False) -> None:
-        """The value of a name, or of the array of an entry, is not read.
-
-        `is_input`: components of a value, such as w, x, y, z = q.as_quat(), are inputs.
-        """
+    def _drop(self, left: Node) -> None:
+        """The value of a name, or of the array of an entry, is not read."""
         for target in targets(left):
             if name := self.written(target):
                 self._become_unread(name, target)
-                if is_input:
-                    self.components.add(self.state.values[name])
 
     def _become_unread(self, name: str, node: Node) -> None:
         """A name, and all others for the same matrix, get new symbols in place of their values."""
         self._emit_groups(name)
-        grid = self.state.values.get(name)
-        same = [n for n, value in self.state.values.items() if value is grid]
-        for each in same if isinstance(grid, _Grid) else [name]:
+        table = self.values.get(name)
+        same = [n for n, value in self.values.items() if value is table]
+        for each in same or [name]:
             self.lines[each] = line_of(node)
-            self.state.values[each] = self._symbol_for(each, None)
+            self.values[each] = {(): self._symbol_for(each, None)}
 
     def _forget(self, node: Node) -> None:
         """All names that are written to in a statement become unread, if they have been used."""
-        for name in {name for name, _ in self._writes([node])}:
-            if name in self.state.values or name in self.inputs:
+        for name in self._writes(below([node])):
+            if name in self.values or name in self.inputs:
                 self._become_unread(name, node)
 
-    def _writes(self, nodes: Sequence[Node]) -> Iterator[tuple[str, bool]]:
-        """Names that are written to, and whether by an inner function or expression.
-
-        When that happens is unknown; Python's inner functions need `nonlocal` for it.
-        """
-        stack = [(node, False) for node in nodes]
-        while stack:
-            node, is_inner = stack.pop()
-            is_inner |= node.type in PARTS["function"]
-            names: set[str] = set()
-            is_late = (
-                is_inner and self.program.suffix != ".py" and node.type not in PARTS["declaration"]
-            )
-            meaning = STATEMENTS.get(node.type)
-            if node.type == "named_expression":
-                names, is_late = {self.written(node)}, True
+    def _writes(self, nodes: Iterable[Node]) -> set[str]:
+        """Names that statements, and walruses in expressions, may change."""
+        names: set[str] = set()
+        for node in nodes:
+            meaning, left = STATEMENTS.get(node.type), left_of(node)
+            if meaning in ("_call_statement", "_stream"):
+                names |= self._reached(node)
             elif node.type in ("nonlocal_statement", "global_statement"):
-                names, is_late = set(map(text_of, node.named_children)), True
-            elif meaning in ("_assignment", "_update"):
-                left = left_of(node)
-                names = set(map(self.written, targets(left))) if left is not None else set()
-            elif meaning in ("_call_statement", "_stream"):
-                names, is_late = self._reached(node), False
-            yield from ((name, is_late) for name in names if name)
-            stack += [(each, is_inner) for each in node.named_children]
+                names |= set(map(text_of, node.named_children))
+            elif meaning in ("_assignment", "_update") or node.type in PARTS["late"]:
+                names |= set(map(self.written, targets(left) if left is not None else ()))
+        return names - {""}
 
     def written(self, left: Node) -> str:
         """The name that an assignment writes to, also through parts that are not understood."""
         node: Node | None = left
         while node is not None:
-            place = self.place(node)
-            if place is not None:
+            if place := self.place(node):
                 return self.name_of(place.path)
-            node = part(
-                node, "argument", "value", "object", "expression", "array", "scope", "path", "name"
-            ) or next(iter(children(node)), None)
+            node = part(node, *PARTS["holder"]) or next(iter(children(node)), None)
         return ""
 
     def _branches(self, node: Node) -> None:
@@ -608,16 +539,12 @@ class _Interpreter:
         blocks += [(part(c, "condition"), c) for c in alternatives]
         possible, is_sure = [], False
         for condition, block in (*blocks, (None, other)):
-            constant = self._truth(condition)
+            constant = _BOOLEANS.get(text_of(condition).strip("() "))
             possible += [block] if block is not None and constant is not False else []
             is_sure = block is not None and (condition is None or bool(constant))
             if is_sure:
                 break
         self._either(possible, node, is_sure=is_sure)
-
-    def _truth(self, condition: Node | None) -> bool | None:
-        """Whether a condition always holds, or never does; None if that depends."""
-        return _BOOLEANS.get(text_of(condition).strip("() "))
 
     def _choice(self, node: Node) -> None:
         """switch, match."""
@@ -627,7 +554,7 @@ class _Interpreter:
 
     def _loop(self, node: Node) -> None:
         """A loop may run many times or never: what changes in it is unreadable at its start."""
-        before = self.state.copy()
+        before = _copied(self.values)
         self._forget(node)
         header = part(node, "left", "initializer", "pattern")
         if header is not None and node.type != "for_statement":
@@ -639,74 +566,76 @@ class _Interpreter:
         """The handler of an exception."""
         self._either([node], node, is_case=False)
 
+    def _directive(self, node: Node) -> None:
+        """#if and #else."""
+        other = part(node, "alternative")
+        blocks = [node] * (text_of(part(node, "condition")) != "0")
+        blocks += [other] if other is not None else []
+        self._either(blocks, node, is_sure=other is not None or node.type == "preproc_else")
+
     def _either(
         self,
         blocks: Sequence[Node],
         node: Node,
         *,
-        before: _State | None = None,
+        before: Values | None = None,
         is_sure: bool = False,
         ends_at_break: bool = False,
         is_case: bool = True,
     ) -> None:
-        """Run each block from the same state, and merge: differing values are unreadable."""
+        """Run each block from the same values, and merge: differing values are unreadable."""
         self._emit_groups()
-        start, before = self.state, before or self.state
+        start = self.values
         # If no block is sure to run, all of them may be skipped.
-        paths = [] if is_sure else [before]
+        ends = [] if is_sure else [before or start]
         for block in blocks:
-            self.state = start.copy()
-            fields = ("condition", "name", "alternative") if block.type in _GUARDED else ()
+            self.values, self.is_over = _copied(start), False
+            fields = ("condition", "name", "alternative") if block.type in PARTS["guarded"] else ()
             skipped = [part(block, each) for each in fields]
             is_simple = block.type in STATEMENTS and block != node
             for each in [block] if is_simple else children(block):
                 if each not in skipped:
                     self.run(each)
-            self._emit([k for k in self.state.values if _is_unfinished(start.values.get(k))])
-            self._emit_groups()
-            self.state.is_over &= not ends_at_break  # a break ends only the loop or the choice
-            paths.append(self.state)
-        alive = [path for path in paths if not path.is_over]
-        self._merge(alive, start, before, node, is_case=is_case)
-
-    def _merge(
-        self, alive: list[_State], start: _State, before: _State, node: Node, *, is_case: bool
-    ) -> None:
-        """One state for all paths: where they differ, a name has a case for each of them."""
-        # In gimbal lock, programs set one angle to a number. Only the branch with the formula
-        # counts.
-        alive = [p for p in alive if not any(self._is_pole(p, q) for q in alive)]
-        self.state = (alive or [before])[0].copy()
-        self.state.is_over = not alive
-        for name in dict.fromkeys(name for path in alive for name in path.values):
-            ends = [path.values.get(name) for path in alive]
+            self._emit([name for name in self.values if len(start.get(name, ())) < 3])
+            if not self.is_over or ends_at_break:  # a break ends only the loop or the choice
+                ends.append(self.values)
+        # In gimbal lock, programs set one angle to a number. Only the branch with
+        # the formula counts.
+        angles = [self._angles(values) for values in ends]
+        every = set().union(*angles)
+        are_poles = [
+            any(key in values.get(name, ()) for name, key in every - own)
+            for values, own in zip(ends, angles, strict=True)
+        ]
+        ends = [v for v, is_pole in zip(ends, are_poles, strict=True) if not is_pole] or ends
+        self.values, self.is_over = _copied((ends or [before or start])[0]), not ends
+        for name in dict.fromkeys(name for values in ends for name in values):
             is_input = name in self.inputs and name not in self.outputs
-            if name not in start.values and not is_input:  # had no value before
-                ends = [value for value in ends if value is not None]
-            if is_case and all(isinstance(value, sp.Expr) for value in ends):
-                ends = _alive(ends)
-            if all(_same(ends[0], value) for value in ends[1:]):
-                self.state.values[name] = ends[0]
-                continue
-            self._become_unread(name, node)
-            if is_case and all(isinstance(value, sp.Expr) for value in ends):
-                self.choices[self.state.values[name]] = tuple(ends)
+            tables = [values.get(name, {}) for values in ends]
+            if name not in start and not is_input:  # had no value before
+                tables = [table for table in tables if table]
+            self._merge(name, tables, node, is_case=is_case)
 
-    def _is_pole(self, path: _State, other: _State) -> bool:
-        """Whether a name is a number here, and an angle by an inverse function there."""
-        for name, value in path.values.items():
-            pair = (value, other.values.get(name))
-            tables: list[Mapping[Key, Any]]
-            tables = [v.entries if isinstance(v, _Grid) else {(): v} for v in pair]
-            ours, theirs = tables
-            for key in ours:
-                if key not in theirs:
-                    continue
-                one, two = (self.definitions.get(v, v) for v in (ours[key], theirs[key]))
-                is_angle = isinstance(two, sp.Expr) and two.has(*_INVERSE)
-                if is_angle and (one is None or not one.has(*_INVERSE)):
-                    return True
-        return False
+    def _angles(self, values: Values) -> set[tuple[str, tuple[int, ...]]]:
+        """The names and entries that are an angle by an inverse function."""
+        return {
+            (name, key)
+            for name, table in values.items()
+            for key, value in table.items()
+            if (self.definitions.get(value) or value).has(*_INVERSE)
+        }
+
+    def _merge(self, name: str, tables: list[Table], node: Node, *, is_case: bool) -> None:
+        """One value of a name for all paths, or a symbol that has a case for each of them."""
+        are_scalars = is_case and all(() in table for table in tables)
+        if are_scalars:
+            alive = _alive([table[()] for table in tables])
+            tables = [table for table in tables if table[()] in alive]
+        self.values[name] = tables[0]
+        if any(table != tables[0] for table in tables):
+            self._become_unread(name, node)
+            if are_scalars:
+                self.choices[self.values[name][()]] = tuple(table[()] for table in tables)
 
     def _end(self, node: Node) -> None:
         """return, break, raise."""
@@ -716,16 +645,16 @@ class _Interpreter:
     def _return(self, node: Node | None) -> None:
         if node is not None:
             try:
-                self.results.append(self.value(node))
-                if isinstance(self.results[-1], _Grid) and self.place(node) is None:
-                    self._add(_RETURNED, self.results[-1])
+                self.results.append(self.read(node))
+                if self.place(node) is None:
+                    self._add(_RETURNED, self.results[-1], line_of(node))
             except ExpressionError as error:
                 self.results.append(None)
                 if _MAY_BE_MATRIX.search(text_of(node)):
                     unread = Formula(line=line_of(node), name=_RETURNED, reason=str(error))
                     self.formulas.append(unread)
-        self._emit_all()
-        self.state.is_over = True
+        self._emit(self.values)
+        self.is_over = True
 
     def _call_statement(self, node: Node) -> None:
         """m.set(...) is an assignment; other calls may change their object and matrices."""
@@ -737,34 +666,24 @@ class _Interpreter:
         if "::" in text_of(part(node, "function")):  # of a type, not of an object
             return
         target = call.owner or (nodes[-1] if nodes and meaning else None)
-        name = self.written(target) if target is not None else "this"
         is_set = call.name in ("set", "setValue") if target is None else meaning is None
-        value: Any = None
-        if meaning == "set_unit":
-            value = sp.eye(4)
-        elif meaning == "scale" and self.written(nodes[1]) == name:
-            grid, factor = self.state.values.get(name), self._tried(nodes[0])
-            matrix = grid.matrix() if isinstance(grid, _Grid) else None
-            value = combined("*", factor, matrix) if None not in (factor, matrix) else None
-        elif is_set and any(p.search(call.name) for p in (_MATRIX_NAME, _VECTOR_NAME)):
+        value: Any = sp.eye(4) if meaning == "set_unit" else None
+        if is_set and any(p.search(call.name) for p in (_MATRIX_NAME, _VECTOR_NAME)):
             values = [self._tried(each) for each in nodes]
             value = rows(values) if len(nodes) in (3, 4, 9, 16) and None not in values else None
+        if value is not None and target is not None:
+            self._store(target, value)
+            return
         if value is not None:
-            self._emit([name])
-            grid = _Grid.of(line_of(node), value, "" if call.base == "?" else name)
-            self.state.values |= {} if call.base == "?" else {name: grid}
-            if call.base == "?" and target is not None:  # m[0].set(...)
-                self._store(target, grid)
+            self._emit(["this"])
+            self.values["this"], self.lines["this"] = _table(as_matrix(value)), line_of(node)
             return
         for each in nodes:  # list.append(np.array(...))
             if each.type in PARTS["list"] or EXPRESSIONS.get(each.type) == "_call":
-                matrix = as_matrix(self._tried(each) or 0)
-                if len(matrix) > 1:
-                    self._add(_ARGUMENT, _Grid.of(line_of(each), matrix))
+                self._add(_ARGUMENT, self._tried(each), line_of(each))
         for name in self._reached(node) if not _HARMLESS.search(call.path) else ():
-            if name in self.state.values or name in self.inputs:
-                grid = self.state.values.get(name)
-                self._emit([name] if isinstance(grid, _Grid) and grid.is_whole else [])
+            if name in self.values or name in self.inputs:
+                self._emit([name])
                 self._become_unread(name, node)
 
     def _sine_and_cosine(self, nodes: Sequence[Node]) -> None:
@@ -778,14 +697,6 @@ class _Interpreter:
             else:
                 self._store(left, called(word, [angle]))
 
-    def _directive(self, node: Node) -> None:
-        """#if and #else."""
-        other = part(node, "alternative")
-        blocks = [node] * (text_of(part(node, "condition")) != "0")
-        blocks += [other] if other is not None else []
-        is_sure = other is not None or node.type == "preproc_else"
-        self._either(blocks, node, is_sure=is_sure)
-
     def _reached(self, node: Node) -> set[str]:
         """Names that a call, or a stream, may change: its object, matrices, and &name."""
         if STATEMENTS[node.type] == "_stream":
@@ -794,7 +705,7 @@ class _Interpreter:
         places = [place for place in map(self.place, call.arguments) if place is not None]
         names = {self.name_of(path) for path in [call.base, *(place.path for place in places)]}
         pointers = [each for each in call.arguments if each.type in PARTS["pointer"]]
-        changed = {n for n in names if isinstance(self.state.values.get(n), _Grid)}
+        changed = {n for n in names if () not in self.values.get(n, {(): 0})}
         return changed | set(map(self.written, pointers))
 
     def _comma(self, node: Node) -> None:
@@ -811,123 +722,86 @@ class _Interpreter:
     def _stream(self, node: Node, others: Sequence[Node] = ()) -> None:
         """Eigen's comma initialiser."""
         left, right = part(node, "left"), part(node, "right")
-        if left is None or right is None or operator(node) != "<<":
-            return
-        values = [self.read(each) for each in (right, *others)]
-        self._store(left, _Grid.of(line_of(node), rows(values)))
+        if left is not None and right is not None and operator(node) == "<<":
+            self._store(left, rows([self.read(each) for each in (right, *others)]))
 
     # Formulas
 
-    def _emit_all(self) -> None:
-        """All matrices, and scalars that are one, at the end of a path."""
-        self._emit(self.state.values)
-        self._emit_groups()
-
     def _emit(self, names: Iterable[str]) -> None:
-        """The matrices of some names have their final values."""
+        """Matrices of some names, and scalars that are one, have their final values."""
         for name in names:
-            grid = self.state.values.get(name)
-            if isinstance(grid, _Grid) and grid.name:  # not the result of a helper
-                self._add(grid.name, grid)
+            table = self.values.get(name, {})
+            if len(table) > 2:
+                self._add(name, _matrix(table), self.lines[name])
+        self._emit_groups()
 
     def _join_groups(self, name: str) -> None:
         """A scalar may be a component of a vector, or an entry of a matrix."""
         path = self.paths.get(name, name)
-        for kind, pattern in _GROUPS.items():
-            if match := pattern.fullmatch(path if kind == "rows" else name):
+        for kind, pattern in enumerate(_GROUPS):
+            if match := pattern.fullmatch(path if "." in pattern.pattern[-9:] else name):
                 index = re.sub(r"[._]", "", match["index"]).lower()
                 self.groups.setdefault((kind, match["stem"]), {})[index] = name
         if stem_of(name):
-            self.groups.setdefault(("derivatives", ""), {})[name] = name
+            self.groups.setdefault((-1, ""), {})[name] = name
         base, _, last = path.rpartition(".")
         word = re.sub(r"^_+|_?(val|rad|angle)?_*$", "", last.lower())
-        for triple in _TRIPLES:
-            if word in triple:
-                index = str(triple.index(word))
-                self.groups.setdefault(("angles", f"{base} {triple[0]}"), {})[index] = name
+        for kind, triple in enumerate(_TRIPLES):
+            if word in triple.split():
+                self.groups.setdefault((-2 - kind, base), {})[word] = name
 
     def _emit_groups(self, changed: str | None = None) -> None:
         """Scalars that are one vector or matrix, all or those with a name that will change."""
-        lone = [m["w"] for (kind, _), m in self.groups.items() if (kind, *m) == ("vector", "w")]
         for (kind, stem), members in self.groups.items():
-            if changed not in (None, *members.values()):
+            order = _COMPLETE.get(frozenset(members)) if kind != -1 else tuple(members)[:4]
+            if order is None or len(order) < 3 or changed not in (None, *members.values()):
                 continue
-            is_vector = kind == "vector" and members.keys() == {*"xyz"}
-            if is_vector and len(set(lone)) == 1:  # v.x beside w
-                members = {**members, "w": lone[0]}
-            order = sorted(members) if kind != "derivatives" else [*members]
-            is_known = members.keys() in _COMPLETE if kind in _GROUPS else len(members) in (3, 4)
-            if kind == "flat" and members.keys() >= {*_FLAT_INDICES}:
-                order, is_known = _FLAT_INDICES, True
             names = [members[index] for index in order]
-            values = [self.state.values.get(name) for name in names]
-            column: list[Any] = [
-                self.definitions.get(v, v) for v in values if isinstance(v, sp.Expr)
-            ]
-            if not is_known or None in column or len(column) < len(names):
+            values: list[Any] = [self.values.get(name, {}).get(()) for name in names]
+            values = [self.definitions.get(v, v) for v in values]
+            if None in values or (kind, stem, *values) in self.emitted:
                 continue
-            are_angles = all(value.has(*_INVERSE) for value in column)
-            is_other = not are_angles if kind == "angles" else are_angles and is_vector
-            if is_other or (key := (kind, stem, *column)) in self.emitted:
-                continue
-            self.emitted.add(key)
-            line = min(self.lines[name] for name in names)
-            grid = _Grid.of(line, sp.ImmutableMatrix(column))
-            self._add(", ".join(names) if len(names) < 9 else stem.strip("._") or "elements", grid)
+            are_angles = all(value.has(*_INVERSE) for value in values)
+            if kind > -2 or are_angles:
+                self.emitted.add((kind, stem, *values))
+                name = ", ".join(names) if len(names) < 9 else stem.strip("._") or "elements"
+                self._add(name, sp.Matrix(values), min(self.lines[name] for name in names))
 
-    def _add(self, name: str, grid: _Grid) -> None:
-        matrix = grid.matrix()
-        if matrix is None or self.program.steps["formulas"] >= _MOST_FORMULAS:
+    def _add(self, name: str, value: Any, line: int) -> None:
+        if not isinstance(value, sp.MatrixBase) or len(value) == 1:
+            return
+        if self.program.steps["formulas"] >= _MOST_FORMULAS:
             return
         self.program.steps["formulas"] += 1
+        matrix = _unflattened(sp.ImmutableMatrix(value))
         whole = self._expanded(matrix)
         if _size(whole) > _MOST_PARTS:
             whole = matrix
         symbols = whole.free_symbols
-        bases = [self.state.values.get(re.sub(r"(?:_\d+)+$", "", s.name)) for s in symbols]
-        used = symbols | {base for base in bases if isinstance(base, sp.Symbol)}
-        unread = {s.name for s in used - self.components if self.definitions.get(s, s) is None}
+        bases = (self.values.get(re.sub(r"(?:_\d+)+$", "", s.name), {}) for s in symbols)
+        used = (symbols | {base[()] for base in bases if () in base}) - self.components
+        unread = {s.name for s in used if s.is_Symbol and self.definitions.get(s, s) is None}
         names = {s.name for s in symbols if not isinstance(s, sp.Dummy)}
-        plain = {  # symbols of a name's later values as plain symbols
+        plain: dict[sp.Expr, sp.Expr] = {  # symbols of later values as plain symbols
             s: sp.Symbol(s.name + "_new" * (s.name in names), real=True)
-            for s in (matrix.free_symbols | symbols)
-            if isinstance(s, sp.Dummy)
+            for s in matrix.free_symbols | symbols
+            if isinstance(s, sp.Dummy) and s not in self.squares.values()
         }
-        if any({f"{v}_w", f"{v}_{3 + self.is_matlab}"} & names for v in self.vectors):
-            return  # a quaternion, whose length was taken for that of a vector
-        for stem in {n[:-2] for n in names if n.endswith("_0")}:  # dot(v, v) beside v.x
-            if f"{stem}_x" in names or f"{stem}_y" in names:
-                indices = {sp.Symbol(f"{stem}_{k}", real=True): c for k, c in enumerate("xyz")}
-                plain |= {s: sp.Symbol(f"{stem}_{c}", real=True) for s, c in indices.items()}
+        plain |= {s: _square(v, names, self.is_matlab) for v, s in self.squares.items()}
         forms = [spelled_out(m, self.definitions).xreplace(plain) for m in (whole, matrix)]
         most = max((len(self.choices[s]) for s in symbols & self.choices.keys()), default=0)
         cases = [spelled_out(self._expanded(matrix, k), self.definitions) for k in range(most)]
         self.formulas.append(
             Formula(
-                line=grid.line,
+                line=line,
                 name=name,
                 forms=tuple(dict.fromkeys(forms)),
-                unread=tuple((n, self.lines.get(n, grid.line)) for n in sorted(unread)),
+                unread=tuple((n, self.lines.get(n, line)) for n in sorted(unread)),
                 cases=tuple(m for m in cases if not m.free_symbols & self.definitions.keys()),
             )
         )
 
     # Expressions
-
-    def value(self, node: Node) -> sp.Expr | _Grid:
-        """An expression, or a matrix that may be shared; raises ExpressionError."""
-        place = self.place(node)
-        value = self.state.values.get(self.name_of(place.path)) if place else None
-        is_name = place is not None and not place.indices
-        return (
-            value if is_name and isinstance(value, _Grid) else self._valued(node, self.read(node))
-        )
-
-    def _valued(self, node: Node, value: Any) -> sp.Expr | _Grid:
-        matrix = as_matrix(value)
-        if len(matrix) == 1:
-            return matrix[0]
-        return _Grid.of(line_of(node), matrix)
 
     def read(self, node: Node) -> Any:
         """The value of an expression; raises ExpressionError if it is not understood."""
@@ -944,9 +818,9 @@ class _Interpreter:
                 value = number(text if text.isdigit() else repr(float(text)))
                 return -value if digits[1] else value
             return getattr(self, EXPRESSIONS.get(node.type, "_named"))(node)
-        except _Unreadable:
-            raise
         except ExpressionError as error:
+            if str(error).startswith("`"):
+                raise
             raise self.unreadable(node, f"is not read: {error}") from None
         finally:
             self.depth -= 1
@@ -974,9 +848,7 @@ class _Interpreter:
         if not 0 < len(parts) <= _LONGEST_LIST:
             raise self.unreadable(node)
         values = [self.read(each) for each in parts]
-        return (
-            values[0] if len(values) == 1 and parts[0].type == "initializer_pair" else rows(values)
-        )
+        return values[0] if [part.type for part in parts] == ["initializer_pair"] else rows(values)
 
     def _record(self, node: Node) -> Any:
         """{w: a, x: b, y: c, z: d} of JavaScript, and Quaternion { x: a, ... } of Rust."""
@@ -1005,37 +877,34 @@ class _Interpreter:
         return value if operator(node) == "+" else -value
 
     def _binary(self, node: Node) -> Any:
-        left, right = self.read(children(node)[0]), self.read(children(node)[-1])
-        is_turn = not isinstance(right, sp.MatrixBase) and (right / sp.pi).is_number
-        if (
-            operator(node) == "%" and is_turn and self._expanded(left).has(*_INVERSE)
-        ):  # the same angle
+        sign, left, right = (
+            operator(node),
+            *map(self.read, children(node)[:: len(children(node)) - 1]),
+        )
+        is_turn = sign == "%" and not isinstance(right, sp.MatrixBase) and (right / sp.pi).is_number
+        if is_turn and self._expanded(left).has(*_INVERSE):  # the same angle
             return left
-        if operator(node) in ("+", "-"):
+        if sign in ("+", "-"):
             left, right = self._as_vector(left, right), self._as_vector(right, left)
         are_columns = all(getattr(side, "cols", 0) == 1 for side in (left, right))
-        if operator(node) == "*" and are_columns and self.program.suffix in _WITH_SWIZZLES:
+        if sign == "*" and are_columns and self.program.suffix in _WITH_SWIZZLES:
             return combined("%", left, right)
-        return combined(self._operation(node, operator(node)), left, right)
+        return combined(self._operation(node, sign), left, right)
 
     def _as_vector(self, value: Any, other: Any) -> Any:
-        """v or c v, where v has no value, in components if it is added to a vector."""
+        """c v, where v has no value, in components if it is added to a vector."""
         if not isinstance(value, sp.Expr) or getattr(other, "shape", ()) != (3, 1):
             return value
-        vectors = self.vectors & value.free_symbols or ({value} if value.is_Symbol else set())
-        factor = value / next(iter(vectors), sp.S.One)
-        if len(vectors) != 1 or factor.has(*vectors):
-            return value
-        return combined("*", factor, self._vector(*vectors))
+        factor, vector = value.as_independent(
+            *(s for s in value.free_symbols if s not in self.definitions)
+        )
+        return combined("*", factor, self._vector(vector)) if vector.is_Symbol else value
 
     def _vector(self, value: Any) -> Any:
         """Three components for a name without a value."""
         keys = [key + self.is_matlab for key in range(3)]
         parts = [_part(value, key) for key in keys] if isinstance(value, sp.Expr) else [None]
-        if None in parts:
-            return value
-        self.vectors |= value.free_symbols
-        return rows(parts)
+        return value if None in parts else rows(parts)
 
     def _operation(self, node: Node, sign: str) -> str:
         if self.is_matlab:
@@ -1049,10 +918,12 @@ class _Interpreter:
         if self.program.suffix != ".py":
             fields = (part(node, f) for f in ("consequence", "condition", "alternative"))
             parts = [each or node for each in fields]
-        constant = self._truth(parts[1])
+        constant = _BOOLEANS.get(text_of(parts[1]).strip("() "))
         if constant is None:
             return self._chosen(node, [self._tried(parts[0]), self._tried(parts[2])])
         return self.read(parts[0] if constant else parts[2])
+
+    # Places
 
     def place(self, node: Node | None) -> Place | None:
         """The name and the indices of R[0][1], q.w(), m.at(0, 1), state["phi"] or *p."""
@@ -1074,21 +945,19 @@ class _Interpreter:
         if not call.arguments:
             match = _GETTER.fullmatch(call.name)
             return self._below(owner, match[1].lower()) if match else None
-        if call.name in WORDS["entry"]:
+        if CALLS.get(call.name) == "entry":
             return self._indexed(owner, call.arguments)
         is_function = word in self.program.functions and not self.is_matlab
         is_entry = len(call.arguments) == 2 and len(word) == 1  # t(1, 2), but not T(2)
-        is_new = self.name_of(call.name) not in self.state.values and not is_entry
+        is_new = self.name_of(call.name) not in self.values and not is_entry
         is_function |= word in _RESERVED and is_new
         if is_function or len(call.arguments) > 2 + self.is_matlab:
             return None
-        callee = self._below(owner, call.name) if owner.path else Place(spelled(call.name))
-        return self._indexed(callee, call.arguments) if callee and not callee.indices else None
+        return self._indexed(self._below(owner, call.name), call.arguments)
 
     def _below(self, place: Place | None, name: str) -> Place | None:
         if place is None or not place.indices:
-            path = f"{place.path}.{name}" if place and place.path else name
-            return Place(path) if place else None
+            return Place(f"{place.path}.{name}" if place.path else name) if place else None
         return Place(place.path, (*place.indices, _AXES[name])) if name in _AXES else None
 
     def _indexed(self, place: Place | None, nodes: Sequence[Node]) -> Place | None:
@@ -1098,19 +967,17 @@ class _Interpreter:
             return None
         if any(isinstance(index, str) for index in indices):
             return self._below(place, str(indices[0])) if len(indices) == 1 else None
-        grid = self.state.values.get(self.name_of(place.path))
-        is_matrix = isinstance(grid, _Grid) and grid.is_whole
-        while len(indices) > 1 + is_matrix and indices[0] == _ALL:  # of a batch: q[..., 0]
+        while indices[0] is ... or (len(indices) > 2 and indices[0] == _ALL):  # of a batch
             indices = indices[1:]
         shifted = [i if isinstance(i, slice) else i - self.is_matlab for i in indices[:2]]
         is_place = all(isinstance(i, slice) or 0 <= i < 64 for i in shifted)
         return Place(place.path, (*place.indices, *shifted)) if is_place else None
 
-    def _index(self, node: Node) -> int | str | slice | None:
+    def _index(self, node: Node) -> Any:
         """An index as it is written, or the key of a table."""
         text, parts = text_of(node), children(node)
         if text in (":", "..."):
-            return _ALL
+            return _ALL if text == ":" else ...
         if match := re.fullmatch(r"(\d?):(\d?)", text):
             ends = [int(end) if end else None for end in match.groups()]
             return slice(ends[0] - 1 if self.is_matlab and ends[0] else ends[0], ends[1])
@@ -1118,9 +985,10 @@ class _Interpreter:
             return 3
         if match := re.fullmatch(r"""["'](\w+)["']|(\d\d?)""", text):
             return match[1] or int(match[2])
-        if EXPRESSIONS.get(node.type) == "_wrapped" and parts:
+        meaning = EXPRESSIONS.get(node.type)
+        if meaning == "_wrapped" and parts:
             return self._index(parts[-1])
-        if EXPRESSIONS.get(node.type) == "_binary":
+        if meaning == "_binary":
             sides = [self._index(side) for side in parts]
             if all(isinstance(side, int) for side in sides) and operator(node) in "+-*":
                 return int(combined(operator(node), *map(sp.Integer, sides)))
@@ -1128,69 +996,23 @@ class _Interpreter:
         if place is None or place.indices:
             return None
         name = self.name_of(place.path)
-        value: Any = self.state.values.get(name)
-        if value is None and name not in self.inputs:
+        value: Any = self.values.get(name, {}).get(())
+        if name not in self.values and name not in self.inputs:
             value = self.program.constants.get(name, _AXES.get(name))
-        value = self.definitions.get(value, value) if isinstance(value, sp.Expr) else value
+        value = self.definitions.get(value, value)
         return int(value) if isinstance(value, int | sp.Integer) else None
 
-    def _keys(self, base: str, indices: Sequence[int | slice], count: int = 3) -> list[Key]:
+    def _keys(self, table: Table, indices: Indices, count: int = 3) -> list[tuple[int, ...]]:
         """The places of all entries that indices and slices name."""
-        grid = self.state.values.get(base)
-        keys = [*grid.entries] if isinstance(grid, _Grid) else []
         ranges = []
         for axis, index in enumerate(indices):
             if isinstance(index, slice):
-                sizes = [key[axis] + 1 for key in keys if len(key) > axis]
+                sizes = [key[axis] + 1 for key in table if len(key) > axis]
                 stop = max(sizes, default=4 if index.start else count)
                 ranges.append(range(index.start or 0, index.stop or stop))
             else:
                 ranges.append(range(index, index + 1))
         return [*product(*ranges)]
-
-    def _entry(self, node: Node, base: str, indices: Sequence[int | slice]) -> Any:
-        """One entry, or those of slices as a column or a matrix."""
-        grid = self.state.values.get(base)
-        if isinstance(grid, _Grid) and self.program.suffix == ".py" and len(indices) == 1:
-            indices = (*indices, _ALL)[: max(map(len, grid.entries), default=1)]  # a row
-        keys = self._keys(base, indices)
-        if not keys:
-            raise self.unreadable(node)
-        values = [self._at(node, base, key) for key in keys]
-        height = len({key[0] for key in keys})
-        is_matrix = height > 1 and len(keys) > height
-        shape = (height, len(keys) // height) if is_matrix else (len(keys), 1)
-        return sp.ImmutableMatrix(*shape, values) if len(keys) > 1 else values[0]
-
-    def _at(self, node: Node, base: str, key: Key) -> Any:
-        grid = self.state.values.get(base)
-        if isinstance(grid, _Grid):
-            value = grid.entries.get((*key, 0), grid.entries.get(key))
-            if value is None:
-                raise self.unreadable(node, "has no value")
-            return value
-        from_1 = [index + self.is_matlab for index in key]
-        value = _part(grid, from_1[0]) if isinstance(grid, sp.Expr) and len(key) == 1 else None
-        if value is not None:
-            return value
-        self.inputs.add(base)
-        name = "_".join([base, *map(str, from_1)])
-        if isinstance(grid, sp.Dummy) and name not in self.state.values:
-            return self.later.setdefault((grid, name), sp.Dummy(name, real=True))
-        return self._symbol(node, name)
-
-    def _symbol(self, node: Node, name: str) -> Any:
-        """The value of a name; an input if nothing was assigned."""
-        value = self.state.values.get(name)
-        if name in self.untracked:
-            raise self.unreadable(node, "is changed inside an expression or an inner function")
-        if value is None:
-            self.inputs.add(name)
-            return sp.Symbol(name, real=True)
-        value = value.matrix() if isinstance(value, _Grid) else value
-        if value is None:
-            raise self.unreadable(node, "has entries without values")
-        return value
 
     def _named(self, node: Node) -> Any:
         """A name, an entry, a component, or several: q.xyz."""
@@ -1198,26 +1020,67 @@ class _Interpreter:
         is_slip = self.program.is_formula and text_of(node).startswith("*")  # a + * b
         if place is None or is_slip:
             raise self.unreadable(node)
-        if place.indices:
-            return self._entry(node, self.name_of(place.path), place.indices)
+        name, indices = self.name_of(place.path), place.indices
+        if indices:
+            table = self.values.get(name, {})
+            if len(indices) == 2 and indices[0] == _ALL and not any(len(k) == 2 for k in table):
+                indices = indices[1:]  # of a batch: q[:, 0]
+            if self.program.suffix == ".py" and len(indices) == 1:  # a row
+                indices = (*indices, _ALL)[: max(map(len, table), default=1) or 1]
+            keys = self._keys(table, indices)
+            values = [self._entry(node, name, key) for key in keys]
+            height = len({key[0] for key in keys})
+            is_matrix = height > 1 and len(keys) > height
+            shape = (height, len(keys) // height) if is_matrix else (len(keys), 1)
+            return sp.ImmutableMatrix(*shape, values) if len(keys) != 1 else values[0]
         base, _, member = place.path.rpartition(".")
         if member in CONSTANTS:
             return CONSTANTS[member]
         if base and _SWIZZLE.fullmatch(member := _PARTS_OF.get(member, member)):
             parts = [self._component(node, base, letter) for letter in member]
             return parts[0] if len(parts) == 1 else rows(parts)
-        return self._symbol(node, self.name_of(place.path))
+        return self._value_of(node, name)
+
+    def _value_of(self, node: Node, name: str) -> Any:
+        """The value of a name; an input if nothing was assigned."""
+        if name in self.untracked:
+            raise self.unreadable(node, "is changed inside an expression or an inner function")
+        if name not in self.values:
+            self.inputs.add(name)
+            return sp.Symbol(name, real=True)
+        value = _matrix(self.values[name])
+        if value is None:
+            raise self.unreadable(node, "has entries without values")
+        return value
+
+    def _entry(self, node: Node, name: str, key: tuple[int, ...]) -> Any:
+        table = self.values.get(name, {})
+        if table and () not in table:
+            value = next((table[k] for k in (key, (*key, 0), (0, *key)) if k in table), None)
+            if value is None:
+                raise self.unreadable(node, "has no value")
+            return value
+        whole, from_1 = table.get(()), [index + self.is_matlab for index in key]
+        value = _part(whole, from_1[0]) if whole is not None and len(key) == 1 else None
+        if value is not None:
+            return value
+        self.inputs.add(name)
+        entry = "_".join([name, *map(str, from_1)])
+        if isinstance(whole, sp.Dummy) and entry not in self.values:
+            return self.later.setdefault((whole, entry), sp.Dummy(entry, real=True))
+        return self._value_of(node, entry)
 
     def _component(self, node: Node, base: str, letter: str) -> Any:
         """x, y, z or w of a vector."""
-        vector = self.state.values.get(self.name_of(base))
-        count = len(vector.entries) if isinstance(vector, _Grid) and vector.is_whole else 0
-        if count == 3 or (count == 4 and self.program.suffix in _WITH_SWIZZLES):
-            return self._at(node, self.name_of(base), ("xyzw".index(letter.lower()),))
-        name = self.name_of(f"{base}.{letter}")
-        is_new = isinstance(vector, sp.Expr) and name not in self.state.values
-        value = _part(vector, letter) if is_new else None
-        return self._symbol(node, name) if value is None else value
+        vector, name = self.name_of(base), self.name_of(f"{base}.{letter}")
+        table = self.values.get(vector, {})
+        if len(table) == 3 or (len(table) == 4 and self.program.suffix in _WITH_SWIZZLES):
+            return self._entry(node, vector, ("xyzw".index(letter.lower()),))
+        if () in table and name not in self.values:
+            value = _part(table[()], letter)
+            if value is not None:
+                return value
+        return self._value_of(node, name)
 
     def _member(self, node: Node) -> Any:
         inner = part(node, "object", "value", "argument", "expression")
@@ -1240,14 +1103,13 @@ class _Interpreter:
         if self.place(node) is not None:  # R(0, 1), q.w()
             return self._named(node)
         call = call_of(node)
-        alias = self.state.values.get(call.name)  # s, c = np.sin, np.cos
-        name = function_word(str(alias) if str(alias) in FUNCTIONS else call.name)
+        alias = str(self.values.get(call.name, {}).get(()))  # s, c = np.sin, np.cos
+        name = function_word(alias if alias in FUNCTIONS else call.name)
         nodes, meaning = call.arguments, CALLS.get(name, "")
-        own = self.state.values.get(self.name_of(call.base)) if call.base else None
+        own = self.values.get(self.name_of(call.base), {(): 0}) if call.base else {(): 0}
         is_short = name in _OF_NUMBERS and len(nodes) < 1 + (name in ("pow", "atan2"))
-        is_value = call.base == "?" or isinstance(own, _Grid)
-        is_method = is_short or (meaning in _METHODS and not _MODULE.match(call.base))
-        if call.owner is not None and (is_value or is_method):
+        is_method = is_short or (meaning in _OF_OBJECTS and not _MODULE.match(call.base))
+        if call.owner is not None and (call.base == "?" or () not in own or is_method):
             nodes = [call.owner, *nodes]
         is_letter = name in [*"cstCST"] and len(nodes) == 1
         in_formula = self.program.is_formula and (name in OF_MATRICES or is_letter)
@@ -1268,11 +1130,6 @@ class _Interpreter:
                 return self.read(nodes[0])
             case "zeros" | "unit":
                 return self._filled(node, call)
-            case "row" | "column" if len(call.arguments) == 1 and call.base not in ("", "?"):
-                index = self._index(call.arguments[0])
-                if isinstance(index, int):
-                    place = (index, _ALL) if meaning == "row" else (_ALL, index)
-                    return self._entry(node, self.name_of(call.base), place)
             case "clamp" | "least" if len(nodes) > 1:
                 return self._unclamped(node, [self.read(each) for each in nodes])
             case "where" if len(nodes) == 3:
@@ -1287,19 +1144,18 @@ class _Interpreter:
         nodes = call.arguments
         if len(nodes) in (4, 5, 10, 17) and text_of(nodes[-1]) in ("true", "false"):  # a flag
             nodes = nodes[:-1]
-        is_vector = len(nodes) in (3, 4) and bool(_VECTOR_NAME.search(call.path))
-        is_matrix = len(nodes) in (3, 9, 16) and bool(_MATRIX_NAME.search(call.path))
+        is_built = len(nodes) in (3, 4) and bool(_VECTOR_NAME.search(call.path))
+        is_built |= len(nodes) in (3, 9, 16) and bool(_MATRIX_NAME.search(call.path))
         if name in self.program.functions and call.base in ("", "self", "this", "Self"):
             try:
                 return self._inline(node, name, nodes)
             except ExpressionError:
-                if not (is_vector or is_matrix):  # a constructor
+                if not is_built:  # a constructor
                     raise
-        if is_vector or is_matrix:
+        if is_built:
             return rows([self.read(each) for each in nodes])
         if _TYPE.fullmatch(name) and 1 < len(nodes) < 4:  # float4(v, w)
-            parts = [as_matrix(self.read(each)) for each in nodes]
-            return rows([entry for each in parts for entry in each])
+            return rows([entry for each in nodes for entry in as_matrix(self.read(each))])
         if self.program.is_formula and call.owner is None:
             hint = offer(name, [*FUNCTIONS, *OF_MATRICES])
             raise ExpressionError(f"{name!r} is not a function; {hint}")
@@ -1315,15 +1171,15 @@ class _Interpreter:
 
     def _of_vectors(self, meaning: str, values: Sequence[Any]) -> Any:
         """An operation of matrices; a name without a value is a vector."""
-        if meaning in ("cross", "dot", "norm", "skew", "outer"):
+        if meaning == "norm":
+            return called("sqrt", [self._of_vectors("dot", [*values, *values])])
+        if meaning == "dot" and values[0] == values[-1] and isinstance(values[0], sp.Symbol):
+            name = values[0].name
+            return self.squares.setdefault(name, sp.Dummy(f"{name}²", positive=True))
+        if meaning in ("cross", "dot", "skew", "outer"):
             values = [self._vector(value) for value in values]
-        match meaning, values:
-            case "norm", [vector]:
-                return called("sqrt", [called("dot", [vector, vector])])
-            case "dot", [one, other] if as_matrix(one).cols == 1 and as_matrix(other).cols == 1:
-                return called("dot", [one, other])
-            case "dot", [one, other]:
-                return combined("@", one, other)
+        if meaning == "dot" and any(as_matrix(value).cols > 1 for value in values):
+            return combined("@", *values)
         names = {"transpose": "T", "skew": "C", "inverse": "inv"}
         return called(names.get(meaning, meaning), [as_matrix(value) for value in values])
 
@@ -1331,7 +1187,7 @@ class _Interpreter:
         """zeros(3, 3), Matrix3d::Identity()."""
         texts = " ".join(map(text_of, call.arguments))
         sizes = [int(digits) for digits in re.findall(r"\d+", texts)][-2:] or [3]
-        is_zero = call.name in WORDS["zeros"]
+        is_zero = CALLS[call.name] == "zeros"
         is_column = len(sizes) == 1 and bool(texts) and is_zero and not self.is_matlab
         height, width = sizes[0], 1 if is_column else sizes[-1]
         if not {height, width} <= {3, 4} or _VECTOR_NAME.search(call.path):
@@ -1345,8 +1201,9 @@ class _Interpreter:
         by_columns = bool(_BY_COLUMNS.search(call.name)) ^ axis.endswith(("=1", "=-1"))
         nodes = call.arguments
         is_listed = len(nodes) == 1 and nodes[0].type in PARTS["list"]
-        nodes = children(nodes[0]) if is_listed else nodes
-        parts = [as_matrix(self.read(each)) for each in nodes]
+        parts = [
+            as_matrix(self.read(each)) for each in (children(nodes[0]) if is_listed else nodes)
+        ]
         if all(each.cols == 1 for each in parts) and len({each.rows for each in parts}) > 1:
             return sp.ImmutableMatrix(sp.Matrix.vstack(*parts))  # (w, v)
         matrix = rows(parts)
@@ -1360,16 +1217,56 @@ class _Interpreter:
         names = [each for each in names if each not in ("self", "this")]
         if len(names) != len(nodes) or self.inlined >= _INLINED:
             raise self.unreadable(node)
-        for each, argument in zip(names, nodes, strict=True):
-            value = self.value(argument)
-            inner.state.values[each] = value.copy() if isinstance(value, _Grid) else value
+        values = [self.read(each) for each in nodes]
+        inner.values = {n: _table(as_matrix(v)) for n, v in zip(names, values, strict=True)}
         inner.run_scope(function)
-        results = [v.matrix() if isinstance(v, _Grid) else v for v in inner.results]
         is_closed = not inner.inputs - set(names) and None not in inner.definitions.values()
-        if not results or None in results or not is_closed:
+        if not inner.results or None in inner.results or not is_closed:
             raise self.unreadable(node)
-        results = [inner._expanded(result) for result in results]
+        results = [inner._expanded(result) for result in inner.results]
         return results[0] if len(results) == 1 else self._chosen(node, results)
+
+
+def _table(matrix: sp.MatrixBase) -> Table:
+    if len(matrix) == 1:
+        return {(): matrix[0]}
+    if matrix.cols == 1:
+        return {(i,): entry for i, entry in enumerate(matrix)}
+    return {(i, j): matrix[i, j] for i, j in product(*map(range, matrix.shape))}
+
+
+def _matrix(table: Table) -> Any:
+    """The value in a table: a scalar or a matrix, None if an entry is missing."""
+    if () in table:
+        return table[()]
+    widths = {len(key) for key in table}
+    height, width = len({key[0] for key in table}), len({key[1:] for key in table})
+    if len(widths) != 1 or height * width != len(table):
+        return None
+    return sp.ImmutableMatrix(height, width, [table[key] for key in sorted(table)])
+
+
+def _unflattened(matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
+    """Nine, twelve or sixteen numbers in a row are a matrix."""
+    is_flat = 1 in matrix.shape and len(matrix) in _FLAT
+    return matrix.reshape(*_FLAT[len(matrix)]) if is_flat else matrix
+
+
+def _copied(values: Values) -> Values:
+    """All tables anew; names for one matrix still have one table."""
+    tables = {id(table): dict(table) for table in values.values()}
+    return {name: tables[id(table)] for name, table in values.items()}
+
+
+def _square(vector: str, names: set[str], is_matlab: bool) -> sp.Expr:
+    """|v|² of a vector, or of a quaternion if a formula has its fourth component."""
+    letters = (
+        [*"xyzw"]
+        if f"{vector}_x" in names or f"{vector}_w" in names
+        else range(is_matlab, 4 + is_matlab)
+    )
+    parts = [f"{vector}_{each}" for each in letters]
+    return sum(sp.Symbol(p, real=True) ** 2 for p in parts[: 3 + (parts[3] in names)])
 
 
 def _part(value: sp.Expr, key: int | str) -> sp.Expr | None:
@@ -1393,22 +1290,7 @@ def _size(value: Any) -> int:
     return sum(1 for _ in islice(sp.preorder_traversal(value), _MOST_PARTS + 1))
 
 
-def _is_unfinished(value: Any) -> bool:
-    """Whether a name has no value, or that of a matrix without some entries."""
-    return value is None or (
-        isinstance(value, _Grid) and not value.is_whole and len(value.entries) < 3
-    )
-
-
-def _is_length(value: Any) -> bool:
+def _is_length(value: sp.Expr) -> bool:
     """Whether this is a sum of squares, or the root of one."""
-    if isinstance(value, sp.Pow) and value.exp == sp.Rational(1, 2):
-        value = value.base
-    terms = sp.Add.make_args(value) if isinstance(value, sp.Expr) else ()
+    terms = sp.Add.make_args(value.base if value.is_Pow and value.exp == sp.S.Half else value)
     return len(terms) > 1 and all(t.is_Pow and t.exp == 2 for t in terms)
-
-
-def _same(one: Any, other: Any) -> bool:
-    if isinstance(one, _Grid) and isinstance(other, _Grid):
-        return one.entries == other.entries
-    return type(one) is type(other) and bool(one == other)
