@@ -48,14 +48,6 @@ def test_notations_are_read_as_one_language(text, read):
     assert formula_matrix(text) == expected
 
 
-def test_the_length_of_a_vector_is_called_n_as_in_notes():
-    motion = rs.derive("quaternion", "rotation_matrix")
-    text = motion.latex("rotation_matrix")
-    assert "n^2" in text
-    assert rs.compare(text, motion, "rotation_matrix").is_proved
-    assert not rs.compare(text.replace("n^2", "n"), motion, "rotation_matrix").is_equal
-
-
 @pytest.mark.parametrize(
     "text",
     [

@@ -1,7 +1,7 @@
 """What a formula is: matched with one quantity or with all, and the small changes that make it so.
 
-A change of the whole formula (a transpose, a sign, a factor) or of the quantity (the other frame,
-the inverse, the order of turns) is tried before changes of single entries.
+A change of the whole formula (a transpose, a sign, a factor) is tried before changes of single
+entries.
 """
 
 from __future__ import annotations
@@ -17,7 +17,6 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from rigidsym.errors import AlgebraError, DerivationError, ModelError
-from rigidsym.motion import QUANTITIES
 from rigidsym.system.resources import environment
 from rigidsym.tools.compare.quantities import (
     ANGLES,
@@ -31,21 +30,36 @@ from rigidsym.tools.compare.quantities import (
     are_angles,
     catalogue,
     evaluated,
-    is_in_own_names,
     is_orthogonal,
     near,
     readings,
     stem_of,
-    target,
 )
 
 _MOST_REPAIRS = 2  # of a formula that nobody has named
 _NEAR = 0.6  # share of entries that must be right for a formula to be close to another
-_TURNS = (QUATERNION, "rotation_matrix")
 _NEAREST = 16  # readings of which the wrong entries are repaired
 _MOST_OPERATIONS = 200  # of an entry in which each part is changed
 _MOST_ENTRIES = 3  # that may be wrong, each by one change
 _HALF, _TWO = sp.Rational(1, 2), sp.Integer(2)
+_WHOLE = {  # changes of all entries together
+    "transpose": ("the formula is the transpose", lambda m: m.T),
+    "sign": ("all signs are the other way round", lambda m: -m),
+    "factor 2": ("a factor 2 is missing", lambda m: 2 * m),
+    "factor 1/2": ("a factor 1/2 is missing", lambda m: m / 2),
+}
+_KINDS = {  # changes of a part of an entry, the likeliest first
+    "sign": "a sign",
+    "sine and cosine": "sine and cosine exchanged",
+    "index": "another name",
+    "arguments": "arguments exchanged",
+    "square": "a square",
+    "factor": "a number as factor",
+    "half angle": "half or twice the angle",
+    "product": "a factor missing or too many",
+    "quadrant": "atan2 in place of atan",
+    "term": "a term too many",
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,7 +71,6 @@ class Repair:
     formula: sp.ImmutableMatrix  # the formula after it, in the user's names
     goal: KnownQuantity  # what that equals
     place: tuple[int, int] | None = None  # of the entry, counted from 1
-    before: sp.Expr | None = None
     after: sp.Expr | None = None
 
 
@@ -79,12 +92,8 @@ class Reading:
         own = goal.on_circle(evaluated(formula, values))
         return cls(formula=formula, goal=goal, names=names, values=values, own=own)
 
-    def numbers(self, matrix: sp.MatrixBase) -> Array:
-        return self.goal.on_circle(evaluated(matrix, self.values))
-
-    def agrees(self, numbers: Array, goal: KnownQuantity | None = None) -> bool:
-        """Whether numbers are those of the goal, or of another one."""
-        wanted = (goal or self.goal).values
+    def agrees(self, changed: sp.MatrixBase, wanted: Array) -> bool:
+        numbers = self.goal.on_circle(evaluated(changed, self.values))
         return numbers.shape == wanted.shape and bool(near(numbers, wanted).all())
 
     @cached_property
@@ -118,7 +127,6 @@ class Comparison:
     found: KnownQuantity | None = None  # what it is after the repairs
     names: Names | None = None
     repairs: tuple[Repair, ...] = ()
-    as_it_stands: KnownQuantity | None = None  # what it is before a repair of its entries
     is_proved: bool = False  # that the repaired formula is what was found
     counterexample: str = ""  # where the formula is wrong, if it is right for some angles only
     is_reflection: bool = False
@@ -143,14 +151,12 @@ class Comparison:
             "rotation": self.found.rotation if self.found else None,
             "quantity": self.found.quantity if self.found else None,
             "arrangement": self.arrangement,
-            "as_it_stands": str(self.as_it_stands) if self.as_it_stands else None,
             "names": self._called(),
             "repairs": [
                 {
                     "kind": repair.kind,
                     "words": repair.words,
                     "entry": list(repair.place) if repair.place else None,
-                    "before": None if repair.before is None else str(repair.before),
                     "after": None if repair.after is None else str(repair.after),
                 }
                 for repair in self.repairs
@@ -159,23 +165,20 @@ class Comparison:
 
     def text(self) -> str:
         """The findings in sentences."""
-        asked, found = self.asked, self.found
-        symbols = self.formula.free_symbols
-        called, own = self._called(), [*found.coordinates] if found else []
-        stems = {name: stem_of(called.get(f"{name}_dot", "")) for name in own}
-        theirs = {name: called.get(name) or stems[name] for name in own}
-        equations = [f"{name} = {other}" for name, other in theirs.items() if other]
-        calls = f" in ({', '.join(theirs.values())})"
-        if not all(theirs.values()):  # the quantity does not depend on some coordinate
-            calls = f" with {', '.join(equations)}" if equations else ""
+        asked, found, called = self.asked, self.found, self._called()
+        is_of_angles = found and found.rotation and found.quantity != ANGLES
+        q = found.inputs["q"] if found and is_of_angles else ()
+        own = [name for name, symbol in (found.names if found else {}).items() if symbol in q]
+        theirs = [called.get(name) or stem_of(called.get(f"{name}_dot", "")) for name in own]
         facts: dict[str, Any] = {each.name: getattr(self, each.name) for each in fields(self)}
         facts |= {
-            "calls": calls if any(name != other for name, other in theirs.items() if other) else "",
+            "calls": [*zip(own, theirs, strict=True)] if own != theirs and any(theirs) else [],
+            "are_all_called": all(theirs),
             "points": POINTS,
             "is_as_asked": found and asked and str(asked) == str(found),
             "shape": in_words(self.formula.shape),
             "expected": in_words(asked.matrix.shape if asked else self.formula.shape),
-            "names": sorted(map(str, symbols)),
+            "names": sorted(map(str, self.formula.free_symbols)),
         }
         return str(environment().get_template("compare/comparison.txt.jinja").render(facts))
 
@@ -195,19 +198,18 @@ def in_words(shape: tuple[int, int]) -> str:
 
 def against(formula: sp.ImmutableMatrix, goal: KnownQuantity) -> Comparison:
     """Compare with one quantity, under all meanings of its names."""
-    names = readings(formula, goal, in_own_names=True)
+    names = readings(formula, goal, is_asked=True)
     meanings = [Reading.of(formula, goal, each) for each in names]
-    decided = _decided(formula, meanings, goal)
-    if decided:
+    if decided := _decided(formula, meanings, goal, is_in_program=False):
         return decided
     own = identified(formula, only_equal=True)
-    nearest = max(meanings, key=lambda each: each.share, default=None)
-    if nearest and (repairs := entry_repairs(nearest)):
-        return replace(_proved(nearest, repairs, goal), as_it_stands=own.found)
     if own.found:
         words = f"this is {own.found.described}"
         repair = Repair(kind="convention", words=words, formula=formula, goal=own.found)
         return replace(own, asked=goal, repairs=(repair,))
+    nearest = max(meanings, key=lambda each: each.share, default=None)
+    if nearest and (repairs := entry_repairs(nearest)):
+        return _proved(nearest, repairs, goal)
     return Comparison(formula=formula, asked=goal)
 
 
@@ -219,10 +221,17 @@ def identified(
     In a program, a transpose, a sign or a factor of the whole formula may be meant.
     """
     meanings: list[Reading] = []
-    for reading in _all_readings(formula):
-        if reading.is_equal:
-            return _proved(reading, (), None)
-        meanings.append(reading)
+    of_inputs: dict[Any, list[Reading]] = {}  # Euler angles of all orders have the same inputs
+    for goal in catalogue(formula):
+        model = goal.motion.model
+        inputs = (tuple(goal.inputs.items()), goal.uses, model.constraints)
+        if inputs not in of_inputs:
+            names = readings(formula, goal, is_asked=False)
+            of_inputs[inputs] = [Reading.of(formula, goal, each) for each in names]
+        for meaning in (replace(each, goal=goal) for each in of_inputs[inputs]):
+            if meaning.is_equal:
+                return _proved(meaning, (), None)
+            meanings.append(meaning)
     unknown = Comparison(formula=formula, asked=None)
     if only_equal:
         return unknown
@@ -231,10 +240,11 @@ def identified(
     )
     if decided:
         return decided
-    for reading in sorted(meanings, key=lambda each: -each.share)[:_NEAREST]:
-        repairs = entry_repairs(reading) if reading.share >= _NEAR else ()
+    near_ones = [each for each in meanings if each.share >= _NEAR]
+    for meaning in sorted(near_ones, key=lambda each: -each.share)[:_NEAREST]:
+        repairs = entry_repairs(meaning)
         if 0 < len(repairs) <= _MOST_REPAIRS and all(r.kind != "entry" for r in repairs):
-            return _proved(reading, repairs, None)
+            return _proved(meaning, repairs, None)
     return unknown
 
 
@@ -243,7 +253,7 @@ def _decided(
     meanings: Sequence[Reading],
     asked: KnownQuantity | None,
     *,
-    is_in_program: bool = False,
+    is_in_program: bool,
 ) -> Comparison | None:
     """What is known without a look at single entries."""
     if equal := next((each for each in meanings if each.is_equal), None):
@@ -251,36 +261,31 @@ def _decided(
     is_mirror, of_angles = is_orthogonal(formula, -1), are_angles(formula)
     # Inverse functions are not changed as a whole: transposes, orders and senses of the angles are
     # already among their conventions.
-    wholes: Iterator[tuple[Reading, Repair]] = iter(())
     if is_mirror or not (is_in_program or of_angles):
-        wholes = ((m, r) for m in meanings for r in whole_repairs(m, asked))
-    whole = next(wholes, None)
+        for meaning, (kind, (words, change)) in product(meanings, _WHOLE.items()):
+            changed = change(formula)
+            if meaning.agrees(changed, meaning.goal.values):
+                goal = meaning.goal
+                words += " (passive)" * (goal.quantity == "rotation_matrix" and kind == "transpose")
+                repair = Repair(kind=kind.split()[0], words=words, formula=changed, goal=goal)
+                return _proved(meaning, [repair], asked)
     # The negative of a reflection may be the wanted rotation. If it is not, det = −1 is the
     # finding, and no repair of entries is looked for.
-    if is_mirror and not whole:
+    if is_mirror:
         return Comparison(formula=formula, asked=asked, is_reflection=True)
     some = next((each for each in meanings if each.is_right_for_some), None)
-    if some and not of_angles:  # before repairs: no change makes it right for all angles
-        return _right_for_some(some, asked)
-    return _proved(whole[0], whole[1:], asked) if whole and not is_in_program else None
-
-
-def _all_readings(formula: sp.ImmutableMatrix) -> Iterator[Reading]:
-    """A formula beside all quantities of the catalogue, in all ways of writing them.
-
-    Names that are those of a quantity are read as such first.
-    """
-    has_own_names = any(is_in_own_names(formula, goal) for goal in catalogue(formula))
-    for in_own_names in (True, False) if has_own_names else (False,):
-        plain: dict[Any, list[Reading]] = {}  # Euler angles of all orders have the same inputs
-        for goal in catalogue(formula):
-            model = goal.motion.model
-            inputs = (tuple(goal.inputs.items()), goal.uses, model.vector, model.constraints)
-            if inputs not in plain:
-                names = readings(formula, goal, in_own_names=in_own_names)
-                plain[inputs] = [Reading.of(formula, goal, each) for each in names]
-            for way in goal.arrangements if plain[inputs] else ():
-                yield from (replace(each, goal=way) for each in plain[inputs])
+    if not some or of_angles:
+        return None
+    # No change makes it right for all angles. The first point where the formula is wrong:
+    place = int(some.agreement.all(axis=(1, 2)).argmin())
+    points = ((name, some.values[name][place]) for name in sorted(some.names, key=str))
+    return Comparison(
+        formula=formula,
+        asked=asked,
+        found=some.goal,
+        names=some.names,
+        counterexample=", ".join(f"{name} = {value:.4g}" for name, value in points),
+    )
 
 
 def _in_other_senses(formula: sp.ImmutableMatrix) -> Comparison | None:
@@ -295,26 +300,13 @@ def _in_other_senses(formula: sp.ImmutableMatrix) -> Comparison | None:
     for senses in all_senses[1:]:
         turned = {s: sense * s for s, sense in zip(angles, senses, strict=True)}
         comparison = identified(formula.xreplace(turned), only_equal=True)
-        if comparison.found is not None and comparison.found.quantity in _TURNS:
+        if comparison.found and comparison.found.quantity in (QUATERNION, "rotation_matrix"):
             opposite = " and ".join(str(s) for s in angles if turned[s] != s)
             words = f"with the opposite sense of {opposite} (a convention, or wrong signs)"
             arrangement = ", ".join(filter(None, (comparison.arrangement, words)))
             found = replace(comparison.found, arrangement=arrangement)
             return replace(comparison, formula=formula, found=found)
     return None
-
-
-def _right_for_some(reading: Reading, asked: KnownQuantity | None) -> Comparison:
-    """With the first point where the formula is wrong."""
-    place = int(reading.agreement.all(axis=(1, 2)).argmin())
-    points = ((name, reading.values[name][place]) for name in sorted(reading.names, key=str))
-    return Comparison(
-        formula=reading.formula,
-        asked=asked,
-        found=reading.goal,
-        names=reading.names,
-        counterexample=", ".join(f"{name} = {value:.4g}" for name, value in points),
-    )
 
 
 def _proved(reading: Reading, repairs: Sequence[Repair], asked: KnownQuantity | None) -> Comparison:
@@ -339,44 +331,6 @@ def _proved(reading: Reading, repairs: Sequence[Repair], asked: KnownQuantity | 
         return comparison
 
 
-# Small changes
-
-
-def whole_repairs(reading: Reading, asked: KnownQuantity | None) -> Iterator[Repair]:
-    """A change of all entries together, or another quantity of the rotation, that fits."""
-    formula, goal = reading.formula, reading.goal
-    passive = " (passive)" if goal.quantity == "rotation_matrix" else ""
-    changes = [
-        ("transpose", f"the formula is the transpose{passive}", formula.T, goal),
-        ("sign", "all signs are the other way round", -formula, goal),
-        ("factor", "a factor 2 is missing", 2 * formula, goal),
-        ("factor", "a factor 1/2 is missing", formula / 2, goal),
-    ]
-    relatives = _relatives(goal) if asked else ()
-    changes += [(kind, f"this is {other}", formula, other) for kind, other in relatives]
-    for kind, words, changed, other in changes:
-        if reading.agrees(reading.numbers(changed), other):
-            yield Repair(kind=kind, words=words, formula=changed, goal=other)
-
-
-def _relatives(goal: KnownQuantity) -> Iterator[tuple[str, KnownQuantity]]:
-    """(kind, target): the quantity in the other frame, inverted, and with the turns reversed."""
-    name = goal.quantity
-    swap = {"_body": "_space", "_space": "_body"}
-    frame = next((name.replace(one, two) for one, two in swap.items() if one in name), "")
-    related = [("frame", frame)]
-    if "rate_matrix" in name and goal.matrix.shape == (3, 3):
-        for each in (name, frame):
-            bare = each.removeprefix("inverse_")
-            related.append(("inverse", bare if bare != each else f"inverse_{each}"))
-    for kind, quantity in related:
-        if quantity in QUANTITIES:
-            yield kind, goal.sibling(quantity)
-    is_sequence = goal.rotation.isalpha() and len(goal.rotation) == 3
-    if is_sequence and goal.quantity != ANGLES and goal.motion.body is None:
-        yield "order of the turns", target(goal.rotation.swapcase(), name)
-
-
 # Single entries
 
 
@@ -391,30 +345,26 @@ def entry_repairs(reading: Reading) -> tuple[Repair, ...]:
         one, two = wrong
         changed = formula.as_mutable()
         changed[one], changed[two] = changed[two], changed[one]
-        if reading.agrees(reading.numbers(changed)):
+        if reading.agrees(changed, goal.values):
             words = f"entries {_from1(one)} and {_from1(two)} are exchanged"
             fixed, place = sp.ImmutableMatrix(changed), _from1(one)
             return (Repair(kind="exchange", words=words, formula=fixed, goal=goal, place=place),)
     if not 0 < len(wrong) <= min(_MOST_ENTRIES, max(1, len(formula) // 3)):
         return ()
     repairs: list[Repair] = []
+    changed = formula.as_mutable()
     for place in wrong:
-        changed = (repairs[-1].formula if repairs else formula).as_mutable()
-        before = formula[place]
-        kind, changed[place] = _entry(reading, place)
+        kind, after = _entry(reading, place)
         where = _from1(place) if formula.cols > 1 else place[0] + 1
-        words = f"entry {where}: {before} should be {changed[place]}"
-        words += f" ({_WORDS[kind]})" if kind in _WORDS else ""
-        repair = Repair(
-            kind=kind,
-            words=words,
-            formula=sp.ImmutableMatrix(changed),
-            goal=goal,
-            place=_from1(place),
-            before=before,
-            after=changed[place],
+        words = f"entry {where}: {changed[place]} should be {after}"
+        words += f" ({_KINDS[kind]})" if kind in _KINDS else ""
+        changed[place] = after
+        fixed = sp.ImmutableMatrix(changed)
+        repairs.append(
+            Repair(
+                kind=kind, words=words, formula=fixed, goal=goal, place=_from1(place), after=after
+            )
         )
-        repairs.append(repair)
     return tuple(repairs)
 
 
@@ -432,82 +382,54 @@ def _entry(reading: Reading, place: tuple[int, int]) -> tuple[str, sp.Expr]:
         for symbols in goal.inputs.values()
     ]
     groups.append([symbol for symbol, meant in reading.names.items() if meant.is_Add])
-    changes = variants(before, groups) if before.count_ops() <= _MOST_OPERATIONS else ()
+    changes = set(variants(before, groups)) if before.count_ops() <= _MOST_OPERATIONS else ()
+    kinds = [*_KINDS]
     for kind, after in sorted(
-        set(changes), key=lambda v: (KINDS.index(v[0]), v[1].count_ops(), str(v[1]))
+        changes, key=lambda v: (kinds.index(v[0]), v[1].count_ops(), str(v[1]))
     ):
-        if near(reading.numbers(sp.Matrix([[after]])), wanted).all():
+        if reading.agrees(sp.Matrix([[after]]), wanted):
             return kind, after
     # No single change is enough: the entry of the goal is written in the names of the formula.
     back = {meant: symbol for symbol, meant in reading.names.items()}
     return "entry", goal.matrix[place].xreplace(back)
 
 
-_WORDS = {
-    "sign": "a sign",
-    "sine and cosine": "sine and cosine exchanged",
-    "index": "another name",
-    "arguments": "arguments exchanged",
-    "square": "a square",
-    "factor": "a number as factor",
-    "half angle": "half or twice the angle",
-    "product": "a factor missing or too many",
-    "quadrant": "atan2 in place of atan",
-    "term": "a term too many",
-}
-KINDS = list(_WORDS)  # the likeliest first
-
-
 _SWAPPED = {sp.sin: sp.cos, sp.cos: sp.sin}
+Groups = Sequence[Sequence[sp.Symbol]]
 
 
-def variants(
-    expression: sp.Expr, groups: Sequence[Sequence[sp.Symbol]], *, inside: bool = False
-) -> Iterator[tuple[str, sp.Expr]]:
-    """(kind, changed expression) for each single change."""
-    yield from _here(expression, groups, inside=inside)
-    is_inside = inside or expression.func in _SWAPPED
-    for place, part in enumerate(expression.args):
-        if expression.is_Pow and place == 1:
-            continue
-        for kind, changed in variants(part, groups, inside=is_inside):
-            parts = [*expression.args[:place], changed, *expression.args[place + 1 :]]
-            yield kind, expression.func(*parts)
-
-
-def _here(
-    expression: sp.Expr, groups: Sequence[Sequence[sp.Symbol]], *, inside: bool
-) -> Iterator[tuple[str, sp.Expr]]:
-    yield "sign", -expression
+def variants(e: sp.Expr, groups: Groups, *, inside: bool = False) -> Iterator[tuple[str, sp.Expr]]:
+    """(kind, changed expression) for each single change of an expression, or `inside` an angle."""
+    for place, part in enumerate(e.args[: 1 if e.is_Pow else None]):
+        for kind, changed in variants(part, groups, inside=inside or e.func in _SWAPPED):
+            yield kind, e.func(*e.args[:place], changed, *e.args[place + 1 :])
+            if e.is_Pow and e.exp == 2:  # x y, mistyped as x x: one of two equal factors
+                yield kind, part * changed
+    yield "sign", -e
     numbers = "half angle" if inside else "factor"
-    yield from ((numbers, factor * expression) for factor in (_HALF, _TWO))
-    if expression.is_Symbol:
-        group = next((g for g in groups if expression in g), ())
-        yield from (("index", other) for other in group if other != expression)
-    if expression.func in _SWAPPED:
-        yield "sine and cosine", _SWAPPED[expression.func](*expression.args)
-    if expression.func == sp.atan2:
-        yield "arguments", sp.atan2(*expression.args[::-1])
-    if expression.func == sp.atan:
-        above, below = expression.args[0].as_numer_denom()
+    yield from ((numbers, factor * e) for factor in (_HALF, _TWO))
+    if e.is_Symbol:
+        group = next((g for g in groups if e in g), ())
+        yield from (("index", other) for other in group if other != e)
+    if e.func in _SWAPPED:
+        yield "sine and cosine", _SWAPPED[e.func](*e.args)
+    if e.func == sp.atan2:
+        yield "arguments", sp.atan2(*e.args[::-1])
+    if e.func == sp.atan:
+        above, below = e.args[0].as_numer_denom()
         yield from (("quadrant", sp.atan2(sign * above, sign * below)) for sign in (1, -1))
-    if expression.is_Mul:
-        if expression.args[0].is_even:  # two equal terms that have become one
-            half = expression / 2
-            for kind, changed in variants(half, groups, inside=inside):
-                yield from [("index", half + changed)] if kind == "index" else []
-        for factor in expression.args:
-            yield numbers if factor.is_number else "product", expression / factor
-    if expression.is_Add:
-        yield from (("term", expression - term) for term in expression.args)
-    if expression.is_Pow and expression.exp == 2:
-        yield "square", expression.base
-        # If x y is mistyped as x x, SymPy holds x²; one of the two equal factors is changed.
-        for kind, changed in variants(expression.base, groups, inside=inside):
-            yield kind, expression.base * changed
-    if inside:
-        return
-    if expression.is_Function or expression.is_Symbol:
-        yield "square", expression**2
-    if not expression.is_Add:
-        yield from (("product", expression * f(s)) for s in chain(*groups[:1]) for f in _SWAPPED)
+    if e.is_Mul:
+        if e.args[0].is_even:  # two equal terms that have become one
+            half = e / 2
+            changes = variants(half, groups, inside=inside)
+            yield from ((kind, half + changed) for kind, changed in changes if kind == "index")
+        for factor in e.args:
+            yield numbers if factor.is_number else "product", e / factor
+    if e.is_Add:
+        yield from (("term", e - term) for term in e.args)
+    if e.is_Pow and e.exp == 2:
+        yield "square", e.base
+    if not inside and (e.is_Function or e.is_Symbol):
+        yield "square", e**2
+    if not (inside or e.is_Add):
+        yield from (("product", e * f(s)) for s in chain(*groups[:1]) for f in _SWAPPED)

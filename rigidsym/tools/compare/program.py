@@ -731,7 +731,7 @@ class _Interpreter:
         """Matrices of some names, and scalars that are one, have their final values."""
         for name in names:
             table = self.values.get(name, {})
-            if len(table) > 2:
+            if len(table) > 2 and name in self.lines:  # not an argument of this function
                 self._add(name, _matrix(table), self.lines[name])
         self._emit_groups()
 
@@ -752,7 +752,10 @@ class _Interpreter:
 
     def _emit_groups(self, changed: str | None = None) -> None:
         """Scalars that are one vector or matrix, all or those with a name that will change."""
+        lone = [m["w"] for (kind, _), m in self.groups.items() if (kind, *m) == (3, "w")]
         for (kind, stem), members in self.groups.items():
+            if kind == 3 and members.keys() == {*"xyz"} and len(set(lone)) == 1:  # v.x beside w
+                members = {**members, "w": lone[0]}
             order = _COMPLETE.get(frozenset(members)) if kind != -1 else tuple(members)[:4]
             if order is None or len(order) < 3 or changed not in (None, *members.values()):
                 continue

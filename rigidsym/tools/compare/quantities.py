@@ -35,53 +35,49 @@ from rigidsym.tools.compare.language import cross_matrix
 
 Array = NDArray[Any]
 Values = dict[sp.Expr, Any]  # of expressions, at all points
+Names = Mapping[sp.Symbol, sp.Expr]  # of a formula, and what they mean
 
 NEAR_POINTS, POINTS = 4, 20  # with all angles in the first quadrant, and in all
 _TOLERANCE = 1e-9  # of numbers of order one, in double precision
+_FLOATS = Floats(np)
 
 
 def _points() -> Array:
-    """Values of each component of each argument: of both signs, small, and of several turns.
+    """Values of each component of each argument, in all quadrants and of several turns.
 
-    Points where a sine or a cosine is small are left out: rates grow there, and digits are lost.
-    The last argument holds constants such as masses, which are positive.
+    They keep a distance of 0.2 from multiples of π/2: rates grow where a sine or a cosine is small,
+    and digits are lost. The last argument holds constants such as masses, which are positive.
     """
     random = np.random.default_rng(1775)
-    near = random.uniform(0.2, 1.3, (5, 64, NEAR_POINTS))
-    size = (5, 64, 8 * (POINTS - NEAR_POINTS))
-    drawn = random.choice([0.5, np.pi, 20.0], size) * random.uniform(-1, 1, size)
-    # |sin 2x| is small near the zeros of both sin x and cos x. About one number in ten is rejected,
-    # so that 8 candidates for each place always suffice.
-    is_far_from_poles = np.abs(np.sin(2 * drawn)) > 0.15
-    order = np.argsort(~is_far_from_poles, axis=-1, kind="stable")[..., : POINTS - NEAR_POINTS]
-    far = np.take_along_axis(drawn, order, axis=-1)
-    far[-1] = random.uniform(0.2, 1.3, far[-1].shape)
-    return np.concatenate([near, far], axis=-1)
+    points = random.uniform(0.2, 1.3, (5, 64, POINTS))
+    quadrants = random.integers(-6, 7, points.shape)
+    quadrants[..., :NEAR_POINTS] = quadrants[-1] = 0
+    return points + quadrants * np.pi / 2
 
 
 TABLE = _points()
 _ROWS = {"q": 0, "q_dot": 1, "q_ddot": 2, "omega_space": 3, "omega_body": 3}
 _ROWS |= {"a": 0, "b": 1, "c": 2}  # vectors of laws
-_FLOATS = Floats(np)
 
 AXES = [a + b + c for a, b, c in product("XYZ", repeat=3) if a != b != c]
 _THREE = (*AXES, *(axes.lower() for axes in AXES))
-_ONE = tuple(f"{a}(angle)" for a in "xyz")
-_TWO = tuple(f"{a}(first) {b}(second)" for a, b in permutations("xyz", 2))
+_SEQUENCES = {
+    1: tuple(f"{a}(angle)" for a in "xyz"),
+    2: tuple(f"{a}(first) {b}(second)" for a, b in permutations("xyz", 2)),
+    3: _THREE,
+}
 _VECTORS = ("gibbs_vector", "modified_rodrigues")
-_QUATERNIONS = ("unit_quaternion",)
-_ANY_QUATERNIONS = ("quaternion", *_QUATERNIONS)  # also divided by the square of the length
-_SERIES = ("rotation_vector",)
-_AXIS_ANGLE = ("axis_angle",)
+_QUATERNIONS = ("quaternion", "unit_quaternion")  # also divided by the square of the length
 _OF_RATES = tuple(
     f"{name}_{frame}"
     for name in (
-        *("rate_matrix", "inverse_rate_matrix"),
-        *("angular_velocity", "rates_from_angular_velocity"),
+        "rate_matrix",
+        "inverse_rate_matrix",
+        "angular_velocity",
+        "rates_from_angular_velocity",
     )
     for frame in ("body", "space")
 )
-OPERATOR = "quaternion_rate_operator"  # A(Ω) with q̇ = A q
 QUATERNION = "quaternion"  # of a product of turns
 ANGLES = "euler_angles"  # from a rotation matrix or a quaternion
 SHAPES: dict[tuple[int, int], tuple[str, ...]] = {  # of formulas, and what each may be
@@ -90,12 +86,11 @@ SHAPES: dict[tuple[int, int], tuple[str, ...]] = {  # of formulas, and what each
     (4, 1): (*_OF_RATES[6:], QUATERNION),
     (4, 3): _OF_RATES[2:4],
     (3, 4): _OF_RATES[:2],
-    (4, 4): (f"{OPERATOR}_body", f"{OPERATOR}_space"),
 }
 PASSIVE = "transposed (passive, the direction cosine matrix)"
 _LAST = [1, 2, 3, 0]
 _WAYS: dict[str, Callable[[sp.Matrix], sp.Matrix]] = {  # of writing a quantity
-    PASSIVE: lambda m: m.T,
+    "": lambda m: m,
     "conjugated (passive)": lambda m: sp.diag(1, -1, -1, -1) * m,
     "negative": lambda m: -m,
     "twice": lambda m: 2 * m,
@@ -115,30 +110,6 @@ class KnownQuantity:
     motion: Motion  # in whose ring equality is decided
     inputs: Mapping[str, tuple[sp.Expr, ...]]  # the symbols of each argument
     uses: frozenset[str] = frozenset()  # the arguments on which a quantity of a rotation depends
-    other_ways: tuple[tuple[str, sp.Matrix], ...] = ()  # of a law, with its value
-    is_named: bool = False  # whether `rotation` says all about it
-
-    @cached_property
-    def arrangements(self) -> tuple[KnownQuantity, ...]:
-        """This quantity as it is, and in other ways in which texts write it."""
-        if self.quantity == ANGLES:
-            return _conventions()
-        ways = list(self.other_ways)
-        if self.quantity == "rotation_matrix":
-            other = ", or by the opposite angle" if len(self.motion.model.turns) == 1 else ""
-            ways = [(f"{PASSIVE}{other}", self.matrix.T)]
-        elif 4 in self.matrix.shape and self.rotation:
-            factors = ("", "twice", "half")[: 3 if self.matrix.rows == 3 else 2]
-            if self.quantity == QUATERNION:
-                factors = ("", "conjugated (passive)", "negative")
-            for last, factor in product(("", "scalar last"), factors):
-                words = [word for word in (last, factor) if word]
-                value = reduce(lambda m, word: _WAYS[word](m), words[::-1], self.matrix)
-                ways += [(", ".join(words), value)] if words else []
-        arranged = (
-            replace(self, arrangement=words, matrix=sp.ImmutableMatrix(m)) for words, m in ways
-        )
-        return (self, *arranged)
 
     @property
     def points(self) -> Values:
@@ -161,25 +132,8 @@ class KnownQuantity:
         """The inputs by plain name."""
         arguments = self.motion.arguments if self.rotation else ()
         names = {name: s for a in arguments for name, s in zip(a.names, a.symbols, strict=True)}
-        symbols = (
-            self.inputs.get("constants", ()) if self.rotation else sum(self.inputs.values(), ())
-        )
-        return names | {s.name: s for s in symbols}
-
-    @property
-    def coordinates(self) -> dict[str, sp.Expr]:
-        """The coordinates by plain name; of a law, the components of all vectors."""
-        if self.quantity == ANGLES:
-            return {}
-        q = self.inputs.get("q", ()) if self.rotation else [*self.names.values()]
-        return {name: symbol for name, symbol in self.names.items() if symbol in q}
-
-    def sibling(self, quantity: str) -> KnownQuantity:
-        """Another quantity of the same rotation."""
-        if self.is_named:
-            return target(self.rotation, quantity)
-        motion = derive(self.motion.model, quantity, body=self.motion.body)
-        return of_motion(motion, quantity, self.rotation)
+        plain = (s for symbols in self.inputs.values() for s in symbols if s.is_Symbol)
+        return names | {s.name: s for s in plain}
 
     @property
     def described(self) -> str:
@@ -190,16 +144,12 @@ class KnownQuantity:
         return f"{self.quantity} of {self.rotation}" if self.rotation else self.quantity
 
 
-def of_motion(motion: Motion, quantity: str, rotation: str, **options: Any) -> KnownQuantity:
+def of_motion(motion: Motion, quantity: str, rotation: str) -> KnownQuantity:
     """A quantity of a derivation."""
     arguments = {argument.name: argument.symbols for argument in motion.arguments}
     if quantity == QUATERNION:
         turns = (_quaternion_of(turn.angle, turn.direction) for turn in motion.model.turns)
         matrix, names = reduce(quaternion_product, turns), {"q"}
-    elif quantity.startswith(OPERATOR):
-        frame = quantity.removeprefix(OPERATOR)
-        rates = getattr(motion, f"rates_from_angular_velocity{frame}")
-        matrix, names = rates.jacobian(arguments["q"]), {"q", f"omega{frame}"}
     else:
         step = motion.step(quantity)
         matrix, names = motion.spelled(step.expression), set(step.quantity.inputs)
@@ -212,18 +162,16 @@ def of_motion(motion: Motion, quantity: str, rotation: str, **options: Any) -> K
         motion=motion,
         inputs=arguments | {"constants": tuple(sorted(constants, key=str))},
         uses=frozenset(names),
-        **options,
     )
 
 
 @lru_cache(maxsize=512)
 def target(rotation: str, quantity: str) -> KnownQuantity:
     """A quantity of a rotation by name; raises ModelError or QuantityError for unknown names."""
-    derived = quantity.replace(OPERATOR, "rates_from_angular_velocity")
-    derived = "rotation_matrix" if quantity == QUATERNION else derived
+    derived = "rotation_matrix" if quantity == QUATERNION else quantity
     of_rates = rotation in _THREE and quantity in _OF_RATES
     motion = _kinematics(rotation, _OF_RATES if of_rates else (derived,))
-    return of_motion(motion, quantity, rotation, is_named=True)
+    return of_motion(motion, quantity, rotation)
 
 
 @lru_cache(maxsize=256)
@@ -231,13 +179,33 @@ def _kinematics(rotation: str, quantities: tuple[str, ...]) -> Motion:
     return derive(rotation, quantities)
 
 
+@lru_cache(maxsize=512)
+def _written(rotation: str, quantity: str) -> tuple[KnownQuantity, ...]:
+    """A quantity as it is, and in other ways in which texts write it."""
+    goal = target(rotation, quantity)
+    ways: dict[str, sp.Matrix] = {"": goal.matrix}
+    if quantity == "rotation_matrix":
+        other = ", or by the opposite angle" if len(goal.motion.model.turns) == 1 else ""
+        ways[f"{PASSIVE}{other}"] = goal.matrix.T
+    elif 4 in goal.matrix.shape:
+        factors = ("", "twice", "half")[: 3 if goal.matrix.rows == 3 else 2]
+        if quantity == QUATERNION:
+            factors = ("", "conjugated (passive)", "negative")
+        for last, factor in product(("", "scalar last"), factors):
+            ways[", ".join(filter(None, (last, factor)))] = _WAYS[last](_WAYS[factor](goal.matrix))
+    return tuple(
+        replace(goal, arrangement=words, matrix=sp.ImmutableMatrix(m)) for words, m in ways.items()
+    )
+
+
 def catalogue(matrix: sp.MatrixBase) -> Iterator[KnownQuantity]:
-    """All quantities that a formula may be, plain ones first."""
+    """All quantities that a formula may be, in all ways of writing them, plain ones first."""
     if are_angles(matrix):
-        yield _conventions()[0]
+        yield from _conventions()
         return
     for quantity in SHAPES.get(matrix.shape, ()):
-        yield from (target(rotation, quantity) for rotation in _rotations(matrix, quantity))
+        for rotation in _rotations(matrix, quantity):
+            yield from _written(rotation, quantity)
     yield from (law for law in _laws() if law.matrix.shape == matrix.shape)
 
 
@@ -245,17 +213,17 @@ def _rotations(matrix: sp.MatrixBase, quantity: str) -> tuple[str, ...]:
     """The rotations whose quantity has as many names, and sines and cosines if this has."""
     turns, count = matrix.has(sp.sin, sp.cos, sp.tan), len(matrix.free_symbols)
     if quantity == QUATERNION:
-        return {1: _ONE, 2: _TWO, 3: _THREE}.get(count, ()) if turns else ()
+        return _SEQUENCES.get(count, ()) if turns else ()
     if 4 in matrix.shape:
-        return _QUATERNIONS
+        return _QUATERNIONS[1:]
     if quantity == "rotation_matrix":
-        angles = {1: _ONE, 2: _TWO, 3: _THREE}.get(count, _AXIS_ANGLE)
-        parts = {3: _VECTORS, 4: (*_ANY_QUATERNIONS, *_VECTORS), 5: _ANY_QUATERNIONS}.get(count, ())
+        angles = _SEQUENCES.get(count, ("axis_angle",))
+        parts = {3: _VECTORS, 4: (*_QUATERNIONS, *_VECTORS), 5: _QUATERNIONS}.get(count, ())
     elif matrix.shape == (3, 3):
         angles, parts = _THREE, _VECTORS[: 2 * (count in (3, 4))]
     else:
-        angles, parts = (*_THREE, *_AXIS_ANGLE), (*_VECTORS, *_QUATERNIONS)
-    series = _SERIES if matrix.has(sp.sqrt) or (turns and count >= 3) else ()
+        angles, parts = (*_THREE, "axis_angle"), (*_VECTORS, "unit_quaternion")
+    series = ("rotation_vector",) if matrix.has(sp.sqrt) or (turns and count >= 3) else ()
     return (*(angles if turns else parts), *series)
 
 
@@ -287,57 +255,53 @@ def _quaternion_products(a: sp.Matrix, b: sp.Matrix) -> Ways:
 
 
 def _turned_vectors(q: sp.Matrix, v: sp.Matrix) -> Ways:
-    w, cross = q[0], cross_matrix(q[1:, :])
-    ways = {}
+    cross, ways = cross_matrix(q[1:, :]), {}
     for words, sign in (("", 1), ("by the inverse", -1)):
-        double = 2 * sign * w * cross * v + 2 * cross * cross * v
+        double = 2 * sign * q[0] * cross * v + 2 * cross * cross * v
         ways[words] = v + double
         ways[f"{words}, times |q|²".lstrip(", ")] = q.dot(q) * v + double
     return ways
 
 
-def _accelerations(w: sp.Matrix, i: sp.Matrix, torque: sp.Matrix) -> Ways:
-    return {"": sp.diag(*i).inv() * (torque - w.cross(sp.diag(*i) * w))}
-
-
-def _torques(w: sp.Matrix, i: sp.Matrix, acceleration: sp.Matrix) -> Ways:
-    return {"": sp.diag(*i) * acceleration + w.cross(sp.diag(*i) * w)}
-
-
-def _parallel_axes(mass: sp.Matrix, d: sp.Matrix, *tensor: sp.Matrix) -> Ways:
-    added = mass[0] * (d.dot(d) * sp.eye(3) - d * d.T)
-    if not tensor:
-        diagonal = sp.diag(*added.diagonal())
-        return {"": added, "off-diagonal entries with the other sign": 2 * diagonal - added}
-    xx, xy, xz, yy, yz, zz = tensor[0]
+def _parallel_axes(mass: sp.Matrix, d: sp.Matrix, tensor: sp.Matrix) -> Ways:
+    xx, xy, xz, yy, yz, zz = tensor
     matrix = sp.Matrix([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    added = mass[0] * (d.dot(d) * sp.eye(3) - d * d.T)
     return {"": matrix + added, "to the centre of mass": matrix - added}
 
 
-_LAWS: tuple[tuple[str, tuple[int, ...], Callable[..., Ways]], ...] = (
-    ("quaternion_product", (4, 4), _quaternion_products),
-    ("turned_vector", (4, 3), _turned_vectors),
-    ("euler_equations_acceleration", (3, 3, 3), _accelerations),
-    ("euler_equations_torque", (3, 3, 3), _torques),
-    ("parallel_axis_term", (1, 3), _parallel_axes),
-    ("parallel_axis_theorem", (1, 3, 6), _parallel_axes),
-)  # name, entries of each vector, the value for each way of writing it
+_LAWS: dict[str, tuple[tuple[int, ...], Callable[..., Ways]]] = {
+    "quaternion_product": ((4, 4), _quaternion_products),
+    "turned_vector": ((4, 3), _turned_vectors),
+    "euler_equations_acceleration": (
+        (3, 3, 3),
+        lambda w, i, t: {"": sp.diag(*i).inv() * (t - w.cross(sp.diag(*i) * w))},
+    ),
+    "euler_equations_torque": (
+        (3, 3, 3),
+        lambda w, i, a: {"": sp.diag(*i) * a + w.cross(sp.diag(*i) * w)},
+    ),
+    "parallel_axis_theorem": ((1, 3, 6), _parallel_axes),
+}  # entries of each vector, and the value for each way of writing it
 
 
 @cache
 def _laws() -> tuple[KnownQuantity, ...]:
     motion = target("quaternion", "rotation_matrix").motion  # a ring without conditions
     laws = []
-    for name, sizes, value in _LAWS:
+    for name, (sizes, value) in _LAWS.items():
         letters = zip("abc", sizes, strict=False)
         vectors = {c: sp.symbols(f"{c}_:{size}", real=True) for c, size in letters}
-        ways = value(*map(sp.Matrix, vectors.values()))
-        matrix, others = sp.ImmutableMatrix(ways.pop("")), tuple(ways.items())
-        laws.append(
+        laws += [
             KnownQuantity(
-                quantity=name, matrix=matrix, motion=motion, inputs=vectors, other_ways=others
+                quantity=name,
+                arrangement=words,
+                matrix=sp.ImmutableMatrix(matrix),
+                motion=motion,
+                inputs=vectors,
             )
-        )
+            for words, matrix in value(*map(sp.Matrix, vectors.values())).items()
+        ]
     return tuple(laws)
 
 
@@ -357,25 +321,25 @@ def _conventions() -> tuple[KnownQuantity, ...]:
     orders = [(0, 1, 2), (2, 1, 0), *((0, 2, 1), (1, 0, 2), (1, 2, 0), (2, 0, 1))]
     inputs, rotation = {"q": motion.argument("q").symbols}, motion.rotation_matrix
     conventions = []
-    for senses in sorted(product((1, -1), repeat=3), key=lambda s: s.count(-1)):
-        for is_transposed, order, axes in product((False, True), orders, AXES):
-            angles = _angles(axes, rotation, is_transposed=is_transposed)
-            words = ["transposed (passive)"] if is_transposed else []
-            if order not in orders[:2]:
-                words.append(f"the angles in the order {', '.join(str(k + 1) for k in order)}")
-            if opposite := [str(k + 1) for k, sense in enumerate(senses) if sense < 0]:
-                words.append(f"with the opposite sense of angle {' and '.join(opposite)}")
-            entries = [sense * angles[k] for sense, k in zip(senses, order, strict=True)]
-            conventions.append(
-                KnownQuantity(
-                    quantity=ANGLES,
-                    rotation=axes[::-1].lower() if order == orders[1] else axes,
-                    arrangement=", ".join(words),
-                    matrix=sp.ImmutableMatrix(entries),
-                    motion=motion,
-                    inputs=inputs,
-                )
+    all_senses = sorted(product((1, -1), repeat=3), key=lambda s: s.count(-1))
+    for senses, is_transposed, order, axes in product(all_senses, (False, True), orders, AXES):
+        angles = _angles(axes, rotation, is_transposed=is_transposed)
+        words = ["transposed (passive)"] if is_transposed else []
+        if order not in orders[:2]:
+            words.append(f"the angles in the order {', '.join(str(k + 1) for k in order)}")
+        if opposite := [str(k + 1) for k, sense in enumerate(senses) if sense < 0]:
+            words.append(f"with the opposite sense of angle {' and '.join(opposite)}")
+        entries = [sense * angles[k] for sense, k in zip(senses, order, strict=True)]
+        conventions.append(
+            KnownQuantity(
+                quantity=ANGLES,
+                rotation=axes[::-1].lower() if order == orders[1] else axes,
+                arrangement=", ".join(words),
+                matrix=sp.ImmutableMatrix(entries),
+                motion=motion,
+                inputs=inputs,
             )
+        )
     return tuple(conventions)
 
 
@@ -396,60 +360,49 @@ def _angles(axes: str, matrix: sp.ImmutableMatrix, *, is_transposed: bool) -> tu
 
 # Names in a formula
 
-Names = Mapping[sp.Symbol, sp.Expr]
-
-_LENGTHS = ("n", "theta", "angle", "norm")
 _RATE = re.compile(
     r"(?:d_?|dot_?)(?P<behind>\w+)|(?P<before>\w+?)_?(?:(?:dot|rates?|d)(?P<index>_?\d)?|p)"
 )
 _OMEGA = re.compile(
     r"(?:omega|Omega|w|W|gyro|g|rate|Omega_body|omega_(?:body|space))_?[xyz0-3]|[pqr]|[wW][pqr]"
 )
-_COMPONENT = re.compile(r"(?P<stem>.*?)_?(?P<part>[xyz]{2}|[0-3]_?[0-3]|[wxyz0-4]|)")
-_INDEXED = re.compile(r"(?P<stem>.+)_(?P<part>[wxyz0-4])")  # b1_0
-_LETTER_FIRST = re.compile(r"(?P<part>[wxyz])_?(?P<stem>\d|[a-z]?)")  # w1, x1, y1, z1
-ELEMENT = re.compile(r"(?P<stem>.*?)_?(?P<row>[0-3])_?(?P<column>[0-3])")
-ROW = re.compile(r"(?P<stem>.*?)_?(?P<row>[abc])_(?P<column>[xyz])")  # Matrix3 of ArduPilot
+_VECTOR_NAMES = (
+    re.compile(r"(?P<stem>.*?)_?(?P<part>[xyz]{2}|[0-3]_?[0-3]|[wxyz0-4]|)"),
+    re.compile(r"(?P<stem>.+)_(?P<part>[wxyz0-4])"),  # b1_0
+    re.compile(r"(?P<part>[wxyz])_?(?P<stem>\d|[a-z]?)"),  # w1, x1, y1, z1
+)
+_ELEMENTS = (  # of R
+    re.compile(r"(?P<stem>.*?)_?(?P<row>[abc])_(?P<column>[xyz])"),  # Matrix3 of ArduPilot
+    re.compile(r"(?P<stem>.*?)_?(?P<row>[0-3])_?(?P<column>[0-3])"),
+)
 _FLAT = {9: ([*range(9)], False), 16: ([0, 1, 2, 4, 5, 6, 8, 9, 10], True)}  # places, by columns
 
 
-def readings(
-    matrix: sp.MatrixBase, goal: KnownQuantity, *, in_own_names: bool = False
-) -> Iterator[Names]:
+def readings(matrix: sp.MatrixBase, goal: KnownQuantity, *, is_asked: bool) -> Iterator[Names]:
     """The possible meanings of the names in a formula.
 
-    `in_own_names`: if all are names of inputs of the quantity, these are meant.
+    If the quantity `is_asked` for, and all names are those of its inputs, no other is possible.
     """
     if goal.quantity == ANGLES:
         yield from _of_vectors(matrix, [goal.inputs["q"]])
         yield from _of_entries(matrix, goal.motion.rotation_matrix)
-    elif goal.rotation:
-        yield from _of_rotation(matrix, goal, in_own_names)
-    else:
+        return
+    if not goal.rotation:
         yield from _of_vectors(matrix, [*goal.inputs.values()])
-
-
-def _of_rotation(matrix: sp.MatrixBase, goal: KnownQuantity, in_own_names: bool) -> Iterator[Names]:
-    """Their own meaning if all are names of inputs, else every assignment.
-
-    If the rotation has a vector, n is the length of this vector or of all coordinates, as in notes,
-    and so are other names that texts give to a length.
-    """
-    model = goal.motion.model
-    indexed = {s.name.rstrip("123").rstrip("_") for s in matrix.free_symbols if s.name[-1] == "1"}
-    lengths = {*_LENGTHS, *indexed} - {*"pqr"}  # sigma of sigma_1, but no body rate
-    lengths = {_LENGTHS[0]} if model.constraints else lengths
-    length = next((s for s in matrix.free_symbols if s.name in lengths), None)
-    if length and model.vector and length.name not in goal.names:
-        for names in _of_rotation(matrix.xreplace({length: sp.Integer(1)}), goal, in_own_names):
-            for parts in dict.fromkeys((model.coordinates, model.vector)):
-                yield {**names, length: sp.sqrt(sum(part**2 for part in parts))}
         return
+    names = [
+        goal.names.get(s.name) or goal.names.get(f"{stem_of(s.name)}_dot")
+        for s in matrix.free_symbols
+    ]
+    if None not in names:
+        yield dict(zip(matrix.free_symbols, names, strict=True))
+    if None in names or not is_asked:
+        yield from _of_rotation(matrix, goal)
+
+
+def _of_rotation(matrix: sp.MatrixBase, goal: KnownQuantity) -> Iterator[Names]:
+    """Every assignment of names to coordinates, their rates and angular velocities."""
     symbols = sorted(matrix.free_symbols, key=lambda s: _natural(s.name))
-    if in_own_names and is_in_own_names(matrix, goal):
-        own = (goal.names.get(s.name) or goal.names[f"{stem_of(s.name)}_dot"] for s in symbols)
-        yield dict(zip(symbols, own, strict=True))
-        return
     q = goal.inputs.get("q", ())
     velocity = next(
         (goal.inputs[name] for name in goal.inputs if name[:5] == "omega" and name in goal.uses), ()
@@ -478,14 +431,6 @@ def _of_rotation(matrix: sp.MatrixBase, goal: KnownQuantity, in_own_names: bool)
         yield meant | dict(zip(omega, velocity, strict=False))
 
 
-def is_in_own_names(matrix: sp.MatrixBase, goal: KnownQuantity) -> bool:
-    """Whether all names in a formula are those of the inputs of a rotation's quantity."""
-    names = {
-        s.name if s.name in goal.names else f"{stem_of(s.name)}_dot" for s in matrix.free_symbols
-    }
-    return bool(goal.rotation) and names <= goal.names.keys()
-
-
 def _of_arrays(others: Sequence[sp.Symbol], angles: set[sp.Symbol]) -> dict[sp.Symbol, str]:
     """e_1 by its rate u_1, if all angles are in one array and all other names in another."""
     arrays = [{s.name.rpartition("_")[0] for s in part} for part in (angles, others)]
@@ -511,7 +456,7 @@ def _of_vectors(matrix: sp.MatrixBase, wanted: Sequence[tuple[sp.Expr, ...]]) ->
     quaternion in an array, the scalar may be the first or the last entry.
     """
     sizes = [len(vector) for vector in wanted]
-    for pattern in (_COMPONENT, _INDEXED, _LETTER_FIRST):
+    for pattern in _VECTOR_NAMES:
         groups: dict[str, list[tuple[str, sp.Symbol]]] = {}
         for symbol in sorted(matrix.free_symbols, key=str):
             match = pattern.fullmatch(symbol.name)
@@ -520,7 +465,7 @@ def _of_vectors(matrix: sp.MatrixBase, wanted: Sequence[tuple[sp.Expr, ...]]) ->
                 stem, part = "p, q, r", symbol.name
             groups.setdefault(stem if part else symbol.name, []).append((part, symbol))
         three = next((g for g in groups.values() if [part for part, _ in g] == [*"xyz"]), None)
-        if three and "w" in groups and len(groups["w"]) == 1:  # this.x beside w
+        if three and len(groups.get("w", ())) == 1:  # this.x beside w
             three += groups.pop("w")
         vectors = [
             tuple(s for _, s in sorted(group, key=lambda each: (each[0] != "w", each[0])))
@@ -541,16 +486,13 @@ def _scalar_first(vector: tuple[sp.Symbol, ...]) -> Iterator[tuple[sp.Symbol, ..
 def _of_entries(matrix: sp.MatrixBase, rotation: sp.MatrixBase) -> Iterator[Names]:
     """Names as entries of R: m00, m_1_1, a_x, or m_8 of a flat array."""
     symbols = sorted(matrix.free_symbols, key=str)
-    for pattern in (ROW, ELEMENT):
+    for pattern, words in zip(_ELEMENTS, (("abc", "xyz"), ("0123", "0123")), strict=True):
         matches = [match for s in symbols if (match := pattern.fullmatch(s.name))]
         if len(matches) < len(symbols) or len({match["stem"] for match in matches}) != 1:
             continue
-        places = [("abcxyz".find(m["row"]), "xyz".find(m["column"])) for m in matches]
-        grids = [places] if pattern is ROW else []
-        if pattern is ELEMENT:
-            places = [(int(m["row"]), int(m["column"])) for m in matches]
-            grids = [[(i - first, j - first) for i, j in places] for first in (0, 1)]
-        for grid in grids:
+        places = [(words[0].index(m["row"]), words[1].index(m["column"])) for m in matches]
+        for first in (0, 1):
+            grid = [(i - first, j - first) for i, j in places]
             if all(0 <= index < 3 for place in grid for index in place):
                 yield {s: rotation[place] for s, place in zip(symbols, grid, strict=True)}
     flat = [match for s in symbols if (match := re.fullmatch(r"(.*?)_(\d+)", s.name))]
@@ -558,9 +500,8 @@ def _of_entries(matrix: sp.MatrixBase, rotation: sp.MatrixBase) -> Iterator[Name
     if len(flat) == len(symbols) and len({match[1] for match in flat}) == 1:
         for entries, is_by_columns in _FLAT.values():
             if set(numbers) <= set(entries):
-                grid = [divmod(entries.index(n), 3) for n in numbers]
                 turned = rotation.T if is_by_columns else rotation
-                yield {s: turned[place] for s, place in zip(symbols, grid, strict=True)}
+                yield {s: turned[entries.index(n)] for s, n in zip(symbols, numbers, strict=True)}
                 break
 
 
@@ -585,7 +526,7 @@ def _values_of(
         # |q|² = 1.
         length = np.sqrt(sum(values[s] ** 2 for s in q))
         values |= {s: values[s] / length for s in q}
-        if "q_dot" in dict(inputs):  # rates along v are taken away
+        if "q_dot" in dict(inputs):
             rates = [sp.diff(s, *s.args) for s in q]
             along = sum(values[s] * values[r] for s, r in zip(q, rates, strict=True))
             values |= {r: values[r] - along * values[s] for s, r in zip(q, rates, strict=True)}
