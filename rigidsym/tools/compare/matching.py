@@ -265,6 +265,8 @@ def _decided(
         for meaning, (kind, (words, change)) in product(meanings, _WHOLE.items()):
             changed = change(formula)
             if meaning.agrees(changed, meaning.goal.values):
+                if is_in_program:  # the negative of a rotation may be meant
+                    return None
                 goal = meaning.goal
                 words += " (passive)" * (goal.quantity == "rotation_matrix" and kind == "transpose")
                 repair = Repair(kind=kind.split()[0], words=words, formula=changed, goal=goal)

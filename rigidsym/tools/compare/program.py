@@ -73,6 +73,7 @@ _LONGEST_PLACE = 120  # characters
 _LONGEST = 40  # parts of a value without a symbol of its own
 _LONG_IN_LONG = 3  # symbols for long values that use other such symbols
 _MOST_PARTS = 2_000  # of a matrix
+_MOST_RUNS = 24  # of a function, with other branches
 _INLINED = 3  # calls of functions of the same file inside one another
 
 _NUMBERS = re.compile(r"(-?)((?:\d[\d_]*\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)_?[fFlLuUdDmM]*(?:32|64)?")
@@ -155,12 +156,16 @@ class Place(NamedTuple):
 class Formula:
     """A matrix or vector of a program, or the reason why it is not read."""
 
-    line: int  # where it begins
+    lines: tuple[int, ...]  # of the assignments of its components
     name: str
     forms: tuple[sp.ImmutableMatrix, ...] = ()  # in terms of the inputs, and of long values
     reason: str = ""
     unread: tuple[tuple[str, int], ...] = ()  # names in it whose values are not read, and lines
-    cases: tuple[sp.ImmutableMatrix, ...] = ()  # with the values of one branch
+
+    @property
+    def line(self) -> int:
+        """Where it begins."""
+        return min(self.lines)
 
     @property
     def is_named(self) -> bool:
@@ -179,6 +184,24 @@ class _Program:
     steps: Counter[str] = field(default_factory=Counter)  # expressions that were read
 
 
+@dataclass
+class _Branches:
+    """The branch that a run of a function takes at each node: the first that no run has taken."""
+
+    taken: set[tuple[int, int]] = field(default_factory=set)
+    now: dict[int, int] = field(default_factory=dict)
+    is_open: bool = True  # whether another run would take new branches
+
+    def choice(self, node: Node, count: int) -> int:
+        """The number of the branch, out of so many; the last if all have been taken."""
+        if node.id not in self.now:
+            free = [k for k in range(count) if (node.id, k) not in self.taken]
+            self.now[node.id] = (free or [count - 1])[0]
+            self.taken.add((node.id, self.now[node.id]))
+            self.is_open |= len(free) > 1
+        return self.now[node.id]
+
+
 def program_formulas(text: str, suffix: str) -> list[Formula]:
     """All matrices and vectors of a program, in the order of its lines."""
     if suffix == ".rs":  # the body of a macro is code
@@ -187,9 +210,9 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
     try:
         root = parsed(text, suffix)
     except ExpressionError as error:
-        return [Formula(line=1, name="", reason=str(error))]
+        return [Formula(lines=(1,), name="", reason=str(error))]
     if root.descendant_count > _MOST_NODES:
-        return [Formula(line=1, name="", reason="the file is too long")]
+        return [Formula(lines=(1,), name="", reason="the file is too long")]
     functions = [node for node in below([root]) if node.type in PARTS["function"]]
     program = _Program(
         suffix,
@@ -199,16 +222,22 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
     )
     formulas: dict[Any, Formula] = {}
     for scope in (root, *functions):
-        interpreter = _Interpreter(program)
-        try:
-            interpreter.run_scope(scope)
-        except RecursionError:  # SymPy, in a sum that a program nests in itself
-            reason = "expressions are nested too deeply"
-            interpreter.formulas.append(Formula(line=line_of(scope), name="", reason=reason))
-        named = {each.forms for each in interpreter.formulas if each.forms and each.is_named}
-        for formula in interpreter.formulas:
+        branches, own = _Branches(), list[Formula]()
+        for _ in range(_MOST_RUNS):
+            branches.now, branches.is_open = {}, False
+            interpreter = _Interpreter(program, branches)
+            try:
+                interpreter.run_scope(scope)
+            except RecursionError:  # SymPy, in a sum that a program nests in itself
+                reason = "expressions are nested too deeply"
+                own.append(Formula(lines=(line_of(scope),), name="", reason=reason))
+            own += interpreter.formulas
+            if not branches.is_open:
+                break
+        named = {each.forms for each in own if each.forms and each.is_named}
+        for formula in own:
             if formula.is_named or formula.forms not in named:  # a fault counts once
-                formulas.setdefault((formula.line, formula.forms or formula.name), formula)
+                formulas.setdefault((formula.lines, formula.forms or formula.name), formula)
     return sorted(formulas.values(), key=lambda each: each.line)
 
 
@@ -228,7 +257,7 @@ def formula_matrix(text: str) -> sp.ImmutableMatrix:
         value = _assigned_value(text, suffix)
         if value is not None:
             program = _Program(suffix, is_numpy=is_numpy, is_formula=True)
-            matrix = as_matrix(_Interpreter(program).read(value))
+            matrix = as_matrix(_Interpreter(program, _Branches()).read(value))
             return _unflattened(matrix) if "{" in text else matrix  # float R[9] = {...}
     missing = re.search(r"[)\]]\s*(\w+)", text)
     if missing:
@@ -259,18 +288,16 @@ def _assigned_value(text: str, suffix: str) -> Node | None:
 class _Interpreter:
     """One function, or the code of a file outside of all functions."""
 
-    def __init__(self, program: _Program, inlined: int = 0) -> None:
-        self.program, self.inlined = program, inlined
+    def __init__(self, program: _Program, branches: _Branches, inlined: int = 0) -> None:
+        self.program, self.branches, self.inlined = program, branches, inlined
         self.is_matlab = program.suffix == ".m"
         self.values: Values = {}
-        self.is_over = False  # after a return
+        self.end = ""  # "return" or "break" after one
         self.formulas: list[Formula] = []
         self.paths: dict[str, str] = {}  # name: its path in the program
         self.lines: dict[str, int] = {}  # where a name was assigned
         self.inputs: set[str] = set()  # names that were read before anything was assigned
-        self.outputs: set[str] = set()  # pointers, to which results are written
         self.definitions: dict[sp.Symbol, sp.Expr | None] = {}  # what symbols stand for, if read
-        self.choices: dict[sp.Expr, tuple[sp.Expr, ...]] = {}  # values of names that are cases
         self.components: set[Any] = set()  # symbols of components of a value, which are inputs
         self.squares: dict[str, sp.Symbol] = {}  # |v|² of names without values
         self.later: dict[tuple[sp.Expr, str], sp.Dummy] = {}  # entries of an array assigned anew
@@ -308,13 +335,14 @@ class _Interpreter:
         last = children(body)[-1:] if self.program.suffix == ".rs" else []
         if last and not last[0].type.endswith(("statement", "declaration")):
             self._return(last[0])
-        if not self.is_over:
+        if not self.end:
             self._emit(self.values)
 
     def run(self, node: Node) -> None:
         """One statement, or all statements in a block."""
-        self.is_over |= self.program.steps["read"] > _MOST_STEPS  # later values are unknown
-        if self.is_over or node.type in PARTS["function"]:
+        if self.program.steps["read"] > _MOST_STEPS:  # later values are unknown
+            self.end = "return"
+        if self.end or node.type in PARTS["function"]:
             return
         self.depth += 1
         if self.depth > _DEEPEST_BLOCK:
@@ -358,7 +386,7 @@ class _Interpreter:
                 copy, name = map(self.name_of, (one.path, other.path))
                 table = self.values.get(name, {(): value})
                 if () not in table:
-                    self.lines[copy] = self.lines[name]
+                    self.lines[copy] = self.lines.get(name, self.lines[copy])
                     if self.program.suffix in _SHARING:
                         self.values[copy] = table
         except ExpressionError:
@@ -384,7 +412,6 @@ class _Interpreter:
         if place is None:
             raise self.unreadable(left)
         name, indices = self.name_of(place.path), place.indices
-        self.outputs |= {name} if left.type == "pointer_expression" else set()
         if any(index != _ALL for index in indices):
             self._store_entries(left, name, indices, matrix)
             return
@@ -445,31 +472,15 @@ class _Interpreter:
         is_divided |= ratio.free_symbols == {self.squares.get(str(own))}
         return own if is_unit or is_divided else value
 
-    def _expanded(self, value: Any, case: int | None = None) -> Any:
-        """An expression or a matrix with long values, and those of a case, for their symbols."""
-        for _ in range(_LONG_IN_LONG + (case is not None)):
+    def _expanded(self, value: Any) -> Any:
+        """An expression or a matrix with long values for their symbols."""
+        for _ in range(_LONG_IN_LONG):
             symbols = value.free_symbols
             parts = {s: v for s in symbols if (v := self.definitions.get(s)) is not None}
-            if case is not None:
-                parts |= {s: v[min(case, len(v) - 1)] for s, v in self.choices.items()}
-            if _size(value) > _MOST_PARTS:
+            if not parts or _size(value) > _MOST_PARTS:
                 break
             value = value.xreplace(parts)
         return value
-
-    def _chosen(self, node: Node, values: Sequence[Any]) -> Any:
-        """One of several values, if a condition decides: at a pole, angles are numbers."""
-        wholes = [self._expanded(value) for value in values if value is not None]
-        are_angles = all(isinstance(v, sp.Expr) and v.has(*_INVERSE) for v in wholes)
-        is_read = len(wholes) == len(values) and all(isinstance(v, sp.Expr) for v in wholes)
-        if not wholes or not (is_read or are_angles):
-            raise self.unreadable(node)
-        wholes = _alive(wholes)
-        if len(set(wholes)) == 1:
-            return wholes[0]
-        symbol = self._symbol_for("case", None)
-        self.choices[symbol] = tuple(wholes)
-        return symbol
 
     def _update(self, node: Node) -> None:
         """a += b, or a++."""
@@ -493,7 +504,7 @@ class _Interpreter:
 
     def _become_unread(self, name: str, node: Node) -> None:
         """A name, and all others for the same matrix, get new symbols in place of their values."""
-        self._emit_groups(name)
+        self._emit([name])
         table = self.values.get(name)
         same = [n for n, value in self.values.items() if value is table]
         for each in same or [name]:
@@ -529,118 +540,48 @@ class _Interpreter:
         return ""
 
     def _branches(self, node: Node) -> None:
-        """if, elif, else."""
-        first = part(node, "consequence") or child(node, "block")
-        alternatives = [c for c in node.named_children if c.type in PARTS["elif"]]
-        other = child(node, "else_clause") or part(node, "alternative")
-        if other is not None and other.type in PARTS["elif"]:
-            other = None
-        blocks = [(part(node, "condition"), first)]
-        blocks += [(part(c, "condition"), c) for c in alternatives]
-        possible, is_sure = [], False
-        for condition, block in (*blocks, (None, other)):
+        """if, #if, switch, and handlers of exceptions: each run takes one branch, or none."""
+        if node.type in PARTS["choice"]:
+            blocks = [each for each in below(children(node)) if each.type in PARTS["case"]]
+        else:
+            elifs = [each for each in children(node) if each.type in PARTS["elif"]]
+            blocks = [node, *dict.fromkeys([*node.children_by_field_name("alternative"), *elifs])]
+        possible: list[Node | None] = []
+        for block in blocks:
+            condition = part(block, "condition")
             constant = _BOOLEANS.get(text_of(condition).strip("() "))
-            possible += [block] if block is not None and constant is not False else []
-            is_sure = block is not None and (condition is None or bool(constant))
-            if is_sure:
+            possible += [block] if constant is not False else []
+            is_else = block != node and condition is None and block.type not in PARTS["case"]
+            if constant or is_else:
                 break
-        self._either(possible, node, is_sure=is_sure)
-
-    def _choice(self, node: Node) -> None:
-        """switch, match."""
-        cases = [each for each in below(children(node)) if each.type in PARTS["case"]]
-        self._either(cases, node, ends_at_break=True)
-        self._forget(node)  # a break inside of a case ends it early
+        else:
+            possible.append(None)
+        block = possible[self.branches.choice(node, len(possible))]
+        skipped = [*blocks, *(part(block, f) for f in ("condition", "name") if block is not None)]
+        is_simple = block is not None and block.type in STATEMENTS and block != node
+        for each in [block] if is_simple else children(block) if block is not None else ():
+            if each not in skipped or is_simple:
+                self.run(each)
+        if node.type in PARTS["choice"] and self.end == "break":
+            self.end = ""
 
     def _loop(self, node: Node) -> None:
-        """A loop may run many times or never: what changes in it is unreadable at its start."""
-        before = _copied(self.values)
+        """A loop may run many times or never: what changes in it is not read before and after."""
         self._forget(node)
         header = part(node, "left", "initializer", "pattern")
         if header is not None and node.type != "for_statement":
             self._drop(header)
-        body = part(node, "body") or child(node, "block") or node
-        self._either([body], node, before=before, ends_at_break=True, is_case=False)
-
-    def _maybe(self, node: Node) -> None:
-        """The handler of an exception."""
-        self._either([node], node, is_case=False)
-
-    def _directive(self, node: Node) -> None:
-        """#if and #else."""
-        other = part(node, "alternative")
-        blocks = [node] * (text_of(part(node, "condition")) != "0")
-        blocks += [other] if other is not None else []
-        self._either(blocks, node, is_sure=other is not None or node.type == "preproc_else")
-
-    def _either(
-        self,
-        blocks: Sequence[Node],
-        node: Node,
-        *,
-        before: Values | None = None,
-        is_sure: bool = False,
-        ends_at_break: bool = False,
-        is_case: bool = True,
-    ) -> None:
-        """Run each block from the same values, and merge: differing values are unreadable."""
-        self._emit_groups()
-        start = self.values
-        # If no block is sure to run, all of them may be skipped.
-        ends = [] if is_sure else [before or start]
-        for block in blocks:
-            self.values, self.is_over = _copied(start), False
-            fields = ("condition", "name", "alternative") if block.type in PARTS["guarded"] else ()
-            skipped = [part(block, each) for each in fields]
-            is_simple = block.type in STATEMENTS and block != node
-            for each in [block] if is_simple else children(block):
-                if each not in skipped:
-                    self.run(each)
-            self._emit([name for name in self.values if len(start.get(name, ())) < 3])
-            if not self.is_over or ends_at_break:  # a break ends only the loop or the choice
-                ends.append(self.values)
-        # In gimbal lock, programs set one angle to a number. Only the branch with
-        # the formula counts.
-        angles = [self._angles(values) for values in ends]
-        every = set().union(*angles)
-        are_poles = [
-            any(key in values.get(name, ()) for name, key in every - own)
-            for values, own in zip(ends, angles, strict=True)
-        ]
-        ends = [v for v, is_pole in zip(ends, are_poles, strict=True) if not is_pole] or ends
-        self.values, self.is_over = _copied((ends or [before or start])[0]), not ends
-        for name in dict.fromkeys(name for values in ends for name in values):
-            is_input = name in self.inputs and name not in self.outputs
-            tables = [values.get(name, {}) for values in ends]
-            if name not in start and not is_input:  # had no value before
-                tables = [table for table in tables if table]
-            self._merge(name, tables, node, is_case=is_case)
-
-    def _angles(self, values: Values) -> set[tuple[str, tuple[int, ...]]]:
-        """The names and entries that are an angle by an inverse function."""
-        return {
-            (name, key)
-            for name, table in values.items()
-            for key, value in table.items()
-            if (self.definitions.get(value) or value).has(*_INVERSE)
-        }
-
-    def _merge(self, name: str, tables: list[Table], node: Node, *, is_case: bool) -> None:
-        """One value of a name for all paths, or a symbol that has a case for each of them."""
-        are_scalars = is_case and all(() in table for table in tables)
-        if are_scalars:
-            alive = _alive([table[()] for table in tables])
-            tables = [table for table in tables if table[()] in alive]
-        self.values[name] = tables[0]
-        if any(table != tables[0] for table in tables):
-            self._become_unread(name, node)
-            if are_scalars:
-                self.choices[self.values[name][()]] = tuple(table[()] for table in tables)
+        self.run(part(node, "body") or child(node, "block") or node)
+        self.end = ""
+        self._forget(node)
 
     def _end(self, node: Node) -> None:
         """return, break, raise."""
         value = next(iter(children(node)), None)
-        self._return(value if node.type.startswith("return") else None)
+        if node.type.startswith(("break", "continue", "goto")):
+            self.end = "break"
+        else:
+            self._return(value if node.type.startswith("return") else None)
 
     def _return(self, node: Node | None) -> None:
         if node is not None:
@@ -651,10 +592,10 @@ class _Interpreter:
             except ExpressionError as error:
                 self.results.append(None)
                 if _MAY_BE_MATRIX.search(text_of(node)):
-                    unread = Formula(line=line_of(node), name=_RETURNED, reason=str(error))
+                    unread = Formula(lines=(line_of(node),), name=_RETURNED, reason=str(error))
                     self.formulas.append(unread)
         self._emit(self.values)
-        self.is_over = True
+        self.end = "return"
 
     def _call_statement(self, node: Node) -> None:
         """m.set(...) is an assignment; other calls may change their object and matrices."""
@@ -683,7 +624,6 @@ class _Interpreter:
                 self._add(_ARGUMENT, self._tried(each), line_of(each))
         for name in self._reached(node) if not _HARMLESS.search(call.path) else ():
             if name in self.values or name in self.inputs:
-                self._emit([name])
                 self._become_unread(name, node)
 
     def _sine_and_cosine(self, nodes: Sequence[Node]) -> None:
@@ -768,9 +708,9 @@ class _Interpreter:
             if kind > -2 or are_angles:
                 self.emitted.add((kind, stem, *values))
                 name = ", ".join(names) if len(names) < 9 else stem.strip("._") or "elements"
-                self._add(name, sp.Matrix(values), min(self.lines[name] for name in names))
+                self._add(name, sp.Matrix(values), *(self.lines[name] for name in names))
 
-    def _add(self, name: str, value: Any, line: int) -> None:
+    def _add(self, name: str, value: Any, *lines: int) -> None:
         if not isinstance(value, sp.MatrixBase) or len(value) == 1:
             return
         if self.program.steps["formulas"] >= _MOST_FORMULAS:
@@ -792,15 +732,12 @@ class _Interpreter:
         }
         plain |= {s: _square(v, names, self.is_matlab) for v, s in self.squares.items()}
         forms = [spelled_out(m, self.definitions).xreplace(plain) for m in (whole, matrix)]
-        most = max((len(self.choices[s]) for s in symbols & self.choices.keys()), default=0)
-        cases = [spelled_out(self._expanded(matrix, k), self.definitions) for k in range(most)]
         self.formulas.append(
             Formula(
-                line=line,
+                lines=lines,
                 name=name,
                 forms=tuple(dict.fromkeys(forms)),
-                unread=tuple((n, self.lines.get(n, line)) for n in sorted(unread)),
-                cases=tuple(m for m in cases if not m.free_symbols & self.definitions.keys()),
+                unread=tuple((n, self.lines.get(n, min(lines))) for n in sorted(unread)),
             )
         )
 
@@ -922,9 +859,8 @@ class _Interpreter:
             fields = (part(node, f) for f in ("consequence", "condition", "alternative"))
             parts = [each or node for each in fields]
         constant = _BOOLEANS.get(text_of(parts[1]).strip("() "))
-        if constant is None:
-            return self._chosen(node, [self._tried(parts[0]), self._tried(parts[2])])
-        return self.read(parts[0] if constant else parts[2])
+        is_other = self.branches.choice(node, 2) if constant is None else not constant
+        return self.read(parts[2 * is_other])
 
     # Places
 
@@ -1028,14 +964,7 @@ class _Interpreter:
             table = self.values.get(name, {})
             if len(indices) == 2 and indices[0] == _ALL and not any(len(k) == 2 for k in table):
                 indices = indices[1:]  # of a batch: q[:, 0]
-            if self.program.suffix == ".py" and len(indices) == 1:  # a row
-                indices = (*indices, _ALL)[: max(map(len, table), default=1) or 1]
-            keys = self._keys(table, indices)
-            values = [self._entry(node, name, key) for key in keys]
-            height = len({key[0] for key in keys})
-            is_matrix = height > 1 and len(keys) > height
-            shape = (height, len(keys) // height) if is_matrix else (len(keys), 1)
-            return sp.ImmutableMatrix(*shape, values) if len(keys) != 1 else values[0]
+            return self._entries(node, name, indices)
         base, _, member = place.path.rpartition(".")
         if member in CONSTANTS:
             return CONSTANTS[member]
@@ -1043,6 +972,18 @@ class _Interpreter:
             parts = [self._component(node, base, letter) for letter in member]
             return parts[0] if len(parts) == 1 else rows(parts)
         return self._value_of(node, name)
+
+    def _entries(self, node: Node, name: str, indices: Indices) -> Any:
+        """One entry, or those of slices as a column or a matrix."""
+        table = self.values.get(name, {})
+        if self.program.suffix == ".py" and len(indices) == 1:  # a row
+            indices = (*indices, _ALL)[: max(map(len, table), default=1) or 1]
+        keys = self._keys(table, indices)
+        values = [self._entry(node, name, key) for key in keys]
+        height = len({key[0] for key in keys})
+        is_matrix = height > 1 and len(keys) > height
+        shape = (height, len(keys) // height) if is_matrix else (len(keys), 1)
+        return sp.ImmutableMatrix(*shape, values) if len(keys) != 1 else values[0]
 
     def _value_of(self, node: Node, name: str) -> Any:
         """The value of a name; an input if nothing was assigned."""
@@ -1133,10 +1074,15 @@ class _Interpreter:
                 return self.read(nodes[0])
             case "zeros" | "unit":
                 return self._filled(node, call)
+            case "row" | "column" if len(call.arguments) == 1 and call.base not in ("", "?"):
+                index = self._index(call.arguments[0])
+                place = (index, _ALL) if meaning == "row" else (_ALL, index)
+                if isinstance(index, int):
+                    return self._entries(node, self.name_of(call.base), place)
             case "clamp" | "least" if len(nodes) > 1:
                 return self._unclamped(node, [self.read(each) for each in nodes])
             case "where" if len(nodes) == 3:
-                return self._chosen(node, [self._tried(each) for each in nodes[1:]])
+                return self.read(nodes[1 + self.branches.choice(node, 2)])
             case "transpose" | "dot" | "cross" | "outer" | "norm" | "skew" | "inverse" if nodes:
                 return self._of_vectors(meaning, [self.read(each) for each in nodes])
         is_new = self.program.suffix == ".rs" and name == "new" and len(call.arguments) == 3
@@ -1215,7 +1161,7 @@ class _Interpreter:
     def _inline(self, node: Node, name: str, nodes: Sequence[Node]) -> Any:
         """The value of a function of the same file."""
         function = self.program.functions[name]
-        inner = _Interpreter(self.program, self.inlined + 1)
+        inner = _Interpreter(self.program, self.branches, self.inlined + 1)
         names = [inner.name_of(each) for each in parameters(function)]
         names = [each for each in names if each not in ("self", "this")]
         if len(names) != len(nodes) or self.inlined >= _INLINED:
@@ -1226,8 +1172,7 @@ class _Interpreter:
         is_closed = not inner.inputs - set(names) and None not in inner.definitions.values()
         if not inner.results or None in inner.results or not is_closed:
             raise self.unreadable(node)
-        results = [inner._expanded(result) for result in inner.results]
-        return results[0] if len(results) == 1 else self._chosen(node, results)
+        return inner._expanded(inner.results[0])
 
 
 def _table(matrix: sp.MatrixBase) -> Table:
@@ -1255,12 +1200,6 @@ def _unflattened(matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
     return matrix.reshape(*_FLAT[len(matrix)]) if is_flat else matrix
 
 
-def _copied(values: Values) -> Values:
-    """All tables anew; names for one matrix still have one table."""
-    tables = {id(table): dict(table) for table in values.values()}
-    return {name: tables[id(table)] for name, table in values.items()}
-
-
 def _square(vector: str, names: set[str], is_matlab: bool) -> sp.Expr:
     """|v|² of a vector, or of a quaternion if a formula has its fourth component."""
     letters = (
@@ -1279,13 +1218,6 @@ def _part(value: sp.Expr, key: int | str) -> sp.Expr | None:
     if not is_simple or not (isinstance(value, sp.Function) or (value / vector).is_number):
         return None
     return value.xreplace({vector: sp.Symbol(f"{vector}_{key}", real=True)})
-
-
-def _alive(values: list[Any]) -> list[Any]:
-    """Values without those at a pole, where an angle is a number, and without bounds of a sine."""
-    is_angle = any(value.has(*_INVERSE) for value in values)
-    fixed = [v.is_number and (is_angle or 0.99 < abs(v) < 1.01) for v in values]
-    return [v for v, is_fixed in zip(values, fixed, strict=True) if not is_fixed] or values
 
 
 def _size(value: Any) -> int:

@@ -31,15 +31,14 @@ class FormulaInFile:
     formula: Formula
     comparison: Comparison | None = None
     reason: str = ""
-
-    is_case: bool = False  # whether this is so in one of several branches
+    is_case: bool = False  # whether other branches have other values
 
     def __str__(self) -> str:
         name = f"{self.formula.name}: " if self.formula.name else ""
         text = self.comparison.text() if self.comparison else f"not read, since {self.reason}"
+        text += "; in one of several branches" * self.is_case
         if self.formula.unread and self.comparison:
-            words = "in one case of" if self.is_case else "not read:"
-            text += f"; {words} {_in_lines(self.formula.unread)}"
+            text += f"; not read: {_in_lines(self.formula.unread)}"
         return f"{self.path}:{self.formula.line}: {name}{text}"
 
     def record(self) -> dict[str, Any]:
@@ -84,28 +83,29 @@ def source_files(paths: Sequence[Path]) -> Iterator[Path]:
 def search(path: Path) -> Iterator[FormulaInFile]:
     """The formulas of a file that are a known quantity or close to one, and unreadable ones."""
     text = path.read_text(encoding="utf-8", errors="replace")
+    variants: dict[Any, list[Formula]] = {}
     for formula in formulas(text, path.suffix):
-        reason, comparison = formula.reason, None
-        for form in formula.forms:  # a long value may be an angle
-            try:
-                comparison = _identified(form)
-            except (ExpressionError, RecursionError) as error:  # a function without values
-                reason = str(error)
-                break
-            if comparison.found is not None:
-                break
-        else:
-            if formula.unread:
-                reason = f"{_in_lines(formula.unread)} cannot be read"
-        is_known = comparison is not None and comparison.found is not None
-        # A formula with the values of all branches at once may be no quantity, while one branch is.
-        for form in () if is_known else formula.cases:
-            case = _identified(form, is_equal=True)
-            if case.is_equal:
-                yield FormulaInFile(path, formula, case, is_case=True)
-                break
-        if reason or (comparison and (comparison.found is not None or comparison.is_reflection)):
-            yield FormulaInFile(path, formula, None if reason else comparison, reason)
+        variants.setdefault((formula.lines, formula.name), []).append(formula)
+    for group in variants.values():
+        # A formula with the values of all branches may be no quantity, while one branch is.
+        is_case = sum(bool(each.forms) for each in group) > 1
+        findings = [_compared(path, each, is_case=is_case) for each in group]
+        readable = [each for each in findings if each and each.comparison]
+        yield from [*readable, *filter(None, findings)][:1]
+
+
+def _compared(path: Path, formula: Formula, *, is_case: bool) -> FormulaInFile | None:
+    for form in formula.forms:  # a long value may be an angle
+        try:
+            comparison = _identified(form, is_equal=is_case)
+        except (ExpressionError, RecursionError) as error:  # a function without values
+            return FormulaInFile(path, formula, reason=str(error))
+        if comparison.found is not None or comparison.is_reflection:
+            return FormulaInFile(path, formula, comparison, is_case=is_case)
+    reason = formula.reason
+    if formula.unread:
+        reason = f"{_in_lines(formula.unread)} cannot be read"
+    return FormulaInFile(path, formula, reason=reason) if reason else None
 
 
 @lru_cache(maxsize=1024)  # programs repeat themselves
@@ -116,12 +116,9 @@ def _identified(matrix: sp.ImmutableMatrix, *, is_equal: bool = False) -> Compar
 def formulas(text: str, suffix: str) -> Iterator[Formula]:
     """The matrices and vectors that may be one of kinematics, and those that cannot be read."""
     for formula in program_formulas(text, suffix):
-        forms, cases = (
-            tuple(filter(_may_be_known, map(_block, matrices)))
-            for matrices in (formula.forms, formula.cases)
-        )
-        if forms or cases or formula.reason:
-            yield replace(formula, forms=forms, cases=cases)
+        forms = tuple(filter(_may_be_known, map(_block, formula.forms)))
+        if forms or formula.reason:
+            yield replace(formula, forms=forms)
 
 
 def disappointment(
