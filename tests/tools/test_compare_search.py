@@ -159,7 +159,6 @@ def test_a_declaration_in_c_may_hold_several_names(tmp_path):
         ("p = cos(a)*x - sin(a)*y;\nq = sin(a)*x + cos(a)*y;\nr = z;", [(1, "p, q, r")]),
         ("k[0] = cos(a); k[0][1] = sin(a);", []),
         ("n[0][0] = cos(a); n[1][1] = sin(a);", []),
-        ("v << cos(a), sin(a), cos(b), sin(b), 1;", []),
         ("m << 1, 2, 3;", []),
     ],
 )

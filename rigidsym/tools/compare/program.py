@@ -21,6 +21,7 @@ import sympy as sp
 from rigidsym.errors import ExpressionError, offer
 from rigidsym.text.bounds import FUNCTIONS
 from rigidsym.text.names import spelled
+from rigidsym.tools.compare import syntax as tree
 from rigidsym.tools.compare.language import (
     ANGLE,
     CONSTANTS,
@@ -34,28 +35,7 @@ from rigidsym.tools.compare.language import (
 )
 from rigidsym.tools.compare.latex import python_of
 from rigidsym.tools.compare.quantities import stem_of
-from rigidsym.tools.compare.syntax import (
-    CALLS,
-    EXPRESSIONS,
-    PARTS,
-    STATEMENTS,
-    Call,
-    below,
-    call_of,
-    child,
-    children,
-    function_name,
-    function_word,
-    left_of,
-    line_of,
-    operator,
-    parameters,
-    parsed,
-    part,
-    short_name,
-    targets,
-    text_of,
-)
+from rigidsym.tools.compare.syntax import CALLS, EXPRESSIONS, ORDERS, PARTS, STATEMENTS, Call
 
 if TYPE_CHECKING:
     from tree_sitter import Node
@@ -73,6 +53,7 @@ _LONGEST_PLACE = 120  # characters
 _LONGEST = 40  # parts of a value without a symbol of its own
 _LONG_IN_LONG = 3  # symbols for long values that use other such symbols
 _MOST_PARTS = 2_000  # of a matrix
+_LONGEST_STATE = 20  # entries of a vector whose parts are looked at
 _MOST_RUNS = 24  # of a function, with other branches
 _INLINED = 3  # calls of functions of the same file inside one another
 
@@ -120,8 +101,8 @@ _RETURNED, _ARGUMENT = "returned", "argument"  # in place of a name
 _ALL = slice(None)
 _BOOLEANS = {"0": False, "false": False, "False": False, "1": True, "true": True, "True": True}
 
-# Scalars that are one vector or matrix: patterns of a stem and an index, and the complete sets of
-# indices, in their order. The name of an angle is the index of its vector, r.phi beside r.theta.
+# Scalars that are one vector or matrix: patterns of a stem and an index. The name of an angle is
+# the index of its vector, r.phi beside r.theta.
 _GROUPS = (
     re.compile(r"(?P<stem>.*?)_?(?P<index>[0-3]_?[0-3])"),
     re.compile(r"(?P<stem>.*?)(?P<index>[abc]\.[xyz])"),  # Matrix3 of ArduPilot
@@ -129,16 +110,7 @@ _GROUPS = (
     re.compile(r"(?P<stem>.*?)(?P<index>[wxyzWXYZ0-4])"),
     re.compile(r"(?P<stem>)(?P<index>[pqrPQR])"),
 )
-_TRIPLES = (
-    *("roll pitch yaw", "phi theta psi", "alpha beta gamma", "x y z", "rx ry rz"),
-    *("heading attitude bank", "angle1 angle2 angle3"),
-)
-_PAIRS = (("012", "012"), ("123", "123"), ("abc", "xyz"))
-_ORDERS = [tuple(word) for word in ("xyz", "wxyz", "012", "123", "0123", "1234", "pqr")]
-_ORDERS += [tuple(i + j for i, j in product(*pair)) for pair in _PAIRS]
-_ORDERS += [tuple(str(4 * i + j) for i in range(3) for j in range(3)), tuple(map(str, range(16)))]
-_ORDERS += [tuple(triple.split()) for triple in _TRIPLES]
-_COMPLETE = {frozenset(order): order for order in _ORDERS}
+_COMPLETE = {frozenset(order.split()): order.split() for order in ORDERS}
 
 Indices = tuple[Any, ...]  # whole numbers and slices
 Table = dict[tuple[int, ...], sp.Expr]
@@ -186,19 +158,27 @@ class _Program:
 
 @dataclass
 class _Branches:
-    """The branch that a run of a function takes at each node: the first that no run has taken."""
+    """The branch that a run of a function takes at each node: one that no run has taken.
+
+    If all have been taken, it is one in which a later choice is still open, or the last.
+    """
 
     taken: set[tuple[int, int]] = field(default_factory=set)
     now: dict[int, int] = field(default_factory=dict)
-    is_open: bool = True  # whether another run would take new branches
+    places: dict[int, int] = field(default_factory=dict)  # of nodes with other branches
 
-    def choice(self, node: Node, count: int) -> int:
-        """The number of the branch, out of so many; the last if all have been taken."""
+    def choice(self, node: Node, blocks: Sequence[Node | None]) -> int:
+        """The number of the branch."""
         if node.id not in self.now:
-            free = [k for k in range(count) if (node.id, k) not in self.taken]
-            self.now[node.id] = (free or [count - 1])[0]
+            free = [k for k in range(len(blocks)) if (node.id, k) not in self.taken]
+            spans = [(block.start_byte, block.end_byte) if block else (0, 0) for block in blocks]
+            places = [place for n, place in self.places.items() if n != node.id]
+            within = [k for k, (i, j) in enumerate(spans) if any(i < p < j for p in places)]
+            self.now[node.id] = (free or within or [len(blocks) - 1])[0]
             self.taken.add((node.id, self.now[node.id]))
-            self.is_open |= len(free) > 1
+            self.places[node.id] = node.start_byte
+            if len(free) < 2:
+                del self.places[node.id]
         return self.now[node.id]
 
 
@@ -208,15 +188,15 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
         text = _MACRO.sub(lambda m: "mod macros {" + "\n" * m[0].count("\n"), text)
         text = re.sub(r"\$(?=\w)|\$\($|^\s*\)[+*]$", "", text, flags=re.MULTILINE)
     try:
-        root = parsed(text, suffix)
+        root = tree.parsed(text, suffix)
     except ExpressionError as error:
         return [Formula(lines=(1,), name="", reason=str(error))]
     if root.descendant_count > _MOST_NODES:
         return [Formula(lines=(1,), name="", reason="the file is too long")]
-    functions = [node for node in below([root]) if node.type in PARTS["function"]]
+    functions = [node for node in tree.below([root]) if node.type in PARTS["function"]]
     program = _Program(
         suffix,
-        {name: node for node in functions if (name := function_name(node))},
+        {name: node for node in functions if (name := tree.function_name(node))},
         {match[1]: int(match[2]) for match in _INDEX_NAME.finditer(text)},
         suffix == ".py" and bool(_NUMPY.search(text)) and not _MATRICES.search(text),
     )
@@ -224,15 +204,15 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
     for scope in (root, *functions):
         branches, own = _Branches(), list[Formula]()
         for _ in range(_MOST_RUNS):
-            branches.now, branches.is_open = {}, False
+            branches.now = {}
             interpreter = _Interpreter(program, branches)
             try:
                 interpreter.run_scope(scope)
             except RecursionError:  # SymPy, in a sum that a program nests in itself
                 reason = "expressions are nested too deeply"
-                own.append(Formula(lines=(line_of(scope),), name="", reason=reason))
+                own.append(Formula(lines=(tree.line_of(scope),), name="", reason=reason))
             own += interpreter.formulas
-            if not branches.is_open:
+            if not branches.places:
                 break
         named = {each.forms for each in own if each.forms and each.is_named}
         for formula in own:
@@ -276,10 +256,12 @@ def _assigned_value(text: str, suffix: str) -> Node | None:
         line = line.replace("^", "**")
     # First as the value of a new name, which needs a type in C++, and then as an assignment itself.
     for program in (f"{'auto ' * (suffix == '.cpp')}x = {line};", f"{line};"):
-        root = parsed(program, suffix)
-        value = next((n for n in below([root]) if STATEMENTS.get(n.type) == "_assignment"), None)
+        root = tree.parsed(program, suffix)
+        value = next(
+            (n for n in tree.below([root]) if STATEMENTS.get(n.type) == "_assignment"), None
+        )
         while value is not None and STATEMENTS.get(value.type) == "_assignment":
-            value = part(value, "right", "value")
+            value = tree.part(value, "right", "value")
         if value is not None and not root.has_error:
             return value
     return None
@@ -308,31 +290,31 @@ class _Interpreter:
         self.depth = 0
 
     def unreadable(self, node: Node, reason: str = "is not understood") -> ExpressionError:
-        text = re.sub(r"\s+", " ", text_of(node))
+        text = re.sub(r"\s+", " ", tree.text_of(node))
         text = text if len(text) <= 60 else f"{text[:57]}..."
-        where = "" if self.program.is_formula else f" in line {line_of(node)}"
+        where = "" if self.program.is_formula else f" in line {tree.line_of(node)}"
         return ExpressionError(f"`{text}`{where} {reason}")
 
     # Statements
 
     def run_scope(self, scope: Node) -> None:
         """Run a function, or the whole file, and collect the formulas in it."""
-        inner = [n for n in below(scope.named_children) if n.type in PARTS["function"]]
-        late = [n for n in below(scope.named_children) if n.type in PARTS["late"]]
+        inner = [n for n in tree.below(scope.named_children) if n.type in PARTS["function"]]
+        late = [n for n in tree.below(scope.named_children) if n.type in PARTS["late"]]
         if self.program.suffix != ".py":
-            late += [n for n in below(inner) if n.type not in PARTS["declaration"]]
+            late += [n for n in tree.below(inner) if n.type not in PARTS["declaration"]]
         self.untracked = self._writes(late)
         is_function = scope.type in PARTS["function"]
-        body = (part(scope, "body") or child(scope, "block")) if is_function else scope
+        body = (tree.part(scope, "body") or tree.child(scope, "block")) if is_function else scope
         if is_function:
-            self.inputs |= set(map(self.name_of, parameters(scope)))
+            self.inputs |= set(map(self.name_of, tree.parameters(scope)))
         if body is None:
             return
         if is_function and not body.type.endswith(("block", "statement", "body")):
             self._return(body)  # the expression of an arrow
             return
         self.run(body)
-        last = children(body)[-1:] if self.program.suffix == ".rs" else []
+        last = tree.children(body)[-1:] if self.program.suffix == ".rs" else []
         if last and not last[0].type.endswith(("statement", "declaration")):
             self._return(last[0])
         if not self.end:
@@ -353,27 +335,27 @@ class _Interpreter:
             except ExpressionError:  # what the statement does is unknown
                 self._forget(node)
         else:
-            for each in children(node):
+            for each in tree.children(node):
                 self.run(each)
         self.depth -= 1
 
     def _assignment(self, node: Node) -> None:
-        left, right = left_of(node), part(node, "right", "value")
+        left, right = tree.left_of(node), tree.part(node, "right", "value")
         if right is None and node.type == "variable_declarator":  # C#: no field
-            right = next(iter(children(node)[1:]), None)
+            right = next(iter(tree.children(node)[1:]), None)
         if left is None or right is None:
             if left is not None and node.type == "assignment_expression":
                 self._drop(left)
-        elif (sign := operator(node)).endswith("=") and sign != "=":  # C: a += b
+        elif (sign := tree.operator(node)).endswith("=") and sign != "=":  # C: a += b
             self._update(node)
         else:
             if STATEMENTS.get(right.type) == "_assignment":  # a = b = c
                 self.run(right)
-                right = left_of(right) or right
+                right = tree.left_of(right) or right
             self._assign(left, right)
 
     def _assign(self, left: Node, right: Node) -> None:
-        names = targets(left)
+        names = tree.targets(left)
         try:
             value = self.read(right)
             if left not in names:
@@ -420,7 +402,7 @@ class _Interpreter:
         if len(matrix) == 1:
             self._join_groups(name)
             value = self._named_value(name, self._renamed(name, matrix[0]))
-        self.lines[name] = line_of(left)
+        self.lines[name] = tree.line_of(left)
         self.values[name] = {(): value} if len(matrix) == 1 else _table(matrix)
 
     def _store_entries(
@@ -429,7 +411,7 @@ class _Interpreter:
         table = self.values.get(name, {(): sp.S.Zero})
         if () in table:
             table = self.values[name] = {}
-            self.lines[name] = line_of(left)
+            self.lines[name] = tree.line_of(left)
         if len(matrix) > 1 and not any(isinstance(index, slice) for index in indices):
             indices = (*indices, _ALL)  # a row
         if len(matrix) == 1:  # of a batch
@@ -484,11 +466,16 @@ class _Interpreter:
 
     def _update(self, node: Node) -> None:
         """a += b, or a++."""
-        left, right = left_of(node), part(node, "right")
+        left, right = tree.left_of(node), tree.part(node, "right")
         if left is None or right is None:
             raise self.unreadable(node)
-        sign = self._operation(node, operator(node)[:-1])
-        value = combined(sign, self.read(left), self.read(right))
+        sign, change = self._operation(node, tree.operator(node)[:-1]), self.read(right)
+        value = combined(sign, self.read(left), change)
+        place = self.place(left)
+        if place and sign == "+" and isinstance(change, sp.Expr):  # q0 += (...)*dt
+            name = "_".join(["Δ" + self.name_of(place.path), *map(str, place.indices)])
+            self.values[name], self.lines[name] = {(): change}, tree.line_of(left)
+            self._join_groups(name)
         table = self.values.get(self.written(left), {(): value})
         if () not in table and isinstance(value, sp.MatrixBase):
             table.clear()  # also of other names for this matrix
@@ -498,7 +485,7 @@ class _Interpreter:
 
     def _drop(self, left: Node) -> None:
         """The value of a name, or of the array of an entry, is not read."""
-        for target in targets(left):
+        for target in tree.targets(left):
             if name := self.written(target):
                 self._become_unread(name, target)
 
@@ -508,12 +495,12 @@ class _Interpreter:
         table = self.values.get(name)
         same = [n for n, value in self.values.items() if value is table]
         for each in same or [name]:
-            self.lines[each] = line_of(node)
+            self.lines[each] = tree.line_of(node)
             self.values[each] = {(): self._symbol_for(each, None)}
 
     def _forget(self, node: Node) -> None:
         """All names that are written to in a statement become unread, if they have been used."""
-        for name in self._writes(below([node])):
+        for name in self._writes(tree.below([node])):
             if name in self.values or name in self.inputs:
                 self._become_unread(name, node)
 
@@ -521,13 +508,13 @@ class _Interpreter:
         """Names that statements, and walruses in expressions, may change."""
         names: set[str] = set()
         for node in nodes:
-            meaning, left = STATEMENTS.get(node.type), left_of(node)
+            meaning, left = STATEMENTS.get(node.type), tree.left_of(node)
             if meaning in ("_call_statement", "_stream"):
                 names |= self._reached(node)
             elif node.type in ("nonlocal_statement", "global_statement"):
-                names |= set(map(text_of, node.named_children))
+                names |= set(map(tree.text_of, node.named_children))
             elif meaning in ("_assignment", "_update") or node.type in PARTS["late"]:
-                names |= set(map(self.written, targets(left) if left is not None else ()))
+                names |= set(map(self.written, tree.targets(left) if left is not None else ()))
         return names - {""}
 
     def written(self, left: Node) -> str:
@@ -536,48 +523,58 @@ class _Interpreter:
         while node is not None:
             if place := self.place(node):
                 return self.name_of(place.path)
-            node = part(node, *PARTS["holder"]) or next(iter(children(node)), None)
+            node = tree.part(node, *PARTS["holder"]) or next(iter(tree.children(node)), None)
         return ""
 
     def _branches(self, node: Node) -> None:
         """if, #if, switch, and handlers of exceptions: each run takes one branch, or none."""
         if node.type in PARTS["choice"]:
-            blocks = [each for each in below(children(node)) if each.type in PARTS["case"]]
+            cases = [c for c in tree.below(tree.children(node)) if c.type in PARTS["case"]]
+            self._take(node, [*cases, None], ())
+            self.end = "" if self.end == "break" else self.end
         else:
-            elifs = [each for each in children(node) if each.type in PARTS["elif"]]
-            blocks = [node, *dict.fromkeys([*node.children_by_field_name("alternative"), *elifs])]
-        possible: list[Node | None] = []
-        for block in blocks:
-            condition = part(block, "condition")
-            constant = _BOOLEANS.get(text_of(condition).strip("() "))
-            possible += [block] if constant is not False else []
-            is_else = block != node and condition is None and block.type not in PARTS["case"]
-            if constant or is_else:
-                break
+            elifs = [each for each in tree.children(node) if each.type in PARTS["elif"]]
+            others = [*node.children_by_field_name("alternative"), *elifs]
+            blocks = [node, *dict.fromkeys(others)]
+            possible: list[Node | None] = []
+            for block in blocks:
+                condition = tree.part(block, "condition")
+                constant = _BOOLEANS.get(tree.text_of(condition).strip("() "))
+                possible += [block] if constant is not False else []
+                if constant or (block != node and condition is None):
+                    break
+            else:
+                possible.append(None)
+            self._take(node, possible, blocks)
+
+    def _take(self, node: Node, possible: Sequence[Node | None], others: Sequence[Node]) -> None:
+        """Run one block of several, or none, without its condition and without the others."""
+        block = possible[self.branches.choice(node, possible)]
+        if block is None:
+            return
+        start = {name: len(table) for name, table in self.values.items()}
+        if block.type in STATEMENTS and block != node:
+            self.run(block)
         else:
-            possible.append(None)
-        block = possible[self.branches.choice(node, len(possible))]
-        skipped = [*blocks, *(part(block, f) for f in ("condition", "name") if block is not None)]
-        is_simple = block is not None and block.type in STATEMENTS and block != node
-        for each in [block] if is_simple else children(block) if block is not None else ():
-            if each not in skipped or is_simple:
-                self.run(each)
-        if node.type in PARTS["choice"] and self.end == "break":
-            self.end = ""
+            skipped = [*others, tree.part(block, "condition"), tree.part(block, "name")]
+            for each in tree.children(block):
+                if each not in skipped:
+                    self.run(each)
+        self._emit([name for name in self.values if start.get(name, 0) < 3])
 
     def _loop(self, node: Node) -> None:
         """A loop may run many times or never: what changes in it is not read before and after."""
         self._forget(node)
-        header = part(node, "left", "initializer", "pattern")
+        header = tree.part(node, "left", "initializer", "pattern")
         if header is not None and node.type != "for_statement":
             self._drop(header)
-        self.run(part(node, "body") or child(node, "block") or node)
+        self.run(tree.part(node, "body") or tree.child(node, "block") or node)
         self.end = ""
         self._forget(node)
 
     def _end(self, node: Node) -> None:
         """return, break, raise."""
-        value = next(iter(children(node)), None)
+        value = next(iter(tree.children(node)), None)
         if node.type.startswith(("break", "continue", "goto")):
             self.end = "break"
         else:
@@ -588,23 +585,23 @@ class _Interpreter:
             try:
                 self.results.append(self.read(node))
                 if self.place(node) is None:
-                    self._add(_RETURNED, self.results[-1], line_of(node))
+                    self._add(_RETURNED, self.results[-1], tree.line_of(node))
             except ExpressionError as error:
                 self.results.append(None)
-                if _MAY_BE_MATRIX.search(text_of(node)):
-                    unread = Formula(lines=(line_of(node),), name=_RETURNED, reason=str(error))
+                if _MAY_BE_MATRIX.search(tree.text_of(node)):
+                    unread = Formula(lines=(tree.line_of(node),), name=_RETURNED, reason=str(error))
                     self.formulas.append(unread)
         self._emit(self.values)
         self.end = "return"
 
     def _call_statement(self, node: Node) -> None:
         """m.set(...) is an assignment; other calls may change their object and matrices."""
-        call = call_of(node)
+        call = tree.call_of(node)
         nodes, meaning = call.arguments, CALLS.get(call.name)
         if re.search("sin_?cos", call.name, re.IGNORECASE) and len(nodes) == 3:
             self._sine_and_cosine(nodes)
             return
-        if "::" in text_of(part(node, "function")):  # of a type, not of an object
+        if "::" in tree.text_of(tree.part(node, "function")):  # of a type, not of an object
             return
         target = call.owner or (nodes[-1] if nodes and meaning else None)
         is_set = call.name in ("set", "setValue") if target is None else meaning is None
@@ -617,11 +614,10 @@ class _Interpreter:
             return
         if value is not None:
             self._emit(["this"])
-            self.values["this"], self.lines["this"] = _table(as_matrix(value)), line_of(node)
+            self.values["this"], self.lines["this"] = _table(as_matrix(value)), tree.line_of(node)
             return
-        for each in nodes:  # list.append(np.array(...))
-            if each.type in PARTS["list"] or EXPRESSIONS.get(each.type) == "_call":
-                self._add(_ARGUMENT, self._tried(each), line_of(each))
+        if _MAY_BE_MATRIX.search(tree.text_of(node)):
+            self._tried(node)
         for name in self._reached(node) if not _HARMLESS.search(call.path) else ():
             if name in self.values or name in self.inputs:
                 self._become_unread(name, node)
@@ -640,8 +636,8 @@ class _Interpreter:
     def _reached(self, node: Node) -> set[str]:
         """Names that a call, or a stream, may change: its object, matrices, and &name."""
         if STATEMENTS[node.type] == "_stream":
-            return {self.written(node)} if operator(node) == "<<" else set()
-        call = call_of(node)
+            return {self.written(node)} if tree.operator(node) == "<<" else set()
+        call = tree.call_of(node)
         places = [place for place in map(self.place, call.arguments) if place is not None]
         names = {self.name_of(path) for path in [call.base, *(place.path for place in places)]}
         pointers = [each for each in call.arguments if each.type in PARTS["pointer"]]
@@ -652,7 +648,7 @@ class _Interpreter:
         """a = b, c = d; or R << a, b, c."""
         parts = [node]
         while parts[-1].type == "comma_expression":
-            parts[-1:] = children(parts[-1])
+            parts[-1:] = tree.children(parts[-1])
         if parts[0].type == "binary_expression":
             self._stream(parts[0], parts[1:])
         else:
@@ -661,8 +657,8 @@ class _Interpreter:
 
     def _stream(self, node: Node, others: Sequence[Node] = ()) -> None:
         """Eigen's comma initialiser."""
-        left, right = part(node, "left"), part(node, "right")
-        if left is not None and right is not None and operator(node) == "<<":
+        left, right = tree.part(node, "left"), tree.part(node, "right")
+        if left is not None and right is not None and tree.operator(node) == "<<":
             self._store(left, rows([self.read(each) for each in (right, *others)]))
 
     # Formulas
@@ -686,8 +682,8 @@ class _Interpreter:
             self.groups.setdefault((-1, ""), {})[name] = name
         base, _, last = path.rpartition(".")
         word = re.sub(r"^_+|_?(val|rad|angle)?_*$", "", last.lower())
-        for kind, triple in enumerate(_TRIPLES):
-            if word in triple.split():
+        for kind, angles in enumerate(_COMPLETE):
+            if word in angles and (len(word) > 1 or word in "xyz"):
                 self.groups.setdefault((-2 - kind, base), {})[word] = name
 
     def _emit_groups(self, changed: str | None = None) -> None:
@@ -717,6 +713,9 @@ class _Interpreter:
             return
         self.program.steps["formulas"] += 1
         matrix = _unflattened(sp.ImmutableMatrix(value))
+        if matrix.cols == 1 and 4 < matrix.rows <= _LONGEST_STATE:  # angles and rates in a state
+            for k in range(matrix.rows - 2):
+                self._add(f"{name}[{k}:{k + 3}]", matrix[k : k + 3, :], *lines)
         whole = self._expanded(matrix)
         if _size(whole) > _MOST_PARTS:
             whole = matrix
@@ -752,7 +751,7 @@ class _Interpreter:
                 raise self.unreadable(node, "is nested too deeply")
             if self.program.steps["read"] > _MOST_STEPS:
                 raise self.unreadable(node, "is not read, since the file is too long")
-            digits = _NUMBERS.fullmatch(text_of(node)) if not children(node) else None
+            digits = _NUMBERS.fullmatch(tree.text_of(node)) if not tree.children(node) else None
             if digits:
                 text = digits[2].replace("_", "")
                 value = number(text if text.isdigit() else repr(float(text)))
@@ -766,9 +765,9 @@ class _Interpreter:
             self.depth -= 1
 
     def _wrapped(self, node: Node) -> Any:
-        if not children(node):
+        if not tree.children(node):
             raise self.unreadable(node)
-        return self.read(part(node, "value") or children(node)[-1])
+        return self.read(tree.part(node, "value") or tree.children(node)[-1])
 
     def _tried(self, node: Node) -> Any:
         """The value, or None if it is not understood."""
@@ -779,12 +778,12 @@ class _Interpreter:
 
     def _assigned(self, node: Node) -> Any:
         """a = b inside an expression."""
-        left = left_of(node)
+        left = tree.left_of(node)
         self.run(node)
         return self.read(left if left is not None else node)
 
     def _list(self, node: Node) -> Any:
-        parts = children(node)
+        parts = tree.children(node)
         if not 0 < len(parts) <= _LONGEST_LIST:
             raise self.unreadable(node)
         values = [self.read(each) for each in parts]
@@ -792,34 +791,38 @@ class _Interpreter:
 
     def _record(self, node: Node) -> Any:
         """{w: a, x: b, y: c, z: d} of JavaScript, and Quaternion { x: a, ... } of Rust."""
-        pairs = children(part(node, "body") or node)
-        if "".join(text_of(part(c, "key", "field")) for c in pairs) not in ("xyz", "wxyz", "xyzw"):
+        pairs = tree.children(tree.part(node, "body") or node)
+        if "".join(tree.text_of(tree.part(c, "key", "field")) for c in pairs) not in (
+            "xyz",
+            "wxyz",
+            "xyzw",
+        ):
             raise self.unreadable(node)
-        return rows([self.read(part(c, "value") or node) for c in pairs])
+        return rows([self.read(tree.part(c, "value") or node) for c in pairs])
 
     def _matlab_matrix(self, node: Node) -> Any:
-        lines = [as_matrix(self.read(row)) for row in children(node) if row.type == "row"]
+        lines = [as_matrix(self.read(row)) for row in tree.children(node) if row.type == "row"]
         return rows(lines) if len(lines) != 1 else lines[0]
 
     def _matlab_row(self, node: Node) -> Any:
-        cells = [as_matrix(self.read(cell)) for cell in children(node)]
+        cells = [as_matrix(self.read(cell)) for cell in tree.children(node)]
         if len({cell.rows for cell in cells}) != 1:
             raise self.unreadable(node)
         return sp.ImmutableMatrix(sp.Matrix.hstack(*cells))
 
     def _transposed(self, node: Node) -> Any:
-        return as_matrix(self.read(children(node)[0])).T
+        return as_matrix(self.read(tree.children(node)[0])).T
 
     def _unary(self, node: Node) -> Any:
-        if operator(node) not in ("+", "-"):
+        if tree.operator(node) not in ("+", "-"):
             return self._named(node)
-        value = self.read(children(node)[-1])
-        return value if operator(node) == "+" else -value
+        value = self.read(tree.children(node)[-1])
+        return value if tree.operator(node) == "+" else -value
 
     def _binary(self, node: Node) -> Any:
         sign, left, right = (
-            operator(node),
-            *map(self.read, children(node)[:: len(children(node)) - 1]),
+            tree.operator(node),
+            *map(self.read, tree.children(node)[:: len(tree.children(node)) - 1]),
         )
         is_turn = sign == "%" and not isinstance(right, sp.MatrixBase) and (right / sp.pi).is_number
         if is_turn and self._expanded(left).has(*_INVERSE):  # the same angle
@@ -854,13 +857,22 @@ class _Interpreter:
         return "%" if sign == "*" and self.program.is_numpy else sign
 
     def _conditional(self, node: Node) -> Any:
-        parts = children(node)
+        parts = tree.children(node)
         if self.program.suffix != ".py":
-            fields = (part(node, f) for f in ("consequence", "condition", "alternative"))
+            fields = (tree.part(node, f) for f in ("consequence", "condition", "alternative"))
             parts = [each or node for each in fields]
-        constant = _BOOLEANS.get(text_of(parts[1]).strip("() "))
-        is_other = self.branches.choice(node, 2) if constant is None else not constant
-        return self.read(parts[2 * is_other])
+        constant = _BOOLEANS.get(tree.text_of(parts[1]).strip("() "))
+        if constant is None:
+            return self._chosen(node, [parts[0], parts[2]])
+        return self.read(parts[0 if constant else 2])
+
+    def _chosen(self, node: Node, nodes: Sequence[Node]) -> Any:
+        """One of two values: a number belongs to a pole, or is a bound of a sine."""
+        values = [self._tried(each) for each in nodes]
+        fixed = [isinstance(value, sp.Expr) and value.is_number for value in values]
+        if sum(fixed) != 1:
+            return self.read(nodes[self.branches.choice(node, nodes)])
+        return self.read(nodes[fixed.index(False)])
 
     # Places
 
@@ -868,19 +880,19 @@ class _Interpreter:
         """The name and the indices of R[0][1], q.w(), m.at(0, 1), state["phi"] or *p."""
         if node is None or node.end_byte - node.start_byte > _LONGEST_PLACE:
             return None
-        parts, meaning = children(node), EXPRESSIONS.get(node.type)
+        parts, meaning = tree.children(node), EXPRESSIONS.get(node.type)
         if node.type in PARTS["name"]:
-            return Place(spelled(text_of(node)))
-        if meaning == "_wrapped" or (operator(node) in ("*", "&") and len(parts) == 1):
+            return Place(spelled(tree.text_of(node)))
+        if meaning == "_wrapped" or (tree.operator(node) in ("*", "&") and len(parts) == 1):
             return self.place(parts[-1]) if parts and not self.program.is_formula else None
         if meaning == "_member" and parts:
-            return self._below(self.place(parts[0]), re.sub("<.*>", "", text_of(parts[-1])))
+            return self._below(self.place(parts[0]), re.sub("<.*>", "", tree.text_of(parts[-1])))
         if node.type in PARTS["index"]:
             return self._indexed(self.place(parts[0]), parts[1:])
         if meaning != "_call":
             return None
-        call = call_of(node)
-        word, owner = function_word(call.name), self.place(call.owner) or Place(call.base)
+        call = tree.call_of(node)
+        word, owner = tree.function_word(call.name), self.place(call.owner) or Place(call.base)
         if not call.arguments:
             match = _GETTER.fullmatch(call.name)
             return self._below(owner, match[1].lower()) if match else None
@@ -900,21 +912,21 @@ class _Interpreter:
         return Place(place.path, (*place.indices, _AXES[name])) if name in _AXES else None
 
     def _indexed(self, place: Place | None, nodes: Sequence[Node]) -> Place | None:
-        lists = [children(n) if n.type in PARTS["list"] else [n] for n in nodes]
+        lists = [tree.children(n) if n.type in PARTS["list"] else [n] for n in nodes]
         indices: list[Any] = [self._index(node) for nodes in lists for node in nodes]
         if place is None or None in indices:
             return None
         if any(isinstance(index, str) for index in indices):
             return self._below(place, str(indices[0])) if len(indices) == 1 else None
-        while indices[0] is ... or (len(indices) > 2 and indices[0] == _ALL):  # of a batch
+        while indices[:1] == [...] or (len(indices) > 2 and indices[0] == _ALL):  # of a batch
             indices = indices[1:]
         shifted = [i if isinstance(i, slice) else i - self.is_matlab for i in indices[:2]]
-        is_place = all(isinstance(i, slice) or 0 <= i < 64 for i in shifted)
+        is_place = bool(indices) and all(isinstance(i, slice) or 0 <= i < 64 for i in shifted)
         return Place(place.path, (*place.indices, *shifted)) if is_place else None
 
     def _index(self, node: Node) -> Any:
         """An index as it is written, or the key of a table."""
-        text, parts = text_of(node), children(node)
+        text, parts = tree.text_of(node), tree.children(node)
         if text in (":", "..."):
             return _ALL if text == ":" else ...
         if match := re.fullmatch(r"(\d?):(\d?)", text):
@@ -929,8 +941,8 @@ class _Interpreter:
             return self._index(parts[-1])
         if meaning == "_binary":
             sides = [self._index(side) for side in parts]
-            if all(isinstance(side, int) for side in sides) and operator(node) in "+-*":
-                return int(combined(operator(node), *map(sp.Integer, sides)))
+            if all(isinstance(side, int) for side in sides) and tree.operator(node) in "+-*":
+                return int(combined(tree.operator(node), *map(sp.Integer, sides)))
         place = self.place(node) if not text.isdigit() else None
         if place is None or place.indices:
             return None
@@ -956,8 +968,9 @@ class _Interpreter:
     def _named(self, node: Node) -> Any:
         """A name, an entry, a component, or several: q.xyz."""
         place = self.place(node)
-        is_slip = self.program.is_formula and text_of(node).startswith("*")  # a + * b
+        is_slip = self.program.is_formula and tree.text_of(node).startswith("*")  # a + * b
         if place is None or is_slip:
+            self._add_parts(tree.children(node))
             raise self.unreadable(node)
         name, indices = self.name_of(place.path), place.indices
         if indices:
@@ -1001,9 +1014,10 @@ class _Interpreter:
         table = self.values.get(name, {})
         if table and () not in table:
             value = next((table[k] for k in (key, (*key, 0), (0, *key)) if k in table), None)
-            if value is None:
+            if value is not None:
+                return value
+            if name not in self.inputs:
                 raise self.unreadable(node, "has no value")
-            return value
         whole, from_1 = table.get(()), [index + self.is_matlab for index in key]
         value = _part(whole, from_1[0]) if whole is not None and len(key) == 1 else None
         if value is not None:
@@ -1027,15 +1041,15 @@ class _Interpreter:
         return self._value_of(node, name)
 
     def _member(self, node: Node) -> Any:
-        inner = part(node, "object", "value", "argument", "expression")
-        if inner is not None and text_of(node).endswith(".T"):
+        inner = tree.part(node, "object", "value", "argument", "expression")
+        if inner is not None and tree.text_of(node).endswith(".T"):
             return as_matrix(self.read(inner)).T
         return self._named(node)
 
     def name_of(self, path: str) -> str:
         """The name of a path, short if no other path of the function has it."""
         path = spelled(path)
-        for name in (short_name(path), re.sub(r"\W+", "_", path)) if path else ():
+        for name in (tree.short_name(path), re.sub(r"\W+", "_", path)) if path else ():
             if self.paths.setdefault(name, path) == path:
                 return name
         return re.sub(r"\W+", "__", path)
@@ -1046,9 +1060,9 @@ class _Interpreter:
         """A function of numbers, a method of a matrix, a constructor, or a function of the file."""
         if self.place(node) is not None:  # R(0, 1), q.w()
             return self._named(node)
-        call = call_of(node)
+        call = tree.call_of(node)
         alias = str(self.values.get(call.name, {}).get(()))  # s, c = np.sin, np.cos
-        name = function_word(alias if alias in FUNCTIONS else call.name)
+        name = tree.function_word(alias if alias in FUNCTIONS else call.name)
         nodes, meaning = call.arguments, CALLS.get(name, "")
         own = self.values.get(self.name_of(call.base), {(): 0}) if call.base else {(): 0}
         is_short = name in _OF_NUMBERS and len(nodes) < 1 + (name in ("pow", "atan2"))
@@ -1060,7 +1074,7 @@ class _Interpreter:
         if (name in _OF_NUMBERS or in_formula) and nodes:
             return called(name, [self.read(each) for each in nodes])
         is_listed = bool(nodes) and (len(nodes) == 1 or nodes[0].type in PARTS["list"])
-        is_reordered = any(text_of(option).startswith("order") for option in call.options)
+        is_reordered = any(tree.text_of(option).startswith("order") for option in call.options)
         match meaning:
             case "pair" if len(nodes) == 1:
                 return rows([called(each, [self.read(nodes[0])]) for each in ("sin", "cos")])
@@ -1082,7 +1096,7 @@ class _Interpreter:
             case "clamp" | "least" if len(nodes) > 1:
                 return self._unclamped(node, [self.read(each) for each in nodes])
             case "where" if len(nodes) == 3:
-                return self.read(nodes[1 + self.branches.choice(node, 2)])
+                return self._chosen(node, nodes[1:])
             case "transpose" | "dot" | "cross" | "outer" | "norm" | "skew" | "inverse" if nodes:
                 return self._of_vectors(meaning, [self.read(each) for each in nodes])
         is_new = self.program.suffix == ".rs" and name == "new" and len(call.arguments) == 3
@@ -1091,7 +1105,7 @@ class _Interpreter:
         if meaning == "stack" or _BY_COLUMNS.search(name):
             return self._stacked(node, call)
         nodes = call.arguments
-        if len(nodes) in (4, 5, 10, 17) and text_of(nodes[-1]) in ("true", "false"):  # a flag
+        if len(nodes) in (4, 5, 10, 17) and tree.text_of(nodes[-1]) in ("true", "false"):  # a flag
             nodes = nodes[:-1]
         is_built = len(nodes) in (3, 4) and bool(_VECTOR_NAME.search(call.path))
         is_built |= len(nodes) in (3, 9, 16) and bool(_MATRIX_NAME.search(call.path))
@@ -1108,7 +1122,17 @@ class _Interpreter:
         if self.program.is_formula and call.owner is None:
             hint = offer(name, [*FUNCTIONS, *OF_MATRICES])
             raise ExpressionError(f"{name!r} is not a function; {hint}")
+        values = self._add_parts(nodes)
+        if len(nodes) in (3, 4, 9, 16) and None not in values:  # a constructor of another library
+            self._add(_ARGUMENT, rows(values), tree.line_of(nodes[0]))
         raise self.unreadable(node)
+
+    def _add_parts(self, nodes: Sequence[Node]) -> list[Any]:
+        """The parts of what is not understood may be formulas of their own."""
+        values = [self._tried(each) for each in nodes]
+        for each, value in zip(nodes, values, strict=True):
+            self._add(_ARGUMENT, value, tree.line_of(each))
+        return values
 
     def _unclamped(self, node: Node, values: Sequence[Any]) -> Any:
         """x of clamp(x, -1, 1), or of min(1, x): the sine of any other number does not exist."""
@@ -1134,7 +1158,7 @@ class _Interpreter:
 
     def _filled(self, node: Node, call: Call) -> Any:
         """zeros(3, 3), Matrix3d::Identity()."""
-        texts = " ".join(map(text_of, call.arguments))
+        texts = " ".join(map(tree.text_of, call.arguments))
         sizes = [int(digits) for digits in re.findall(r"\d+", texts)][-2:] or [3]
         is_zero = CALLS[call.name] == "zeros"
         is_column = len(sizes) == 1 and bool(texts) and is_zero and not self.is_matlab
@@ -1144,14 +1168,14 @@ class _Interpreter:
         return sp.ImmutableMatrix(sp.zeros(height, width) if is_zero else sp.eye(height, width))
 
     def _stacked(self, node: Node, call: Call) -> Any:
-        axis = re.sub(r"\s", "", "".join(map(text_of, call.options)))
+        axis = re.sub(r"\s", "", "".join(map(tree.text_of, call.options)))
         if axis and not re.fullmatch(r"(axis|dim)=(0|1|-1|-2)", axis):
             raise self.unreadable(node)
         by_columns = bool(_BY_COLUMNS.search(call.name)) ^ axis.endswith(("=1", "=-1"))
         nodes = call.arguments
         is_listed = len(nodes) == 1 and nodes[0].type in PARTS["list"]
         parts = [
-            as_matrix(self.read(each)) for each in (children(nodes[0]) if is_listed else nodes)
+            as_matrix(self.read(each)) for each in (tree.children(nodes[0]) if is_listed else nodes)
         ]
         if all(each.cols == 1 for each in parts) and len({each.rows for each in parts}) > 1:
             return sp.ImmutableMatrix(sp.Matrix.vstack(*parts))  # (w, v)
@@ -1162,7 +1186,7 @@ class _Interpreter:
         """The value of a function of the same file."""
         function = self.program.functions[name]
         inner = _Interpreter(self.program, self.branches, self.inlined + 1)
-        names = [inner.name_of(each) for each in parameters(function)]
+        names = [inner.name_of(each) for each in tree.parameters(function)]
         names = [each for each in names if each not in ("self", "this")]
         if len(names) != len(nodes) or self.inlined >= _INLINED:
             raise self.unreadable(node)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -20,6 +21,7 @@ from rigidsym.tools.compare.syntax import GRAMMARS
 SUFFIXES = tuple(GRAMMARS)
 _MOST_BYTES = 300_000  # of a file
 _MOST_SYMBOLS = 12
+_STEP = re.compile(r"(?:delta_?|sample_?|half_?)?(?:d_?)?(?:[tT]s?|time|period)|h", re.IGNORECASE)
 _TRIGONOMETRIC = (sp.sin, sp.cos, sp.tan)
 
 
@@ -88,7 +90,7 @@ def search(path: Path) -> Iterator[FormulaInFile]:
         variants.setdefault((formula.lines, formula.name), []).append(formula)
     for group in variants.values():
         # A formula with the values of all branches may be no quantity, while one branch is.
-        is_case = sum(bool(each.forms) for each in group) > 1
+        is_case = len({each.forms for each in group if each.forms}) > 1
         findings = [_compared(path, each, is_case=is_case) for each in group]
         readable = [each for each in findings if each and each.comparison]
         yield from [*readable, *filter(None, findings)][:1]
@@ -146,7 +148,11 @@ def _block(matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
         scale = {s: s * 180 / sp.pi for s in matrix.free_symbols}
         in_radians = matrix * sp.pi / 180 if are_angles(matrix) else matrix.xreplace(scale)
         matrix = matrix if in_radians.has(sp.pi) else in_radians
+    step = next((s for s in matrix.free_symbols if _STEP.fullmatch(s.name)), None)
+    if step is not None and not (rates := matrix.diff(step)).has(step):  # of q + (...)*dt
+        matrix = sp.ImmutableMatrix(rates)
     is_homogeneous = matrix.shape == (4, 4) and tuple(matrix[3, :]) == (0, 0, 0, 1)
+    is_homogeneous |= matrix.shape == (3, 4) and matrix[:, 3].is_zero_matrix is True
     return matrix[:3, :3] if is_homogeneous else matrix
 
 

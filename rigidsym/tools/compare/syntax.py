@@ -26,7 +26,7 @@ GRAMMARS = {
     **{".m": "matlab", ".ts": "typescript", ".rs": "rust", ".java": "java"},
     ".cs": "c_sharp",
 }
-_TABLES: dict[str, dict[str, str]] = tomllib.loads(
+_TABLES: dict[str, dict[str, Any]] = tomllib.loads(
     Path(__file__).with_name("nodes.toml").read_text(encoding="utf-8")
 )
 STATEMENTS, EXPRESSIONS = (  # type of a node: the method that gives it its meaning
@@ -37,6 +37,7 @@ PARTS, WORDS = (
     {name: frozenset(words.split()) for name, words in _TABLES[title].items()}
     for title in ("parts", "words")
 )
+ORDERS = [order for orders in _TABLES["orders"].values() for order in orders]
 CALLS = {word: meaning for meaning, words in WORDS.items() for word in words}
 _CHUNK = 2_048  # bytes that the parser reads at once
 _MOST_STEPS = 50_000  # of the parser: a megabyte without errors takes half as many
