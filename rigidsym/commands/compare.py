@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +18,7 @@ from rigidsym.errors import DataError
 from rigidsym.motion import Motion, derive
 from rigidsym.pipeline import motion_of, read
 from rigidsym.system.files import read_bytes
+from rigidsym.system.processes import in_processes
 from rigidsym.system.resources import environment
 from rigidsym.tools.compare.comparison import compare
 from rigidsym.tools.compare.search import disappointment, search, source_files
@@ -57,23 +60,18 @@ def _motion(options: Options) -> Motion | str | None:
 
 def _searched(paths: Sequence[Path], options: Options) -> bool:
     """Print the formulas in source files; whether one is wrong, or too few were recognised."""
-    axes = derive(options["expect"], "rotation_matrix").model if options["expect"] else None
     accepted = _accepted(Path(options["baseline"])) if options["baseline"] else ()
     files = list(source_files(paths))
     records: list[dict[str, Any]] = []
     unreadable = 0
-    for formula in (formula for file in files for formula in search(file)):
-        comparison = formula.comparison
-        if comparison is None:
+    work = partial(_records, options["expect"], options["expect_active"])
+    for record in chain.from_iterable(in_processes(work, files)):
+        if record.pop("is_unreadable"):
             unreadable += 1
             if options["why"]:
-                message(str(formula))
+                message(record["text"])
             continue
-        other = disappointment(comparison, axes, is_active=options["expect_active"])
-        record = formula.record() | {"unexpected": other or None}
-        record["text"] = f"{formula}; {other}" if other else str(formula)
-        is_right = comparison.is_equal or comparison.is_reflection
-        record["fault"] = (bool(other) or not is_right) and _key(record) not in accepted
+        record["fault"] &= _key(record) not in accepted
         records.append(record)
         if options["format"] == "text":
             click.echo(record["text"])
@@ -89,6 +87,20 @@ def _searched(paths: Sequence[Path], options: Options) -> bool:
     if len(records) < options["require"]:
         message(f"expected at least {options['require']} (--require)")
     return bool(faults) or len(records) < options["require"]
+
+
+def _records(expected: str | None, is_active: bool, file: Path) -> list[dict[str, Any]]:
+    """The formulas of a file: where they are, what they are, and whether that is a fault."""
+    axes = derive(expected, "rotation_matrix").model if expected else None
+    records = []
+    for formula in search(file):
+        record, comparison = formula.record(), formula.comparison
+        other = disappointment(comparison, axes, is_active=is_active) if comparison else ""
+        is_right = comparison is None or comparison.is_equal or comparison.is_reflection
+        record |= {"unexpected": other or None, "is_unreadable": comparison is None}
+        record["text"] = f"{formula}; {other}" if other else str(formula)
+        records.append(record | {"fault": bool(other) or not is_right})
+    return records
 
 
 def _key(record: dict[str, Any]) -> str:

@@ -445,6 +445,27 @@ def test_what_cannot_be_read_is_listed_with_its_reason(tmp_path):
     file.write_text(text)
     done = run(str(file), "--why")
     assert "a.py:4: returned: not read, since s in line 3 cannot be read" in done.stderr
+    file.write_text(f"{text}def g(:\n")
+    done = run(str(file), "--why")
+    assert "a.py:5: not read, since there is a syntax error" in done.stderr
+    assert "no known formula in 1 file, 2 not readable" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("line", "is_wrong"),
+    [
+        ("rpy += dt*omega", True),
+        ("roll += p*dt; pitch += q*dt; yaw += r*dt", True),
+        ("roll += (p + sin(roll)*tan(pitch)*q)*dt; pitch += q*dt; yaw += r*dt", False),
+        ("x += p*dt; y += q*dt; z += r*dt", False),
+        ("velocity += dt*omega", False),
+    ],
+)
+def test_body_rates_that_are_taken_for_those_of_euler_angles_are_a_fault(tmp_path, line, is_wrong):
+    (tmp_path / "a.py").write_text(f"def step(rpy, omega, velocity, p, q, r, dt):\n    {line}\n")
+    done = run(str(tmp_path))
+    assert ("are taken for the rates of Euler angles" in done.stdout) == is_wrong
+    assert done.exit_code == is_wrong
 
 
 def test_a_transposed_rate_matrix_of_a_program_may_be_meant(tmp_path):

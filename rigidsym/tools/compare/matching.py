@@ -130,6 +130,7 @@ class Comparison:
     is_proved: bool = False  # that the repaired formula is what was found
     counterexample: str = ""  # where the formula is wrong, if it is right for some angles only
     is_reflection: bool = False
+    are_body_rates: bool = False  # taken for the rates of Euler angles
 
     @property
     def arrangement(self) -> str:

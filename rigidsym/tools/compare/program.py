@@ -13,7 +13,7 @@ import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import islice, product
+from itertools import islice, pairwise, product
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import sympy as sp
@@ -46,7 +46,7 @@ _DEEPEST = 60  # nested nodes of an expression; formulas of real programs have f
 _DEEPEST_BLOCK = 40
 _LONGEST_LIST = 64
 _MOST_FORMULAS = 1_000  # of a file
-_MOST_STEPS = 18_000  # expressions of a file: what takes some ten seconds
+_MOST_STEPS = 30_000  # expressions of a file: what takes some ten seconds
 _MOST_NODES = 400_000  # of a file: a generated megabyte is not worth reading
 _MOST_CHARACTERS = 20_000  # of a formula
 _LONGEST_PLACE = 120  # characters
@@ -66,6 +66,8 @@ _MAY_BE_MATRIX = re.compile(r"[\[{].*,|(?i:sin|cos|mat|quat|dcm)", re.DOTALL)
 _BY_COLUMNS = re.compile(
     r"from_?col|^f?mat3x?3?$|float[34]x[34]|column_stack|hstack|^c_$", re.IGNORECASE
 )
+ANGLES_NAME = re.compile(r"rpy|ypr|euler|attitude|angles|Δ_*(roll|phi)", re.IGNORECASE)
+_RATES_NAME = re.compile(r"omega|w|gyro|(body_?|angular_?)?rates?|ang(ular)?_?vel(ocity)?", re.I)
 _HARMLESS = re.compile("print|disp|log|assert|plot|show|append|push|test|check|expect", re.I)
 _TYPE = re.compile(r"[a-z]?vec[234]?|float[34]|Vec\w*|[a-z]*[qQ]uat\w*")  # of a vector
 _MODULE = re.compile(
@@ -166,15 +168,18 @@ class _Branches:
     taken: set[tuple[int, int]] = field(default_factory=set)
     now: dict[int, int] = field(default_factory=dict)
     places: dict[int, int] = field(default_factory=dict)  # of nodes with other branches
+    is_new: bool = True  # whether the last run took a new branch
 
     def choice(self, node: Node, blocks: Sequence[Node | None]) -> int:
         """The number of the branch."""
         if node.id not in self.now:
             free = [k for k in range(len(blocks)) if (node.id, k) not in self.taken]
-            spans = [(block.start_byte, block.end_byte) if block else (0, 0) for block in blocks]
+            starts = [block.start_byte for block in blocks if block] + [node.end_byte]
+            spans = pairwise(starts)  # the first is the node itself, which has the others in it
             places = [place for n, place in self.places.items() if n != node.id]
-            within = [k for k, (i, j) in enumerate(spans) if any(i < p < j for p in places)]
+            within = [k for k, (i, j) in enumerate(spans) if any(i <= p < j for p in places)]
             self.now[node.id] = (free or within or [len(blocks) - 1])[0]
+            self.is_new |= bool(free)
             self.taken.add((node.id, self.now[node.id]))
             self.places[node.id] = node.start_byte
             if len(free) < 2:
@@ -201,10 +206,16 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
         suffix == ".py" and bool(_NUMPY.search(text)) and not _MATRICES.search(text),
     )
     formulas: dict[Any, Formula] = {}
-    for scope in (root, *functions):
-        branches, own = _Branches(), list[Formula]()
-        for _ in range(_MOST_RUNS):
-            branches.now = {}
+    if root.has_error:
+        errors = (node for node in tree.below([root]) if node.is_error or node.is_missing)
+        lines = (tree.line_of(next(errors, root)),)
+        formulas[lines] = Formula(lines=lines, name="", reason="there is a syntax error")
+    scopes = [(scope, _Branches(), list[Formula]()) for scope in (root, *functions)]
+    for count in range(_MOST_RUNS):  # first runs first, since a long file is not read to its end
+        for scope, branches, own in scopes:
+            if count and not (branches.places and branches.is_new):
+                continue
+            branches.now, branches.is_new = {}, False
             interpreter = _Interpreter(program, branches)
             try:
                 interpreter.run_scope(scope)
@@ -212,8 +223,7 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
                 reason = "expressions are nested too deeply"
                 own.append(Formula(lines=(tree.line_of(scope),), name="", reason=reason))
             own += interpreter.formulas
-            if not branches.places:
-                break
+    for _, _, own in scopes:
         named = {each.forms for each in own if each.forms and each.is_named}
         for formula in own:
             if formula.is_named or formula.forms not in named:  # a fault counts once
@@ -365,10 +375,10 @@ class _Interpreter:
             self._store(left, value)
             one, other = self.place(left), self.place(right)
             if one and other and not (one.indices or other.indices):
-                copy, name = map(self.name_of, (one.path, other.path))
-                table = self.values.get(name, {(): value})
+                copy, source = map(self.name_of, (one.path, other.path))
+                table = self.values.get(source, {(): value})
                 if () not in table:
-                    self.lines[copy] = self.lines.get(name, self.lines[copy])
+                    self.lines[copy] = self.lines.get(source, self.lines[copy])
                     if self.program.suffix in _SHARING:
                         self.values[copy] = table
         except ExpressionError:
@@ -476,6 +486,10 @@ class _Interpreter:
             name = "_".join(["Δ" + self.name_of(place.path), *map(str, place.indices)])
             self.values[name], self.lines[name] = {(): change}, tree.line_of(left)
             self._join_groups(name)
+            rates = [s for s in change.free_symbols if _RATES_NAME.fullmatch(s.name)]
+            if ANGLES_NAME.search(name) and len(rates) == 1:  # rpy += omega*dt
+                parts = [change.xreplace({rates[0]: _part(rates[0], k)}) for k in "xyz"]
+                self._add(name, sp.Matrix(parts), tree.line_of(left))
         table = self.values.get(self.written(left), {(): value})
         if () not in table and isinstance(value, sp.MatrixBase):
             table.clear()  # also of other names for this matrix
@@ -606,6 +620,8 @@ class _Interpreter:
         target = call.owner or (nodes[-1] if nodes and meaning else None)
         is_set = call.name in ("set", "setValue") if target is None else meaning is None
         value: Any = sp.eye(4) if meaning == "set_unit" else None
+        if meaning == "scale":  # m33Scale(factor, A, B)
+            value = combined("*", *map(self.read, nodes[:2]))
         if is_set and any(p.search(call.name) for p in (_MATRIX_NAME, _VECTOR_NAME)):
             values = [self._tried(each) for each in nodes]
             value = rows(values) if len(nodes) in (3, 4, 9, 16) and None not in values else None
@@ -681,7 +697,7 @@ class _Interpreter:
         if stem_of(name):
             self.groups.setdefault((-1, ""), {})[name] = name
         base, _, last = path.rpartition(".")
-        word = re.sub(r"^_+|_?(val|rad|angle)?_*$", "", last.lower())
+        word = re.sub(r"^δ?_*|_?(val|rad|angle)?_*$", "", last.lower())
         for kind, angles in enumerate(_COMPLETE):
             if word in angles and (len(word) > 1 or word in "xyz"):
                 self.groups.setdefault((-2 - kind, base), {})[word] = name
@@ -701,7 +717,8 @@ class _Interpreter:
             if None in values or (kind, stem, *values) in self.emitted:
                 continue
             are_angles = all(value.has(*_INVERSE) for value in values)
-            if kind > -2 or are_angles:
+            is_change = names[0][0] == "Δ" and ANGLES_NAME.search(names[0]) is not None
+            if kind > -2 or are_angles or is_change:
                 self.emitted.add((kind, stem, *values))
                 name = ", ".join(names) if len(names) < 9 else stem.strip("._") or "elements"
                 self._add(name, sp.Matrix(values), *(self.lines[name] for name in names))
@@ -820,10 +837,8 @@ class _Interpreter:
         return value if tree.operator(node) == "+" else -value
 
     def _binary(self, node: Node) -> Any:
-        sign, left, right = (
-            tree.operator(node),
-            *map(self.read, tree.children(node)[:: len(tree.children(node)) - 1]),
-        )
+        parts, sign = tree.children(node), tree.operator(node)
+        left, right = self.read(parts[0]), self.read(parts[-1])
         is_turn = sign == "%" and not isinstance(right, sp.MatrixBase) and (right / sp.pi).is_number
         if is_turn and self._expanded(left).has(*_INVERSE):  # the same angle
             return left
@@ -970,7 +985,7 @@ class _Interpreter:
         place = self.place(node)
         is_slip = self.program.is_formula and tree.text_of(node).startswith("*")  # a + * b
         if place is None or is_slip:
-            self._add_parts(tree.children(node))
+            self._add_parts(tree.children(node) if node.type not in PARTS["function"] else ())
             raise self.unreadable(node)
         name, indices = self.name_of(place.path), place.indices
         if indices:

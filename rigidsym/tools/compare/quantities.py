@@ -366,6 +366,14 @@ _RATE = re.compile(
 _OMEGA = re.compile(
     r"(?:omega|Omega|w|W|gyro|g|rate|Omega_body|omega_(?:body|space))_?[xyz0-3]|[pqr]|[wW][pqr]"
 )
+
+
+def are_body_rates(formula: sp.MatrixBase) -> bool:
+    """Whether three entries are components of an angular velocity, and nothing else."""
+    names = {entry.name for entry in formula if entry.is_Symbol and _OMEGA.fullmatch(entry.name)}
+    return formula.shape == (3, 1) and len(names) == 3
+
+
 _VECTOR_NAMES = (
     re.compile(r"(?P<stem>.*?)_?(?P<part>[xyz]{2}|[0-3]_?[0-3]|[wxyz0-4]|)"),
     re.compile(r"(?P<stem>.+)_(?P<part>[wxyz0-4])"),  # b1_0

@@ -14,8 +14,8 @@ import sympy as sp
 from rigidsym.errors import ExpressionError, RequestError
 from rigidsym.models.rotation import RotationModel
 from rigidsym.tools.compare.matching import Comparison, identified
-from rigidsym.tools.compare.program import Formula, program_formulas
-from rigidsym.tools.compare.quantities import are_angles
+from rigidsym.tools.compare.program import ANGLES_NAME, Formula, program_formulas
+from rigidsym.tools.compare.quantities import are_angles, are_body_rates, target
 from rigidsym.tools.compare.syntax import GRAMMARS
 
 SUFFIXES = tuple(GRAMMARS)
@@ -98,6 +98,10 @@ def search(path: Path) -> Iterator[FormulaInFile]:
 
 def _compared(path: Path, formula: Formula, *, is_case: bool) -> FormulaInFile | None:
     for form in formula.forms:  # a long value may be an angle
+        if ANGLES_NAME.search(formula.name) and formula.name[0] == "Δ" and are_body_rates(form):
+            asked = target("xyz", "rates_from_angular_velocity_body")
+            comparison = Comparison(formula=form, asked=asked, are_body_rates=True)
+            return FormulaInFile(path, formula, comparison)
         try:
             comparison = _identified(form, is_equal=is_case)
         except (ExpressionError, RecursionError) as error:  # a function without values
@@ -118,7 +122,7 @@ def _identified(matrix: sp.ImmutableMatrix, *, is_equal: bool = False) -> Compar
 def formulas(text: str, suffix: str) -> Iterator[Formula]:
     """The matrices and vectors that may be one of kinematics, and those that cannot be read."""
     for formula in program_formulas(text, suffix):
-        forms = tuple(filter(_may_be_known, map(_block, formula.forms)))
+        forms = tuple(m for m in map(_block, formula.forms) if _may_be_known(m))
         if forms or formula.reason:
             yield replace(formula, forms=forms)
 
@@ -160,7 +164,7 @@ def _may_be_known(matrix: sp.ImmutableMatrix) -> bool:
     """Whether it is worth comparing: sines and cosines, or products of four or more names."""
     if not 0 < len(matrix.free_symbols) <= _MOST_SYMBOLS:
         return False
-    if are_angles(matrix):
+    if are_angles(matrix) or are_body_rates(matrix):
         return True
     if matrix.shape not in ((3, 3), (3, 1), (4, 1), (4, 3), (3, 4), (4, 4)):
         return False
