@@ -30,7 +30,7 @@ from rigidsym.mechanics.quantities.kinematics import SPACE
 from rigidsym.mechanics.quantities.mass import MASS
 from rigidsym.mechanics.quantities.table import is_quaternion
 from rigidsym.models.rotation import RotationModel, Turn, by_axis, carried_axes
-from rigidsym.notes.document import Equation, EquationRow, Figure, NoteBlock, Text
+from rigidsym.notes.document import Equation, EquationRow, Figure, NoteBlock
 from rigidsym.notes.template import figure_with
 from rigidsym.notes.words import symbols_of, unit_in_words, with_symbols
 
@@ -42,41 +42,40 @@ _TURN_ANGLES = ("beta", "chi", "delta", "epsilon")  # one that no coordinate is 
 _MOST_WRITTEN = 3  # axes that are written out
 
 
-@dataclass(frozen=True, kw_only=True)
-class ConventionFacts:
-    """The coordinates, the vector that they make up, and the place of the body."""
-
-    sentences: list[Text]  # of the model, on its coordinates
-    names: tuple[Formula, ...]
-    unit: str  # that all coordinates have in common
-    programs: tuple[str, ...]  # the names in programs, if those of the note are others
-    conditions: list[Formula]  # which the proofs make use of
-    vector: tuple[sp.Expr, ...]  # the components of v, if formulas hold it
-    length: tuple[Formula, ...]  # the letters of a length and of its rate, if formulas hold it
-    is_length_of_vector: bool  # or of all coordinates
-    is_centre_used: bool  # whether any quantity depends on the position of the centre of mass
-    mass: Formula | sp.Expr | None
-
-
-def convention_facts(derivation: Derivation, letters: Letters) -> ConventionFacts:
+def facts_of_rotation(derivation: Derivation, letters: Letters) -> dict[str, Any]:
+    """The facts of the templates on conventions and on the rotation, by their names there."""
     q, model, body = derivation.argument("q"), derivation.model, derivation.body
     symbols, length = symbols_of(derivation), letters.length
     inputs = {name for step in derivation.steps for name in step.quantity.inputs}
     quantities = {step.quantity.name for step in derivation.steps}
-    first, *other_units = sorted({*q.units})
+    unit, *other_units = sorted({*q.units})
     pairs = [condition.as_coeff_Add() for condition in model.constraints]
-    return ConventionFacts(
-        sentences=[with_symbols(words, symbols) for words in model.convention],
-        names=q.notation,
-        unit=unit_in_words(first) if first and not other_units else "",
-        programs=q.names if is_quaternion(q.names, q.units) else (),
-        conditions=[equal(formula_of(x, letters), formula_of(-n, letters)) for n, x in pairs],
-        vector=model.vector if any(step.vector_form for step in derivation.steps) else (),
-        length=tuple(length.names.values()) if length else (),
-        is_length_of_vector=length is not None and length.components == model.vector,
-        is_centre_used=derivation.forces is None or not inputs.isdisjoint(("centre", "centre_dot")),
-        mass=MASS if "mass" in quantities else body and body.mass,
-    )
+    return {
+        "derivation": derivation,
+        "model": model,
+        "angles": angle_facts(model),
+        "rotation": RotationFacts(model, letters),
+        "convention": {
+            "sentences": [with_symbols(words, symbols) for words in model.convention],
+            "names": q.notation,
+            # that all coordinates have in common
+            "unit": unit_in_words(unit) if unit and not other_units else "",
+            # the names in programs, if those of the note are others
+            "programs": q.names if is_quaternion(q.names, q.units) else (),
+            # which the proofs make use of
+            "conditions": [
+                equal(formula_of(moving, letters), formula_of(-number, letters))
+                for number, moving in pairs
+            ],
+            # the components of v, the letters of a length and of its rate, if formulas hold them
+            "vector": model.vector if any(step.vector_form for step in derivation.steps) else (),
+            "length": tuple(length.names.values()) if length else (),
+            "is_length_of_vector": length is not None and length.components == model.vector,
+            # whether any quantity depends on the position of the centre of mass
+            "is_centre_used": not derivation.forces or inputs & {"centre", "centre_dot"},
+            "mass": MASS if "mass" in quantities else body and body.mass,
+        },
+    }
 
 
 class AngleFacts(NamedTuple):
@@ -142,33 +141,18 @@ class RotationFacts:
         if scene is None:
             return None
         posed = scene.posed(scene.view.angles)
-        between = "node" if any(ray.kind == "node" for ray in posed.rays) else "vector"
-        kinds = (
-            (kind, [ray.name for ray in posed.rays if ray.kind == kind])
-            for kind in ("space", "body", between)
-        )
-        arcs = []
-        for arc in posed.arcs:
-            axis, start, end = map(posed.named, (arc.axis, arc.before, arc.after))
-            arcs.append(
-                {
-                    "angle": arc.turn.name,
-                    "axis": axis and axis.name,
-                    "start": start.name if start else arc.turn.start_name,
-                    "is_start_rotated": start is None,
-                    "end": end.name if end else arc.turn.start_name,
-                    "is_end_rotated": end is None,
-                }
-            )
+        kinds = ("space", "body", "node", "vector")
+        named = [(k, [ray.name for ray in posed.rays if ray.kind == k]) for k in kinds]
         return figure_with(
             "en/figure",
             drawn(posed, scene.view.camera),
             self.letters,
-            kinds=[kind for kind in kinds if kind[1]],
+            kinds=[(kind, names) for kind, names in named if names],
             turns=self.model.turns,
             has_oblique_axes=any(t.components for t in self.model.turns),
             down=posed.rays[2].name if self.model.z_down else None,
-            arcs=arcs,
+            # each with the rays of its axis and of the line that it carries along, if there are any
+            arcs=[(a, *map(posed.named, (a.axis, a.before, a.after))) for a in posed.arcs],
         )
 
     @property
@@ -262,14 +246,3 @@ def sum_of_turns(model: RotationModel, letters: Letters) -> Formula:
         if turn.rate != 0
     ]
     return equal(SPACE.omega, joined(terms, PLUS))
-
-
-def facts_of_rotation(derivation: Derivation, letters: Letters) -> dict[str, Any]:
-    """The facts of the templates on conventions and on the rotation, by their names there."""
-    return {
-        "derivation": derivation,
-        "model": derivation.model,
-        "convention": convention_facts(derivation, letters),
-        "angles": angle_facts(derivation.model),
-        "rotation": RotationFacts(derivation.model, letters),
-    }

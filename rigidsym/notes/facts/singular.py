@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from math import radians, sin
 from typing import Literal, NamedTuple
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from rigidsym.formula.letters import TIME
-from rigidsym.mechanics.derivation import Derivation, Place, Singularities, Singularity
+from rigidsym.mechanics.derivation import Derivation, Singularities, Singularity
 from rigidsym.models.rotation import RotationModel
 from rigidsym.notes.facts.rotation import angle_facts
 
@@ -22,26 +21,12 @@ _COUNT = sp.Symbol("k")
 _WHOLE_TURN = 2 * sp.pi
 
 
-class PlaceFacts(NamedTuple):
-    """θ = 0, or n = 2 π k, counted by k = 1, 2, ..."""
-
-    equation: sp.Expr
-    is_counted: bool
-
-
 class Multiples(NamedTuple):
     """All multiples of a unit, or the odd ones, are the zeros of an angle."""
 
     angle: sp.Expr
     unit: sp.Expr
     are_odd: bool
-
-
-class Period(NamedTuple):
-    """By which zeros repeat: of all coordinates, or of one."""
-
-    length: sp.Expr
-    coordinate: sp.Expr | None = None
 
 
 @dataclass(frozen=True)
@@ -53,8 +38,14 @@ class PointFacts:
     is_only_one: bool = False  # so that its many places were just named
 
     @property
-    def places(self) -> tuple[PlaceFacts, ...]:
-        return () if self.is_only_one else tuple(map(_place, self.at.places))
+    def places(self) -> list[tuple[sp.Expr, bool]]:
+        """θ = 0, or n = 2 π k, with whether it is counted by k = 1, 2, ..."""
+        pairs = []
+        for place in () if self.is_only_one else self.at.places:
+            steps = place.period * (_COUNT - 1) if place.is_length else 0
+            equation = sp.Eq(place.coordinate, sp.expand(place.value + steps), evaluate=False)
+            pairs.append((equation, place.is_length))
+        return pairs
 
     @property
     def varies(self) -> bool:
@@ -81,10 +72,11 @@ class PointFacts:
         fixed = {place.coordinate for place in self.at.places}
         leaves = not fixed.isdisjoint(self._moved_by(null_rates.tolist()))
         named = [q.diff(TIME) for q in self.coordinates] if leaves else self.coordinates
-        # A combination c·q is kept if c·n = 0 for every null vector n of the rates.
-        kept = sp.Matrix(null_rates.T).nullspace()
-        sums = (sp.Add(*(n * q for n, q in zip(_whole(row), named, strict=True))) for row in kept)
-        return [combination for combination in sums if combination not in fixed]
+        # A combination c·q is kept if c·n = 0 for every null vector n of the rates. Its factors
+        # become the smallest whole numbers, the first of them above zero.
+        kept = [c / next(filter(None, c)) for c in sp.Matrix(null_rates.T).nullspace()]
+        sums = [sp.Add(*(n * q for n, q in zip(c, named, strict=True))) for c in kept]
+        return [s.as_content_primitive()[1] for s in sums if s not in fixed]
 
     @property
     def idle(self) -> list[list[sp.Expr]]:
@@ -100,12 +92,12 @@ class PointFacts:
     @property
     def change(self) -> Literal["", "single", "equal", "opposite"]:
         """How these coordinates change, if it is simple to say."""
-        amounts = [n for n in self.idle[0] if n]
-        if len(self.idle) > 1 or len({abs(n) for n in amounts}) > 1 or len(amounts) > 2:
-            return ""
-        if len(amounts) == 1:
-            return "single"
-        return "equal" if amounts[0] == amounts[1] else "opposite"
+        match [n for n in self.idle[0] if n]:
+            case [_] if len(self.idle) == 1:
+                return "single"
+            case [a, b] if len(self.idle) == 1 and abs(a) == abs(b):
+                return "equal" if a == b else "opposite"
+        return ""
 
     def _moved_by(self, rates: Sequence[Sequence[sp.Expr]]) -> tuple[sp.Expr, ...]:
         return tuple(q for q, row in zip(self.coordinates, rates, strict=True) if any(row))
@@ -135,16 +127,14 @@ class SingularFacts:
         return self.found.rank == 3
 
     @cached_property
-    def _placed(self) -> list[Singularity]:
-        return [point for point in self.found.points if point.places]
-
-    @property
     def zeros(self) -> list[PointFacts]:
-        return [PointFacts(point, self.model.coordinates) for point in self._placed]
+        return [
+            PointFacts(point, self.model.coordinates) for point in self.found.points if point.places
+        ]
 
     @property
     def multiples(self) -> Multiples | None:
-        places = {place for point in self._placed for place in point.places}
+        places = {place for point in self.zeros for place in point.at.places}
         angle, *others = {place.coordinate for place in places} or {None}
         if angle is None or others or not self.found.is_solved:
             return None
@@ -156,15 +146,14 @@ class SingularFacts:
         return None
 
     @property
-    def periods(self) -> list[Period]:
-        """Of all coordinates alike, or 2π and those that are longer."""
-        places = [place for point in self._placed for place in point.places if not place.is_length]
+    def periods(self) -> list[tuple[sp.Expr, sp.Expr | None]]:
+        """By which zeros repeat: of all coordinates alike, or 2π and those that are longer."""
+        places = [place for point in self.zeros for place in point.at.places if not place.is_length]
         periods = {place.coordinate: place.period for place in places}
-        if len(set(periods.values())) <= 1:
-            return [Period(length) for length in {*periods.values()}]
-        longer = {q: period for q, period in periods.items() if period != _WHOLE_TURN}
-        others = [Period(_WHOLE_TURN)] if len(longer) < len(periods) else []
-        return [*others, *(Period(period, q) for q, period in longer.items())]
+        if len({*periods.values()}) <= 1:
+            return [(period, None) for period in {*periods.values()}]
+        longer = [(period, q) for q, period in periods.items() if period != _WHOLE_TURN]
+        return [*([(_WHOLE_TURN, None)] if len(longer) < len(periods) else []), *longer]
 
     @property
     def not_at_zero(self) -> sp.Expr | None:
@@ -179,16 +168,13 @@ class SingularFacts:
         return (angles.all[0], angles.all[2]) if angles and self.found.points else ()
 
     @property
-    def at_one_degree(self) -> int:
-        """How far a rate may exceed |Ω|: the determinant of Euler angles is a sine or cosine."""
-        return round(1 / sin(radians(1)))
-
-    @property
-    def points(self) -> Iterator[PointFacts]:
+    def points(self) -> list[PointFacts]:
+        first = self.found.points[:_MOST_POINTS]
         is_only_one = len(self.found.points) == 1
-        for point in self.found.points[:_MOST_POINTS]:
-            is_named = is_only_one and len(point.places) > _MOST_PLACES
-            yield PointFacts(point, self.model.coordinates, is_only_one=is_named)
+        return [
+            PointFacts(p, self.model.coordinates, is_only_one and len(p.places) > _MOST_PLACES)
+            for p in first
+        ]
 
     @property
     def more_points(self) -> int:
@@ -196,21 +182,5 @@ class SingularFacts:
 
 
 def singular_facts(derivation: Derivation) -> SingularFacts | None:
-    found = derivation.singularities
-    return None if found is None else SingularFacts(derivation.model, found)
-
-
-def _place(place: Place) -> PlaceFacts:
-    if not place.is_length:
-        return PlaceFacts(sp.Eq(place.coordinate, place.value, evaluate=False), is_counted=False)
-    value = place.value + place.period * (_COUNT - 1)
-    equation = sp.Eq(place.coordinate, sp.expand(value), evaluate=False)
-    return PlaceFacts(equation, is_counted=True)
-
-
-def _whole(row: Iterable[sp.Expr]) -> list[sp.Expr]:
-    """The multiples of a row of fractions that are as small as can be, the first above zero."""
-    entries = list(row)
-    common = sp.ilcm(*(entry.q for entry in entries))
-    sign = next(entry for entry in entries if entry).could_extract_minus_sign()
-    return [-common * entry if sign else common * entry for entry in entries]
+    singularities = derivation.singularities
+    return None if singularities is None else SingularFacts(derivation.model, singularities)
