@@ -122,15 +122,7 @@ class Composer:
         sections = list(sections_of(name, self.letters, **self.facts()))
         byline = [block for section in sections if not section.title for block in section.blocks]
         if not self.is_audit:  # a lecture leaves out that identities were verified
-            sections = [
-                section._replace(
-                    blocks=tuple(
-                        replace(block, proved=()) if isinstance(block, Equation) else block
-                        for block in section.blocks
-                    )
-                )
-                for section in sections
-            ]
+            sections = [s._replace(blocks=tuple(map(_without_proofs, s.blocks))) for s in sections]
         return Document(
             name=self.derivation.name,
             title=self.derivation.title,
@@ -144,12 +136,21 @@ class Composer:
     def facts(self) -> dict[str, Any]:
         """What the template of a style may print, and the booleans that it asks."""
         derivation = self.derivation
+        mass = motion = None
+        if derivation.body or derivation.forces:
+            # bodies in numbers and pictures of motions take long to import, and rotations have none
+            from rigidsym.notes.facts.mass import mass_facts
+            from rigidsym.notes.facts.motion import motion_facts
+
+            mass = mass_facts(derivation, self.letters)
+            motion = motion_facts(derivation, self.letters)
         proofs = self._proofs()
         are_proved = all(proof.is_exact for _, proof in proofs)
         return {
             **facts_of_rotation(derivation, self.letters),
             "singular": singular_facts(derivation),
-            **self._facts_of_body(),
+            "mass": mass,
+            "motion": motion,
             "conversions": self.conversions,
             "quaternion": self._quaternion(),
             "theory": [
@@ -182,18 +183,6 @@ class Composer:
             "functions": self.functions,
             "is_body_alone": is_body_alone(derivation),
             "has_dots": self.letters.notation.rates == "dot",
-        }
-
-    def _facts_of_body(self) -> dict[str, Any]:
-        if self.derivation.body is None and self.derivation.forces is None:
-            return {"mass": None, "motion": None}
-        # bodies in numbers and pictures of motions take long to import, and rotations have none
-        from rigidsym.notes.facts.mass import mass_facts
-        from rigidsym.notes.facts.motion import motion_facts
-
-        return {
-            "mass": mass_facts(self.derivation, self.letters),
-            "motion": motion_facts(self.derivation, self.letters),
         }
 
     def steps(self, section: str) -> list[NoteBlock]:
@@ -255,28 +244,25 @@ class Composer:
         if self.derivation.theory and name in _WHERE_SHOWN:
             equation = replace(equation, number=None, label="", is_result=False)
         if name == "principal_moments" and self.moments:
-            assert self.derivation.body is not None
             names = {moment: name for name, moment in self.moments}
-            moments = [names.get(m, m) for m in self.derivation.body.inertia.diagonal()]
+            moments = [names.get(moment, moment) for moment in step.expression]
             # (I₁, I₁, I₃), or the entries of I′ if they differ
-            end = _DIAGONAL if len(set(moments)) == 3 else self._in_a_row(moments)
+            end = _DIAGONAL if len({*moments}) == 3 else self._in_a_row(moments)
             equation = _ended(equation, end)
         return replace(equation, sides=(*equation.sides, *textbook_form(name, self.derivation)))
 
     def _lead(self, step: Step) -> Text:
         """How the quantity follows; a source is cited once, and the theory needs no other."""
-        rotation = RotationFacts(self.model, self.letters)
-        is_explained = rotation.is_quaternion or rotation.is_vector
-        because = step.because
+        because, source, model = step.because, step.quantity.source, self.model
         if self.derivation.theory:
             return with_symbols(because, self.symbols)
-        if step.quantity.name == "rotation_matrix" and is_explained and not self.model.passive:
-            because = phrases("equations")["matrix_of_this_rotation"]
-        source = step.quantity.source
-        # the model's own source is cited where the rotation is given
-        if step.quantity.name == "rotation_matrix" and not self.model.turns:
-            source = None if self.model.source.text == GIVEN else self.model.source
-        elif source == self.model.source:
+        rotation = RotationFacts(model, self.letters)
+        if step.quantity.name == "rotation_matrix" and not model.turns:
+            # the model's own source is cited here, where the rotation is given
+            source = None if model.source.text == GIVEN else model.source
+            if (rotation.is_quaternion or rotation.is_vector) and not model.passive:
+                because = phrases("equations")["matrix_of_this_rotation"]
+        elif source == model.source:
             source = None
         if source in self.cited:
             source = None
@@ -332,10 +318,10 @@ class Composer:
         if step is None or self.conversions is None:
             return None
         numbered = replace(step, number=len(self.derivation.steps) + 1)
-        equation = replace(equation_of(numbered, self.derivation.arguments), is_result=True)
-        if self.is_audit and self.module:
-            equation = replace(equation, function=_call(step))
+        equation = equation_of(numbered, self.derivation.arguments)
+        function = _call(step) if self.is_audit and self.module else ""
         because = with_source(self.conversions.because, step.quantity.source)
+        equation = replace(equation, is_result=True, function=function)
         return {"because": because, "equation": equation}
 
     def _symbols(self) -> NoteTable:
@@ -358,6 +344,10 @@ class Composer:
             for proof in proofs:
                 once.setdefault((reference, proof.claim), (reference, proof))
         return sorted(once.values(), key=lambda pair: numbers[pair[0].label])
+
+
+def _without_proofs(block: NoteBlock) -> NoteBlock:
+    return replace(block, proved=()) if isinstance(block, Equation) else block
 
 
 def _ended(equation: Equation, side: Formula) -> Equation:

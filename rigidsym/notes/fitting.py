@@ -29,8 +29,8 @@ from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES, MOMENTUM_BOD
 from rigidsym.mechanics.quantities.kinematics import BODY, RATES, ROTATION, SPACE
 from rigidsym.mechanics.quantities.mass import INERTIA_QUANTITIES
 from rigidsym.notes.document import Equation, NoteBlock, said
+from rigidsym.notes.equations import sum_of_vectors
 from rigidsym.notes.facts.rotation import product_of
-from rigidsym.notes.vectors import sum_of_vectors
 
 _MOST_LINES = 12  # of one quantity
 _MOST_OF_ROTATION = 48  # a page of R itself, which the others are for

@@ -11,8 +11,7 @@ import sympy as sp
 from rigidsym.formula.letters import Letters, VectorLength
 from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.formula.reader import formula
-from rigidsym.formula.tree import Formula
-from rigidsym.mechanics.derivation import Argument, Step
+from rigidsym.mechanics.derivation import Argument
 from rigidsym.mechanics.kinematics.vector_forms import LENGTH
 from rigidsym.mechanics.quantities.dynamics import LETTERS
 from rigidsym.models.rotation import RotationModel
@@ -74,11 +73,3 @@ def length_of(model: RotationModel) -> VectorLength | None:
         if any(symbol in length.shortened(entry).free_symbols for entry in model.matrix):
             return length
     return None
-
-
-def entries_of(step: Step, arguments: Iterable[Argument]) -> tuple[Formula, ...]:
-    """The names of the components, if the vector is an argument elsewhere, such as the rates."""
-    name = step.quantity.name
-    is_rates = name.startswith("rates_from_")
-    used_as = "q_dot" if is_rates else name.replace("angular_velocity_", "omega_")
-    return next((a.notation for a in arguments if a.name == used_as), ())

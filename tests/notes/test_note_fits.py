@@ -12,12 +12,12 @@ from rigidsym.mechanics.kinematics.vector_forms import LENGTH
 from rigidsym.models.library import PARAMETRISATIONS, PRESETS, rotation_from
 from rigidsym.models.rotation import hat
 from rigidsym.notes.document import Document, Equation
-from rigidsym.notes.letters import length_of, letters_of
-from rigidsym.notes.vectors import (
+from rigidsym.notes.equations import (
     by_half_angle,
     sign_outside,
     sum_of_vectors,
 )
+from rigidsym.notes.letters import length_of, letters_of
 
 TURNS = (
     "z(phi)",

@@ -6,7 +6,6 @@ import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import reduce
-from typing import NamedTuple
 
 import sympy as sp
 
@@ -19,15 +18,9 @@ from rigidsym.mechanics.derivation import Consequence, Derivation
 from rigidsym.models.forces import OMEGA_BODY, OMEGA_COMPONENTS, Example, Forces, initial_values
 from rigidsym.models.rotation import TIME
 from rigidsym.notes.document import Equation, Figure
+from rigidsym.notes.equations import claims_of
 from rigidsym.notes.figure.motion_picture import motion_picture
 from rigidsym.notes.template import figure_with
-
-
-class ConsequenceFacts(NamedTuple):
-    """What follows from the first integrals."""
-
-    of: Consequence
-    equation: Equation
 
 
 @dataclass(frozen=True)
@@ -48,21 +41,15 @@ class MotionFacts:
         return all(integral.proof.is_exact for integral in self.derivation.first_integrals)
 
     @property
-    def consequences(self) -> Iterator[ConsequenceFacts]:
+    def consequences(self) -> Iterator[tuple[Consequence, Equation]]:
         """The motion as a whole: effective potential, steady motions, exact solutions."""
         for each in self.derivation.consequences:
-            claims = tuple(proof.claim for proof in each.proofs)
-            is_exact = all(proof.is_exact for proof in each.proofs)
+            proved, unproved = claims_of(each.proofs)
             sides = (
                 side if isinstance(side, Formula) else formula_of(side, self.letters)
                 for side in (each.left, each.value)
             )
-            equation = Equation(
-                sides=tuple(sides),
-                proved=claims if is_exact else (),
-                unproved=() if is_exact else claims,
-            )
-            yield ConsequenceFacts(each, equation)
+            yield each, Equation(sides=tuple(sides), proved=proved, unproved=unproved)
 
     @property
     def picture(self) -> Figure | None:

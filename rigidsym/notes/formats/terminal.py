@@ -24,7 +24,6 @@ from rigidsym.notes.facts.singular import singular_facts
 from rigidsym.notes.fitting import as_vectors
 from rigidsym.notes.letters import RESIDUAL, letters_of
 from rigidsym.notes.template import blocks_of, texts_of
-from rigidsym.notes.vectors import sum_of_vectors
 from rigidsym.notes.words import is_body_alone, unit_in_words, with_symbols
 
 if TYPE_CHECKING:
