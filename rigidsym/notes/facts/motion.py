@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from functools import reduce
 
 import sympy as sp
 
 from rigidsym.errors import MissingExtra
 from rigidsym.formula.letters import Letters
-from rigidsym.formula.reader import decimal, formula
+from rigidsym.formula.reader import decimal
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import Formula, equal
 from rigidsym.mechanics.derivation import Consequence, Derivation
-from rigidsym.models.forces import OMEGA_BODY, OMEGA_COMPONENTS, Example, Forces, initial_values
+from rigidsym.models.forces import OMEGA_BODY, OMEGA_COMPONENTS, Forces, initial_values
 from rigidsym.models.rotation import TIME
 from rigidsym.notes.document import Equation, Figure
 from rigidsym.notes.equations import claims_of
@@ -61,44 +60,35 @@ class MotionFacts:
             return None
         if picture is None:
             return None
-        numbers = [self._numbers(example) for example in self.forces.examples[: picture.told]]
-        parameters, initial = (
-            [each for each in first if all(each in other for other in others)]
-            for first, *others in zip(*numbers, strict=True)
-        )
-        own = [
-            [each for part in one for each in part if each not in (*parameters, *initial)]
-            for one in numbers
+        examples, model = self.forces.examples, self.derivation.model
+        symbols: dict[str, sp.Expr] = dict(zip(OMEGA_COMPONENTS, OMEGA_BODY, strict=True))
+        symbols |= {q.func.__name__: q for q in model.coordinates}
+        symbols |= {f"{q.func.__name__}_dot": q.diff(TIME) for q in model.coordinates}
+
+        def equations(values: Iterable[tuple[str, float]]) -> list[Formula]:
+            named = ((symbols.get(name, sp.Symbol(name)), value) for name, value in values)
+            return [equal(formula_of(e, self.letters), decimal(value)) for e, value in named]
+
+        starts = [initial_values(model, example.initial) for example in examples]
+        moving = {name for start in starts for name, value in start.items() if value}
+        values = [
+            {**example.parameters, **{name: start[name] for name in start if name in moving}}
+            for example, start in zip(examples, starts[: picture.told], strict=False)
         ]
+        common = [item for item in values[0].items() if all(item in v.items() for v in values)]
+        own = [equations(item for item in each.items() if item not in common) for each in values]
         return figure_with(
             "en/motion_picture",
             picture.drawing,
             self.letters,
-            has_several=len(numbers) > 1,
-            parameters=parameters,
-            initial=initial,
-            differing=[reduce(lambda a, b: formula("#1, #2", a, b), each) for each in own if each],
+            has_several=len(own) > 1,
+            parameters=equations(item for item in common if item[0] not in starts[0]),
+            initial=equations(item for item in common if item[0] in starts[0]),
+            differing=[each for each in own if each],
             polhodes=picture.polhodes,
             # whether θ goes to and fro between the roots of the effective potential
             is_bounded=any(s.quantity.name == "effective_potential" for s in self.derivation.steps),
         )
-
-    def _numbers(self, example: Example) -> tuple[list[Formula], list[Formula]]:
-        """The parameters of an example, and its initial values but for those that are 0 in all."""
-        model, letters = self.derivation.model, self.letters
-        symbols = {q.func.__name__: letters.name(q) for q in model.coordinates}
-        symbols |= {f"{q.func.__name__}_dot": letters.name(q.diff(TIME)) for q in model.coordinates}
-        omega = zip(OMEGA_COMPONENTS, OMEGA_BODY, strict=True)
-        symbols |= {name: formula_of(component, letters) for name, component in omega}
-        start = initial_values(model, example.initial)
-        moving = {n for e in self.forces.examples for n, value in e.initial.items() if value}
-        moving |= {name for name, value in start.items() if value}
-        parameters = [
-            equal(formula_of(sp.Symbol(name), letters), decimal(value))
-            for name, value in example.parameters.items()
-        ]
-        initial = [equal(symbols[n], decimal(v)) for n, v in start.items() if n in moving]
-        return parameters, initial
 
 
 def motion_facts(derivation: Derivation, letters: Letters) -> MotionFacts | None:
