@@ -6,11 +6,11 @@ hold SymPy matrices, so that each printer can break and abbreviate them for its 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import chain, zip_longest
-from typing import TYPE_CHECKING, NamedTuple, TypeVar
+from itertools import chain
+from typing import TYPE_CHECKING, NamedTuple
 
 from rigidsym.errors import ModelError
 from rigidsym.formula.display import Equation as Equation
@@ -74,14 +74,6 @@ class Cited(NamedTuple):
 
 Span = str | Formula | Code | Strong | EquationReference | FigureReference | Cited
 Text = tuple[Span, ...]
-_Part = TypeVar("_Part")
-
-
-def listed(items: Sequence[tuple[_Part, ...]], last: str = " and ") -> tuple[_Part | str, ...]:
-    """The texts a, b, c as: a, b and c."""
-    joints = [*[", "] * (len(items) - 2), last] if len(items) > 1 else []
-    mixed = chain.from_iterable((*item, joint) for item, joint in zip_longest(items, joints))
-    return tuple(span for span in mixed if span not in (None, ""))
 
 
 class Paragraph(NamedTuple):
@@ -133,32 +125,32 @@ class Document:
     byline: tuple[str, ...] = ()  # below the title: author, course, date
     language: str = "en"
 
+    @property
+    def blocks(self) -> Iterator[NoteBlock]:
+        """All blocks in order."""
+        return chain.from_iterable(section.blocks for section in self.sections)
+
     @cached_property
     def equations(self) -> tuple[Equation, ...]:
         """The numbered equations, in order."""
-        blocks = (block for section in self.sections for block in section.blocks)
-        return tuple(block for block in blocks if isinstance(block, Equation) and block.number)
+        return tuple(b for b in self.blocks if isinstance(b, Equation) and b.number)
 
     @cached_property
     def displays(self) -> tuple[Equation, ...]:
         """All equations in order, including equations that share a line."""
-        blocks = chain.from_iterable(section.blocks for section in self.sections)
-        shown = (b.equations if isinstance(b, EquationRow) else (b,) for b in blocks)
+        shown = (b.equations if isinstance(b, EquationRow) else (b,) for b in self.blocks)
         return tuple(e for e in chain.from_iterable(shown) if isinstance(e, Equation))
 
     @cached_property
     def figures(self) -> tuple[Figure, ...]:
         """The figures, in order; their numbers are their places."""
-        blocks = (block for section in self.sections for block in section.blocks)
-        return tuple(block for block in blocks if isinstance(block, Figure))
+        return tuple(block for block in self.blocks if isinstance(block, Figure))
 
     @cached_property
     def sources(self) -> tuple[str, ...]:
         """The sources that the text cites, each once, in order of appearance."""
-        blocks = (block for section in self.sections for block in section.blocks)
-        spans = (span for block in blocks for text in texts_of(block) for span in text)
-        cited = (span.citation.text for span in spans if isinstance(span, Cited))
-        return tuple(dict.fromkeys(cited))
+        spans = chain.from_iterable(text for block in self.blocks for text in texts_of(block))
+        return tuple(dict.fromkeys(s.citation.text for s in spans if isinstance(s, Cited)))
 
     def source_number(self, cited: Cited) -> int:
         """The number of the source that is cited."""

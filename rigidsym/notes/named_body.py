@@ -7,14 +7,14 @@ distance d = p − c from the centre of mass.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import sympy as sp
 
 from rigidsym.formula.reader import formula, named
 from rigidsym.formula.tree import PLUS, Formula, bracketed, joined
-from rigidsym.mechanics.derivation import Derivation, Step
+from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.derive import derive
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
 from rigidsym.mechanics.quantities.mass import INERTIA, INERTIA_QUANTITIES, MASS, STEINER
@@ -39,60 +39,47 @@ def in_names(derivation: Derivation) -> tuple[Derivation, Parts]:
     body = derivation.body
     if body is None:
         return derivation, ()
-    parts, letters = _named(body)
-    present = [step.quantity.name for step in derivation.steps]
-    wanted = [name for name in _renamed(body) if name in present]
-    taken = {str(symbol) for argument in derivation.arguments for symbol in argument.symbols}
-    names = {*letters.inertia.free_symbols, letters.mass, *(OFFSET if any(body.centre) else ())}
-    own = body.inertia.free_symbols | {body.mass}
-    if {str(name) for name in names - own} & taken:
-        return derivation, ()
-    found = derive(derivation.model, wanted, body=letters).steps if wanted else ()
-    shown = {step.quantity.name: step.expression for step in found}
-    steps = tuple(_shown(step, shown, body) for step in derivation.steps)
-    return replace(derivation, steps=steps), parts if wanted else ()
-
-
-def _renamed(body: RigidBody) -> Iterator[str]:
-    """The quantities that are shown in names."""
-    if not _is_short(body):
-        skipped = {*_AS_DESCRIBED}
+    is_short = all(entry.is_Atom for entry in (*body.inertia, body.mass))
+    has_offset = any(body.centre)
+    parts, letters = _named(body, is_short)
+    renamed: Sequence[str] = _ABOUT_POINT if has_offset else ()
+    if not is_short:
+        renamed = [n for n in (*INERTIA_QUANTITIES, *ENERGY_QUANTITIES) if n not in _AS_DESCRIBED]
         if not body.inertia.is_diagonal():
-            skipped |= {"inertia_tensor"}
-        yield from (n for n in (*INERTIA_QUANTITIES, *ENERGY_QUANTITIES) if n not in skipped)
-    elif any(body.centre):
-        yield from _ABOUT_POINT
+            renamed.remove("inertia_tensor")
+    present = {step.quantity.name for step in derivation.steps}
+    taken = {str(symbol) for argument in derivation.arguments for symbol in argument.symbols}
+    names = {*letters.inertia.free_symbols, letters.mass, *(OFFSET if has_offset else ())}
+    own = body.inertia.free_symbols | {body.mass}
+    if present.isdisjoint(renamed) or {str(name) for name in names - own} & taken:
+        return derivation, ()
+    again = derive(derivation.model, [n for n in renamed if n in present], body=letters)
+    shown = {step.quantity.name: step.expression for step in again.steps}
+    steps = []
+    for step in derivation.steps:
+        name, quantity = step.quantity.name, step.quantity
+        expression = shown.get(name, step.expression)
+        if name in shown and has_offset and name in _ABOUT_POINT:
+            expression = expression.xreplace(dict(zip(POINT, OFFSET, strict=True)))
+            if name == "inertia_tensor_point":
+                quantity = quantity._replace(definition=_STEINER)
+        steps.append(replace(step, quantity=quantity, expression=expression))
+    return replace(derivation, steps=tuple(steps)), parts
 
 
-def _is_short(body: RigidBody) -> bool:
-    return all(entry.is_Atom for entry in (*body.inertia, body.mass))
-
-
-def _shown(step: Step, shown: Mapping[str, sp.ImmutableMatrix], body: RigidBody) -> Step:
-    name = step.quantity.name
-    if name not in shown:
-        return step
-    expression, quantity = shown[name], step.quantity
-    if any(body.centre) and name in _ABOUT_POINT:
-        expression = expression.xreplace(dict(zip(POINT, OFFSET, strict=True)))
-        if name == "inertia_tensor_point":
-            quantity = quantity._replace(definition=_STEINER)
-    return replace(step, quantity=quantity, expression=expression)
-
-
-def _named(body: RigidBody) -> tuple[Parts, RigidBody]:
+def _named(body: RigidBody, is_short: bool) -> tuple[Parts, RigidBody]:
     """The body about its centre of mass, with a letter for each moment or product of inertia.
 
     The letters have what they stand for, if the body's own axes are principal axes.
     """
     tensor, parts = body.inertia, []
-    if not _is_short(body) and tensor.is_diagonal():
+    if tensor.is_diagonal() and not is_short:
         pairs = [*zip(_MOMENTS, tensor.diagonal(), strict=True)]
         # Reversed, so that equal moments have the first of their names: (I₁, I₁, I₃).
-        letters = {moment: name for name, moment in reversed(pairs)}
-        parts = [(name, moment) for moment, name in reversed(letters.items()) if moment]
-        tensor = sp.diag(*(letters[moment] if moment else moment for moment in tensor.diagonal()))
-    elif not _is_short(body):
+        letters = {moment: name for name, moment in reversed(pairs) if moment}
+        parts = [(name, moment) for moment, name in reversed(letters.items())]
+        tensor = sp.diag(*(letters.get(moment, moment) for moment in tensor.diagonal()))
+    elif not is_short:
         names = [[f"I'_{min(i, j) + 1}{max(i, j) + 1}" for j in range(3)] for i in range(3)]
         tensor = sp.Matrix(3, 3, lambda i, j: body.inertia[i, j] and sp.Symbol(names[i][j]))
     mass = body.mass if body.mass.is_Symbol else sp.Symbol("M")

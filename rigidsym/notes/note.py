@@ -12,9 +12,7 @@ from rigidsym.errors import ModelError
 from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.notes import formats
-from rigidsym.notes.document import (
-    Document,
-)
+from rigidsym.notes.document import Document
 from rigidsym.system import resources
 
 if TYPE_CHECKING:
