@@ -7,7 +7,8 @@ those that shrink to lines and those that meet, as at the angles 0 and 2π.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from itertools import islice, pairwise, permutations, product
+from itertools import cycle, islice, pairwise, permutations, product
+from operator import add
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -115,17 +116,21 @@ def lengths_of(
 
 def meshed(what: Distribution, numbers: Numbers) -> Shape:
     """The faces of what has mass, in its own axes, in metres."""
-    sheets = [sheet for leaf in _leaves(what) for sheet in _sheets(leaf, numbers)]
+    sheets = [(*sheet, leaf.color) for leaf in _leaves(what) for sheet in _sheets(leaf, numbers)]
     if not sheets:
         return ()
     # the size without any thickness, of which those of particles and lines are fractions
-    points = np.concatenate([sheet.points.reshape(-1, 3) for sheet in sheets])
+    points = np.concatenate([grid.reshape(-1, 3) for grid, _, _ in sheets])
     size = float(np.linalg.norm(points - points[0], axis=1).max()) or 1.0
     return tuple(
-        Face(size * corners, sheet.color)
-        for sheet in sheets
-        for corners in sheet.faces(sheet.points / size)
+        Face(size * corners, color)
+        for grid, faces, color in sheets
+        for corners in faces(grid / size)
     )
+
+
+# Points (..., 3) in metres, and how they become faces, in a unit that makes the whole of size 1.
+_Sheet = tuple[Vector, Callable[[Vector], Iterator[Vector]]]
 
 
 class _Leaf(NamedTuple):
@@ -137,29 +142,16 @@ class _Leaf(NamedTuple):
     color: Color = BLUE
 
 
-class _Sheet(NamedTuple):
-    """Points (..., 3) in the axes of the whole, and how they become faces."""
-
-    points: Vector
-    faces: Callable[[Vector], Iterator[Vector]]
-    color: Color
-
-
-def _leaves(what: Distribution, leaf: _Leaf | None = None) -> Iterator[_Leaf]:
-    leaf = leaf or _Leaf(what)
+def _leaves(what: Distribution, whole: _Leaf | None = None) -> Iterator[_Leaf]:
+    whole = whole or _Leaf(what)
     if not isinstance(what, Composite):
-        yield leaf._replace(what=what)
+        yield whole
         return
-    for part, tint in zip(what.parts, _PALETTE * len(what.parts), strict=False):
-        yield from _leaves(
-            part.what,
-            _Leaf(
-                part.what,
-                leaf.at + leaf.turned * part.at,
-                leaf.turned * part.turned * (_SWELL if part.hole else 1),
-                HOLE if part.hole or leaf.color == HOLE else tint,
-            ),
-        )
+    for part, tint in zip(what.parts, cycle(_PALETTE), strict=False):
+        at, turned = whole.at + whole.turned * part.at, whole.turned * part.turned
+        color = HOLE if part.hole or whole.color == HOLE else tint
+        swollen = turned * (_SWELL if part.hole else 1)
+        yield from _leaves(part.what, _Leaf(part.what, at, swollen, color))
 
 
 def _constants(what: Distribution) -> set[sp.Basic]:
@@ -171,9 +163,8 @@ def _constants(what: Distribution) -> set[sp.Basic]:
             case Particles():
                 symbols |= {s for p in leaf.what.particles for s in p.position.free_symbols}
             case Solid():
-                bounds = sp.Tuple(*(sp.Tuple(*pair) for pair in leaf.what.bounds))
-                symbols |= leaf.what.place.free_symbols | bounds.free_symbols
-                symbols -= {*leaf.what.coordinates}
+                lengths = sp.Tuple(leaf.what.place, *(sp.Tuple(*ends) for ends in leaf.what.bounds))
+                symbols |= lengths.free_symbols - {*leaf.what.coordinates}
     return symbols
 
 
@@ -184,7 +175,7 @@ def _floats(column: Any) -> Vector:
 def _sheets(leaf: _Leaf, numbers: Numbers) -> Iterator[_Sheet]:
     turned = _floats(leaf.turned.xreplace(numbers)).reshape(3, 3)
     at = _floats(leaf.at.xreplace(numbers))
-    sheets: Iterable[tuple[Vector, Callable[[Vector], Iterator[Vector]]]]
+    sheets: Iterable[_Sheet]
     match leaf.what:
         case Particles():
             positions = (_floats(p.position.xreplace(numbers)) for p in leaf.what.particles)
@@ -192,17 +183,14 @@ def _sheets(leaf: _Leaf, numbers: Numbers) -> Iterator[_Sheet]:
         case Solid():
             sheets = _of_solid(leaf.what, numbers)
         case Known():
-            corners = np.array(leaf.what.outline.corners)
-            sheets = ((corners[[*face]], _polygon) for face in leaf.what.outline.faces)
-    return (_Sheet(at + points @ turned.T, faces, leaf.color) for points, faces in sheets)
+            outline = leaf.what.outline
+            corners = np.array(outline.corners)
+            sheets = ((corners[[*face]], lambda face: iter([face])) for face in outline.faces)
+    return ((at + points @ turned.T, faces) for points, faces in sheets)
 
 
 def _octahedron(centre: Vector) -> Iterator[Vector]:
     return (centre + _PARTICLE * face for face in _OCTAHEDRON)
-
-
-def _polygon(corners: Vector) -> Iterator[Vector]:
-    yield corners
 
 
 # A solid
@@ -221,7 +209,7 @@ def _map(solid: Solid, numbers: Numbers, *shares: Any) -> Vector:
 def _is_proper(solid: Solid, numbers: Numbers) -> bool:
     """Whether bounds are in order, and the map never turns inside out."""
     lengths = (sp.S(high - low).xreplace(numbers) for low, high in solid.bounds)
-    if not all(float(length) >= 0 for length in lengths if length.is_number):
+    if any(length.is_negative for length in lengths):
         return False
     # The Jacobian may vanish on the sides of the box, as at the centre of a ball, but it must keep
     # its sign inside.
@@ -232,16 +220,12 @@ def _is_proper(solid: Solid, numbers: Numbers) -> bool:
 def _is_outward(solid: Solid, numbers: Numbers, *shares: Any) -> Vector:
     """Whether the determinant of the map is positive."""
     here = _map(solid, numbers, *shares)
-    moved = (
-        _map(solid, numbers, *(share + 1e-4 * (j == k) for j, share in enumerate(shares)))
-        for k in range(3)
-    )
-    return np.linalg.det(np.stack([there - here for there in moved], axis=-2)) > 0
+    steps = 1e-4 * np.eye(3)
+    moved = [_map(solid, numbers, *map(add, shares, step)) for step in steps]
+    return np.linalg.det(np.stack(moved, axis=-2) - here[..., None, :]) > 0
 
 
-def _of_solid(
-    solid: Solid, numbers: Numbers
-) -> Iterator[tuple[Vector, Callable[[Vector], Iterator[Vector]]]]:
+def _of_solid(solid: Solid, numbers: Numbers) -> Iterator[_Sheet]:
     """A line; both sides of a surface; or the surface of a volume, side by side of its box."""
     counts = [_divisions(solid, symbol) for symbol in solid.coordinates]
     if len(counts) == 1:
@@ -257,10 +241,9 @@ def _of_solid(
     # side if the map preserves the orientation; elsewhere the order of the rows is reversed.
     outward = 1 if _is_outward(solid, numbers, 0.5, 0.5, 0.5) else -1
     for axis in range(3):
-        j, k = (axis + 1) % 3, (axis + 2) % 3
-        shares: dict[int, Any] = dict(zip((j, k), np.ix_(steps[j], steps[k]), strict=True))
+        others = np.ix_(steps[(axis + 1) % 3], steps[(axis + 2) % 3])
         low, high = (
-            _map(solid, numbers, *({**shares, axis: end}[n] for n in range(3)))
+            _map(solid, numbers, *np.roll(np.array([end, *others], object), axis))
             for end in (0.0, 1.0)
         )
         # a closed coordinate has no ends
@@ -269,12 +252,11 @@ def _of_solid(
 
 
 def _divisions(solid: Solid, symbol: sp.Symbol) -> int:
-    waves = solid.place.atoms(sp.sin, sp.cos)
-    if any(wave.has(symbol) for wave in waves):
+    if any(wave.has(symbol) for wave in solid.place.atoms(sp.sin, sp.cos)):
         low, high = solid.bounds[solid.coordinates.index(symbol)]
         turns = (high - low) / (2 * sp.pi)
         return int(sp.ceiling(_ROUND * turns)) if turns.is_number else _ROUND
-    later = [bound for pair in solid.bounds for bound in pair if bound.has(symbol)]
+    later = any(bound.has(symbol) for pair in solid.bounds for bound in pair)
     return _CURVED if later or solid.place.diff(symbol).has(symbol) else 1
 
 
@@ -299,16 +281,12 @@ def area_of(corners: Vector) -> Vector:
 
 
 def _tube(line: Vector) -> Iterator[Vector]:
-    """A thin square tube along a line (n, 3), with its ends if it is open."""
-    is_open = np.abs(line[0] - line[-1]).max() > 1e-9
-    for k, (start, end) in enumerate(pairwise(line)):
+    """A thin square tube along a line (n, 3), with its ends, piece by piece."""
+    for start, end in pairwise(line):
         along = unit(end - start)
         # The auxiliary axis must not be nearly parallel to the line.
-        u = unit(np.cross(along, np.eye(3)[0 if abs(along[0]) < 0.8 else 1]))
+        u = unit(np.cross(along, np.eye(3)[np.abs(along).argmin()]))
         v = np.cross(along, u)
-        around = _THICK * np.array([u + v, v - u, -u - v, u - v, u + v])
-        yield from tiles(np.array([start + around, end + around])[:, ::-1])
-        if is_open and k == 0:
-            yield (start + around[:-1])[::-1]
-        if is_open and k == len(line) - 2:
-            yield end + around[:-1]
+        around = _THICK * np.array([u + v, u - v, -u - v, v - u, u + v])
+        yield from tiles(np.array([start + around, end + around]))
+        yield from (start + around[:-1], (end + around[:-1])[::-1])
