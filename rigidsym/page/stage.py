@@ -17,8 +17,7 @@ from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.quantities.kinematics import SPACE
 from rigidsym.models.rotation import AXES, RotationModel
 from rigidsym.notes.figure.body_mesh import RED, Color, Face, Shape, own_shape, tiles
-from rigidsym.notes.figure.camera import STANDARD, Vector
-from rigidsym.notes.figure.scene import BODY, RADII, Scene, scene_of, turns_of
+from rigidsym.notes.figure.scene import BODY, RADII, STANDARD, Scene, Vector, scene_of, turns_of
 from rigidsym.notes.formats.drawings import in_a_figure
 from rigidsym.page.functions import Functions, has_turns, moments_of
 

@@ -21,10 +21,9 @@ from rigidsym.models.rotation import RotationModel, elementary, time_function
 from rigidsym.models.solids import shaped
 from rigidsym.notes.facts.rotation import RotationFacts
 from rigidsym.notes.figure import motion_picture
-from rigidsym.notes.figure.camera import combined, dot, turned, unit
 from rigidsym.notes.figure.drawing import Drawing, Label, Stroke, boxes
 from rigidsym.notes.figure.motion_picture import circle, on_ellipsoid
-from rigidsym.notes.figure.scene import scene_of
+from rigidsym.notes.figure.scene import combined, dot, scene_of, turned, unit
 from rigidsym.notes.formats.drawings import svg, tikz
 from rigidsym.notes.letters import letters_of
 

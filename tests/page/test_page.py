@@ -25,7 +25,7 @@ from rigidsym.models.solids import SHAPES as SOLIDS, shaped
 from rigidsym.motion import derive
 from rigidsym.notes.figure.body_drawing import body_drawing
 from rigidsym.notes.figure.body_mesh import BLUE, Shape, lengths_of, meshed, own_shape
-from rigidsym.notes.figure.camera import Camera, camera
+from rigidsym.notes.figure.scene import Camera, camera
 from rigidsym.page.functions import OF_THE_FIGURE
 from rigidsym.page.print_page import MOST_BYTES
 from rigidsym.page.stage import as_data, spinning_top
@@ -171,7 +171,6 @@ def test_a_heavy_body_of_the_page_moves_as_newton_and_euler_have_it(method, tmp_
     )
 
 
-LINES = ("rod", "ring")
 CORNERS = (0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1)
 
 

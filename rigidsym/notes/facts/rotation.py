@@ -10,7 +10,6 @@ from typing import Any, NamedTuple
 import sympy as sp
 
 from rigidsym.formula.letters import Letters
-from rigidsym.formula.reader import formula
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import (
     COMMA,
@@ -31,6 +30,8 @@ from rigidsym.mechanics.quantities.mass import MASS
 from rigidsym.mechanics.quantities.table import is_quaternion
 from rigidsym.models.rotation import RotationModel, Turn, by_axis, carried_axes
 from rigidsym.notes.document import Equation, EquationRow, Figure, NoteBlock
+from rigidsym.notes.figure.drawing import drawn
+from rigidsym.notes.figure.scene import free_angle, scene_of
 from rigidsym.notes.template import figure_with
 from rigidsym.notes.words import symbols_of, unit_in_words, with_symbols
 
@@ -133,10 +134,6 @@ class RotationFacts:
     @cached_property
     def figure(self) -> Figure | None:
         """Of a product of turns, or of one turn about a vector; None for any other model."""
-        # figures need NumPy, which the text of a terminal does without
-        from rigidsym.notes.figure.drawing import drawn
-        from rigidsym.notes.figure.scene import scene_of
-
         scene = scene_of(self.model, self.letters)
         if scene is None:
             return None
@@ -172,9 +169,9 @@ class RotationFacts:
         return [*([EquationRow(short)] if short else []), *oblique]
 
     @property
-    def alpha(self) -> Formula:
-        """The angle of the rotation; α may be a coordinate."""
-        return formula(r"\gamma" if "α" in self.model.convention[0] else r"\alpha")
+    def alpha(self) -> sp.Symbol:
+        """The angle of the rotation."""
+        return sp.Symbol(free_angle(self.model))
 
     @property
     def scalar(self) -> sp.Expr:
@@ -222,8 +219,6 @@ def product_of(turns: Iterable[Turn], letters: Letters) -> Formula:
 
 def axes_of_turns(model: RotationModel, letters: Letters) -> list[Formula]:
     """The unit vectors about which the turns are made, named after the figure: e_z, e_N, e_z′."""
-    from rigidsym.notes.figure.scene import scene_of
-
     scene = scene_of(model, letters)
     posed = scene.posed(scene.view.angles) if scene else None
     rays = [posed.named(arc.axis) for arc in posed.arcs] if posed else []

@@ -11,9 +11,8 @@ from rigidsym.data.mass import principal_axes_of
 from rigidsym.formula.reader import formula
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.notes.figure.body_mesh import Color, Vector, area_of, numbers_of, own_shape, unit
-from rigidsym.notes.figure.camera import Point, camera
 from rigidsym.notes.figure.drawing import Drawing, Facet, Named, Stroke, beyond, labelled
-from rigidsym.notes.figure.scene import BODY
+from rigidsym.notes.figure.scene import BODY, Point, camera
 
 _RIGHT, _UP, _TOWARD = np.array(camera(35, 24))
 _LIGHT = unit(-0.36 * _RIGHT + 0.48 * _UP + 0.8 * _TOWARD)

@@ -13,8 +13,18 @@ from typing import NamedTuple
 from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.tree import Formula
 from rigidsym.formula.unicode_pen import UnicodePen
-from rigidsym.notes.figure.camera import Camera, Point, Vector, combined, dot, is_same
-from rigidsym.notes.figure.scene import Arc, Kind, Posed
+from rigidsym.notes.figure.scene import (
+    MANY_TURNS,
+    Arc,
+    Camera,
+    Kind,
+    Point,
+    Posed,
+    Vector,
+    combined,
+    dot,
+    is_same,
+)
 
 TYPE_SIZE = 0.15  # one em, in units of the drawing
 AXIS = 1.35  # lengths of the axes drawn
@@ -126,7 +136,7 @@ def drawn(scene: Posed, seen: Camera) -> Drawing:
         points = ((-end[0], -end[1]) if is_line else (0.0, 0.0), end)
         axes.append(Stroke(kind=ray.kind, points=points, has_arrow=not is_line))
         named.append((ray.kind, ray.name, beyond(points)))
-    if not scene.is_crowded:
+    if len(scene.arcs) <= MANY_TURNS:
         first, last = scene.arcs[0], scene.arcs[-1]
         circles += _circle("space", first, seen)
         circles += () if is_same(first.axis, last.axis) else _circle("body", last, seen)

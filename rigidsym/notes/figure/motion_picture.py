@@ -17,9 +17,8 @@ from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.models.forces import Example
 from rigidsym.notes.figure.body_mesh import Vector, unit
-from rigidsym.notes.figure.camera import Point, camera
 from rigidsym.notes.figure.drawing import Drawing, Label, Stroke
-from rigidsym.notes.figure.scene import BODY, Kind
+from rigidsym.notes.figure.scene import BODY, Kind, Point, camera
 from rigidsym.simulation.solver import simulate
 from rigidsym.simulation.trajectory import Trajectory
 

@@ -3,7 +3,8 @@
 A product of turns is read from left to right; each turn is about an axis that the turns before it
 have moved. Directions are given by their components in the frame after a number of turns, so one
 scene serves all angles: a note draws it at those of its view, the live page at those of its
-sliders.
+sliders. Vectors are plain floats, since a figure has a dozen of them: importing NumPy would take
+longer than deriving the rotation.
 """
 
 from __future__ import annotations
@@ -11,8 +12,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from itertools import combinations
-from math import hypot, radians, sin
+from itertools import combinations, pairwise
+from math import cos, hypot, radians, sin
 from typing import Literal, NamedTuple
 
 import sympy as sp
@@ -22,27 +23,18 @@ from rigidsym.formula.reader import formula
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import Formula, Numeral, Symbol
 from rigidsym.models.rotation import AXES, RotationModel, Turn
-from rigidsym.notes.figure.camera import (
-    STANDARD,
-    Camera,
-    Point,
-    Vector,
-    camera,
-    combined,
-    cross,
-    dot,
-    frames,
-    is_same,
-    unit,
-)
 from rigidsym.notes.letters import VECTOR, length_of
 
+Vector = tuple[float, float, float]
+Point = tuple[float, float]
+Frame = tuple[Vector, Vector, Vector]  # three orthonormal axes
+
+STANDARD: Frame = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 Kind = Literal["space", "body", "node", "vector", "turn", "guide"]
 
 MOST_TURNS = 5  # more would be a tangle
-_MANY, _MANY_NEARER = 3, 1.2  # turns; the scale of the figure of more than these
+MANY_TURNS, _NEARER = 3, 1.2  # the scale of the figure of more than these
 BODY = tuple(Symbol(axis, prime="′") for axis in AXES)
-NODE = Symbol("N")
 RADII = (0.6, 0.78, 0.46, 0.7, 0.38)  # of the arcs; those of consecutive turns differ
 
 _SPACE = tuple(map(Symbol, AXES))
@@ -57,6 +49,75 @@ _VIEWS = (  # angles of the turns, azimuth and elevation in degrees; the cleares
     ((35, 30, 35, 30, 50), 28, 18),
 )
 _VIEWS_DOWN = (((40, 25, 35, 40, 40), -100, 24),)  # from the left wing's side, above the ground
+
+
+def dot(a: Vector, b: Vector) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def cross(a: Vector, b: Vector) -> Vector:
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def combined(factors: Sequence[float], vectors: Sequence[Sequence[float]]) -> Vector:
+    """The linear combination Σ c_k v_k; of the axes of a frame, a vector from its components."""
+    pairs = list(zip(factors, vectors, strict=True))
+    x, y, z = (sum(c * v[k] for c, v in pairs) for k in range(3))
+    return (x, y, z)
+
+
+def unit(a: Sequence[float]) -> Vector:
+    return combined((1 / hypot(*a),), (a,))
+
+
+def turned(a: Vector, axis: Vector, angle: float) -> Vector:
+    """The vector rotated right-handedly about a unit axis, by an angle in radians (Rodrigues)."""
+    # a cos α + (n × a) sin α + n (n·a)(1 − cos α)
+    along = (1 - cos(angle)) * dot(axis, a)
+    return combined((cos(angle), sin(angle), along), (a, cross(axis, a), axis))
+
+
+def frames(axes: Sequence[Vector], angles: Sequence[float]) -> Iterator[Frame]:
+    """The frame of space, and the frame after each turn; axes have components before the turn."""
+    frame = STANDARD
+    yield frame
+    for axis, angle in zip(axes, angles, strict=True):
+        about = combined(axis, frame)
+        x, y, z = (turned(a, about, angle) for a in frame)
+        frame = (x, y, z)
+        yield frame
+
+
+def is_same(a: Vector, b: Vector) -> bool:
+    return max(abs(p - q) for p, q in zip(a, b, strict=True)) < 1e-6
+
+
+class Camera(NamedTuple):
+    """Parallel projection; the third axis of space is vertical in the picture, up or down."""
+
+    right: Vector
+    up: Vector
+    toward: Vector  # from the origin to the viewer
+
+    def project(self, a: Vector) -> Point:
+        return (dot(self.right, a), dot(self.up, a))
+
+    def depth(self, a: Vector) -> float:
+        """Distance from the picture plane toward the viewer; negative behind the origin."""
+        return dot(self.toward, a)
+
+
+def camera(azimuth: float, elevation: float, *, z_down: bool = False, scale: float = 1.0) -> Camera:
+    """The camera of a viewer at this azimuth and elevation, in degrees.
+
+    Where z points down, the viewer is above the ground all the same, at a negative z.
+    """
+    a, e, up = radians(azimuth), radians(elevation), -1 if z_down else 1
+    toward = (cos(e) * cos(a), cos(e) * sin(a), up * sin(e))
+    # toward × right has the vertical component ±cos e with the sign of `up`: the side of the ground
+    # from which the viewer looks is up in the picture.
+    right = (-up * sin(a) * scale, up * cos(a) * scale, 0.0)
+    return Camera(right, cross(toward, right), toward)
 
 
 class Ray(NamedTuple):
@@ -107,12 +168,7 @@ class View(NamedTuple):
     angles: tuple[float, ...]
     azimuth: int
     elevation: int
-    z_down: bool = False
-
-    @property
-    def camera(self) -> Camera:
-        scale = _MANY_NEARER if len(self.angles) > _MANY else 1.0
-        return camera(self.azimuth, self.elevation, z_down=self.z_down, scale=scale)
+    camera: Camera
 
 
 class Posed(NamedTuple):
@@ -126,10 +182,6 @@ class Posed(NamedTuple):
         """The only axis of turns that is drawn in both directions; several would be a tangle."""
         nodes = [ray for ray in self.rays if ray.kind == "node"]
         return nodes[0] if len(nodes) == 1 else None
-
-    @property
-    def is_crowded(self) -> bool:
-        return len(self.arcs) > _MANY
 
     def named(self, direction: Vector) -> Ray | None:
         return next((ray for ray in self.rays if is_same(ray.direction, direction)), None)
@@ -148,28 +200,21 @@ class Scene:
         """The scene at these angles, in radians."""
         bases = list(frames([turn.axis for turn in self.turns], angles))
         rays = (r._replace(direction=combined(r.direction, bases[r.frame])) for r in self.rays)
-        arcs = (
-            Arc(
-                turn,
-                combined(turn.axis, before),
-                angle,
-                combined(turn.start, before),
-                combined(turn.start, after),
-            )
-            for turn, angle, before, after in zip(
-                self.turns, angles, bases, bases[1:], strict=False
-            )
-        )
+        arcs = []
+        for turn, angle, (before, after) in zip(self.turns, angles, pairwise(bases), strict=True):
+            line = (combined(turn.start, before), combined(turn.start, after))
+            arcs.append(Arc(turn, combined(turn.axis, before), angle, *line))
         return Posed(rays=tuple(_merged(rays)), arcs=tuple(arcs))
 
     @cached_property
     def view(self) -> View:
         """The clearest of the standard views."""
-        views = []
+        views, scale = [], _NEARER if len(self.turns) > MANY_TURNS else 1.0
         for acute, azimuth, elevation in _VIEWS_DOWN if self.z_down else _VIEWS:
             pairs = zip(acute, self.fixed, strict=False)
             angles = tuple(radians(angle) if f is None else f for angle, f in pairs)
-            views.append(View(angles, azimuth, elevation, self.z_down))
+            seen = camera(azimuth, elevation, z_down=self.z_down, scale=scale)
+            views.append(View(angles, azimuth, elevation, seen))
         return max(views, key=self._clarity)
 
     def _clarity(self, view: View) -> float:
@@ -217,7 +262,7 @@ def scene_of(model: RotationModel, letters: Letters) -> Scene | None:
     are_numbers = all(part.is_number for turn in turns for part in turn.direction)
     if not (1 <= len(turns) <= MOST_TURNS and are_numbers):
         return None
-    axes = [unit(_floats(turn)) for turn in turns]
+    axes = [unit([float(part) for part in turn.direction]) for turn in turns]
     drawn = []
     for k, (turn, axis, radius) in enumerate(zip(turns, axes, RADII, strict=False)):
         # the line that is carried along: the axis of the next turn, or of the one before
@@ -236,31 +281,24 @@ def scene_of(model: RotationModel, letters: Letters) -> Scene | None:
     )
 
 
-def _floats(turn: Turn) -> Vector:
-    x, y, z = map(float, turn.direction)
-    return (x, y, z)
-
-
 def turns_of(model: RotationModel) -> tuple[Turn, ...]:
     """The turns that are drawn: those of the product, or one about the vector, drawn somewhere."""
     if model.turns or not model.vector:
         return model.turns
     axis = tuple(sp.Rational(part, 3) for part in (1, 2, 2))
-    return (Turn(axis=VECTOR.text, angle=_angle_about(model), components=axis),)
-
-
-def _angle_about(model: RotationModel) -> sp.Expr:
-    """The angle of the turn: a coordinate, the length of the vector, or a new letter."""
     units = dict(zip(model.coordinates, model.coordinate_units, strict=True))
     angles = [q for q, unit in units.items() if unit == "rad" and q not in model.vector]
     length = length_of(model)
+    # The angle is a coordinate, the length of the vector, or has a letter that no other has.
     if not angles and length is not None and units[model.vector[0]] == "rad":
-        return length.symbol
-    taken = {q.func.__name__ for q in model.coordinates}
-    taken |= {letter for letter in "αβ" if letter in model.convention[0]}
-    greek = {"alpha": "α", "beta": "β", "gamma": "γ"}
-    free = (letter for letter in greek if not taken & {letter, greek[letter]})
-    return angles[0] if angles else sp.Symbol(next(free))
+        angles = [length.symbol]
+    angle = angles[0] if angles else sp.Symbol(free_angle(model))
+    return (Turn(axis=VECTOR.text, angle=angle, components=axis),)
+
+
+def free_angle(model: RotationModel) -> str:
+    """The letter of an angle that has none: alpha, or gamma where α is in the convention."""
+    return "gamma" if "α" in model.convention[0] else "alpha"
 
 
 def _rays(axes: Sequence[Vector], model: RotationModel, letters: Letters) -> Iterator[Ray]:
@@ -271,14 +309,10 @@ def _rays(axes: Sequence[Vector], model: RotationModel, letters: Letters) -> Ite
     for primed, direction in zip(of_body, STANDARD, strict=True):
         yield Ray(kind="body", name=primed, frame=len(axes), direction=direction)
     between = [k for k in range(len(axes)) if not _is_drawn(axes, k)]
+    kind: Kind = "node" if model.turns else "vector"
     for number, k in enumerate(between, start=1):
-        if not model.turns:
-            yield Ray(kind="vector", name=vector, frame=k, direction=axes[k])
-        else:
-            several = Symbol("N", index=Numeral(str(number)))
-            yield Ray(
-                kind="node", name=several if len(between) > 1 else NODE, frame=k, direction=axes[k]
-            )
+        node = Symbol("N", index=Numeral(str(number))) if between[1:] else Symbol("N")
+        yield Ray(kind, node if model.turns else vector, k, axes[k])
 
 
 def _is_drawn(axes: Sequence[Vector], k: int) -> bool:

@@ -10,8 +10,8 @@ from html import escape
 from math import hypot
 
 from rigidsym.formula.tree import Formula
-from rigidsym.notes.figure.camera import Point
 from rigidsym.notes.figure.drawing import TYPE_SIZE, Drawing, Label, Stroke
+from rigidsym.notes.figure.scene import Point
 from rigidsym.notes.formats.escape import cleaned
 
 _UNIT = 0.3865 / TYPE_SIZE  # cm: an em at 11 points

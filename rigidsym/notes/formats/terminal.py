@@ -18,7 +18,7 @@ from rigidsym.formula.unicode_pen import UnicodePen, columns
 from rigidsym.mechanics.derivation import Argument, Derivation, Step
 from rigidsym.mechanics.quantities.kinematics import BODY, ROTATION, SPACE
 from rigidsym.notes.document import Equation, Paragraph
-from rigidsym.notes.equations import equation_of
+from rigidsym.notes.equations import equation_of, sum_of_vectors
 from rigidsym.notes.facts.rotation import facts_of_rotation, product_of
 from rigidsym.notes.facts.singular import singular_facts
 from rigidsym.notes.fitting import as_vectors
