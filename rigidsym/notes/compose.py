@@ -52,7 +52,7 @@ from rigidsym.notes.document import (
 from rigidsym.notes.equations import claims_of, columns_of_matrix, equation_of, sums
 from rigidsym.notes.facts.rotation import RotationFacts, facts_of_rotation, product_of
 from rigidsym.notes.facts.singular import singular_facts
-from rigidsym.notes.facts.symbols import SymbolFacts
+from rigidsym.notes.facts.symbols import meanings_of
 from rigidsym.notes.fitting import as_vectors, fitted
 from rigidsym.notes.letters import letters_of
 from rigidsym.notes.named_body import OFFSET, in_names, textbook_form
@@ -178,7 +178,7 @@ class Composer:
             "has_status": self.is_audit or not are_proved,
             "has_rates": any(step.quantity.section == OF_RATES for step in derivation.steps),
             "symbols": self._symbols,
-            "symbol_facts": SymbolFacts(derivation),
+            "meanings": meanings_of(derivation),
             "module": self.module,
             "functions": self.functions,
             "is_body_alone": is_body_alone(derivation),

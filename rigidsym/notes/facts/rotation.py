@@ -50,6 +50,7 @@ def facts_of_rotation(derivation: Derivation, letters: Letters) -> dict[str, Any
     inputs = {name for step in derivation.steps for name in step.quantity.inputs}
     quantities = {step.quantity.name for step in derivation.steps}
     unit, *other_units = sorted({*q.units})
+    units = dict(zip(model.coordinates, q.units, strict=True))
     pairs = [condition.as_coeff_Add() for condition in model.constraints]
     return {
         "derivation": derivation,
@@ -70,6 +71,7 @@ def facts_of_rotation(derivation: Derivation, letters: Letters) -> dict[str, Any
             ],
             # the components of v, the letters of a length and of its rate, if formulas hold them
             "vector": model.vector if any(step.vector_form for step in derivation.steps) else (),
+            "unit_of_vector": next((units[q] for q in model.vector[:1]), ""),
             "length": tuple(length.names.values()) if length else (),
             "is_length_of_vector": length is not None and length.components == model.vector,
             # whether any quantity depends on the position of the centre of mass

@@ -2,78 +2,38 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
-from itertools import repeat
-from typing import NamedTuple
+from itertools import chain
 
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Derivation
 
-_PLACES = ("centre", "point", "direction")
+_PLACES = ("centre", "point", "direction")  # that moments are taken about
 
 
-class SameMeaning(NamedTuple):
-    """Symbols that share a meaning and a unit."""
-
-    symbols: tuple[Formula, ...]
-    about: str
-    unit: str
-
-
-@dataclass(frozen=True)
-class SymbolFacts:
-    """Arguments and constants, in groups of the same meaning."""
-
-    derivation: Derivation
-
-    @property
-    def coordinates(self) -> list[SameMeaning]:
-        q = self.derivation.argument("q")
-        return _grouped(zip(q.notation, repeat("coordinates"), q.units, strict=False))
-
-    @property
-    def constants(self) -> list[SameMeaning]:
-        if not any(argument.name == "parameters" for argument in self.derivation.arguments):
-            return []
-        return _grouped(self._constants())
-
-    def _constants(self) -> Iterator[tuple[Formula, str, str]]:
-        constants, body = self.derivation.argument("parameters"), self.derivation.body
-        turns = self.derivation.model.turns
-        of_body = {p.symbol: p for p in body.parameters} if body else {}
-        of_axes = {s for turn in turns for c in turn.components for s in c.free_symbols}
-        angles = {symbol for turn in turns for symbol in turn.angle.free_symbols}
-        names = zip(constants.symbols, constants.notation, constants.units, strict=True)
-        for symbol, name, unit in names:
-            if symbol in of_body:  # in Python a symbol may come without a word of what it is
-                about = of_body[symbol].about
-                yield name, about or "constant of the body", unit if about else unit or "—"
-            elif symbol in of_axes:
-                yield name, "components of an axis at rest", unit
-            elif symbol in angles:
-                yield name, "constant angle", "rad"
-            else:
-                yield name, "constant", unit
-
-    @property
-    def places(self) -> list[SameMeaning]:
-        """The centre of mass; the point and the line that moments are taken about."""
-        used = {name for step in self.derivation.steps for name in step.quantity.inputs}
-        return [
-            SameMeaning(a.notation, a.about, a.units[0])
-            for a in self.derivation.arguments
-            if a.name in used and a.name in _PLACES
-        ]
-
-    @property
-    def unit_of_vector(self) -> str:
-        q, model = self.derivation.argument("q"), self.derivation.model
-        return dict(zip(model.coordinates, q.units, strict=True))[model.vector[0]]
-
-
-def _grouped(named: Iterable[tuple[Formula, str, str]]) -> list[SameMeaning]:
+def meanings_of(derivation: Derivation) -> list[tuple[list[Formula], str, str]]:
+    """Coordinates, constants, points and lines: symbols of one meaning and one unit."""
+    arguments = {argument.name: argument for argument in derivation.arguments}
+    used = {name for step in derivation.steps for name in step.quantity.inputs}
+    q, turns = arguments["q"], derivation.model.turns
+    rows = [(name, "coordinates", unit) for name, unit in zip(q.notation, q.units, strict=True)]
+    of_body = {p.symbol: p for p in derivation.body.parameters} if derivation.body else {}
+    of_axes = {s for turn in turns for c in turn.components for s in c.free_symbols}
+    angles = {symbol for turn in turns for symbol in turn.angle.free_symbols}
+    of_all = (a for a in derivation.arguments if a.name == "parameters")
+    constants = (zip(a.symbols, a.notation, a.units, strict=True) for a in of_all)
+    for symbol, name, unit in chain.from_iterable(constants):
+        about = "constant"
+        if symbol in of_body:  # in Python a symbol may come without a word of what it is
+            about = of_body[symbol].about or "constant of the body"
+            unit = unit if of_body[symbol].about else unit or "—"
+        elif symbol in of_axes:
+            about = "components of an axis at rest"
+        elif symbol in angles:
+            about, unit = "constant angle", "rad"
+        rows.append((name, about, unit))
+    for place in (arguments[name] for name in _PLACES if name in used):
+        rows += [(name, place.about, place.units[0]) for name in place.notation]
     groups: dict[tuple[str, str], list[Formula]] = {}
-    for name, about, unit in named:
+    for name, about, unit in rows:
         groups.setdefault((about, unit), []).append(name)
-    return [SameMeaning(tuple(names), *same) for same, names in groups.items()]
+    return [(names, *meaning) for meaning, names in groups.items()]
