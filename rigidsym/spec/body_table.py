@@ -56,6 +56,7 @@ def read_body(
             symbol = check_name(key)
             declared[symbol] = Parameter(symbol=sp.Symbol(symbol), **entry)
     own, kind, allow = place.at("body"), kind_of(data), bool(data.get("allow"))
+    body: Body | None = None
     with own.noting(kind):
         data = _in_numbers(data, own, folder, allow=allow)
         kind = kind_of(data)
@@ -63,15 +64,16 @@ def read_body(
         request = {"body": data} | ({"parameters": parameters} if parameters else {})
         options: dict[str, Any] = {"name": name, "allow": allow}
         if kind == "principal_moments" or (kind == "inertia" and "outline" not in data):
-            return replace(_rigid_body(table, kind, options), request=request)
-        return BodyDescription(
-            distribution=_distribution(table, own),
-            parameters=table.symbols.described(),
-            keeps_numbers=kind == "shape",
-            request=request,
-            **options,
-        )
-    return None
+            body = replace(_rigid_body(table, kind, options), request=request)
+        else:
+            body = BodyDescription(
+                distribution=_distribution(table, own),
+                parameters=table.symbols.described(),
+                keeps_numbers=kind == "shape",
+                request=request,
+                **options,
+            )
+    return body
 
 
 def _in_numbers(data: Data, place: Place, folder: Path | None, *, allow: bool) -> Data:

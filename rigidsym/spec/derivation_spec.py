@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import keyword
 import re
+import reprlib
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
@@ -14,7 +15,7 @@ from rigidsym.models.library import request_of, rotation_from
 from rigidsym.models.rotation import RotationModel
 from rigidsym.motion import DEFAULT, Notation
 from rigidsym.notes.formats import FORMATS
-from rigidsym.spec.faults import Place, shortened
+from rigidsym.spec.faults import Place
 
 _NAME = re.compile(r"[a-z][a-z0-9_]*")
 
@@ -112,20 +113,13 @@ class DerivationSpec:
 
 
 def spec_for(
-    rotation: str,
-    *,
-    angles: Sequence[str] | None = None,
-    constants: Sequence[str] = (),
-    scalar_last: bool = False,
-    passive: bool = False,
+    rotation: str, *, angles: Sequence[str] | None = None, **options: Any
 ) -> DerivationSpec:
     """The specification of one rotation, named after it, with all its quantities.
 
-    Raises ModelError and ExpressionError as `rotation_from` does.
+    Options are those of `rotation_from`, which raises ModelError and ExpressionError.
     """
-    model = rotation_from(
-        rotation, names=angles, constants=constants, scalar_last=scalar_last, passive=passive
-    )
+    model = rotation_from(rotation, names=angles, **options)
     return DerivationSpec(name=model.name, models=(model,))
 
 
@@ -134,7 +128,7 @@ def fault_of_name(name: str) -> str:
     if not _NAME.fullmatch(name):
         return (
             "expected a lower-case letter, then lower-case letters, digits or underscores, "
-            f"got {shortened(name)}"
+            f"got {reprlib.repr(name)}"
         )
     if keyword.iskeyword(name):
         return f"{name} is a reserved word of Python"

@@ -7,6 +7,7 @@ compared with the result: all faults are noted with their paths, and what is rig
 from __future__ import annotations
 
 import json
+import reprlib
 import tomllib
 from collections.abc import Callable, Iterable, Mapping
 from functools import cache
@@ -23,7 +24,7 @@ from rigidsym.models.solids import SHAPES
 from rigidsym.motion import CHOICES, QUANTITIES
 from rigidsym.notes.note import check_style
 from rigidsym.spec.derivation_spec import NOTES
-from rigidsym.spec.faults import Place, dotted, shortened
+from rigidsym.spec.faults import Place, dotted
 from rigidsym.text.names import check_name
 
 Schema = dict[str, Any]
@@ -180,7 +181,7 @@ def _checked_list(value: list[Any], schema: Schema, place: Place) -> list[Any] |
 
 def _checked_text(value: str, schema: Schema, place: Place) -> str | None:
     if value not in schema.get("enum", [value]):
-        place.fault(f"unknown name {shortened(value)}; {offer(value, schema['enum'])}")
+        place.fault(f"unknown name {reprlib.repr(value)}; {offer(value, schema['enum'])}")
         return None
     # A control character would end a comment or a line of what is printed from the text.
     allowed = "" if schema.get("format") == "line" else "\n\t"
@@ -188,12 +189,13 @@ def _checked_text(value: str, schema: Schema, place: Place) -> str | None:
         if category(character) in ("Cc", "Cs") and character not in allowed:
             place.fault(f"the text contains the control character U+{ord(character):04X}")
             return None
+    text: str | None = value
     if check := _FORMATS.get(schema.get("format", "")):
+        text = None
         with place.noting():
             result = check(value)
-            return value if schema["format"] != "name" else str(result)  # phi for φ
-        return None
-    return value
+            text = str(result) if schema["format"] == "name" else value  # phi for φ
+    return text
 
 
 def expected(schema: Schema, place: Place) -> str:

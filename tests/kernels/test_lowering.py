@@ -9,11 +9,10 @@ from hypothesis import given, settings, strategies as st
 from rigidsym.algebra.stable_forms import Stumpff
 from rigidsym.errors import KernelError
 from rigidsym.kernels import ir
-from rigidsym.kernels.lowering.cse import Graph
+from rigidsym.kernels.lowering.graph import Graph, write
 from rigidsym.kernels.lowering.lower import MARGIN, lower
 from rigidsym.kernels.lowering.naming import Names, identifier
 from rigidsym.kernels.lowering.rounding import guarded
-from rigidsym.kernels.lowering.schedule import write
 from rigidsym.kernels.targets.infix import infix
 from rigidsym.kernels.targets.remarks import count
 from rigidsym.mechanics.conversions.function import Where

@@ -154,7 +154,7 @@ def test_wrong_data_has_every_fault_at_once():
     assert [str(fault) for fault in caught.value.faults] == [
         "nam: unknown key; did you mean name?",
         "name: missing; expected a text in quotes",
-        'note: expected a list such as ["tex"], got the number 1',
+        'note: expected a list such as ["tex"], got 1',
         "rotations[0].sequence: 'ZZX' is not an Euler sequence: consecutive axes must differ: Z "
         "follows Z; did you mean ZYZ or ZYX?",
         "rotations[1]: expected one of sequence, matrix; got none",
@@ -185,7 +185,7 @@ def test_a_file_has_bounds():
 @pytest.mark.parametrize(
     ("name", "fault"),
     [
-        ("My File", 'expected a lower-case letter, .* digits or underscores, got "My File"'),
+        ("My File", "expected a lower-case letter, .* digits or underscores, got .My File."),
         ("lambda", "lambda is a reserved word of Python"),
         ("numpy", r"numpy\.py would hide the Python module of this name"),
     ],

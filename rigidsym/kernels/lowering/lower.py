@@ -18,11 +18,10 @@ import sympy as sp
 
 from rigidsym.algebra.stable_forms import stable_forms
 from rigidsym.kernels import ir
-from rigidsym.kernels.lowering.cse import Graph, Weighted
 from rigidsym.kernels.lowering.derivatives import Jacobian
+from rigidsym.kernels.lowering.graph import Graph, Weighted, write
 from rigidsym.kernels.lowering.naming import Names
 from rigidsym.kernels.lowering.rounding import guarded
-from rigidsym.kernels.lowering.schedule import write
 from rigidsym.mechanics.conversions.function import ConversionFunction, Converted
 from rigidsym.mechanics.derivation import (
     Argument as Vector,

@@ -1,9 +1,9 @@
 """The languages that kernels can be printed in: one file each, LANGUAGE.py.
 
-It holds `RESERVED`, the names that no variable may have; `render(program)`, which gives the texts
-of the files by name, the main one first, and takes the `options` of its `Target` by name; and
-`load(name, files)`, which makes a Python module of them. It is imported when the target is asked
-for. `TARGETS` describes all languages; their templates are in templates/LANGUAGE/.
+It holds `RESERVED`, the names that no variable may have, and `render(program)`, which gives the
+texts of the files by name, the main one first, and takes the `options` of its `Target` by name. It
+is imported when the target is asked for. `TARGETS` describes all languages; their templates are in
+templates/LANGUAGE/.
 """
 
 from __future__ import annotations
@@ -13,10 +13,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from importlib import import_module
 from importlib.util import find_spec
+from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Protocol, cast
 
 from rigidsym.errors import KernelError, MissingExtra, offer
+from rigidsym.kernels import loaded
 
 if TYPE_CHECKING:
     from rigidsym.kernels.ir import Program
@@ -48,8 +50,6 @@ class Printer(Protocol):
     RESERVED: frozenset[str]
 
     def render(self, program: Program, **options: str | bool) -> Mapping[str, str]: ...
-
-    def load(self, name: str, files: Mapping[str, str]) -> ModuleType: ...
 
 
 TARGETS: dict[str, Target] = {  # the default first
@@ -93,7 +93,17 @@ def printer(target: str) -> Printer:
 
 
 def load(target: str, name: str, files: Mapping[str, str]) -> ModuleType:
-    """A Python module of the files; raises MissingExtra if its package is not installed."""
+    """A Python module of the files, the main one first.
+
+    Raises MissingExtra if its package is not installed, and KernelError for JavaScript.
+    """
     if TARGETS[target].package and TARGETS[target].missing:
         raise MissingExtra(f"the target {target}", target)
-    return printer(target).load(name, files)
+    main = Path(next(iter(files)))
+    if main.suffix == ".mjs":
+        raise KernelError(f"{main} runs in browsers and in Node, not in Python; write it to a file")
+    if main.suffix == ".c":
+        from rigidsym.kernels.targets.compiling import build, load_built
+
+        return load_built(f"{name}_c", files, lambda folder: build(folder / main))
+    return loaded.load(main.stem, files)

@@ -7,10 +7,9 @@ function a quantity, in one type, with the functions of <math.h>.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import accumulate
 from math import pi
-from types import ModuleType
 
 from rigidsym.kernels.ir import Call, Compare, Expression, Kernel, Program
 from rigidsym.kernels.targets import numpy, remarks
@@ -37,42 +36,28 @@ def render(program: Program, *, lean: str = "none") -> dict[str, str]:
     precisions = [p for p in PRECISIONS if lean in ("none", p.real)]
     facts = {"is_lean": is_lean, "has_floats": precisions[-1].suffix == "f", "tile": _TILE}
     about = _comment(remarks.about_module("c/header.txt.jinja", program, **facts))
-    declared = []
-    for kernel in program.kernels:
-        signatures = []
-        for precision in precisions:
-            signatures.append(_signature(program, kernel, precision))
-            signatures += [] if is_lean else [_array_signature(program, kernel, precision)]
-        text = _comment(remarks.about_kernel("c/function.txt.jinja", kernel))
-        declared.append({"about": text, "declared": signatures})
-    header = _rendered("c/header.h.jinja", program, about=about, functions=declared)
+    texts = (remarks.about_kernel("c/function.txt.jinja", kernel) for kernel in program.kernels)
+    each = zip(program.kernels, map(_comment, texts), strict=True)
+    header = _rendered(
+        "c/header.h.jinja", program, about=about, each=each, is_lean=is_lean, precisions=precisions
+    )
     if is_lean:
         return {f"{name}.c": _lean(program, precisions[0]), f"{name}.h": header}
-    functions = [numpy.function(kernel, _called(kernel)) for kernel in program.kernels]
+    bodies = {kernel.name: _called(kernel) for kernel in program.kernels}
     types = [(precision.real, precision.suffix) for precision in precisions]
     return {
         f"{name}.c": _source(program, precisions),
         f"{name}.h": header,
-        f"{name}_c.py": numpy.module_text(program, "c/module.py.jinja", functions),
+        f"{name}_c.py": numpy.module_text(program, "c/module.py.jinja", bodies),
         f"{name}_module.c": _rendered("c/module.c.jinja", program, types=types),
     }
 
 
-def load(name: str, files: Mapping[str, str]) -> ModuleType:
-    """The Python module, compiled once a machine."""
-    from rigidsym.kernels.targets.compiling import build, load_built
-
-    return load_built(f"{name}_c", files, lambda folder: build(folder / f"{name}.c"))
-
-
 def _rendered(template: str, program: Program, **facts: object) -> str:
     """The text of a file; a title neither ends a comment nor escapes anything in it."""
-    title = _safe(program.title)
-    return (
-        resources.environment()
-        .get_template(template)
-        .render(program=program, title=title, name=program.name, **facts)
-    )
+    facts |= {"signature": _signature, "array_signature": _array_signature}
+    title, found = _safe(program.title), resources.environment().get_template(template)
+    return found.render(program=program, title=title, name=program.name, **facts)
 
 
 def _source(program: Program, precisions: Sequence[Precision]) -> str:
@@ -87,14 +72,8 @@ def _source(program: Program, precisions: Sequence[Precision]) -> str:
         lines = [f"const REAL {', '.join(read)};"] if read else []
         lines += _statements(kernel, EITHER, is_lean=False)
         lines += [f"{_entry('out', k)} = {_text(e, EITHER)};" for k, e in enumerate(kernel.outputs)]
-        function = {
-            "kernel": kernel,
-            "places": list(accumulate(sizes, initial=0)),  # of the arguments among the inputs
-            "signature": _signature(program, kernel, EITHER),
-            "array_signature": _array_signature(program, kernel, EITHER),
-            "lines": _fitted(lines),
-        }
-        functions.append(function)
+        places = list(accumulate(sizes, initial=0))  # of the arguments among the inputs
+        functions.append((kernel, places, _fitted(lines)))
     groups = (g for k in program.kernels for g in (k.outputs, *(a.components for a in k.arguments)))
     digits = [f"0x{word:08x}" for word in two_over_pi()]
     return _rendered(
@@ -103,6 +82,7 @@ def _source(program: Program, precisions: Sequence[Precision]) -> str:
         tile=_TILE,
         precisions=[precision.filled(program.last) for precision in precisions],
         functions=functions,
+        either=EITHER,
         two_over_pi=",\n".join("    " + ", ".join(digits[k : k + 6]) for k in range(0, 40, 6)),
         half_pi=repr(pi / 2),
         widths=sorted(set(map(len, groups))),
@@ -123,8 +103,7 @@ def _lean(program: Program, precision: Precision) -> str:
         ]
         lines += _statements(kernel, precision, is_lean=True)
         lines += [f"out[{k}] = {_text(e, precision)};" for k, e in enumerate(kernel.outputs)]
-        signature = _signature(program, kernel, precision)
-        functions.append({"signature": signature, "lines": _fitted(lines)})
+        functions.append((_signature(program, kernel, precision), _fitted(lines)))
     filled = precision.filled(program.last)
     return _rendered("c/lean.c.jinja", program, precision=filled, functions=functions)
 

@@ -6,11 +6,9 @@ orientation and one of many call it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
-from types import ModuleType
 
-from rigidsym.errors import KernelError
 from rigidsym.kernels.ir import FUNCTIONS, Kernel, Program
 from rigidsym.kernels.lowering.naming import Names
 from rigidsym.kernels.targets import remarks
@@ -39,12 +37,6 @@ def render(program: Program) -> dict[str, str]:
         f"{program.name}.mjs": _module(about, program),
         f"{program.name}.d.mts": types.render(program=program, ownership=OWNERSHIP),
     }
-
-
-def load(name: str, files: Mapping[str, str]) -> ModuleType:
-    """Raises KernelError: Python does not run JavaScript."""
-    main = next(iter(files), name)
-    raise KernelError(f"{main} runs in browsers and in Node, not in Python; write it to a file")
 
 
 def bare(kernels: Sequence[Kernel]) -> str:

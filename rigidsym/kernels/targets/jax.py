@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from types import ModuleType
+from collections.abc import Iterator
 
-from rigidsym.kernels import loaded
 from rigidsym.kernels.ir import FUNCTIONS, Kernel, Program
 from rigidsym.kernels.targets import python, remarks
 from rigidsym.kernels.targets.infix import broken, infix
@@ -22,29 +20,15 @@ _WORDS = {
 
 def render(program: Program) -> dict[str, str]:
     """The module."""
-    kernels = program.kernels
-    functions = [
-        {
-            "signature": python.signature(kernel),
-            "about": python.about_function(kernel),
-            "body": "\n".join(_body(kernel)),
-        }
-        for kernel in kernels
-    ]
     text = python.module_text(
         program,
         "jax/module.py.jinja",
         about=python.about_module("jax/module.txt.jinja", program),
-        names=[kernel.name for kernel in kernels],
-        functions=functions,
+        names=[kernel.name for kernel in program.kernels],
+        bodies={kernel.name: "\n".join(_body(kernel)) for kernel in program.kernels},
         series=remarks.series(program, python.SERIES, WIDTH, more=2 * _DERIVATIVES),
     )
     return {f"{program.name}_jax.py": text}
-
-
-def load(name: str, files: Mapping[str, str]) -> ModuleType:
-    """The module itself."""
-    return loaded.load(f"{name}_jax", files)
 
 
 def _body(kernel: Kernel) -> Iterator[str]:

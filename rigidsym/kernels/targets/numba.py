@@ -7,10 +7,8 @@ instructions, and computes the orientations with an angle too large for them ane
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from types import ModuleType
+from collections.abc import Iterator
 
-from rigidsym.kernels import loaded
 from rigidsym.kernels.ir import Call, Kernel, Program
 from rigidsym.kernels.targets import numpy, python
 from rigidsym.kernels.targets.precision import DOUBLE
@@ -29,11 +27,11 @@ def render(program: Program) -> dict[str, str]:
     """The module."""
     kernels = program.kernels
     template = resources.environment().get_template("numba/twins.py.jinja")
-    functions = []
+    twins = {}
     for kernel in kernels:
         values = [f"values[{k}]" for k in range(len(kernel.outputs))]
         columns = [f"{a.name}[{k}, i]" for a in kernel.arguments for k in range(len(a.components))]
-        twins = template.render(
+        text = template.render(
             kernel=kernel,
             bracketed=bracketed,
             head=numpy.twin_head(kernel),
@@ -41,22 +39,17 @@ def render(program: Program) -> dict[str, str]:
             body="\n".join(_body(kernel)),
             columns=columns,
         )
-        body = numpy.called(kernel, f"_{kernel.name}_rows", f"{kernel.name}_scalar")
-        functions.append(numpy.function(kernel, body, twins.rstrip()))
+        twins[kernel.name] = text.rstrip()
     text = numpy.module_text(
         program,
         "numba/module.py.jinja",
-        functions,
+        {k.name: numpy.called(k, f"_{k.name}_rows", f"{k.name}_scalar") for k in kernels},
+        twins,
         of_math={"sin", "cos", "sqrt"},
         double=DOUBLE.filled(program.last),
         orders=", ".join(f"c{k}" for k in range(program.orders)) if program.has_series else "",
     )
     return {f"{program.name}_numba.py": text}
-
-
-def load(name: str, files: Mapping[str, str]) -> ModuleType:
-    """The module itself."""
-    return loaded.load(f"{name}_numba", files)
 
 
 def _body(kernel: Kernel) -> Iterator[str]:

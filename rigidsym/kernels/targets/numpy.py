@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
 from math import isnan, prod
-from types import ModuleType
+from types import MappingProxyType
 
-from rigidsym.kernels import loaded
 from rigidsym.kernels.ir import (
     FUNCTIONS,
     Call,
@@ -46,16 +45,15 @@ def render(program: Program) -> dict[str, str]:
     of_math |= {"sqrt", "tan"} if program.has_series else set()
     numbers = (node.value for k in kernels for node in k.nodes if isinstance(node, Number))
     of_math |= {"nan"} if any(map(isnan, numbers)) else set()
-    functions = []
+    twins = {}
     for kernel in kernels:
-        block, scalar = f"_{kernel.name}", f"{kernel.name}_scalar"
-        twin = "\n".join([twin_head(kernel), *_scalar_body(kernel)])
-        twins = "\n\n\n".join((twin, "\n".join(_block(kernel))))
-        functions.append(function(kernel, called(kernel, block, scalar), twins))
+        scalar = "\n".join([twin_head(kernel), *_scalar_body(kernel)])
+        twins[kernel.name] = "\n\n\n".join((scalar, "\n".join(_block(kernel))))
     text = module_text(
         program,
         TEMPLATE,
-        functions,
+        {k.name: called(k, f"_{k.name}", f"{k.name}_scalar") for k in kernels},
+        twins,
         of_math=of_math,
         series=remarks.series(program, python.SERIES, WIDTH),
         has_choices=any(isinstance(v, Choice) for k in kernels for v in k.values),
@@ -63,28 +61,23 @@ def render(program: Program) -> dict[str, str]:
     return {f"{program.name}.py": text}
 
 
-def load(name: str, files: Mapping[str, str]) -> ModuleType:
-    """The module itself."""
-    return loaded.load(name, files)
-
-
 def module_text(
     program: Program,
     template: str,
-    functions: Sequence[Mapping[str, str]],
+    bodies: Mapping[str, str],
+    twins: Mapping[str, str] = MappingProxyType({}),
     *,
     of_math: Iterable[str] = (),
     **more: object,
 ) -> str:
     """The text of a module for NumPy arrays; `of_math` is what it imports from there.
 
-    Its template may extend that of the NumPy module, which alone has `unwrap`.
+    `twins` are the functions that those of arrays rest on, by the names of kernels. Its template
+    may extend that of the NumPy module, which alone has `unwrap`.
     """
     kernels, is_plain = program.kernels, template == TEMPLATE
-    has_twins = any(function["twins"] for function in functions)
-    names = [
-        f"{k.name}{twin}" for k in kernels for twin in ("", "_scalar") if has_twins or not twin
-    ]
+    endings = ("", "_scalar") if twins else ("",)
+    names = [f"{kernel.name}{ending}" for kernel in kernels for ending in endings]
     continuity = program.continuity if is_plain else None
     about_unwrap = ""
     if continuity:
@@ -94,25 +87,16 @@ def module_text(
         program,
         template,
         about=python.about_module(
-            "numpy/module.txt.jinja", program, is_plain=is_plain, has_twins=has_twins
+            "numpy/module.txt.jinja", program, is_plain=is_plain, has_twins=bool(twins)
         ),
         names=[*names, *(["unwrap"] if continuity else [])],
-        functions=functions,
+        bodies=bodies,
+        twins=twins,
         imports=", ".join(sorted({*of_math, "prod"})),
         continuity=continuity,
         about_unwrap=about_unwrap,
         **more,
     )
-
-
-def function(kernel: Kernel, body: str, twins: str = "") -> dict[str, str]:
-    """The pieces of text of a function of arrays; `twins` are the functions that it rests on."""
-    return {
-        "signature": python.signature(kernel, "out: Array | None = None", "threads: int = 1"),
-        "about": python.about_function(kernel),
-        "body": body,
-        "twins": twins,
-    }
 
 
 def called(kernel: Kernel, *functions: str) -> str:

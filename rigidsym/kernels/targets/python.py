@@ -81,6 +81,7 @@ def module_text(
         line = f'    "{argument.name}": {tuple_of(quoted)},'
         components.append(broken(line, WIDTH, " " * 8))
     facts |= {"about": about, "names": sorted(names), "components": components}
+    facts |= {"signature": signature, "about_function": about_function}
     return resources.environment().get_template(template).render(program=program, **facts)
 
 
