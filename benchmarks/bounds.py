@@ -181,7 +181,9 @@ def rigid_body(name: str) -> Kernel:
             (Product((two, a, b, c)), square, less(b, a, b, c), square, Negative(b)),
         ),
     }[name]
-    x = KernelArgument(name="x", components=("x1", "x2", "x3"), units=("",) * 3, about="")
+    x = KernelArgument(
+        name="x", components=("x1", "x2", "x3"), units=("",) * 3, about="", shape=(3,)
+    )
     return Kernel(name=name, arguments=(x,), assignments=(), outputs=(total,), shape=())
 
 

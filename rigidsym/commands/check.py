@@ -51,12 +51,9 @@ def _records(path: Path) -> list[Path]:
 def _findings(record: Path) -> Iterator[tuple[Path, str, str]]:
     """Each file, what is wrong with it, and what its certificate proves."""
     content = content_of(record)
-    version = content.get("schema_version")
-    if content.get("schema") != SCHEMA:
-        yield record, "cannot be read as the record of a derivation; derive it again", ""
-        return
-    if version != SCHEMA_VERSION:
-        yield record, f"schema version {version}, expected {SCHEMA_VERSION}", ""
+    if (content.get("schema"), content.get("schema_version")) != (SCHEMA, SCHEMA_VERSION):
+        problem = "cannot be read as the record of a derivation"
+        yield record, f"{problem}, schema version {SCHEMA_VERSION}; derive it again", ""
         return
     try:
         fresh = printed(read_record(content.get("request"), source=str(record)))

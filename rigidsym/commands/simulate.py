@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 import numpy as np
@@ -19,9 +18,6 @@ from rigidsym.simulation.problem import NEEDED
 from rigidsym.simulation.solver import METHODS
 from rigidsym.system.files import write_text
 from rigidsym.system.processes import bar
-
-if TYPE_CHECKING:
-    from rigidsym.simulation.trajectory import Trajectory
 
 
 @make("simulate", method=METHODS)
@@ -49,7 +45,10 @@ def command(source: str, **options: Any) -> None:
         )
     click.echo(result.report())
     if out is not None:
-        _write(result, out)
+        columns = result.columns()
+        rows = np.column_stack([*columns.values()])
+        write_table(out, tuple(columns), rows.dtype, [(rows, ())])
+        click.echo(out)
     if animate is not None:
         start = dict(constants)
         for k, name in enumerate(result.coordinates):
@@ -75,11 +74,3 @@ def _motion(source: str, *, is_page: bool) -> Motion:
 
         check_shown(motion)  # before minutes of simulation
     return motion
-
-
-def _write(result: Trajectory, out: Path) -> None:
-    """The times and states in a table."""
-    columns = result.columns()
-    rows = np.column_stack([*columns.values()])
-    write_table(out, tuple(columns), rows.dtype, [(rows, ())])
-    click.echo(out)

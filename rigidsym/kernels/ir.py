@@ -157,14 +157,7 @@ class KernelArgument(NamedTuple):
     components: tuple[str, ...]
     units: tuple[str, ...]
     about: str
-    is_matrix: bool = False  # (3, 3), row by row; else a vector
-    is_scalar: bool = False  # a number, such as the time
-
-    @property
-    def shape(self) -> tuple[int, ...]:
-        if self.is_scalar:
-            return ()
-        return (3, 3) if self.is_matrix else (len(self.components),)
+    shape: tuple[int, ...]  # (3, 3) of a matrix, () of a number such as the time, else (n,)
 
 
 class Assignment(NamedTuple):
@@ -338,4 +331,4 @@ class Program(NamedTuple):
     @property
     def has_matrices(self) -> bool:
         """Whether an argument is one."""
-        return any(a.is_matrix for kernel in self.kernels for a in kernel.arguments)
+        return any(len(a.shape) > 1 for kernel in self.kernels for a in kernel.arguments)

@@ -31,7 +31,6 @@ from rigidsym.errors import TemplateFault, offer
 from rigidsym.system.files import cache_folder
 
 _PACKAGE = Path(__file__).resolve().parent.parent
-_SHIPPED = "rigidsym"  # begins the name of a shipped template, which an own one extends
 _OWN: ContextVar[Path | None] = ContextVar("own templates", default=None)
 NOTES = "templates/notes"  # those that users may replace
 _HOMES = (_PACKAGE / "_data", _PACKAGE.parent)
@@ -50,16 +49,10 @@ def folder(kind: str) -> Path:
     raise FileNotFoundError(f"rigidsym is installed without its {kind}: looked for {places}")
 
 
+@cache  # each is read once
 def text(kind: str, name: str) -> str:
     """The text of one file of a folder."""
-    return _shipped(kind, name)[0]
-
-
-@cache
-def _shipped(kind: str, name: str) -> tuple[str, str]:
-    """(text, path) of a file of the package, which is read once."""
-    path = folder(kind) / name
-    return path.read_text(encoding="utf-8"), str(path)
+    return (folder(kind) / name).read_text(encoding="utf-8")
 
 
 def names(kind: str, suffix: str) -> tuple[str, ...]:
@@ -105,46 +98,39 @@ def environment(**options: Any) -> SandboxedTemplates:
     Templates do not escape: each kind of document escapes its own text before it reaches a
     template. It is kept for all documents, with the templates that it has compiled.
     """
-    return SandboxedTemplates(template, **options)
+    return SandboxedTemplates(**options)
 
 
 def template(name: str) -> tuple[str, str]:
-    """(text, file) of one template: "note.tex.jinja" or "en/note.md.jinja" of notes, the user's own
-    if there is one, or "numpy/module.py.jinja" of kernels, which is always the shipped one.
+    """(text, file) of one template, such as "en/note.md.jinja": the user's own if there is one.
 
     "rigidsym/en/note.md.jinja" is the shipped one, which the user's own may extend. Raises
     FileNotFoundError if there is none and for a name that leads out of the folder, and
     UnicodeDecodeError if it is not text.
     """
-    kind, shipped = _located(name)
-    own = _OWN.get() if kind == NOTES and shipped == name else None
-    if own is not None and (own / name).is_file():
-        return (own / name).read_text(encoding="utf-8"), str(own / name)
-    return _shipped(kind, shipped)
-
-
-@cache  # Jinja2 asks for each template whenever it is used, a thousand times for 24 notes
-def _located(name: str) -> tuple[str, str]:
-    """The folder of a template and its name there."""
     path = Path(name)
     if path.is_absolute() or ".." in path.parts:
         raise FileNotFoundError(f"{name} is not the name of a file among the templates")
-    first, *rest = path.parts
-    if first == _SHIPPED:
-        return NOTES, Path(*rest).as_posix()
-    is_of_notes = not rest or not (folder("templates") / first).is_dir()
-    return NOTES if is_of_notes else "templates", name
+    own = _OWN.get()
+    if own is not None and (own / path).is_file():
+        return (own / path).read_text(encoding="utf-8"), str(own / path)
+    return _shipped(name.removeprefix("rigidsym/"))
+
+
+@cache  # Jinja2 asks for each template whenever it is used, a thousand times for 24 notes
+def _shipped(name: str) -> tuple[str, str]:
+    home = folder(NOTES) if (folder(NOTES) / name).is_file() else folder("templates")
+    return (home / name).read_text(encoding="utf-8"), str(home / name)
 
 
 class SandboxedTemplates(ImmutableSandboxedEnvironment):
-    """Templates in Jinja's sandbox, by a function that finds them: name -> text, file.
+    """Templates in Jinja's sandbox, shipped ones and the user's own.
 
     An undefined name, bad syntax or a forbidden access raises TemplateFault with the template and
     the line. `--timeout` ends a template that does not.
     """
 
-    def __init__(self, find: Callable[[str], tuple[str, str]], **options: Any) -> None:
-        self._find = find
+    def __init__(self, **options: Any) -> None:
         compiled = cache_folder("templates")
         settings: dict[str, Any] = {
             "loader": FunctionLoader(self._load),
@@ -160,7 +146,7 @@ class SandboxedTemplates(ImmutableSandboxedEnvironment):
     def _load(self, name: str) -> tuple[str, str, Callable[[], bool]] | None:
         """Text, file, and whether they are still the same: else Jinja2 loads them again."""
         try:
-            text, file = self._find(name)
+            text, file = template(name)
         except UnicodeDecodeError as error:
             raise TemplateFault(f"{name} is not text in UTF-8: {error.reason}") from error
         except (FileNotFoundError, ValueError):  # also a name with NUL
@@ -178,7 +164,7 @@ class SandboxedTemplates(ImmutableSandboxedEnvironment):
         known: set[str] = set()
         while extended := base.find(nodes.Extends):
             try:
-                base = self.parse(*self._find(extended.template.as_const()))
+                base = self.parse(*template(extended.template.as_const()))
             except (FileNotFoundError, ValueError, nodes.Impossible):  # Jinja2 says so
                 return
             known |= {block.name for block in base.find_all(nodes.Block)}

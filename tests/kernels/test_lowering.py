@@ -173,7 +173,7 @@ GUARDED = {  # divisors, which are NaN where rounding leaves no digit of them
 
 
 def test_divisors_are_guarded_where_they_can_vanish(golden):
-    q = ir.KernelArgument(name="q", components=tuple("abcd"), units=("",) * 4, about="")
+    q = ir.KernelArgument(name="q", components=tuple("abcd"), units=("",) * 4, about="", shape=(4,))
     lines = []
     for title, expressions in GUARDED.items():
         assignments, outputs = lower_all(expressions)
@@ -227,7 +227,9 @@ AREA = ir.Assignment("x0", ir.Product((ir.Name("a"), ir.Name("b"))))
     [((), "x0 is used before it is defined"), ((AREA, AREA), "x0 is defined twice")],
 )
 def test_a_kernel_that_is_not_single_assignment_is_refused(assignments, message):
-    sides = ir.KernelArgument(name="q", components=("a", "b"), units=("m", "m"), about="")
+    sides = ir.KernelArgument(
+        name="q", components=("a", "b"), units=("m", "m"), about="", shape=(2,)
+    )
     with pytest.raises(KernelError, match=f"^area: {message}$"):
         ir.Kernel(
             name="area",

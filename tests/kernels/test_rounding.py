@@ -24,7 +24,7 @@ A, B, ONE, TENTH = Name("a"), Name("b"), Number(Fraction(1)), Number(Fraction(1,
 def kernel(*values) -> Kernel:
     """Assignments x0, x1, ... of two inputs; the last one is the output."""
     lines = tuple(Assignment(f"x{k}", value) for k, value in enumerate(values))
-    q = KernelArgument(name="q", components=("a", "b"), units=("", ""), about="")
+    q = KernelArgument(name="q", components=("a", "b"), units=("", ""), about="", shape=(2,))
     return Kernel(
         name="k", arguments=(q,), assignments=lines, outputs=(Name(lines[-1].name),), shape=()
     )

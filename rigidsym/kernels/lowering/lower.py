@@ -91,8 +91,7 @@ class _Lowering:
                 components=tuple(self._known[symbol] for symbol in vector.symbols),
                 units=vector.units,
                 about=vector.about,
-                is_scalar=vector.is_scalar,
-                is_matrix=is_matrix,
+                shape=(3, 3) if is_matrix else (len(vector.names),) * (not vector.is_scalar),
             )
         return self.arguments[vector.name]
 

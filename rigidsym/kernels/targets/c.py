@@ -41,12 +41,26 @@ def render(program: Program, *, lean: str = "none") -> dict[str, str]:
     header = _rendered(
         "c/header.h.jinja", program, about=about, each=each, is_lean=is_lean, precisions=precisions
     )
+    groups = (g for k in program.kernels for g in (k.outputs, *(a.components for a in k.arguments)))
+    digits = [f"0x{word:08x}" for word in two_over_pi()]
+    own = precisions[0] if is_lean else EITHER
+    source = _rendered(
+        "c/lean.c.jinja" if is_lean else "c/source.c.jinja",
+        program,
+        tile=_TILE,
+        precisions=[precision.filled(program.last) for precision in precisions],
+        functions=[_function(kernel, own, is_lean=is_lean) for kernel in program.kernels],
+        own=own,
+        two_over_pi=",\n".join("    " + ", ".join(digits[k : k + 6]) for k in range(0, 40, 6)),
+        half_pi=repr(pi / 2),
+        widths=sorted(set(map(len, groups))),
+    )
     if is_lean:
-        return {f"{name}.c": _lean(program, precisions[0]), f"{name}.h": header}
+        return {f"{name}.c": source, f"{name}.h": header}
     bodies = {kernel.name: _called(kernel) for kernel in program.kernels}
     types = [(precision.real, precision.suffix) for precision in precisions]
     return {
-        f"{name}.c": _source(program, precisions),
+        f"{name}.c": source,
         f"{name}.h": header,
         f"{name}_c.py": numpy.module_text(program, "c/module.py.jinja", bodies),
         f"{name}_module.c": _rendered("c/module.c.jinja", program, types=types),
@@ -60,52 +74,28 @@ def _rendered(template: str, program: Program, **facts: object) -> str:
     return found.render(program=program, title=title, name=program.name, **facts)
 
 
-def _source(program: Program, precisions: Sequence[Precision]) -> str:
-    functions = []
-    for kernel in program.kernels:
-        sizes = [len(argument.components) for argument in kernel.arguments]
-        read = [
-            f"{name} = {_entry('in', k)}"
-            for k, name in enumerate(kernel.components)
-            if name in kernel.used
-        ]
-        lines = [f"const REAL {', '.join(read)};"] if read else []
-        lines += _statements(kernel, EITHER, is_lean=False)
-        lines += [f"{_entry('out', k)} = {_text(e, EITHER)};" for k, e in enumerate(kernel.outputs)]
-        places = list(accumulate(sizes, initial=0))  # of the arguments among the inputs
-        functions.append((kernel, places, _fitted(lines)))
-    groups = (g for k in program.kernels for g in (k.outputs, *(a.components for a in k.arguments)))
-    digits = [f"0x{word:08x}" for word in two_over_pi()]
-    return _rendered(
-        "c/source.c.jinja",
-        program,
-        tile=_TILE,
-        precisions=[precision.filled(program.last) for precision in precisions],
-        functions=functions,
-        either=EITHER,
-        two_over_pi=",\n".join("    " + ", ".join(digits[k : k + 6]) for k in range(0, 40, 6)),
-        half_pi=repr(pi / 2),
-        widths=sorted(set(map(len, groups))),
-    )
-
-
-def _lean(program: Program, precision: Precision) -> str:
-    functions = []
-    for kernel in program.kernels:
-        lines = [
-            f"(void){a.name};" for a in kernel.arguments if kernel.used.isdisjoint(a.components)
-        ]
-        lines += [
-            f"const {precision.real} {name} = {a.name}[{k}];"
-            for a in kernel.arguments
-            for k, name in enumerate(a.components)
-            if name in kernel.used
-        ]
-        lines += _statements(kernel, precision, is_lean=True)
-        lines += [f"out[{k}] = {_text(e, precision)};" for k, e in enumerate(kernel.outputs)]
-        functions.append((_signature(program, kernel, precision), _fitted(lines)))
-    filled = precision.filled(program.last)
-    return _rendered("c/lean.c.jinja", program, precision=filled, functions=functions)
+def _function(
+    kernel: Kernel, own: Precision, *, is_lean: bool
+) -> tuple[Kernel, list[int], list[str]]:
+    """The kernel, the places of its arguments among the inputs, and its statements."""
+    places = list(accumulate((len(a.components) for a in kernel.arguments), initial=0))
+    entries = [_entry("in", k) for k in range(places[-1])]
+    lines = []
+    if is_lean:
+        entries = [f"{a.name}[{k}]" for a in kernel.arguments for k in range(len(a.components))]
+        idle = [a.name for a in kernel.arguments if kernel.used.isdisjoint(a.components)]
+        lines = [f"(void){name};" for name in idle]
+    named = zip(kernel.components, entries, strict=True)
+    read = [f"{name} = {entry}" for name, entry in named if name in kernel.used]
+    read = read if is_lean or not read else [", ".join(read)]
+    lines += [f"const {own.real} {text};" for text in read]
+    lines += _statements(kernel, own, is_lean=is_lean)
+    for k, output in enumerate(kernel.outputs):
+        entry = f"out[{k}]" if is_lean else _entry("out", k)
+        lines.append(f"{entry} = {_text(output, own)};")
+    # the template indents them
+    fitted = [broken(f"    {line}", _WIDTH, " " * 8).removeprefix("    ") for line in lines]
+    return kernel, places, fitted
 
 
 def _called(kernel: Kernel) -> str:
@@ -115,7 +105,7 @@ def _called(kernel: Kernel) -> str:
     """
     compiled = f"_compiled.{kernel.name}"
     prepared = numpy.called(kernel, compiled)
-    if any(argument.is_matrix for argument in kernel.arguments):
+    if any(len(argument.shape) > 1 for argument in kernel.arguments):
         return prepared
     vectors = [*(argument.name for argument in kernel.arguments), "out"]
     lines = [
@@ -194,11 +184,6 @@ def _text(expression: Expression, precision: Precision, *, is_lean: bool = False
 def _entry(array: str, k: int) -> str:
     """Of components that are `apart` from one to the next."""
     return f"{array}[{f'{k} * ' if k > 1 else ''}{'apart' if k else 0}]"
-
-
-def _fitted(lines: Sequence[str]) -> list[str]:
-    """Statements that the template indents."""
-    return [broken(f"    {line}", _WIDTH, " " * 8).removeprefix("    ") for line in lines]
 
 
 def _comment(paragraphs: Sequence[remarks.Paragraph]) -> str:

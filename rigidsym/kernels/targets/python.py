@@ -64,9 +64,9 @@ def passed(kernel: Kernel, library: str) -> list[str]:
     """What a function of arrays passes on: name=value."""
     values = {a.name: a.name for a in kernel.arguments}
     for a in kernel.arguments:
-        if a.is_matrix:
+        if len(a.shape) > 1:
             values[a.name] = f'_entries("{a.name}", {a.name}, {a.shape})'
-        if a.is_scalar:
+        if not a.shape:
             values[a.name] = f"{library}.asarray({a.name})[..., None]"
     return [f"{name}={value}" for name, value in values.items()]
 

@@ -15,20 +15,17 @@ from rigidsym.kernels.ir import (
     Choice,
     Expression,
     Kernel,
-    Name,
     Negative,
     Product,
     Program,
     Sum,
-    names_in,
     walk,
 )
 from rigidsym.kernels.lowering.rounding import SINE, adds_angles, rounding
-from rigidsym.kernels.targets.infix import broken, infix
+from rigidsym.kernels.targets.infix import broken
 from rigidsym.system import resources
 from rigidsym.version import OWNERSHIP, __version__
 
-_MOST_NAMES = 8
 _BLANK_LINES = re.compile(r"\n\s*\n")
 _COUNTED = {"sin": "trigonometric", "cos": "trigonometric", "sqrt": "roots", "abs": "sizes"}
 _COUNTED["atan2"] = "inverse"
@@ -62,14 +59,11 @@ def about_module(template: str, program: Program, **facts: object) -> list[Parag
 
 def about_kernel(template: str, kernel: Kernel, **facts: object) -> list[Paragraph]:
     """The paragraphs on a function."""
-    divisors = [divisor.text for divisor in kernel.divisors if isinstance(divisor, Name)]
-    values = [kernel.guards[name].value for name in divisors if name in kernel.guards]
     return paragraphs(
         template,
         kernel=kernel,
         operations=count(kernel.values),
         bound=rounding(kernel),
-        poles=list(dict.fromkeys(_divisor(kernel, value) for value in values)),
         in_units=in_units,
         **facts,
     )
@@ -114,20 +108,6 @@ def comment(texts: Sequence[Paragraph], width: int, safe: Callable[[str], str]) 
     blocks = (filled(paragraph, width - len(" * ")) for paragraph in texts)
     text = safe("\n\n".join("\n".join(block) for block in blocks))
     return "\n".join(f" * {line}".rstrip() for line in text.split("\n"))
-
-
-def _divisor(kernel: Kernel, divisor: Name) -> str:
-    """A function of inputs as a formula; of anything else, what it depends on."""
-    inputs: dict[str, tuple[str, ...]] = {name: (name,) for name in kernel.components}
-    for name, value in kernel.assignments:
-        behind = {i for n in names_in(value) for i in inputs[n]}
-        inputs[name] = tuple(n for n in kernel.components if n in behind)
-    call = kernel.calls.get(divisor.text)
-    if call is not None and call.argument.text in kernel.components:
-        return infix(call)
-    names = inputs[divisor.text]
-    listed = ", ".join(names) if len(names) <= _MOST_NAMES else f"{len(names)} of the inputs"
-    return f"an expression in {listed}"
 
 
 def count(expressions: Iterable[Expression]) -> Counter[str]:
