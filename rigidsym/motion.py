@@ -217,12 +217,10 @@ def derive(
         )
     if not isinstance(body, Body | None):
         raise TypeError(f"expected a body, such as rs.solid('cone'), got {body!r}")
-    if not isinstance(only, Collection):
+    if not (isinstance(only, Collection) and all(isinstance(name, str) for name in only)):
         raise TypeError(f"only: expected names of quantities, got {only!r}")
     wanted = (only,) if isinstance(only, str) else tuple(only)
     for name in wanted:
-        if not isinstance(name, str):
-            raise TypeError(f"only: expected names of quantities, got {name!r}")
         if name not in QUANTITIES:
             raise QuantityError(f"no quantity {name!r}; {offer(name, QUANTITIES)}")
     with nullcontext() if timeout is None else time_limit(timeout):

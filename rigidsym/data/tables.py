@@ -247,8 +247,6 @@ class ParquetTable(Table):
 # Text
 
 _MISSING = ["", "-", "na", "n/a", "nan", "null", "none", "#n/a"]
-_WIDEST = 10_000  # columns
-_TOO_WIDE = f"more than {_WIDEST} columns"
 _QUOTES = "quotes that do not end where the field does; expected one row per line"
 _OTHER_KINDS = {  # by which files that are no plain text begin
     b"\xff\xfe": "text in UTF-16",
@@ -288,8 +286,8 @@ class TextTable(Table):
         bare = re.sub(r'"[^"]*"', "", first)
         self.separator = next((mark for mark in (";", "\t", ",") if mark in bare), None)
         fields = self._fields(first)
-        if fields is None or len(fields) > _WIDEST:
-            raise DataError(f"{path}, line {line}: {_QUOTES if fields is None else _TOO_WIDE}")
+        if fields is None:
+            raise DataError(f"{path}, line {line}: {_QUOTES}")
         self.width, self._header = len(fields), int(line > 0)
         self.names = tuple(fields)
         if self._has_number(fields):

@@ -188,9 +188,14 @@ class Forces:
             raise ModelError(f"{shown} rates; expected V(q, t)")
         if self.potential.free_symbols and not self.potential.has(*model.coordinates):
             names = ", ".join(map(as_typed, model.coordinates))
-            raise ModelError(
-                f"{shown} none of the coordinates {names}; expected a text, or functions of t"
+            plain = {q.func.__name__ for q in model.coordinates}
+            plain &= {symbol.name for symbol in self.potential.free_symbols}
+            remedy = (
+                f"{min(plain)} is a symbol here; expected a text, or the function {min(plain)}(t)"
+                if plain
+                else "expected one of them; a constant exerts no force, and is left out"
             )
+            raise ModelError(f"{shown} none of the coordinates {names}; {remedy}")
         for expression in self._of_parts:
             what = "t" if depends_on_time(expression) else "Ω′"
             if what == "t" or expression.has(*OMEGA_BODY):

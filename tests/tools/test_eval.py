@@ -129,7 +129,6 @@ def test_a_header_without_rows_gives_one_and_a_message(tmp_path):
 def test_what_is_no_table_of_numbers_is_refused(tmp_path):
     np.save(tmp_path / "words.npy", np.array(["a", "b"]))
     np.save(tmp_path / "objects.npy", np.array([{}, {}]), allow_pickle=True)
-    (tmp_path / "wide.csv").write_text("1," * 100_000)
     np.save(tmp_path / "flat.npy", np.zeros(3))
     (tmp_path / "broken.npy").write_bytes(b"nothing")
     (tmp_path / "broken.parquet").write_bytes(b"nothing")
