@@ -168,9 +168,6 @@ class Motion(Derivation):
             "text/plain": show(self, notation=self.notation),
         }
 
-    def _repr_latex_(self) -> str:
-        return self._repr_mimebundle_()["text/latex"]
-
 
 def derive(
     model: RotationModel | str,

@@ -11,7 +11,6 @@ import click
 from rigidsym.commands.command import command as make
 from rigidsym.data.columns import counted
 from rigidsym.data.mass import ENDINGS, inertia_of, mesh_inertia, read_mesh_file
-from rigidsym.system.processes import bar
 
 
 @make("inertia")
@@ -24,9 +23,7 @@ def command(file: Path, allow: bool, **options: Any) -> None:
             fact, other = ("a mesh", "particles") if is_mesh else ("a file of particles", "meshes")
             raise click.UsageError(f"{file} is {fact}; --{name} is for {other}")
     if not is_mesh:
-        with bar(file.name) as progress:
-            columns = options["columns"] or None
-            body = inertia_of(file, columns=columns, allow=allow, progress=progress)
+        body = inertia_of(file, columns=options["columns"] or None, allow=allow)
     elif mass is None and density is None:
         raise click.UsageError(f"{file} is a mesh: expected --mass or --density")
     else:

@@ -16,7 +16,6 @@ from numpy.typing import ArrayLike, NDArray
 from rigidsym.data.columns import ColumnNames, names_for
 from rigidsym.data.tables import ArrayTable, Table, TextTable, open_table
 from rigidsym.errors import BodyError, DataError, MissingExtra
-from rigidsym.system.processes import Progress
 
 Array = NDArray[np.float64]
 
@@ -134,7 +133,6 @@ def inertia_of(
     *,
     columns: Sequence[str] | None = None,
     allow: bool = False,
-    progress: Progress | None = None,
 ) -> MassProperties:
     """Mass, centre of mass, inertia tensor about it and principal axes of point masses.
 
@@ -148,8 +146,6 @@ def inertia_of(
         Names of the columns in their order, such as ("x", "y", "z", "m").
     allow : bool, optional
         Accept negative masses.
-    progress : callable, optional
-        Called with the share of the particles that have been read.
 
     Returns
     -------
@@ -174,7 +170,7 @@ def inertia_of(
         if isinstance(table, TextTable):
             table.quotes = False  # it may be another kind of text
         used, factors = _columns(table, columns)
-        return _properties(table.read(used, progress).table * factors, table, allow=allow)
+        return _properties(table.read(used).table * factors, table, allow=allow)
     except (BodyError, DataError) as error:
         if path is None or str(path) in str(error):
             raise BodyError(str(error)) from None

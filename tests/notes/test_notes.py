@@ -171,7 +171,7 @@ def test_no_symbol_is_left_in_the_old_notation():
     assert [old for old in tex for text in shown[:2] if old in text] == []
     assert [old for old in characters for text in shown[2:] if old in text] == []
     assert "Ω" not in motion.text("angular_velocity_body")
-    assert r"\Omega" not in motion._repr_latex_()
+    assert r"\Omega" not in motion._repr_mimebundle_()["text/latex"]
     assert motion.kernels().source == derived("ZYX", passive=True).kernels().source
 
 

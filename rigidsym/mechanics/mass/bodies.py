@@ -126,12 +126,11 @@ def solid(
         known = ", ".join(length.key for length in chosen.lengths)
         raise BodyError(f"{shape} has no {', '.join(sorted(unknown))}; it has {known}")
     # Lengths that are not given are symbols by their usual letters.
-    values: list[sp.Expr] = []
-    for length in chosen.lengths:
-        given = lengths.get(length.key, [sp.Symbol(letter) for letter in length.names])
-        values += [
-            symbolic(e, length.key) for e in (given if isinstance(given, Sequence) else [given])
-        ]
+    given = {
+        length.key: lengths.get(length.key, sp.symbols(length.names)) for length in chosen.lengths
+    }
+    listed = ((k, e if isinstance(e, Sequence) else [e]) for k, e in given.items())
+    values = [symbolic(e, key) for key, entries in listed for e in entries]
     total = sp.Symbol("M") if mass is None and density is None else mass
     exact = [None if e is None else symbolic(e, "mass or density") for e in (total, density)]
     made = shaped(shape, values, mass=exact[0], density=exact[1])
