@@ -16,6 +16,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import reduce
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +28,8 @@ from rigidsym.tools.certificate.checker import (
     Record,
     Tree,
     Unproved,
+    derivative,
+    matrix_of,
     names_in,
     parts_of,
     printed_in,
@@ -45,7 +48,6 @@ turns_in_body product squares same F shown t s u w a b c d e D H inertia derivat
 total
 """
 _TAKEN = frozenset(_WORDS.split())
-_MOST_DEFINITIONS = 20  # Coq unfolds them all, which doubles expressions again and again
 _FIRST = "rotation_matrix", "angular_velocity_space"
 _TURNS = {"space": "turns", "body": "turns_in_body"}
 _ABOUT_POINT = (
@@ -146,16 +148,12 @@ class _Section:
         self, record: Mapping[str, Any], claims: Sequence[str], stated: Mapping[str, Any]
     ) -> None:
         self.record, self.claims, self.stated = record, claims, stated
-        if not claims:
+        if not claims or record["definitions"]:  # Coq unfolds them, which doubles expressions
             raise Unproved
         self.names, self.printed = Record(record), printed_in(record)
-        inside = set().union(*map(names_in, self.trees(*claims)))
-        definitions = self.names.definitions.items()
-        self.definitions = {name: text for name, text in definitions if name in inside}
-        if len(self.definitions) > _MOST_DEFINITIONS:
-            raise Unproved
         is_passive = record["presentation"] == "passive"
         self.shown = "shown" if is_passive else "F"
+        self.rate = derivative({q: ("name", f"{q}_dot") for q in self.names.q})
         self.factors = [*self._factors()]
         self.trees_of_rotation = [tree for factor in self.factors for tree in factor.trees]
         self.facts, self.known, self.apart = list[str](), list[str](), set[tuple[str, ...]]()
@@ -191,7 +189,7 @@ class _Section:
         return f"{name}_" if name in _TAKEN else name
 
     def name(self, name: str, at: str = "t") -> str:
-        of_time = {*self.names.q, *self.names.rates, *self.names.definitions}
+        of_time = {*self.names.q, *self.names.rates}
         letter = "PI" if name == "pi" else self.letter(name)
         return f"({letter} {at})" if name in of_time else letter
 
@@ -209,19 +207,10 @@ class _Section:
         return reduce(lambda right, left: f"(plus {left} {right})", reversed(terms))
 
     def trees(self, *names: str) -> list[Tree]:
-        """All that is printed of some quantities, with the definitions that they need."""
+        """All that is printed of some quantities."""
         if not {*names} <= {*self.printed}:
             raise Unproved
-        texts, trees = [self.printed[name] for name in names], dict[Tree, None]()
-        while texts:
-            text = texts.pop()
-            if isinstance(text, list):
-                texts += text
-            elif (tree := tree_of(text)) not in trees:
-                trees[tree] = None
-                defined = sorted(names_in(tree) & {*self.names.definitions})
-                texts += [self.names.definitions[name] for name in defined]
-        return [*trees]
+        return [*dict.fromkeys(chain(*(matrix_of(self.printed[name]).entries for name in names)))]
 
     def divisors(self, *names: str) -> str:
         """Hypotheses that divisors are not zero, apart from those of F."""
@@ -250,14 +239,14 @@ class _Section:
             is_fixed = not names_in(("", *trees[:3])) - {*self.names.constants, "pi"}
             if kind in ("x", "y", "z"):
                 angle = trees[3][1]
-                function, rate = self.real(angle, "s"), self._rate(angle)
+                function, rate = self.real(angle, "s"), self.real(self.rate(angle))
                 velocity = f"(V {' '.join(rate if kind == axis else '0' for axis in 'xyz')})"
                 proof = f"apply (turn_{kind}_turns (fun s => {function})); by_rules t"
                 yield _Factor(f"turn_{kind} {function}", velocity, proof, [("cos", angle)])
                 continue
             text = f"turn (V {' '.join(axis)}) {cosine} {sine}"
             if is_fixed and kind in ("axis_angle", "constant_turn"):
-                rate = self._rate(trees[3][1]) if kind == "axis_angle" else "0"
+                rate = self.real(self.rate(trees[3][1])) if kind == "axis_angle" else "0"
                 functions = f"(fun s => {cosine}) (fun s => {sine})"
                 proof = f"apply (turn_turns (V {' '.join(axis)}) {functions}); cbn; first"
                 proof += " [ calculation t | by_rules t ]"
@@ -273,21 +262,6 @@ class _Section:
             raise Unproved
         velocity = self.text(self.printed["angular_velocity_space"])
         return _Factor(text, velocity, "turning ltac:(calculation t)", trees)
-
-    def _rate(self, angle: Tree) -> str:
-        """The rate of a sum of multiples of coordinates."""
-        kind, *parts = angle
-        if kind == "number" or (kind == "name" and parts[0] in (*self.names.constants, "pi")):
-            return "0"
-        if kind == "name":
-            return self.name(f"{parts[0]}_dot")
-        if kind in ("+", "-"):
-            return f"({self._rate(parts[0])} {kind} {self._rate(parts[1])})"
-        if kind == "*" and not names_in(parts[0]):
-            return f"({self.real(parts[0])} * {self._rate(parts[1])})"
-        if kind == "/" and not names_in(parts[1]):
-            return f"({self._rate(parts[0])} * / {self.real(parts[1])})"
-        raise Unproved
 
     def head(self) -> Iterator[str]:
         """Coordinates as functions of time, facts, F, and its angular velocity."""
@@ -318,10 +292,8 @@ class _Section:
         texts = [factor.text for factor in self.factors]
         product = reduce(lambda right, left: f"mul ({left}) ({right})", reversed(texts))
         yield f"Definition F s := {product}. (* R *)"
-        for name, text in self.definitions.items():
-            yield f"Definition {self.letter(name)} t := {self.text(text)}."
         yield from self._turning()
-        words = ["F", *["inertia"] * ("body" in self.record), *map(self.letter, self.definitions)]
+        words = ["F", *["inertia"] * ("body" in self.record)]
         # dF/dt = C(Ω) F gives d(Fᵀ)/dt = −Fᵀ C(Ω) = C(−Fᵀ Ω) Fᵀ.
         if self.shown != "F":
             yield "Definition shown s := transpose (F s)."
@@ -365,11 +337,7 @@ class _Section:
         self.facts += [f"(squares {text})" for text in angles]
         for k, divisor in enumerate(_divisors(self.trees_of_rotation)):
             text = self.real(divisor)
-            is_above_one = text.startswith("((((1 * 1) + ")  # of 1 + g², by Gibbs' vector
-            yield f"{'Lemma' if is_above_one else 'Hypothesis'} nonzero_{k} :"
-            yield f"  forall t, {text} <> 0."
-            if is_above_one:
-                yield "Proof. intro; nra. Qed."
+            yield f"Hypothesis nonzero_{k} : forall t, {text} <> 0."
             self.known.append(f"(nonzero_{k} t)")
             self.apart.add(self.summands(divisor))
 
