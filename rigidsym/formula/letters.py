@@ -150,20 +150,16 @@ def _factor_key(factor: sp.Expr, letters: Letters) -> Key:
     if base.is_NumberSymbol:
         return (Rank.UNIVERSAL, base.sort_key(), exponent)
     if base.func in FUNCTIONS or is_application(base):
-        function = _FUNCTION_ORDER.get(base.func, len(FUNCTIONS))
-        return (Rank.FUNCTION, _angle_key(base.args[0], letters), function, exponent)
+        # Angles in the order of their coordinates; an angle alone before its multiples.
+        angle, function = base.args[0], _FUNCTION_ORDER.get(base.func, len(FUNCTIONS))
+        symbols = angle.atoms(sp.Symbol, AppliedUndef) & letters.places.keys()
+        places = sorted(letters.places[symbol] for symbol in symbols)
+        return (Rank.FUNCTION, places, angle.sort_key(), function, exponent)
     place = letters.places.get(base)
     if place is None:
         return (Rank.CONSTANT, not _MASS.fullmatch(str(base)), base.sort_key(), exponent)
     order, index = place
     return (Rank.RATE if order else Rank.COORDINATE, -order, index, exponent)
-
-
-def _angle_key(angle: sp.Expr, letters: Letters) -> Key:
-    """Angles in the order of the coordinates they hold; an angle alone before its multiples."""
-    symbols = angle.atoms(sp.Symbol, AppliedUndef)
-    held = sorted(letters.places[symbol] for symbol in symbols if symbol in letters.places)
-    return (held, angle.sort_key())
 
 
 @lru_cache(maxsize=1 << 15)  # a sum asks for the keys of what its own terms hold, at every depth

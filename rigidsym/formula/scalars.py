@@ -120,7 +120,13 @@ class _ScalarWalk:
         if node.is_Rational:
             return _rational(node)
         if node.is_Add:
-            return self._sum(node)
+            first, *others = ordered_terms(node.args, self.letters)
+            parts = [self.expression(first)]
+            for term in others:
+                minus = is_negative(term)
+                value = self.expression(-term if minus else term)
+                parts += [tree.MINUS if minus else tree.PLUS, tree.bracketed(value)]
+            return tree.row(*parts)
         if node.is_Mul or _is_reciprocal(node):
             return self._product(node)
         if node.is_Pow:
@@ -139,17 +145,6 @@ class _ScalarWalk:
                 node.func.__name__, tree.Bracket(tree.joined(arguments, tree.Sign(",")))
             )
         return self.letters.name(node)
-
-    def _sum(self, node: sp.Add) -> tree.Formula:
-        first, *others = ordered_terms(node.args, self.letters)
-        parts = [self.expression(first)]
-        for term in others:
-            minus = is_negative(term)
-            parts += [
-                tree.MINUS if minus else tree.PLUS,
-                tree.bracketed(self.expression(-term if minus else term)),
-            ]
-        return tree.row(*parts)
 
     def _product(self, node: sp.Expr) -> tree.Formula:
         if is_negative(node):

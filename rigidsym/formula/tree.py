@@ -205,19 +205,18 @@ def is_differential(formula: Formula) -> bool:
 
 
 def indexed(symbol: Formula, shape: tuple[int, ...]) -> tuple[Formula, ...]:
-    """The symbol with the index of each entry, in light face; (a₁, a₂, a₃) lists its own."""
+    """The symbol with the index of each entry, in light face; (a₁, a₂, a₃) lists its own.
+
+    R₂₃, or L_R,1 where the symbol has an index of its own; brackets around what is compound.
+    """
     if isinstance(symbol, Bracket) and isinstance(symbol.inside, Row):
         return tuple(part for part in symbol.inside.parts if not isinstance(part, Sign))
     places = product(*(range(1, count + 1) for count in shape))
-    return tuple(_indexed(symbol, "".join(map(str, place))) for place in places)
-
-
-def _indexed(symbol: Formula, index: str) -> Formula:
-    """R₂₃, or L_R,1 where the symbol has an index of its own; brackets around what is compound."""
-    number = Numeral(index)
+    numbers = [Numeral("".join(map(str, place))) for place in places]
     if isinstance(symbol, Rate) and isinstance(symbol.of, Symbol):
         symbol = replace(symbol.of, dots=symbol.order)
     if not isinstance(symbol, Symbol):
-        return Indexed(Bracket(symbol), number)
-    own = symbol.index
-    return replace(symbol, face="italic", index=number if own is None else row(own, COMMA, number))
+        return tuple(Indexed(Bracket(symbol), number) for number in numbers)
+    own = () if symbol.index is None else (symbol.index, COMMA)
+    light = replace(symbol, face="italic")
+    return tuple(replace(light, index=row(*own, number)) for number in numbers)

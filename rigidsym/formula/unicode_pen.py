@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import unicodedata
-from functools import cache
+from functools import lru_cache
 from typing import ClassVar
 
 from rigidsym.formula import tree
@@ -21,16 +21,11 @@ _BELOW = str.maketrans(  # no Greek: φ has a small letter, but θ and ψ beside
 _SPACED = "+−±=≤<∈⇔×"
 
 
+@lru_cache(maxsize=4096)
 def columns(text: str) -> int:
     """Columns of a terminal: accents above a letter take none, wide characters two."""
-    return len(text) if text.isascii() else sum(map(_character_columns, text))
-
-
-@cache
-def _character_columns(character: str) -> int:
-    if unicodedata.combining(character):
-        return 0
-    return 2 if unicodedata.east_asian_width(character) in "WF" else 1
+    wide = sum(unicodedata.east_asian_width(character) in "WF" for character in text)
+    return len(text) + wide - sum(unicodedata.combining(character) > 0 for character in text)
 
 
 class UnicodePen(Pen):

@@ -95,14 +95,15 @@ def test_a_body_is_drawn_in_its_shape_or_with_its_moments():
     assert "body" in carried(cone)
     free = carried(free_page())
     assert ("body" in free, free["moments"], free["last"]) == (False, None, 40)
-    body = rs.principal_moments(1, sp.Rational(7, 5), 2)
-    page = derive("quaternion", ("state_derivative",), body=body, potential=0).page()
-    assert carried(page)["moments"] == [1, 1.4, 2]
+    body = rs.principal_moments(sp.Rational(7, 5), sp.Rational(7, 5), 2)  # free, not on a tip
+    page = derive("ZXZ", ("state_derivative",), body=body, potential=0).page()
+    assert carried(page)["moments"] == [1.4, 1.4, 2]
 
 
 def test_a_top_stands_on_its_tip_and_has_the_constants_of_its_first_example():
     page = page_of("heavy_symmetric_top")
     assert 'id="parameters-2-number" step="any" value="0.5"' in page  # C
+    assert 'id="q-1" min="-180" max="180" step="1"' in page  # θ
     assert min(z for _, _, z in carried(page)["body"]["points"]) == 0
 
 

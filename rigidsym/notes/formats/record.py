@@ -44,8 +44,8 @@ _KEYS: Mapping[str, str] = {
     "Singularity": "at=places rank lost_direction_space=lost_axis_space "
     "lost_direction_body=lost_axis_body undetermined_rates=null_rates.T "
     "reached_direction_space=reachable_axis",
-    # value + k modulo, for whole k; a length is at least its value
-    "Place": "coordinate value modulo=period least=is_length",
+    # value + k modulo, for whole k, or k ≥ 0 for a length
+    "Place": "coordinate value modulo=period is_length",
     # how coordinates go over into the unit quaternion, and come back from it and from R
     "Conversions": "quaternion quaternion_from_matrix=from_matrix coordinates=inverse without",
     "Rule": "because branch proofs",
@@ -122,8 +122,6 @@ def _attributes(thing: Any) -> dict[str, Any]:
             record[key] = text_of(value)
         elif "_direction_" in key:
             record[key] = _vector(value)
-        elif key == "least":
-            record[key] = thing.value if value else None
         elif key == "without":
             record[key] = value or None
         elif key == "shape" and len(value) < 2:
