@@ -20,21 +20,9 @@ from rigidsym.errors import offer
 from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.formula.reader import formula, text_of
 from rigidsym.formula.scalars import formula_of
-from rigidsym.formula.tree import (
-    COMMA,
-    Bracket,
-    Formula,
-    joined,
-)
-from rigidsym.mechanics.conversions.function import SHEPPERD
-from rigidsym.mechanics.derivation import (
-    OF_RATES,
-    Derivation,
-    Proof,
-    Statement,
-    Step,
-    phrases,
-)
+from rigidsym.formula.tree import COMMA, Bracket, Formula, joined
+from rigidsym.mechanics.conversions.function import SHEPPERD, outer_product
+from rigidsym.mechanics.derivation import OF_RATES, Derivation, Proof, Statement, Step, phrases
 from rigidsym.mechanics.quantities.kinematics import ROTATION
 from rigidsym.models.parametrisations import GIVEN
 from rigidsym.models.rotation import SOURCES, Citation, hat, lecture
@@ -49,7 +37,7 @@ from rigidsym.notes.document import (
     Text,
     said,
 )
-from rigidsym.notes.equations import claims_of, columns_of_matrix, equation_of, sums
+from rigidsym.notes.equations import claims_of, equation_of, sums
 from rigidsym.notes.facts.rotation import RotationFacts, facts_of_rotation, product_of
 from rigidsym.notes.facts.singular import singular_facts
 from rigidsym.notes.facts.symbols import meanings_of
@@ -73,6 +61,8 @@ _SECTIONS = (
     *("rotation", "angular_velocity", "rates", "angular_acceleration"),
     *("body", "inertia", "energy", "momentum", "motion"),
 )
+# K(R), (4, 4), in the entries of R; each column is a multiple of the quaternion
+_COLUMNS = outer_product(sp.Matrix(3, 3, lambda i, j: sp.Symbol(f"R_{i + 1}{j + 1}")))
 _DIAGONAL = formula("(I'_{11}, I'_{22}, I'_{33})")
 _WHERE_SHOWN = {  # what has no equation of its own in the lecture, and the one that it belongs to
     "rotation_rate": "velocity_by_the_rotation",
@@ -139,11 +129,12 @@ class Composer:
         mass = motion = None
         if derivation.body or derivation.forces:
             # bodies in numbers and pictures of motions take long to import, and rotations have none
-            from rigidsym.notes.facts.mass import mass_facts
-            from rigidsym.notes.facts.motion import motion_facts
+            from rigidsym.notes.facts.mass import MassFacts
+            from rigidsym.notes.facts.motion import MotionFacts
 
-            mass = mass_facts(derivation, self.letters)
-            motion = motion_facts(derivation, self.letters)
+            body, forces = derivation.body, derivation.forces
+            mass = body and MassFacts(derivation, body, self.letters)
+            motion = forces and MotionFacts(derivation, forces, self.letters)
         proofs = self._proofs()
         are_proved = all(proof.is_exact for _, proof in proofs)
         return {
@@ -170,7 +161,7 @@ class Composer:
             "shepperd": SHEPPERD,
             "first_figure": FigureReference(1),
             "cross_matrix": hat(sp.Matrix(sp.symbols("u_1:4"))),
-            "columns": [columns_of_matrix()[:, k] for k in range(4)],
+            "columns": [_COLUMNS[:, k] for k in range(4)],
             "moments": self._moments,
             "has_offset": any(step.expression.has(*OFFSET) for step in derivation.steps),
             "proofs": proofs,

@@ -11,7 +11,6 @@ from rigidsym.formula.letters import Letters, VectorLength, is_negative
 from rigidsym.formula.reader import formula
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import MINUS, NOTHING, PLUS, Formula, Matrix, bracketed, row
-from rigidsym.mechanics.conversions.function import outer_product
 from rigidsym.mechanics.derivation import Argument, Proof, Statement, Step, VectorForm
 from rigidsym.mechanics.particles import MASS
 
@@ -61,12 +60,6 @@ def sums(statement: Statement, letters: Letters) -> Matrix | None:
         return row(*[MINUS] * minus, _SUM, bracketed(formula_of(rest, letters)))
 
     return Matrix(tuple(tuple(map(whole, line)) for line in statement.summands.tolist()))
-
-
-def columns_of_matrix() -> sp.ImmutableMatrix:
-    """K(R), (4, 4), in the entries of R; each column is a multiple of the quaternion."""
-    entries = sp.Matrix(3, 3, lambda i, j: sp.Symbol(f"R_{i + 1}{j + 1}"))
-    return sp.ImmutableMatrix(outer_product(entries))
 
 
 def sum_of_vectors(form: VectorForm, letters: Letters) -> Formula:

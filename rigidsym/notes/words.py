@@ -8,27 +8,12 @@ from functools import lru_cache
 from itertools import chain
 
 from rigidsym.formula.reader import formula, sentence
-from rigidsym.formula.tree import (
-    Formula,
-    Symbol,
-    equal,
-    transpose_of,
-)
+from rigidsym.formula.tree import Formula, Symbol, equal, transpose_of
 from rigidsym.mechanics.derivation import Derivation, phrases
-from rigidsym.mechanics.quantities.kinematics import (
-    BODY,
-    COSINES,
-    RATES,
-    ROTATION,
-    SPACE,
-)
+from rigidsym.mechanics.quantities.kinematics import BODY, COSINES, RATES, ROTATION, SPACE
 from rigidsym.mechanics.quantities.mass import DIRECTION, OF_BODY_ALONE, POINT
 from rigidsym.models.rotation import AXES, Citation
-from rigidsym.notes.document import (
-    Cited,
-    Equation,
-    Text,
-)
+from rigidsym.notes.document import Cited, Equation, Text
 from rigidsym.notes.letters import VECTOR, length_of
 
 _DIGITS = 6

@@ -146,7 +146,3 @@ class MassFacts:
         for axis in self.principal:
             about = ", ".join(axis["components"])
             yield f"principal moment {axis['moment']} kg m² about ({about})"
-
-
-def mass_facts(derivation: Derivation, letters: Letters) -> MassFacts | None:
-    return None if derivation.body is None else MassFacts(derivation, derivation.body, letters)

@@ -89,8 +89,3 @@ class MotionFacts:
             # whether θ goes to and fro between the roots of the effective potential
             is_bounded=any(s.quantity.name == "effective_potential" for s in self.derivation.steps),
         )
-
-
-def motion_facts(derivation: Derivation, letters: Letters) -> MotionFacts | None:
-    acting = derivation.forces
-    return None if acting is None else MotionFacts(derivation, acting, letters)
