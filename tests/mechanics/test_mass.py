@@ -108,6 +108,8 @@ def test_the_tetrahedron_and_its_mesh():
     mesh.density = 4.0 / mesh.volume
     assert np.allclose(mesh.moment_inertia, numbers(body("tetrahedron").inertia))
     assert np.allclose(mesh.center_mass, numbers(body("tetrahedron").centre).ravel())
+    turned = [*CORNERS[3:6], *CORNERS[:3], *CORNERS[6:]]  # its map reverses orientation
+    assert solid("tetrahedron", corners=turned, density=sp.Integer(2)).mass == 4
 
 
 @pytest.mark.parametrize("shape", SHAPES)

@@ -151,6 +151,15 @@ def test_the_effective_potential_of_the_heavy_top_and_what_follows_from_it():
     assert sp.cancel(precession - ignorable) == 0
 
 
+def test_a_potential_with_a_pole_at_the_top_has_no_upright_motion():
+    body = rs.principal_moments(A, A, C)
+    only = ["effective_potential"]
+    motion = rs.derive("ZXZ", only, body=body, potential="k/(1 - cos(theta))")
+    names = {each.name for each in motion.consequences}
+    assert "effective_potential" in names
+    assert "upright_motion" not in names
+
+
 def test_the_middle_axis_of_a_free_body_is_unstable_and_the_others_are_not():
     found = [c for c in shipped("free_body").consequences if c.left.text == "λ²"]
     values = {A: 1, B: 2, C: 3, sp.Symbol("Omega"): 1}
