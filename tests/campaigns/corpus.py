@@ -8,6 +8,9 @@ GitHub. The files are read at the listed commit and never stored here.
 A table of recall by kind and by language is printed, every formula that was missed, and every
 finding without a label, which a person should look at. The exit code is 1 if a formula is called
 wrong that is not labelled so, or if one labelled wrong is called right.
+
+With `--mutations N`, recognised formulas are changed N times, each in one place, and compared
+again: all changes should be found, and the repair of most named.
 """
 
 from __future__ import annotations
@@ -20,8 +23,13 @@ import tomllib
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
+from random import Random
 
+import sympy as sp
+
+from rigidsym.tools.compare.matching import Comparison, identified
 from rigidsym.tools.compare.search import FormulaInFile, search
 
 CORPUS = Path(__file__).with_name("corpus.toml")
@@ -87,13 +95,61 @@ def matched(
     return [(label, recognised[pairs[i]] if i in pairs else None) for i, label in enumerate(labels)]
 
 
+def mutant(formula: sp.ImmutableMatrix, random: Random) -> tuple[str, sp.MatrixBase]:
+    """(kind, formula with one change) of an entry with a name in it, or of two entries."""
+    places = list(product(*map(range, formula.shape)))
+    place, other = random.sample([p for p in places if formula[p].free_symbols], 2)
+    entry, turned = formula[place], {sp.sin: sp.cos, sp.cos: sp.sin}
+    term = random.choice(sp.Add.make_args(entry))
+    names = sorted(entry.free_symbols, key=str), sorted(formula.free_symbols, key=str)
+    exchanged = dict([list(map(random.choice, names))])
+    kinds = {"sign": entry - 2 * term, "factor": entry + term, "index": entry.xreplace(exchanged)}
+    for turn in random.sample(
+        sorted(entry.atoms(*turned), key=str), 1 if entry.has(*turned) else 0
+    ):
+        kinds["sine and cosine"] = entry.xreplace({turn: turned[turn.func](*turn.args)})
+        kinds["angle"] = entry.xreplace({turn: turn.func(2 * turn.args[0])})
+    kind = random.choice([*kinds, "order", *["transpose"] * (formula.rows == formula.cols)])
+    changed = formula.T.as_mutable() if kind == "transpose" else formula.as_mutable()
+    if kind == "order":
+        changed[place], changed[other] = changed[other], changed[place]
+    elif kind in kinds:
+        changed[place] = kinds[kind]
+    return kind, changed
+
+
+def mutations(right: list[Comparison], count: int) -> None:
+    """Print how many of so many changes are found, and of how many the repair is named."""
+    random, numbers = Random(1775), Counter[str]()
+    while numbers["changes"] < count:
+        original = random.choice(right)
+        kind, changed = mutant(original.formula, random)
+        if (changed - original.formula).expand().is_zero_matrix:
+            continue
+        comparison = identified(sp.ImmutableMatrix(changed), is_in_program=True)
+        repaired = comparison.repairs[-1].formula if comparison.repairs else None
+        is_named = comparison.is_equal or (
+            repaired is not None and identified(repaired, only_equal=True).is_equal
+        )
+        names = {each.found and each.found.described for each in (original, comparison)}
+        is_other = not comparison.is_equal or len(names) == 2
+        numbers.update({"changes": 1, "named": is_named, "found": is_other})
+        if not is_named or not is_other:
+            print(
+                f"{kind}: {formula.tolist()} as {changed.tolist()}: {comparison.text()}", flush=True
+            )
+    print(dict(numbers))
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--clones", type=Path, required=True, metavar="DIR")
     parser.add_argument("--only", default="", metavar="TEXT", help="repositories with this name")
+    parser.add_argument("--mutations", type=int, default=0, metavar="N", help="changes to be found")
     options = parser.parse_args()
     known, all_labels = Counter[str](), Counter[str]()
     faults: list[str] = []
+    right: list[Comparison] = []
     for name, path, text, labels in files(options.clones):
         if options.only not in name:
             continue
@@ -107,6 +163,8 @@ def main() -> int:
             known.update(keys)
             open_findings.remove(finding)
             is_equal = finding.comparison is not None and finding.comparison.is_equal
+            if is_equal and finding.comparison:
+                right.append(finding.comparison)
             if is_equal == label.is_wrong:
                 faults.append(f"{name} {path}: {finding}")
         for finding in open_findings:
@@ -114,10 +172,11 @@ def main() -> int:
             print(f"without a label: {name} {path}:{str(finding).partition(':')[2]}", flush=True)
             if comparison and not (comparison.is_equal or comparison.is_reflection):
                 faults.append(f"{name} {path}: {finding}")
+    mutations(right, options.mutations)
     for key in sorted(all_labels):
         print(f"{key:32} {known[key]:4} of {all_labels[key]:4}")
-    total, right = sum(all_labels.values()) // 2, sum(known.values()) // 2
-    print(f"recognised {right} of {total} ({right / max(total, 1):.0%})")
+    total, count = sum(all_labels.values()) // 2, sum(known.values()) // 2
+    print(f"recognised {count} of {total} ({count / max(total, 1):.0%})")
     for fault in faults:
         print(f"FAULT: {fault}")
     return bool(faults)

@@ -459,7 +459,11 @@ class _Interpreter:
             return self._symbol_for(name, None)  # q0 *= recipNorm
         ratio = self._expanded(ratio)
         degree = 180 / sp.pi
-        is_unit = ratio.is_number and any(abs(ratio * c - 1) < 1e-3 for c in (degree, 1 / degree))
+        is_unit = (
+            ratio.is_number
+            and ratio.is_finite
+            and any(abs(ratio * c - 1) < 1e-3 for c in (degree, 1 / degree))
+        )
         is_divided = _is_length(1 / ratio) and own.free_symbols <= ratio.free_symbols
         is_divided |= ratio.free_symbols == {self.squares.get(str(own))}
         return own if is_unit or is_divided else value
@@ -1024,7 +1028,7 @@ class _Interpreter:
         value = _matrix(self.values[name])
         if value is None:
             raise self.unreadable(node, "has entries without values")
-        return value
+        return _unflattened(value) if isinstance(value, sp.ImmutableMatrix) else value
 
     def _entry(self, node: Node, name: str, key: tuple[int, ...]) -> Any:
         table = self.values.get(name, {})
