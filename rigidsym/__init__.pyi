@@ -24,7 +24,6 @@ from .models.rotation import (
     Turn as Turn,
 )
 from .motion import Motion as Motion, derive as derive, kernels as kernels
-from .tools.compare.comparison import compare as compare
-from .tools.compare.matching import Comparison as Comparison
+from .tools.compare.comparison import Comparison as Comparison, compare as compare
 from .tools.identify.identification import Identification as Identification, identify as identify
 from .version import __version__ as __version__

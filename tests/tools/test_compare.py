@@ -304,6 +304,11 @@ def test_a_law_is_proved_and_one_wrong_entry_is_named(text):
         (HALF.replace("/2", ""), ""),
         (TENSOR.replace("+ m", "! m").replace("- m", "+ m").replace("!", "-"), "to the centre"),
         (PRODUCT.replace("a1", "(-a1)").replace("a2", "(-a2)").replace("a3", "(-a3)"), "the first"),
+        (  # Hipparchus-Math/hipparchus, geometry/euclidean/threed/Rotation.java, composeInverse
+            "[-r.q0*q0 - r.q1*q1 - r.q2*q2 - r.q3*q3, -r.q1*q0 + r.q0*q1 + r.q2*q3 - r.q3*q2, "
+            "-r.q2*q0 + r.q0*q2 + r.q3*q1 - r.q1*q3, -r.q3*q0 + r.q0*q3 + r.q1*q2 - r.q2*q1]",
+            "negative",
+        ),
         (HALF.replace("sin(r/2)", "-sin(r/2)"), "with the opposite sense of r"),
     ],
 )

@@ -12,6 +12,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import islice, pairwise, product
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -1072,7 +1073,7 @@ class _Interpreter:
         for name in (tree.short_name(path), re.sub(r"\W+", "_", path)) if path else ():
             if self.paths.setdefault(name, path) == path:
                 return name
-        return re.sub(r"\W+", "__", path)
+        return re.sub(r"\W+", "__", path) + "__"
 
     # Calls
 
@@ -1130,11 +1131,8 @@ class _Interpreter:
         is_built = len(nodes) in (3, 4) and bool(_VECTOR_NAME.search(call.path))
         is_built |= len(nodes) in (3, 9, 16) and bool(_MATRIX_NAME.search(call.path))
         if name in self.program.functions and call.base in ("", "self", "this", "Self"):
-            try:
+            with suppress(ExpressionError):  # of a constructor, or of a name of another object
                 return self._inline(node, name, nodes)
-            except ExpressionError:
-                if not is_built:  # a constructor
-                    raise
         if is_built:
             return rows([self.read(each) for each in nodes])
         if _TYPE.fullmatch(name) and 1 < len(nodes) < 4:  # float4(v, w)

@@ -250,8 +250,8 @@ def _quaternion_products(a: sp.Matrix, b: sp.Matrix) -> Ways:
         "the first conjugated": quaternion_product(conjugate(a), b),
         "the second conjugated": quaternion_product(a, conjugate(b)),
     }
-    last = {f"{way}, scalar last".lstrip(", "): m[_LAST, :] for way, m in ways.items()}
-    return ways | last
+    ways |= {f"{way}, negative".lstrip(", "): -m for way, m in ways.items()}  # the same rotation
+    return ways | {f"{way}, scalar last".lstrip(", "): m[_LAST, :] for way, m in ways.items()}
 
 
 def _turned_vectors(q: sp.Matrix, v: sp.Matrix) -> Ways:
@@ -375,8 +375,8 @@ def are_body_rates(formula: sp.MatrixBase) -> bool:
 
 
 _VECTOR_NAMES = (
-    re.compile(r"(?P<stem>.*?)_?(?P<part>[xyz]{2}|[0-3]_?[0-3]|[wxyz0-4]|)"),
-    re.compile(r"(?P<stem>.+)_(?P<part>[wxyz0-4])"),  # b1_0
+    re.compile(r"(?P<stem>.*?)_?(?P<part>[xyz]{2}|[0-3]_?[0-3]|[wxyzWXYZ0-4]|)"),
+    re.compile(r"(?P<stem>.+)_(?P<part>[wxyzWXYZ0-4])"),  # b1_0
     re.compile(r"(?P<part>[wxyz])_?(?P<stem>\d|[a-z]?)"),  # w1, x1, y1, z1
 )
 _ELEMENTS = (  # of R
@@ -468,7 +468,7 @@ def _of_vectors(matrix: sp.MatrixBase, wanted: Sequence[tuple[sp.Expr, ...]]) ->
         groups: dict[str, list[tuple[str, sp.Symbol]]] = {}
         for symbol in sorted(matrix.free_symbols, key=str):
             match = pattern.fullmatch(symbol.name)
-            stem, part = (match["stem"], match["part"]) if match else (symbol.name, "")
+            stem, part = (match["stem"], match["part"].lower()) if match else (symbol.name, "")
             if symbol.name in ("p", "q", "r"):
                 stem, part = "p, q, r", symbol.name
             groups.setdefault(stem if part else symbol.name, []).append((part, symbol))

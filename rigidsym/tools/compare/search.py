@@ -13,7 +13,7 @@ import sympy as sp
 
 from rigidsym.errors import ExpressionError, RequestError
 from rigidsym.models.rotation import RotationModel
-from rigidsym.tools.compare.matching import Comparison, identified
+from rigidsym.tools.compare.comparison import Comparison, identified
 from rigidsym.tools.compare.program import ANGLES_NAME, Formula, program_formulas
 from rigidsym.tools.compare.quantities import are_angles, are_body_rates, target
 from rigidsym.tools.compare.syntax import GRAMMARS

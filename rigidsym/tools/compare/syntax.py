@@ -214,8 +214,9 @@ def function_word(name: str) -> str:
 
 
 def short_name(path: str) -> str:
-    """One name for a path: sin for np.sin, phi for state.phi, q_w for q.w."""
+    """One name for a path: sin for np.sin, phi for state.phi, q_w for q.w, r_q0 for r.q0."""
     parts = path.split(".")
     parts = parts[parts[0] in ("self", "this") and len(parts) > 1 :]
     last = SPELLINGS.get(parts[-1], parts[-1])
-    return f"{parts[-2]}_{last}" if len(last) == 1 and len(parts) > 1 else last
+    is_part = re.fullmatch(r"[A-Za-z]\d?", last) and len(parts) > 1
+    return f"{parts[-2]}_{last}" if is_part else last
