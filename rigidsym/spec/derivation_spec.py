@@ -66,13 +66,12 @@ class DerivationSpec:
             used = {coordinate.func.__name__ for coordinate in model.coordinates}
             used |= {symbol.name for symbol in model.constants}
             for name in sorted(used & own):
-                message = f"{name} is a parameter of the body and also appears in the rotation"
-                models.at(k).fault(message)
+                models.at(k).fault(f"{name} is also the name of a parameter of the body")
             if self.notation is not None:
                 with models.at(k).noting():
                     self.notation.check(model)
-        if len(self.models) == 1 and (message := fault_of_name(self.name)):
-            place.fault(f"a derivation has the name of its file: {message}")
+        if len(self.models) == 1:
+            _check_name(self.name, place)
         place.raise_faults(self.source or self.name)
 
     def singles(self) -> tuple[DerivationSpec, ...]:
@@ -123,15 +122,14 @@ def spec_for(
     return DerivationSpec(name=model.name, models=(model,))
 
 
-def fault_of_name(name: str) -> str:
-    """Why a derivation, its folder and its Python module cannot have a name; "" if they can."""
+def _check_name(name: str, place: Place) -> None:
+    """Note why a derivation, its folder and its Python module cannot have a name."""
     if not _NAME.fullmatch(name):
-        return (
-            "expected a lower-case letter, then lower-case letters, digits or underscores, "
-            f"got {reprlib.repr(name)}"
+        place.fault(
+            "a derivation has the name of its file: expected a lower-case letter, then lower-case "
+            f"letters, digits or underscores, got {reprlib.repr(name)}"
         )
-    if keyword.iskeyword(name):
-        return f"{name} is a reserved word of Python"
-    if name in sys.stdlib_module_names or name in ("numpy", "sympy", "rigidsym"):
-        return f"{name}.py would hide the Python module of this name"
-    return ""
+    elif keyword.iskeyword(name):
+        place.fault(f"a derivation has the name of its file: {name} is a reserved word of Python")
+    elif name in sys.stdlib_module_names or name in ("numpy", "sympy", "rigidsym"):
+        place.fault(f"{name}.py would hide the Python module of this name")

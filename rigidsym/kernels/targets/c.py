@@ -12,20 +12,14 @@ from itertools import accumulate
 from math import pi
 
 from rigidsym.kernels.ir import Call, Compare, Expression, Kernel, Program
+from rigidsym.kernels.lowering.naming import NAMES
 from rigidsym.kernels.targets import numpy, remarks
 from rigidsym.kernels.targets.infix import broken, infix
 from rigidsym.kernels.targets.precision import EITHER, PRECISIONS, Precision, two_over_pi
 from rigidsym.kernels.targets.python import WIDTH, bracketed
 from rigidsym.system import resources
 
-_NAMES = (
-    "out far beyond sin_cos sin_cosf or_nan or_nanf entire entiref sqrtf fabs fabsf NULL angle_of "
-    "angle_off SIZE_MAX PTRDIFF_MAX size_t ptrdiff_t uint32_t uint64_t TILE MOST SHUFFLED SHUFFLE "
-    "INLINED STREAMED STREAMS STREAM STREAMf END_STREAM "
-    "expected apart REAL WORD FN LIT EPS LEAST EVALUATE SIN_COS TILED "
-    "ORDERS AHEAD prefetch in given count"
-)
-RESERVED = numpy.RESERVED | {*_NAMES.split()}  # the Python module's, too
+RESERVED = numpy.RESERVED | NAMES["c"]  # the Python module's, too
 _WIDTH = 92
 _TILE = 32  # orientations that are evaluated side by side
 

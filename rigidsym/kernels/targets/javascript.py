@@ -10,17 +10,13 @@ from collections.abc import Iterator, Sequence
 from functools import lru_cache
 
 from rigidsym.kernels.ir import FUNCTIONS, Kernel, Program
-from rigidsym.kernels.lowering.naming import Names
+from rigidsym.kernels.lowering.naming import NAMES, Names
 from rigidsym.kernels.targets import remarks
 from rigidsym.kernels.targets.infix import broken, infix
 from rigidsym.system import resources
 from rigidsym.version import OWNERSHIP
 
-_WORDS = (
-    "Infinity Math NaN RangeError TypeError Number ArrayBuffer Float64Array Array atan2 hypot tan "
-    "out at"
-)
-RESERVED = frozenset({*_WORDS.split(), *FUNCTIONS})
+RESERVED = NAMES["javascript"].union(FUNCTIONS)
 _WIDTH = 88
 _FORMS = {
     **{"choice": "{0} ? {1} : {2}", "nan": "NaN", "==": "===", "eps": "Number.EPSILON"},
