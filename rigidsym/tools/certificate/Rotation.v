@@ -50,10 +50,8 @@ Ltac entries :=
   repeat match goal with |- M _ _ _ = M _ _ _ => f_equal | |- V _ _ _ = V _ _ _ => f_equal end.
 Lemma associative A B D : mul (mul A B) D = mul A (mul B D). Proof. entries; ring. Qed.
 Lemma transposed A B : transpose (mul A B) = mul (transpose B) (transpose A). Proof. entries; ring. Qed.
-Lemma twice A : transpose (transpose A) = A. Proof. entries; reflexivity. Qed.
 Lemma one_right A : mul A one = A. Proof. entries; ring. Qed.
 Lemma sum_left A B D : mul (add A B) D = add (mul A D) (mul B D). Proof. entries; ring. Qed.
-Lemma det_transpose A : det (transpose A) = det A. Proof. entries; ring. Qed.
 Lemma det_mul A B : det (mul A B) = det A * det B. Proof. entries; ring. Qed.
 Lemma C_turned A w : det A = 1 -> mul (transpose A) A = one ->
   mul (mul A (C w)) (transpose A) = C (apply A w).
@@ -92,16 +90,6 @@ Proof.
   intro T; pose proof (rate_of_turns _ _ _ T) as d; destruct T as [[a [a' e]] _].
   split; [ repeat split; assumption | ]. eexists; split; [ exact d | ].
   rewrite <- C_turned, !associative, a', one_right, <- associative, a' by assumption. entries; ring.
-Qed.
-Theorem of_transpose F t w : turns F t w ->
-  turns (fun s => transpose (F s)) t (scale (-1) (apply (transpose (F t)) w)).
-Proof.
-  intro T; pose proof (rate_of_turns _ _ _ T) as [[? [? ?]] [[? [? ?]] [? [? ?]]]].
-  destruct T as [[a [a' d]] _]. rewrite <- det_transpose in d.
-  pose proof (C_turned (transpose (F t)) w d) as e; rewrite twice in e; specialize (e a).
-  split; [ repeat split; rewrite ?twice; assumption | ].
-  exists (transpose (mul (C w) (F t))); split; [ repeat split; assumption | ].
-  rewrite twice; transitivity (times (-1) (C (apply (transpose (F t)) w))); [ rewrite <- e | ]; entries; ring.
 Qed.
 Lemma squares a : cos a * cos a = 1 - sin a * sin a.
 Proof. generalize (sin2_cos2 a); unfold Rsqr; intro H; rewrite <- H; ring. Qed.

@@ -44,7 +44,7 @@ _WORDS = """
 as at cofix else end exists fix for forall fun if in let match mod Prop return Set then Type using
 where with R cos sin sqrt tan PI V M C I v1 v2 v3 row1 row2 row3 vec mat dot plus scale cross apply
 transpose mul add times det one turn turn_x turn_y turn_z is_rotation rate vector_rate turns
-turns_in_body product squares same F shown t s u w a b c d e D H inertia derivative entries expand
+turns_in_body product squares same F t s u w a b c d e D H inertia derivative entries expand
 total
 """
 _TAKEN = frozenset(_WORDS.split())
@@ -151,8 +151,7 @@ class _Section:
         if not claims or record["definitions"]:  # Coq unfolds them, which doubles expressions
             raise Unproved
         self.names, self.printed = Record(record), printed_in(record)
-        is_passive = record["presentation"] == "passive"
-        self.shown = "shown" if is_passive else "F"
+        self.is_passive = record["presentation"] == "passive"
         self.rate = derivative({q: ("name", f"{q}_dot") for q in self.names.q})
         self.factors = [*self._factors()]
         self.trees_of_rotation = [tree for factor in self.factors for tree in factor.trees]
@@ -293,15 +292,8 @@ class _Section:
         product = reduce(lambda right, left: f"mul ({left}) ({right})", reversed(texts))
         yield f"Definition F s := {product}. (* R *)"
         yield from self._turning()
-        words = ["F", *["inertia"] * ("body" in self.record)]
-        # dF/dt = C(Ω) F gives d(Fᵀ)/dt = −Fᵀ C(Ω) = C(−Fᵀ Ω) Fᵀ.
-        if self.shown != "F":
-            yield "Definition shown s := transpose (F s)."
-            velocity = f"(scale (-1) (apply (transpose (F t)) {self.velocity}))"
-            yield f"Lemma shown_total t : turns shown t {velocity}."
-            yield "Proof. exact (of_transpose F t _ (total t)). Qed."
-            words.insert(0, "shown")
-        yield f"Ltac equal t := unfold {', '.join(words)}; calculation t."
+        words = "F, inertia" if "body" in self.record else "F"
+        yield f"Ltac equal t := unfold {words}; calculation t."
         yield "Ltac derived t := known t; eapply (same (derivable_pt_lim _ _));"
         yield "  [ derivative | equal t ]."
         yield "Ltac lagrange t := known t; repeat match goal with |- _ /\\ _ => split end;"
@@ -353,7 +345,6 @@ class _Section:
             at = re.sub(r"\bs\)", "t)", factor.text)
             velocity = f"(plus {factor.velocity} (apply ({at}) {velocity}))"
             proof = f"(product _ _ t _ _ (step_{k} t) {proof})"
-        self.velocity = velocity
         yield f"Lemma total t : turns F t {velocity}."
         yield f"Proof. exact {proof}. Qed."
 
@@ -379,18 +370,18 @@ class _Section:
             f"Proof. intros. {statement.proof}. Qed."
         )
 
-    def turning_as(self, *, shown: bool = False) -> str:
-        """A theorem that F turns, or what is shown."""
-        if shown and self.shown != "F":
-            return "shown_total"
+    @property
+    def total(self) -> str:
+        """A theorem that F turns."""
         is_stated = _FIRST[1] in self.stated and not self.divisors(_FIRST[1])
-        return _FIRST[1] if is_stated else "total"
+        return f"({_FIRST[1] if is_stated else 'total'} t)"
 
     @property
     def equal(self) -> str:
         """The tactic for equations in which F may be."""
         is_stated = _FIRST[0] in self.stated and not self.divisors(_FIRST[0])
-        return "rewrite ?rotation_matrix; equal t" if is_stated else "equal t"
+        is_rewritten = is_stated and not self.is_passive
+        return "rewrite ?rotation_matrix; equal t" if is_rewritten else "equal t"
 
     def need(self, *names: str) -> None:
         """Raise Unproved if there are no theorems about some other quantities."""
@@ -398,25 +389,27 @@ class _Section:
             raise Unproved
 
     def of_rotation_matrix(self, name: str) -> _Statement:
-        return _Statement(f"{self.divisors(name)}{self.shown} t = {self.text(self.printed[name])}")
+        left = "transpose (F t)" if self.is_passive else "F t"
+        return _Statement(f"{self.divisors(name)}{left} = {self.text(self.printed[name])}")
 
     def of_rotation_rate(self, name: str) -> _Statement:
-        claim = f"{self.divisors(name)}rate {self.shown} t {self.text(self.printed[name])}"
-        rate = f"(rate_of_turns _ _ _ ({self.turning_as(shown=True)} t))"
-        return _Statement(claim, f"apply (same (rate {self.shown} t) _ _ {rate}); {self.equal}")
+        if self.is_passive:
+            raise Unproved
+        claim = f"{self.divisors(name)}rate F t {self.text(self.printed[name])}"
+        rate = f"(rate_of_turns _ _ _ {self.total})"
+        return _Statement(claim, f"apply (same (rate F t) _ _ {rate}); {self.equal}")
 
     def of_spin_matrix(self, name: str) -> _Statement:
-        claim = (
-            f"{self.divisors(name)}exists D, rate {self.shown} t D /\\ "
-            f"mul D (transpose ({self.shown} t)) = {self.text(self.printed[name])}"
-        )
-        total = f"({self.turning_as(shown=True)} t)"
-        proof = f"destruct {total} as [_ [D [d e]]]. exists D; split; [ exact d | ]. "
-        return _Statement(claim, proof + "rewrite e; equal t")
+        if self.is_passive:
+            raise Unproved
+        printed = self.text(self.printed[name])
+        claim = f"exists D, rate F t D /\\ mul D (transpose (F t)) = {printed}"
+        proof = f"destruct {self.total} as [_ [D [d e]]]. exists D; split; [ exact d | ]. "
+        return _Statement(self.divisors(name) + claim, proof + "rewrite e; equal t")
 
     def turning(self, frame: str, velocity: str, *names: str, more: str = "") -> _Statement:
         """F turns with a vector; `more` are premises about the rates."""
-        total = f"(same (turns F t) _ _ ({self.turning_as()} t))"
+        total = f"(same (turns F t) _ _ {self.total})"
         proof = f"apply {'in_body, ' * (frame == 'body')}{total}; "
         rewrite = "repeat match goal with H : _ = _ |- _ => rewrite H; clear H end; " * bool(more)
         claim = f"{self.divisors(*names)}{more}{_TURNS[frame]} F t {velocity}"
