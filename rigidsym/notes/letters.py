@@ -12,7 +12,7 @@ from rigidsym.formula.letters import Letters, VectorLength
 from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.formula.reader import formula
 from rigidsym.mechanics.derivation import Argument
-from rigidsym.mechanics.kinematics.vector_forms import LENGTH
+from rigidsym.mechanics.kinematics.workspace import LENGTH
 from rigidsym.mechanics.quantities.dynamics import LETTERS
 from rigidsym.models.rotation import RotationModel
 

@@ -19,7 +19,7 @@ import sympy as sp
 import rigidsym
 from rigidsym.algebra.integrate import Integrator
 from rigidsym.errors import DerivationError
-from rigidsym.mechanics.kinematics.vector_forms import forms
+from rigidsym.mechanics.kinematics.workspace import forms
 from rigidsym.mechanics.mass.moments import moments_of
 from rigidsym.models.body import Solid
 

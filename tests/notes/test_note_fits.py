@@ -8,7 +8,7 @@ import sympy as sp
 import rigidsym as rs
 from helpers.typesetting import warnings_of
 from rigidsym.formula.display import PAGE, display
-from rigidsym.mechanics.kinematics.vector_forms import LENGTH
+from rigidsym.mechanics.kinematics.workspace import LENGTH
 from rigidsym.models.library import PARAMETRISATIONS, PRESETS, rotation_from
 from rigidsym.models.rotation import hat
 from rigidsym.notes.document import Document, Equation

@@ -41,28 +41,26 @@ def arguments_of(model: RotationModel, body: RigidBody | None = None) -> tuple[A
     Those of a body are its centre of mass, in space, and its constants. Raises ModelError for a
     name that would then stand for two things.
     """
-    arguments = _moving("q", model.coordinates, model.coordinate_units, _OF_COORDINATES)
+    arguments = [*_moving("q", model.coordinates, model.coordinate_units, _OF_COORDINATES)]
     for frame, symbols, prime in (
         ("space", sp.symbols("Omega_1:4"), ""),
         ("body", OMEGA_BODY, "'"),
     ):
-        arguments += (
-            argument(
-                f"omega_{frame}",
-                symbols,
-                f"{frame} components of the angular velocity",
-                units="rad/s",
-                names=[f"omega_{frame}_{k}" for k in (1, 2, 3)],
-                notation=[formula(rf"\Omega{prime}_{k}") for k in (1, 2, 3)],
-            ),
+        omega = argument(
+            f"omega_{frame}",
+            symbols,
+            f"{frame} components of the angular velocity",
+            units="rad/s",
+            names=[f"omega_{frame}_{k}" for k in (1, 2, 3)],
+            notation=[formula(rf"\Omega{prime}_{k}") for k in (1, 2, 3)],
         )
+        arguments.append(omega)
     if body:
         centre = tuple(map(time_function, ("X", "Y", "Z")))
-        arguments += (
-            *_moving("centre", centre, ("m",) * 3, _OF_CENTRE),
-            argument("point", POINT, "a point, in the axes of the body", units="m"),
-            argument("direction", DIRECTION, "the direction of a line, a unit vector"),
-        )
+        arguments += _moving("centre", centre, ("m",) * 3, _OF_CENTRE)
+        arguments.append(argument("point", POINT, "a point, in the axes of the body", units="m"))
+        about = "the direction of a line, a unit vector"
+        arguments.append(argument("direction", DIRECTION, about))
     arguments += _parameters(model, body)
     names = [name for each in arguments for name in each.names]
     twice = sorted({name for name in names if names.count(name) > 1}) if body else []
@@ -70,7 +68,7 @@ def arguments_of(model: RotationModel, body: RigidBody | None = None) -> tuple[A
         raise ModelError(
             f"{model.name}: {twice[0]} is a name both in the rotation and in the body; rename one"
         )
-    return arguments
+    return tuple(arguments)
 
 
 def arguments_of_motion(model: RotationModel) -> tuple[Argument, ...]:
@@ -134,22 +132,20 @@ def _moving(
 ) -> tuple[Argument, ...]:
     """Functions of time and their derivatives, as many as are told about."""
     labels, symbols = [function.func.__name__ for function in functions], functions
-    arguments: tuple[Argument, ...] = ()
-    for order, (words, suffix, per) in enumerate(
-        zip(about, ("", "_dot", "_ddot"), ("", "/s", "/s^2"), strict=False)
-    ):
-        arguments += (
-            argument(
-                name + suffix,
-                symbols,
-                words,
-                units=[f"{unit or '1'}{per}" if order else unit for unit in units],
-                names=[label + suffix for label in labels],
-                notation=[named(letter, order) for letter in _letters(labels, units)],
-            ),
+    arguments = []
+    orders = zip(about, ("", "_dot", "_ddot"), ("", "/s", "/s^2"), strict=False)
+    for order, (words, suffix, per) in enumerate(orders):
+        vector = argument(
+            name + suffix,
+            symbols,
+            words,
+            units=[f"{unit or '1'}{per}" if order else unit for unit in units],
+            names=[label + suffix for label in labels],
+            notation=[named(letter, order) for letter in _letters(labels, units)],
         )
+        arguments.append(vector)
         symbols = tuple(map(rate_of, symbols))
-    return arguments
+    return tuple(arguments)
 
 
 def _letters(names: Sequence[str], units: Sequence[str]) -> Sequence[str]:
