@@ -76,9 +76,8 @@ class BodyValues(Values):
     @cached_property
     def moments(self) -> Moments:
         """The moments of the distribution, or equivalent ones if only the tensor is given."""
-        body = self.body
-        known = Known(mass=body.mass, centre=body.centre, inertia=body.inertia)
-        return moments_of(body.distribution or known)
+        b = self.body
+        return moments_of(b.distribution or Known(mass=b.mass, centre=b.centre, inertia=b.inertia))
 
     @staticmethod
     def steiner(mass: sp.Expr, by: sp.MatrixBase) -> sp.Matrix:
@@ -298,19 +297,17 @@ def steps_of_body(
     wanted = only or {name for name, q in OF_BODY.items() if not (is_fixed and q.of_centre)}
     values = (NamedRotation if chain else BodyValues)(model, whole, has_fixed_point=is_fixed)
     steps = [step for n, q in OF_BODY.items() if n in wanted and (step := values.step(q))]
-    names = {step.quantity.name for step in steps}
-    absent = [q for n, q in INERTIA_QUANTITIES.items() if n in only and n not in names]
-    if absent and BODY_ALONE not in only:
-        reasons = (f"no quantity {quantity.name}: {quantity.without}" for quantity in absent)
-        raise QuantityError(f"{whole.name} has {'; '.join(reasons)}")
     if isinstance(values, NamedRotation) and chain:
         steps = [values.renamed(step, chain) for step in steps]
-    if forces is None:
-        return values, steps, None
-    motion = equations_of_motion(model, whole, forces, chain)
-    moving = list(motion.steps(tuple(only)))
-    names = {step.quantity.name for step in moving}
-    for name, quantity in motion.table.items():
-        if name in only and name not in names:
-            raise QuantityError(f"{model.name} has no quantity {name}: {quantity.without}")
-    return values, steps + moving, motion
+    # of a body alone, all quantities that it has are asked for
+    entries = {} if BODY_ALONE in only else dict(INERTIA_QUANTITIES)
+    motion = None
+    if forces is not None:
+        motion = equations_of_motion(model, whole, forces, chain)
+        steps += motion.steps(tuple(only))
+        entries |= motion.table
+    names = {step.quantity.name for step in steps}
+    if absent := [q for n, q in entries.items() if n in only and n not in names]:
+        reasons = (f"no quantity {quantity.name}: {quantity.without}" for quantity in absent)
+        raise QuantityError(f"{whole.name} has {'; '.join(reasons)}")
+    return values, steps, motion

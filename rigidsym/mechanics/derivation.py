@@ -127,13 +127,6 @@ class Quantity(NamedTuple):
                 changes |= change
         return self._replace(**changes) if changes else self
 
-    def measured(self, arguments: Mapping[str, Argument]) -> Quantity:
-        """With the unit of the argument that it is a value of; none if its components differ."""
-        if not self.unit_of:
-            return self
-        units = {*arguments[self.unit_of].units}
-        return self._replace(unit=units.pop() if len(units) == 1 else "")
-
     def __reduce__(self) -> tuple[Any, ...]:
         """Without its functions, which another process has no use for."""
         plain = self._replace(value=None, rests_on=None, words=None)

@@ -39,7 +39,7 @@ from rigidsym.algebra.matrix import RingMatrix, hat as operator
 from rigidsym.algebra.witness import configurations
 from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Formula
-from rigidsym.mechanics.derivation import Definition, Law, Proof, Quantity
+from rigidsym.mechanics.derivation import Definition, Law, Proof, Quantity, argument
 from rigidsym.mechanics.kinematics.workspace import Values, Workspace, traits_of
 from rigidsym.mechanics.prove import Conditions, Prover, consequence
 from rigidsym.mechanics.quantities.kinematics import KINEMATICS
@@ -83,19 +83,6 @@ def acceleration(R: Any, own: Any, gained: Any, other: Any) -> Any:
 # A turn before or behind any rotation
 
 
-class Part(NamedTuple):
-    """A factor of a product at one instant: its rotation with two derivatives, Ω, α, W and q̇.
-
-    For both factors Ω and α have the same components in space and in the body.
-    """
-
-    R: tuple[RingMatrix, RingMatrix, RingMatrix]
-    omega: RingMatrix
-    alpha: RingMatrix
-    rate_matrix: RingMatrix
-    rates: Sequence[sp.Expr]
-
-
 class Composition(Values):
     """A turn and any rotation Q, one behind the other, composed by the law.
 
@@ -119,7 +106,9 @@ class Composition(Values):
         T, axis, v = codec.matrix(turn.matrix), codec.column(turn.direction), codec.column(rates)
         # Ω = n θ̇ = n (∂θ/∂q) q̇, so W = n ∂θ/∂q.
         columns = sp.Matrix(turn.direction) * sp.Matrix([[sp.diff(turn.angle, q) for q in angles]])
-        own = Part(
+        # Of each factor: R with two derivatives, Ω, α, W and q̇. For both, Ω and α have the same
+        # components in space and in the body.
+        own = (
             (T, T.dt(), T.dt().dt()),
             axis.scale(codec.encode(speed)),
             axis.scale(codec.encode(gain)),
@@ -129,9 +118,10 @@ class Composition(Values):
         v_dot = codec.column(gains)
         # dQ/dt = C(v) Q, hence d²Q/dt² = (C(dv/dt) + C(v)²) Q, at Q = 1.
         any_rotation = (self.one, operator(v), operator(v_dot) + operator(v) @ operator(v))
-        other = Part(any_rotation, v, v_dot, self.one, rates)
+        other = (any_rotation, v, v_dot, self.one, rates)
         first, second = (own, other) if comes_first else (other, own)
-        (a, a_dot, a_ddot), (b, b_dot, b_ddot) = first.R, second.R
+        (a, a_dot, a_ddot), omega_1, alpha_1, matrix_1, rates_1 = first
+        (b, b_dot, b_ddot), omega_2, alpha_2, matrix_2, rates_2 = second
         # The product rule for R = A B: Ṙ = Ȧ B + A Ḃ and R̈ = Ä B + 2 Ȧ Ḃ + A B̈. The spin and its
         # rate follow as Ṙ Rᵀ and R̈ Rᵀ + Ṙ Ṙᵀ, without the law that they are to prove.
         self.rotation = a @ b
@@ -139,23 +129,18 @@ class Composition(Values):
         mixed = a_dot @ b_dot
         self.spin_rate = (a_ddot @ b + mixed + mixed + a @ b_ddot) @ self.rotation.T
         self.spin_rate += self.rotation_rate @ self.rotation_rate.T
-        self.omega_space = velocity(a, first.omega, second.omega)
-        self.omega_body = velocity(b.T, second.omega, first.omega)
+        self.omega_space = velocity(a, omega_1, omega_2)
+        self.omega_body = velocity(b.T, omega_2, omega_1)
         # From here on the law itself: Ω = Ω₁ + R₁ Ω₂, and its rate α₁ + Ω₁ × Ω + R₁ α₂.
-        gained = first.omega.cross(self.omega_space)
-        self.alpha_space = acceleration(a, first.alpha, gained, second.alpha)
-        gained = self.omega_body.cross(second.omega)
-        self.alpha_body = acceleration(b.T, second.alpha, gained, first.alpha)
-        self._rate_matrices = {  # (W₁, R₁W₂), and (R₂ᵀW₁′, W₂′) in the body
-            "space": _beside(first.rate_matrix, a @ second.rate_matrix),
-            "body": _beside(b.T @ first.rate_matrix, second.rate_matrix),
+        self.alpha_space = acceleration(a, alpha_1, omega_1.cross(self.omega_space), alpha_2)
+        self.alpha_body = acceleration(b.T, alpha_2, self.omega_body.cross(omega_2), alpha_1)
+        # (W₁, R₁W₂), and (R₂ᵀW₁′, W₂′) in the body
+        self._rate_matrices = {
+            "space": _beside(matrix_1, a @ matrix_2),
+            "body": _beside(b.T @ matrix_1, matrix_2),
         }
-        self._rates_in_order = codec.column([*first.rates, *second.rates])
-
-    def argument(self, name: str) -> RingMatrix:
-        """The rates, in the order of the factors."""
-        assert name == "q_dot"
-        return self._rates_in_order
+        q_dot = argument("q_dot", [*rates_1, *rates_2], "rates in the order of the factors")
+        self.arguments = {"q_dot": q_dot}
 
 
 def _beside(left: RingMatrix, right: RingMatrix) -> RingMatrix:
@@ -276,31 +261,21 @@ class Chain(Names, Workspace):
         self.axes = [sp.ImmutableMatrix(turn.direction) for turn in model.turns]
         self.turns = [self.named(f"T{k}", turn.matrix) for k, turn in enumerate(model.turns, 1)]
         self.count = len(self.turns)
-        self._rate_matrices: dict[str, sp.ImmutableMatrix] = {}
-
-    @cached_property
-    def speeds(self) -> list[sp.Expr]:
-        """θ̇ of each turn."""
-        return self._rates_of_angles("dtheta", 1)
-
-    @cached_property
-    def gains(self) -> list[sp.Expr]:
-        """θ̈ of each turn."""
-        return self._rates_of_angles("ddtheta", 2)
-
-    def _rates_of_angles(self, name: str, order: int) -> list[sp.Expr]:
-        turns = enumerate(self.model.turns, 1)
-        return [self.define(f"{name}{k}", sp.diff(t.angle, TIME, order)) for k, t in turns]
-
-    @cached_property
-    def from_space(self) -> list[State]:
-        """(B₁, u₁, u̇₁), ..., (Bₙ, uₙ, u̇ₙ) and (1, 0, 0)."""
-        return self._states(range(self.count - 1, -1, -1), "u", "B")[::-1]
-
-    @cached_property
-    def from_body(self) -> list[State]:
-        """(1, 0, 0) and (P₁, w₁, ẇ₁), ..., (Pₙ, wₙ, ẇₙ)."""
-        return self._states(range(self.count), "w", "P")
+        self.speeds, self.gains = (
+            [
+                self.define(f"{name}{k}", sp.diff(turn.angle, TIME, order))
+                for k, turn in enumerate(model.turns, 1)
+            ]
+            for name, order in (("dtheta", 1), ("ddtheta", 2))
+        )
+        # (1, 0, 0) and (P₁, w₁, ẇ₁), ..., (Pₙ, wₙ, ẇₙ)
+        self.from_body = self._states(range(self.count), "w", "P")
+        # (B₁, u₁, u̇₁), ..., (Bₙ, uₙ, u̇ₙ) and (1, 0, 0)
+        self.from_space = self._states(reversed(range(self.count)), "u", "B")[::-1]
+        self.rotation, self.omega_body, self.alpha_body = self.from_body[-1]
+        _, self.omega_space, self.alpha_space = self.from_space[0]
+        self.rotation_rate = hat(self.omega_space) * self.rotation
+        self.shown_spin = -hat(self.omega_body) if model.passive else hat(self.omega_space)
 
     def _states(self, places: Iterable[int], letter: str, product: str) -> list[State]:
         """The recursion from the identity at rest; each step applies the law to one more turn."""
@@ -316,53 +291,19 @@ class Chain(Names, Workspace):
             states.append(State(R, omega, alpha))
         return states
 
-    # What entries ask of a workspace
-
-    @property
-    def rotation(self) -> Matrix:
-        return self.from_body[-1].R
-
-    @property
-    def rotation_rate(self) -> Matrix:
-        return hat(self.omega_space) * self.rotation
-
-    @property
-    def omega_space(self) -> Vector:
-        return self.from_space[0].omega
-
-    @property
-    def omega_body(self) -> Vector:
-        return self.from_body[-1].omega
-
-    @property
-    def alpha_space(self) -> Vector:
-        return self.from_space[0].alpha
-
-    @property
-    def alpha_body(self) -> Vector:
-        return self.from_body[-1].alpha
-
-    @property
-    def shown_spin(self) -> Matrix:
-        return -hat(self.omega_body) if self.model.passive else hat(self.omega_space)
-
     def rate_matrix(self, frame: str) -> sp.ImmutableMatrix:
         """Columns: what each coordinate turns about, ∂θₖ/∂q times axis k, added up; (3, m)."""
-        if frame not in self._rate_matrices:
-            if frame == "space":
-                letter, carried = "n", [state.R for state in self.from_body]  # Pₖ₋₁ nₖ
-            else:
-                letter, carried = "m", [state.R.T for state in self.from_space[1:]]  # Bₖ₊₁ᵀ nₖ
-            # Ω = Σ θ̇ₖ (carried axis k) and θ̇ₖ = Σ (∂θₖ/∂q) q̇, so the column of q is Σ (∂θₖ/∂q)
-            # (axis k).
-            columns = {q: sp.zeros(3, 1) for q in self.model.coordinates}
-            for k, turn in enumerate(self.model.turns):
-                moved = self.named(f"{letter}{k + 1}", carried[k] * self.axes[k])
-                for q in turn.angle.atoms(AppliedUndef):
-                    columns[q] += moved * sp.diff(turn.angle, q)
-            matrix = sp.ImmutableMatrix(sp.Matrix.hstack(*columns.values()))
-            self._rate_matrices[frame] = matrix
-        return self._rate_matrices[frame]
+        letter, carried = "n", [state.R for state in self.from_body]  # Pₖ₋₁ nₖ
+        if frame == "body":
+            letter, carried = "m", [state.R.T for state in self.from_space[1:]]  # Bₖ₊₁ᵀ nₖ
+        # Ω = Σ θ̇ₖ (carried axis k) and θ̇ₖ = Σ (∂θₖ/∂q) q̇, so the column of q is Σ (∂θₖ/∂q)
+        # (axis k).
+        columns = {q: sp.zeros(3, 1) for q in self.model.coordinates}
+        for k, turn in enumerate(self.model.turns):
+            moved = self.named(f"{letter}{k + 1}", carried[k] * self.axes[k])
+            for q in turn.angle.atoms(AppliedUndef):
+                columns[q] += moved * sp.diff(turn.angle, q)
+        return sp.ImmutableMatrix(sp.Matrix.hstack(*columns.values()))
 
     def inverse(self, _frame: str) -> None:
         """None: numbers solve W q̇ = Ω with more digits than a formula for W⁺ in names."""

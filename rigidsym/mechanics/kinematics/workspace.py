@@ -101,8 +101,11 @@ class Workspace:
         proofs, extras = self.proofs(quantity, value), self.extras(quantity, value)
         if form := extras.get("vector_form"):
             proofs += (form.proof,)
+        if quantity.unit_of:  # none if its components differ
+            units = {*self.arguments[quantity.unit_of].units}
+            quantity = quantity._replace(unit=units.pop() if len(units) == 1 else "")
         return Step(
-            quantity=quantity.measured(self.arguments),
+            quantity=quantity,
             expression=self._printed(value),
             proofs=proofs,
             words=quantity.words(self) if quantity.words else "",
