@@ -76,27 +76,19 @@ class _Study:
             points.insert(0, self._point(Stratum((), self.whole, found.rank)))
         is_one = found.rank == rows == columns
         squares = minors[0] if is_one else found.sum_of_squares(minors)
-        determinant = self.present.element(squares)
-        shown = list(map(self.present.element, minors))
+        printed = tuple(map(self.present.element, minors))
         is_solved = found.is_solved
         if any(place.is_length for point in points for place in point.places):
             # whether a minor is not zero at zero coordinates, by its form in Stumpff functions
             rewriter = rewriter_for(found.codec)
-            forms = map(rewriter.rewritten, shown) if rewriter else ()
+            forms = map(rewriter.rewritten, printed) if rewriter else ()
             is_regular = any(form is not None and at_zero(form) != 0 for form in forms)
             is_solved = is_solved and is_regular
-        return Singularities(
-            rank=rank,
-            measure=measure,
-            determinant=determinant,
-            minors=tuple(shown),
-            points=tuple(points),
-            is_solved=is_solved,
-        )
+        determinant = self.present.element(squares)
+        return Singularities(rank, measure, determinant, printed, tuple(points), is_solved)
 
     def _point(self, stratum: Stratum) -> Singularity:
         zero, there, full = stratum
-        places = tuple(root.place for root in zero)
         rank, axis = full - self.falling.bound_rank, None
         if rank == 2:  # the direction that no rates give
             # (a, b) [W; J] = 0 means a·W q̇ = −b·J q̇ = 0 for all allowed rates: a is the lost
@@ -111,19 +103,17 @@ class _Study:
             axis = next(row for row in reached.T.rows if any(row))
         in_space = in_body = None
         if axis is not None:
-            ring, column = there.ring, RingMatrix.column
-            here = column(ring, axis[:3])
-            space, body = (
-                matrix_at(self.to_space, zero) @ here,
-                matrix_at(self.to_body, zero) @ here,
-            )
+            here = RingMatrix.column(there.ring, axis[:3])
+            both = [matrix_at(frame, zero) @ here for frame in (self.to_space, self.to_body)]
             # One common factor is taken out of both, so that they stay the same vector in two
             # frames.
-            entries = primitive(ring, (*space.entries, *body.entries))
-            in_space = self.present.matrix(column(ring, entries[:3]))
-            in_body = self.present.matrix(column(ring, entries[3:]))
+            entries = primitive(there.ring, [entry for vector in both for entry in vector.entries])
+            in_space, in_body = (
+                self.present.matrix(RingMatrix.column(there.ring, part))
+                for part in (entries[:3], entries[3:])
+            )
         return Singularity(
-            places=places,
+            places=tuple(root.place for root in zero),
             rank=rank,
             lost_axis_space=in_space if rank == 2 else None,
             lost_axis_body=in_body if rank == 2 else None,

@@ -54,18 +54,11 @@ class Workspace:
     model: RotationModel
     body: RigidBody | None
     arguments: dict[str, Argument]
+    codec: Any
+    traits: Any  # what variants of the entries ask of it
     rotation: Any
     rotation_rate: Any
     has_fixed_point = False  # whether a body turns about a fixed point, not its centre of mass
-
-    @cached_property
-    def traits(self) -> frozenset[str]:
-        """What variants of the entries ask of it."""
-        raise NotImplementedError
-
-    @cached_property
-    def codec(self) -> Codec:
-        raise NotImplementedError
 
     @cached_property
     def prove(self) -> Prover:
