@@ -122,7 +122,7 @@ def derive(
         quantity, inputs = step.quantity, step.quantity.inputs
         if is_driven and "t" not in inputs and depends_on_time(step.expression):
             inputs += ("t",)
-        if not step.expression.free_symbols.isdisjoint(constants):
+        if constants and not step.expression.free_symbols.isdisjoint(constants):
             inputs += ("parameters",)
         return replace(step, number=number, quantity=quantity._replace(inputs=inputs))
 
