@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
-from rigidsym.errors import ModelError
+from rigidsym.errors import ModelError, QuantityError, offer
 from rigidsym.formula.notation import CHOICES as CHOICES, DEFAULT as DEFAULT, Notation as Notation
 from rigidsym.formula.tree import Words
 from rigidsym.kernels.lowering.derivatives import Asked
