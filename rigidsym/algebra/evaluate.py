@@ -1,49 +1,43 @@
 """Values of SymPy expressions in any arithmetic: `evaluate(expression, arithmetic, values)`.
 
-An arithmetic gives a `number` of the value numerator/denominator, a `constant` ("pi" or "e"), a
-rational `power`, and `apply`, which takes the names of its `functions`; it is given the expressions
-too, for errors to name them. `Intervals` are proved to enclose the
-true values: roots of negative numbers, quotients by zero and logarithms of numbers that are not
-positive have no real value there, and a value is returned only if it exists at every point of the
-intervals. `Floats` are NumPy arrays or plain numbers; `function_of` walks the expression once, and
-makes it a function of floats to be called thousands of times.
+An arithmetic makes a `number` of numerator and denominator, and has `functions` by their names in
+SymPy, of values; the exponent of a power is a rational number of SymPy. `Intervals` are proved to
+enclose the true values: roots of negative numbers, quotients by zero and logarithms of numbers that
+are not positive have no real value there, and a value is returned only if it exists at every point
+of the intervals. `Floats` are NumPy arrays or plain numbers.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Mapping, Sequence
-from functools import cache
-from operator import itemgetter
+from collections.abc import Callable, Mapping
+from functools import cache, partial
+from math import prod
+from operator import truediv
 from typing import Any
 
 import mpmath
 import sympy as sp
 from sympy.core.function import AppliedUndef
+from sympy.functions.elementary.hyperbolic import HyperbolicFunction, InverseHyperbolicFunction
 
-_REWRITTEN: dict[str, Callable[..., sp.Expr]] = {  # where an arithmetic has no such function
-    "tan": lambda x: sp.sin(x) / sp.cos(x),
-    "cot": lambda x: sp.cos(x) / sp.sin(x),
-    "sec": lambda x: 1 / sp.cos(x),
-    "csc": lambda x: 1 / sp.sin(x),
-    "cosh": lambda x: (sp.exp(x) + sp.exp(-x)) / 2,
-    "sech": lambda x: 2 / (sp.exp(x) + sp.exp(-x)),
-    "coth": lambda x: (sp.exp(2 * x) + 1) / (sp.exp(2 * x) - 1),
-    "csch": lambda x: 2 / (sp.exp(x) - sp.exp(-x)),
-    "acot": lambda x: sp.atan(1 / x),
+from rigidsym.algebra.generators import as_sine_cosine
+
+_SUMS: dict[str, Callable[..., Any]] = {
+    "Add": lambda *parts: sum(parts),
+    "Mul": lambda *parts: prod(parts),
 }
-_MONOTONE = frozenset(
-    {"atan", "asin", "acos", "sinh", "tanh", "asinh", "acosh", "atanh", "erf", "log"}
-)
 _LARGEST_EXPONENT = 10**5  # of exp, and angle of sin and cos: mpmath would need ever more digits
 
 
 class NotReal(ValueError):
     """An expression without a real value: what it is, and the part that is at fault."""
 
-    def __init__(self, reason: str, part: sp.Expr) -> None:
-        super().__init__(f"{reason} {part}")
+    def __init__(self, reason: str, part: sp.Expr | None = None) -> None:
+        super().__init__(reason)
         self.reason, self.part = reason, part
+
+    def __str__(self) -> str:
+        return f"{self.reason} in {self.part}"
 
 
 class Unknown(ValueError):
@@ -57,89 +51,81 @@ class Unknown(ValueError):
 def evaluate(
     expression: sp.Expr, arithmetic: Intervals | Floats, values: dict[sp.Expr, Any]
 ) -> Any:
-    """The value of an expression; `values` holds those of symbols, and remembers those of parts.
-
-    Raises Unknown for a part that has none.
-    """
+    """The value of an expression; `values` holds those of symbols, and remembers those of parts."""
     if expression not in values:
-        values[expression] = _value(expression, arithmetic, values)
+        try:
+            values[expression] = _value(expression, arithmetic, values)
+        except NotReal as error:  # from the functions of the arithmetic, which know values only
+            error.part = error.part or expression
+            raise
     return values[expression]
 
 
 def _value(e: sp.Expr, arithmetic: Intervals | Floats, values: dict[sp.Expr, Any]) -> Any:
-    if e.is_Rational:
-        return arithmetic.number(int(e.p), int(e.q))
-    if e.is_Float:
-        return arithmetic.number(*float(e).as_integer_ratio())
-    if e is sp.pi or e is sp.E:
-        return arithmetic.constant("pi" if e is sp.pi else "e")
-    name = e.func.__name__
-    if e.is_Add or e.is_Mul:
-        first, *others = (evaluate(part, arithmetic, values) for part in e.args)
-        for other in others:
-            first = first + other if e.is_Add else first * other
-        return first
+    if e.is_Rational or e.is_Float:
+        number = sp.Rational(e)
+        return arithmetic.number(int(number.p), int(number.q))
+    function = arithmetic.functions.get(e.func.__name__)
     if e.is_Pow:
         if e.exp.is_Rational:
-            return arithmetic.power(evaluate(e.base, arithmetic, values), e.exp, e)
+            return arithmetic.functions["Pow"](evaluate(e.base, arithmetic, values), e.exp)
         # bᵉ = exp(e log b), unevaluated, since SymPy may turn it back into bᵉ.
         return evaluate(sp.exp(e.exp * sp.log(e.base), evaluate=False), arithmetic, values)
-    if isinstance(e, AppliedUndef) or not e.args:
+    if function and not isinstance(e, AppliedUndef):
+        return function(*(evaluate(part, arithmetic, values) for part in e.args))
+    quotient, target = as_sine_cosine(e), sp.atan
+    if isinstance(e, HyperbolicFunction | InverseHyperbolicFunction):
+        target = sp.exp if isinstance(e, HyperbolicFunction) else sp.log
+    plain = quotient[0] / quotient[1] if quotient else e.rewrite(target)
+    if plain == e:
         raise Unknown(e)
-    if name in arithmetic.functions:
-        parts = (evaluate(part, arithmetic, values) for part in e.args)
-        return arithmetic.apply(name, e, *parts)
-    if name in _REWRITTEN:
-        return evaluate(_REWRITTEN[name](*e.args), arithmetic, values)
-    raise Unknown(e)
+    return evaluate(plain, arithmetic, values)
 
 
 class Intervals:
     """Intervals of so many digits, by mpmath."""
 
-    functions = _MONOTONE | {"exp", "sin", "cos", "Abs", "atan2"}
-
     def __init__(self, digits: int) -> None:
-        self.context = context(digits, of_intervals=True)
+        self.context = iv = context(digits, of_intervals=True)
+        self.functions: Mapping[str, Callable[..., Any]] = {
+            **_SUMS,
+            **{name: partial(self._bounded, getattr(iv, name)) for name in ("exp", "sin", "cos")},
+            **{name: partial(self._monotone, name) for name in ("atan", "log", "erf")},
+            "Pi": lambda: +iv.pi,
+            "Exp1": lambda: +iv.e,
+            "Abs": abs,
+            "Pow": self._power,
+            "atan2": self._direction,
+        }
 
     def number(self, numerator: int, denominator: int) -> Any:
-        return self.context.mpf(numerator) / self.context.mpf(denominator)
+        return self.context.mpf(numerator) / denominator
 
-    def constant(self, name: str) -> Any:
-        return +getattr(self.context, name)
-
-    def power(self, base: Any, exponent: sp.Rational, whole: sp.Expr) -> Any:
+    def _power(self, base: Any, exponent: sp.Rational) -> Any:
         if exponent.q != 1 and base.a < 0:
-            raise NotReal("a root of a negative number,", whole.base)
+            raise NotReal("a root of a negative number")
         if exponent < 0 and 0 in base:
-            raise NotReal("division by", whole.base)
-        degree = int(exponent.q)
-        if degree == 2:
-            base = self.context.sqrt(base)
-        elif degree > 2:
-            base = self._monotone("root", base, whole, degree)
+            raise NotReal("division by zero")
+        if exponent.q != 1:
+            root, degree = self.context.sqrt, int(exponent.q)
+            base = root(base) if degree == 2 else self._monotone("root", base, degree)
         return base ** int(exponent.p)
 
-    def apply(self, name: str, whole: sp.Expr, *values: Any) -> Any:
-        (value, *others), context = values, self.context
-        if name in ("exp", "sin", "cos"):
-            if not abs(value) < _LARGEST_EXPONENT:
-                raise NotReal("a number that is too large,", whole)
-            return getattr(context, name)(value)
-        if name == "Abs":
-            return abs(value)
-        if name == "atan2":
-            # by the arc tangent of a quotient that stays finite
-            (x,) = others
-            if x.a > 0:
-                return self._monotone("atan", value / x, whole)
-            if value.a > 0 or value.b < 0:
-                quarter = context.pi / 2 if value.a > 0 else -context.pi / 2
-                return quarter - self._monotone("atan", x / value, whole)
-            raise NotReal("no direction is known of", sp.Tuple(*whole.args[::-1]))
-        return self._monotone(name, value, whole)
+    def _bounded(self, function: Callable[[Any], Any], value: Any) -> Any:
+        if not abs(value) < _LARGEST_EXPONENT:
+            raise NotReal("a number that is too large")
+        return function(value)
 
-    def _monotone(self, name: str, value: Any, whole: sp.Expr, *more: int) -> Any:
+    def _direction(self, y: Any, x: Any) -> Any:
+        """atan2, by the arc tangent of a quotient that stays finite."""
+        if x.a > 0:
+            return self._monotone("atan", y / x)
+        if y.a > 0 or y.b < 0:
+            quarter = self.context.pi / 2 if y.a > 0 else -self.context.pi / 2
+            return quarter - self._monotone("atan", x / y)
+        raise NotReal("an unknown direction")
+
+    def _monotone(self, name: str, value: Any, *more: int) -> Any:
         """A monotone function, by its values at both ends."""
         digits = self.context.dps
         # The image of [a, b] under a monotone function lies between f(a) and f(b). mpmath's
@@ -148,7 +134,7 @@ class Intervals:
         own = context(digits + 10)
         ends = [getattr(own, name)(own.mpf(end), *more) for end in (value.a, value.b)]
         if any(isinstance(end, own.mpc) or not own.isfinite(end) for end in ends):
-            raise NotReal("a value that is not real,", whole)
+            raise NotReal("a value that is not real")
         slack = own.mpf(10) ** -digits * (1 + max(map(abs, ends)))
         return self.context.mpf([min(ends) - slack, max(ends) + slack])
 
@@ -168,11 +154,10 @@ class RealValues:
 
     def __init__(self, point: Mapping[sp.Expr, Any], digits: int) -> None:
         self.intervals = Intervals(digits)
-        self.context = self.intervals.context
         self._values: dict[sp.Expr, Any] = {}
         for atom, value in point.items():
             is_exact = isinstance(value, sp.Expr)
-            self._values[atom] = self(value) if is_exact else self.context.mpf(value)
+            self._values[atom] = self(value) if is_exact else self.intervals.context.mpf(value)
 
     def set(self, atom: sp.Expr, value: Any) -> None:
         """Give an atom its value, before anything that holds it is asked for."""
@@ -184,67 +169,22 @@ class RealValues:
 
 
 class Floats:
-    """Floats, one or an array of them, by a module of functions: NumPy, or math."""
+    """Floats, one or an array of them, by NumPy."""
 
-    _NAMES: Mapping[str, tuple[str, ...]] = {  # in SymPy: in the modules
-        **{name: (name,) for name in ("sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "log")},
-        **{f"a{name}": (f"a{name}", f"arc{name}") for name in ("sin", "cos", "tan", "tan2")},
-        "Abs": ("fabs",),
-        "erf": ("erf",),
-    }
+    number = staticmethod(truediv)
 
-    def __init__(self, module: Any) -> None:
-        self._module = module
-        self.by_name = {
-            name: getattr(module, own)
-            for name, names in self._NAMES.items()
-            for own in names
-            if hasattr(module, own)
+    def __init__(self, numpy: Any) -> None:
+        names = {name: name for name in ("sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "log")}
+        names |= {f"a{name}": f"arc{name}" for name in ("sin", "cos", "tan", "tan2")}
+        self.functions: Mapping[str, Callable[..., Any]] = {
+            **_SUMS,
+            **{name: getattr(numpy, own) for name, own in names.items()},
+            "Pi": lambda: numpy.pi,
+            "Exp1": lambda: numpy.e,
+            "Abs": numpy.abs,
+            # a float, since NumPy takes no whole number to a negative whole power
+            "Pow": lambda base, n: (base + 0.0) ** (int(n) if n.is_Integer else float(n)),
         }
-        self.functions = frozenset(self.by_name)
-
-    def number(self, numerator: int, denominator: int) -> float:
-        return numerator / denominator
-
-    def constant(self, name: str) -> float:
-        return float(getattr(self._module, name))
-
-    def power(self, base: Any, exponent: sp.Rational, whole: sp.Expr) -> Any:  # noqa: ARG002
-        # a float, since NumPy takes no whole number to a negative whole power
-        return (base + 0.0) ** (int(exponent) if exponent.is_Integer else float(exponent))
-
-    def apply(self, name: str, whole: sp.Expr, *values: Any) -> Any:  # noqa: ARG002
-        return self.by_name[name](*values)
-
-
-_IN_FLOATS: dict[str, Callable[..., float]] = {
-    "Add": lambda *parts: sum(parts),
-    "Mul": lambda *parts: math.prod(parts),
-    "Pow": pow,
-    **Floats(math).by_name,
-}
-
-
-def function_of(
-    expression: sp.Expr, symbols: Sequence[sp.Expr]
-) -> Callable[[Sequence[float]], float]:
-    """The value of an expression in floats, for values of the symbols in their order."""
-    if expression in symbols:
-        return itemgetter(symbols.index(expression))
-    if expression.is_number:
-        number = float(expression)
-        return lambda _: number
-    name = expression.func.__name__
-    if name in _REWRITTEN and name not in _IN_FLOATS:
-        return function_of(_REWRITTEN[name](*expression.args), symbols)
-    if name not in _IN_FLOATS:
-        raise Unknown(expression)
-    function = _IN_FLOATS[name]
-    parts = [function_of(part, symbols) for part in expression.args]
-    if len(parts) > 1:
-        return lambda values: function(*[part(values) for part in parts])
-    (part,) = parts
-    return lambda values: function(part(values))
 
 
 # The sign of an expression whose variables stay within bounds

@@ -87,11 +87,11 @@ def configurations(
     if points or reason is None:
         return tuple(points)
     # The divisor may only be too small for these digits.
-    if reason.reason == "division by" and digits < MORE_DIGITS:
+    if reason.reason == "division by zero" and digits < MORE_DIGITS:
         return configurations(name, constraints, parts, example, MORE_DIGITS, count)
     place = ", where the `example` is" if bound else ""
     raise ModelError(
-        f"{name}: no real values were found: {reason.reason} {in_names(reason.part)}{place}; "
+        f"{name}: no real values were found: {reason.reason} in {in_names(reason.part)}{place}; "
         "expected expressions that are real and defined for some values, which an `example` may "
         "give"
     )

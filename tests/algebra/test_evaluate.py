@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 import pytest
 import sympy as sp
@@ -17,7 +15,6 @@ from rigidsym.algebra.evaluate import (
     Unknown,
     context,
     evaluate,
-    function_of,
     is_never_negative,
 )
 
@@ -28,7 +25,7 @@ TREES = st.recursive(
     lambda part: st.one_of(
         st.tuples(part, part).map(sum),
         st.tuples(part, part).map(lambda pair: pair[0] * pair[1]),
-        st.tuples(st.sampled_from([sp.sin, sp.cos, sp.atan, sp.Abs, sp.cot]), part).map(
+        st.tuples(st.sampled_from([sp.sin, sp.cos, sp.atan, sp.Abs, sp.cot, sp.sech, sp.asinh]), part).map(
             lambda pair: pair[0](pair[1])
         ),
         st.tuples(part, st.sampled_from([-2, -1, 2, sp.Rational(1, 2)])).map(
@@ -55,7 +52,6 @@ def test_all_arithmetics_agree_with_fifty_digits(expression):
     assert width <= mp.mpf(10) ** -25 * (1 + abs(exact))
     floats = [float(at[X]), float(at[Y])]
     limit = 1e-9 * (1 + abs(float(exact)))
-    assert abs(function_of(expression, (X, Y))(floats) - float(exact)) <= limit
     columns = {s: np.full(3, value) for s, value in zip((X, Y), floats, strict=True)}
     assert np.all(np.abs(evaluate(expression, Floats(np), columns) - float(exact)) <= limit)
 
@@ -70,7 +66,7 @@ def test_intervals_have_no_value_where_there_is_none(expression):
 
 def test_a_symbol_without_a_value_is_named():
     with pytest.raises(Unknown, match="y"):
-        evaluate(X + Y, Floats(math), {X: 1.0})
+        evaluate(X + Y, Floats(np), {X: 1.0})
 
 
 R = sp.Symbol("R")
