@@ -76,7 +76,7 @@ def _value(e: sp.Expr, arithmetic: Intervals | Floats, values: dict[sp.Expr, Any
     quotient, target = as_sine_cosine(e), sp.atan
     if isinstance(e, HyperbolicFunction | InverseHyperbolicFunction):
         target = sp.exp if isinstance(e, HyperbolicFunction) else sp.log
-    plain = quotient[0] / quotient[1] if quotient else e.rewrite(target)
+    plain = quotient[0] / quotient[1] if quotient else e.rewrite(target, deep=False)
     if plain == e:
         raise Unknown(e)
     return evaluate(plain, arithmetic, values)
