@@ -31,16 +31,21 @@ Pair = tuple[PolyElement, PolyElement]  # cosine and sine of one angle
 
 
 def codec_for(
-    expressions: Iterable[sp.Expr], *, constraints: Iterable[sp.Expr] = (), order: int = 2
+    expressions: Iterable[sp.Expr],
+    *,
+    constraints: Iterable[sp.Expr] = (),
+    order: int = 2,
+    has_inverses: bool = True,
 ) -> Codec:
     """The ring that holds `expressions`, in which each constraint vanishes for all time.
 
-    `order` is the highest time derivative of a coordinate that the ring can hold. Expressions
-    that ask for the same generators share one ring, with all that it remembers.
+    `order` is the highest time derivative of a coordinate that the ring can hold. Without
+    generators for the inverses of sums, common factors of numerators and denominators are seen and
+    cancel. Expressions that ask for the same generators share one ring, with all that it remembers.
     Raises AlgebraError for an expression that no ring of this kind can hold.
     """
     conditions = tuple(sp.sympify(constraint, strict=True) for constraint in constraints)
-    needed = GeneratorSet(order)
+    needed = GeneratorSet(order, has_inverses)
     for expression in dict.fromkeys((*expressions, *conditions)):
         needed.collect(sp.sympify(expression, strict=True))
     needed.close()
@@ -121,7 +126,8 @@ class Codec:
         if expression is sp.I:
             return gen**2 + 1
         if kind is Kind.RADICAL:
-            return gen**expression.exp.q - self.encode(expression.base)
+            base = self.encode_quotient(expression.base)
+            return gen**expression.exp.q * base.denominator - base.numerator
         if kind is Kind.SINE:
             cosine = ring.generator(ring.index[sp.cos(expression.args[0])])
             return gen**2 + cosine**2 - 1

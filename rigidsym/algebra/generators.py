@@ -213,8 +213,8 @@ def as_sine_cosine(expression: sp.Expr) -> tuple[sp.Expr, sp.Expr] | None:
 class GeneratorSet:
     """Generators found so far: `kinds` in order of discovery, and the angles among them."""
 
-    def __init__(self, order: int) -> None:
-        self.order = order
+    def __init__(self, order: int, has_inverses: bool) -> None:
+        self.order, self.has_inverses = order, has_inverses
         self._has_fractions = False
         self.kinds: dict[sp.Expr, Kind] = {}
         self._angles: list[Combination] = []
@@ -277,7 +277,7 @@ class GeneratorSet:
             for root in [base] if exponent.q == 1 else roots_of(base, exponent.q):
                 if exponent.q != 1:
                     self._add(root, Kind.RADICAL)
-                if exponent.p < 0:
+                if exponent.p < 0 and self.has_inverses:
                     self._add(1 / root, Kind.INVERSE)
         elif isinstance(expression, sp.sin | sp.cos):
             self._collect_angle(expression.args[0])

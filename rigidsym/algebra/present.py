@@ -29,7 +29,7 @@ import sympy as sp
 from sympy.polys.orderings import lex
 from sympy.polys.rings import PolyElement
 
-from rigidsym.algebra.codec import Codec, codec_for
+from rigidsym.algebra.codec import Codec
 from rigidsym.algebra.generators import is_sum_of
 from rigidsym.algebra.matrix import RingMatrix, Row
 from rigidsym.algebra.ring import Monomial, Quotient, shortest
@@ -313,37 +313,6 @@ def _folded(terms: Terms, rules: Sequence[Rule]) -> Terms:
                     value = result.pop(monomial) + result.get(tuple(target), 0)
                     result[tuple(target)] = value
     return result
-
-
-class Rationals:
-    """Quotients over the ring of their numerators and denominators: in (`read`) and out (`write`).
-
-    The ring then needs no generator for the inverse of a sum, so that common factors of numerator
-    and denominator are seen and cancel.
-    """
-
-    def __init__(self, codec: Codec) -> None:
-        self.codec, self.ring = codec, codec.ring
-
-    @classmethod
-    def of(cls, expressions: Iterable[sp.Expr], constraints: Iterable[sp.Expr] = ()) -> Rationals:
-        """The quotients over a ring that holds some expressions."""
-        parts = (part for e in expressions for part in sp.sympify(e, strict=True).as_numer_denom())
-        return cls(codec_for(parts, constraints=constraints))
-
-    def read(self, expression: sp.Expr) -> Quotient:
-        """Raises AlgebraError for an expression that the ring was not built for."""
-        above, below = sp.sympify(expression, strict=True).as_numer_denom()
-        return self.codec.encode_quotient(above) * self.codec.encode_quotient(below).inverse()
-
-    def read_matrix(self, matrix: sp.MatrixBase) -> list[list[Quotient]]:
-        return [[self.read(entry) for entry in row] for row in matrix.tolist()]
-
-    def write(self, value: Quotient) -> sp.Expr:
-        return presenter_for(self.codec).quotient(value)
-
-    def total(self, parts: Iterable[Quotient]) -> Quotient:
-        return Quotient.sum(self.ring, parts)
 
 
 # Quadratic forms

@@ -17,7 +17,6 @@ from rigidsym.algebra.codec import Codec, codec_for
 from rigidsym.algebra.evaluate import Bounds, is_never_negative
 from rigidsym.algebra.generators import in_names
 from rigidsym.algebra.matrix import RingMatrix, Values
-from rigidsym.algebra.present import Rationals
 from rigidsym.algebra.ring import Quotient
 from rigidsym.algebra.witness import Example, witness_for
 from rigidsym.errors import Defect, DerivationError, NotARotation, RigidsymError
@@ -47,10 +46,10 @@ def identity(
 
     `example` gives exact values of the symbols in the conditions that satisfy them.
     """
-    field = Rationals.of(left, conditions)
-    quotients = [field.read(entry) for entry in left]
+    codec = codec_for(left, constraints=conditions, has_inverses=False)
+    quotients = list(map(codec.encode_quotient, left))
     subject = Conditions(name, tuple(conditions), example=example)
-    return Prover(subject, field.codec).cancel(quotients, claim)
+    return Prover(subject, codec).cancel(quotients, claim)
 
 
 def consequence(proofs: Sequence[Proof], claim: Formula) -> Proof:

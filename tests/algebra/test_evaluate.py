@@ -25,9 +25,9 @@ TREES = st.recursive(
     lambda part: st.one_of(
         st.tuples(part, part).map(sum),
         st.tuples(part, part).map(lambda pair: pair[0] * pair[1]),
-        st.tuples(st.sampled_from([sp.sin, sp.cos, sp.atan, sp.Abs, sp.cot, sp.sech, sp.asinh]), part).map(
-            lambda pair: pair[0](pair[1])
-        ),
+        st.tuples(
+            st.sampled_from([sp.sin, sp.cos, sp.atan, sp.Abs, sp.cot, sp.sech, sp.asinh]), part
+        ).map(lambda pair: pair[0](pair[1])),
         st.tuples(part, st.sampled_from([-2, -1, 2, sp.Rational(1, 2)])).map(
             lambda pair: (1 + pair[0] ** 2) ** pair[1]
         ),

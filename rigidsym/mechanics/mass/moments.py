@@ -15,10 +15,10 @@ from functools import lru_cache, singledispatch
 import sympy as sp
 from sympy.polys.rings import PolyElement
 
-from rigidsym.algebra.codec import Codec
+from rigidsym.algebra.codec import Codec, codec_for
 from rigidsym.algebra.integrate import Integrator, integration_codec
 from rigidsym.algebra.matrix import RingMatrix
-from rigidsym.algebra.present import Rationals, presenter_for
+from rigidsym.algebra.present import presenter_for
 from rigidsym.algebra.ring import Quotient
 from rigidsym.errors import BodyError
 from rigidsym.formula.reader import formula
@@ -62,33 +62,33 @@ class Moments:
 
     def central(self) -> tuple[sp.ImmutableMatrix, sp.ImmutableMatrix]:
         """The centre c = S/M, (3, 1), and the tensor about it, tr(J) 1 − J of J − M c cᵀ."""
-        field = Rationals.of(self.matrix)
+        codec = codec_for(self.matrix, has_inverses=False)
+        read, written = codec.encode_quotient, presenter_for(codec).quotient
         # Steiner's theorem for second moments, J_c = J − M c cᵀ, and I = tr(J_c) 1 − J_c: the
         # diagonal of I is the sum of the two other diagonal entries, and elsewhere I is −J_c.
-        mass, second = field.read(self.mass), field.read_matrix(self.second)
-        inverse = mass.inverse()
-        centre = [field.write(field.read(entry) * inverse) for entry in self.first]
+        mass, second = read(self.mass), self.second
+        centre = [written(read(entry) * mass.inverse()) for entry in self.first]
         # Without the mass in its divisor, as S/M has it before it is cancelled: to find the mass of
         # a tetrahedron with twelve symbols in a moment of degree eight would take a minute.
-        c = [field.read(entry) for entry in centre]
+        c = list(map(read, centre))
 
         def entry(i: int, j: int) -> sp.Expr:
             if i != j:
-                return field.write(mass * c[i] * c[j] - second[i][j])
-            others = (k for k in range(3) if k != i)
-            return field.write(field.total(second[k][k] - mass * c[k] * c[k] for k in others))
+                return written(mass * c[i] * c[j] - read(second[i, j]))
+            j, k = (i + 1) % 3, (i + 2) % 3
+            return written(read(second[j, j] + second[k, k]) - mass * (c[j] * c[j] + c[k] * c[k]))
 
         return sp.ImmutableMatrix(centre), sp.ImmutableMatrix(3, 3, entry)
 
 
 def _moments(
-    field: Rationals,
+    codec: Codec,
     entries: Iterable[Quotient],
     element: sp.Expr | None = None,
     proofs: tuple[Proof, ...] = (),
 ) -> Moments:
     """From the entries on and above the diagonal."""
-    upper = dict(zip(_PAIRS, map(field.write, entries), strict=True))
+    upper = dict(zip(_PAIRS, map(presenter_for(codec).quotient, entries), strict=True))
     matrix = sp.ImmutableMatrix(4, 4, lambda i, j: upper[min(i, j), max(i, j)])
     return Moments(matrix=matrix, element=element, proofs=proofs)
 
@@ -102,11 +102,10 @@ def moments_of(distribution: Distribution) -> Moments:
 @moments_of.register
 def _(cloud: Particles) -> Moments:
     """Sums over the particles."""
-    field = Rationals.of(e for p in cloud.particles for e in (p.mass, *p.position))
-    masses = [field.read(p.mass) for p in cloud.particles]
-    places = [[field.read(e) for e in (*p.position, sp.S.One)] for p in cloud.particles]
-    pairs = list(zip(masses, places, strict=True))
-    return _moments(field, (field.total(m * x[i] * x[j] for m, x in pairs) for i, j in _PAIRS))
+    places = [(p.mass, (*p.position, sp.S.One)) for p in cloud.particles]
+    sums = [sp.Add(*(mass * x[i] * x[j] for mass, x in places)) for i, j in _PAIRS]
+    codec = codec_for(sums, has_inverses=False)
+    return _moments(codec, map(codec.encode_quotient, sums))
 
 
 @moments_of.register
@@ -128,17 +127,17 @@ def _(whole: Composite) -> Moments:
             moments.append(moments_of(part.what))
         except BodyError as error:
             raise BodyError(str(error), place=("parts", k, *error.place)) from error
-    held = [e for m in moments for e in m.matrix]
-    held += [e for part in whole.parts for e in (*part.at, *part.turned)]
-    field, matrices = Rationals.of(held), []
+    matrices = []
     for part, m in zip(whole.parts, moments, strict=True):
         # x = R x′ + d as one matrix in homogeneous coordinates, G = (R d; 0 1). The last row keeps
         # the mass.
         place = sp.Matrix(part.turned).row_join(part.at).col_join(sp.Matrix([[0, 0, 0, 1]]))
         matrices.append((-1 if part.hole else 1) * place * m.matrix * place.T)
+    total = sum(matrices, sp.zeros(4, 4))
+    codec = codec_for(total, has_inverses=False)
     return _moments(
-        field,
-        (field.total(field.read(matrix[pair]) for matrix in matrices) for pair in _PAIRS),
+        codec,
+        (codec.encode_quotient(total[pair]) for pair in _PAIRS),
         proofs=tuple(dict.fromkeys(proof for m in moments for proof in m.proofs)),
     )
 
@@ -178,7 +177,7 @@ def _(solid: Solid) -> Moments:
     if solid.mass is not None:
         uniform = Quotient(ring, codec.encode(solid.mass), integrals[-1])
     return _moments(
-        Rationals(codec),
+        codec,
         (Quotient.whole(ring, integral) * uniform for integral in integrals),
         presenter_for(codec).element(measure),
         (*proofs, work.antiderivatives()),

@@ -10,7 +10,8 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from rigidsym.algebra.present import Rationals
+from rigidsym.algebra.codec import codec_for
+from rigidsym.algebra.present import presenter_for
 from rigidsym.mechanics.derivation import sentence_of
 
 _MOST_OF_AXES = 1000  # operations of axes: longer ones fill pages, and take minutes to prove
@@ -57,9 +58,10 @@ def _about(inertia: sp.ImmutableMatrix, k: int) -> Principal:
     # axis is at the angle α with tan 2α = 2 r/(p − q), so that
     # cos² α = ½ + (p − q)/(2 w) and sin α cos α = r/w.
     p, q, r = inertia[i, i], inertia[j, j], inertia[i, j]
-    field = Rationals.of([p, q, r])  # which knows that sin² + cos² = 1
-    half, apart, product = map(field.read, ((p + q) / 2, p - q, 2 * r))
-    under, root = field.write(apart * apart + product * product), sp.S.One
+    codec = codec_for([p, q, r], has_inverses=False)  # which knows that sin² + cos² = 1
+    written = presenter_for(codec).quotient
+    half, apart, product = map(codec.encode_quotient, ((p + q) / 2, p - q, 2 * r))
+    under, root = written(apart * apart + product * product), sp.S.One
     # squares among the factors are taken out of the root; its sign only swaps the two moments
     for part, sign in zip(sp.fraction(sp.together(under)), (1, -1), strict=True):
         number, factors = sp.factor_list(part)
@@ -67,8 +69,8 @@ def _about(inertia: sp.ImmutableMatrix, k: int) -> Principal:
         outside = sp.Mul(*(factor ** (times // 2) for factor, times in factors))
         root *= (outside * sp.sqrt(inside)) ** sign
     root = min(root, sp.sqrt((p - q) ** 2 + 4 * r**2), key=sp.count_ops)
-    cosine = sp.sqrt(sp.Rational(1, 2) + field.write(apart) / (2 * root))
-    sine, mean = r / (root * cosine), field.write(half)
+    cosine = sp.sqrt(sp.Rational(1, 2) + written(apart) / (2 * root))
+    sine, mean = r / (root * cosine), written(half)
     x, y = _BASIS[i], _BASIS[j]
     axes = sp.ImmutableMatrix.hstack(cosine * x + sine * y, cosine * y - sine * x, _BASIS[k])
     is_long = sp.count_ops(axes) > _MOST_OF_AXES
