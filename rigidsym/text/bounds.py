@@ -30,22 +30,11 @@ _LARGEST_CONSTANT = 1000  # as the argument of a function
 _LONGEST_ROOT = 64  # binary digits of a number under a root
 
 FUNCTIONS: dict[str, Callable[..., sp.Expr]] = {
-    "sin": sp.sin,
-    "cos": sp.cos,
-    "tan": sp.tan,
-    "cot": sp.cot,
+    **{name: getattr(sp, name) for name in ("sin", "cos", "tan", "cot")},
     "sec": lambda angle: 1 / sp.cos(angle),  # SymPy's own raises AttributeError for some sums
     "csc": lambda angle: 1 / sp.sin(angle),
-    "asin": sp.asin,
-    "acos": sp.acos,
-    "atan": sp.atan,
-    "atan2": sp.atan2,
-    "sinh": sp.sinh,
-    "cosh": sp.cosh,
-    "tanh": sp.tanh,
-    "exp": sp.exp,
-    "log": sp.log,
-    "sqrt": sp.sqrt,
+    **{name: getattr(sp, name) for name in ("asin", "acos", "atan", "atan2")},
+    **{name: getattr(sp, name) for name in ("sinh", "cosh", "tanh", "exp", "log", "sqrt")},
     "abs": sp.Abs,
 }
 

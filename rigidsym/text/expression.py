@@ -1,18 +1,17 @@
-"""Text to SymPy, by how tightly operators bind. The text is never run.
+"""Text to SymPy, by Python's grammar. The text is never run.
 
-    sum      value (operator sum)* | ("+" | "-") sum
-    value    number | name | name "(" sum ("," sum)* ")" | "(" sum ")"
-
-Python's own reader would take `lambda` for a keyword, normalise letters (NFKC) and round 0.1.
+Python's own reader would take `lambda` for a keyword, normalise letters (NFKC) and round 0.1. So
+tokens are read here, and each is checked against the one before it. Python's grammar then gets the
+text with a plain name in place of every operand, only to tell how tightly operators bind.
 `rigidsym.text.bounds` does the arithmetic.
 """
 
 from __future__ import annotations
 
+import ast
 import re
 from collections.abc import Mapping
 from itertools import accumulate, takewhile
-from typing import NamedTuple
 
 import sympy as sp
 
@@ -31,10 +30,7 @@ _TOKEN = re.compile(
     r"|(?P<operator>\*\*|[-+*/(),])",
     re.ASCII,
 )
-# Precedence climbing: an operator takes the operand to its right as far as operators that bind more
-# tightly reach. A sign lies between products and powers.
-_BINDING = {"+": 1, "-": 1, "*": 2, "/": 2, "**": 4}
-_SIGN = 3  # -a*b is (-a)*b, and -a**2 is -(a**2)
+_OPERATORS = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "**"}
 _HINTS = {
     "^": "write ** for a power",
     "²": "write **2",
@@ -64,8 +60,13 @@ def parse_expression(text: str, names: Mapping[str, sp.Expr]) -> sp.Expr:
     Raises ExpressionError, with the column, for any other text and for one that is too large.
     """
     _check_length(text)
+    _check_order(text)
+    spaced = re.sub(r"\s", " ", text)
+    plain = _TOKEN.sub(lambda m: m[0] if m.lastgroup == "operator" else "x" * len(m[0]), spaced)
     try:
-        return _Reader(text, names).whole().expression
+        # One line in brackets, since Python takes a space before an expression for an indent.
+        tree = ast.parse(f"({plain})", mode="eval")
+        return _Reader(text, names).read(tree.body).expression
     except (RecursionError, MemoryError):
         raise ExpressionError(
             "operations are nested too deeply; expected a shorter expression"
@@ -106,14 +107,8 @@ def parse_turns(text: str) -> tuple[tuple[str, str, int], ...]:
 def names_in(text: str) -> tuple[str, ...]:
     """The plain names in an expression that are not functions or pi, in order, each once."""
     _check_length(text)
-    found = (spelled(token.text) for token in _tokens(text) if token.kind == "name")
+    found = (spelled(token[0]) for token in _tokens(text) if token.lastgroup == "name")
     return tuple(dict.fromkeys(name for name in found if name not in (*FUNCTIONS, "pi")))
-
-
-class _Token(NamedTuple):
-    kind: str  # number, name or operator
-    text: str
-    start: int  # counted from 0, in characters
 
 
 def _check_length(text: str) -> None:
@@ -123,20 +118,20 @@ def _check_length(text: str) -> None:
         )
 
 
-def _tokens(text: str) -> list[_Token]:
-    tokens: list[_Token] = []
+def _tokens(text: str) -> list[re.Match[str]]:
+    tokens: list[re.Match[str]] = []
     place = 0
     while place < len(text):
         if text[place] in " \t\r\n":
             place += 1
             continue
-        match = _TOKEN.match(text, place)
-        if match is None:
+        token = _TOKEN.match(text, place)
+        if token is None:
             character = text[place]
             hint = _HINTS.get(character, "expected a number, a name, ( ) or one of + - * / **")
             raise ExpressionError(f"unexpected {character!r}; {hint}", column=place + 1)
-        tokens.append(_Token(str(match.lastgroup), match[0], place))
-        place = match.end()
+        tokens.append(token)
+        place = token.end()
     return tokens
 
 
@@ -146,102 +141,84 @@ def _expected(what: str, text: str, place: int) -> ExpressionError:
     return ExpressionError(f"expected {what}, found {found}", column=len(text) - len(rest) + 1)
 
 
+def _check_order(text: str) -> None:
+    """Raises ExpressionError unless operands, operators and brackets follow one another rightly."""
+    brackets: list[tuple[int, bool]] = []  # column of each that is open, and if a function has it
+    before = ""  # the kind of the last token; a bracket that closes ends a value, as a name does
+    for token in _tokens(text):
+        symbol, kind, column = token[0], str(token.lastgroup), token.start() + 1
+        is_value, is_call = before in ("number", "name", ")"), symbol == "(" and before == "name"
+        if is_value and (kind != "operator" or (symbol == "(" and not is_call)):
+            message = f"expected an operator before {symbol!r}, such as *"
+            raise ExpressionError(message, column=column)
+        if not is_value and kind == "operator" and symbol not in ("+", "-", "("):
+            raise _expected("a number, a name or (", text, token.start())
+        if symbol == "," and not (brackets and brackets[-1][1]):
+            hint = "a comma only separates arguments of a function; write decimals with a point"
+            raise ExpressionError(hint, column=column)
+        if symbol == "(":
+            brackets.append((column, is_call))
+            if len(brackets) > _DEEPEST:
+                raise ExpressionError(f"more than {_DEEPEST} nested brackets", column=column)
+        if symbol == ")":
+            if not brackets:
+                raise ExpressionError("unmatched )", column=column)
+            brackets.pop()
+        before = symbol if kind == "operator" else kind
+    if before not in ("number", "name", ")"):
+        raise _expected("a number, a name or (", text, len(text))
+    if brackets:
+        raise ExpressionError("unclosed (", column=brackets[-1][0])
+
+
 class _Reader:
-    """The values of one expression, from left to right."""
+    """The values of the nodes of one expression."""
 
     def __init__(self, text: str, names: Mapping[str, sp.Expr]) -> None:
         self._text, self._names = text, names
-        self._tokens = _tokens(text)[::-1]  # the next one is the last
-        self._depth = 0  # open brackets
 
-    def whole(self) -> Sized:
-        # The weakest operator is read first, so this takes the whole text unless something is
-        # misplaced.
-        value = self._read(_BINDING["+"])
-        if self._tokens:
-            raise self._misplaced()
+    def read(self, node: ast.expr) -> Sized:
+        """The value of a node; its column in the text is one less in brackets, from 0."""
+        operations = []
+        while isinstance(node, ast.BinOp):  # a sum of hundreds of terms is deep to the left only
+            operations.append(node)
+            node = node.left
+        value = self._operand(node)
+        for operation in reversed(operations):
+            right = operation.right
+            operator = _OPERATORS.get(type(operation.op), "//")
+            value = operate(operator, value, self.read(right), right.col_offset)
         return value
 
-    @property
-    def _next(self) -> str:
-        return self._tokens[-1].text if self._tokens else ""
+    def _operand(self, node: ast.expr) -> Sized:
+        if isinstance(node, ast.UnaryOp):
+            value = self.read(node.operand)
+            is_minus = isinstance(node.op, ast.USub)
+            return value._replace(expression=-value.expression) if is_minus else value
+        if isinstance(node, ast.Call):
+            return self._call(self._word(node.func), node)
+        word, column = self._word(node), node.col_offset
+        name = spelled(word)
+        if word[0] in ".0123456789":
+            return _number(word, column)
+        if name in self._names:
+            return Sized.atom(sp.sympify(self._names[name], strict=True))
+        if name == "pi":
+            return Sized(sp.pi, 0, 1, 1)
+        fault = f"unknown name {word!r}; {offer(name, self._names)}"
+        if name in FUNCTIONS:
+            fault = f"{name} is a function; expected {name}(...)"
+        raise ExpressionError(fault, column=column)
 
-    def _misplaced(self) -> ExpressionError:
-        """The error for a bracket or a comma behind a value."""
-        hint = "a comma only separates arguments of a function; write decimals with a point"
-        message = "unmatched )" if self._next == ")" else hint
-        return ExpressionError(message, column=self._tokens[-1].start + 1)
+    def _word(self, node: ast.expr) -> str:
+        return self._text[node.col_offset - 1 : (node.end_col_offset or 0) - 1]
 
-    def _read(self, least: int) -> Sized:
-        """A value and the operators behind it that bind at least so tightly."""
-        if self._next in ("+", "-"):
-            is_minus = self._tokens.pop().text == "-"
-            value = self._read(_SIGN)
-            value = value._replace(expression=-value.expression) if is_minus else value
-        else:
-            value = self._value()
-        while _BINDING.get(self._next, -1) >= least:
-            operator = self._tokens.pop().text
-            # The column of a fault is that of the right operand, behind its brackets.
-            inside = (token.start + 1 for token in reversed(self._tokens) if token.text != "(")
-            column = next(inside, 1)
-            # a power has a sign and a power of its own: 2**-3**2 is 2**(-(3**2))
-            right = self._read(_SIGN if operator == "**" else _BINDING[operator] + 1)
-            value = operate(operator, value, right, column)
-        return value
-
-    def _value(self) -> Sized:
-        if not self._tokens or (self._tokens[-1].kind == "operator" and self._next != "("):
-            place = self._tokens[-1].start if self._tokens else len(self._text)
-            raise _expected("a number, a name or (", self._text, place)
-        token = self._tokens.pop()
-        if token.text == "(":
-            (value,) = self._in_brackets(token, ())
-        elif token.kind == "number":
-            value = _number(token)
-        else:
-            value = self._named(token)
-        if self._next == "(" or (self._tokens and self._tokens[-1].kind != "operator"):
-            raise ExpressionError(
-                f"expected an operator before {self._next!r}, such as *",
-                column=self._tokens[-1].start + 1,
-            )
-        return value
-
-    def _in_brackets(self, bracket: _Token, separators: tuple[str, ...]) -> list[Sized]:
-        """The values up to the bracket that closes one."""
-        self._depth += 1
-        column = bracket.start + 1
-        if self._depth > _DEEPEST:
-            raise ExpressionError(f"more than {_DEEPEST} nested brackets", column=column)
-        values = [self._read(_BINDING["+"])]
-        while self._next in separators:
-            self._tokens.pop()
-            values.append(self._read(_BINDING["+"]))
-        if not self._tokens:
-            raise ExpressionError("unclosed (", column=column)
-        if self._next != ")":
-            raise self._misplaced()
-        self._tokens.pop()
-        self._depth -= 1
-        return values
-
-    def _named(self, token: _Token) -> Sized:
-        """A name, or a function of what follows in brackets."""
-        name, column = spelled(token.text), token.start + 1
-        if self._next != "(":
-            if name in self._names:
-                return Sized.atom(sp.sympify(self._names[name], strict=True))
-            if name == "pi":
-                return Sized(sp.pi, 0, 1, 1)
-            fault = f"unknown name {token.text!r}; {offer(name, self._names)}"
-            if name in FUNCTIONS:
-                fault = f"{name} is a function; expected {name}(...)"
-            raise ExpressionError(fault, column=column)
-        if token.text not in FUNCTIONS:
-            hint = f"write {name}*(...)" if name in self._names else offer(token.text, FUNCTIONS)
-            raise ExpressionError(f"{token.text!r} is not a function; {hint}", column=column)
-        arguments = self._in_brackets(self._tokens.pop(), (",",))
+    def _call(self, word: str, node: ast.Call) -> Sized:
+        name, column = spelled(word), node.col_offset
+        if word not in FUNCTIONS:
+            hint = f"write {name}*(...)" if name in self._names else offer(word, FUNCTIONS)
+            raise ExpressionError(f"{word!r} is not a function; {hint}", column=column)
+        arguments = list(map(self.read, node.args))
         wanted = 2 if name == "atan2" else 1
         if len(arguments) != wanted:
             raise ExpressionError(
@@ -251,14 +228,13 @@ class _Reader:
         return apply(name, arguments, column)
 
 
-def _number(token: _Token) -> Sized:
-    mantissa, _, power = token.text.lower().partition("e")
+def _number(text: str, column: int) -> Sized:
+    mantissa, _, power = text.lower().partition("e")
     digits = len(mantissa.replace(".", ""))
     # Five characters decide; Python refuses to read a text of thousands of digits as a number.
     size = power.lstrip("+-").lstrip("0")[:5]
     if max(digits, int(size or 0)) > _MOST_DIGITS:
         raise ExpressionError(
-            f"a number of more than {_MOST_DIGITS} digits, or a larger power of ten",
-            column=token.start + 1,
+            f"a number of more than {_MOST_DIGITS} digits, or a larger power of ten", column=column
         )
-    return Sized.number(sp.Rational(token.text))
+    return Sized.number(sp.Rational(text))
