@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from functools import cached_property, lru_cache, reduce
 from operator import mul
+from typing import Any
 
 import sympy as sp
 from sympy.polys.rings import PolyElement
@@ -34,18 +35,18 @@ def codec_for(
     expressions: Iterable[sp.Expr],
     *,
     constraints: Iterable[sp.Expr] = (),
-    order: int = 2,
-    has_inverses: bool = True,
+    order: int | None = 2,
 ) -> Codec:
     """The ring that holds `expressions`, in which each constraint vanishes for all time.
 
-    `order` is the highest time derivative of a coordinate that the ring can hold. Without
-    generators for the inverses of sums, common factors of numerators and denominators are seen and
-    cancel. Expressions that ask for the same generators share one ring, with all that it remembers.
+    `order` is the highest time derivative of a coordinate that the ring can hold. None is for
+    quotients: the ring then has neither derivatives nor generators for the inverses of sums, so
+    that common factors of numerators and denominators are seen and cancel. Expressions that ask for
+    the same generators share one ring, with all that it remembers.
     Raises AlgebraError for an expression that no ring of this kind can hold.
     """
     conditions = tuple(sp.sympify(constraint, strict=True) for constraint in constraints)
-    needed = GeneratorSet(order, has_inverses)
+    needed = GeneratorSet(order)
     for expression in dict.fromkeys((*expressions, *conditions)):
         needed.collect(sp.sympify(expression, strict=True))
     needed.close()
@@ -54,8 +55,6 @@ def codec_for(
         tuple(needed.fractions.items()),
         conditions,
         order,
-        # A constraint may begin with any number, 2x² + y² = 1, by which a basis divides.
-        needed.needs_fractions or bool(conditions),
     )
 
 
@@ -64,11 +63,10 @@ def _shared(
     kinds: tuple[tuple[sp.Expr, Kind], ...],
     fractions: tuple[tuple[sp.Expr, sp.Rational], ...],
     constraints: tuple[sp.Expr, ...],
-    order: int,
-    has_fractions: bool,
+    order: int | None,
 ) -> Codec:
     generators = [Generator(expression=e, opaque=is_uncertain(e, kind)) for e, kind in kinds]
-    codec = Codec(Ring(generators, has_fractions=has_fractions), dict(fractions))
+    codec = Codec(Ring(generators), dict(fractions))
     codec.settle(kinds, constraints, order)
     return codec
 
@@ -86,7 +84,7 @@ class Codec:
         self,
         kinds: Sequence[tuple[sp.Expr, Kind]],
         constraints: Sequence[sp.Expr],
-        order: int,
+        order: int | None,
     ) -> None:
         """Give the ring its relations and derivatives, now that expressions can be read."""
         # Relations come first, since every expression that is read afterwards is reduced by them.
@@ -96,7 +94,7 @@ class Codec:
             {
                 place: self.encode(rate_of(e))
                 for place, (e, _) in enumerate(kinds)
-                if not is_highest(e, order)
+                if order is not None and not is_highest(e, order)
             }
         )
         # constraints and their time derivatives, as far as the ring can derive them
@@ -177,12 +175,7 @@ class Codec:
         if place is not None:
             return Quotient.whole(ring, ring.reduce(ring.generator(place)))
         if expression.is_Rational:
-            numerator, denominator = int(expression.p), int(expression.q)
-            polynomials = ring.polynomials
-            if polynomials.domain.is_Field:
-                number = polynomials(polynomials.domain(numerator, denominator))
-                return Quotient.whole(ring, number)
-            return Quotient(ring, polynomials(numerator), polynomials(denominator))
+            return Quotient.whole(ring, ring.polynomials(_number(expression)))
         if expression.is_Add:
             return Quotient.sum(ring, [self.encode_quotient(part) for part in expression.args])
         if expression.is_Mul:
@@ -203,8 +196,8 @@ class Codec:
 
     def _product(self, factors: Sequence[sp.Expr]) -> Quotient:
         """The product; numbers, generators and their powers are gathered into one term."""
-        index, domain = self.ring.index, self.ring.polynomials.domain
-        powers, number = [0] * len(index), domain.one
+        index = self.ring.index
+        powers, number = [0] * len(index), sp.QQ.one
         others: list[Quotient] = []
         for factor in factors:
             place, exponent = index.get(factor), 1
@@ -212,8 +205,8 @@ class Codec:
                 place, exponent = index.get(factor.base), int(factor.exp)
             if place is not None and exponent > 0:
                 powers[place] += exponent
-            elif factor.is_Integer or (factor.is_Rational and domain.is_Field):
-                number *= domain(factor.p, factor.q) if domain.is_Field else int(factor.p)
+            elif factor.is_Rational:
+                number *= _number(factor)
             else:
                 others.append(self.encode_quotient(factor))
         term = self.ring.reduce(self.ring.polynomials.term_new(tuple(powers), number))
@@ -308,3 +301,7 @@ class Codec:
                 for monomial, coefficient in element.items()
             )
         )
+
+
+def _number(rational: sp.Rational) -> Any:
+    return sp.QQ(int(rational.p), int(rational.q))

@@ -181,8 +181,6 @@ _QUOTIENTS = {  # function: numerator, denominator
     sp.sec: (None, sp.cos),
     sp.csc: (None, sp.sin),
 }
-# Kinds whose only relation, s² + c² = 1, has the leading coefficient 1: reduction never divides.
-_MONIC = frozenset({Kind.SINE, Kind.COSINE, Kind.TIME_FUNCTION, Kind.CONSTANT})
 
 
 @lru_cache(maxsize=1024)
@@ -213,9 +211,8 @@ def as_sine_cosine(expression: sp.Expr) -> tuple[sp.Expr, sp.Expr] | None:
 class GeneratorSet:
     """Generators found so far: `kinds` in order of discovery, and the angles among them."""
 
-    def __init__(self, order: int, has_inverses: bool) -> None:
-        self.order, self.has_inverses = order, has_inverses
-        self._has_fractions = False
+    def __init__(self, order: int | None) -> None:
+        self.order = order
         self.kinds: dict[sp.Expr, Kind] = {}
         self._angles: list[Combination] = []
         self._atoms: set[sp.Expr] = set()  # what sines and cosines are taken of
@@ -242,18 +239,9 @@ class GeneratorSet:
         in_order = sorted(common, key=lambda atom: places.get(rate_of(atom), len(places)))
         return {atom: common[atom] for atom in in_order}
 
-    @property
-    def needs_fractions(self) -> bool:
-        """Whether coefficients in Z do not suffice: for fractions, or to divide by relations."""
-        return (
-            self._has_fractions
-            or not _MONIC.issuperset(self.kinds.values())
-            or any(not fraction.is_Integer for fraction in self.fractions.values())
-        )
-
     def close(self) -> None:
         """Take the time derivatives of all that was found, until nothing new appears."""
-        while self._underived:
+        while self._underived and self.order is not None:
             expression = self._underived.pop(0)
             if not is_highest(expression, self.order):
                 self.collect(rate_of(expression))
@@ -277,13 +265,11 @@ class GeneratorSet:
             for root in [base] if exponent.q == 1 else roots_of(base, exponent.q):
                 if exponent.q != 1:
                     self._add(root, Kind.RADICAL)
-                if exponent.p < 0 and self.has_inverses:
+                if exponent.p < 0 and self.order is not None:
                     self._add(1 / root, Kind.INVERSE)
         elif isinstance(expression, sp.sin | sp.cos):
             self._collect_angle(expression.args[0])
-        elif expression.is_Rational:
-            self._has_fractions = self._has_fractions or not expression.is_Integer
-        else:
+        elif not expression.is_Rational:
             self._add(expression, _kind(expression))
 
     def _collect_angle(self, argument: sp.Expr) -> None:

@@ -24,7 +24,7 @@ def integration_codec(
     expressions: Sequence[sp.Expr], variables: Sequence[sp.Symbol], bounds: Sequence[Bounds]
 ) -> Codec:
     """The ring that holds the expressions, the variables, and both put at their bounds."""
-    held = [*expressions, *variables, sp.Rational(1, 2)]
+    held = [*expressions, *variables]
     for variable, pair in zip(variables, bounds, strict=True):
         for bound in pair:
             held.append(bound)

@@ -38,7 +38,7 @@ from rigidsym.errors import AlgebraError
 _SHORT_SUM = 12  # terms of a divisor that is factored, since that is done once for many entries
 _PRIME = 2**61 - 1  # modulo which images of polynomials are compared
 _MORE_TERMS = 2  # that a sum over one denominator may have; with more it is hardly ever shorter
-Terms = Mapping[Monomial, Any]  # coefficients: whole numbers or fractions
+Terms = Mapping[Monomial, Any]  # coefficients: fractions
 
 
 class Rule(NamedTuple):
@@ -179,9 +179,8 @@ class Presenter:
                     yield sp.Mul(_rational(number), self._terms(whole, number), below)
 
     def _terms(self, terms: Terms, scale: Fraction = Fraction(1)) -> sp.Expr:
-        if scale != 1 or self.ring.polynomials.domain.is_Field:
-            terms = {monomial: _fraction(c) / scale for monomial, c in terms.items()}
-        return self._sum(_folded(terms, self._rules))
+        fractions = {monomial: _fraction(c) / scale for monomial, c in terms.items()}
+        return self._sum(_folded(fractions, self._rules))
 
     def _sum(self, terms: Terms) -> sp.Expr:
         """The terms as a sum of products with common factors taken out."""
@@ -275,7 +274,7 @@ def _content(numbers: Iterable[Any]) -> Fraction:
 
 
 def _fraction(coefficient: Any) -> Fraction:
-    """A coefficient of Z or Q, whichever number type SymPy holds it in."""
+    """A coefficient, whichever number type SymPy holds it in."""
     return Fraction(int(coefficient.numerator), int(coefficient.denominator))
 
 

@@ -23,7 +23,7 @@ from sympy.polys.rings import PolyElement, PolyRing
 from rigidsym.errors import AlgebraError
 
 Monomial = tuple[int, ...]
-Terms = dict[Monomial, Any]  # coefficients in Z or Q
+Terms = dict[Monomial, Any]  # coefficients in Q
 Pair = tuple[PolyElement, PolyElement]
 Rule = tuple[Monomial, list[tuple[int, int]], Terms]  # leading monomial, its powers, the rest
 
@@ -36,17 +36,17 @@ class Generator(NamedTuple):
 
 
 class Ring:
-    """K[generators] modulo relations; elements are `PolyElement`s in normal form.
+    """Q[generators] modulo relations; elements are `PolyElement`s in normal form.
 
-    K is Z where that suffices, since whole numbers are fast, and Q otherwise. `relations` are
-    polynomials that vanish, `relation_terms` their terms one by one. `derivatives` holds d/dt of
-    the generators that have one in this ring: the highest derivatives of the coordinates have none.
+    `relations` are polynomials that vanish, `relation_terms` their terms one by one. `derivatives`
+    holds d/dt of the generators that have one in this ring: the highest derivatives of the
+    coordinates have none.
     """
 
-    def __init__(self, generators: Sequence[Generator], *, has_fractions: bool = True) -> None:
+    def __init__(self, generators: Sequence[Generator]) -> None:
         self.generators = tuple(generators)
         names = [f"g{index}" for index in range(len(self.generators))]
-        self.polynomials = PolyRing(names, sp.QQ if has_fractions else sp.ZZ, grevlex)
+        self.polynomials = PolyRing(names, sp.QQ, grevlex)
         self.zero: PolyElement = self.polynomials.zero
         self.one: PolyElement = self.polynomials.one
         self.index = {gen.expression: place for place, gen in enumerate(self.generators)}
@@ -75,9 +75,8 @@ class Ring:
         rules: list[Rule] = []
         # c·m + rest = 0 becomes the rule m → −rest/c: s² + c² − 1 = 0 becomes s² → 1 − c².
         for element in basis:  # read as: leading monomial -> minus the rest
-            leading, divide = element.leading_expv(), element.ring.domain.exquo
-            lead = element[leading]
-            tail = {m: divide(-c, lead) for m, c in element.items() if m != leading}
+            leading = element.leading_expv()
+            tail = {m: -c / element[leading] for m, c in element.items() if m != leading}
             rules.append((leading, _powers(leading), tail))
         self._normal_forms = _NormalForms(rules)
         self.relation_terms = [
@@ -341,19 +340,14 @@ def _neighbours(ring: Ring, element: PolyElement, length: tuple[int, int]) -> It
     """Each polynomial in which one term was replaced by means of one relation."""
     # The multiple t·r of a relation r is chosen so that one of its terms cancels one of the
     # element.
-    domain = ring.polynomials.domain
     highest = tuple(map(max, zip(*element, strict=True)))
     for part, needed, factor, relation in ring.relation_terms:
         if any(highest[k] < power for k, power in needed):
             continue
-        is_one = factor == domain.one
         for monomial, coefficient in element.items():
             if any(monomial[k] < power for k, power in needed):
                 continue
-            times, left = (coefficient, None) if is_one else domain.div(coefficient, factor)
-            if left:  # in Z a coefficient may not be divisible
-                continue
-            rest = tuple(map(sub, monomial, part))
+            times, rest = coefficient / factor, tuple(map(sub, monomial, part))
             count, degrees = length
             # The length of the difference is counted without building it, as only one neighbour is
             # used.

@@ -244,7 +244,7 @@ class Rewriter:
         # The target ring has c_0, c_1, ... in place of n, 1/n, sin rn and cos rn.
         special = {norm.sine, norm.cosine, *norm.powers}
         others = [g.expression for k, g in enumerate(codec.ring.generators) if k not in special]
-        self._plain = codec_for([*self._symbols, *others, sp.Rational(1, 2)], order=0)
+        self._plain = codec_for([*self._symbols, *others], order=0)
         self._whole = cache(self._in_functions)
 
     def stable(self, entry: sp.Expr) -> sp.Expr:

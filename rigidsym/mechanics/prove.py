@@ -46,7 +46,7 @@ def identity(
 
     `example` gives exact values of the symbols in the conditions that satisfy them.
     """
-    codec = codec_for(left, constraints=conditions, has_inverses=False)
+    codec = codec_for(left, constraints=conditions, order=None)
     quotients = list(map(codec.encode_quotient, left))
     subject = Conditions(name, tuple(conditions), example=example)
     return Prover(subject, codec).cancel(quotients, claim)

@@ -61,7 +61,7 @@ class EulerEquations(Flow):
         self._gradient = [sp.diff(forces.potential, x) for x in q]
         self._forces = [forces.generalised.get(x, sp.S.Zero).xreplace(rates) for x in q]
         self._torque = [n.xreplace(rates) for n in forces.torque or (sp.S.Zero,) * 3]
-        entries = [*self._inverse, self.divisor, *self._matrix, *body.inertia, sp.Rational(1, 2)]
+        entries = [*self._inverse, self.divisor, *self._matrix, *body.inertia]
         entries += [forces.potential, *self._gradient, *self._forces, *self._torque]
         entries += [*OMEGA_BODY, *forces.first_integrals.values()]
         codec = codec_for([e for e in entries if e != 0], constraints=model.constraints, order=1)

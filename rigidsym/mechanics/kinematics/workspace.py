@@ -171,7 +171,7 @@ class Values(Workspace):
         # a ring that holds the turns holds their product, and they are shorter to read
         held = [e for turn in model.turns for e in turn.matrix.flat()] or [*model.matrix]
         if body is not None:
-            held += [body.mass, *body.inertia, sp.Rational(1, 2)]
+            held += [body.mass, *body.inertia]
         order = 1 if body else 2
         inputs += [*held, *self._also]
         return codec_for(inputs, constraints=model.constraints, order=order)

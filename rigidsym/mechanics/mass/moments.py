@@ -62,7 +62,7 @@ class Moments:
 
     def central(self) -> tuple[sp.ImmutableMatrix, sp.ImmutableMatrix]:
         """The centre c = S/M, (3, 1), and the tensor about it, tr(J) 1 − J of J − M c cᵀ."""
-        codec = codec_for(self.matrix, has_inverses=False)
+        codec = codec_for(self.matrix, order=None)
         read, written = codec.encode_quotient, presenter_for(codec).quotient
         # Steiner's theorem for second moments, J_c = J − M c cᵀ, and I = tr(J_c) 1 − J_c: the
         # diagonal of I is the sum of the two other diagonal entries, and elsewhere I is −J_c.
@@ -104,7 +104,7 @@ def _(cloud: Particles) -> Moments:
     """Sums over the particles."""
     places = [(p.mass, (*p.position, sp.S.One)) for p in cloud.particles]
     sums = [sp.Add(*(mass * x[i] * x[j] for mass, x in places)) for i, j in _PAIRS]
-    codec = codec_for(sums, has_inverses=False)
+    codec = codec_for(sums, order=None)
     return _moments(codec, map(codec.encode_quotient, sums))
 
 
@@ -134,7 +134,7 @@ def _(whole: Composite) -> Moments:
         place = sp.Matrix(part.turned).row_join(part.at).col_join(sp.Matrix([[0, 0, 0, 1]]))
         matrices.append((-1 if part.hole else 1) * place * m.matrix * place.T)
     total = sum(matrices, sp.zeros(4, 4))
-    codec = codec_for(total, has_inverses=False)
+    codec = codec_for(total, order=None)
     return _moments(
         codec,
         (codec.encode_quotient(total[pair]) for pair in _PAIRS),

@@ -58,7 +58,7 @@ def _about(inertia: sp.ImmutableMatrix, k: int) -> Principal:
     # axis is at the angle α with tan 2α = 2 r/(p − q), so that
     # cos² α = ½ + (p − q)/(2 w) and sin α cos α = r/w.
     p, q, r = inertia[i, i], inertia[j, j], inertia[i, j]
-    codec = codec_for([p, q, r], has_inverses=False)  # which knows that sin² + cos² = 1
+    codec = codec_for([p, q, r], order=None)  # which knows that sin² + cos² = 1
     written = presenter_for(codec).quotient
     half, apart, product = map(codec.encode_quotient, ((p + q) / 2, p - q, 2 * r))
     under, root = written(apart * apart + product * product), sp.S.One
