@@ -15,7 +15,6 @@ from rigidsym.algebra.generators import (
     GeneratorSet,
     Kind,
     as_sine_cosine,
-    coefficients,
     combination,
     cosine_sine_of_pi,
     is_highest,
@@ -239,26 +238,10 @@ class Codec:
         if argument in self._pairs:
             return self._pairs[argument]
         pair = self.ring.one, self.ring.zero
-        for atom, coefficient in self._in_angles(argument).items():
+        for atom, coefficient in combination(argument).items():
             pair = self._added(pair, self._multiple(atom, coefficient))
         self._pairs[argument] = pair
         return pair
-
-    def _in_angles(self, argument: sp.Expr) -> Combination:
-        """The argument as a combination of the angles of this ring and π."""
-        terms = combination(argument)
-        if not any(angle.is_Add for angle in self._fractions):
-            return terms
-        # Rows of A are the angles of the ring, w is the argument, both in coordinates: x A = w has
-        # the least-squares solution x = w Aᵀ (A Aᵀ)⁻¹. If that misses w, the ring cannot express
-        # the argument.
-        atoms = {a for e in (argument, *self._fractions) for a in combination(e) if a is not sp.pi}
-        own, wanted = coefficients(self._fractions, atoms), coefficients([argument], atoms)
-        solution = wanted * own.T * (own * own.T).inv()
-        if solution * own != wanted:
-            raise self._foreign(sp.sin(argument))
-        times = dict(zip((*self._fractions, sp.pi), (*solution, terms.get(sp.pi, 0)), strict=True))
-        return {angle: coefficient for angle, coefficient in times.items() if coefficient}
 
     def _multiple(self, atom: sp.Expr, coefficient: sp.Rational) -> Pair:
         if atom is sp.pi:

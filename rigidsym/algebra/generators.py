@@ -5,16 +5,14 @@ a potential, and the output the generators of a ring.
 
 Arguments of sine and cosine are rational combinations of atoms. Every sine and cosine is expanded
 over the smallest fraction of each angle that occurs, so that cos 2θ and cos θ meet in one ring.
-Independent sums of coordinates are treated as angles: beside sin θ, sin(2φ − ψ/2) needs one pair
-of generators; beside sin φ, those of φ and ψ/2.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Iterable
 from enum import IntEnum
 from fractions import Fraction
-from functools import cached_property, lru_cache, reduce
+from functools import cached_property, lru_cache
 from typing import Any
 
 import sympy as sp
@@ -28,34 +26,16 @@ _NEARLY_ZERO = 1e-20  # beyond which a number is not zero, and its polynomial ne
 
 @lru_cache(maxsize=1024)
 def combination(argument: sp.Expr) -> Combination:
-    """{atom: rational coefficient} of an angle; the atom π carries a constant part.
-
-    Quotients that cancel and numbers that are zero in disguise are gone from it.
-    """
+    """{atom: rational coefficient} of an angle; the atom π carries a constant part."""
     terms = sp.expand(argument).as_coefficients_dict()
     if any(map(_is_quotient, terms)):
+        # What cancels is no atom of its own, beside quotients that do not cancel.
         cancelled = sp.expand(sp.cancel(argument)).as_coefficients_dict()
-        terms = terms if any(map(_is_quotient, cancelled)) else cancelled
+        terms = min(cancelled, terms, key=lambda parts: sum(map(_is_quotient, parts)))
     for coefficient in terms.values():
         if not coefficient.is_Rational:
             raise not_exact(coefficient)
-    combined = {atom: coefficient for atom, coefficient in terms.items() if coefficient}
-    if all(atom is sp.pi or isinstance(atom, sp.Symbol | AppliedUndef) for atom in combined):
-        return combined
-    # multiples of one thing by numbers may add up to zero
-    groups: dict[sp.Expr, Combination] = {}
-    for atom, coefficient in combined.items():
-        number, rest = (
-            (atom, sp.S.One) if atom.is_number else atom.as_independent(*atom.free_symbols)
-        )
-        groups.setdefault(rest, {})[atom] = coefficient * number
-    kept = [group for group in groups.values() if not is_identically_zero(sp.Add(*group.values()))]
-    return {atom: combined[atom] for group in kept for atom in group}
-
-
-def is_sum_of(angle: sp.Expr, *parts: sp.Expr) -> bool:
-    """Whether an angle is made of the atoms of its parts."""
-    return set(combination(angle)) <= set().union(*map(combination, parts))
+    return {atom: coefficient for atom, coefficient in terms.items() if coefficient}
 
 
 def _is_quotient(term: sp.Expr) -> bool:
@@ -116,47 +96,15 @@ def cosine_sine_of_pi(turns: sp.Rational) -> tuple[sp.Expr, sp.Expr]:
 
 
 def common_fractions(combinations: Iterable[Combination]) -> Combination:
-    """{angle: fraction}: each combination is a sum of whole multiples of fraction·angle.
-
-    The angles are the combinations themselves if these are independent, or else their atoms.
-    """
-    given = [{a: c for a, c in terms.items() if a is not sp.pi} for terms in combinations]
-    # Two choices: an angle such as φ + ψ/2 is one generator pair, or its atoms have a pair each and
-    # the addition theorems expand it. The first gives fewer terms, but it is valid only if no
-    # rational combination of the angles vanishes: sin φ, sin ψ and sin(φ + ψ) are not independent.
-    if any(len(terms) > 1 for terms in given):
-        multiples = []
-        for terms in filter(None, given):  # each as a multiple of one sum of whole multiples
-            unit = reduce(sp.Rational.gcd, map(abs, terms.values()))
-            angle = sp.Add(*(c / unit * atom for atom, c in terms.items()))
-            sign = -1 if angle.could_extract_minus_sign() else 1
-            multiples.append({sign * angle: sign * unit})
-        if _are_independent(set().union(*multiples)):
-            given = multiples
+    """{atom: fraction}: each combination is a sum of whole multiples of fraction·atom."""
     # The greatest common divisor of the coefficients: cos 2θ and sin(θ/3) are polynomials in the
     # cosine and sine of gcd(2, 1/3) θ = θ/3.
     fractions: Combination = {}
-    for terms in given:
-        for angle, coefficient in terms.items():
-            fractions[angle] = fractions.get(angle, sp.S.Zero).gcd(abs(coefficient))
+    for terms in combinations:
+        for atom, coefficient in terms.items():
+            if atom is not sp.pi:
+                fractions[atom] = fractions.get(atom, sp.S.Zero).gcd(abs(coefficient))
     return fractions
-
-
-def _are_independent(angles: Collection[sp.Expr]) -> bool:
-    """Whether no rational combination of the angles vanishes and each sum is of coordinates."""
-    atoms = {atom for angle in angles for atom in combination(angle)}
-    sums = (atom for angle in angles if angle.is_Add for atom in combination(angle))
-    factors = (atom.as_independent(AppliedUndef, as_Add=False) for atom in sums)
-    if len(angles) > len(atoms) or not all(
-        number.is_number and isinstance(rest, AppliedUndef) for number, rest in factors
-    ):
-        return False
-    return bool(coefficients(angles, atoms).rank() == len(angles))
-
-
-def coefficients(angles: Iterable[sp.Expr], atoms: Collection[sp.Expr]) -> sp.Matrix:
-    """A row for each angle: its coefficients, atom by atom."""
-    return sp.Matrix([[combination(angle).get(atom, 0) for atom in atoms] for angle in angles])
 
 
 TIME = sp.Symbol("t")  # the time symbol of sympy.physics.vector.dynamicsymbols

@@ -30,7 +30,6 @@ from sympy.polys.orderings import lex
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import Codec
-from rigidsym.algebra.generators import is_sum_of
 from rigidsym.algebra.matrix import RingMatrix, Row
 from rigidsym.algebra.ring import Monomial, Quotient, shortest
 from rigidsym.errors import AlgebraError
@@ -82,15 +81,14 @@ class Presenter:
         self._factors: dict[PolyElement, list[tuple[PolyElement, int]]] = {}
 
     def _addition_theorems(self) -> Iterator[Rule]:
-        """Those of every two angles whose sums have no generators of their own."""
+        """Those of every two angles."""
         for (s, c), (sine, cosine) in combinations(self.codec.angle_pairs, 2):
             alpha, beta = (self._generators[place].args[0] for place in (s, sine))
-            if is_sum_of(alpha + beta, alpha, beta):
-                plus, minus = (alpha, beta), (alpha, -beta)
-                yield Rule((c, cosine), (s, sine), -1, sp.cos, plus)
-                yield Rule((c, cosine), (s, sine), 1, sp.cos, minus)
-                yield Rule((s, cosine), (c, sine), 1, sp.sin, plus)
-                yield Rule((s, cosine), (c, sine), -1, sp.sin, minus)
+            plus, minus = (alpha, beta), (alpha, -beta)
+            yield Rule((c, cosine), (s, sine), -1, sp.cos, plus)
+            yield Rule((c, cosine), (s, sine), 1, sp.cos, minus)
+            yield Rule((s, cosine), (c, sine), 1, sp.sin, plus)
+            yield Rule((s, cosine), (c, sine), -1, sp.sin, minus)
 
     def _expression(self, place: int) -> sp.Expr:
         if place < len(self._generators):
