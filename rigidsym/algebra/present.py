@@ -26,7 +26,6 @@ from random import Random
 from typing import Any, NamedTuple
 
 import sympy as sp
-from sympy.polys.orderings import lex
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import Codec
@@ -34,7 +33,6 @@ from rigidsym.algebra.matrix import RingMatrix, Row
 from rigidsym.algebra.ring import Monomial, Quotient, shortest
 from rigidsym.errors import AlgebraError
 
-_SHORT_SUM = 12  # terms of a divisor that is factored, since that is done once for many entries
 _PRIME = 2**61 - 1  # modulo which images of polynomials are compared
 _MORE_TERMS = 2  # that a sum over one denominator may have; with more it is hardly ever shorter
 Terms = Mapping[Monomial, Any]  # coefficients: fractions
@@ -78,7 +76,6 @@ class Presenter:
         }
         self._matrices: dict[tuple[tuple[Row, ...], PolyElement], sp.ImmutableMatrix] = {}
         self._known: dict[tuple[PolyElement, PolyElement], sp.Expr] = {}
-        self._factors: dict[PolyElement, list[tuple[PolyElement, int]]] = {}
 
     def _addition_theorems(self) -> Iterator[Rule]:
         """Those of every two angles."""
@@ -130,8 +127,8 @@ class Presenter:
         # The shortest representatives come first, as common factors are visible only in them:
         # 1 − c² is s², and s²/s cancels.
         above, below = shortest(self.ring, above), shortest(self.ring, below)
-        if len(below) > 1:
-            above, below = self._cancelled(above, below)
+        if len(below) > 1 and not _are_coprime(above, below):
+            _, above, below = above.cofactors(below)
         if len(below) > 1:
             over, under = _leading_number(above), _leading_number(below)
             return sp.Mul(
@@ -145,25 +142,6 @@ class Presenter:
         return self._terms(
             {tuple(map(sub, m, divisor)): c for m, c in above.items()}, _fraction(scale)
         )
-
-    def _cancelled(self, above: PolyElement, below: PolyElement) -> tuple[PolyElement, PolyElement]:
-        """Both without their common factors; many entries are divided by one short sum."""
-        if len(below) > _SHORT_SUM:
-            if not _are_coprime(above, below):
-                _, above, below = above.cofactors(below)
-            return above, below
-        polynomials = below.ring
-        plain = polynomials.clone(order=lex)  # in which leading terms are found fastest
-        above, below = above.set_ring(plain), below.set_ring(plain)
-        if below not in self._factors:
-            self._factors[below] = below.factor_list()[1]
-        for factor, power in self._factors[below]:
-            for _ in range(power):
-                quotient, rest = above.div(factor)
-                if rest:
-                    break
-                above, below = quotient, below.exquo(factor)
-        return above.set_ring(polynomials), below.set_ring(polynomials)
 
     def _over_one(self, element: PolyElement) -> Iterator[sp.Expr]:
         """Terms that are divided by different powers of one sum, over the highest of them."""
