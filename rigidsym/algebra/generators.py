@@ -35,7 +35,12 @@ def combination(argument: sp.Expr) -> Combination:
     for coefficient in terms.values():
         if not coefficient.is_Rational:
             raise not_exact(coefficient)
-    return {atom: coefficient for atom, coefficient in terms.items() if coefficient}
+    # multiples of one thing by numbers may add up to zero
+    parts = {a: a.as_independent(sp.Symbol, AppliedUndef, as_Add=False) for a in terms}
+    sums: dict[sp.Expr, sp.Expr] = {}
+    for atom, (number, rest) in parts.items():
+        sums[rest] = sums.get(rest, 0) + terms[atom] * number
+    return {a: terms[a] for a in terms if not is_identically_zero(sums[parts[a][1]])}
 
 
 def _is_quotient(term: sp.Expr) -> bool:
