@@ -246,7 +246,6 @@ def _columns(table: Table, names: Sequence[str] | None) -> tuple[list[int], Arra
 # Meshes
 
 ENDINGS = (".stl", ".obj", ".ply")
-MOST_DRAWN, _MOST_CELLS = 400, 24
 
 
 def read_mesh_file(path: Path, *, scale: float = 1.0) -> Any:
@@ -333,20 +332,3 @@ def mesh_inertia(
         centre=inside + np.asarray(solid.center_mass),
         inertia=(inertia + inertia.T) / 2,
     )
-
-
-def outline_of(mesh: Any) -> dict[str, Any]:
-    """Corners, in m, and at most MOST_DRAWN faces that show what the mesh looks like.
-
-    The vertices of a finer mesh are merged in cells of a grid (Rossignac and Borrel, 1993).
-    """
-    coarse, cells = mesh, _MOST_CELLS / mesh.extents.max()
-    while len(coarse.faces) > MOST_DRAWN:
-        coarse = mesh.copy().apply_scale(cells)
-        coarse.merge_vertices(digits_vertex=0)
-        coarse.update_faces(coarse.unique_faces() & coarse.nondegenerate_faces())
-        coarse.remove_unreferenced_vertices()
-        coarse.apply_scale(1 / cells)
-        cells *= 0.9
-    corners = [[float(f"{x:.4g}") for x in vertex] for vertex in coarse.vertices.tolist()]
-    return {"corners": corners, "faces": coarse.faces.tolist()}

@@ -10,7 +10,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import combinations
 from math import isfinite
-from operator import index
 from typing import Any
 
 import sympy as sp
@@ -119,37 +118,12 @@ class Composite:
 
 
 @dataclass(frozen=True, slots=True)
-class Outline:
-    """Roughly the surface of a body, to draw it: corners in m, and faces by their numbers."""
-
-    corners: tuple[tuple[float, float, float], ...] = ()
-    faces: tuple[tuple[int, ...], ...] = ()
-
-    def __post_init__(self) -> None:
-        if not all(0 <= k < len(self.corners) for face in self.faces for k in face):
-            raise BodyError("the faces of an outline refer to missing corners")
-
-
-def outline_from(data: Mapping[str, Any]) -> Outline:
-    """The outline in a file: corners = [[x, y, z], ...], faces = [[0, 1, 2], ...]."""
-    try:
-        return Outline(
-            tuple((float(x), float(y), float(z)) for x, y, z in data.get("corners", ())),
-            tuple(tuple(map(index, face)) for face in data.get("faces", ())),
-        )
-    except (TypeError, ValueError, OverflowError):
-        message = "expected an outline of corners [x, y, z], and faces by numbers of corners"
-        raise BodyError(message) from None
-
-
-@dataclass(frozen=True, slots=True)
 class Known:
     """A part of which only mass, centre and inertia tensor about the centre are given."""
 
     mass: sp.Expr
     centre: sp.ImmutableMatrix
     inertia: sp.ImmutableMatrix
-    outline: Outline = field(default_factory=Outline)
 
 
 Distribution = Particles | Solid | Composite | Known

@@ -63,7 +63,7 @@ def read_body(
         table = _Table(data, _Symbols({*_WORD.findall(str(data)), *declared}, declared))
         request = {"body": data} | ({"parameters": parameters} if parameters else {})
         options: dict[str, Any] = {"name": name, "allow": allow}
-        if kind == "principal_moments" or (kind == "inertia" and "outline" not in data):
+        if kind in ("principal_moments", "inertia"):
             body = replace(_rigid_body(table, kind, options), request=request)
         else:
             body = BodyDescription(

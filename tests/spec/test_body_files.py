@@ -14,7 +14,6 @@ import trimesh
 from click.testing import CliRunner
 
 from rigidsym.commands.cli import commands
-from rigidsym.data.mass import MOST_DRAWN, outline_of
 from rigidsym.errors import KernelError
 from rigidsym.models.body import RigidBody
 from rigidsym.pipeline import integrated, output_of, read_file, read_record, read_spec
@@ -139,15 +138,6 @@ def test_one_command_from_a_file_to_energies_kernels_and_note(folder):
     again = integrated(read_record(record["request"])).body
     assert again is not None
     assert [p.value for p in again.parameters] == pytest.approx(values, rel=1e-14)
-
-
-def test_a_fine_mesh_is_drawn_with_few_faces():
-    ball = trimesh.creation.icosphere(subdivisions=5)
-    outline = outline_of(ball)
-    corners, faces = map(np.array, outline.values())
-    assert 100 < len(faces) <= MOST_DRAWN
-    assert np.abs(np.linalg.norm(corners, axis=1) - 1).max() < 2e-4  # four digits are printed
-    assert np.linalg.det(corners[faces]).sum() / 6 > 0.8 * 4 / 3 * np.pi
 
 
 def test_what_depends_on_nothing_has_no_function():

@@ -183,9 +183,7 @@ def _sheets(leaf: _Leaf, numbers: Numbers) -> Iterator[_Sheet]:
         case Solid():
             sheets = _of_solid(leaf.what, numbers)
         case Known():
-            outline = leaf.what.outline
-            corners = np.array(outline.corners)
-            sheets = ((corners[[*face]], lambda face: iter([face])) for face in outline.faces)
+            sheets = ()
     return ((at + points @ turned.T, faces) for points, faces in sheets)
 
 
