@@ -32,15 +32,22 @@ def combination(argument: sp.Expr) -> Combination:
         # What cancels is no atom of its own, beside quotients that do not cancel.
         cancelled = sp.expand(sp.cancel(argument)).as_coefficients_dict()
         terms = min(cancelled, terms, key=lambda parts: sum(map(_is_quotient, parts)))
-    for coefficient in terms.values():
+    # Irrational multiples of one thing are one multiple of it: they may add up to zero, and the
+    # addition theorems would expand ten of them into a thousand terms.
+    multiples: dict[sp.Expr, sp.Expr] = {}
+    for atom, coefficient in terms.items():
         if not coefficient.is_Rational:
             raise not_exact(coefficient)
-    # multiples of one thing by numbers may add up to zero
-    parts = {a: a.as_independent(sp.Symbol, AppliedUndef, as_Add=False) for a in terms}
-    sums: dict[sp.Expr, sp.Expr] = {}
-    for atom, (number, rest) in parts.items():
-        sums[rest] = sums.get(rest, 0) + terms[atom] * number
-    return {a: terms[a] for a in terms if not is_identically_zero(sums[parts[a][1]])}
+        number, rest = atom.as_independent(sp.Symbol, AppliedUndef, as_Add=False)
+        multiples[rest] = multiples.get(rest, sp.S.Zero) + coefficient * number
+    combined: Combination = {}
+    for rest, total in multiples.items():
+        for number in sp.Add.make_args(total) if rest == 1 else (total,):
+            coefficient, factor = number.as_content_primitive()
+            sign = -1 if factor.could_extract_minus_sign() else 1
+            if not is_identically_zero(number):
+                combined[sign * factor * rest] = sign * coefficient
+    return combined
 
 
 def _is_quotient(term: sp.Expr) -> bool:
