@@ -1,8 +1,7 @@
 """Exact integrals of polynomials in a variable, its sine and its cosine.
 
-Term by term: ∫ uⁿ sᵃ cᵇ du goes back, by parts and by the reduction of the powers of a cosine, to
-powers of u (I. S. Gradshteyn and I. M. Ryzhik, Table of Integrals, 2.510 and 2.633). Nothing is
-believed: an antiderivative is differentiated, and the difference to the integrand reduced.
+SymPy integrates powers of them. Nothing is believed: an antiderivative is differentiated, and the
+difference to the integrand reduced.
 """
 
 from __future__ import annotations
@@ -41,43 +40,31 @@ class Integrator:
     """Derivatives and integrals over one variable of a ring."""
 
     def __init__(self, codec: Codec, variable: sp.Symbol) -> None:
-        self.codec, self.ring, self.variable = codec, codec.ring, variable
-        self._place = self.ring.index[variable]
-        self._pair: tuple[int, int] | None = None
-        self._frequency = sp.S.One
-        for sine, cosine in codec.angle_pairs:
-            angle = self.ring.generators[sine].expression.args[0]
-            if angle.has(variable):
-                self._pair, self._frequency = (sine, cosine), angle / variable
-        own = {self._place, *(self._pair or ())}
-        self._others = [
-            place
-            for place, generator in enumerate(self.ring.generators)
-            if place not in own and generator.expression.has(variable)
-        ]
-        self._basis = lru_cache(maxsize=None)(self._antiderivative_of_power)
+        self.codec, self.variable = codec, variable
+        generators = enumerate(codec.ring.generators)
+        self._places = [place for place, gen in generators if gen.expression.has(variable)]
 
     def derivative(self, element: PolyElement) -> PolyElement:
-        """∂/∂u of an element; raises AlgebraError where another function of u is in it."""
-        self._refuse_others(element)
-        ring = self.ring
-        total = element.diff(ring.generator(self._place))
-        if self._pair is not None:
-            sine, cosine = map(ring.generator, self._pair)
-            # The chain rule with s = sin ωu and c = cos ωu: ∂F/∂u + ω (c ∂F/∂s − s ∂F/∂c).
-            turned = element.diff(sine) * cosine - element.diff(cosine) * sine
-            total += turned * self._number(self._frequency)
-        return ring.reduce(total)
+        """∂/∂u of an element."""
+        return self.codec.encode(sp.diff(self.codec.decode(element), self.variable))
 
     def antiderivative(self, element: PolyElement) -> PolyElement:
-        """F with ∂F/∂u = element, for an element in normal form."""
-        self._refuse_others(element)
-        places = (self._place, *(self._pair or ()))  # of u, sin u and cos u
-        parts = (
-            self._basis(*powers, *[0] * (3 - len(powers))) * part
-            for powers, part in split(element, places).items()
-        )
-        return self.ring.total(parts)
+        """F with ∂F/∂u = element, for an element in normal form.
+
+        Raises AlgebraError if it holds another function of u.
+        """
+        generators, total = self.codec.ring.generators, self.codec.ring.zero
+        for powers, part in split(element, self._places).items():
+            factors = zip(self._places, powers, strict=True)
+            function = sp.Mul(*(generators[k].expression ** power for k, power in factors))
+            if not function.is_polynomial(self.variable, *function.atoms(sp.sin, sp.cos)):
+                raise AlgebraError(
+                    f"{function} is not integrated over {self.variable}: expected a polynomial "
+                    f"in {self.variable}, its sine and its cosine; describe the solid by other "
+                    "coordinates"
+                )
+            total += self.codec.encode(_integral(function, self.variable)) * part
+        return self.codec.ring.reduce(total)
 
     def between(self, antiderivative: PolyElement, bounds: Bounds) -> PolyElement:
         """F(upper) − F(lower)."""
@@ -87,40 +74,7 @@ class Integrator:
         )
         return upper - lower
 
-    def _antiderivative_of_power(self, n: int, a: int, b: int) -> PolyElement:
-        """∫ uⁿ sᵃ cᵇ du, where a is 0 or 1, since s² = 1 − c² in normal form."""
-        ring = self.ring
-        u = ring.generator(self._place)
-        if a == b == 0:
-            return u ** (n + 1) * self._number(sp.Rational(1, n + 1))
-        if n:  # by parts
-            # ∫ uⁿ f du = uⁿ F − n ∫ uⁿ⁻¹ F du with F = ∫ f du. Each step lowers the power of u by
-            # one.
-            inner = self._basis(0, a, b)
-            rest = self.antiderivative(ring.reduce(u ** (n - 1) * inner))
-            return ring.reduce(u**n * inner - rest * n)
-        assert self._pair is not None
-        assert a < 2
-        sine, cosine = map(ring.generator, self._pair)
-        # ∫ sin ωu cosᵇ ωu du = −cosᵇ⁺¹ ωu / (ω (b + 1))
-        if a == 1:
-            return cosine ** (b + 1) * self._number(-1 / (self._frequency * (b + 1)))
-        if b == 1:
-            return sine * self._number(1 / self._frequency)
-        # ∫ cosᵇ ωu du = cosᵇ⁻¹ ωu sin ωu / (ω b) + (b − 1)/b ∫ cosᵇ⁻² ωu du
-        first = cosine ** (b - 1) * sine * self._number(1 / (self._frequency * b))
-        return first + self._basis(0, 0, b - 2) * self._number(sp.Rational(b - 1, b))
 
-    def _number(self, number: sp.Rational) -> PolyElement:
-        return self.codec.encode(number)
-
-    def _refuse_others(self, element: PolyElement) -> None:
-        for monomial in element:
-            for place in self._others:
-                if monomial[place]:
-                    function = self.ring.generators[place].expression
-                    raise AlgebraError(
-                        f"{function} is not integrated over {self.variable}: expected a polynomial "
-                        f"in {self.variable}, its sine and its cosine; describe the solid by other "
-                        "coordinates"
-                    )
+@lru_cache(maxsize=1024)
+def _integral(function: sp.Expr, variable: sp.Symbol) -> sp.Expr:
+    return sp.integrate(function, variable)

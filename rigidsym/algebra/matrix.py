@@ -70,20 +70,6 @@ class RingMatrix:
         ]
         return RingMatrix(self.ring, tuple(rows), (_multiplied, (self, other)))
 
-    def gram(self) -> RingMatrix:
-        """M Mᵀ, the products of every two rows, each worked out once."""
-        # M Mᵀ is symmetric, so the entries on and below the diagonal suffice.
-        half = [
-            [self.ring.dot(zip(row, other, strict=True)) for other in self.rows[: place + 1]]
-            for place, row in enumerate(self.rows)
-        ]
-        places = range(len(half))
-        return RingMatrix(
-            self.ring,
-            tuple(tuple(half[max(i, j)][min(i, j)] for j in places) for i in places),
-            (_multiplied, (self, self.T)),
-        )
-
     def __add__(self, other: RingMatrix) -> RingMatrix:
         return self._entrywise(add, other)
 
@@ -137,9 +123,9 @@ class RingMatrix:
         """The determinant, by the first row."""
         # Laplace expansion: det M = Σ_j (−1)ʲ M_0j det(M without row 0 and column j). Unlike
         # elimination it needs no division, and zeros spare their minors.
+        if not self.rows:
+            return self.ring.one
         first = self.rows[0]
-        if len(self.rows) == 1:
-            return first[0]
         signed = ((-1) ** j * self._minor(0, j).det() if e else e for j, e in enumerate(first))
         return self.ring.dot(zip(first, signed, strict=True))
 
@@ -147,8 +133,6 @@ class RingMatrix:
         """adj(M), with M adj(M) = det(M) 1."""
         # adj(M)_ij = (−1)^(i+j) times the minor without row j and column i.
         places = range(len(self.rows))
-        if len(places) == 1:
-            return RingMatrix.identity(self.ring, 1)
         return RingMatrix(
             self.ring,
             tuple(tuple((-1) ** (i + j) * self._minor(j, i).det() for j in places) for i in places),
@@ -218,26 +202,22 @@ class RingMatrix:
         are taken, W⁺ = Wᵀ (W Wᵀ)⁻¹. `bound` is the matrix J of the constraints on the rates,
         J q̇ = 0; then J G = 0 as well.
         """
-        count = self.shape[1]
-        if count < 3:
-            return None
-        # W adj(W) = det(W) 1
-        if count == 3 and bound is None:
-            return _if_regular(self.adjugate(), self.det())
+        count, square = self.shape[1], self
         # W Wᵀ adj(W Wᵀ) = det(W Wᵀ) 1, so G = Wᵀ adj(W Wᵀ) and d = det(W Wᵀ). Rates in the row
         # space of W have the least norm. Those of a unit quaternion also keep |q| constant:
         # J G = 0 holds without further work.
-        gram = self.gram()
-        least = _if_regular(self.T @ gram.adjugate(), gram.det())
-        if least is None or bound is None or (bound @ least[0]).is_zero():
-            return least
-        # Otherwise W q̇ = Ω and J q̇ = 0 are one square system: [W; J] G = [d 1; 0] holds for the
-        # first three columns of adj([W; J]).
-        square = RingMatrix(self.ring, (*self.rows, *bound.rows))
-        if square.shape[0] != count:
+        if count > 3 or (count == 3 and bound is not None):
+            gram = self @ self.T
+            least, divisor = self.T @ gram.adjugate(), gram.det()
+            if not divisor or bound is None or (bound @ least).is_zero():
+                return (least, divisor) if divisor else None
+            # Otherwise W q̇ = Ω and J q̇ = 0 are one square system, [W; J] G = [d 1; 0].
+            square = RingMatrix(self.ring, (*self.rows, *bound.rows))
+        # M adj(M) = det(M) 1, of which G is the first three columns.
+        if square.shape != (count, count) or not square.det():
             return None
         columns = square.adjugate().T.rows[:3]
-        return _if_regular(RingMatrix(self.ring, columns).T, square.det())
+        return RingMatrix(self.ring, columns).T, square.det()
 
     def _minor(self, row: int, column: int) -> RingMatrix:
         """The matrix without one row and one column."""
@@ -255,10 +235,6 @@ def _entrywise(operation: Callable[[Any, Any], Any], rows: Values, others: Value
 
 
 Inverse = tuple[RingMatrix, PolyElement]  # G and d, for G/d
-
-
-def _if_regular(inverse: RingMatrix, determinant: PolyElement) -> Inverse | None:
-    return (inverse, determinant) if determinant else None
 
 
 def cross(ring: Ring, u: Row, v: Row) -> Row:

@@ -31,7 +31,7 @@ PASSIVE, CHAIN, WIDE = "passive", "chain", "wide"  # traits: see `traits_of`
 
 
 def _of_matrix(m: str) -> dict[str, Any]:
-    is_orthogonal = law(rf"\{m}\{m}^T = \1", lambda k, x: x.gram() - k.one)
+    is_orthogonal = law(rf"\{m}\{m}^T = \1", lambda k, x: x @ x.T - k.one)
     is_proper = law(rf"\det \{m} = 1", lambda k, x: k.scalar(x.det() - 1))
     return {"symbol": formula(rf"\{m}"), "laws": (is_orthogonal, is_proper)}
 
