@@ -211,19 +211,12 @@ def chain(turns: Sequence[Turn], *, passive: bool = False) -> RotationModel:
 def _axes_example(conditions: Sequence[sp.Expr]) -> Example:
     """Exact values of the symbols in the axes, which make them unit vectors one after the other."""
     values: dict[sp.Expr, sp.Expr] = {}
-    # Axes may share symbols. With the fewest symbols first, each condition leaves new ones to
-    # choose, as far as that is possible.
-    fewest = sorted(conditions, key=lambda condition: len(condition.free_symbols))
-    for variant, condition in enumerate(fewest):  # n₁ s₁² + n₂ s₂² + ... − rest = 0
-        squares = condition.xreplace(values)
-        symbols = sorted(squares.free_symbols, key=str)
-        numbers = [squares.coeff(symbol, 2) for symbol in symbols]
-        rest = -squares.as_coeff_Add()[0]
-        own = zip(numbers, symbols, strict=True)
-        if not symbols or sp.expand(squares + rest - sum(n * s**2 for n, s in own)):
-            continue
-        for number, (symbol, part) in zip(numbers, unit_example(symbols, variant), strict=True):
-            values[symbol] = sp.sqrt(rest / number) * part
+    # Axes may share symbols. With the fewest symbols first, each condition leaves one to solve for.
+    for condition in sorted(conditions, key=lambda condition: len(condition.free_symbols)):
+        *others, last = sorted(condition.xreplace(values).free_symbols, key=str) or [None]
+        values |= {symbol: sp.Rational(1, sp.prime(k)) for k, symbol in enumerate(others, 3)}
+        if last is not None:
+            values[last] = sp.solve(condition.xreplace(values), last)[-1]
     return tuple(values.items())
 
 
