@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from functools import cached_property, lru_cache, reduce
-from operator import mul
+from functools import cached_property, lru_cache
 from typing import Any
 
 import sympy as sp
@@ -178,7 +177,7 @@ class Codec:
         if expression.is_Add:
             return Quotient.sum(ring, [self.encode_quotient(part) for part in expression.args])
         if expression.is_Mul:
-            return self._product(expression.args)
+            return Quotient.product(ring, map(self.encode_quotient, expression.args))
         if expression.is_Pow and expression.exp.is_Rational:
             return self._power(expression.base, expression.exp)
         if isinstance(expression, sp.sin | sp.cos):
@@ -192,24 +191,6 @@ class Codec:
     def _foreign(self, expression: sp.Expr) -> AlgebraError:
         names = ", ".join(str(gen.expression) for gen in self.ring.generators)
         return AlgebraError(f"{expression} is not in the ring of {names}")
-
-    def _product(self, factors: Sequence[sp.Expr]) -> Quotient:
-        """The product; numbers, generators and their powers are gathered into one term."""
-        index = self.ring.index
-        powers, number = [0] * len(index), sp.QQ.one
-        others: list[Quotient] = []
-        for factor in factors:
-            place, exponent = index.get(factor), 1
-            if place is None and factor.is_Pow and factor.exp.is_Integer:
-                place, exponent = index.get(factor.base), int(factor.exp)
-            if place is not None and exponent > 0:
-                powers[place] += exponent
-            elif factor.is_Rational:
-                number *= _number(factor)
-            else:
-                others.append(self.encode_quotient(factor))
-        term = self.ring.reduce(self.ring.polynomials.term_new(tuple(powers), number))
-        return reduce(mul, others, Quotient.whole(self.ring, term))
 
     def _power(self, base: sp.Expr, exponent: sp.Rational) -> Quotient:
         whole = int(exponent.p)
