@@ -298,7 +298,7 @@ class Solver:
         return [(sine, cosine), (-sine, -cosine)]
 
     def _of_one(self, factor: PolyElement, angle: _Angle) -> Pairs | None:
-        """Roots of a polynomial in one sine or one cosine, up to the second degree."""
+        """Roots of a polynomial in one sine or one cosine, up to the second degree, or none."""
         element = self._ring.reduce(factor)
         expressions = [generator.expression for generator in self._ring.generators]
         used = {k for m in element for k, power in enumerate(m) if power}
@@ -308,7 +308,9 @@ class Solver:
         (place,), x = moving, sp.Dummy("x")
         polynomial = sp.Poly(self._codec.decode(element).xreplace({expressions[place]: x}), x)
         if polynomial.degree() > 2:
-            return None
+            # Without a zero in [−1, 1] no angle is one; roots of cubics are no textbook's values.
+            is_rational = all(c.is_Rational for c in polynomial.coeffs())
+            return [] if is_rational and not polynomial.count_roots(-1, 1) else None
         pairs: dict[tuple[sp.Expr, sp.Expr], None] = {}
         for value in sp.roots(polynomial):
             # x = cos α has the two solutions sin α = ±√(1 − x²), and likewise for x = sin α.

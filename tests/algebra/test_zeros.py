@@ -69,6 +69,7 @@ def test_a_polynomial_that_is_not_solved_says_so():
     assert zeros(cos(phi) ** 3 + 2 * cos(phi) + 1) == ([], False)
     mixed = sin(phi) * cos(phi) + Rational(3, 5) * cos(phi) + Rational(4, 5) * sin(phi)
     assert zeros(mixed) == ([], False)
+    assert zeros(cos(phi) ** 3 - 2 * cos(phi) + 3) == ([], True)  # its roots are beyond 1
 
 
 def test_singular_orientations_of_turns_by_sums_and_multiples_are_listed():
