@@ -6,7 +6,7 @@ A distribution is particles, a solid, or a composition of parts.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import combinations
 from math import isfinite
@@ -196,42 +196,44 @@ class RigidBody:
                 f"{self.name!r} cannot name a body: expected lower-case letters, digits and "
                 "underscores, beginning with a letter"
             )
-        for fault in self._faults():
-            raise BodyError(f"{self.name}: {fault}")
+        try:
+            self._check()
+        except BodyError as error:
+            raise BodyError(f"{self.name}: {error}") from None
         # The inequalities between the moments are decided in numbers only: with symbols they hold
         # for some values and fail for others.
         inertia = self.in_numbers(self.inertia)
         if not self.allow and all(entry.is_number for entry in inertia):
             check_moments(self.name, inertia.tolist())
 
-    def _faults(self) -> Iterator[str]:
-        """What is wrong with the body; each check relies on those before it."""
+    def _check(self) -> None:
+        """Raises BodyError for what is wrong; each check relies on those before it."""
         for what, matrix, shape in (
             ("the inertia tensor", self.inertia, (3, 3)),
             ("the centre of mass", self.centre, (3, 1)),
         ):
             if matrix.shape != shape:
-                yield f"expected {what} of shape {shape}, got {matrix.shape}"
+                raise BodyError(f"expected {what} of shape {shape}, got {matrix.shape}")
         known = {parameter.symbol for parameter in self.parameters}
         if len(known) != len(self.parameters):
-            yield "a parameter is named twice"
+            raise BodyError("a parameter is named twice")
         for entry in (self.mass, *self.inertia, *self.centre):
             if entry.has(TIME, AppliedUndef) or entry.has(sp.I, sp.nan, sp.oo, sp.zoo):
-                yield f"{entry} is not a real constant"
+                raise BodyError(f"{entry} is not a real constant")
             for number in entry.atoms(sp.Float):
-                yield str(not_exact(number))
+                raise BodyError(str(not_exact(number)))
             for symbol in sorted(entry.free_symbols - known, key=str):
-                yield f"{symbol} is not among the parameters"
+                raise BodyError(f"{symbol} is not among the parameters")
         for i, j in combinations(range(3), 2):
             residual = sp.expand(self.inertia[i, j] - self.inertia[j, i])
             if residual != 0:
                 value = self.in_numbers(residual)
                 places = f"I_{'xyz'[i]}{'xyz'[j]} − I_{'xyz'[j]}{'xyz'[i]}"
                 amount = f"{float(value):g}" if value.is_Float else value
-                yield f"the inertia tensor is not symmetric: {places} = {amount}"
+                raise BodyError(f"the inertia tensor is not symmetric: {places} = {amount}")
         mass = self.in_numbers(self.mass)
         if not self.allow and mass.is_number and not (isfinite(mass) and mass > 0):
-            yield f"the mass is {float(mass):g} kg; expected a positive number"
+            raise BodyError(f"the mass is {float(mass):g} kg; expected a positive number")
 
     def sentences(self, *, about_fixed_point: bool) -> tuple[str, ...]:
         """The body in plain sentences, to follow the convention of its rotation."""

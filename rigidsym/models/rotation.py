@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache, reduce
 from pathlib import Path
@@ -185,41 +185,43 @@ class RotationModel:
                 f"{self.name!r} cannot name a model: expected lower-case letters, digits and "
                 "underscores, beginning with a letter"
             )
-        for fault in self._faults():
-            raise ModelError(f"{self.name}: {fault}")
+        try:
+            self._check()
+        except ModelError as error:
+            raise ModelError(f"{self.name}: {error}") from None
 
-    def _faults(self) -> Iterator[str]:
-        """What is wrong with the model; each check relies on those before it."""
+    def _check(self) -> None:
+        """Raises ModelError for what is wrong; each check relies on those before it."""
         if self.matrix.shape != (3, 3):
-            yield f"a rotation matrix is 3x3, got {self.matrix.shape}"
+            raise ModelError(f"a rotation matrix is 3x3, got {self.matrix.shape}")
         if not self.coordinates:
-            yield "a model needs at least one coordinate, a function of time as phi(t)"
+            raise ModelError("a model needs at least one coordinate, a function of time as phi(t)")
         if self.units and len(self.units) != len(self.coordinates):
-            yield f"{len(self.coordinates)} coordinates, but {len(self.units)} units"
+            raise ModelError(f"{len(self.coordinates)} coordinates, but {len(self.units)} units")
         for place, coordinate in enumerate(self.coordinates):
             if coordinate in self.coordinates[:place]:
-                yield f"the coordinate {coordinate} is named twice"
+                raise ModelError(f"the coordinate {coordinate} is named twice")
             if not isinstance(coordinate, AppliedUndef) or coordinate.args != (TIME,):
-                yield (
+                raise ModelError(
                     f"the coordinate {coordinate} is not a function of t; "
                     "make it with sympy.physics.vector.dynamicsymbols"
                 )
         moving = {coordinate.func.__name__ for coordinate in self.coordinates}
         for constant in self.constants:
             if constant.name in moving:
-                yield f"{constant} is both a coordinate and a constant"
+                raise ModelError(f"{constant} is both a coordinate and a constant")
         numbers = set().union(*(part.atoms(*_NUMBERS) for part in self._parts))
         if sp.I in numbers:
-            yield "a rotation is real, but the matrix contains the number i"
+            raise ModelError("a rotation is real, but the matrix contains the number i")
         # π and e are transcendental, and no algebraic equation between them is known. The golden
         # ratio, say, is algebraic, and the ring would not know its equation.
         for number in numbers - {sp.pi, sp.E}:
-            yield (
+            raise ModelError(
                 f"the matrix contains the number {number}, which is not in the ring; "
                 f"expected roots, as in {sp.expand_func(sp.GoldenRatio)}, or a symbol"
             )
         if self.turns and product_of(self.turns) != self.matrix:
-            yield f"the matrix is not the product of its turns, {self.product}"
+            raise ModelError(f"the matrix is not the product of its turns, {self.product}")
 
     @property
     def _parts(self) -> tuple[sp.Basic, ...]:
