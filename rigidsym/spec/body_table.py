@@ -77,7 +77,7 @@ def read_body(
 
 
 def _in_numbers(data: Data, place: Place, folder: Path | None, *, allow: bool) -> Data:
-    """The table with mass, centre, inertia tensor and outline in place of the file it names.
+    """The table with mass, centre and inertia tensor in place of the file it names.
 
     The record contains these numbers, so that it can be checked without the file.
     """
@@ -98,13 +98,11 @@ def _in_numbers(data: Data, place: Place, folder: Path | None, *, allow: bool) -
         mesh = mass.read_mesh_file(folder / file, scale=data.get("scale", 1.0))
         amount = {key: data.get(key) for key in _AMOUNTS}
         properties = mass.mesh_inertia(mesh, **amount, allow=allow)
-        outline = mass.outline_of(mesh)
     else:
         columns = data.get("columns")
         properties = mass.inertia_of(folder / file, columns=columns, allow=allow)
-        outline = {}
     others = {key: data[key] for key in _OF_ANY_KIND if key in data}
-    return others | properties.as_table() | {"outline": outline}
+    return others | properties.as_table()
 
 
 @dataclass
@@ -266,5 +264,4 @@ def _known(table: _Table) -> distribution.Known:
         mass=table.amount("mass"),
         centre=sp.ImmutableMatrix(centre),
         inertia=sp.ImmutableMatrix(inertia),
-        outline=distribution.outline_from(table.data.get("outline", {})),
     )
