@@ -147,6 +147,7 @@ def test_the_body_is_drawn_from_the_back_with_its_holes_and_its_principal_axes()
     assert is_principal
     assert [label.symbol.text for label in drawing.labels] == ["x′", "y′", "z′"]
     facets = [shape for shape in drawing.body if isinstance(shape, Facet)]
+    assert sum(getattr(shape, "has_arrow", False) for shape in drawing.body) == 3
     holes = [max(facet.color) <= max(HOLE) for facet in facets]
     assert any(holes)
     assert not all(holes)

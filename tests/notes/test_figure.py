@@ -191,6 +191,17 @@ def test_what_is_behind_a_surface_is_dashed():
     assert np.mean(farther) > np.mean(nearer)
 
 
+def test_the_outline_of_an_ellipsoid_bounds_its_picture():
+    points = np.random.default_rng(1).normal(size=(4000, 3))
+    points /= np.linalg.norm(points, axis=1, keepdims=True)
+    drawing = on_ellipsoid([points], [], np.array([1.0, 0.6, 0.4]), [])
+    outline, *pieces = drawing.strokes
+    inside = np.array([point for piece in pieces for point in piece.points])
+    for direction in ((1, 0), (0, 1), (0.6, -0.8)):
+        reach = np.max(np.array(outline.points) @ direction)
+        assert reach == pytest.approx(np.max(inside @ direction), abs=0.01)
+
+
 def test_numbers_of_captions():
     for value, text in ((-0.5, "−0.5"), (1e-5, "10⁻⁵"), (-2.5e7, "−2.5·10⁷"), (123456, "123456")):
         assert decimal(value).text == text

@@ -11,6 +11,7 @@ from rigidsym.formula.display import PAGE, display
 from rigidsym.mechanics.kinematics.workspace import LENGTH
 from rigidsym.models.library import PARAMETRISATIONS, PRESETS, rotation_from
 from rigidsym.models.rotation import hat
+from rigidsym.notes import fitting
 from rigidsym.notes.document import Document, Equation
 from rigidsym.notes.equations import (
     by_half_angle,
@@ -55,6 +56,15 @@ def test_no_display_is_wider_than_a_page(documents):
         for equation in equations:
             shown = display(equation, document.letters, PAGE)
             assert shown.width <= PAGE, (document.title, equation.label)
+
+
+def test_what_is_too_long_is_left_out_behind_its_definition(monkeypatch):
+    monkeypatch.setattr(fitting, "_MOST_LINES", 3)
+    motion = rs.derive("ZXZ", ("rotational_energy",), body=rs.general_inertia())
+    equations = {equation.label: equation for equation in motion.note().document.equations}
+    energy = equations["rotational_energy"]
+    assert (len(energy.sides), energy.scalar, energy.is_result) == (2, None, False)
+    assert "too long for this page" in motion.note().markdown()
 
 
 @pytest.mark.parametrize("name", ["rotation_vector", "quaternion"])

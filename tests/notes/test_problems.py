@@ -129,3 +129,13 @@ def test_answers_are_the_values_with_their_units():
     *_, answer = problem.solution.blocks
     own, whole = (numeral(value).text for value in problem.facts["values"])
     assert text_of(answer.text) == f"Answer: I₃ = {own} kg\u00a0m² and I = {whole} kg\u00a0m²."
+
+
+def test_energy_momentum_and_the_angle_between_momentum_and_angular_velocity():
+    facts = problems.rotational_energy(Random(0))
+    omega, momentum = np.array(facts["omega"]), np.array(facts["moments"]) * facts["omega"]
+    energy, size, angle = facts["values"]
+    assert energy == np.sum(facts["moments"] * omega**2) / 2
+    cross = np.linalg.norm(np.cross(omega, momentum))
+    np.testing.assert_allclose(np.tan(np.radians(angle)), cross / (2 * energy))
+    np.testing.assert_allclose(size**2, np.sum(momentum**2))
