@@ -289,7 +289,7 @@ QUOTIENT = r"\frac{4\,(a + b)}{(1 + n^2)^2}"
         (BRACKET_OF_WORD, 14, 3, ["a (b", "+ ccc (d", "+ e + f))"]),
         # a divisor is broken only if nothing else can be
         (QUOTIENT, 16, 0, ["4(a", "+ b)/(1 + n²)²"]),
-        (r"\frac{4 a}{1 + n^2}", 8, 0, ["4a/(1", "+ n²)"]),
+        (r"\frac{4 a}{1 + n\,(b + c + d)}", 12, 1, ["4a/(1", "+ n (b + c", "+ d))"]),
         (r"\dot{\phi}\,(\mathit{abc} + \ddot{\theta})", 9, 0, ["φ̇ (abc", "+ θ̈)"]),
     ],
 )
