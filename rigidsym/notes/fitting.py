@@ -38,7 +38,7 @@ _RATHER_SHORT = frozenset(  # than broken
     {"rotation_rate", "inertia_tensor_space", "angular_momentum_rotation", "angular_momentum"}
 )
 _IN_SHORT = {"angular_momentum_rotation": row(ROTATION, MOMENTUM_BODY)}
-_INVERSES = dict[str, Formula]()  # of more than three rates
+_ADJUGATES, _INVERSES = dict[str, Formula](), dict[str, Formula]()  # of three rates, and of more
 for _frame in (SPACE, BODY):
     _acceleration = formula(
         r"#1\,\ddot{\mathbf{q}} + #3\,#2", _frame.matrix, RATES, Rate(_frame.matrix)
@@ -47,6 +47,8 @@ for _frame in (SPACE, BODY):
     _inverse = formula(r"#2\,(#1#2)^{-1}", _frame.matrix, transpose_of(_frame.matrix))
     _IN_SHORT[f"angular_acceleration_{_frame.name}"] = _acceleration
     _INVERSES[f"inverse_rate_matrix_{_frame.name}"] = _inverse
+    _adjugate = formula(r"\frac{1}{\det#1}\,\operatorname{adj}#1", _frame.matrix)
+    _ADJUGATES[f"inverse_rate_matrix_{_frame.name}"] = _adjugate
 
 
 def fitted(
@@ -119,5 +121,7 @@ def _short_form(step: Step, derivation: Derivation, letters: Letters) -> Formula
             for q in model.coordinates
         ]
         return joined(terms, PLUS)
-    is_free = len(model.coordinates) > 3 and not model.constraints
-    return (_IN_SHORT | _INVERSES if is_free else _IN_SHORT).get(name)
+    count = len(model.coordinates)
+    is_free = count > 3 and not model.constraints
+    inverses = _INVERSES if is_free else _ADJUGATES if count == 3 else {}
+    return (_IN_SHORT | inverses).get(name)
