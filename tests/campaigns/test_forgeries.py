@@ -12,7 +12,6 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
-import sympy as sp
 
 from helpers.certificates import NEEDS, of_motion, printed, record_of, run_coq, spoil
 from rigidsym.tools.certificate import checker
@@ -130,10 +129,6 @@ KNOWN: dict[str, tuple[str, Change]] = {
     "a principal moment too many": ("top", with_a_moment_too_many),
     "a constant angle in degrees": ("ZXZ", with_a_constant_angle_in_degrees),
     "a power that costs minutes": ("ZXZ", put(VELOCITY, 2, "0*cos(phi)**90000")),
-    "sums of 32,768 roots": (
-        "ZXZ",
-        put(VELOCITY, 2, f"0/({' + '.join(f'sqrt({p})' for p in sp.primerange(50))})"),
-    ),
     "a power of degree zero": ("ZXZ", put(VELOCITY, 2, "0*(phi**0)**900000000000")),
     "a rate with the other sign": ("ZXZ", everywhere("phi_dot", "(-phi_dot)")),
     "a comment that hides a rate": ("ZXZ", put(W, 2, 0, "cos(theta) + psi_dot/phi_dot # '")),
@@ -190,14 +185,11 @@ CHANGES: dict[str, Callable[[str], str]] = {
     ),
     "a comment": lambda text: f"{text} # + 1",
     "a root of a negative number": lambda text: f"{text} + 0*sqrt(-1)",
-    "the other root": lambda text: f"{text} + sqrt((1 + cos(phi))**2) + 1 + cos(phi)",
     "a divisor that vanishes": lambda text: f"{text} + 0/(cos(phi)**2 + sin(phi)**2 - 1)",
-    "a divisor of roots that vanishes": lambda text: f"{text} + 0/{ZERO}",
     "the sine of pi": lambda text: f"{text} + 0/sin(pi)",
     "a double angle in disguise": lambda text: (
         f"{text} + 0/(cos((phi + phi)*psi/psi) - 2*cos(phi)**2 + 1)"
     ),
-    "a divisor nearly zero": lambda text: f"{text} + phi*0/({ZERO}*10**39)",
     "a huge exponent": lambda text: f"({text})**999999999",
     "exponents of exponents": lambda text: f"({text}) + 0*((((1 + phi)**39)**39)**39)**39",
     "a long number": lambda text: f"{text} + 0*{'9' * 5000}",
@@ -323,7 +315,6 @@ OF_ZXZ: dict[str, Change] = {  # forgeries of what the record of ZXZ says beside
     "a divisor that vanishes under its condition": conditions(
         SPHERE, then=put(VELOCITY, 2, f"{TRUE} + 0/({SPHERE})")
     ),
-    "the negative branch of a root": put(VELOCITY, 2, f"{TRUE} + sqrt({SPHERE} + 1) + phi"),
     "a condition twice": conditions(SPHERE, SPHERE, then=FALSE),
     "two conditions": conditions(SPHERE, "theta**2 + psi**2 - 1", then=FALSE),
     "a name of two lines": called("a\n  proved: everything"),
@@ -578,9 +569,9 @@ PARTLY |= dict.fromkeys(["a parameter of the body that is defined"], "accelerati
 PARTLY |= {"a potential of unknown angles": "accelerations"}
 PARTLY |= {"integrals that hold a definition": "constant energy"}
 PARTLY |= {"a potential by definition, without its force": "accelerations"}
-PARTLY |= {"a divisor that is zero": "rotation_matrix", "sums of 32,768 roots": VELOCITY}
+PARTLY |= {"a divisor that is zero": "rotation_matrix"}
 PARTLY |= {"a divisor of a double angle by definition": VELOCITY}
-PARTLY |= {"a definition in a circle": VELOCITY, "the negative branch of a root": VELOCITY}
+PARTLY |= {"a definition in a circle": VELOCITY}
 
 
 @pytest.mark.parametrize("name", OTHERS)
