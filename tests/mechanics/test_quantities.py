@@ -131,6 +131,7 @@ def test_quantities_that_there_are_not_are_refused(text, name, message):
 
 def test_conversions_are_part_of_what_is_proved(monkeypatch):
     motion = rs.derive("gibbs_vector")
+    assert motion.step("rates_from_angular_velocity_body").quantity.unit == "1/s"
     conversions = Conversions(motion.model)
     assert record(motion, {}, conversions)["is_proved"]
     open_claim = Proof(claim=conversions.from_matrix.claim, status="unproved")
