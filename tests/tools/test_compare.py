@@ -104,6 +104,13 @@ def test_a_long_wrong_entry_is_not_searched_for_ever():
     assert (repair.kind, repair.place) == ("entry", (1, 1))
 
 
+def test_a_change_that_divides_by_zero_is_left_out():
+    formula = right("ZXZ", "rotation_matrix").as_mutable()
+    formula[2, 2] /= sp.Symbol("phi", real=True) - sp.Symbol("psi", real=True)
+    (repair,) = rs.compare(formula, "ZXZ", "rotation_matrix").repairs
+    assert (repair.place, repair.after) == ((3, 3), sp.cos(sp.Symbol("theta", real=True)))
+
+
 def test_a_forgotten_operator_is_named_with_its_neighbours():
     with pytest.raises(ExpressionError) as caught:
         formula_matrix("Rz(q1) Ry(q2)")

@@ -469,7 +469,7 @@ def _entry(reading: Reading, place: tuple[int, int]) -> tuple[str, sp.Expr]:
     for kind, after in sorted(
         changes, key=lambda v: (kinds.index(v[0]), v[1].count_ops(), str(v[1]))
     ):
-        if reading.agrees(sp.Matrix([[after]]), wanted):
+        if not after.has(sp.zoo, sp.nan) and reading.agrees(sp.Matrix([[after]]), wanted):
             return kind, after
     # No single change is enough: the entry of the goal is written in the names of the formula.
     back = {meant: symbol for symbol, meant in reading.names.items()}
