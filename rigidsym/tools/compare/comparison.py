@@ -9,6 +9,7 @@ entries.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from itertools import chain, product
@@ -469,8 +470,9 @@ def _entry(reading: Reading, place: tuple[int, int]) -> tuple[str, sp.Expr]:
     for kind, after in sorted(
         changes, key=lambda v: (kinds.index(v[0]), v[1].count_ops(), str(v[1]))
     ):
-        if not after.has(sp.zoo, sp.nan) and reading.agrees(sp.Matrix([[after]]), wanted):
-            return kind, after
+        with suppress(ExpressionError):  # a change without real values, such as 1/0, is no repair
+            if reading.agrees(sp.Matrix([[after]]), wanted):
+                return kind, after
     # No single change is enough: the entry of the goal is written in the names of the formula.
     back = {meant: symbol for symbol, meant in reading.names.items()}
     return "entry", goal.matrix[place].xreplace(back)
