@@ -129,9 +129,9 @@ def test_kernels_and_notes_know_nothing_of_one_another_nor_the_representation_of
 
 
 BUDGETS = {  # what was reached; who makes the house smaller lowers them
-    "files": 193,
-    "lines of code": 25_740,
-    "lines of tests": 16_000,
+    "files": 182,
+    "lines of code": 22_910,
+    "lines of tests": 15_750,
     "lines of benchmarks": 2_500,
 }
 

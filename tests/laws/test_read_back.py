@@ -35,7 +35,7 @@ ROTATIONS = (  # one of each kind
         pytest.param("rotation_vector", marks=pytest.mark.campaign),
         "z(phi) x(theta) [0,b,c](psi)",
     ),
-    *("z(2*phi - psi) x(theta) z(psi/3)", "z(phi) [1,1,0](theta) x(pi/4)"),
+    *("z(2*phi - psi) x(theta) z(psi)", "z(phi) [1,1,0](theta) x(pi/4)"),
 )
 PRINTED = {"w": "q_0", "x": "q_1", "y": "q_2", "z": "q_3"}  # as notes call quaternions
 SYMBOLS = {  # of results, as the reader names them
