@@ -151,9 +151,11 @@ class Motion(Derivation):
         return print_page(self, note.document, start or {})
 
     def with_notation(self, **choices: Any) -> Motion:
-        """The same motion in another notation: `rates`, `vectors`, `body`,
-        `angular_velocity`, as in [notation] of a derivation file. Raises ModelError for others.
+        """The same motion in another notation: `rates`, `vectors`, `angular_velocity`, as in
+        [notation] of a derivation file. Raises ModelError for others.
         """
+        for unknown in choices.keys() - CHOICES.keys():
+            raise ModelError(f"notation has no {unknown}; {offer(unknown, CHOICES)}")
         return replace(self, notation=replace(self.notation, **choices))
 
     def _repr_mimebundle_(self, **_: object) -> dict[str, str]:

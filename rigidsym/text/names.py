@@ -25,6 +25,7 @@ _SPELLING = str.maketrans(_GREEK)
 _TAKEN = {
     **dict.fromkeys(FUNCTIONS, "a function"),
     **dict.fromkeys(("q", "out", "np"), "a name that the generated functions use"),
+    **dict.fromkeys(("deg", "degree", "degrees"), "a unit; angles are in radians, 30° is pi/6"),
     "pi": "the number π",
     "t": "the time",
 }

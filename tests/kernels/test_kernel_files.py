@@ -104,9 +104,9 @@ def test_a_c_header_is_taken_by_cpp_beside_cmath(tmp_path):
 
 
 OPTIONS = [
-    ("c", {"leen": "double"}, "no option leen = 'double'; lean is none or double or float"),
-    ("c", {"lean": True}, "no option lean = True"),
-    ("numpy", {"lean": "double"}, "numpy has no option lean = 'double'; it has none"),
+    ("c", {"leen": "double"}, "c has no option leen; did you mean lean?"),
+    ("c", {"lean": True}, "lean: expected none or double or float, got True"),
+    ("numpy", {"lean": "double"}, "numpy has no option lean; known: conversions, derivatives"),
     ("numby", {}, "no target 'numby'; did you mean numpy"),
 ]
 

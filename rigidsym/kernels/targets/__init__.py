@@ -80,11 +80,11 @@ def check_options(target: str, options: Mapping[str, str | bool]) -> None:
         raise KernelError(f"no target {target!r}; {offer(target, TARGETS)}")
     known = TARGETS[target].options
     for name, value in options.items():
-        if value not in known.get(name, ()):
-            listed = [f"{key} is {' or '.join(values)}" for key, values in known.items()]
-            raise KernelError(
-                f"{target} has no option {name} = {value!r}; {', '.join(listed) or 'it has none'}"
-            )
+        if name not in known:
+            offered = offer(name, ("conversions", "derivatives", *known))
+            raise KernelError(f"{target} has no option {name}; {offered}")
+        if value not in known[name]:
+            raise KernelError(f"{name}: expected {' or '.join(known[name])}, got {value!r}")
 
 
 def printer(target: str) -> Printer:
