@@ -46,7 +46,9 @@ def identity(
 
     `example` gives exact values of the symbols in the conditions that satisfy them.
     """
-    codec = codec_for(left, constraints=conditions, order=None)
+    # Conditions on coordinates also hold for their rates, which only a ring with derivatives knows.
+    order = 1 if left.has(sp.Derivative) else None
+    codec = codec_for(left, constraints=conditions, order=order)
     quotients = list(map(codec.encode_quotient, left))
     subject = Conditions(name, tuple(conditions), example=example)
     return Prover(subject, codec).cancel(quotients, claim)

@@ -29,7 +29,7 @@ FEWER = (*BASIC, "angular_velocity_space", "inverse_rate_matrix_space")
 OTHERS = (
     *("quaternion", "gibbs_vector", "goldstein", "axis_angle", "unit_quaternion"),
     *("modified_rodrigues", "z(phi) x(theta) [0,b,c](psi)", "z(phi) [3,4,0](theta) x(pi/2)"),
-    *("z(2*phi - psi) x(theta) z(3*psi)", "x(a_1) y(a_2) z(a_3) x(a_4)"),
+    *("z(2*phi - psi) x(theta) z(psi)", "x(a_1) y(a_2) z(a_3) x(a_4)"),
 )
 CHAIN = "z(a1) x(a2) y(a3) z(a4) x(a5) y(a6) z(a7) x(a8) y(a9) z(a10)"
 

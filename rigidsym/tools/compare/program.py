@@ -47,7 +47,7 @@ _DEEPEST = 60  # nested nodes of an expression; formulas of real programs have f
 _DEEPEST_BLOCK = 40
 _LONGEST_LIST = 64
 _MOST_FORMULAS = 1_000  # of a file
-_MOST_STEPS = 18_000  # expressions of a file: what takes some ten seconds
+_MOST_STEPS = 12_000  # expressions of a file: what takes some seconds
 _MOST_NODES = 400_000  # of a file: a generated megabyte is not worth reading
 _MOST_CHARACTERS = 20_000  # of a formula
 _LONGEST_PLACE = 120  # characters
@@ -132,6 +132,7 @@ class Formula:
     """A matrix or vector of a program, or the reason why it is not read."""
 
     lines: tuple[int, ...]  # of the assignments of its components
+    of_entries: tuple[int, ...] = ()  # lines, row by row, if they are assigned one by one
     name: str
     forms: tuple[sp.ImmutableMatrix, ...] = ()  # in terms of the inputs, and of long values
     reason: str = ""
@@ -289,6 +290,7 @@ class _Interpreter:
         self.formulas: list[Formula] = []
         self.paths: dict[str, str] = {}  # name: its path in the program
         self.lines: dict[str, int] = {}  # where a name was assigned
+        self.of_entries: dict[tuple[str, Any], int] = {}  # where an entry was
         self.inputs: set[str] = set()  # names that were read before anything was assigned
         self.definitions: dict[sp.Symbol, sp.Expr | None] = {}  # what symbols stand for, if read
         self.components: set[Any] = set()  # symbols of components of a value, which are inputs
@@ -433,6 +435,7 @@ class _Interpreter:
         for key, entry in zip(keys, matrix, strict=True):
             place = next((k for k in ((*key, 0), (0, *key)) if k in table), key)
             table[place] = entry
+            self.of_entries[name, place] = tree.line_of(left)
 
     def _named_value(self, name: str, value: sp.Expr) -> sp.Expr:
         """A value, or a symbol for a long one."""
@@ -689,7 +692,8 @@ class _Interpreter:
         for name in names:
             table = self.values.get(name, {})
             if len(table) > 2 and name in self.lines:  # not an argument of this function
-                self._add(name, _matrix(table), self.lines[name])
+                own = [self.of_entries.get((name, k), self.lines[name]) for k in sorted(table)]
+                self._add(name, _matrix(table), self.lines[name], of_entries=own)
         self._emit_groups()
 
     def _join_groups(self, name: str) -> None:
@@ -729,7 +733,7 @@ class _Interpreter:
                 name = ", ".join(names) if len(names) < 9 else stem.strip("._") or "elements"
                 self._add(name, sp.Matrix(values), *(self.lines[name] for name in names))
 
-    def _add(self, name: str, value: Any, *lines: int) -> None:
+    def _add(self, name: str, value: Any, *lines: int, of_entries: Iterable[int] = ()) -> None:
         if not isinstance(value, sp.MatrixBase) or len(value) == 1:
             return
         if self.program.steps["formulas"] >= _MOST_FORMULAS:
@@ -757,6 +761,7 @@ class _Interpreter:
         self.formulas.append(
             Formula(
                 lines=lines,
+                of_entries=tuple(of_entries),
                 name=name,
                 forms=tuple(dict.fromkeys(forms)),
                 unread=tuple((n, self.lines.get(n, min(lines))) for n in sorted(unread)),

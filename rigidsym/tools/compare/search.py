@@ -35,17 +35,26 @@ class FormulaInFile:
     reason: str = ""
     is_case: bool = False  # whether other branches have other values
 
+    @property
+    def line(self) -> int:
+        """Where the first wrong entry is assigned, or else where the formula begins."""
+        places = [r.place for r in self.comparison.repairs if r.place] if self.comparison else []
+        own, columns = self.formula.of_entries, self.formula.forms[0].cols if places else 0
+        if not places or len(own) != len(self.formula.forms[0]):
+            return self.formula.line
+        return min(own[(row - 1) * columns + column - 1] for row, column in places)
+
     def __str__(self) -> str:
         name = f"{self.formula.name}: " if self.formula.name else ""
         text = self.comparison.text() if self.comparison else f"not read, since {self.reason}"
         text += "; in one of several branches" * self.is_case
         if self.formula.unread and self.comparison:
             text += f"; not read: {_in_lines(self.formula.unread)}"
-        return f"{self.path}:{self.formula.line}: {name}{text}"
+        return f"{self.path}:{self.line}: {name}{text}"
 
     def record(self) -> dict[str, Any]:
         """For JSON."""
-        place = {"path": str(self.path), "line": self.formula.line, "name": self.formula.name}
+        place = {"path": str(self.path), "line": self.line, "name": self.formula.name}
         place |= {"unread": dict(self.formula.unread)}
         return place | (self.comparison.record() if self.comparison else {})
 
