@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from inspect import signature
 from itertools import product
 from math import pi
 from pathlib import Path
@@ -86,11 +87,14 @@ def evaluate(
         if isinstance(source, Path) and where.resolve() == source.resolve():
             raise RequestError(f"{where}: the result would replace the file that is read")
     chosen = motion.select(derived_for(quantities))
-    module = chosen.kernels(conversions=not CONVERSIONS.keys().isdisjoint(quantities)).load()
+    converts = not CONVERSIONS.keys().isdisjoint(quantities)
+    module = chosen.kernels(conversions=converts).load()
+    rule = chosen.conversions.inverse if converts else None
+    quaternion = replace(_QUATERNION, names=rule.listed(_QUATERNION.names)) if rule else _QUATERNION
     calls = {name: _arguments(chosen, module, name) for name in quantities}
     taken = {argument for arguments in calls.values() for argument in arguments}
     known = [_Input(a.name, a.names, a.units) for a in chosen.arguments]
-    inputs = [each for each in (*known, _QUATERNION, _MATRIX) if each.name in taken]
+    inputs = [each for each in (*known, quaternion, _MATRIX) if each.name in taken]
     constants = _constants(inputs, given or {}, table.dtype)
     free = [each for each in inputs if each.name not in constants]
     if not free:
@@ -104,10 +108,10 @@ def evaluate(
                 f"({', '.join(name for name, _ in components)}); or name them with --columns"
             )
         header = ColumnNames(named or [name for name, _ in components])
-        used = _by_name(free, header)
+        used = [*range(table.width)] if named is None else _by_name(free, header)
         scales = []
         for column, (_, unit) in zip(used, components, strict=True):
-            stated = header.factor(column, unit)
+            stated = None if named is None else header.factor(column, unit)
             if stated is None:
                 stated = _DEGREE if degrees and _is_angle(unit) else 1.0
             scales.append(stated)
@@ -118,7 +122,7 @@ def evaluate(
             kept[place] = header.names[place]
     except DataError as error:
         raise DataError(f"{table.source}: {error}") from None
-    results = [result for name in quantities for result in _results(chosen, name)]
+    results = [result for name in quantities for result in _results(chosen, name, quaternion)]
     factors = [180 / pi if degrees and _is_angle(unit) else 1.0 for _, unit in results]
     ends = np.cumsum([len(each.names) for each in free])[:-1]
 
@@ -191,7 +195,9 @@ def _arguments(motion: Motion, module: ModuleType, name: str) -> tuple[str, ...]
     """The names of the arguments of a function; raises RequestError if it has none."""
     if name in CONVERSIONS:
         if hasattr(module, name):
-            return (CONVERSIONS[name],)
+            taken = signature(getattr(module, name)).parameters.values()
+            others = [each.name for each in taken if each.kind is not each.KEYWORD_ONLY][1:]
+            return (CONVERSIONS[name], *others)  # parameters, of a turn by a constant angle
         raise QuantityError(
             f"this rotation has no function {name}: only the 24 Euler conventions and the named "
             "parametrisations have it; for other coordinates, fit rotation_matrix(q) to the matrix "
@@ -202,10 +208,10 @@ def _arguments(motion: Motion, module: ModuleType, name: str) -> tuple[str, ...]
     return inputs
 
 
-def _results(derivation: Motion, name: str) -> Iterable[tuple[str, str]]:
+def _results(derivation: Motion, name: str, quaternion: _Input) -> Iterable[tuple[str, str]]:
     """The names and units of the columns of a result, entries row by row."""
     if name == "quaternion":
-        return zip(_QUATERNION.names, _QUATERNION.units, strict=True)
+        return zip(quaternion.names, quaternion.units, strict=True)
     of_coordinates = {"from_quaternion": "q", "from_rotation_matrix": "q"}
     of_coordinates |= {f"rates_from_angular_velocity_{f}": "q_dot" for f in ("space", "body")}
     if name in of_coordinates:

@@ -61,7 +61,12 @@ _GROUPS = {
 
 
 def groups_of(argument: str, names: Names) -> tuple[Names, ...]:
-    """How the components of an argument of a function may be called together, own names first."""
+    """How the components of an argument of a function may be called together, own names first.
+
+    Of a scalar-last quaternion, only by names that tell which is the scalar: q0 would be x or w.
+    """
+    if argument == "quaternion" and names[-1] == "qw":
+        return names, *((*vector, scalar) for scalar, *vector in NAMED_QUATERNIONS)
     return names, *_GROUPS.get(argument, ())
 
 

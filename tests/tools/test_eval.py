@@ -20,6 +20,8 @@ from rigidsym.tools.evaluate import evaluate
 COUNT = 1000
 VELOCITY = ("angular_velocity_body",)
 NAMES = ("phi", "theta", "psi", "phi_dot", "theta_dot", "psi_dot")
+HEAD, WXYZ, ABOUT_X = ",".join(NAMES), "qw,qx,qy,qz", [np.cos(1), np.sin(1), 0, 0]
+LAST = "unit_quaternion --scalar-last --quantity"
 
 
 def as_npy(path: Path, table: np.ndarray) -> None:
@@ -81,22 +83,34 @@ def test_each_kind_of_file_to_each(motion, table, kernel, tmp_path, source, targ
     assert sorted(tmp_path.iterdir()) == sorted([given, result])  # no draft, no marks
 
 
-def test_columns_are_found_by_names_with_units_in_any_order(tmp_path):
-    text = "t;Yaw [deg];pitch[deg];ROLL (deg);yaw rate;d_pitch;roll_dot\n5;90;0;0;0;0;10\n"
-    (tmp_path / "log.csv").write_text(text, encoding="utf-8")
-    result = tmp_path / "rates.csv"
-    done = run_eval("z(yaw) y(pitch) x(roll)", tmp_path / "log.csv", "--out", result, "--degrees")
-    assert done.returncode == 0, done.stderr
-    head, line = result.read_text(encoding="utf-8").splitlines()
-    assert head.startswith("angular_velocity_body_1 [deg/s],")
-    assert np.allclose([float(x) for x in line.split(",")], [10, 0, 0])
+@pytest.mark.parametrize(
+    ("words", "log", "head", "row"),
+    [
+        (
+            "z(yaw)y(pitch)x(roll) --degrees",  # units in names, in any order
+            "t;Yaw [deg];pitch[deg];ROLL (deg);yaw rate;d_pitch;roll_dot\n5;90;0;0;0;0;10\n",
+            "angular_velocity_body_1 [deg/s],",
+            [10, 0, 0],
+        ),
+        (f"{LAST} from_quaternion", f"{WXYZ}\n.5,.1,.7,.5\n", "x,y,z,w\n", [0.1, 0.7, 0.5, 0.5]),
+        (f"{LAST} from_quaternion", "z,y,x,w\n.5,.7,.1,.5\n", "x,y,z,w\n", [0.1, 0.7, 0.5, 0.5]),
+        (f"{LAST} quaternion", "x,y,z,w\n.1,.7,.5,.5\n", "qx,qy,qz,qw\n", [0.1, 0.7, 0.5, 0.5]),
+        ("ZYX --angles a,b_turn,c_deg --quantity quaternion", "0,0,2\n", WXYZ, ABOUT_X),
+        ("ZYX --angles a,A,b --quantity quaternion", "0,0,2\n", WXYZ, ABOUT_X),
+        ("z(a)x(b) --constants b --given b=2 --quantity quaternion", "a\n0\n", WXYZ, ABOUT_X),
+    ],
+)
+def test_columns_are_found_and_named(words, log, head, row):
+    done = run("eval", *words.split(), "-", "--out", "-", given=log)
+    assert done.stdout.startswith(head), done.stderr
+    assert np.allclose([float(x) for x in done.stdout.splitlines()[1].split(",")], row)
 
 
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("phi,theta,psi,phi_dot,theta_dot,psi_dot\n1,2,3,4,5,6\n1,2,x,4,5,6\n", "line 3: field 3"),
-        ("phi,theta,psi,phi_dot,theta_dot,psi_dot\n1,2,3\n", "line 2: 3 fields, expected 6"),
+        (f"{HEAD}\n1,2,3,4,5,6\n1,2,x,4,5,6\n", "line 3: field 3"),
+        (f"{HEAD}\n1,2,3\n", "line 2: 3 fields, expected 6"),
         (
             "phi,theta,psi\n1,2,3\n",
             "no column phi_dot, theta_dot, psi_dot among phi, theta, psi; "
@@ -104,10 +118,7 @@ def test_columns_are_found_by_names_with_units_in_any_order(tmp_path):
         ),
         ("1,2,3\n", "3 columns without names: expected 6"),
         ("\n\n", "no rows"),
-        (
-            "phi,theta,psi,phi_dot,theta_dot,psi_dot\n-,deg,-,-,-,-\n",
-            r"line 2.* as in theta \[deg\]",
-        ),
+        (f"{HEAD}\n-,deg,-,-,-,-\n", r"line 2.* as in theta \[deg\]"),
         (b"\xff\xfep\0h\0i\0", "is text in UTF-16; expected text in UTF-8"),
         (b"\x1f\x8b\x08\0", "is compressed by gzip; expected text"),
     ],
@@ -176,19 +187,17 @@ def test_the_body_of_a_derivation_file_is_known(table, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("quantity", "options", "message"),
+    ("options", "message"),
     [
-        (VELOCITY, {"given": {"phi": 1.0}}, "expected numbers for all of phi, theta, psi, or"),
-        (VELOCITY, {"given": {"alpha": 1.0}}, "alpha is not an input"),
-        (VELOCITY, {"keep": ("time",), "columns": NAMES}, "no column time; known: phi, theta"),
+        ({"given": {"phi": 1.0}}, "expected numbers for all of phi, theta, psi, or"),
+        ({"given": {"alpha": 1.0}}, "alpha is not an input"),
+        ({"keep": ("time",), "columns": NAMES}, "no column time; known: phi, theta"),
     ],
 )
-def test_a_request_that_no_file_satisfies_is_refused(
-    motion, table, tmp_path, quantity, options, message
-):
+def test_a_request_that_no_file_satisfies_is_refused(motion, table, tmp_path, options, message):
     np.save(tmp_path / "given.npy", table)
     with pytest.raises(rs.RigidsymError, match=message):
-        evaluate(motion, quantity, tmp_path / "given.npy", tmp_path / "r.npy", **options)
+        evaluate(motion, VELOCITY, tmp_path / "given.npy", tmp_path / "r.npy", **options)
 
 
 @pytest.mark.parametrize("target", WRITERS)
