@@ -627,7 +627,7 @@ def entries() -> Iterator[tuple[str, Content]]:
         content["first_integrals"][k]["expression"] = f"{integral['expression']} + A*theta_dot"
         yield f"constant {integral['name']}", content
     for name, (of, change) in {**KNOWN, **BESIDE}.items():
-        # nor what leaves no true theorem to state: names and roots that are no longer there, conditions
+        # nor what leaves no false theorem to state: names and roots that are gone, conditions
         if not re.search("divisor|singular|potential by definition|motion under", name):
             yield name, changed(of_motion("whole top") if of == "top" else record_of(of), change)
 
