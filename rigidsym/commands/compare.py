@@ -82,8 +82,9 @@ def _searched(paths: Sequence[Path], options: Options) -> bool:
         template = environment().get_template(f"compare/{options['format']}.jinja")
         click.echo(template.render(faults=faults), nl=False)
     count = counted(len(records), "formula") if records else "no known formula"
-    hint = "" if options["why"] or not unreadable else "; --why lists them"
-    message(f"{count} in {counted(len(files), 'file')}, {unreadable} not readable{hint}")
+    rest = f", {unreadable} not readable" if unreadable else ""
+    hint = "; --why lists them" if unreadable and not options["why"] else ""
+    message(f"{count} in {counted(len(files), 'file')}{rest}{hint}")
     if len(records) < options["require"]:
         message(f"expected at least {options['require']} (--require)")
     return bool(faults) or len(records) < options["require"]

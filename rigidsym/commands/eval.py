@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,9 +11,7 @@ import click
 
 from rigidsym.commands.command import command as make, message, of_rotation
 from rigidsym.data.columns import counted
-from rigidsym.errors import ModelError
-from rigidsym.motion import derive
-from rigidsym.pipeline import integrated, read
+from rigidsym.pipeline import motion_of, read
 from rigidsym.system.processes import bar
 from rigidsym.tools.evaluate import derived_for, evaluate
 
@@ -21,11 +20,9 @@ from rigidsym.tools.evaluate import derived_for, evaluate
 def command(rotation: str, file: Path, **options: Any) -> None:
     """Evaluate quantities of ROTATION for every row of FILE, however long."""
     spec = read(rotation, **of_rotation(options))
-    if len(spec.models) != 1:
-        raise ModelError(f"{spec.name} has {len(spec.models)} rotations; expected one")
     quantities, out = tuple(dict.fromkeys(options["quantity"])), options["out"]
     derived = derived_for(quantities)
-    motion = derive(spec.models[0], only=derived, body=integrated(spec).body)
+    motion = motion_of(replace(spec, quantities=derived, theory=False))
     inputs = {name for quantity in derived for name in motion.step(quantity).quantity.inputs}
     values = motion.body.values if motion.body and "parameters" in inputs else {}
     with bar(file.name) as progress:
@@ -46,5 +43,5 @@ def command(rotation: str, file: Path, **options: Any) -> None:
     click.echo(shown, err=str(out) == "-")
     if not result.rows:
         message(f"{file} has no rows of numbers: the result is only a header")
-    if result.inputs:
-        message(f"columns without a unit are read as {', '.join(result.inputs)}")
+    for remark in result.remarks:
+        message(remark)

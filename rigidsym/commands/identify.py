@@ -53,10 +53,13 @@ def _from_options(options: Options) -> Identification:
             fields = _FIELD.findall(text.translate(_BRACKETS))
             if part == "angles":
                 names = [name for name, _ in fields if name] or names
-            try:
-                parts.setdefault(part, []).append([float(number) for _, number in fields])
-            except ValueError:
-                faults.append(f"--{part}: expected numbers, got {text}")
+            numbers = []
+            for _, number in fields:
+                try:
+                    numbers.append(float(number))
+                except ValueError:
+                    faults.append(f"--{part}: expected a number, got {number}")
+            parts.setdefault(part, []).append(numbers)
             if len(fields) != SIZES[part]:
                 faults.append(f"--{part}: expected {SIZES[part]} numbers, got {len(fields)}")
     faults = faults or parts_missing(parts.keys())

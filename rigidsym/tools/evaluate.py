@@ -28,7 +28,8 @@ from rigidsym.data.tables import (
 from rigidsym.errors import DataError, QuantityError, RequestError, offer
 from rigidsym.motion import Motion
 from rigidsym.system.processes import Progress
-from rigidsym.tools.spellings import groups_of, of_component
+from rigidsym.tools.identify.samples import SLACK, Columns, samples_of
+from rigidsym.tools.spellings import MATRICES, groups_of, of_component
 
 CONVERSIONS = {  # and what they take
     "quaternion": "q",
@@ -45,7 +46,7 @@ class Evaluated:
     path: Path
     rows: int
     columns: tuple[str, ...]
-    inputs: tuple[str, ...]  # how columns that name no unit were read: phi [rad]
+    remarks: tuple[str, ...]  # how columns without a unit were read, rows without a value
 
 
 def evaluate(
@@ -75,7 +76,8 @@ def evaluate(
     place when all of it is there, or not at all. `rows` are in memory at once.
 
     Raises DataError for rows that are not numbers and columns that do not fit, RequestError for a
-    request that cannot be met, such as an unknown ending of the result, and QuantityError.
+    request that cannot be met, such as an unknown ending of the result, and QuantityError;
+    SampleError, with the rows, for matrices that are not rotations.
     """
     if isinstance(source, Path):
         table = open_table(source)
@@ -109,11 +111,12 @@ def evaluate(
             )
         header = ColumnNames(named or [name for name, _ in components])
         used = [*range(table.width)] if named is None else _by_name(free, header)
-        scales = []
-        for column, (_, unit) in zip(used, components, strict=True):
-            stated = None if named is None else header.factor(column, unit)
+        scales, unstated = [], []
+        for k, (_, unit) in enumerate(components):
+            stated = None if named is None else header.factor(used[k], unit)
             if stated is None:
                 stated = _DEGREE if degrees and _is_angle(unit) else 1.0
+                unstated += [k] if named is None or unit else []
             scales.append(stated)
         kept = {}
         for name in keep:
@@ -125,8 +128,11 @@ def evaluate(
     results = [result for name in quantities for result in _results(chosen, name, quaternion)]
     factors = [180 / pi if degrees and _is_angle(unit) else 1.0 for _, unit in results]
     ends = np.cumsum([len(each.names) for each in free])[:-1]
+    largest = np.zeros(len(components))  # the sizes in each column
+    lost, first = 0, ""  # how many rows have inputs and no value, and where the first is
 
     def computed() -> Iterator[Rows]:
+        nonlocal lost, first
         batches = table.batches(used, rows, [*kept])
         for batch in without_missing(table, batches, [name for name, _ in components], missing):
             count = len(batch.table)
@@ -135,6 +141,9 @@ def evaluate(
                 each.name: part.reshape(count, *each.shape)
                 for each, part in zip(free, parts, strict=True)
             }
+            if _MATRIX in free:
+                matrices = replace(batch, table=parts[free.index(_MATRIX)])
+                samples_of(table, _ENTRY_COLUMNS, matrices, drops_missing=True).check(SLACK)
             values = []
             for name, arguments in calls.items():
                 function = getattr(module, name)
@@ -142,18 +151,30 @@ def evaluate(
                 is_constant = constants.keys() >= {*arguments}
                 value = np.asarray(value).reshape(1 if is_constant else count, -1)
                 values.append(np.broadcast_to(value, (count, value.shape[1])))
-            yield _scaled(np.concatenate(values, axis=1), factors), batch.kept
+            result = np.concatenate(values, axis=1)
+            is_lost = np.isfinite(batch.table).all(axis=1) & ~np.isfinite(result).all(axis=1)
+            if is_lost.any() and not lost:
+                first = table.place(int(batch.rows[is_lost.argmax()]))
+            lost += int(is_lost.sum())
+            np.fmax(largest, np.fmax.reduce(np.abs(batch.table), initial=0), out=largest)
+            yield _scaled(result, factors), batch.kept
             if progress is not None:
                 progress(batch.share)
 
-    unstated = [
-        _title(name, unit, degrees=degrees)
-        for column, (name, unit) in zip(used, components, strict=True)
-        if named is None or (unit and not header.unit(column))
-    ]
     titles = (*kept.values(), *(_title(*result, degrees=degrees) for result in results))
-    count = write_table(where, titles, table.dtype, computed(), stream)
-    return Evaluated(path=where, rows=count, columns=titles, inputs=tuple(unstated))
+    total = write_table(where, titles, table.dtype, computed(), stream)
+    read_as = ", ".join(_title(*components[k], degrees=degrees) for k in unstated)
+    remarks = [f"columns without a unit are read as {read_as}"] if read_as else []
+    remarks += [
+        f"{components[k][0]} is as large as {largest[k]:.6g} radians, which are "
+        f"{largest[k] / _DEGREE:.6g} degrees; if they are degrees, --degrees reads them so"
+        for k in unstated
+        if components[k][1] == "rad" and largest[k] > 2 * pi and not degrees
+    ]
+    if lost:
+        cause = "a singular orientation or a zero quaternion"
+        remarks.append(f"{lost} of {total} rows have no value, the first in {first}: {cause}")
+    return Evaluated(path=where, rows=total, columns=titles, remarks=tuple(remarks))
 
 
 def _scaled(table: Numbers, factors: Sequence[float]) -> Numbers:
@@ -177,8 +198,8 @@ class _Input:
 
 
 _QUATERNION = _Input("quaternion", ("qw", "qx", "qy", "qz"), ("",) * 4)
-_ENTRIES = tuple(f"r{row}{column}" for row, column in product("123", repeat=2))
-_MATRIX = _Input("matrix", _ENTRIES, ("",) * 9, (3, 3))
+_MATRIX = _Input("matrix", MATRICES[0], ("",) * 9, (3, 3))
+_ENTRY_COLUMNS = Columns({"matrix": range(9)})
 
 
 def derived_for(names: Sequence[str]) -> tuple[str, ...]:

@@ -270,4 +270,4 @@ def test_the_command_line_asks_for_lean_c_which_python_does_not_build(tmp_path):
     assert (tmp_path / source).read_text("utf-8") == lean
     assert "changed" not in call("check", "a", cwd=tmp_path).stdout
     refused = call("build", source, cwd=tmp_path, status=2)
-    assert "derive --target c writes it, without --lean" in refused.stderr
+    assert "derive --target c writes them; omit --lean" in refused.stderr

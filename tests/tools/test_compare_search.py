@@ -211,7 +211,7 @@ def test_a_folder_without_formulas_is_told_from_a_right_one(tmp_path):
     empty = call("compare", str(tmp_path), cwd=tmp_path, status=2)
     assert "no source files; looked for .py, .c, .h, " in empty.stderr
     (tmp_path / "a.py").write_text("x = 1\n")
-    assert "no known formula in 1 file" in call("compare", ".", cwd=tmp_path).stderr
+    assert "no known formula in 1 file\n" in call("compare", ".", cwd=tmp_path).stderr
     required = call("compare", ".", "--require", "1", cwd=tmp_path, status=1)
     assert "expected at least 1 (--require)" in required.stderr
 

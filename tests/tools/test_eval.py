@@ -52,10 +52,6 @@ def velocities(kernel, table: np.ndarray, rows: int) -> np.ndarray:
     return np.concatenate([kernel(part[:, :3], part[:, 3:]) for part in parts])
 
 
-def run_eval(*arguments: object):
-    return run("eval", *map(str, arguments))
-
-
 @pytest.fixture(scope="module")
 def motion() -> rs.Motion:
     return rs.derive("ZXZ")
@@ -130,11 +126,19 @@ def test_what_is_wrong_with_a_text_is_said(motion, tmp_path, text, message):
     assert [path.name for path in tmp_path.iterdir()] == ["log.csv"]
 
 
-def test_a_header_without_rows_gives_one_and_a_message(tmp_path):
-    (tmp_path / "log.csv").write_text(",".join(NAMES) + "\n", encoding="utf-8")
-    done = run_eval("ZXZ", tmp_path / "log.csv", "--out", tmp_path / "r.csv")
-    assert "log.csv has no rows of numbers" in done.stderr
-    assert (tmp_path / "r.csv").read_text().startswith("angular_velocity_body_1 [rad/s],")
+@pytest.mark.parametrize(
+    ("quantity", "text", "message"),
+    [
+        ("angular_velocity_body", HEAD, "- has no rows of numbers"),
+        ("from_rotation_matrix", "1,0,0,0,1,0,0,0,-1\n", "line 1: matrix: not a rotation but a"),
+        ("from_quaternion", "1,0,0,0\n0,0,0,0\n", "1 of 2 rows have no value, the first in line 2"),
+        ("rotation_matrix", "1,-90,7\n", "theta is as large as 90 radians, which are 5156.62 deg"),
+    ],
+)
+def test_what_a_user_should_know_of_a_result_is_said(quantity, text, message):
+    done = run("eval", "ZXZ", "-", "--out", "-", "--quantity", quantity, given=text)
+    assert message in done.stderr
+    assert (done.returncode == 0) == done.stdout.startswith((quantity, "phi [rad],"))
 
 
 def test_what_is_no_table_of_numbers_is_refused(tmp_path):
@@ -173,16 +177,17 @@ def test_what_no_row_changes_stands_in_every_row(motion, table, tmp_path):
     assert_array_equal(found[:, :3], velocity)
 
 
-def test_the_body_of_a_derivation_file_is_known(table, tmp_path):
+def test_the_body_and_the_forces_of_a_derivation_file_act(table, tmp_path):
     text = '[rotation]\nsequence = "ZXZ"\n[body]\nmass = 3\nprincipal_moments = [1.5, "B", 2.5]\n'
+    text += '[dynamics]\npotential = "g*cos(theta)"\n'
     (tmp_path / "top.toml").write_text(text, encoding="utf-8")
     np.save(tmp_path / "log.npy", table)
-    options = ("--quantity", "rotational_energy", "--given", "B=2.0")
-    paths = (tmp_path / "top.toml", tmp_path / "log.npy")
-    done = run_eval(*paths, "--out", tmp_path / "r.npy", *options)
+    words = (tmp_path / "top.toml", tmp_path / "log.npy", "--out", tmp_path / "r.npy")
+    options = ("--quantity", "energy", "--given", "B=2.0", "--given", "g=10")
+    done = run("eval", *map(str, words), *options)
     assert done.returncode == 0, done.stderr
     turned = rs.derive("ZXZ").kernels().load().angular_velocity_body(table[:, :3], table[:, 3:])
-    energy = 0.5 * turned**2 @ (1.5, 2.0, 2.5)
+    energy = 0.5 * turned**2 @ (1.5, 2.0, 2.5) + 10 * np.cos(table[:, 1])
     np.testing.assert_allclose(np.load(tmp_path / "r.npy")[:, 0], energy, rtol=1e-13)
 
 

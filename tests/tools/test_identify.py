@@ -68,7 +68,9 @@ def test_angles_are_taken_to_be_rounded_where_nothing_fits_otherwise():
     angles = np.array([17.234, 38.441, -63.078])
     found = rs.identify(angles.round(1), **attitude(reading, angles))
     assert holds(found.answers[0], reading)
-    assert "and of the angles" in found.tolerance.because
+    assert "from the digits of the angles" in found.tolerance.because
+    askew = {"matrix": 1.013 * attitude(reading, angles)["matrix"]}
+    assert "from how far the attitude is from a" in rs.identify(angles, **askew).tolerance.because
 
 
 def test_noise_needs_a_tolerance_and_is_named_without():

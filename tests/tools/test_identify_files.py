@@ -101,14 +101,8 @@ def test_all_bad_samples_are_named_with_their_amounts():
     [
         ({}, "a matrix or a quaternion is missing"),
         ({"matrix": np.eye(3), "quaternion": [1, 0, 0, 0]}, "not both"),
-        (
-            {"matrix": np.eye(4)},
-            r"matrix: expected the shape \(n, 3, 3\) or \(n, 9\), got \(4, 4\)",
-        ),
-        (
-            {"matrix": [np.eye(3)] * 2},
-            "one row per sample in every array, got 1 of angles, 2 of matrix",
-        ),
+        ({"matrix": np.eye(4)}, r"matrix: expected .* \(n, 3, 3\) or \(n, 9\), got \(4, 4\)"),
+        ({"matrix": [np.eye(3)] * 2}, "row per sample in every array, got 1 of angles, 2 of mat"),
         ({"matrix": np.eye(3), "names": ("a", "b")}, "three different names of angles, got a, b"),
         ({"matrix": np.eye(3), "tolerance": -1.0}, "between 0 and π radians, got -1"),
         ({"angles": np.empty((0, 3)), "matrix": np.empty((0, 3, 3))}, "no samples"),
@@ -143,6 +137,7 @@ def test_a_data_frame_is_read_by_its_names():
     ("text", "messages"),
     [
         ("", ["no rows"]),
+        ("HEADER\n", ["bad.csv: no samples"]),
         (
             "HEADER\n0,0,0,1,0,0,0,1,0,0,0,1\n\n0,z,0,1,0,0,0,1,0,0,0,y\n0,0,0\n",
             ["line 4: field 2: 'z' is", "line 4: field 12: 'y' is", "line 5: 3 fields"],
@@ -190,11 +185,8 @@ def test_one_sample_is_named_first_and_its_calls_follow(tmp_path):
 
 def test_several_samples_with_signs_and_velocity_as_json(tmp_path):
     reading = Reading(sequence="ZXZ", scalar_last=True, velocity=VELOCITIES[1])
-    words = [
-        word
-        for angles in (GENERIC[False], (-0.2, 0.5, 0.6))
-        for word in options(sample(reading, angles))
-    ]
+    rows = (GENERIC[False], (-0.2, 0.5, 0.6))
+    words = [word for angles in rows for word in options(sample(reading, angles))]
     data = json.loads(call("identify", *words, "--json", cwd=tmp_path).stdout)
     assert (data["schema"], data["fits"], data["samples"]) == ("rigidsym.identification", True, 2)
     (answer,) = data["answers"]
@@ -203,6 +195,7 @@ def test_several_samples_with_signs_and_velocity_as_json(tmp_path):
     assert set(answer["calls"]) == {"SciPy", "rigidsym"}
     assert len(answer["aliases"]) == 3
     assert data["nearest"] is None
+    assert [*data["tolerance"]] == ["if_radians", "if_degrees", "velocity", "because"]
 
 
 def test_several_answers_are_cut_short_and_say_what_would_separate_them(tmp_path):
@@ -210,9 +203,7 @@ def test_several_answers_are_cut_short_and_say_what_would_separate_them(tmp_path
     done = call("identify", *words, cwd=tmp_path)
     assert "96 conventions fit 1 sample" in done.stdout
     assert "and 90 more; --all shows them" in done.stdout
-    assert (
-        "A sample with three different angles, none near 0 or 90°, tells them apart" in done.stdout
-    )
+    assert "three different angles, none near 0 or 90°, tells them apart" in done.stdout
     assert max(map(len, done.stdout.splitlines())) <= 80
     everything = call("identify", *words, "--all", cwd=tmp_path).stdout
     assert everything.count("from scipy.spatial.transform") == 96
@@ -230,8 +221,9 @@ def test_no_fit_is_an_answer_with_exit_code_1(tmp_path):
     assert "as far off as that, --tolerance 0.0092 accepts it." in done.stdout
     assert done.stderr == ""
     call(*words, "--tolerance", "0.0092", cwd=tmp_path)
-    far = call(*words[:2], "30,20,99", *words[3:], cwd=tmp_path, status=1)
-    assert "Even the best match is" in far.stdout
+    far = call(*words[:2], "0,0,0", "--matrix", "1,0,0,0,-1,0,0,0,-1", cwd=tmp_path, status=1)
+    assert "residual 3.1 rad (180°), worst" in far.stdout
+    assert "Even the best match is 180° off" in far.stdout
     data = json.loads(call(*words, "--json", cwd=tmp_path, status=1).stdout)
     assert (data["fits"], data["answers"]) == (False, [])
     assert data["nearest"]["residual"] == pytest.approx(np.radians(0.5))

@@ -51,7 +51,7 @@ def build(source: Path) -> Path:
     needed = [folder / text.format(name) for text in (*_SOURCES, "{}.h", "{}_c.py")]
     if missing := [str(path) for path in needed if not path.is_file()]:
         raise CheckError(
-            f"{', '.join(missing)}: not found; rigidsym derive --target c writes it, without --lean"
+            f"{', '.join(missing)}: not found; rigidsym derive --target c writes them; omit --lean"
         )
     library = folder / f"_{name}_c{sysconfig.get_config_var('EXT_SUFFIX')}"
     draft = library.with_name(f".{os.getpid()}{library.name}")  # whole or not at all

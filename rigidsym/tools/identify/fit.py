@@ -29,14 +29,14 @@ _MOST_PLACES = 17  # decimal places that tell one double of size 1 from the next
 class Tolerance(NamedTuple):
     """Radians for orientations, by the unit of the angles; a share of the largest |Ω| for Ω."""
 
-    radians: float  # if a reading takes the angles to be radians
-    degrees: float  # if it takes them to be degrees; in radians too
+    if_radians: float  # if a reading takes the angles to be radians
+    if_degrees: float  # if it takes them to be degrees; in radians too
     velocity: float
     because: str  # in words
 
     @property
     def orientation(self) -> float:
-        return max(self.radians, self.degrees)
+        return max(self.if_radians, self.if_degrees)
 
 
 def tolerances(asked: float | None, block: Samples, scale: float) -> list[Tolerance]:
@@ -49,8 +49,8 @@ def tolerances(asked: float | None, block: Samples, scale: float) -> list[Tolera
         return [Tolerance(asked, asked, asked, "as asked")]
     floor = max(FLOOR, 64 * block.eps)  # computing in a precision below double leaves that open
     # the largest rotation by which rounding has moved one of the matrices or quaternions
-    defects = block.defects()
-    moved = np.where(defects <= _EXACT, 0, np.maximum(rounding_of(block.attitude), defects / 2))
+    defects, digits = block.defects(), rounding_of(block.attitude)
+    moved = np.where(defects <= _EXACT, 0, np.maximum(digits, defects / 2))
     attitude = max(floor, float(moved.max()) * (3 if "matrix" in block.parts else 4))
     angles, rates, omega = (
         float(rounding_of(block.parts[part]).max()) if part in block.parts else 0.0
@@ -58,15 +58,19 @@ def tolerances(asked: float | None, block: Samples, scale: float) -> list[Tolera
     )
     # Three components, each off by half a unit, make a vector off by √3 halves.
     velocity = max(floor, sqrt(3) * omega / scale)
+    source = "the digits of the data"
+    # Entries off by r each, in rows of unit length, make M Mᵀ differ from 1 by 2 √3 r at most.
+    if attitude > floor and (moved > 2 * digits)[moved.argmax()]:
+        source = "how far the attitude is from a rotation"
     is_rounded = max(attitude, velocity) > FLOOR
-    because = "from the digits of the data" if is_rounded else "for exact data"
+    because = f"from {source}" if is_rounded else "for exact data"
     first = Tolerance(attitude, attitude, velocity, because)
     turned = [3 * angles, 3 * angles * RADIANS_PER_DEGREE]
     extra = [each if each <= _MOST_FOR_ANGLES else 0.0 for each in turned]
     if not any(extra):
         return [first]
     velocity += max(extra) + min(3 * rates / scale, _MOST_FOR_ANGLES)
-    because = "from the digits of the data and of the angles"
+    because = f"from {source} and from the digits of the angles"
     return [first, Tolerance(attitude + extra[0], attitude + extra[1], velocity, because)]
 
 
@@ -177,6 +181,8 @@ def fit(samples: Samples, asked: float | None = None) -> tuple[tuple[Answer, ...
     """
     if asked is not None and not 0 < asked < pi:
         raise SampleError([f"the tolerance is an angle between 0 and π radians, got {asked:g}"])
+    if not len(samples):
+        raise SampleError([f"{samples.source}: no samples".removeprefix(": ")])
     samples.check(max(SLACK, 2 * (asked or 0)))
     has_velocity = "omega" in samples.parts
     velocities = [samples.parts[part] for part in ("omega", "rates") if has_velocity]
@@ -203,7 +209,7 @@ def fit(samples: Samples, asked: float | None = None) -> tuple[tuple[Answer, ...
 
 def _shares(readings: Sequence[Reading], off: Misfit, tolerance: Tolerance) -> Array:
     """How much of the tolerance each reading needs for each sample, (readings, n)."""
-    limits = [tolerance.degrees if reading.degrees else tolerance.radians for reading in readings]
+    limits = [tolerance.if_degrees if r.degrees else tolerance.if_radians for r in readings]
     return np.maximum(off.angles / np.array(limits)[:, None], off.slips / tolerance.velocity)
 
 

@@ -18,7 +18,7 @@ from rigidsym.tools.identify.readings import ANGLE_NAMES, VELOCITIES, Reading, d
 from rigidsym.tools.identify.samples import Columns, Samples, from_arrays, from_file
 
 SCHEMA = "rigidsym.identification"
-SCHEMA_VERSION = 3
+SCHEMA_VERSION = 4
 _NEAR = 0.2  # radians; no tolerance is suggested for a nearest reading further off
 
 
@@ -41,9 +41,8 @@ class Identification:
     @property
     def distance(self) -> float:
         """The largest residual of the nearest reading, if nothing fits."""
-        return (
-            max(self.nearest.residual, self.nearest.velocity_residual or 0) if self.nearest else 0
-        )
+        nearest = self.nearest
+        return max(nearest.residual, nearest.velocity_residual or 0) if nearest else 0
 
     @property
     def is_near(self) -> bool:
@@ -136,7 +135,8 @@ def identify(
     names : sequence of str, optional
         Names of the angles, for the report.
     tolerance : float, optional
-        In radians, and a fraction of the largest |Ω|; by default from the digits of the data.
+        In radians, and a fraction of the largest |Ω|; by default from the digits of the data
+        or, if it is more, from how far the attitude is from a rotation.
 
     Returns
     -------

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rigidsym.data.columns import ColumnNames, counted, names_for
-from rigidsym.data.tables import MOST_SHOWN, ArrayTable, Table, listed, names_of, open_table
+from rigidsym.data.tables import MOST_SHOWN, ArrayTable, Batch, Table, listed, names_of, open_table
 from rigidsym.errors import DataError
 from rigidsym.tools.identify.readings import ANGLE_NAMES
 from rigidsym.tools.spellings import (
@@ -135,10 +135,10 @@ class Samples:
                     f"(det M = {sizes[k]:.4g})"
                 )
             faults.append((k, fault))
-        if faults or not len(self):
+        if faults:
             messages = [f"{self.place(int(self.rows[k]))}: {fault}" for k, fault in sorted(faults)]
             count = int(sum(rows.sum() for rows in (wrong, *infinite.values())))
-            raise SampleError(messages or ["no samples"], count=count, source=self.source)
+            raise SampleError(messages, count=count, source=self.source)
 
 
 # Which column is which part
@@ -229,8 +229,11 @@ def by_name(names: Sequence[str]) -> Columns:
 # Reading
 
 
-def _samples(table: Table, columns: Columns, *, drops_missing: bool = False) -> Samples:
-    batch = table.read([k for part in columns.parts.values() for k in part])
+def samples_of(
+    table: Table, columns: Columns, batch: Batch | None = None, *, drops_missing: bool = False
+) -> Samples:
+    """The samples of a table, or of a batch of it that has just these columns."""
+    batch = batch or table.read([k for part in columns.parts.values() for k in part])
     if drops_missing:
         batch = batch.at(np.asarray(~np.isnan(batch.table).any(axis=1)))
     numbers = np.asarray(batch.table, float) * columns.factors
@@ -260,7 +263,7 @@ def from_file(
     except DataError as error:
         place = "" if str(path) in str(error) else f"{path}: "
         raise SampleError([f"{place}{error}"]) from None
-    return _samples(table, columns, drops_missing=drops_missing)
+    return samples_of(table, columns, drops_missing=drops_missing)
 
 
 def from_arrays(parts: Mapping[str, Any], names: Sequence[str] = ANGLE_NAMES) -> Samples:
@@ -272,7 +275,7 @@ def from_arrays(parts: Mapping[str, Any], names: Sequence[str] = ANGLE_NAMES) ->
     labelled = [name for name, value in present.items() if names_of(value)]
     if labelled == ["angles"] == [*present]:
         table = ArrayTable(present["angles"])
-        return _samples(table, by_name(table.names or ()))
+        return samples_of(table, by_name(table.names or ()))
     expected = (
         "its columns have names; expected an array without names, or one table "
         "with the columns of all parts, as the only argument"
@@ -287,7 +290,7 @@ def from_arrays(parts: Mapping[str, Any], names: Sequence[str] = ANGLE_NAMES) ->
         sizes = ", ".join(f"{len(array)} of {name}" for name, array in arrays.items())
         raise SampleError([f"expected one row per sample in every array, got {sizes}"])
     columns = by_width(sum(SIZES[name] for name in arrays))
-    return _samples(ArrayTable(*arrays.values()), columns._replace(names=tuple(names)))
+    return samples_of(ArrayTable(*arrays.values()), columns._replace(names=tuple(names)))
 
 
 def _rows(name: str, value: ArrayLike) -> NDArray[Any]:
