@@ -51,9 +51,11 @@ def _records(path: Path) -> list[Path]:
 def _findings(record: Path) -> Iterator[tuple[Path, str, str]]:
     """Each file, what is wrong with it, and what its certificate proves."""
     content = content_of(record)
-    if (content.get("schema"), content.get("schema_version")) != (SCHEMA, SCHEMA_VERSION):
-        problem = "cannot be read as the record of a derivation"
-        yield record, f"{problem}, schema version {SCHEMA_VERSION}; derive it again", ""
+    version = content.get("schema_version") if content.get("schema") == SCHEMA else None
+    if version != SCHEMA_VERSION:
+        problem = f"its schema version is {version!r}, expected {SCHEMA_VERSION}"
+        problem = problem if version else "cannot be read as the record of a derivation"
+        yield record, f"{problem}; derive it again", ""
         return
     try:
         fresh = printed(read_record(content.get("request"), source=str(record)))

@@ -143,6 +143,8 @@ class ArrayTable(Table):
             numbers = {n: c[:, None] for n, c in columns.items() if c.dtype.kind in _NUMERIC}
             if not numbers:
                 raise DataError("no column holds numbers")
+            if wide := [name for name in numbers if columns[name].ndim > 1]:
+                raise DataError(f"column {wide[0]} has several numbers in a row; expected one")
             self.names, arrays = tuple(numbers), tuple(numbers.values())
         arrays = tuple(map(np.asarray, arrays))
         for array in arrays:
@@ -173,7 +175,10 @@ class NpyTable(ArrayTable):
     def __init__(self, path: Path) -> None:
         self.source, self._path = str(path), path
         try:
-            super().__init__(np.load(path, mmap_mode="r", allow_pickle=False))
+            data = np.load(path, mmap_mode="r", allow_pickle=False)
+            if not isinstance(data, np.ndarray):
+                raise DataError("an NPZ archive of arrays; expected one array, an NPY file")
+            super().__init__(data)
         except DataError as error:
             raise DataError(f"{path}: {error}") from None
         # NumPy parses the header as Python, and maps as many bytes as it states.
@@ -252,7 +257,8 @@ _OTHER_KINDS = {  # by which files that are no plain text begin
     b"\xff\xfe": "text in UTF-16",
     b"\xfe\xff": "text in UTF-16",
     b"\x1f\x8b": "compressed by gzip",
-    b"PK": "an archive or a spreadsheet",
+    b"PK\x03\x04": "an archive or a spreadsheet",
+    b"PK\x05\x06": "an archive or a spreadsheet",  # an empty one
 }
 
 
@@ -443,7 +449,7 @@ def _write_npy(
     count = 0
     for table, kept in rows:
         if kept:
-            raise DataError("an NPY file has no columns to keep; expected .csv or .parquet")
+            raise DataError("an NPY file has no names of columns, so --keep needs .csv or .parquet")
         file.write(np.ascontiguousarray(table, dtype).tobytes())
         count += len(table)
     file.seek(0)

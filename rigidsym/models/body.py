@@ -201,10 +201,15 @@ class RigidBody:
         except BodyError as error:
             raise BodyError(f"{self.name}: {error}") from None
         # The inequalities between the moments are decided in numbers only: with symbols they hold
-        # for some values and fail for others.
+        # for some values and fail for others. A sign is decided by the signs of the parameters.
         inertia = self.in_numbers(self.inertia)
         if not self.allow and all(entry.is_number for entry in inertia):
             check_moments(self.name, inertia.tolist())
+        positive = {p.symbol: sp.Dummy(positive=True) for p in self.parameters if p.positive}
+        moments = [(f"I_{axis}{axis}", self.inertia[k, k]) for k, axis in enumerate("xyz")]
+        for what, entry in (("the mass", self.mass), *moments):
+            if not self.allow and entry.xreplace(positive).is_negative:
+                raise BodyError(f"{self.name}: {what} is {entry}, which is negative")
 
     def _check(self) -> None:
         """Raises BodyError for what is wrong; each check relies on those before it."""

@@ -198,9 +198,9 @@ class Problem:
             velocity = self._at(_RATES, q, velocity) if has_rates else np.array([np.nan])
             if not np.isfinite(velocity).all():
                 raise ModelError(
-                    f"{self.derivation.name}: the rates do not follow from {OMEGA} at the start, "
-                    "as at a pole of the coordinates; expected rates, or a rotation without this "
-                    "pole, such as unit_quaternion"
+                    f"{self.derivation.name}: the rates at the start cannot be computed from "
+                    f"{OMEGA}: the coordinates are at a pole, or are too few for every {OMEGA}; "
+                    "expected rates, or another rotation, such as unit_quaternion"
                 )
         return np.concatenate([q, velocity])
 

@@ -132,6 +132,12 @@ class _Symbols:
             if expression.is_Symbol:
                 self.meanings.setdefault(expression.name, (about, unit))
 
+    def value_of(self, expression: sp.Expr) -> float | None:
+        """The value of an expression; None unless all its symbols have values."""
+        values = {p.symbol: p.value for p in self.parameters.values() if p.value is not None}
+        value = expression.xreplace({s: sp.Float(v, 17) for s, v in values.items()})
+        return float(value) if value.is_comparable else None
+
     def described(self) -> tuple[Parameter, ...]:
         """All parameters with a declaration, a value or a meaning."""
         explained = {
@@ -204,7 +210,6 @@ def _distribution(table: _Table, place: Place) -> distribution.Distribution:
 def _shape(table: _Table, name: str) -> distribution.Distribution:
     """A shipped solid; lengths that the table lacks are their default symbols."""
     lengths: list[sp.Expr] = []
-    numbers: list[float | None] = []
     for length in SHAPES[name].lengths:
         values = [name + table.suffix for name in length.names]
         if length.key in table.data:
@@ -215,8 +220,7 @@ def _shape(table: _Table, name: str) -> distribution.Distribution:
         read = table.nested(values, length.names)
         table.symbols.explain(read, length.about, "m")
         lengths += read
-        numbers += [None if isinstance(value, str) else value for value in values]
-    check_lengths(name, numbers)
+    check_lengths(name, [table.symbols.value_of(length) for length in lengths])
     amounts = {key: table.amount(key) for key in _AMOUNTS if key in table.data}
     return shaped(name, lengths, **(amounts or {"mass": table.amount("mass")}))
 

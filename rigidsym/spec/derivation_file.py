@@ -151,11 +151,14 @@ def _spec(
 def _rotations(data: Data, place: Place, name: str) -> Iterator[RotationModel]:
     """The models of a table: one per sequence, or one of its matrix, called `name`."""
     if "matrix" in data:
+        if "coordinates" not in data:
+            place.at("coordinates").mistyped(None, 'a list of names such as ["phi", "theta"]')
+            return
         with place.noting("matrix"):
             yield rotation_given(
                 [list(map(str, row)) for row in data["matrix"]],
                 name=name,
-                coordinates=data.get("coordinates", ()),
+                coordinates=data["coordinates"],
                 constraints=data.get("constraints", ()),
                 passive=bool(data.get("passive")),
                 example={key: str(entry) for key, entry in data.get("example", {}).items()},

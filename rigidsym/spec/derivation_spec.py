@@ -58,17 +58,17 @@ class DerivationSpec:
         if not self.models:
             models.fault("expected at least one")
         first: dict[str, int] = {}  # names are lower case, so that every system keeps them apart
-        for k, model in enumerate(self.models):
-            if (earlier := first.setdefault(model.name, k)) != k:
-                models.at(k).fault(f"writes the folder {model.name}, as entry {earlier} does")
         own = {parameter.symbol.name for parameter in self.body.parameters} if self.body else set()
         for k, model in enumerate(self.models):
+            here = models.at("sequence", k) if self.models[1:] else models
+            if (earlier := first.setdefault(model.name, k)) != k:
+                here.fault(f"writes the folder {model.name}, as entry {earlier} does")
             used = {coordinate.func.__name__ for coordinate in model.coordinates}
             used |= {symbol.name for symbol in model.constants}
             for name in sorted(used & own):
-                models.at(k).fault(f"{name} is also the name of a parameter of the body")
+                here.fault(f"{name} is also the name of a parameter of the body")
             if self.notation is not None:
-                with models.at(k).noting():
+                with here.noting():
                     self.notation.check(model)
         if len(self.models) == 1:
             _check_name(self.name, place)

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 from unicodedata import category
 
-from rigidsym.errors import offer
+from rigidsym.errors import QuantityError, offer
 from rigidsym.kernels.lowering.derivatives import read_request
 from rigidsym.kernels.targets import TARGETS
 from rigidsym.models.library import read_part, turned_by
@@ -46,12 +46,21 @@ _WORDS = {  # in messages
     "array": "a list",
     "object": "a table",
 }
+
+
+def _check_derivative(text: str) -> None:
+    """Raise KernelError or QuantityError for a text that is no derivative of a quantity."""
+    name = read_request(text).quantity
+    if name not in QUANTITIES:
+        raise QuantityError(f"no quantity {reprlib.repr(name)}; {offer(name, QUANTITIES)}")
+
+
 _FORMATS: Mapping[str, Callable[[str], object]] = {  # that raise an error for other texts
     "name": check_name,
     "expression": lambda text: read_part(text, ()),
     "turns": turned_by,
     "style": check_style,
-    "derivative": read_request,
+    "derivative": _check_derivative,
 }
 _LARGEST = 1e300  # sums and products of numbers in a file stay finite
 

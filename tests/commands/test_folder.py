@@ -107,7 +107,9 @@ def test_a_damaged_record_is_named_and_keeps_no_other_from_being_checked(tmp_pat
     record.write_text(json.dumps(content))
     half = tmp_path / "half.json"
     half.write_text('{"schema":\n')
+    (tmp_path / "old.json").write_text(json.dumps(content | {"schema_version": 1}))
     printed = call("check", str(tmp_path), str(half), cwd=tmp_path, status=1).stdout
+    assert "old.json: its schema version is 1, expected 2; derive it again" in printed
     assert f"{record}: a damaged request: " in printed
     assert f"{half}: cannot be read as the record of a derivation" in printed
     assert f"{NAME}.py: up to date" in printed

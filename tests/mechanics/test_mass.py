@@ -55,9 +55,6 @@ def numbers(matrix: sp.MatrixBase, values: dict[sp.Symbol, float] = NUMBERS) -> 
     return np.array(matrix.subs(values).evalf().tolist(), dtype=float)
 
 
-# Integrals
-
-
 # Every shape
 
 

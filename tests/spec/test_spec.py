@@ -139,7 +139,7 @@ def test_a_specification_checks_itself():
     with pytest.raises(SpecError) as caught:
         DerivationSpec(name="top", models=(model, replace(model, passive=True)))
     assert [str(fault) for fault in caught.value.faults] == [
-        "rotation[1]: writes the folder euler_zxz_intrinsic, as entry 0 does",
+        "rotation.sequence[1]: writes the folder euler_zxz_intrinsic, as entry 0 does",
     ]
     with pytest.raises(SpecError, match=r"numpy\.py would hide the Python module"):
         DerivationSpec(name="numpy", models=(model,))
@@ -242,8 +242,6 @@ json_values = st.recursive(
     lambda inner: st.lists(inner, max_size=4) | st.dictionaries(fields | st.text(), inner),
     max_leaves=8,
 )
-
-
 REQUESTED = ("title", "quantities", "note", "theory", "notation", "body", "style", "derivatives")
 rotations = st.fixed_dictionaries({"sequence": st.just("ZXZ") | json_values}) | json_values
 
