@@ -239,7 +239,7 @@ class Composer:
             moments = [names.get(moment, moment) for moment in step.expression]
             # (I₁, I₁, I₃), or the entries of I′ if they differ
             end = _DIAGONAL if len({*moments}) == 3 else self._in_a_row(moments)
-            equation = _ended(equation, end)
+            equation = replace(equation, sides=(*equation.sides, end), matrix=None, entries=())
         return replace(equation, sides=(*equation.sides, *textbook_form(name, self.derivation)))
 
     def _lead(self, step: Step) -> Text:
@@ -339,11 +339,6 @@ class Composer:
 
 def _without_proofs(block: NoteBlock) -> NoteBlock:
     return replace(block, proved=()) if isinstance(block, Equation) else block
-
-
-def _ended(equation: Equation, side: Formula) -> Equation:
-    """The equation with one more side in place of its entries."""
-    return replace(equation, sides=(*equation.sides, side), matrix=None, entries=())
 
 
 def _call(step: Step) -> str:

@@ -410,7 +410,11 @@ def readings(matrix: sp.MatrixBase, goal: KnownQuantity, *, is_asked: bool) -> I
 
 def _of_rotation(matrix: sp.MatrixBase, goal: KnownQuantity) -> Iterator[Names]:
     """Every assignment of names to coordinates, their rates and angular velocities."""
-    symbols = sorted(matrix.free_symbols, key=lambda s: _natural(s.name))
+    # q2 comes before q10
+    symbols = sorted(
+        matrix.free_symbols,
+        key=lambda s: [int(p) if p.isdigit() else p for p in re.split(r"(\d+)", s.name)],
+    )
     q = goal.inputs.get("q", ())
     velocity = next(
         (goal.inputs[name] for name in goal.inputs if name[:5] == "omega" and name in goal.uses), ()
@@ -451,10 +455,6 @@ def stem_of(name: str) -> str:
     """phi of phi_dot, dphi, phidot, phi_rate, and q_0 of qd_0; "" for other names."""
     match = _RATE.fullmatch(name)
     return match["behind"] or match["before"] + (match["index"] or "") if match else ""
-
-
-def _natural(name: str) -> tuple[object, ...]:
-    return tuple(int(p) if p.isdigit() else p for p in re.split(r"(\d+)", name))
 
 
 def _of_vectors(matrix: sp.MatrixBase, wanted: Sequence[tuple[sp.Expr, ...]]) -> Iterator[Names]:
