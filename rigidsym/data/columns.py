@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from math import pi
+from math import degrees, pi
 
 from rigidsym.errors import DataError
 
@@ -112,6 +112,11 @@ def unit_in(name: str) -> str:
 def counted(count: int, noun: str) -> str:
     """1 column, 2 columns."""
     return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+
+
+def in_both_units(angle: float) -> str:
+    """For an angle beyond a turn, which may be meant in degrees."""
+    return f"{angle:.6g} radians, which are {degrees(angle):.6g} degrees"
 
 
 class ColumnNames:

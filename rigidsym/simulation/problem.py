@@ -21,6 +21,7 @@ import sympy as sp
 from sympy.simplify.fu import TR1, TR2
 
 from rigidsym.algebra.evaluate import Floats, evaluate
+from rigidsym.data.columns import in_both_units
 from rigidsym.errors import ModelError, QuantityError, offer
 from rigidsym.kernels.module import generate
 from rigidsym.mechanics.derivation import Derivation, Step
@@ -189,8 +190,7 @@ class Problem:
         )
         for name, value, unit in zip(self.coordinates, q, self.model.coordinate_units, strict=True):
             if unit == "rad" and abs(value) > 2 * np.pi:
-                degrees = f"{np.degrees(value):.6g} degrees"
-                self.remarks.append(f"{name} begins at {value:.6g} radians, which are {degrees}")
+                self.remarks.append(f"{name} begins at {in_both_units(value)}")
         if self.is_euler and not is_turning:
             velocity = self._at("angular_velocity_body", q, velocity)
         if is_turning and not self.is_euler:

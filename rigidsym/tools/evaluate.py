@@ -13,7 +13,7 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
-from rigidsym.data.columns import ColumnNames, counted, names_for
+from rigidsym.data.columns import ColumnNames, counted, in_both_units, names_for
 from rigidsym.data.tables import (
     ROWS,
     Missing,
@@ -36,7 +36,6 @@ CONVERSIONS = {  # and what they take
     "from_quaternion": "quaternion",
     "from_rotation_matrix": "matrix",
 }
-_DEGREE = pi / 180
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -115,7 +114,7 @@ def evaluate(
         for k, (_, unit) in enumerate(components):
             stated = None if named is None else header.factor(used[k], unit)
             if stated is None:
-                stated = _DEGREE if degrees and _is_angle(unit) else 1.0
+                stated = pi / 180 if degrees and _is_angle(unit) else 1.0
                 unstated += [k] if named is None or unit else []
             scales.append(stated)
         kept = {}
@@ -166,8 +165,8 @@ def evaluate(
     read_as = ", ".join(_title(*components[k], degrees=degrees) for k in unstated)
     remarks = [f"columns without a unit are read as {read_as}"] if read_as else []
     remarks += [
-        f"{components[k][0]} is as large as {largest[k]:.6g} radians, which are "
-        f"{largest[k] / _DEGREE:.6g} degrees; if they are degrees, --degrees reads them so"
+        f"{components[k][0]} is as large as {in_both_units(largest[k])}; if they are degrees, "
+        "--degrees reads them so"
         for k in unstated
         if components[k][1] == "rad" and largest[k] > 2 * pi and not degrees
     ]
