@@ -23,17 +23,17 @@ def integration_codec(
     expressions: Sequence[sp.Expr], variables: Sequence[sp.Symbol], bounds: Sequence[Bounds]
 ) -> Codec:
     """The ring that holds the expressions, the variables, and both put at their bounds."""
-    held = [*expressions, *variables]
+    contents = [*expressions, *variables]
     for variable, pair in zip(variables, bounds, strict=True):
         for bound in pair:
-            held.append(bound)
-            held += [
+            contents.append(bound)
+            contents += [
                 function.xreplace({variable: bound})
                 for expression in expressions
                 for function in expression.atoms(sp.sin, sp.cos)
                 if function.has(variable)
             ]
-    return codec_for(held)
+    return codec_for(contents)
 
 
 class Integrator:

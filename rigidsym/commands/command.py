@@ -134,7 +134,7 @@ def command(name: str, **choices: Sequence[str]) -> Callable[[Callable[..., Any]
 
 
 def of_rotation(options: Options) -> dict[str, Any]:
-    """The options of ROTATION that were given, as `spec_for` takes them."""
+    """The user's options of ROTATION, as `spec_for` takes them."""
     keys = ("angles", "constants", "scalar_last", "passive")
     return {key: options[key] for key in keys if options[key]}
 

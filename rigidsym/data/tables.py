@@ -339,9 +339,9 @@ class TextTable(Table):
     def _read(
         self, lines: Mapping[int, str], columns: Sequence[int], kept: Sequence[int]
     ) -> tuple[list[Numbers], list[NDArray[Any]]]:
-        """Numbers in the rows by their lines, NaN for those that are missing, and kept texts.
+        """The numbers of rows, NaN where one is missing, and the columns to keep as text.
 
-        Raises DataError, with the lines, for rows of another length and fields that are no numbers.
+        Raises DataError, with the lines, for rows of another length and fields without a number.
         """
         pl, places = self._polars, [*lines]
         if self.separator and not any('"' in row for row in lines.values()):

@@ -97,7 +97,7 @@ def _forms(equation: Equation, letters: Letters, width: float, pen: LatexPen) ->
         yield _definitions(equation.entries, values, width, pen)
         return
     if equation.scalar is not None:
-        # a value stands on one line with its sides, or below them
+        # the value follows its sides on one line, or on lines below them
         definition = [equal(*sides[1:])] if sides[1:] else []
         sides = (sides[0], *definition, formula_of(equation.scalar, letters))
     whole = pen.write(equal(*sides))

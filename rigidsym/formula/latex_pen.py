@@ -168,7 +168,7 @@ class LatexPen(Pen):
         return _quotient(*self.differentials(node), Height.RATE)
 
     def around(self, inside: Piece, kind: str, exponent: str = "", room: float = 0.0) -> Piece:
-        # Brackets of a fixed size may stand on different lines, unlike those of \left and \right.
+        # A line may break between brackets of a fixed size, but not between \left and \right.
         left, right = (r"\Bigl", r"\Bigr") if inside.height else ("", "")
         width = BRACKET + (LARGE if inside.height else 0.0)
         # the last line may hold nothing else of the bracket

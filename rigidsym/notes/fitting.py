@@ -1,9 +1,9 @@
 """Long quantities made to fit.
 
-An equation stands on one line, or on two that are parted at an equals sign. What is too wide for
-that is broken before a + or −, entries below one another (`rigidsym.formula.display`). A tensor or
-momentum in space that would be broken is said in short, by what it is made of; so is any quantity
-that would take most of a page.
+An equation takes one line, or two that part at an equals sign. A wider one is broken before a + or
+−, with its entries below one another (`rigidsym.formula.display`). A tensor or momentum in space
+that would be broken is written in short, as a product; so is any quantity that would fill most of a
+page.
 """
 
 from __future__ import annotations

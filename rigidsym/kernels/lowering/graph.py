@@ -2,8 +2,8 @@
 
 Expressions are kept as a graph of sums and products in which equal things are one node, whatever
 their sign. Common parts of several products or sums become nodes, the most frequent pair first.
-When they are written, factors stand in the order numbers, inputs, intermediate values, sines and
-cosines, sums; terms with a plus come before terms with a minus.
+Factors are written in the order numbers, inputs, intermediate values, sines and cosines, sums;
+terms with a plus come before terms with a minus.
 """
 
 from __future__ import annotations

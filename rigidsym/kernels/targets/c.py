@@ -64,8 +64,8 @@ def render(program: Program, *, lean: str = "none") -> dict[str, str]:
 def _rendered(template: str, program: Program, **facts: object) -> str:
     """The text of a file; a title neither ends a comment nor escapes anything in it."""
     facts |= {"signature": _signature, "array_signature": _array_signature}
-    title, found = _safe(program.title), resources.environment().get_template(template)
-    return found.render(program=program, title=title, name=program.name, **facts)
+    source, title = resources.environment().get_template(template), _safe(program.title)
+    return source.render(program=program, title=title, name=program.name, **facts)
 
 
 def _function(

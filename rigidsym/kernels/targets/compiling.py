@@ -41,11 +41,11 @@ _LOG_LINES = 15
 
 
 def build(source: Path) -> Path:
-    """Compile NAME.c, beside which its other files stand, and return the module NAME_c.py.
+    """Compile NAME.c and the files beside it, and return the module NAME_c.py.
 
-    The code is for this processor and those that know all its instructions. Raises MissingTool
-    without a C compiler, CheckError where a file is missing, and ToolFailed, with the end of what
-    the compiler says, where it stops.
+    The binary uses the instruction set of this processor. Raises MissingTool without a C compiler,
+    CheckError if a file is missing, and ToolFailed, with the end of the compiler's messages, if it
+    stops.
     """
     name, folder = source.stem, source.parent
     needed = [folder / text.format(name) for text in (*_SOURCES, "{}.h", "{}_c.py")]

@@ -72,8 +72,8 @@ def module_text(
 ) -> str:
     """The text of a module for NumPy arrays; `of_math` is what it imports from there.
 
-    `twins` are the functions that those of arrays rest on, by the names of kernels. Its template
-    may extend that of the NumPy module, which alone has `unwrap`.
+    `twins` are the functions of one orientation, by the names of kernels. The template may extend
+    the one of the NumPy module; only this one has `unwrap`.
     """
     kernels, is_plain = program.kernels, template == TEMPLATE
     endings = ("", "_scalar") if twins else ("",)

@@ -144,7 +144,7 @@ def rule_of(model: RotationModel) -> Rule | None:
     """The rule of a model; None if its coordinates do not follow in closed form."""
     for kind, entry in PARAMETRISATIONS.items():
         count = len(entry.coordinates.split())
-        orders = [tuple(range(count)), *([(3, 0, 1, 2)] if count == 4 else [])]  # w may stand last
+        orders = [tuple(range(count)), *([(3, 0, 1, 2)] if count == 4 else [])]  # scalar last
         for order in orders if count == len(model.coordinates) else ():
             q = tuple(model.coordinates[place] for place in order)
             known = parametrised(kind, [part.func.__name__ for part in q])
@@ -311,8 +311,8 @@ def _rotation_vector(q: Vector) -> dict[str, Any]:
 
 
 def _gibbs_vector(q: Vector) -> dict[str, Any]:
-    # g = e tan(β/2) = p_v/p_0. A half turn has p_0 = 0: the components that do not vanish become
-    # infinite, and those that do stay 0 and not NaN.
+    # g = e tan(β/2) = p_v/p_0. After a half turn p_0 = 0: the components become infinite, but a
+    # component that vanishes stays 0, and is not NaN.
     p = _along(1 / sp.sqrt(1 + square(q)), (sp.S.One, *q))
 
     def back(_: NamedValues, quaternion: Vector) -> Vector:

@@ -308,7 +308,7 @@ class Form(NamedTuple):
     along: sp.Expr | int = 0  # of v in Ω, times the rate of the other coordinate
     inverse: Coefficients = ()  # W⁻¹, if it has three columns of v
     last: int = 0  # of vᵀ, in the row of the other coordinate
-    velocity: Coefficients = ()  # if it is not that of C(v) and of C(v)² in R
+    velocity: Coefficients = ()  # unless it equals those of C(v) and C(v)² in R
 
 
 @cache

@@ -125,11 +125,11 @@ def solid(
     if unknown:
         known = ", ".join(length.key for length in chosen.lengths)
         raise BodyError(f"{shape} has no {', '.join(sorted(unknown))}; it has {known}")
-    # Lengths that are not given are symbols by their usual letters.
-    given = {
+    # Missing lengths are symbols, by their usual letters.
+    by_key = {
         length.key: lengths.get(length.key, sp.symbols(length.names)) for length in chosen.lengths
     }
-    listed = ((k, e if isinstance(e, Sequence) else [e]) for k, e in given.items())
+    listed = ((k, e if isinstance(e, Sequence) else [e]) for k, e in by_key.items())
     values = [symbolic(e, key) for key, entries in listed for e in entries]
     total = sp.Symbol("M") if mass is None and density is None else mass
     exact = [None if e is None else symbolic(e, "mass or density") for e in (total, density)]

@@ -147,7 +147,7 @@ class SingularFacts:
 
     @property
     def periods(self) -> list[tuple[sp.Expr, sp.Expr | None]]:
-        """By which zeros repeat: of all coordinates alike, or 2π and those that are longer."""
+        """The periods of the zeros: one for all coordinates, or 2π and the longer ones."""
         places = [place for point in self.zeros for place in point.at.places if not place.is_length]
         periods = {place.coordinate: place.period for place in places}
         if len({*periods.values()}) <= 1:

@@ -114,7 +114,7 @@ def _from_the_back(parts: Sequence[_Part]) -> Iterator[_Part]:
 
 def _cut(corners: Vector, heights: Vector) -> Iterator[Vector]:
     """The corners of the part of a polygon, or of a line, that is above a plane."""
-    count = len(corners) if len(corners) > 2 else 1  # edges; a line does not lead back
+    count = len(corners) if len(corners) > 2 else 1  # of edges; only a polygon is closed
     ends = (np.roll(corners, -1, axis=0), np.roll(heights, -1))
     for k, (corner, height, following, level) in enumerate(
         zip(corners, heights, *ends, strict=True)
