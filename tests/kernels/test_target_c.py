@@ -102,7 +102,7 @@ def test_sanitizers_find_nothing_at_any_size(tmp_path, compiler):
     rs.derive("ZXZ").kernels("c", conversions=True).write(tmp_path)
     (tmp_path / "main.c").write_text(MAIN, encoding="utf-8")
     sanitizers = "-fsanitize=address,undefined,float-cast-overflow"
-    flags = ("-std=c99", "-g", "-O1", sanitizers, *STREAMS)
+    flags = ("-std=c99", "-g", "-O1", sanitizers, "-DCACHED=1", *STREAMS)
     made = f"main_{compiler}"
     (tmp_path / "empty.c").write_text("int main(void) { return 0; }\n", encoding="utf-8")
     linked = subprocess.run(
