@@ -101,9 +101,10 @@ def test_the_main_command_gives_equation_18_in_a_fresh_clone(tmp_path):
     assert {f.suffix for f in folder.iterdir()} == {".py", ".tex", ".html", ".json"}
 
 
-def test_ci_runs_the_test_command_of_the_readme():
-    assert "pytest" in command("tests")
-    assert "<!-- tests -->" in (ROOT / ".ci" / "run").read_text(encoding="utf-8")
+@pytest.mark.parametrize(("mark", "word"), [("main", "derive ZXZ"), ("tests", "pytest")])
+def test_ci_runs_the_commands_of_the_readme(mark, word):
+    assert word in command(mark)
+    assert f"$(block {mark})" in (ROOT / ".ci" / "run").read_text(encoding="utf-8")
 
 
 PAGE = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
