@@ -11,11 +11,12 @@ as w² + x² + y² + z² = 1 with their derivatives.
 
 from __future__ import annotations
 
+import ast
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import reduce
+from functools import cache, reduce
 from itertools import chain
 from pathlib import Path
 from typing import Any
@@ -23,21 +24,18 @@ from typing import Any
 from rigidsym.errors import CheckError
 from rigidsym.tools.certificate.checker import (
     BROKEN,
-    OMEGA,
+    LETTERS,
     PRINCIPAL,
     Record,
-    Tree,
     Unproved,
-    derivative,
-    matrix_of,
-    names_in,
-    parts_of,
     printed_in,
-    tree_of,
+    read,
     turn_of,
     verify,
 )
 
+Tree = tuple[Any, ...]  # such as ("*", ("number", 2), ("cos", ("name", "phi")))
+_SIGNS = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/"}
 DEFINITIONS = "Rotation.v"
 # A coordinate with a name that Coq, its real numbers or Rotation.v use gets an underscore
 _WORDS = """
@@ -152,7 +150,8 @@ class _Section:
             raise Unproved
         self.names, self.printed = Record(record), printed_in(record)
         self.is_passive = record["presentation"] == "passive"
-        self.rate = derivative({q: ("name", f"{q}_dot") for q in self.names.q})
+        suffixes = "_dot", "_ddot"
+        self.rates, self.seconds = ([q + end for q in self.names.q] for end in suffixes)
         self.factors = [*self._factors()]
         self.trees_of_rotation = [tree for factor in self.factors for tree in factor.trees]
         self.facts, self.known, self.apart = list[str](), list[str](), set[tuple[str, ...]]()
@@ -180,7 +179,7 @@ class _Section:
         second = self.real(parts[1], at, other)
         if kind == "-" and parts[0] == ("number", 0):
             return f"(- {second})"
-        if kind == "/" and not names_in(parts[1]) - {*self.names.constants, "pi"}:
+        if kind == "/" and not _names(parts[1]) - {*self.names.constants, "pi"}:
             return f"({first} * / {second})"  # a constant factor, whose derivative is short
         return f"({first} {kind} {second})"
 
@@ -188,14 +187,14 @@ class _Section:
         return f"{name}_" if name in _TAKEN else name
 
     def name(self, name: str, at: str = "t") -> str:
-        of_time = {*self.names.q, *self.names.rates}
+        of_time = {*self.names.q, *self.rates}
         letter = "PI" if name == "pi" else self.letter(name)
         return f"({letter} {at})" if name in of_time else letter
 
     def text(self, printed: Any, at: str = "t", other: Mapping[str, str] | None = None) -> str:
         """A printed number, vector or matrix."""
         if isinstance(printed, str):
-            return self.real(tree_of(printed), at, other)
+            return self.real(_tree(printed), at, other)
         word = "M" if isinstance(printed[0], list) else "V"
         return f"({word} {' '.join(self.text(part, at, other) for part in printed)})"
 
@@ -209,7 +208,7 @@ class _Section:
         """All that is printed of some quantities."""
         if not {*names} <= {*self.printed}:
             raise Unproved
-        return [*dict.fromkeys(chain(*(matrix_of(self.printed[name]).entries for name in names)))]
+        return [*dict.fromkeys(chain(*(_trees(self.printed[name]) for name in names)))]
 
     def divisors(self, *names: str) -> str:
         """Hypotheses that divisors are not zero, apart from those of F."""
@@ -223,19 +222,32 @@ class _Section:
             return tuple(sorted(self.summands(tree[1]) + self.summands(tree[2])))
         return (self.real(tree).replace("(1 * 1)", "1"),)
 
+    def rate(self, angle: Tree) -> Tree:
+        """The derivative of a sum of multiples of names."""
+        match angle:
+            case ("name", name) if name in self.names.q:
+                return ("name", f"{name}_dot")
+            case ("name" | "number", _):
+                return ("number", 0)
+            case ("+" | "-" as sign, one, two):
+                return (sign, self.rate(one), self.rate(two))
+            case ("*", ("number", _) as number, part):
+                return ("*", number, self.rate(part))
+        raise Unproved
+
     # The rotation and its angular velocity
 
     def _factors(self) -> Iterator[_Factor]:
         rotation = self.record["rotation"]
         if "matrix" in rotation:
-            trees = [tree_of(text) for row in rotation["matrix"] for text in row]
+            trees = [_tree(text) for row in rotation["matrix"] for text in row]
             yield self._as_printed(self.text(rotation["matrix"], "s"), trees)
             return
         for turn in rotation["turns"]:
             kind, forms = turn_of(turn)
-            trees = [*map(tree_of, forms)]
+            trees = [*map(_tree, forms)]
             *axis, cosine, sine = (self.real(tree, "s") for tree in trees)
-            is_fixed = not names_in(("", *trees[:3])) - {*self.names.constants, "pi"}
+            is_fixed = not _names(("", *trees[:3])) - {*self.names.constants, "pi"}
             if kind in ("x", "y", "z"):
                 angle = trees[3][1]
                 function, rate = self.real(angle, "s"), self.real(self.rate(angle))
@@ -265,7 +277,7 @@ class _Section:
     def head(self) -> Iterator[str]:
         """Coordinates as functions of time, facts, F, and its angular velocity."""
         names = self.names
-        q, rates = ([*map(self.letter, group)] for group in (names.q, names.rates))
+        q, rates = ([*map(self.letter, group)] for group in (names.q, self.rates))
         yield "Require Import Reals Lra Rotation."
         yield "Open Scope R_scope."
         yield "Section Claims."
@@ -419,7 +431,7 @@ class _Section:
         return self.turning(frame, self.text(self.printed[name]), name)
 
     def of_rate_matrix(self, name: str, frame: str) -> _Statement:
-        rates = [self.name(rate) for rate in self.names.rates]
+        rates = [self.name(rate) for rate in self.rates]
         return self.turning(frame, self.combination(self.printed[name], rates), name)
 
     def of_inverse_rate_matrix(self, name: str, frame: str) -> _Statement:
@@ -432,8 +444,8 @@ class _Section:
         return _Statement(self.divisors(name, W) + claim, letters=" a b c")
 
     def of_rates_from_angular_velocity(self, name: str, frame: str) -> _Statement:
-        letters = f" {' '.join(OMEGA[frame])}"
-        rates = [self.name(rate) for rate in self.names.rates]
+        letters = f" {' '.join(LETTERS[f'omega_{frame}'][0])}"
+        rates = [self.name(rate) for rate in self.rates]
         equations = zip(rates, map(self.text, self.printed[name]), strict=True)
         premises = "".join(f"{rate} = {text} -> " for rate, text in equations)
         statement = self.turning(frame, f"(V{letters})", name, more=premises)
@@ -444,7 +456,7 @@ class _Section:
         self.need(velocity)
         if self.divisors(velocity):
             raise Unproved
-        letters, premises = self.seconds
+        letters, premises = self.accelerated
         claim = (
             f"{self.divisors(name)}{premises}exists w, (forall s, {_TURNS[frame]} F s (w s)) "
             f"/\\ vector_rate w t {self.text(self.printed[name])}"
@@ -454,10 +466,10 @@ class _Section:
         return _Statement(claim, proof, letters)
 
     @property
-    def seconds(self) -> tuple[str, str]:
+    def accelerated(self) -> tuple[str, str]:
         """Letters for the derivatives of the rates, and hypotheses that say what they are."""
-        letters = [*map(self.letter, self.names.seconds)]
-        pairs = zip(map(self.letter, self.names.rates), letters, strict=True)
+        letters = [*map(self.letter, self.seconds)]
+        pairs = zip(map(self.letter, self.rates), letters, strict=True)
         premises = (f"derivable_pt_lim {rate} t {second} -> " for rate, second in pairs)
         return f" {' '.join(letters)}", "".join(premises)
 
@@ -496,7 +508,7 @@ class _Section:
 
     def of_angular_acceleration_from_torque(self, name: str) -> _Statement:
         """I' x + Ω' × I' Ω' = N'."""
-        omega, torque = " ".join(OMEGA["body"]), "torque_1 torque_2 torque_3"
+        omega, torque = " ".join(LETTERS["omega_body"][0]), "torque_1 torque_2 torque_3"
         left = f"plus (apply inertia {self.text(self.printed[name])})"
         left += f" (cross (V {omega}) (apply inertia (V {omega})))"
         return _Statement(f"{self.divisors(name)}{left} = V {torque}", letters=f" {omega} {torque}")
@@ -512,14 +524,14 @@ class _Section:
         self.need("lagrangian")
         claims = (
             f"derivable_pt_lim {self.slope(rate)} {self.name(rate)} {self.text(text)}"
-            for rate, text in zip(self.names.rates, self.printed[name], strict=True)
+            for rate, text in zip(self.rates, self.printed[name], strict=True)
         )
         claim = self.divisors(name, "lagrangian") + " /\\ ".join(claims)
         return _Statement(claim, "repeat split; derived t")
 
     def of_mass_matrix(self, name: str) -> _Statement:
         """A symmetric M with 2 T = q̇ · M q̇, for all rates."""
-        masses, rates = self.printed[name], [self.name(rate) for rate in self.names.rates]
+        masses, rates = self.printed[name], [self.name(rate) for rate in self.rates]
         n = range(len(rates))
         entry = [[self.text(each) for each in row] for row in masses]
         # A symmetric M is determined by its quadratic form, so that 2 T = q̇ᵀ M q̇ for all q̇ says
@@ -534,7 +546,7 @@ class _Section:
         """T + V, if p has the values of the printed momenta."""
         self.need("generalised_momenta")
         momenta = map(self.text, self.printed["generalised_momenta"])
-        values = dict(zip(self.names.momenta, momenta, strict=True))
+        values = dict(zip([f"p_{q}" for q in self.names.q], momenta, strict=True))
         claim = f"{self.text(self.printed[name], 't', values)} = {_KINETIC} + {{potential}}"
         return self.for_velocity(claim.format(**self.parts), name, "generalised_momenta")
 
@@ -552,7 +564,7 @@ class _Section:
     def of_bias_vector(self, name: str) -> _Statement:
         """M q̈ + h, for all q̈."""
         self.need("mass_matrix")
-        letters, premises = self.seconds
+        letters, premises = self.accelerated
         right = []
         for row, h in zip(self.printed["mass_matrix"], self.printed[name], strict=True):
             terms = (f"{self.text(m)} * {q}" for m, q in zip(row, letters.split(), strict=True))
@@ -563,7 +575,7 @@ class _Section:
     @property
     def along_the_motion(self) -> tuple[str, str]:
         """Letters and hypotheses: the derivatives of the rates are the printed accelerations."""
-        letters, premises = self.seconds
+        letters, premises = self.accelerated
         pairs = zip(letters.split(), self.printed["accelerations"], strict=True)
         equations = "".join(f"{second} = {self.text(text)} -> " for second, text in pairs)
         return letters, self.divisors("accelerations", "lagrangian") + premises + equations
@@ -586,15 +598,57 @@ class _Section:
         return _Statement(claim, "subst; derived t", letters)
 
 
+@cache
+def _tree(text: str) -> Tree:
+    def tree(node: ast.expr) -> Tree:
+        match node:
+            case ast.Name(name):
+                return ("name", name[:-1])
+            case ast.Constant(int(number)):
+                return ("number", number)
+            case ast.UnaryOp(ast.USub(), operand):
+                return ("-", ("number", 0), tree(operand))
+            case ast.BinOp(base, ast.Pow(), ast.Constant(int(power))):
+                return ("**", tree(base), power)
+            case ast.BinOp(one, operator, two) if type(operator) in _SIGNS:
+                return (_SIGNS[type(operator)], tree(one), tree(two))
+            case ast.Call(ast.Name("cos_" | "sin_" as function), [angle], []):
+                return (function[:-1], tree(angle))
+            case ast.Call(ast.Name("tan_"), [angle], []):
+                return ("/", ("sin", tree(angle)), ("cos", tree(angle)))
+            case ast.Call(ast.Name("cot_"), [angle], []):
+                return ("/", ("cos", tree(angle)), ("sin", tree(angle)))
+        raise Unproved
+
+    return tree(read(text))
+
+
+def _trees(printed: Any) -> list[Tree]:
+    """All entries of a scalar, a vector or a matrix."""
+    return [*chain(*map(_trees, printed))] if isinstance(printed, list) else [_tree(printed)]
+
+
+def _parts(tree: Tree) -> Iterator[Tree]:
+    """A tree and all trees in it."""
+    yield tree
+    for part in tree[1:]:
+        if isinstance(part, tuple):
+            yield from _parts(part)
+
+
+def _names(tree: Tree) -> set[str]:
+    return {part[1] for part in _parts(tree) if part[0] == "name"}
+
+
 def _angles(trees: Iterable[Tree]) -> list[Tree]:
-    parts = (part for tree in trees for part in parts_of(tree))
+    parts = (part for tree in trees for part in _parts(tree))
     return [*dict.fromkeys(part[1] for part in parts if part[0] in ("cos", "sin"))]
 
 
 def _divisors(trees: Iterable[Tree]) -> list[Tree]:
     """The factors of all divisors, each once, without numbers, which are not zero."""
     divisors: dict[Tree, None] = {}
-    factors = [part[2] for tree in trees for part in parts_of(tree) if part[0] == "/"]
+    factors = [part[2] for tree in trees for part in _parts(tree) if part[0] == "/"]
     while factors:
         factor = factors.pop(0)
         if factor[0] in ("*", "**"):

@@ -4,12 +4,13 @@ A record NAME.json describes a rotation, perhaps with a body and a potential, an
 expressions. This program works out the same quantities from their definitions, and compares. It
 believes nothing but the description.
 
-Every number is worked out at six random points. Five are real, with 60 digits: what is false there,
-or divides by zero, is refused. One is rational, where a cosine is (1 - t²)/(1 + t²) and the sine is
-2t/(1 + t²). Both sides of an identity are fractions of polynomials in the numbers that are drawn.
-Two different ones, of degree d, agree by chance at most d times in 2⁹⁶ if each number is one of 2⁹⁶
-(the lemma of Schwartz and Zippel). The degree is counted, and at most 10⁹; so of 10¹⁹ runs at most
-one accepts a false identity, and no forger can choose the point. Cofactors would say no more.
+All numbers are worked out at five random real points, exactly: t = tan(φ/2) is drawn for an angle,
+so that the cosine (1 - t²)/(1 + t²) and the sine 2t/(1 + t²) are fractions. What is false at a
+point, or divides by zero there, is refused. Two fractions of polynomials, whose difference is not
+zero and has the degree d, agree at a point with a probability of at most d/2⁵², since each number
+is one of 2⁵² (the lemma of Schwartz and Zippel). The degree is counted, and at most 2³⁰, so that a
+false entry passes five points with a probability of at most 2⁻¹¹⁰. The operating system draws
+them, so that no forger can choose them.
 """
 
 from __future__ import annotations
@@ -18,45 +19,30 @@ import ast
 import json
 import re
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from decimal import Decimal, localcontext
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
-from functools import cache, partial, reduce
+from functools import cache, reduce
 from itertools import chain
 from operator import add, mul, sub, truediv
 from pathlib import Path
 from random import SystemRandom
 from typing import Any
 
-PLACES, DIGITS, CLOSE, SMALL = 5, 60, Decimal("1e-30"), Decimal("1e-40")
-BITS, MOST_DEGREE, MOST_BITS, MOST_POWER, MOST_DIGITS, MOST_TURNS = 96, 10**9, 10**5, 60, 40, 12
-PI = Decimal("3.1415926535897932384626433832795028841971693993751058209749446")
-OPERATORS = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/"}
-OPERATIONS = {"+": add, "-": sub, "*": mul, "/": truediv}
-OMEGA = {frame: [f"omega_{frame}_{k}" for k in (1, 2, 3)] for frame in ("space", "body")}
-ROTATION, PRINCIPAL = "R is a rotation", ("principal_axes", "principal_moments")
-FUNCTIONS = "cos", "sin", "tan", "cot"
-LETTERS = {  # arguments besides coordinates and their rates, with their units
-    "omega_space": (OMEGA["space"], "rad/s"),
-    "omega_body": (OMEGA["body"], "rad/s"),
+STRENGTH = "decided at five exact points: a false entry passes with a probability below 2^-100"
+POINTS, BITS, MOST_DEGREE, TIME = 5, 52, 2**30, "by time"  # which is no name
+MOST_BITS, MOST_POWER, MOST_NUMBER, MOST_TURNS = 10**5, 60, 10**40, 12
+OPERATIONS = {ast.Add: add, ast.Sub: sub, ast.Mult: mul, ast.Div: truediv}
+LETTERS = {  # arguments besides coordinates and what belongs to them, with their units
+    "omega_space": (["omega_space_1", "omega_space_2", "omega_space_3"], "rad/s"),
+    "omega_body": (["omega_body_1", "omega_body_2", "omega_body_3"], "rad/s"),
     "centre": (["X", "Y", "Z"], "m"),
     "centre_dot": (["X_dot", "Y_dot", "Z_dot"], "m/s"),
     "point": (["p_x", "p_y", "p_z"], "m"),
     "direction": (["n_x", "n_y", "n_z"], ""),
     "torque": (["torque_1", "torque_2", "torque_3"], "N m"),
 }
-UNITS = {  # of quantities, by their names
-    "rotation_matrix|principal_axes": "",
-    "rotation_rate": "1/s",
-    "spin_matrix|angular_velocity_.*": "rad/s",
-    "angular_acceleration_.*": "rad/s^2",
-    "mass": "kg",
-    "centre_of_mass": "m",
-    "inertia_tensor.*|moment_of_inertia|principal_moments": "kg m^2",
-    "angular_momentum.*": "kg m^2/s",
-    ".*energy|lagrangian|hamiltonian": "J",
-}
-SQUARES = "({0}**2 + {1}**2 + {2}**2 + {3}**2)"
+PRINCIPAL = "principal_axes", "principal_moments"
+SUM = "({0}**2 + {1}**2 + {2}**2 + {3}**2)"
 TURNS = {  # a vector v and numbers c and s: R = 1 + s C(v) + (1 - c) C(v)²
     "x": ("1", "0", "0", "cos({0})", "sin({0})"),
     "y": ("0", "1", "0", "cos({0})", "sin({0})"),
@@ -64,14 +50,10 @@ TURNS = {  # a vector v and numbers c and s: R = 1 + s C(v) + (1 - c) C(v)²
     "axis_angle": ("{0}", "{1}", "{2}", "cos({3})", "sin({3})"),
     "constant_turn": ("{0}", "{1}", "{2}", "{3}", "{4}"),
     "unit_quaternion": ("{1}", "{2}", "{3}", "-1", "2*{0}"),
-    "quaternion": ("{1}", "{2}", "{3}", f"1 - 2/{SQUARES}", f"2*{{0}}/{SQUARES}"),
-    "modified_rodrigues": (  # {0} is 1
-        *("2*{1}", "2*{2}", "2*{3}"),
-        *(f"1 - 2/{SQUARES}**2", f"2*(2 - {SQUARES})/{SQUARES}**2"),
-    ),
+    "quaternion": ("{1}", "{2}", "{3}", f"1 - 2/{SUM}", f"2*{{0}}/{SUM}"),
+    # here {0} is 1
+    "modified_rodrigues": ("2*{1}", "2*{2}", "2*{3}", f"1 - 2/{SUM}**2", f"(4 - 2*{SUM})/{SUM}**2"),
 }
-Tree = tuple[Any, ...]
-Values = tuple[Any, ...]  # of a tree: its degree, its exact value, and five decimals
 
 
 class Refused(ValueError):
@@ -83,185 +65,163 @@ class Unproved(ValueError):
 
 
 BROKEN = (LookupError, ArithmeticError, AttributeError, TypeError, ValueError, RecursionError)
+Rate = Callable[[str], "Number"]
+Laws = dict[str, tuple[Any, ...]]
 
-# Expressions: sums, products, powers and functions of names and whole numbers, nothing else
+
+class Number:
+    """Values at all points, and a bound of the degree of their fraction of polynomials."""
+
+    def __init__(self, degree: int, values: Any, new_rate: Rate = lambda _: ZERO) -> None:
+        self.degree, self.values = degree, [*values]
+        self.new_rate, self.rates = new_rate, dict[str, Number]()  # by TIME or a name
+        size = sum(map(int.bit_length, self.values[0].as_integer_ratio()))
+        if degree > MOST_DEGREE or size > MOST_BITS:
+            raise Unproved("too large an expression")
+
+    def rate(self, by: str) -> Number:
+        if by not in self.rates:
+            self.rates[by] = self.new_rate(by)
+        return self.rates[by]
+
+    def combined(self, operation: Callable[..., Any], other: Number, new_rate: Rate) -> Number:
+        values = map(operation, self.values, other.values)
+        return Number(self.degree + other.degree, values, new_rate)
+
+    def __add__(self, other: Number) -> Number:
+        if self is ZERO or other is ZERO:
+            return other if self is ZERO else self
+        return self.combined(add, other, lambda by: self.rate(by) + other.rate(by))
+
+    def __sub__(self, other: Number) -> Number:
+        return self.combined(sub, other, lambda by: self.rate(by) - other.rate(by))
+
+    def __mul__(self, other: Number) -> Number:
+        if self is ZERO or other is ZERO:
+            return ZERO
+        if self is ONE or other is ONE:
+            return other if self is ONE else self
+        return self.combined(mul, other, lambda by: self.rate(by) * other + self * other.rate(by))
+
+    def __truediv__(self, other: Number) -> Number:
+        if 0 in other.values:
+            raise Refused("a divisor is zero")
+        quotient = self.combined(
+            truediv, other, lambda by: (self.rate(by) - quotient * other.rate(by)) / other
+        )
+        return quotient
 
 
 @cache
-def tree_of(text: str) -> Tree:
-    """Nested tuples, such as ("*", ("number", 2), ("cos", ("name", "phi")))."""
-    try:
-        if not re.fullmatch(r"([A-Za-z]\w*+|\d++(?!\w)|[-+*/() ])*+", text, re.ASCII):
-            raise SyntaxError  # for one, 0x1 is a number for Python, but reads as a product
-        text = re.sub(r"\b[A-Za-z]\w*", r"\g<0>_", text.strip())  # so that no name is a keyword
-        return _tree(ast.parse(text, mode="eval").body)
-    except (SyntaxError, MemoryError, RecursionError) as error:
-        raise Refused(f"the expression {text[:60]!r} cannot be read") from error
+def whole(number: int) -> Number:
+    return Number(0, [Fraction(number)] * POINTS)
 
 
-def _tree(node: ast.AST) -> Tree:
-    match node:
-        case ast.Name(name):
-            return ("name", name[:-1])
-        case ast.Constant(int(number)) if number < 10**MOST_DIGITS:
-            return ("number", number)
-        case ast.Call(ast.Name("tan_"), [angle], []):
-            return ("/", ("sin", _tree(angle)), ("cos", _tree(angle)))
-        case ast.Call(ast.Name("cot_"), [angle], []):
-            return ("/", ("cos", _tree(angle)), ("sin", _tree(angle)))
-        case ast.Call(ast.Name("cos_" | "sin_" as name), [angle], []):
-            return (name[:-1], _tree(angle))
-        case ast.Call(ast.Name("sqrt_"), [_], []):
-            raise Unproved("a root")
-        case ast.UnaryOp(ast.USub(), operand):
-            return ("-", ZERO, _tree(operand))
-        case ast.BinOp(base, ast.Pow(), ast.Constant(int(n))) if 0 < n <= MOST_POWER:
-            return ("**", _tree(base), n)
-        case ast.BinOp(one, operator, two) if type(operator) in OPERATORS:
-            return (OPERATORS[type(operator)], _tree(one), _tree(two))
-    raise SyntaxError
+ZERO: Number = whole(0)
+MINUS, ONE, TWO = map(whole, (-1, 1, 2))
 
 
-def parts_of(tree: Tree) -> Iterator[Tree]:
-    """A tree and all trees in it."""
-    yield tree
-    for part in tree[1:]:
-        if isinstance(part, tuple):
-            yield from parts_of(part)
+def drawn(rate: Number = ZERO) -> Number:
+    values = (Fraction(SystemRandom().randrange(1, 2**BITS + 1)) for _ in range(POINTS))
+    return Number(1, values, lambda by: rate if by == TIME else ZERO)
 
 
-def names_in(tree: Tree) -> set[str]:
-    return {part[1] for part in parts_of(tree) if part[0] == "name"}
+def on_sphere(u: Sequence[Number]) -> list[Number]:
+    """(1 - u², 2 u)/(1 + u²), a unit vector by stereographic projection."""
+    square = reduce(add, (each * each for each in u), ONE)
+    return [(TWO - square) / square, *(TWO * each / square for each in u)]
 
 
-ZERO, ONE, TWO, MINUS = (("number", n) for n in (0, 1, 2, -1))
-HALF = ("/", ONE, TWO)
-
-
-def plus(one: Tree, two: Tree) -> Tree:
-    return two if one == ZERO else one if two == ZERO else ("+", one, two)
-
-
-def times(one: Tree, two: Tree) -> Tree:
-    if ZERO in (one, two):
-        return ZERO
-    return two if one == ONE else one if two == ONE else ("*", one, two)
-
-
-def once(function: Callable[[Tree], Any]) -> Callable[[Tree], Any]:
-    """A function that is worked out once a tree, which is kept, so that its id stays its own."""
-    results = dict[int, tuple[Tree, Any]]()
-
-    def remembered(tree: Tree) -> Any:
-        if id(tree) not in results:
-            results[id(tree)] = tree, function(tree)
-        return results[id(tree)][1]
-
-    return remembered
-
-
-def derivative(rates: Mapping[str, Tree]) -> Callable[[Tree], Tree]:
-    """The derivative of trees, from those of names; all other names are constant."""
-
-    @once
-    def rate(tree: Tree) -> Tree:
-        match tree:
-            case ("name", name):
-                return rates.get(name, ZERO)
-            case ("+", one, two):
-                return plus(rate(one), rate(two))
-            case ("-", one, two):
-                return plus(rate(one), times(MINUS, rate(two)))
-            case ("*", one, two):
-                return plus(times(rate(one), two), times(one, rate(two)))
-            case ("/", one, two):
-                return times(plus(rate(one), times(MINUS, times(tree, rate(two)))), ("/", ONE, two))
-            case ("**", base, n):
-                return times(times(("number", n), rate(base)), ("/", tree, base))
-            case ("cos", angle):
-                return times(times(MINUS, rate(angle)), ("sin", angle))
-            case ("sin", angle):
-                return times(rate(angle), ("cos", angle))
-        return ZERO
-
-    return rate
+def circle(angle: Number) -> tuple[Number, Number]:
+    """The cosine and the sine."""
+    on_circle = on_sphere([drawn()])
+    cosine = Number(2, on_circle[0].values, lambda by: MINUS * sine * angle.rate(by))
+    sine = Number(2, on_circle[1].values, lambda by: cosine * angle.rate(by))
+    return cosine, sine
 
 
 class Matrix:
-    """Rows of trees; a vector is a column, and a scalar one entry."""
+    """Rows of numbers; a vector is a column, and a scalar one entry."""
 
-    def __init__(self, rows: Iterable[Iterable[Tree]]) -> None:
-        self.rows = [list(row) for row in rows]
-        self.entries = [entry for row in self.rows for entry in row]
+    def __init__(self, rows: Iterable[Any]) -> None:
+        self.rows = [[row] if isinstance(row, Number) else [*row] for row in rows]
+        self.entries = [*chain(*self.rows)]
 
     @property
     def T(self) -> Matrix:
         return Matrix(zip(*self.rows, strict=True))
 
     def __add__(self, other: Matrix) -> Matrix:
-        return Matrix(map(plus, *pair) for pair in zip(self.rows, other.rows, strict=True))
+        return Matrix(map(add, *pair) for pair in zip(self.rows, other.rows, strict=True))
 
     def __sub__(self, other: Matrix) -> Matrix:
-        return self + other.times(MINUS)
+        if [*map(len, self.rows)] != [*map(len, other.rows)]:
+            raise Refused("a wrong shape")
+        return Matrix(map(sub, *pair) for pair in zip(self.rows, other.rows, strict=True))
 
     def __mul__(self, other: Matrix) -> Matrix:
         if len(self.entries) == 1 and len(other.rows) > 1:  # a scalar
-            return other.times(self.entries[0])
+            return Matrix([self.entries[0] * entry for entry in row] for row in other.rows)
+        if len(self.rows[0]) != len(other.rows):
+            raise Refused("a wrong shape")
         columns = other.T.rows
-        return Matrix([reduce(plus, map(times, row, c)) for c in columns] for row in self.rows)
+        return Matrix([reduce(add, map(mul, row, c)) for c in columns] for row in self.rows)
 
-    def times(self, factor: Tree) -> Matrix:
-        return self.each(lambda entry: times(factor, entry))
-
-    def each(self, function: Callable[[Tree], Tree]) -> Matrix:
-        return Matrix(map(function, row) for row in self.rows)
+    def rate(self, by: str = TIME) -> Matrix:
+        return Matrix([entry.rate(by) for entry in row] for row in self.rows)
 
     def hat(self) -> Matrix:
         """C(v) of a vector v, the operator v ×."""
-        ((x,), (y,), (z,)), (a, b, c) = self.rows, self.times(MINUS).entries
-        return Matrix([[ZERO, c, y], [z, ZERO, a], [b, x, ZERO]])
+        (x,), (y,), (z,) = self.rows
+        return Matrix([[ZERO, MINUS * z, y], [z, ZERO, MINUS * x], [MINUS * y, x, ZERO]])
 
-    def vee(self) -> Matrix:
-        """v of a skew matrix C(v)."""
-        return Matrix([[self.rows[2][1]], [self.rows[0][2]], [self.rows[1][0]]])
-
-    def diagonal(self) -> Matrix:
-        """The matrix with the entries of a vector on its diagonal."""
-        return Matrix(
-            [
-                [e if j == k else ZERO for j in range(len(self.rows))]
-                for k, e in enumerate(self.entries)
-            ]
-        )
-
-    def determinant(self) -> Tree:
+    def determinant(self) -> Number:
         """By the first column and its minors; 1 without rows."""
         total = ZERO if self.rows else ONE
         for row in reversed(self.rows):
             minor = Matrix(other[1:] for other in self.rows if other is not row)
-            total = plus(times(row[0], minor.determinant()), times(MINUS, total))
+            total = row[0] * minor.determinant() - total
         return total
 
-
-def matrix_of(printed: Any) -> Matrix:
-    """A scalar, the column of a vector, or a matrix."""
-    rows = printed if isinstance(printed, list) else [printed]
-    return Matrix(map(tree_of, row if isinstance(row, list) else [row]) for row in rows)
-
-
-def column(names: Iterable[str]) -> Matrix:
-    return Matrix([("name", name)] for name in names)
+    def refuse_unless_zero(self, name: str) -> None:
+        for k, number in enumerate(self.entries, start=1):
+            if any(number.values):
+                raise Refused(f"{name}: entry {k} is false at a real point")
 
 
 IDENTITY = Matrix([[ONE, ZERO, ZERO], [ZERO, ONE, ZERO], [ZERO, ZERO, ONE]])
+HALF = Matrix([ONE / TWO])
 
-# What a record describes
+
+def turn(*numbers: Number) -> Matrix:
+    """Rodrigues' formula R = 1 + s C(v) + (1 - c) C(v)²; whether R is a rotation is tested."""
+    *axis, cosine, sine = numbers
+    operator = Matrix(axis).hat()
+    return IDENTITY + Matrix([sine]) * operator + Matrix([ONE - cosine]) * (operator * operator)
+
+
+def is_rotation(A: Matrix) -> Matrix:
+    """A Aᵀ - 1 and det A - 1, which are zero for a rotation."""
+    return Matrix([*(A * A.T - IDENTITY).entries, A.determinant() - ONE])
+
+
+@cache
+def read(text: str) -> ast.expr:
+    """Python's tree of an expression, whose names end in _ so that none is a keyword."""
+    try:
+        if not re.fullmatch(r"([A-Za-z]\w*+|\d++(?!\w)|[-+*/() ])*+", text, re.ASCII):
+            raise SyntaxError  # for one, 0x1 is a number for Python, but reads as a product
+        text = re.sub(r"\b[A-Za-z]\w*", r"\g<0>_", text.strip())
+        return ast.parse(text, mode="eval").body
+    except (SyntaxError, MemoryError, RecursionError) as error:
+        raise Refused(f"the expression {text[:60]!r} cannot be read") from error
 
 
 def without_twins(pairs: Iterable[tuple[str, Any]]) -> dict[str, Any]:
     pairs = [*pairs]
-    if len(dict(pairs)) < len(pairs):
-        raise Refused(f"a name is there twice: {[key for key, _ in pairs]}"[:200])
+    names = [name for name, _ in pairs]
+    if len({*names}) < len(names) or not re.fullmatch(r"[ -~]*", "".join(names)):
+        raise Refused(f"a name is there twice, or not plain ASCII: {names}"[:200])
     return dict(pairs)
 
 
@@ -269,8 +229,6 @@ def printed_in(content: Mapping[str, Any]) -> dict[str, Any]:
     """The printed expressions by their names."""
     printed = [(q["name"], q["expression"]) for q in content["quantities"]]
     printed += [("constant " + f["name"], f["expression"]) for f in content["first_integrals"]]
-    if not all(re.fullmatch(r"[\w ]+", name, re.ASCII) for name, _ in printed):
-        raise Refused("the name of a quantity is not plain ASCII")
     return without_twins(printed)
 
 
@@ -281,43 +239,52 @@ def turn_of(text: str) -> tuple[str, list[str]]:
     if not text.endswith(")") or len(places) != count:
         raise Refused(f"the turn {text!r}")
     for place in places:
-        tree_of(place)  # each of them is an expression, and no piece of one
+        read(place)  # each of them is an expression, and no piece of one
     return kind, [form.format(*(f"({place})" for place in places)) for form in TURNS[kind]]
 
 
 class Record:
-    """A description that does not contradict itself."""
+    """A description that does not contradict itself, with random numbers for its names."""
 
     def __init__(self, content: Mapping[str, Any]) -> None:
-        self.content, self.printed = content, printed_in(content)
-        self.rotation, self.turns = content["rotation"], content["rotation"].get("turns", ())
-        if ("matrix" in self.rotation) == bool(self.turns):
+        self.content, self.rotation = content, content["rotation"]
+        self.turns, matrix = self.rotation.get("turns", []), self.rotation.get("matrix", [])
+        if bool(matrix) == bool(self.turns):
             raise Refused("a rotation has either turns or a matrix")
+        self.texts = [turn_of(turn)[1] for turn in self.turns] or matrix
         definitions = ((each["name"], each["expression"]) for each in content["definitions"])
         self.definitions = without_twins(definitions)
         groups = without_twins((g["name"], g["components"]) for g in content["arguments"])
-        names = {group: [c["name"] for c in components] for group, components in groups.items()}
-        self.q, self.constants = names["q"], names.get("parameters", [])
-        self.rates, self.seconds = ([q + end for q in self.q] for end in ("_dot", "_ddot"))
-        self.momenta = [f"p_{q}" for q in self.q]
-        letters = {group: letters for group, (letters, _) in LETTERS.items()}
-        letters |= {"q_dot": self.rates, "q_ddot": self.seconds, "momenta": self.momenta}
-        if any(names.get(group, own) != own for group, own in letters.items()):
-            raise Refused("arguments do not have the names that belong to them")
-        self.letters = {*chain(*letters.values())}
-        own = [*self.q, *self.constants, *self.definitions]
-        without_twins((name, "") for name in (*own, *self.letters, *FUNCTIONS, "sqrt", "pi"))
-        if not all(re.fullmatch("[A-Za-z][A-Za-z0-9_]*", name, re.ASCII) for name in own):
-            raise Refused("a name is not plain ASCII")
-        self.spheres = [*map(self.sphere, self.rotation["conditions"])]
-        without_twins((name, "") for sphere in self.spheres for name in sphere)
-        self.described = list[Matrix]()
-        self.factors = [self.turn(turn_of(turn)[1]) for turn in self.turns]
-        self.factors = self.factors or [self.describe(self.rotation["matrix"], *self.q)]
-        self.R = reduce(mul, self.factors)
-        self.refuse_words([*chain(*groups.values())])
+        units = {group: [(c["name"], c["unit"]) for c in each] for group, each in groups.items()}
+        self.q, self.constants = ([q for q, _ in units.get(g, [])] for g in ("q", "parameters"))
+        self.refuse_words(units)
+        self.spheres = list[list[str]]()
+        for condition in self.rotation["conditions"]:  # x² + y² + ... - 1 has real roots
+            names = re.findall(r"\w+(?=\*\*2)", condition)
+            is_sum = re.fullmatch(r"\w+\*\*2( \+ \w+\*\*2)+ - 1", condition)
+            if not is_sum or not ({*names} <= {*self.q} or {*names} <= {*self.constants}):
+                raise Unproved(f"the condition {condition!r}, which is no sum of squares less 1")
+            self.spheres.append(names)
+        without_twins((name, "") for name in chain(*self.spheres))
+        numbers = {name: drawn(drawn(drawn())) for name in self.q}
+        numbers |= {name: drawn() for name in self.constants}
+        for sphere in self.spheres:
+            numbers |= zip(sphere, on_sphere([numbers[name] for name in sphere[1:]]), strict=True)
+        self.names = {g: {name: drawn() for name in names} for g, (names, _) in LETTERS.items()}
+        self.names |= {"q": {}, "q_dot": {}, "q_ddot": {}, "momenta": {}}
+        for name, number in numbers.items():
+            if name in self.q:
+                rate, second = number.rate(TIME), number.rate(TIME).rate(TIME)
+                rate.rates[f"{name}_dot"], self.names["q_ddot"][f"{name}_ddot"] = ONE, second
+                self.names["q"][name], self.names["q_dot"][f"{name}_dot"] = number, rate
+            number.rates[name] = ONE
+        self.angles = {name: (n, circle(n)) for name, n in (numbers | {"1": ONE}).items()}
+        self.circle = cache(self.circle_of_sum)
+        constants = {name: numbers[name] for name in self.constants}
+        self.names["constants"] = constants | {"pi": drawn()}  # no polynomial has the root pi
+        self.columns = {group: Matrix(names.values()) for group, names in self.names.items()}
 
-    def refuse_words(self, components: Sequence[Mapping[str, str]]) -> None:
+    def refuse_words(self, groups: Mapping[str, list[tuple[str, str]]]) -> None:
         """Refuse words beside the expressions that would give a true claim another meaning."""
         name, presentation = self.content["name"], self.content["presentation"]
         if presentation not in ("active", "passive"):
@@ -326,350 +293,201 @@ class Record:
             turns = [f"{axis}({q})" for axis, q in zip(spelled[1], self.q, strict=True)]
             if [*self.turns] != (turns[::-1] if spelled[2] == "ex" else turns):
                 raise Refused(f"the turns are not those of {name}")
-        units = {c["name"]: c["unit"] for c in components}
-        expected = {letter: unit for letters, unit in LETTERS.values() for letter in letters}
-        for q, rate, second in zip(self.q, self.rates, self.seconds, strict=True):
-            expected |= {rate: f"{units[q] or '1'}/s", second: f"{units[q] or '1'}/s^2"}
-        trees = [part for R in self.factors for e in R.entries for part in parts_of(e)]
-        angles = chain(*(multiples(part[1], 1) for part in trees if part[0] in ("cos", "sin")))
-        expected |= dict.fromkeys(self.q, "") | {name: "rad" for name, _ in angles}
-        for name, unit in [(c["name"], c["unit"]) for c in components]:
-            if unit != expected.setdefault(name, unit) or name in self.definitions:
-                raise Refused(f"{name} is in {unit!r}, not in {expected[name]!r}, or is defined")
-        for name, unit in [(q["name"], q["unit"]) for q in self.content["quantities"]]:
-            if any(re.fullmatch(of, name) and unit != expected for of, expected in UNITS.items()):
-                raise Refused(f"{name} is in {unit!r}")
+        nodes = chain(*(ast.walk(read(text)) for text in chain(*self.texts)))
+        angles = chain(*(ast.walk(node.args[0]) for node in nodes if isinstance(node, ast.Call)))
+        in_angles = [node.id[:-1] for node in angles if isinstance(node, ast.Name)]
+        unit = dict.fromkeys(self.q, "") | dict.fromkeys(in_angles, "rad")
+        expected = {group: [(name, u) for name in names] for group, (names, u) in LETTERS.items()}
+        expected["q_dot"] = [(f"{q}_dot", f"{unit[q] or 1}/s") for q in self.q]
+        expected["q_ddot"] = [(f"{q}_ddot", f"{unit[q] or 1}/s^2") for q in self.q]
+        expected["momenta"] = [(f"p_{q}", "kg m^2/s") for q in self.q]
+        unit |= dict(chain(*expected.values()))
+        for group, letters in groups.items():
+            right = [(name, unit.setdefault(name, printed)) for name, printed in letters]
+            if letters != expected.get(group, right) or {*dict(letters)} & {*self.definitions}:
+                raise Refused(f"{group} are {letters}, or are defined")
+        own = [*self.q, *self.constants, *self.definitions]
+        taken = {*dict(chain(*expected.values())), "cos", "sin", "tan", "cot", "sqrt", "pi"}
+        without_twins((name, "") for name in (*own, *taken))
 
-    def sphere(self, condition: str) -> list[str]:
-        """The names of a condition x**2 + y**2 + ... - 1, which has real solutions."""
-        names = re.findall(r"\w+(?=\*\*2)", condition)
-        is_sum = condition == " + ".join(f"{name}**2" for name in names) + " - 1"
-        is_alike = {*names} <= {*self.q} or {*names} <= {*self.constants}
-        if not is_sum or not is_alike or len(names) < 2:
-            raise Unproved(f"the condition {condition!r}, which is no sum of squares less 1")
-        return names
+    def read(self, printed: Any, *groups: str) -> Matrix:
+        """A scalar, the column of a vector, or a matrix, of constants and some groups of names."""
+        names = dict(chain(*(self.names[group].items() for group in ("constants", *groups))))
+        rows = printed if isinstance(printed, list) else [printed]
+        rows = [row if isinstance(row, list) else [row] for row in rows]
+        return Matrix([self.value(read(text), names) for text in row] for row in rows)
 
-    def letters_in(self, tree: Tree) -> set[str]:
-        """The names in a tree, and in the definitions of these."""
-        names = names_in(tree)
-        defined = names.intersection(self.definitions)
-        trees = (tree_of(self.definitions[name]) for name in defined)
-        return (names - defined).union(*map(self.letters_in, trees))
+    def value(self, node: ast.expr, names: dict[str, Number]) -> Number:
+        match node:
+            case ast.Name(suffixed):
+                name = suffixed[:-1]
+                if name not in names and name not in self.definitions:
+                    raise Refused(f"{name} must not be in an expression")
+                if name not in names:
+                    names[name] = self.value(read(self.definitions[name]), names)
+                return names[name]
+            case ast.Constant(int(number)) if number < MOST_NUMBER:
+                return whole(number)
+            case ast.UnaryOp(ast.USub(), operand):
+                return MINUS * self.value(operand, names)
+            case ast.BinOp(base, ast.Pow(), ast.Constant(int(power))) if 0 < power <= MOST_POWER:
+                return reduce(mul, [self.value(base, names)] * power)
+            case ast.BinOp(one, operator, two) if type(operator) in OPERATIONS:
+                return OPERATIONS[type(operator)](self.value(one, names), self.value(two, names))
+            case ast.Call(ast.Name("sqrt_"), [_], []):
+                raise Unproved("a root")
+            case ast.Call(ast.Name("cos_" | "sin_" | "tan_" | "cot_" as function), [angle], []):
+                cosine, sine = self.circle(self.value(angle, names))
+                if function in ("tan_", "cot_"):
+                    return sine / cosine if function == "tan_" else cosine / sine
+                return cosine if function == "cos_" else sine
+        raise Refused(f"the expression {ast.unparse(node)[:60]!r} cannot be read")
 
-    def describe(self, printed: Any, *names: str) -> Matrix:
-        """What holds no other names than constants and these."""
-        self.described.append(matrix_of(printed))
-        self.refuse_others(set().union(*map(names_in, self.described[-1].entries)), names)
-        return self.described[-1]
+    def circle_of_sum(self, angle: Number) -> tuple[Number, Number]:
+        """The cosine and the sine of a sum of whole multiples, by the theorems of addition."""
+        cosine, sine, rest = ONE, ZERO, angle
+        for name, (number, (c, s)) in self.angles.items():  # the number 1 comes last
+            count = rest if number is ONE else angle.rate(name)
+            rest, turns = rest - count * number, count.values[0]
+            if {*count.values} != {turns} or turns not in range(-MOST_TURNS, MOST_TURNS + 1):
+                raise Unproved("an angle that is no sum of whole multiples")
+            s = s if turns > 0 else MINUS * s
+            for _ in range(abs(int(turns))):
+                cosine, sine = cosine * c - sine * s, cosine * s + sine * c
+        return cosine, sine
 
-    def refuse_others(self, inside: set[str], names: Iterable[str]) -> None:
-        if others := inside.difference(names, self.constants, ["pi"]):
-            raise Refused(f"{min(others)} must not be in an expression")
+    # What is claimed: the unit of a printed x; its value, or what is zero if x is right; and the
+    # groups of names that x may hold besides constants where others could hide a false term
 
-    def turn(self, forms: Sequence[str]) -> Matrix:
-        """Rodrigues' formula R = 1 + s C(v) + (1 − c) C(v)²; whether R is a rotation is tested."""
-        *axis, cosine, sine = self.describe([[*forms]], *self.q).entries
-        operator = Matrix([part] for part in axis).hat()
-        return IDENTITY + operator.times(sine) + (operator * operator).times(("-", ONE, cosine))
+    def of_rotation(self) -> Laws:
+        factors = (turn(*self.read(forms, "q").entries) for forms in self.texts if self.turns)
+        R = self.R = reduce(mul, factors) if self.turns else self.read(self.texts, "q")
+        is_rotation(R).refuse_unless_zero("R is a rotation")
+        presented = R.T if self.content["presentation"] == "passive" else R
+        return {
+            "rotation_matrix": ("", presented),
+            "rotation_rate": ("1/s", presented.rate()),
+            "spin_matrix": ("rad/s", presented.rate() * presented.T),
+            **self.of_frame("space", R.rate() * R.T),
+            **self.of_frame("body", R.T * R.rate()),
+        }
 
-
-# Values of trees
-
-
-def drawn(name: str, least: int = -3) -> Values:
-    random, scale = SystemRandom(), 10**DIGITS
-    reals = [Decimal(random.randrange(least * scale, 3 * scale)) / scale for _ in range(PLACES)]
-    return (1, Fraction(random.randrange(1, 2**BITS)), *([PI] * PLACES if name == "pi" else reals))
-
-
-def combined(operation: Callable[[Any, Any], Any], one: Values, two: Values) -> Values:
-    if operation is truediv and (not two[1] or min(map(abs, two[2:])) < SMALL):
-        raise Refused("a divisor is zero")
-    degree, exact = one[0] + two[0], operation(one[1], two[1])
-    if degree > MOST_DEGREE or max(abs(exact.numerator), exact.denominator) >> MOST_BITS:
-        raise Unproved("too large an expression")
-    return (degree, exact, *map(operation, one[2:], two[2:]))
-
-
-def circle_of(angle: Decimal) -> tuple[Decimal, Decimal]:
-    """The cosine and the sine, by their series."""
-    sums, term, k = [Decimal(0)] * 4, Decimal(1), 0
-    while abs(term) > Decimal(10) ** -DIGITS:
-        sums[k % 4] += term
-        k += 1
-        term *= angle / k
-    return sums[0] - sums[2], sums[1] - sums[3]
-
-
-def multiples(angle: Tree, count: int) -> Iterator[tuple[str, int]]:
-    """The names in a sum of whole multiples, and how often each is in it."""
-    match angle:
-        case ("+" | "-" as sign, one, two):
-            yield from multiples(one, count)
-            yield from multiples(two, count if sign == "+" else -count)
-        case ("*", ("number", number), part):
-            yield from multiples(part, count * number)
-        case ("name", name) if abs(count) <= MOST_TURNS:
-            yield name, count
-        case ("number", number) if abs(count * number) <= MOST_TURNS:
-            yield "1", count * number
-        case _:
-            raise Unproved("an angle that may be a multiple of another one")
-
-
-class Point:
-    """Random values for the names of a record, such that its conditions hold."""
-
-    def __init__(self, record: Record) -> None:
-        self.value, self.circle = once(self.worked_out), cache(self.circle_at)
-        self.drawn, self.record = cache(drawn), record
-        self.names = {*record.q, *record.letters, *record.constants, "pi"}
-        self.trees = {name: tree_of(text) for name, text in record.definitions.items()}
-        for sphere in record.spheres:
-            self.trees |= {name: tree for name, tree in on_sphere(sphere) if name in self.names}
-
-    def worked_out(self, tree: Tree) -> Values:
-        match tree:
-            case ("number", number):
-                return (1, Fraction(number), *[Decimal(number)] * PLACES)
-            case ("name", name) if name in self.trees:
-                return self.value(self.trees[name])
-            case ("name", name) if name in self.names or " " in name:
-                return self.drawn(name, 0 if name in self.record.constants else -3)
-            case ("name", name):
-                raise Refused(f"{name} must not be in an expression")
-            case ("**", base, power):
-                return reduce(partial(combined, mul), [self.value(base)] * power)
-            case ("cos" | "sin" as function, angle):
-                return self.circle(angle)[function == "sin"]
-        operation, one, two = tree
-        return combined(OPERATIONS[operation], self.value(one), self.value(two))
-
-    def circle_at(self, angle: Tree) -> tuple[Values, Values]:
-        """The cosine and the sine of an angle, exact ones by the theorems of addition."""
-        (cosine, sine), degree = (Fraction(1), Fraction(0)), 1
-        for name, count in multiples(angle, 1):
-            if name not in ("1", *self.record.q, *self.record.constants):
-                raise Unproved(f"an angle that holds {name}")
-            t = self.drawn(f"half of {name}")[1]
-            c, s = (1 - t**2) / (1 + t**2), 2 * t / (1 + t**2) * (1 if count > 0 else -1)
-            for _ in range(abs(count)):
-                cosine, sine, degree = cosine * c - sine * s, cosine * s + sine * c, degree + 2
-        reals = zip(*map(circle_of, self.value(angle)[2:]), strict=True)
-        return (degree, cosine, *next(reals)), (degree, sine, *next(reals))
-
-
-def on_sphere(names: Sequence[str]) -> Iterator[tuple[str, Tree]]:
-    """(1 - u², 2 u)/(1 + u²), a unit vector by stereographic projection, and its derivatives."""
-    u = [f"u {name}" for name in names[1:]]
-    along = rate_along(*([name + end for name in u] for end in ("", "_dot", "_ddot")))
-    square = plus(ONE, (column(u).T * column(u)).entries[0])
-    vector = [("-", TWO, square), *column(u).times(TWO).entries]
-    vector = [("/", each, square) for each in vector]
-    for end in ("", "_dot", "_ddot"):
-        yield from zip((name + end for name in names), vector, strict=True)
-        vector = [*map(along, vector)]
-
-
-def rate_along(*groups: Sequence[str]) -> Callable[[Tree], Tree]:
-    """The derivative by time, if each group of names has the rates of the next."""
-    pairs = zip(chain(*groups[:-1]), chain(*groups[1:]), strict=True)
-    return derivative({name: ("name", rate) for name, rate in pairs})
-
-
-# What is claimed: matrices of a printed x, in pairs that are equal if x is right
-
-
-def is_rotation(A: Matrix) -> tuple[Matrix, ...]:
-    return A * A.T, IDENTITY, Matrix([[A.determinant()]]), Matrix([[ONE]])
-
-
-Law = Callable[[Any, Matrix], tuple[Matrix, ...]]
-OF_ROTATION: dict[str, Law] = {
-    "rotation_matrix": lambda m, x: (x, m.shown),
-    "rotation_rate": lambda m, x: (x, m.shown.each(m.rate)),
-    "spin_matrix": lambda m, x: (x, m.shown.each(m.rate) * m.shown.T),
-}
-OF_FRAME: dict[str, Law] = {  # with Ω in space, or in the body
-    "angular_velocity": lambda m, x: (x.hat(), m.spin),
-    "angular_acceleration": lambda m, x: (x, m.omega.each(m.rate)),
-    # x holds no rates, and these are random: x q̇ = Ω for all q̇, so that x = W
-    "rate_matrix": lambda m, x: (x * m.rates, m.omega),
-    # A is W, with a row for each condition
-    "inverse_rate_matrix": lambda m, x: (m.A * x, m.one),
-    "rates_from_angular_velocity": lambda m, x: (m.A * x, m.one * m.letters),
-}
-OF_BODY: dict[str, Law] = {
-    "mass": lambda m, x: (x, m.mass),
-    "centre_of_mass": lambda m, x: (x, m.centre),
-    "inertia_tensor": lambda m, x: (x, m.inertia),
-    "inertia_tensor_space": lambda m, x: (x, m.R * m.inertia * m.R.T),
-    "inertia_tensor_point": lambda m, x: (x, m.about_point),
-    "moment_of_inertia": lambda m, x: (x, m.direction.T * m.about_point * m.direction),
-    **dict.fromkeys(PRINCIPAL, lambda m, _: m.principal()),
-    "translational_energy": lambda m, x: (x, m.translational),
-    "rotational_energy": lambda m, x: (x, m.energy),
-    "kinetic_energy": lambda m, x: (x, m.translational + m.energy),
-    "angular_momentum_centre": lambda m, x: (x, m.of_centre),
-    "angular_momentum_rotation_body": lambda m, x: (x, m.momentum),
-    "angular_momentum_rotation": lambda m, x: (x, m.R * m.momentum),
-    "angular_momentum": lambda m, x: (x, m.of_centre + m.R * m.momentum),
-    "angular_acceleration_from_torque": lambda m, x: (m.inertia * x, m.torque - m.gyroscopic),
-}
-OF_MOTION: dict[str, Law] = {
-    "potential_energy": lambda m, x: (x, m.potential),
-    "lagrangian": lambda m, x: (x, m.energy - m.potential),
-    "energy": lambda m, x: (x, m.energy + m.potential),
-    "generalised_momenta": lambda m, x: (x, m.momenta),
-    "mass_matrix": lambda m, x: (x, m.masses),
-    "bias_vector": lambda m, x: (x, m.bias),
-    "accelerations": lambda m, x: (m.masses * x + m.bias, m.forces, *m.regular),
-    # at p = M q̇, which may be any p if M is regular
-    "hamiltonian": lambda m, x: (x, m.energy + m.potential, *m.regular),
-    # M q̈ + h - Q, the balance, is zero along a motion; so are dE/dt and dp/dt of a cyclic q
-    "constant energy": lambda m, x: (x.each(m.rate), m.rates.T * m.balance),
-}
-ONLY = {  # groups of names that x may hold besides constants; others could hide a false term
-    "rate_matrix|inverse_rate_matrix": ["q"],
-    "rates_from_angular_velocity": ["q", "omega"],
-    "principal": [],
-    "hamiltonian": ["q", "momenta"],
-    "constant": ["q", "q_dot"],
-}
-
-
-class Motion:
-    """A rotation, its body and what moves it, in the words of the laws.
-
-    Ω has components in a frame. C(Ω) is the spin, and Ω = W q̇ is linear in the rates.
-    """
-
-    def __init__(self, record: Record, frame: str) -> None:
-        self.record, self.rates = record, column(record.rates)
-        self.rate = rate_along(record.q, record.rates, record.seconds)
-        R, rate = record.R, record.R.each(self.rate)
-        self.R, self.shown = R, R.T if record.content["presentation"] == "passive" else R
-        self.spin = rate * R.T if frame == "space" else R.T * rate
-        self.omega, self.letters = self.spin.vee(), column(OMEGA[frame])
-        columns = (self.omega.each(derivative({name: ONE})).entries for name in record.rates)
-        self.W = Matrix(columns).T
+    def of_frame(self, frame: str, spin: Matrix) -> Laws:
+        """Ω with components in space or in the body: C(Ω) is the spin, and Ω = W q̇."""
+        omega = Matrix([spin.rows[2][1], spin.rows[0][2], spin.rows[1][0]])
+        W = Matrix(omega.rate(f"{q}_dot").entries for q in self.q).T
         # rates along a radius would leave the sphere of a condition
-        radii = [[("name", n) if n in s else ZERO for n in record.q] for s in record.spheres]
-        radii = [row for row in radii if any(entry != ZERO for entry in row)]
-        self.A, self.is_free = Matrix([*self.W.rows, *radii]), not radii
-        self.one = Matrix([*IDENTITY.rows, *([ZERO] * 3 for _ in radii)])
-        self.laws = OF_ROTATION | {f"{name}_{frame}": law for name, law in OF_FRAME.items()}
-        self.groups = {"q": record.q, "q_dot": record.rates, "momenta": record.momenta}
-        self.groups["omega"] = OMEGA[frame]
+        spheres = [sphere for sphere in self.spheres if sphere[0] in self.q]
+        radii = [[self.names["q"][q] if q in s else ZERO for q in self.q] for s in spheres]
+        A, one = Matrix([*W.rows, *radii]), Matrix([*IDENTITY.rows, *([ZERO] * 3 for _ in radii)])
+        rates, letters = self.columns["q_dot"], self.columns[f"omega_{frame}"]
+        self.W, self.omega, self.is_free = W, omega, not radii  # in the body, which comes last
+        from_omega = (None, lambda x: A * x - one * letters, "q", f"omega_{frame}")
+        return {
+            f"angular_velocity_{frame}": ("rad/s", lambda x: x.hat() - spin, "q", "q_dot"),
+            f"angular_acceleration_{frame}": ("rad/s^2", omega.rate()),
+            f"rate_matrix_{frame}": (None, lambda x: x * rates - omega, "q"),
+            f"inverse_rate_matrix_{frame}": (None, lambda x: A * x - one, "q"),
+            f"rates_from_angular_velocity_{frame}": from_omega,
+        }
 
-    def read_body(self, body: Mapping[str, Any]) -> tuple[Matrix, ...]:
-        """Pairs that are equal if this can be a body."""
-        parts = (self.record.describe(body[part]) for part in ("mass", "centre", "inertia"))
-        self.mass, self.centre, self.inertia = parts
-        letters = {group: column(names) for group, (names, _) in LETTERS.items()}
-        self.torque, self.direction = letters["torque"], letters["direction"]
-        arm, velocity = (letters["point"] - self.centre).hat(), letters["centre_dot"]
-        self.about_point = self.inertia + self.mass * (arm.T * arm)  # the parallel-axis theorem
-        self.momentum = self.inertia * self.omega
-        self.energy = (self.omega.T * self.momentum).times(HALF)
-        self.translational = (self.mass * velocity.T * velocity).times(HALF)
-        self.of_centre = self.mass * (letters["centre"].hat() * velocity)
-        self.gyroscopic = self.letters.hat() * self.inertia * self.letters
-        self.laws = self.laws | OF_BODY
-        return self.inertia, self.inertia.T
+    def of_body(self) -> Laws:
+        body, omega, letters, R = self.content["body"], self.omega, self.columns, self.R
+        mass, centre, inertia = (self.read(body[part]) for part in ("mass", "centre", "inertia"))
+        (inertia - inertia.T).refuse_unless_zero("the inertia tensor")
+        velocity, arm = letters["centre_dot"], (letters["point"] - centre).hat()
+        about_point = inertia + mass * (arm.T * arm)  # the parallel-axis theorem
+        momentum, of_centre = inertia * omega, mass * (letters["centre"].hat() * velocity)
+        energy, translation = HALF * (omega.T * momentum), HALF * mass * (velocity.T * velocity)
+        direction, w = letters["direction"], letters["omega_body"]
+        euler = w.hat() * inertia * w - letters["torque"]
+        self.centre, self.inertia, self.momentum, self.energy = centre, inertia, momentum, energy
+        return {
+            "mass": ("kg", mass),
+            "centre_of_mass": ("m", centre),
+            "inertia_tensor": ("kg m^2", inertia),
+            "inertia_tensor_space": ("kg m^2", R * inertia * R.T),
+            "inertia_tensor_point": ("kg m^2", about_point),
+            "moment_of_inertia": ("kg m^2", direction.T * about_point * direction),
+            "principal_axes": ("", self.principal, "constants"),
+            "principal_moments": ("kg m^2", self.principal, "constants"),
+            "translational_energy": ("J", translation),
+            "rotational_energy": ("J", energy),
+            "kinetic_energy": ("J", translation + energy),
+            "angular_momentum_centre": ("kg m^2/s", of_centre),
+            "angular_momentum_rotation_body": ("kg m^2/s", momentum),
+            "angular_momentum_rotation": ("kg m^2/s", R * momentum),
+            "angular_momentum": ("kg m^2/s", of_centre + R * momentum),
+            "angular_acceleration_from_torque": ("rad/s^2", lambda x: inertia * x + euler),
+        }
 
-    def principal(self) -> tuple[Matrix, ...]:
+    def principal(self, _: Matrix) -> Matrix:
         """E = (e₁ e₂ e₃) is a rotation, and I E = E diag(I₁, I₂, I₃): the e are eigenvectors."""
-        if not {*PRINCIPAL} <= {*self.record.printed}:
+        printed = printed_in(self.content)
+        if not {*PRINCIPAL} <= {*printed}:
             raise Unproved("axes without moments, or moments without axes")
-        axes, moments = (matrix_of(self.record.printed[name]) for name in PRINCIPAL)
-        return *is_rotation(axes), self.inertia * axes, axes * moments.diagonal()
+        axes, moments = (self.read(printed[name]) for name in PRINCIPAL)
+        pairs = (zip(row, moments.entries, strict=True) for row in axes.rows)
+        products = Matrix([entry * moment for entry, moment in row] for row in pairs)
+        return Matrix([*is_rotation(axes).entries, *(self.inertia * axes - products).entries])
 
-    def read_motion(self, motion: Mapping[str, Any]) -> tuple[Matrix, ...]:
+    def of_motion(self) -> Laws:
         """d'Alembert's principle: W'ᵀ (dL'/dt + Ω' × L') + ∂V/∂q = Q, which is M q̈ + h = Q."""
-        record, read, q, W = self.record, self.record.describe, self.record.q, self.W
-        if not self.is_free or record.definitions or {*record.momenta} & {*LETTERS["point"][0]}:
-            raise Unproved("coordinates that depend on one another, or names of two meanings")
-        self.potential, forces = read(motion["potential"], *q), [*q, *record.rates]
-        self.forces = read(motion["forces"], *forces) + W.T * read(motion["torque"], *forces)
-        turning = self.momentum.each(self.rate) + self.omega.hat() * self.momentum
-        slopes = (self.potential.each(derivative({name: ONE})).entries for name in q)
-        inertial = W.T * turning + Matrix(slopes)
-        self.masses, self.momenta = W.T * self.inertia * W, W.T * self.momentum
-        self.bias = inertial - self.masses * column(record.seconds)
-        self.balance = inertial - self.forces
-        self.regular = (Matrix([[("/", ONE, self.masses.determinant())]]),) * 2  # or refused
-        self.laws = self.laws | OF_MOTION
-        for name, row in zip(q, self.balance.rows, strict=True):
-            self.laws[f"constant momentum_{name}"] = has_rate(Matrix([row]))
-        # The body turns about a fixed point, from which places are counted.
-        return self.centre, self.centre.times(ZERO)
-
-    def claim(self, name: str) -> tuple[Matrix, ...]:
-        x, record = matrix_of(self.record.printed[name]), self.record
-        inside = set().union(*map(record.letters_in, x.entries))
-        for names in (groups for names, groups in ONLY.items() if re.match(names, name)):
-            record.refuse_others(inside, chain(*(self.groups[group] for group in names)))
-        if name != "hamiltonian" and "motion" in record.content and inside & {*record.momenta}:
-            raise Unproved("it holds momenta")  # p = p would say nothing
-        # A law may leave out a part of x that it multiplies by 0, so that x stands beside it.
-        return (x, x, *self.laws[name](self, x))
-
-
-def has_rate(rate: Matrix) -> Law:
-    return lambda m, x: (x.each(m.rate), rate)
-
-
-def agree(name: str, matrices: Sequence[Matrix], point: Point) -> None:
-    for pair in zip(matrices[::2], matrices[1::2], strict=True):
-        if len({tuple(map(len, matrix.rows)) for matrix in pair}) > 1:
-            raise Refused(f"{name} has a wrong shape")
-        one, two = ([*map(point.value, matrix.entries)] for matrix in pair)
-        largest = max(abs(real) for values in (*one, *two) for real in (1, *values[2:]))
-        for k, values in enumerate(map(partial(combined, sub), one, two), start=1):
-            if max(map(abs, values[2:])) > CLOSE * largest:
-                raise Refused(f"{name}: entry {k} is false at a real point")
-            if values[1]:
-                raise Unproved("it is true to 30 digits, but not exactly")
+        if not self.is_free or self.definitions:
+            raise Unproved("coordinates that depend on one another, or definitions")
+        # the body turns about a fixed point, from which places are counted
+        self.centre.refuse_unless_zero("the centre of mass")
+        motion, W, energy, moving = self.content["motion"], self.W, self.energy, ("q", "q_dot")
+        rates, seconds = self.columns["q_dot"], self.columns["q_ddot"]
+        potential = self.read(motion["potential"], "q")
+        forces, torque = (self.read(motion[part], *moving) for part in ("forces", "torque"))
+        turning = self.momentum.rate() + self.omega.hat() * self.momentum
+        inertial = W.T * turning + Matrix(potential.rate(q).entries for q in self.q)
+        balance = inertial - forces - W.T * torque  # zero along a motion
+        masses, momenta = W.T * self.inertia * W, W.T * self.momentum
+        ONE / masses.determinant()  # or it is refused
+        self.names["momenta"] = {f"p_{q}": p for q, p in zip(self.q, momenta.entries, strict=True)}
+        return {
+            "potential_energy": ("J", potential),
+            "lagrangian": ("J", energy - potential),
+            "energy": ("J", energy + potential),
+            "generalised_momenta": (None, momenta),
+            "mass_matrix": (None, masses),
+            "bias_vector": (None, inertial - masses * seconds),
+            "accelerations": (None, lambda x: masses * (x - seconds) + balance, *moving),
+            "hamiltonian": ("J", lambda x: x - energy - potential, "q", "momenta"),
+            "constant energy": (None, lambda x: x.rate() - rates.T * balance, *moving),
+            **{
+                f"constant momentum_{q}": (None, lambda x, row=row: x.rate() - row, *moving)
+                for q, row in zip(self.q, map(Matrix, balance.rows), strict=True)
+            },
+        }
 
 
 def verify(content: Mapping[str, Any]) -> tuple[list[str], dict[str, str]]:
-    """The names of what is proved, and of what is not, with the reasons.
-
-    Raises one of BROKEN for a record of which something is false.
-    """
-    proved, reasons, lack = [ROTATION], dict[str, str](), "it has no definition here"
-    with localcontext() as context:
-        context.prec = DIGITS
+    """What is proved, and why other claims are not; raises one of BROKEN if something is false."""
+    proved, reasons, laws, lack = list[str](), dict[str, str](), Laws(), "it has no definition here"
+    units = {quantity["name"]: quantity["unit"] for quantity in content["quantities"]}
+    try:
+        record = Record(content)
+        laws |= record.of_rotation()
+        proved.append("R is a rotation")
+        laws |= record.of_body() if "body" in content else {}
+        laws |= record.of_motion() if "motion" in content else {}
+    except Unproved as error:
+        lack = str(error)
+    for name, expression in printed_in(content).items():
         try:
-            record = Record(content)
-            space, body = (Motion(record, frame) for frame in OMEGA)
-            point, kinematics = Point(record), body.laws
-            agree(ROTATION, [*chain(*map(is_rotation, record.factors))], point)
-        except Unproved as error:
-            return [], dict.fromkeys(printed_in(content), str(error))
-        try:
-            if "body" in content:
-                agree("the inertia tensor", body.read_body(content["body"]), point)
-            if "motion" in content:
-                agree("the centre", body.read_motion(content["motion"]), point)
-                point.trees |= zip(record.momenta, body.momenta.entries, strict=True)
-            agree(
-                "the description",
-                [*chain(*zip(record.described, record.described, strict=True))],
-                point,
-            )
-        except Unproved as error:
-            lack, body.laws = str(error), kinematics
-        for name in record.printed:
-            motion = space if name in space.laws else body
-            try:
-                if name not in motion.laws:
-                    raise Unproved(lack)
-                agree(name, motion.claim(name), point)
-                proved.append(name)
-            except (Unproved, RecursionError) as error:
-                reasons[name] = str(error)
+            if name not in laws:
+                raise Unproved(lack)
+            unit, law, *groups = laws[name]
+            if unit not in (None, units.get(name)):
+                raise Refused(f"{name} is in {units[name]!r}")
+            x = record.read(expression, *(groups or {*record.names} - {"momenta"}))
+            (law(x) if callable(law) else x - law).refuse_unless_zero(name)
+            proved.append(name)
+        except (Unproved, RecursionError) as error:
+            reasons[name] = str(error)
     return proved, reasons
 
 
@@ -679,26 +497,20 @@ def load(path: Path) -> Any:
     return json.loads(text, object_pairs_hook=without_twins, parse_float=str, parse_constant=str)
 
 
-def answer(path: Path, *, is_named: bool) -> str:
-    """What is proved of the record in a file; nothing for another file, unless it `is_named`."""
-    record = load(path)
-    if not isinstance(record, dict) or record.get("schema") != "rigidsym.derivation":
-        if is_named:
-            raise Refused("not the record of a derivation")
-        return ""
-    proved, reasons = verify(record)
-    lines = [f"{path}: R is {record['rotation']}", f"  proved: {', '.join(proved) or 'nothing'}"]
-    return "\n".join([*lines, *(f"  not proved: {n}, since {why}" for n, why in reasons.items())])
-
-
 if __name__ == "__main__":
-    named, status, answers = [Path(argument) for argument in sys.argv[1:]], 0, list[str]()
-    files = [[*place.rglob("*.json")] if place.is_dir() else [place] for place in named]
-    for path in sorted(chain(*files)):
-        try:
-            answers.append(answer(path, is_named=path in named))
-        except (*BROKEN, OSError) as error:
-            status = 1
-            answers.append(f"{path}: REFUSED: {error}")
-    print("\n".join(filter(None, answers)) or "REFUSED: there is no record of a derivation here")
-    sys.exit(status or not any(answers))
+    status, lines = 0, list[str]()
+    for place in map(Path, sys.argv[1:]):
+        for path in sorted(place.rglob("*.json")) if place.is_dir() else [place]:
+            try:
+                content = load(path)
+                if place.is_dir() and content.get("schema") != "rigidsym.derivation":
+                    continue
+                proved, reasons = verify(content)
+                lines += [f"{path}: R is {content['rotation']}", f"  {STRENGTH}"]
+                lines += [f"  proved: {', '.join(proved) or 'nothing'}"]
+                lines += [f"  not proved: {name}, since {why}" for name, why in reasons.items()]
+            except (*BROKEN, OSError) as error:
+                status = 1
+                lines.append(f"{path}: REFUSED: {error}")
+    print("\n".join(lines) or "REFUSED: there is no record of a derivation here")
+    sys.exit(status or not lines)
