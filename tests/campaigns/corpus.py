@@ -131,8 +131,8 @@ def mutations(right: list[Comparison], count: int) -> None:
         is_named = comparison.is_equal or (
             repaired is not None and identified(repaired, only_equal=True).is_equal
         )
-        names = {each.found and each.found.described for each in (original, comparison)}
-        is_other = comparison.is_reflection or (comparison.found is not None and len(names) == 2)
+        texts = {original.text(), comparison.text()}
+        is_other = comparison.is_reflection or (comparison.found is not None and len(texts) == 2)
         is_other |= bool(comparison.repairs or comparison.counterexample)
         numbers.update({"changes": 1, "named": is_named, "found": is_other})
         if not is_named or not is_other:

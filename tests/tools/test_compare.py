@@ -342,7 +342,7 @@ def test_laws_hold_in_numbers():
     """The product, the turned vector and Steiner's theorem by SciPy and by the sum over a body."""
     rng = np.random.default_rng(3)
     a, b, v = Rotation.random(random_state=1), Rotation.random(random_state=2), rng.normal(size=3)
-    by_name = {law.quantity: law for law in _laws() if not law.arrangement}
+    by_name = {law[0].quantity: law[0] for law in _laws()[::-1]}
 
     def value(name, *vectors):
         law = by_name[name]

@@ -484,7 +484,7 @@ MATRIX = sp.ImmutableMatrix(3, 3, sp.symbols("R(1:4)(1:4)", real=True))
 def test_angles_are_those_of_scipy_and_known_in_every_convention(axes):
     turn = Rotation.random(random_state=7)
     values = dict(zip(MATRIX, turn.as_matrix().ravel(), strict=True))
-    angles = sp.Matrix(_angles(axes, MATRIX, is_transposed=False))
+    angles = _angles(axes, MATRIX)
     ours = np.array(angles.xreplace(values).evalf(), float).ravel()
     assert ours == pytest.approx(turn.as_euler(axes))
     assert str(rs.compare(angles).found) == f"euler_angles of {axes}"
@@ -495,7 +495,7 @@ PITCH, YAW = "asin(2*(w*y - z*x))", "atan2(2*(w*z + x*y), 1 - 2*(y*y + z*z))"
 OF_ANGLES = {  # three entries: the finding
     (ROLL, PITCH, YAW): "agrees with euler_angles of xyz (to nine digits at 20 points",
     (YAW, PITCH, ROLL): "agrees with euler_angles of ZYX (",
-    (PITCH, ROLL, YAW): "of ZYX, the angles in the order 2, 3, 1 (",
+    (PITCH, ROLL, YAW): "of xyz, the angles in the order 2 1 3 (",
     (ROLL, f"-{PITCH}", YAW): "of xyz, with the opposite sense of angle 2 (",
     (ROLL.replace("2*(w*x + y*z)", "w*x + y*z"), PITCH, YAW): "entry 1: atan2(w*x + y*z, -2*x**2",
     (

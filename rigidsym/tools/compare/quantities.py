@@ -21,12 +21,13 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property, lru_cache, reduce
-from itertools import permutations, product
+from itertools import chain, combinations, permutations, product
 from typing import Any
 
 import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
+from sympy.core.function import AppliedUndef
 
 from rigidsym.algebra.evaluate import Floats, Unknown, evaluate
 from rigidsym.errors import ExpressionError
@@ -57,7 +58,7 @@ def _points() -> Array:
 
 TABLE = _points()
 _ROWS = {"q": 0, "q_dot": 1, "q_ddot": 2, "omega_space": 3, "omega_body": 3}
-_ROWS |= {"a": 0, "b": 1, "c": 2}  # vectors of laws
+_ROWS |= {"a": 0, "b": 1, "c": 2, "d": 3}  # vectors of laws
 
 AXES = [a + b + c for a, b, c in product("XYZ", repeat=3) if a != b != c]
 _THREE = (*AXES, *(axes.lower() for axes in AXES))
@@ -66,36 +67,100 @@ _SEQUENCES = {
     2: tuple(f"{a}(first) {b}(second)" for a, b in permutations("xyz", 2)),
     3: _THREE,
 }
-_VECTORS = ("gibbs_vector", "modified_rodrigues")
-_QUATERNIONS = ("quaternion", "unit_quaternion")  # also divided by the square of the length
-_OF_RATES = tuple(
-    f"{name}_{frame}"
-    for name in (
-        "rate_matrix",
-        "inverse_rate_matrix",
-        "angular_velocity",
-        "rates_from_angular_velocity",
-    )
-    for frame in ("body", "space")
-)
+_RATES = ("rate_matrix", "inverse_rate_matrix", "angular_velocity", "rates_from_angular_velocity")
+_OF_RATES = tuple(f"{name}_{frame}" for name in _RATES for frame in ("body", "space"))
 QUATERNION = "quaternion"  # of a product of turns
 ANGLES = "euler_angles"  # from a rotation matrix or a quaternion
 SHAPES: dict[tuple[int, int], tuple[str, ...]] = {  # of formulas, and what each may be
     (3, 3): ("rotation_matrix", *_OF_RATES[:4]),
     (3, 1): _OF_RATES[4:],
-    (4, 1): (*_OF_RATES[6:], QUATERNION),
+    (4, 1): (QUATERNION, *_OF_RATES[6:]),
     (4, 3): _OF_RATES[2:4],
     (3, 4): _OF_RATES[:2],
 }
-PASSIVE = "transposed (passive, the direction cosine matrix)"
-_LAST = [1, 2, 3, 0]
-_WAYS: dict[str, Callable[[sp.Matrix], sp.Matrix]] = {  # of writing a quantity
-    "": lambda m: m,
-    "conjugated (passive)": lambda m: sp.diag(1, -1, -1, -1) * m,
-    "negative": lambda m: -m,
-    "twice": lambda m: 2 * m,
-    "half": lambda m: m / 2,
-    "scalar last": lambda m: m.extract(*(_LAST if n == 4 else [*range(n)] for n in m.shape)),
+
+
+# Ways of writing a quantity: changes of its matrix, in the vectors of its inputs
+
+Way = Callable[..., sp.Matrix]
+Ways = dict[str, Way]  # by the words for them
+_CONJUGATE = sp.diag(1, -1, -1, -1)
+
+
+def _opposite(matrix: sp.Matrix, inputs: Sequence[sp.Expr]) -> sp.Matrix:
+    return matrix.xreplace({symbol: -symbol for symbol in inputs})
+
+
+def _times(*factors: float) -> Way:
+    """The way with entries times one factor, or each row times its own."""
+    numbers = [sp.nsimplify(factor) for factor in factors]
+    return lambda matrix, *_: (
+        sp.diag(*numbers) * matrix if len(numbers) == matrix.rows else numbers[0] * matrix
+    )
+
+
+def _scalar_last(matrix: sp.Matrix, *_: Sequence[sp.Expr]) -> sp.Matrix:
+    return matrix.extract(*([1, 2, 3, 0] if n == 4 else [*range(n)] for n in matrix.shape))
+
+
+def _of_conjugate(matrix: sp.Matrix, q: Sequence[sp.Expr], *_: Sequence[sp.Expr]) -> sp.Matrix:
+    """Of q*, whose rates are (q̇)*."""
+    matrix = _opposite(matrix, q[1:])
+    return _CONJUGATE * matrix if matrix.rows == 4 else matrix * _CONJUGATE
+
+
+def _ways(**ways: Way) -> Ways:
+    """By their words; plainly is the first."""
+    return {"": lambda matrix, *_: matrix} | {
+        words.replace("_", " "): way for words, way in ways.items()
+    }
+
+
+_LAST = _ways(scalar_last=_scalar_last)
+_NEGATIVE = _ways(negative=_times(-1))
+_SCALED = _ways(twice=_times(2), half=_times(0.5), four_times=_times(4), a_quarter=_times(0.25))
+_OF_QUATERNION_RATES = (_LAST, _SCALED, {**_ways(), "of the conjugate (passive)": _of_conjugate})
+_PASSIVE = "transposed (passive, the direction cosine matrix)"
+_WAYS: dict[str, tuple[Ways, ...]] = {
+    "rotation_matrix": ({**_ways(), _PASSIVE: lambda matrix, *_: matrix.T},),
+    QUATERNION: (
+        _LAST,
+        {**_ways(), "conjugated (passive)": _times(1, -1, -1, -1)},
+        _NEGATIVE,
+        _ways(of_twice_the_angles=lambda m, q: m.xreplace({angle: 2 * angle for angle in q})),
+    ),
+    "quaternion_product": (
+        _ways(the_first_conjugated=lambda m, a, _: _opposite(m, a[-3:])),
+        _ways(the_second_conjugated=lambda m, _, b: _opposite(m, b[-3:])),
+        _NEGATIVE,  # the same rotation
+        _LAST,
+    ),
+    "quaternion_rate_operator": (
+        _ways(transposed=lambda matrix, *_: matrix.T),
+        _ways(on_the_other_side=lambda m, _: _CONJUGATE * m.T * _CONJUGATE),
+    ),
+    "turned_vector": (
+        _ways(by_the_inverse=lambda m, q, _: _opposite(m, q[1:])),
+        {
+            words: lambda m, q, v, k=k: m + k * (sum(x**2 for x in q) - 1) * sp.Matrix(v)
+            for k, words in enumerate(("", "times |q|²", "of a unit quaternion"))
+        },
+    ),
+    "parallel_axis_theorem": (_ways(to_the_centre_of_mass=lambda m, *v: _opposite(m, v[0])),),
+    ANGLES: (
+        {
+            f"with the opposite sense of angle {' and '.join(angles)}" * bool(angles): _times(
+                *(-1 if k in angles else 1 for k in "123")
+            )
+            for count in range(4)
+            for angles in combinations("123", count)
+        },
+        {**_ways(), "transposed (passive)": lambda m, q: _opposite(m, q[1:])},
+        _ways(  # other orders are those of axes of space
+            the_angles_in_the_order_1_3_2=lambda m, _: m.extract([0, 2, 1], [0]),
+            the_angles_in_the_order_2_1_3=lambda m, _: m.extract([1, 0, 2], [0]),
+        ),
+    ),
 }
 
 
@@ -108,8 +173,7 @@ class KnownQuantity:
     arrangement: str = ""  # "transposed", "scalar last", "twice"
     matrix: sp.ImmutableMatrix
     motion: Motion  # in whose ring equality is decided
-    inputs: Mapping[str, tuple[sp.Expr, ...]]  # the symbols of each argument
-    uses: frozenset[str] = frozenset()  # the arguments on which a quantity of a rotation depends
+    inputs: Mapping[str, tuple[sp.Expr, ...]]  # the symbols of each argument that it depends on
 
     @property
     def points(self) -> Values:
@@ -131,7 +195,8 @@ class KnownQuantity:
     def names(self) -> dict[str, sp.Expr]:
         """The inputs by plain name."""
         arguments = self.motion.arguments if self.rotation else ()
-        names = {name: s for a in arguments for name, s in zip(a.names, a.symbols, strict=True)}
+        used = [a for a in arguments if a.name in self.inputs]
+        names = {name: s for a in used for name, s in zip(a.names, a.symbols, strict=True)}
         plain = (s for symbols in self.inputs.values() for s in symbols if s.is_Symbol)
         return names | {s.name: s for s in plain}
 
@@ -143,26 +208,48 @@ class KnownQuantity:
     def __str__(self) -> str:
         return f"{self.quantity} of {self.rotation}" if self.rotation else self.quantity
 
+    def written(self, *ways: Ways) -> list[KnownQuantity]:
+        """The quantity in each combination of ways, as it is first."""
+        inputs, goals = tuple(self.inputs.values()), []
+        for words in product(*ways):
+            changes = (table[word] for table, word in zip(ways, words, strict=True))
+            matrix = reduce(lambda m, way: way(m, *inputs), changes, sp.Matrix(self.matrix))
+            arrangement = ", ".join(filter(None, words))
+            goals.append(replace(self, arrangement=arrangement, matrix=sp.ImmutableMatrix(matrix)))
+        return goals
+
+
+Family = tuple[KnownQuantity, ...]  # of the same inputs and shape, compared in one step
+
+
+@cache
+def values_of(family: Family) -> Array:
+    """(goals, points, rows, columns)."""
+    return np.stack([goal.values for goal in family])
+
 
 def of_motion(motion: Motion, quantity: str, rotation: str) -> KnownQuantity:
     """A quantity of a derivation."""
-    arguments = {argument.name: argument.symbols for argument in motion.arguments}
     if quantity == QUATERNION:
         turns = (_quaternion_of(turn.angle, turn.direction) for turn in motion.model.turns)
-        matrix, names = reduce(quaternion_product, turns), {"q"}
+        matrix, uses = reduce(quaternion_product, turns), tuple("q")
     else:
         step = motion.step(quantity)
-        matrix, names = motion.spelled(step.expression), set(step.quantity.inputs)
+        matrix, uses = motion.spelled(step.expression), step.quantity.inputs
+    arguments = {argument.name: argument.symbols for argument in motion.arguments}
     symbols = {symbol for vector in arguments.values() for symbol in vector}
     constants = matrix.free_symbols - symbols - {s for q in symbols for s in q.args}
+    inputs = {name: arguments[name] for name in arguments if name in uses}
     return KnownQuantity(
         quantity=quantity,
         rotation=rotation,
         matrix=sp.ImmutableMatrix(matrix),
         motion=motion,
-        inputs=arguments | {"constants": tuple(sorted(constants, key=str))},
-        uses=frozenset(names),
+        inputs=inputs | ({"constants": tuple(sorted(constants, key=str))} if constants else {}),
     )
+
+
+_kinematics = lru_cache(maxsize=256)(derive)
 
 
 @lru_cache(maxsize=512)
@@ -174,57 +261,51 @@ def target(rotation: str, quantity: str) -> KnownQuantity:
     return of_motion(motion, quantity, rotation)
 
 
-@lru_cache(maxsize=256)
-def _kinematics(rotation: str, quantities: tuple[str, ...]) -> Motion:
-    return derive(rotation, quantities)
-
-
-@lru_cache(maxsize=512)
-def _written(rotation: str, quantity: str) -> tuple[KnownQuantity, ...]:
-    """A quantity as it is, and in other ways in which texts write it."""
-    goal = target(rotation, quantity)
-    ways: dict[str, sp.Matrix] = {"": goal.matrix}
-    if quantity == "rotation_matrix":
-        other = ", or by the opposite angle" if len(goal.motion.model.turns) == 1 else ""
-        ways[f"{PASSIVE}{other}"] = goal.matrix.T
-    elif 4 in goal.matrix.shape:
-        factors = ("", "twice", "half")[: 3 if goal.matrix.rows == 3 else 2]
-        if quantity == QUATERNION:
-            factors = ("", "conjugated (passive)", "negative")
-        for last, factor in product(("", "scalar last"), factors):
-            ways[", ".join(filter(None, (last, factor)))] = _WAYS[last](_WAYS[factor](goal.matrix))
-    return tuple(
-        replace(goal, arrangement=words, matrix=sp.ImmutableMatrix(m)) for words, m in ways.items()
-    )
-
-
-def catalogue(matrix: sp.MatrixBase) -> Iterator[KnownQuantity]:
+def families(formula: sp.MatrixBase) -> Iterator[Family]:
     """All quantities that a formula may be, in all ways of writing them, plain ones first."""
-    if are_angles(matrix):
-        yield from _conventions()
+    if are_angles(formula):
+        yield _of_angles()
         return
-    for quantity in SHAPES.get(matrix.shape, ()):
-        for rotation in _rotations(matrix, quantity):
-            yield from _written(rotation, quantity)
-    yield from (law for law in _laws() if law.matrix.shape == matrix.shape)
+    shape, count = formula.shape, len(formula.free_symbols)
+    yield from (law for law in _laws() if law[0].matrix.shape == shape)
+    for quantity in SHAPES.get(shape, ()):
+        yield from _of_quantity(quantity, shape, formula.has(sp.sin, sp.cos, sp.tan), count)
 
 
-def _rotations(matrix: sp.MatrixBase, quantity: str) -> tuple[str, ...]:
+@lru_cache(maxsize=64)
+def _of_quantity(
+    quantity: str, shape: tuple[int, int], has_turns: bool, count: int
+) -> tuple[Family, ...]:
+    of_rates = _OF_QUATERNION_RATES if 4 in shape else (_SCALED,) * (not has_turns)
+    ways = _WAYS.get(quantity, of_rates)
+    same_inputs: dict[Any, list[list[KnownQuantity]]] = {}
+    for rotation in _rotations(quantity, shape, has_turns, count):
+        goal = target(rotation, quantity)
+        if goal.matrix.shape == shape:
+            key = (*goal.inputs.items(), goal.motion.model.constraints)
+            same_inputs.setdefault(key, []).append(goal.written(*ways))
+    return tuple(map(_family, same_inputs.values()))
+
+
+def _family(written: Sequence[Sequence[KnownQuantity]]) -> Family:
+    """The plain goals of all rotations come first, then those of each other way."""
+    return tuple(chain.from_iterable(zip(*written, strict=True)))
+
+
+def _rotations(
+    quantity: str, shape: tuple[int, int], has_turns: bool, count: int
+) -> tuple[str, ...]:
     """The rotations whose quantity has as many names, and sines and cosines if this has."""
-    turns, count = matrix.has(sp.sin, sp.cos, sp.tan), len(matrix.free_symbols)
+    is_matrix = quantity == "rotation_matrix"
     if quantity == QUATERNION:
-        return _SEQUENCES.get(count, ()) if turns else ()
-    if 4 in matrix.shape:
-        return _QUATERNIONS[1:]
-    if quantity == "rotation_matrix":
-        angles = _SEQUENCES.get(count, ("axis_angle",))
-        parts = {3: _VECTORS, 4: (*_QUATERNIONS, *_VECTORS), 5: _QUATERNIONS}.get(count, ())
-    elif matrix.shape == (3, 3):
-        angles, parts = _THREE, _VECTORS[: 2 * (count in (3, 4))]
-    else:
-        angles, parts = (*_THREE, "axis_angle"), (*_VECTORS, "unit_quaternion")
-    series = ("rotation_vector",) if matrix.has(sp.sqrt) or (turns and count >= 3) else ()
-    return (*(angles if turns else parts), *series)
+        return _SEQUENCES.get(count, ()) if has_turns else ()
+    if 4 in shape:
+        return ("unit_quaternion",)
+    if not has_turns:
+        vectors = ("gibbs_vector", "modified_rodrigues")
+        return (*vectors, *["quaternion"] * is_matrix, "unit_quaternion")
+    angles = _SEQUENCES.get(count, ()) if is_matrix else _THREE
+    return (*angles, *("axis_angle", "rotation_vector")[: 2 * (count > 2)])
 
 
 # Laws in vectors
@@ -240,68 +321,63 @@ def _quaternion_of(angle: sp.Expr, direction: Any) -> sp.Matrix:
     return sp.Matrix([sp.cos(angle / 2), *(sp.sin(angle / 2) * d for d in direction)])
 
 
-Ways = dict[str, sp.Matrix]
+def _turned(q: sp.Matrix, v: sp.Matrix) -> sp.Matrix:
+    cross = cross_matrix(q[1:, :])
+    return v + 2 * q[0] * cross * v + 2 * cross * cross * v
 
 
-def _quaternion_products(a: sp.Matrix, b: sp.Matrix) -> Ways:
-    conjugate = _WAYS["conjugated (passive)"]
-    ways = {
-        "": quaternion_product(a, b),
-        "the first conjugated": quaternion_product(conjugate(a), b),
-        "the second conjugated": quaternion_product(a, conjugate(b)),
-    }
-    ways |= {f"{way}, negative".lstrip(", "): -m for way, m in ways.items()}  # the same rotation
-    return ways | {f"{way}, scalar last".lstrip(", "): m[_LAST, :] for way, m in ways.items()}
+def _steiner(mass: sp.Matrix, d: sp.Matrix) -> sp.Matrix:
+    return mass[0] * (d.dot(d) * sp.eye(3) - d * d.T)
 
 
-def _turned_vectors(q: sp.Matrix, v: sp.Matrix) -> Ways:
-    cross, ways = cross_matrix(q[1:, :]), {}
-    for words, sign in (("", 1), ("by the inverse", -1)):
-        double = 2 * sign * q[0] * cross * v + 2 * cross * cross * v
-        ways[words] = v + double
-        ways[f"{words}, times |q|²".lstrip(", ")] = q.dot(q) * v + double
-    return ways
+def _pure(v: sp.Matrix) -> sp.Matrix:
+    return sp.Matrix([0, *v])
 
 
-def _parallel_axes(mass: sp.Matrix, d: sp.Matrix, tensor: sp.Matrix) -> Ways:
-    xx, xy, xz, yy, yz, zz = tensor
-    matrix = sp.Matrix([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-    added = mass[0] * (d.dot(d) * sp.eye(3) - d * d.T)
-    return {"": matrix + added, "to the centre of mass": matrix - added}
+def _symmetric(tensor: sp.Matrix) -> sp.Matrix:
+    return sp.Matrix(3, 3, [tensor[k] for k in (0, 1, 2, 1, 3, 4, 2, 4, 5)])
 
 
-_LAWS: dict[str, tuple[tuple[int, ...], Callable[..., Ways]]] = {
-    "quaternion_product": ((4, 4), _quaternion_products),
-    "turned_vector": ((4, 3), _turned_vectors),
-    "euler_equations_acceleration": (
+def _gyroscopic(w: sp.Matrix, moments: sp.Matrix) -> sp.Matrix:
+    return w.cross(sp.diag(*moments) * w)
+
+
+def _rate_operator(v: sp.Matrix) -> sp.Matrix:
+    """The matrix of q v as a function of q."""
+    return sp.Matrix.hstack(*(quaternion_product(sp.eye(4)[:, k], _pure(v)) for k in range(4)))
+
+
+_PRODUCT, _STEINER = "quaternion_product", "parallel_axis_theorem"
+_Law = tuple[str, tuple[int, ...], Callable[..., sp.Matrix]]
+_LAWS: tuple[_Law, ...] = (  # entries of each vector, and the value
+    (_PRODUCT, (4, 4), quaternion_product),
+    (_PRODUCT, (4, 3), lambda a, v: quaternion_product(a, _pure(v))),
+    (_PRODUCT, (3, 4), lambda v, b: quaternion_product(_pure(v), b)),
+    ("quaternion_rate_operator", (3,), _rate_operator),
+    ("turned_vector", (4, 3), _turned),
+    (
+        "euler_equations_acceleration",
         (3, 3, 3),
-        lambda w, i, t: {"": sp.diag(*i).inv() * (t - w.cross(sp.diag(*i) * w))},
+        lambda w, i, t: sp.diag(*i).inv() * (t - _gyroscopic(w, i)),
     ),
-    "euler_equations_torque": (
-        (3, 3, 3),
-        lambda w, i, a: {"": sp.diag(*i) * a + w.cross(sp.diag(*i) * w)},
-    ),
-    "parallel_axis_theorem": ((1, 3, 6), _parallel_axes),
-}  # entries of each vector, and the value for each way of writing it
+    ("euler_equations_torque", (3, 3, 3), lambda w, i, a: sp.diag(*i) * a + _gyroscopic(w, i)),
+    (_STEINER, (1, 3, 6), lambda m, d, i: _symmetric(i) + _steiner(m, d)),
+    (_STEINER, (1, 3, 3), lambda m, d, i: i + _steiner(m, d).diagonal().T),
+    (_STEINER, (1, 3, 3), lambda m, d, i: i + _steiner(m, d).reshape(9, 1).extract([1, 2, 5], [0])),
+    (_STEINER, (1, 3, 3), lambda m, d, e: _steiner(m, d) - _steiner(m, e)),
+)
 
 
 @cache
-def _laws() -> tuple[KnownQuantity, ...]:
+def _laws() -> tuple[Family, ...]:
     motion = target("quaternion", "rotation_matrix").motion  # a ring without conditions
     laws = []
-    for name, (sizes, value) in _LAWS.items():
+    for name, sizes, value in _LAWS:
         letters = zip("abc", sizes, strict=False)
         vectors = {c: sp.symbols(f"{c}_:{size}", real=True) for c, size in letters}
-        laws += [
-            KnownQuantity(
-                quantity=name,
-                arrangement=words,
-                matrix=sp.ImmutableMatrix(matrix),
-                motion=motion,
-                inputs=vectors,
-            )
-            for words, matrix in value(*map(sp.Matrix, vectors.values())).items()
-        ]
+        matrix = value(*map(sp.Matrix, vectors.values())).as_immutable()
+        law = KnownQuantity(quantity=name, matrix=matrix, motion=motion, inputs=vectors)
+        laws.append(_family([law.written(*_WAYS.get(name, ()))]))
     return tuple(laws)
 
 
@@ -315,37 +391,17 @@ def are_angles(formula: sp.MatrixBase) -> bool:
 
 
 @cache
-def _conventions() -> tuple[KnownQuantity, ...]:
-    """The angles of twelve orders of axes, in any order and sense, the plain ones first."""
-    motion = target("unit_quaternion", "rotation_matrix").motion
-    orders = [(0, 1, 2), (2, 1, 0), *((0, 2, 1), (1, 0, 2), (1, 2, 0), (2, 0, 1))]
-    inputs, rotation = {"q": motion.argument("q").symbols}, motion.rotation_matrix
-    conventions = []
-    all_senses = sorted(product((1, -1), repeat=3), key=lambda s: s.count(-1))
-    for senses, is_transposed, order, axes in product(all_senses, (False, True), orders, AXES):
-        angles = _angles(axes, rotation, is_transposed=is_transposed)
-        words = ["transposed (passive)"] if is_transposed else []
-        if order not in orders[:2]:
-            words.append(f"the angles in the order {', '.join(str(k + 1) for k in order)}")
-        if opposite := [str(k + 1) for k, sense in enumerate(senses) if sense < 0]:
-            words.append(f"with the opposite sense of angle {' and '.join(opposite)}")
-        entries = [sense * angles[k] for sense, k in zip(senses, order, strict=True)]
-        conventions.append(
-            KnownQuantity(
-                quantity=ANGLES,
-                rotation=axes[::-1].lower() if order == orders[1] else axes,
-                arrangement=", ".join(words),
-                matrix=sp.ImmutableMatrix(entries),
-                motion=motion,
-                inputs=inputs,
-            )
-        )
-    return tuple(conventions)
+def _of_angles() -> Family:
+    rotation = target("unit_quaternion", "rotation_matrix")
+    angles = replace(rotation, quantity=ANGLES)
+    goals = (replace(angles, rotation=a, matrix=_angles(a, rotation.matrix)) for a in _THREE)
+    return _family([goal.written(*_WAYS[ANGLES]) for goal in goals])
 
 
-@cache
-def _angles(axes: str, matrix: sp.ImmutableMatrix, *, is_transposed: bool) -> tuple[sp.Expr, ...]:
-    r = matrix.T if is_transposed else matrix
+def _angles(axes: str, r: sp.MatrixBase) -> sp.ImmutableMatrix:
+    """The angles about axes of the body, XYZ, or of space, xyz."""
+    if axes.islower():  # turns about axes of space are those about axes of the body, backwards
+        return sp.ImmutableMatrix(_angles(axes[::-1].upper(), r)[::-1])
     i, j, k = map("XYZ".index, axes)
     other = 3 - i - j
     # e is the sign of the permutation of the axes; for k = i, `other` is the axis that no turn is
@@ -353,9 +409,9 @@ def _angles(axes: str, matrix: sp.ImmutableMatrix, *, is_transposed: bool) -> tu
     e = 1 if (j - i) % 3 == 1 else -1
     if i == k:
         first, last = sp.atan2(r[j, i], -e * r[other, i]), sp.atan2(r[i, j], e * r[i, other])
-        return first, sp.acos(r[i, i]), last
+        return sp.ImmutableMatrix([first, sp.acos(r[i, i]), last])
     first, last = sp.atan2(-e * r[j, k], r[k, k]), sp.atan2(-e * r[i, j], r[i, i])
-    return first, sp.asin(e * r[i, k]), last
+    return sp.ImmutableMatrix([first, sp.asin(e * r[i, k]), last])
 
 
 # Names in a formula
@@ -374,143 +430,164 @@ def are_body_rates(formula: sp.MatrixBase) -> bool:
     return formula.shape == (3, 1) and len(names) == 3
 
 
-_VECTOR_NAMES = (
-    re.compile(r"(?P<stem>.*?)_?(?P<part>[xyz]{2}|[0-3]_?[0-3]|[wxyzWXYZ0-4]|)"),
-    re.compile(r"(?P<stem>.+)_(?P<part>[wxyzWXYZ0-4])"),  # b1_0
-    re.compile(r"(?P<part>[wxyz])_?(?P<stem>\d|[a-z]?)"),  # w1, x1, y1, z1
-)
-_ELEMENTS = (  # of R
-    re.compile(r"(?P<stem>.*?)_?(?P<row>[abc])_(?P<column>[xyz])"),  # Matrix3 of ArduPilot
-    re.compile(r"(?P<stem>.*?)_?(?P<row>[0-3])_?(?P<column>[0-3])"),
-)
-_FLAT = {9: ([*range(9)], False), 16: ([0, 1, 2, 4, 5, 6, 8, 9, 10], True)}  # places, by columns
-
-
-def readings(matrix: sp.MatrixBase, goal: KnownQuantity, *, is_asked: bool) -> Iterator[Names]:
-    """The possible meanings of the names in a formula.
-
-    If the quantity `is_asked` for, and all names are those of its inputs, no other is possible.
-    """
-    if goal.quantity == ANGLES:
-        yield from _of_vectors(matrix, [goal.inputs["q"]])
-        yield from _of_entries(matrix, goal.motion.rotation_matrix)
-        return
-    if not goal.rotation:
-        yield from _of_vectors(matrix, [*goal.inputs.values()])
-        return
-    names = [
-        goal.names.get(s.name) or goal.names.get(f"{stem_of(s.name)}_dot")
-        for s in matrix.free_symbols
-    ]
-    if None not in names:
-        yield dict(zip(matrix.free_symbols, names, strict=True))
-    if None in names or not is_asked:
-        yield from _of_rotation(matrix, goal)
-
-
-def _of_rotation(matrix: sp.MatrixBase, goal: KnownQuantity) -> Iterator[Names]:
-    """Every assignment of names to coordinates, their rates and angular velocities."""
-    # q2 comes before q10
-    symbols = sorted(
-        matrix.free_symbols,
-        key=lambda s: [int(p) if p.isdigit() else p for p in re.split(r"(\d+)", s.name)],
-    )
-    q = goal.inputs.get("q", ())
-    velocity = next(
-        (goal.inputs[name] for name in goal.inputs if name[:5] == "omega" and name in goal.uses), ()
-    )
-    angles = {a for f in matrix.atoms(sp.sin, sp.cos, sp.tan) for a in f.free_symbols}
-    omega = [s for s in symbols if velocity and _OMEGA.fullmatch(s.name) and s not in angles]
-    others = [s for s in symbols if s not in omega]
-    rates: dict[sp.Symbol, str] = {}
-    if "q_dot" in goal.uses:
-        plain = [s for s in others if s not in angles]
-        rates = {s: stem_of(s.name) for s in plain if stem_of(s.name)} or _of_arrays(plain, angles)
-    stems = sorted({s.name for s in others if s not in rates} | {*rates.values()})
-    if len(stems) > len(q) or len(omega) > 3:
-        return
-    if velocity and not omega and len(symbols) == len(q) + 3:  # vel[0] beside quat[0]
-        yield from _of_vectors(matrix, [q, velocity])
-    is_array = len({stem.rstrip("0123").rstrip("_") for stem in stems}) == 1
-    is_array &= all(stem[-1].isdigit() for stem in stems) and len(stems) == len(q) == 4
-    orders: Iterator[tuple[sp.Expr, ...]] = permutations(q, len(stems))
-    if is_array:  # of a quaternion in an array, the scalar is the first or the last entry
-        orders = iter([q, (*q[1:], q[0])])
-    for order in orders:
-        of_stem = dict(zip(stems, order, strict=True))
-        meant: dict[sp.Symbol, sp.Expr] = {s: of_stem[s.name] for s in others if s.name in of_stem}
-        meant |= {s: sp.diff(of_stem[stem], *of_stem[stem].args) for s, stem in rates.items()}
-        yield meant | dict(zip(omega, velocity, strict=False))
-
-
-def _of_arrays(others: Sequence[sp.Symbol], angles: set[sp.Symbol]) -> dict[sp.Symbol, str]:
-    """e_1 by its rate u_1, if all angles are in one array and all other names in another."""
-    arrays = [{s.name.rpartition("_")[0] for s in part} for part in (angles, others)]
-    if any(len(array) != 1 or "" in array for array in arrays):
-        return {}
-    return {s: f"{min(arrays[0])}_{s.name.rpartition('_')[2]}" for s in others}
-
-
 def stem_of(name: str) -> str:
     """phi of phi_dot, dphi, phidot, phi_rate, and q_0 of qd_0; "" for other names."""
     match = _RATE.fullmatch(name)
     return match["behind"] or match["before"] + (match["index"] or "") if match else ""
 
 
-def _of_vectors(matrix: sp.MatrixBase, wanted: Sequence[tuple[sp.Expr, ...]]) -> Iterator[Names]:
-    """Every assignment of vectors of the formula to those of a law.
+_VECTOR_NAMES = (  # names with a common stem are a vector
+    r"(?P<stem>.*?)_?(?P<part>[xyz]{2}|[0-3]_?[0-3]|[wxyzWXYZ0-4]|)",
+    r"(?P<stem>.+)_(?P<part>[wxyzWXYZ0-4])",  # b1_0
+    r"(?P<part>[wxyz])_?(?P<stem>\d|[a-z]?)",  # w1, x1, y1, z1
+    r"(?P<stem>.*?)_?(?P<part>[a-d])",  # q1a, q1b, q1c, q1d
+    r"(?P<part>[a-d])(?P<stem>\d)",
+    r"(?P<stem>.*?)_?(?P<part>[rijk])",  # other_i, other_j, other_k, other_r
+)
+_ELEMENTS = (  # of R: Matrix3 of ArduPilot, m00 and m_1_1
+    (re.compile(r"(?P<stem>.*?)_?(?P<row>[abc])_(?P<column>[xyz])"), ("abc", "xyz")),
+    (re.compile(r"(?P<stem>.*?)_?(?P<row>[0-2])_?(?P<column>[0-2])"), ("012", "012")),
+    (re.compile(r"(?P<stem>.*?)_?(?P<row>[1-3])_?(?P<column>[1-3])"), ("123", "123")),
+)
+_FLAT = ([*range(9)], [0, 1, 2, 4, 5, 6, 8, 9, 10])  # places of entries, m_8
 
-    Names with a common stem are a vector, and so are p, q, r; any other name is a number. Of a
-    quaternion in an array, the scalar may be the first or the last entry.
+
+def meanings(formula: sp.MatrixBase, goal: KnownQuantity, *, is_asked: bool) -> list[Names]:
+    """The possible meanings of the names in a formula.
+
+    If the quantity `is_asked` for, and all names are those of its inputs, no other is possible.
     """
-    sizes = [len(vector) for vector in wanted]
+    # q2 comes before q10
+    symbols = sorted(
+        formula.free_symbols,
+        key=lambda s: [int(p) if p.isdigit() else p for p in re.split(r"(\d+)", s.name)],
+    )
+    own = {s: goal.names.get(s.name) or goal.names.get(f"{stem_of(s.name)}_dot") for s in symbols}
+    if None not in own.values() and is_asked:
+        return [own]
+    turns = goal.motion.model.turns if goal.rotation else ()
+    vectors = [*goal.inputs.values()]
+    if goal.rotation == "axis_angle":
+        vectors[:1] = vectors[0][:3], vectors[0][3:]
+    words = {s: s.name for s in symbols}
+    if "q_dot" in goal.inputs:
+        words |= {s: f"rate of {stem_of(s.name)}" for s in symbols if stem_of(s.name)}
+    # On a unit vector, the length is no name: any factor would fit.
+    is_free = bool(goal.rotation) and not goal.motion.model.constraints
+    of_names = _of_turns(formula, goal, symbols) if turns else _of_vectors(words, vectors, is_free)
+    names: list[Names] = [own] * (None not in own.values()) + [*of_names]
+    if goal.quantity == ANGLES:
+        names += _of_entries(symbols, goal.motion.rotation_matrix)
+    if is_asked or len(turns) < 2 or goal.quantity not in (QUATERNION, "rotation_matrix"):
+        return names
+    # Angles may count in the other sense, and from another axis.
+    quarters = range(4) if len(turns) == 2 and goal.quantity != QUATERNION else (0,)
+    senses = product(product((1, -1), quarters), repeat=len(symbols))
+    return [
+        {s: sign * each[s] + k * sp.pi / 2 for s, (sign, k) in zip(each, sense, strict=True)}
+        for sense in senses
+        for each in names
+    ]
+
+
+def oddness(meant: sp.Expr) -> int:
+    """0 for an input, 1 for an angle in the other sense, more for one from another axis."""
+    angle, *others = meant.atoms(AppliedUndef) or [sp.S.One]
+    is_input = others or not (meant.is_Add or meant.is_Mul)
+    return 0 if is_input else 2 * bool(meant.is_Add) + (meant.coeff(angle) == -1)
+
+
+def _of_turns(
+    formula: sp.MatrixBase, goal: KnownQuantity, symbols: Sequence[sp.Symbol]
+) -> Iterator[Names]:
+    """Angles stand in sines and cosines; angular velocities and rates stand outside."""
+    inside = {a for f in formula.atoms(sp.sin, sp.cos, sp.tan) for a in f.free_symbols}
+    angles = [s.name for s in symbols if s in inside]
+    others = [s for s in symbols if s not in inside]
+    q, of_others = [*goal.inputs.values(), ()][:2]
+    rates: dict[sp.Symbol, str] = {}
+    if "q_dot" in goal.inputs:
+        rates = {s: stem_of(s.name) for s in others}
+        arrays = {name.rstrip("0123") for name in angles}
+        if not {*angles} & {*rates.values()} and len(arrays) == 1:  # e_1 by its rate u_1
+            rates = {s: min(arrays) + s.name[-1] for s in others}
+    if bool(rates) != ("q_dot" in goal.inputs) or not (rates or len(others) == len(of_others)):
+        return
+    coordinates = sorted({*angles, *rates.values()})
+    for order in permutations(q, len(coordinates)) if len(coordinates) <= len(q) else ():
+        of_name = dict(zip(coordinates, order, strict=True))
+        meant = {s: of_name[s.name] for s in symbols if s in inside}
+        meant |= {s: of_name[name].diff() for s, name in rates.items()}
+        yield meant | ({} if rates else dict(zip(others, of_others, strict=True)))
+
+
+def _of_vectors(
+    symbols: Mapping[sp.Symbol, str], wanted: Sequence[tuple[sp.Expr, ...]], is_free: bool
+) -> Iterator[Names]:
+    """Every assignment of vectors of the formula to those that are wanted.
+
+    If the vectors are free, one name more may be the length of one, or its square.
+    """
+    sizes, squares = [*map(len, wanted)], [sum(x**2 for x in vector) for vector in wanted]
+    is_known = False
+    for vectors in _grouped(symbols):
+        for order in permutations(vectors) if 0 <= len(vectors) - len(sizes) <= is_free else ():
+            chosen, lone = order[: len(sizes)], order[len(sizes) :]
+            if [*map(len, chosen)] != sizes or [*map(len, lone)] not in ([], [1]):
+                continue
+            is_known = True
+            for parts in product(*map(_scalar_first, chosen)):
+                names = dict(zip(sum(parts, ()), sum(wanted, ()), strict=True))
+                lengths = [power for square in squares for power in (square, sp.sqrt(square))]
+                yield from [names | {lone[0][0]: length} for length in lengths] if lone else [names]
+    if not is_known and [len(symbols)] == sizes:
+        yield from (dict(zip(symbols, order, strict=True)) for order in permutations(wanted[0]))
+
+
+def _grouped(names: Mapping[sp.Symbol, str]) -> Iterator[list[tuple[sp.Symbol, ...]]]:
+    """Names in vectors, by each pattern; p, q, r are one, and other names are numbers."""
     for pattern in _VECTOR_NAMES:
         groups: dict[str, list[tuple[str, sp.Symbol]]] = {}
-        for symbol in sorted(matrix.free_symbols, key=str):
-            match = pattern.fullmatch(symbol.name)
-            stem, part = (match["stem"], match["part"].lower()) if match else (symbol.name, "")
-            if symbol.name in ("p", "q", "r"):
-                stem, part = "p, q, r", symbol.name
-            groups.setdefault(stem if part else symbol.name, []).append((part, symbol))
-        three = next((g for g in groups.values() if [part for part, _ in g] == [*"xyz"]), None)
-        if three and len(groups.get("w", ())) == 1:  # this.x beside w
-            three += groups.pop("w")
-        vectors = [
-            tuple(s for _, s in sorted(group, key=lambda each: (each[0] != "w", each[0])))
-            for group in groups.values()
-        ]
-        for order in permutations(vectors) if len(vectors) == len(sizes) else ():
-            if [len(vector) for vector in order] == sizes:
-                for parts in product(*map(_scalar_first, order)):
-                    yield dict(zip(sum(parts, ()), sum(wanted, ()), strict=True))
+        for symbol, name in names.items():
+            match = re.fullmatch(pattern, name)
+            stem, part = (match["stem"], match["part"].lower()) if match else (name, "")
+            if name in ("p", "q", "r"):
+                stem, part = "p, q, r", name.replace("r", "s")
+            groups.setdefault(stem if part else name, []).append((part, symbol))
+        for group in groups.values():  # the scalar comes first
+            group.sort(key=lambda each: (each[0] not in ("w", "r"), each[0]))
+        vectors = [tuple(symbol for _, symbol in group) for group in groups.values()]
+        yield vectors
+        for scalar, vector in permutations(vectors, 2):
+            if (len(scalar), len(vector)) == (1, 3):  # w beside this.x
+                yield [*(v for v in vectors if v not in (scalar, vector)), scalar + vector]
 
 
-def _scalar_first(vector: tuple[sp.Symbol, ...]) -> Iterator[tuple[sp.Symbol, ...]]:
-    yield vector
-    if len(vector) == 4 and vector[0].name[-1].isdigit():
-        yield (vector[3], *vector[:3])
+def _scalar_first(vector: tuple[sp.Symbol, ...]) -> list[tuple[sp.Symbol, ...]]:
+    """A quaternion with the scalar first, last, or in a component x of four."""
+    orders = [vector, vector[-1:] + vector[:-1], vector[1:] + vector[:1]]
+    return orders[: 3 if len(vector) == 4 else 1]
 
 
-def _of_entries(matrix: sp.MatrixBase, rotation: sp.MatrixBase) -> Iterator[Names]:
-    """Names as entries of R: m00, m_1_1, a_x, or m_8 of a flat array."""
-    symbols = sorted(matrix.free_symbols, key=str)
-    for pattern, words in zip(_ELEMENTS, (("abc", "xyz"), ("0123", "0123")), strict=True):
+def _of_entries(symbols: Sequence[sp.Symbol], rotation: sp.MatrixBase) -> Iterator[Names]:
+    """Names as entries of R, also of the entries that are not in the formula."""
+    for pattern, (rows, columns) in _ELEMENTS:
         matches = [match for s in symbols if (match := pattern.fullmatch(s.name))]
-        if len(matches) < len(symbols) or len({match["stem"] for match in matches}) != 1:
-            continue
-        places = [(words[0].index(m["row"]), words[1].index(m["column"])) for m in matches]
-        for first in (0, 1):
-            grid = [(i - first, j - first) for i, j in places]
-            if all(0 <= index < 3 for place in grid for index in place):
-                yield {s: rotation[place] for s, place in zip(symbols, grid, strict=True)}
+        if len(matches) == len(symbols) and len({match["stem"] for match in matches}) == 1:
+            name, (i, _), (j, _) = matches[0][0], matches[0].span("row"), matches[0].span("column")
+            yield {
+                sp.Symbol(name[:i] + row + name[i + 1 : j] + column, real=True): rotation[k, n]
+                for k, row in enumerate(rows)
+                for n, column in enumerate(columns)
+            }
     flat = [match for s in symbols if (match := re.fullmatch(r"(.*?)_(\d+)", s.name))]
-    numbers = [int(match[2]) for match in flat]
     if len(flat) == len(symbols) and len({match[1] for match in flat}) == 1:
-        for entries, is_by_columns in _FLAT.values():
-            if set(numbers) <= set(entries):
-                turned = rotation.T if is_by_columns else rotation
-                yield {s: turned[entries.index(n)] for s, n in zip(symbols, numbers, strict=True)}
-                break
+        for places, entries in product(_FLAT, (rotation, rotation.T)):
+            if {int(match[2]) for match in flat} <= {*places}:
+                yield {
+                    sp.Symbol(f"{flat[0][1]}_{place}", real=True): entry
+                    for place, entry in zip(places, entries, strict=True)
+                }
 
 
 # Numbers
@@ -542,14 +619,14 @@ def _values_of(
 
 
 def evaluated(matrix: sp.MatrixBase, values: Values) -> Array:
-    """A matrix at all points, (points, rows, columns); `values` remembers all parts."""
+    """A matrix at all points, (..., points, rows, columns); `values` remembers all parts."""
     try:
         with np.errstate(all="ignore"):
             parts = [evaluate(entry, _FLOATS, values) for entry in matrix]
     except Unknown as error:
         raise ExpressionError(f"{error.part} has no value here") from None
-    entries = [np.broadcast_to(part, (POINTS,)) for part in parts]
-    return np.stack(entries, axis=-1).reshape(POINTS, *matrix.shape)
+    entries = np.broadcast_arrays(*parts, np.empty(POINTS))[:-1]
+    return np.stack(entries, axis=-1).reshape(*entries[0].shape, *matrix.shape)
 
 
 def near(one: Array, other: Array) -> NDArray[np.bool_]:
@@ -560,12 +637,12 @@ def near(one: Array, other: Array) -> NDArray[np.bool_]:
         return np.asarray(np.abs(one - other) <= _TOLERANCE * np.maximum(1, np.abs(other)))
 
 
-def is_orthogonal(matrix: sp.MatrixBase, sign: int) -> bool:
-    """Whether a 3x3 matrix is orthogonal at all points: a rotation, or with −1 a reflection."""
+def is_mirror(matrix: sp.MatrixBase) -> bool:
+    """Whether a 3x3 matrix is a reflection at all points: orthogonal, with det = −1."""
     if matrix.shape != (3, 3):
         return False
     symbols = sorted(matrix.free_symbols, key=str)
     values = evaluated(matrix, dict(zip(symbols, TABLE[0], strict=False)))
     with np.errstate(all="ignore"):
         is_orthogonal = near(values @ values.transpose(0, 2, 1), np.eye(3)).all()
-        return bool(is_orthogonal and (sign * np.linalg.det(values) > 0).all())
+        return bool(is_orthogonal and (np.linalg.det(values) < 0).all())

@@ -21,6 +21,7 @@ from rigidsym.tools.compare.syntax import GRAMMARS
 SUFFIXES = tuple(GRAMMARS)
 _MOST_BYTES = 300_000  # of a file
 _MOST_SYMBOLS = 12
+_NEAR_LINES = 12  # between the components of a vector and the vector
 _STEP = re.compile(r"(?:delta_?|sample_?|half_?)?(?:d_?)?(?:[tT]s?|time|period)|h", re.IGNORECASE)
 _TRIGONOMETRIC = (sp.sin, sp.cos, sp.tan)
 
@@ -51,6 +52,13 @@ class FormulaInFile:
         if self.formula.unread and self.comparison:
             text += f"; not read: {_in_lines(self.formula.unread)}"
         return f"{self.path}:{self.line}: {name}{text}"
+
+    def repeats(self, other: FormulaInFile) -> bool:
+        """Whether this is a vector whose components have been found just before."""
+        if not (self.comparison and other.comparison and ", " in other.formula.name):
+            return False
+        is_near = self.formula.line - other.formula.line <= _NEAR_LINES
+        return is_near and {*self.comparison.formula} == {*other.comparison.formula}
 
     def record(self) -> dict[str, Any]:
         """For JSON."""
@@ -95,6 +103,7 @@ def search(path: Path) -> Iterator[FormulaInFile]:
     """The formulas of a file that are a known quantity or close to one, and unreadable ones."""
     text = path.read_text(encoding="utf-8", errors="replace")
     variants: dict[Any, list[Formula]] = {}
+    latest: FormulaInFile | None = None
     for formula in formulas(text, path.suffix):
         variants.setdefault((formula.lines, formula.name), []).append(formula)
     for group in variants.values():
@@ -102,7 +111,10 @@ def search(path: Path) -> Iterator[FormulaInFile]:
         is_case = len({each.forms for each in group if each.forms}) > 1
         findings = [_compared(path, each, is_case=is_case) for each in group]
         readable = [each for each in findings if each and each.comparison]
-        yield from [*readable, *filter(None, findings)][:1]
+        for finding in [*readable, *filter(None, findings)][:1]:
+            if latest is None or not finding.repeats(latest):  # a fault counts once
+                yield finding
+            latest = finding if finding.comparison else latest
 
 
 def _compared(path: Path, formula: Formula, *, is_case: bool) -> FormulaInFile | None:
