@@ -219,7 +219,7 @@ class Problem:
 
     def is_near_pole(self, y: Array, limit: float) -> bool:
         """Whether the singularity margin of the coordinates, if there is one, is small."""
-        has_margin = hasattr(self.kernels, "singularity_margin")
+        has_margin = "singularity_margin" in vars(self.kernels)
         return has_margin and not self._at("singularity_margin", y[: self.count]) > limit
 
     def rotation(self, y: Array) -> Array:

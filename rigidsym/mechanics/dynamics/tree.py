@@ -27,6 +27,7 @@ from typing import Any, NamedTuple
 import sympy as sp
 
 from rigidsym.algebra.codec import codec_for
+from rigidsym.algebra.evaluate import RealValues
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.errors import Defect, ModelError
 from rigidsym.formula.reader import formula
@@ -73,6 +74,7 @@ class Particle(NamedTuple):
 
     mass: sp.Expr
     slopes: sp.ImmutableMatrix  # J as it is given, (3, n)
+    slopes_rate: sp.ImmutableMatrix  # dJ/dt
     jacobian: sp.ImmutableMatrix  # J in names
     velocity: Vector
     gained: Vector  # dv/dt for q̈ = 0
@@ -154,28 +156,39 @@ class TreeEquations(LagrangeForm):
 
     def _particle(self, label: str, given: sp.ImmutableMatrix, mass: sp.Expr) -> Particle:
         """J and v by names; v = J q̇ has to be the rate of a position, ∂Jᵢ/∂qₖ = ∂Jₖ/∂qᵢ."""
-        slopes, rates = sp.ImmutableMatrix(given.jacobian(self.rates)), sp.Matrix(self.rates)
+        rates, count = sp.Matrix(self.rates), len(self.rates)
         text = ", ".join(map(as_typed, given))
-        if slopes.has(*rates) or any(given.xreplace(dict.fromkeys(rates, sp.S.Zero))):
+        # Column k of J is v at q̇ = eₖ. SymPy differentiates by rates and coordinates through dummies,
+        # which takes five times as long as the ring.
+        units = (dict(zip(rates, unit, strict=True)) for unit in sp.eye(count).tolist())
+        slopes = sp.ImmutableMatrix.hstack(*map(given.xreplace, units))
+        is_finite = not slopes.has(sp.zoo, sp.nan)
+        entries = [*given, *rates, *(slopes if is_finite else ())]
+        codec = codec_for(entries, constraints=self.model.constraints, order=1)
+        if not (
+            is_finite
+            and (codec.column(given) - codec.matrix(slopes) @ codec.column(rates)).is_zero()
+        ):
             raise ModelError(f"the velocity ({text}) is not linear in the rates")
         # J q̇ is the rate of a position r(q) exactly if J = ∂r/∂q, which by Schwarz' theorem
         # requires ∂Jⱼ/∂qₖ = ∂Jₖ/∂qⱼ. Rolling without slipping fails it, and Lagrange's equations do
-        # not hold for it in this form.
+        # not hold for it in this form. ∂Jⱼ/∂qₖ is the coefficient of q̇ₖ in dJⱼ/dt.
+        by = codec.matrix(slopes.T).dt().jacobian([codec.ring.index[rate] for rate in rates])
         turned = [
-            entry
-            for j, k in combinations(range(len(self.q)), 2)
-            for entry in slopes.col(j).diff(self.q[k]) - slopes.col(k).diff(self.q[j])
+            by[3 * j + i, k] - by[3 * k + i, j]
+            for j, k in combinations(range(count), 2)
+            for i in range(3)
         ]
-        codec = codec_for(turned, constraints=self.model.constraints, order=0)
-        if not codec.column(turned).is_zero():
+        if not RingMatrix.column(codec.ring, turned).is_zero():
             raise ModelError(
                 f"the velocity ({text}) is that of no position, as in rolling; expected the time "
                 "derivative of a position"
             )
         jacobian = self.names.named(f"J{label}", slopes)
         v = self.names.named(f"v{label}", jacobian * rates)
-        gained = self.names.named(f"b{label}", slopes.diff(TIME) * rates)
-        return Particle(mass, slopes, jacobian, v, gained)
+        slopes_rate = slopes.diff(TIME)
+        gained = self.names.named(f"b{label}", slopes_rate * rates)
+        return Particle(mass, slopes, slopes_rate, jacobian, v, gained)
 
     # Sums over the tree
 
@@ -288,19 +301,20 @@ class TreeEquations(LagrangeForm):
 
         # Column by column: Dⱼ = Mⱼⱼ − Σ_k Lⱼₖ² Dₖ and Lᵢⱼ = (Mᵢⱼ − Σ_k Lᵢₖ Dₖ Lⱼₖ)/Dⱼ over k < j. M
         # is positive definite, so that no pivoting is needed.
+        work = self.names.values_of([*self.mass_matrix])
         for j in range(n):
             scaled = D[:j, :j] * L[j, :j].T
             for i in range(j, n):
                 rest = self.mass_matrix[i, j] - (L[i, :j] * scaled)[0]
-                if i == j:
-                    define(1, (j, j), f"D{j + 1}", rest)
-                else:
-                    define(0, (i, j), f"L{i + 1}_{j + 1}", rest / D[j, j])
-            if not self.names.is_nonzero(D[j, j]):
-                raise ModelError(
-                    f"{self.model.name}: the mass matrix has no inverse; expected coordinates "
-                    "that move the bodies in different ways"
-                )
+                which, name = (1, f"D{j + 1}") if i == j else (0, f"L{i + 1}_{j + 1}")
+                value = rest if i == j else rest / D[j, j]
+                define(which, (i, j), name, value)
+                work.set(names[which][i, j], work(value))
+                if i == j and 0 in work(value):
+                    raise ModelError(
+                        f"{self.model.name}: the mass matrix has no inverse; expected coordinates "
+                        "that move the bodies in different ways"
+                    )
         for i in range(n):
             # Forward, yᵢ = Qᵢ − hᵢ − Σ_k Lᵢₖ yₖ over k < i.
             rest = self.generalised[i] - self.bias[i] - (L[i, :i] * y[:i, :])[0]
@@ -354,7 +368,7 @@ class TreeEquations(LagrangeForm):
 
         turns = {joint.turn for joint in self.joints.values()}
         held = [e for turn in turns for e in (*turn.matrix.diff(TIME), *turn.matrix)]
-        held += [e for p in self.particles for e in (*p.slopes.diff(TIME), *p.slopes, p.mass)]
+        held += [e for p in self.particles for e in (*p.slopes_rate, *p.slopes, p.mass)]
         held += [e for joint in self.joints.values() for e in joint.inertia]
         named = [*self.mass_matrix, *self.bias, *self.momenta, self.kinetic]
         work = self.names.values_of([*named, *held, *self.rates, *self.gradient])
@@ -374,7 +388,7 @@ class TreeEquations(LagrangeForm):
                 jacobian = back @ jacobian + read(column)
             parts.append((read(joint.inertia), jacobian, rate, True))
         for p in self.particles:
-            slopes, one = (p.slopes, p.slopes.diff(TIME)), np.eye(3, dtype=int)
+            slopes, one = (p.slopes, p.slopes_rate), np.eye(3, dtype=int)
             parts.append((one * work(p.mass), *map(read, slopes), False))
         q_dot, mass, needed = read(sp.Matrix(self.rates)), 0, read(sp.Matrix(self.gradient))
         # M = Σ Jᵀ I J and h = Σ Jᵀ (I J̇ q̇ + ω × I ω) + ∂V/∂q; a particle has no gyroscopic term.
@@ -415,14 +429,21 @@ class TreeEquations(LagrangeForm):
         return consequence([*self._lemmas, self.prove.vanishes(self.power, claim)], claim)
 
     def momentum_is_constant(self, k: int, claim: Formula) -> Proof | None:
-        # ṗₖ = ∂T/∂qₖ + Qₖ − ∂V/∂qₖ. A value at one point refutes it quickly; only what survives is
-        # multiplied out and proved.
-        residual = self._slope_of_kinetic(k) + self.generalised[k] - self.gradient[k]
-        if self.names.is_nonzero(residual):
+        # A value at one point refutes it quickly; only what survives is multiplied out and proved.
+        rates, work = self._momentum_rates
+        residual = rates[k]
+        if 0 not in work(residual):
             return None
         for symbol, expression in reversed(self.names.definitions_of([residual])):
             residual = residual.xreplace({symbol: expression})
         return consequence([*self._lemmas, self.names.vanish([residual], claim)], claim)
+
+    @cached_property
+    def _momentum_rates(self) -> tuple[sp.Matrix, RealValues]:
+        """ṗ = ∂T/∂q + Q − ∂V/∂q, and bounds on its values at a point."""
+        slopes = [self._slope_of_kinetic(k) for k in range(len(self.q))]
+        rates = sp.Matrix(slopes) + self.generalised - sp.Matrix(self.gradient)
+        return rates, self.names.values_of([*rates])
 
     def _slope_of_kinetic(self, k: int) -> sp.Expr:
         """∂T/∂q."""
@@ -433,7 +454,7 @@ class TreeEquations(LagrangeForm):
             slope = joint.slopes[k]
             parts.append(-slope * joint.axis.dot(joint.omega.cross(momentum)))
             parts.append(sp.diff(slope, TIME) * joint.axis.dot(momentum))
-        parts += [p.mass * p.velocity.dot(p.slopes.col(k).diff(TIME)) for p in self.particles]
+        parts += [p.mass * p.velocity.dot(p.slopes_rate.col(k)) for p in self.particles]
         return sp.Add(*parts)
 
 

@@ -238,10 +238,6 @@ class Names:
             work.set(symbol, work(expression))
         return work
 
-    def is_nonzero(self, value: sp.Expr) -> bool:
-        """Whether bounds on the value at one point do not contain zero."""
-        return 0 not in self.values_of([value])(value)
-
 
 class State(NamedTuple):
     """A partial product of turns with its angular velocity and acceleration, in names."""
