@@ -14,7 +14,7 @@ from rigidsym.errors import DerivationError, ModelError
 from rigidsym.models.forces import Example
 from rigidsym.motion import Motion
 from rigidsym.pipeline import motion_of, read
-from rigidsym.simulation.problem import NEEDED
+from rigidsym.simulation.problem import needed
 from rigidsym.simulation.solver import METHODS
 from rigidsym.system.files import write_text
 from rigidsym.system.processes import bar
@@ -67,7 +67,7 @@ def _motion(source: str, *, is_page: bool) -> Motion:
             "[dynamics], or a shipped one such as heavy_symmetric_top (`rigidsym list`)"
         )
     if len(spec.models) == 1 and not is_page:
-        spec = replace(spec, quantities=NEEDED)
+        spec = replace(spec, quantities=needed(spec.dynamics.get("parts")))
     motion = motion_of(spec)
     if is_page:
         from rigidsym.page.print_page import check_shown

@@ -34,13 +34,18 @@ from rigidsym.models.forces import OMEGA, OMEGA_COMPONENTS, Forces, initial_valu
 from rigidsym.models.rotation import as_typed, depends_on_time
 from rigidsym.simulation.trajectory import Array, Trajectory
 
-# from which a motion is computed
 NEEDED = ("rotation_matrix", "angular_velocity_body", "state_derivative", "first_integrals")
 _RATES = "rates_from_angular_velocity_body"
+_MASS = "mass_matrix"
 _GRAVITY = "m/s^2"  # the unit by which the acceleration in a weight is known
 _ORIENTATIONS = 12  # at which a weight is told from other potentials; c has three components
 _NO_DIVISOR = (0, sp.zoo, sp.nan)
 _UNIT = 1e-9  # by which the entries of R Rᵀ − 1 may be off at the start
+
+
+def needed(parts: Any) -> tuple[str, ...]:
+    """The quantities from which a motion is computed: of several bodies, M for their poles too."""
+    return (*NEEDED, _MASS) if parts else NEEDED
 
 
 def with_motion(derivation: Derivation) -> Derivation:
@@ -53,8 +58,9 @@ def with_motion(derivation: Derivation) -> Derivation:
         )
     names = {step.quantity.name for step in derivation.steps} | {*derivation.functions}
     names |= {"first_integrals"} if not derivation.first_integrals else set()
-    if derivation.forces is None or not names.issuperset(NEEDED):
-        return derive(derivation.model, NEEDED, body=body, forces=derivation.forces or Forces())
+    forces = derivation.forces or Forces()
+    if derivation.forces is None or not names.issuperset(needed(forces.parts)):
+        return derive(derivation.model, needed(forces.parts), body=body, forces=forces)
     return derivation
 
 
@@ -147,8 +153,9 @@ class Problem:
                 whole = replace(
                     whole,
                     steps=(*whole.steps, *kinematics.steps),
-                    singularities=kinematics.singularities,  # the margin that finds the poles
+                    singularities=kinematics.singularities,
                 )
+        names += [] if self.is_alone else [_MASS]
         of_state = [] if self.is_quaternion else ["state_derivative"]
         of_state += ["first_integrals"] if self.derivation.first_integrals else []
         functions = {name: self.derivation.step(name) for name in of_state}
@@ -194,7 +201,7 @@ class Problem:
         if self.is_euler and not is_turning:
             velocity = self._at("angular_velocity_body", q, velocity)
         if is_turning and not self.is_euler:
-            has_rates = hasattr(self.kernels, _RATES)
+            has_rates = _RATES in vars(self.kernels)
             velocity = self._at(_RATES, q, velocity) if has_rates else np.array([np.nan])
             if not np.isfinite(velocity).all():
                 raise ModelError(
@@ -218,9 +225,26 @@ class Problem:
         return np.array(self.kernels.state_derivative_scalar(*values))
 
     def is_near_pole(self, y: Array, limit: float) -> bool:
-        """Whether the singularity margin of the coordinates, if there is one, is small."""
-        has_margin = "singularity_margin" in vars(self.kernels)
-        return has_margin and not self._at("singularity_margin", y[: self.count]) > limit
+        """Whether W′ nearly loses rank, or M of several bodies, by the ratio of singular values.
+
+        Frames with inertia have no pole in gimbal lock.
+        """
+        q = y[: self.count]
+        if self.is_alone:
+            sizes = np.linalg.svd(self._axes(q), compute_uv=False)
+        else:
+            arguments = {"q": q, "parameters": self.parameters}
+            inputs = self.derivation.step(_MASS).quantity.inputs
+            mass = np.asarray(self.kernels.mass_matrix(*map(arguments.get, inputs)))
+            unit = np.sqrt(mass.diagonal())  # coordinates of different inertia are no pole
+            # M = Jᵀ I J, so its eigenvalues are the squares of the singular values of √I J.
+            sizes = np.sqrt(np.linalg.eigvalsh(mass / np.outer(unit, unit)))
+        # Near a pole of Euler angles, sin θ → 0, the ratio is half the distance from it.
+        return not 2 * sizes.min() > limit * sizes.max()
+
+    def _axes(self, q: Array) -> Array:
+        """W′ᵀ: Ω′ for the rate of each coordinate by itself, (..., k, 3)."""
+        return self._at("angular_velocity_body", q[..., None, :], np.eye(self.count))
 
     def rotation(self, y: Array) -> Array:
         """R of states, from body to space components, (..., 3, 3)."""
@@ -234,11 +258,11 @@ class Problem:
 
     def rates(self, q: Array, omega: Array) -> Array:
         """q̇ from Ω′, (n, k); at a pole the smallest rates with this Ω′, NaN if there are none."""
-        rates = self._at(_RATES, q, omega)
+        has_rates = _RATES in vars(self.kernels)
+        rates = self._at(_RATES, q, omega) if has_rates else np.full(q.shape, np.nan)
         lost = np.isnan(rates).any(axis=1) & np.isfinite(q).all(axis=1)
         if lost.any():
-            # Ω′ for each rate by itself is a column of W′
-            rows = self._at("angular_velocity_body", q[lost][:, None], np.eye(self.count))
+            rows = self._axes(q[lost])
             # q̇ᵀ rows = Ω′ᵀ; the pseudoinverse gives the solution of least norm, or the nearest to
             # one.
             least = np.einsum("nj,njk->nk", omega[lost], np.linalg.pinv(rows))

@@ -244,11 +244,12 @@ class Graph:
         # For a = b, each common part is a square and takes two factors.
         common = self._product((a, b))
         for node in used:
-            factors = Counter(self.nodes[node][1])
-            times = 0 if node == common else _factor_pairs(self.nodes[node][1])[a, b]
-            factors.subtract({a: 2 * times} if a == b else {a: times, b: times})
-            factors[common] += times
-            self._redefine(node, tuple(sorted(factors.elements())))
+            times = _factor_pairs(self.nodes[node][1])[a, b]
+            if times and node != common:
+                factors = Counter(self.nodes[node][1])
+                factors.subtract({a: 2 * times} if a == b else {a: times, b: times})
+                factors[common] += times
+                self._redefine(node, tuple(sorted(factors.elements())))
 
     def _without_terms(self, used: list[int], a: int, b: int, ratio: Fraction) -> None:
         # c a + d b = c (a + (d/c) b): pairs of terms are the same if the ratio d/c is.
