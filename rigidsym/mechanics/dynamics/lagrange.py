@@ -42,7 +42,14 @@ def equations_of_motion(
 
     Those of a `chain`, or of a body that other parts move with, are in names.
     """
-    is_dependent = is_bound(model)
+    # A body has three degrees of freedom; in a tree every joint may carry one.
+    is_spare = not forces.parts and len(model.coordinates) > 3
+    if is_spare and chain is not None and not forces.method:
+        raise ModelError(
+            f"{model.name}: {len(model.coordinates)} turns are too many for the three degrees of "
+            'freedom of one body; expected `parts` with inertia, or method = "euler"'
+        )
+    is_dependent = is_spare or is_bound(model)
     if (forces.method or ("euler" if is_dependent else "lagrange")) == "euler":
         return EulerEquations(model, body, forces)
     if is_dependent:
