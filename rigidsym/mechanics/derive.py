@@ -80,13 +80,11 @@ def derive(
     steps = [first] if not wanted or rotation.name in wanted else []
     derived = (work.step(entry) for entry in others if not wanted or entry.name in wanted)
     steps += filter(None, derived)
-    absent = set(turning) - {step.quantity.name for step in steps}
-    if absent:
-        why = "its rate matrix has no inverse, since its rates do not give every angular velocity"
-        if chain:
-            why = "for this many turns solve W q_dot = Omega in numbers, as by numpy.linalg.pinv(W)"
-        lacking = ", ".join(name for name in turning if name in absent)
-        raise QuantityError(f"{model.name} has no quantity {lacking}: {why}")
+    if absent := set(turning) - {step.quantity.name for step in steps}:
+        entries = [KINEMATICS[name].presented(work.traits) for name in turning if name in absent]
+        lacking = ", ".join(entry.name for entry in entries)
+        reasons = "; ".join(dict.fromkeys(entry.without for entry in entries))
+        raise QuantityError(f"{model.name} has no quantity {lacking}: {reasons}")
     has_rates = not only or any(KINEMATICS[name].section == OF_RATES for name in turning)
     singularities = singularities_of(values) if has_rates and not chain else None
     motion: Flow | None = None

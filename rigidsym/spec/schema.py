@@ -16,6 +16,9 @@ from pathlib import Path
 from typing import Any
 from unicodedata import category
 
+import sympy as sp
+
+from rigidsym.algebra.evaluate import is_never_negative
 from rigidsym.errors import QuantityError, offer
 from rigidsym.kernels.lowering.derivatives import read_request
 from rigidsym.kernels.targets import TARGETS
@@ -62,6 +65,7 @@ _FORMATS: Mapping[str, Callable[[str], object]] = {  # that raise an error for o
     "style": check_style,
     "derivative": _check_derivative,
 }
+_ANYWHERE = dict.fromkeys(sp.symbols("x:z"), (-sp.S.One, sp.S.One))  # coordinates in a density
 _LARGEST = 1e300  # sums and products of numbers in a file stay finite
 
 
@@ -204,6 +208,8 @@ def _checked_text(value: str, schema: Schema, place: Place) -> str | None:
         with place.noting():
             result = check(value)
             text = str(result) if schema["format"] == "name" else value  # phi for φ
+            if "exclusiveMinimum" in schema and is_never_negative(-result, _ANYWHERE):
+                place.fault(f"expected a positive number, got {value}")
     return text
 
 

@@ -171,6 +171,10 @@ angular_velocity_body = Quantity(
 # The rates of the coordinates: in both frames the same, apart from reasons
 
 _OF_RATES: dict[str, Any] = {"source": SOURCES["Diebel 5"], "section": OF_RATES}
+_WITHOUT = "its rate matrix has no inverse, since its rates do not give every angular velocity"
+_OF_CHAIN = when(
+    CHAIN, without="for this many turns solve W q_dot = Omega in numbers, as by numpy.linalg.pinv(W)"
+)
 
 
 def _rate_matrix(frame: Frame, *, of_chain: str, columns: str) -> Quantity:
@@ -214,7 +218,9 @@ def _inverse_rate_matrix(frame: Frame, **reasons: str) -> Quantity:
         value=lambda k: k.inverse(name),
         vectors="inverse",
         reason=f"inverse_{name}",
+        without=_WITHOUT,
         variants=(
+            _OF_CHAIN,
             when(WIDE, **by(frame.right_inverse, "right inverse of the rate matrix")),
             *(when(WIDE, trait, reason=reason) for trait, reason in reasons.items()),
         ),
@@ -244,7 +250,8 @@ def _rates(frame: Frame) -> Quantity:
         vectors="rates",
         reason=f"rates_from_{name}",
         is_result=True,
-        variants=(when(WIDE, **by(frame.right_inverse)),),
+        without=_WITHOUT,
+        variants=(_OF_CHAIN, when(WIDE, **by(frame.right_inverse))),
     )
 
 
