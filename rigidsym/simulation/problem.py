@@ -22,7 +22,7 @@ from sympy.simplify.fu import TR1, TR2
 
 from rigidsym.algebra.evaluate import Floats, evaluate
 from rigidsym.data.columns import in_both_units
-from rigidsym.errors import ModelError, QuantityError, offer
+from rigidsym.errors import ModelError, offer
 from rigidsym.kernels.module import generate
 from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.derive import derive
@@ -91,9 +91,12 @@ class Problem:
         self.inertia = np.array(self.body.in_numbers(self.body.inertia).tolist(), float)  # I′
         if not self.body.allow and self.body.distribution is None and self.is_alone:
             self._check_about_centre()
-        self.kernels: ModuleType = generate(
-            self._functions, "numpy", conversions=self.is_alone
-        ).load()
+        names = ["rotation_matrix", "angular_velocity_body", *([] if self.is_alone else [_MASS])]
+        of_state = [] if self.is_quaternion else ["state_derivative"]
+        of_state += ["first_integrals"] if derivation.first_integrals else []
+        functions = {name: derivation.step(name) for name in of_state}
+        evaluated = replace(derivation.select(names), functions=functions)
+        self.kernels: ModuleType = generate(evaluated, "numpy", conversions=self.is_alone).load()
         self.start = self._state(initial)
         self._check_rotation()
 
@@ -140,27 +143,6 @@ class Problem:
             where = f"{body.name}, about its centre of mass at ({at}) m"
             check_moments(where, self.inertia - float(mass) * moved)
 
-    @cached_property
-    def _functions(self) -> Derivation:
-        """The derivation with the functions that are evaluated."""
-        whole, names = self.derivation, ["rotation_matrix", "angular_velocity_body", _RATES]
-        if _RATES not in {step.quantity.name for step in whole.steps}:
-            try:
-                kinematics = derive(self.model, (_RATES,))
-            except QuantityError:  # few coordinates, or too many, have no such rates
-                names.remove(_RATES)
-            else:
-                whole = replace(
-                    whole,
-                    steps=(*whole.steps, *kinematics.steps),
-                    singularities=kinematics.singularities,
-                )
-        names += [] if self.is_alone else [_MASS]
-        of_state = [] if self.is_quaternion else ["state_derivative"]
-        of_state += ["first_integrals"] if self.derivation.first_integrals else []
-        functions = {name: self.derivation.step(name) for name in of_state}
-        return replace(whole.select(names), functions=functions)
-
     def _check_rotation(self) -> None:
         """Raises ModelError if R of the start is no rotation."""
         rotation, q = self.rotation(self.start), self.start[: self.count].tolist()
@@ -201,8 +183,7 @@ class Problem:
         if self.is_euler and not is_turning:
             velocity = self._at("angular_velocity_body", q, velocity)
         if is_turning and not self.is_euler:
-            has_rates = _RATES in vars(self.kernels)
-            velocity = self._at(_RATES, q, velocity) if has_rates else np.array([np.nan])
+            velocity = self.rates(q[None], velocity[None])[0]
             if not np.isfinite(velocity).all():
                 raise ModelError(
                     f"{self.derivation.name}: the rates at the start cannot be computed from "
@@ -215,6 +196,12 @@ class Problem:
         """A function of the rotation, which takes the parameters if the rotation has constants."""
         constants = [self.parameters] if self.model.constants else []
         return np.array(getattr(self.kernels, function)(*inputs, *constants))
+
+    def _of_state(self, name: str, t: float | Array, y: Array) -> Array:
+        """A quantity of the equations of motion, in states (..., k) at times."""
+        arguments = {"t": t, "y": y, "q": y[..., : self.count], "parameters": self.parameters}
+        inputs = self.derivation.step(name).quantity.inputs
+        return np.asarray(getattr(self.kernels, name)(*map(arguments.get, inputs)))
 
     # --- the motion in coordinates
 
@@ -233,9 +220,7 @@ class Problem:
         if self.is_alone:
             sizes = np.linalg.svd(self._axes(q), compute_uv=False)
         else:
-            arguments = {"q": q, "parameters": self.parameters}
-            inputs = self.derivation.step(_MASS).quantity.inputs
-            mass = np.asarray(self.kernels.mass_matrix(*map(arguments.get, inputs)))
+            mass = self._of_state(_MASS, 0.0, y)
             unit = np.sqrt(mass.diagonal())  # coordinates of different inertia are no pole
             # M = Jᵀ I J, so its eigenvalues are the squares of the singular values of √I J.
             sizes = np.sqrt(np.linalg.eigvalsh(mass / np.outer(unit, unit)))
@@ -258,8 +243,11 @@ class Problem:
 
     def rates(self, q: Array, omega: Array) -> Array:
         """q̇ from Ω′, (n, k); at a pole the smallest rates with this Ω′, NaN if there are none."""
-        has_rates = _RATES in vars(self.kernels)
-        rates = self._at(_RATES, q, omega) if has_rates else np.full(q.shape, np.nan)
+        rates = np.full(q.shape, np.nan)
+        if self.is_euler and not self.is_quaternion:
+            # which keep the conditions on the coordinates
+            states = np.concatenate([q, omega], axis=1)
+            rates = self._of_state("state_derivative", 0.0, states)[:, : self.count]
         lost = np.isnan(rates).any(axis=1) & np.isfinite(q).all(axis=1)
         if lost.any():
             rows = self._axes(q[lost])
@@ -294,9 +282,10 @@ class Problem:
         # Common factors are cancelled: the torque of m g l cos θ in ZXZ divides by nothing, and a
         # force −k φ̇ leaves 1/sin² θ, since φ̇ has no limit at θ = 0. The pole of a vector is at
         # infinity or at a whole turn, from which a unit quaternion gives coordinates far away.
-        poles = self._functions.singularities
-        if poles is None or not self.model.turns or self.model.vector:
+        if not self.model.turns or self.model.vector:
             return ""
+        poles = derive(self.model, (_RATES,)).singularities
+        assert poles is not None
         divisors = [sp.denom(sp.together(TR2(TR1(entry)))) for entry in self.torque]
         if not poles.is_solved and any(e.has(*self.model.coordinates) for e in divisors):
             return "the torque may have no limit there"
@@ -369,9 +358,7 @@ class Problem:
         q, omega = states[:, : self.count], self.omega(states)
         integrals: Mapping[str, Array] = {}
         if self.derivation.first_integrals:
-            inputs = self.derivation.step("first_integrals").quantity.inputs
-            arguments = {"y": states, "t": t, "parameters": self.parameters}
-            values = np.asarray(self.kernels.first_integrals(*map(arguments.get, inputs)))
+            values = self._of_state("first_integrals", t, states)
             names = (integral.name for integral in self.derivation.first_integrals)
             integrals = dict(zip(names, values.T, strict=True))
         return Trajectory(

@@ -58,7 +58,7 @@ def _check_derivative(text: str) -> None:
         raise QuantityError(f"no quantity {reprlib.repr(name)}; {offer(name, QUANTITIES)}")
 
 
-_FORMATS: Mapping[str, Callable[[str], object]] = {  # that raise an error for other texts
+_FORMATS: Mapping[str, Callable[[str], Any]] = {  # that raise an error for other texts
     "name": check_name,
     "expression": lambda text: read_part(text, ()),
     "turns": turned_by,

@@ -323,6 +323,28 @@ def test_a_torque_stops_a_motion_at_a_pole_only_if_it_has_no_limit_there(
     assert ("has no limit there" not in found.ended) is goes_on
 
 
+def test_one_body_on_four_turns_moves_by_eulers_equations_and_stops_where_their_axes_are_coplanar():
+    body = rs.principal_moments(1, 2, 2)
+    motion = rs.derive("z(a) x(b) z(c) x(d)", ["energy"], body=body, potential=0)
+    spin = {"angular_velocity_body": (0.3, -0.2, 1.1)}
+    found = motion.simulate({"c": 0.5} | spin, {}, 3.0, samples=4)
+    start = found.rotation_matrix[0]
+    omega, turned = newton_euler((1, 2, 2), lambda _: 0, spin["angular_velocity_body"], found.t)
+    assert np.abs(found.angular_velocity_body - omega).max() < 1e-9
+    assert np.abs(found.rotation_matrix - start @ turned).max() < 1e-9
+    stopped = motion.simulate({"b": 1e-6} | spin, {}, 1.0)
+    assert "at a pole of the coordinates" in stopped.ended
+
+
+@pytest.mark.parametrize("inertia", [0, 1])
+def test_a_gimbal_has_a_pole_only_if_its_frames_have_no_inertia(inertia):
+    frame = {"rotation": "z(phi)", "principal_moments": [inertia] * 3}
+    body, start = rs.principal_moments(1, 1, 2), {"theta": 1e-6, "psi_dot": 1.0}
+    gimbal = rs.derive("z(phi) x(theta) z(psi)", ["energy"], body=body, parts=[frame])
+    ended = gimbal.simulate(start, {}, 0.1, samples=2).ended
+    assert ("pole of the coordinates" in ended) is not bool(inertia)
+
+
 def test_large_angles_are_named_in_radians():
     report = top().simulate(REST | {"theta": 30.0}, TOP, 0.01, samples=2).report()
     assert "theta begins at 30 radians, which are 1718.87 degrees" in report

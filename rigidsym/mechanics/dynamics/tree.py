@@ -158,8 +158,8 @@ class TreeEquations(LagrangeForm):
         """J and v by names; v = J q̇ has to be the rate of a position, ∂Jᵢ/∂qₖ = ∂Jₖ/∂qᵢ."""
         rates, count = sp.Matrix(self.rates), len(self.rates)
         text = ", ".join(map(as_typed, given))
-        # Column k of J is v at q̇ = eₖ. SymPy differentiates by rates and coordinates through dummies,
-        # which takes five times as long as the ring.
+        # Column k of J is v at q̇ = eₖ. SymPy differentiates by rates and coordinates through
+        # dummies, which takes five times as long as the ring.
         units = (dict(zip(rates, unit, strict=True)) for unit in sp.eye(count).tolist())
         slopes = sp.ImmutableMatrix.hstack(*map(given.xreplace, units))
         is_finite = not slopes.has(sp.zoo, sp.nan)

@@ -172,9 +172,8 @@ angular_velocity_body = Quantity(
 
 _OF_RATES: dict[str, Any] = {"source": SOURCES["Diebel 5"], "section": OF_RATES}
 _WITHOUT = "its rate matrix has no inverse, since its rates do not give every angular velocity"
-_OF_CHAIN = when(
-    CHAIN, without="for this many turns solve W q_dot = Omega in numbers, as by numpy.linalg.pinv(W)"
-)
+_IN_NUMBERS = "for this many turns solve W q_dot = Omega in numbers, as by numpy.linalg.pinv(W)"
+_OF_CHAIN = when(CHAIN, without=_IN_NUMBERS)
 
 
 def _rate_matrix(frame: Frame, *, of_chain: str, columns: str) -> Quantity:
