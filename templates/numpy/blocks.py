@@ -23,15 +23,14 @@ def _quiet():
 _quietly = _quiet()
 
 
-def _compute(result, leading, block, arrays, shape, out, threads):
+def _compute(result, leading, block, arrays, shape, threads):
     """Fill the result by one call of the block, or by many."""
     count = prod(leading)
     if count <= _SHORTEST or count <= _longest(block, result.dtype, shape):
         vectors = [_columns(array) for array in arrays]
         _quietly(_evaluate, result, block, vectors, shape)
     else:
-        inputs = [_unshared(array, out) for array in arrays]
-        _fill(result, block, inputs, shape, threads)
+        _fill(result, block, arrays, shape, threads)
 
 
 def _place(result, values, shape):

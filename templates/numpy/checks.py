@@ -72,6 +72,4 @@ def _checked_out(out, shape, dtype):
 
 def _unshared(array, out):
     """The array, or a copy of it where writing to `out` would change it."""
-    if out is None or not np.may_share_memory(array, out, max_work=10_000):
-        return array
-    return array.copy()
+    return array.copy() if np.may_share_memory(array, out, max_work=10_000) else array

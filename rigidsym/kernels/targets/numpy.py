@@ -157,10 +157,7 @@ def nested(
 
 
 def _block(kernel: Kernel) -> Iterator[str]:
-    """The function of arrays with the components on their first axis.
-
-    An output that is a component is a copy, since writing results may change the arguments.
-    """
+    """The function of arrays with the components on their first axis."""
     names = Names([*kernel.components, *(a.name for a in kernel.assignments)])
     vectors = [names.fresh(argument.name) for argument in kernel.arguments]
     yield bracketed(0, f"def _{kernel.name}(", vectors, "):")
@@ -183,7 +180,7 @@ def _block(kernel: Kernel) -> Iterator[str]:
             yield python.taken_apart(both, f"_sin_cos({', '.join(a.text for a in angles)})")
         if call is not None and call.function == "cos" and name in kernel.delicate:
             yield bracketed(4, f"{name} = _sharp(", [name, call.argument.text], ")")
-    entries = [f"+{e}" if e in kernel.components else e for e in outputs(kernel, 8)]
+    entries = outputs(kernel, 8)
     yield f"    return {nested(entries, (len(entries),), 4, is_open=True)}"
 
 
