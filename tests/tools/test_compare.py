@@ -161,6 +161,18 @@ UNAIDED = {
     ),
     "[[x*x*v + c, x*y*v - z*s, x*z*v + y*s], [x*y*v + z*s, y*y*v + c, y*z*v - x*s], "
     "[x*z*v - y*s, y*z*v + x*s, z*z*v + c]]": "rotation_matrix of axis_angle",
+    # ros/geometry2, tf2/LinearMath/Matrix3x3.h: d is the square of the length
+    "[[1 - 2*(y*y + z*z)/d, 2*(x*y - w*z)/d, 2*(x*z + w*y)/d], [2*(x*y + w*z)/d, "
+    "1 - 2*(x*x + z*z)/d, 2*(y*z - w*x)/d], [2*(x*z - w*y)/d, 2*(y*z + w*x)/d, "
+    "1 - 2*(x*x + y*y)/d]]": "rotation_matrix of quaternion",
+    # d-ronin/dRonin, coordinate_conversions.c: latitude counts from the equator
+    "[[-sin(e0)*cos(e1), -sin(e0)*sin(e1), cos(e0)], [-sin(e1), cos(e1), 0], [-cos(e0)*cos(e1), "
+    "-sin(e1)*cos(e0), -sin(e0)]]": "rotation_matrix of y(first) z(second)",
+    # bulletphysics/bullet3, btQuaternion.h: a vector is a quaternion without a scalar
+    "[q.w*v.x + q.y*v.z - q.z*v.y, q.w*v.y - q.x*v.z + q.z*v.x, q.w*v.z + q.x*v.y - q.y*v.x, "
+    "-q.x*v.x - q.y*v.y - q.z*v.z]": "quaternion_product",
+    # gazebosim/gz-math, Inertial.hh
+    "[J0 - m*d0*d1, J1 - m*d0*d2, J2 - m*d1*d2]": "parallel_axis_theorem",
 }
 
 

@@ -567,6 +567,19 @@ def f(a, b):
     assert annotation.startswith(f"::error file={file},line=4::{file}:4: R: close to")
 
 
+def test_a_vector_is_found_once_beside_its_components_and_up_to_a_factor(tmp_path):
+    """psiphi75/ahrs, Mahony.js, line 101"""
+    text = """def f(q0, q1, q2, q3, gx, gy, gz, f):
+    w = f*(-q1*gx - q2*gy - q3*gz)
+    x = f*(q0*gx + q2*gz - q3*gy)
+    y = f*(q0*gy - q1*gz + q3*gx)
+    z = f*(q0*gz + q1*gy - q2*gx)
+    return w, x, y, z
+"""
+    (found,) = found_in(tmp_path, "a.py", text)
+    assert "quaternion_product, up to the factor f (proved)" in str(found)
+
+
 def test_a_name_that_gets_another_value_is_another_input(tmp_path):
     """The vector before and after it is normalised are not taken for one another."""
     text = """
