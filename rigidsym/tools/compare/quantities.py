@@ -132,6 +132,7 @@ _WAYS: dict[str, tuple[Ways, ...]] = {
     "quaternion_product": (
         _ways(the_first_conjugated=lambda m, a, _: _opposite(m, a[-3:])),
         _ways(the_second_conjugated=lambda m, _, b: _opposite(m, b[-3:])),
+        _ways(over_the_square_of_the_second=lambda m, _, b: m / sum(x**2 for x in b)),
         _NEGATIVE,  # the same rotation
         _LAST,
     ),

@@ -176,7 +176,8 @@ def _block(matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
     step = next((s for s in matrix.free_symbols if _STEP.fullmatch(s.name)), None)
     if step is not None and not (rates := matrix.diff(step)).has(step):  # of q + (...)*dt
         matrix = sp.ImmutableMatrix(rates)
-    is_homogeneous = matrix.shape == (4, 4) and tuple(matrix[3, :]) == (0, 0, 0, 1)
+    edges = (tuple(matrix[-1, :]), tuple(matrix[:, -1]))  # by rows, or by columns
+    is_homogeneous = matrix.shape == (4, 4) and (0, 0, 0, 1) in edges
     is_homogeneous |= matrix.shape == (3, 4) and matrix[:, 3].is_zero_matrix is True
     return matrix[:3, :3] if is_homogeneous else matrix
 
