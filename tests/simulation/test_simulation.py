@@ -325,7 +325,7 @@ def test_a_torque_stops_a_motion_at_a_pole_only_if_it_has_no_limit_there(
 
 def test_one_body_on_four_turns_moves_by_eulers_equations_and_stops_where_their_axes_are_coplanar():
     body = rs.principal_moments(1, 2, 2)
-    motion = rs.derive("z(a) x(b) z(c) x(d)", ["energy"], body=body, potential=0)
+    motion = rs.derive("z(a) x(b) z(c) x(d)", NEEDED, body=body, potential=0)
     spin = {"angular_velocity_body": (0.3, -0.2, 1.1)}
     found = motion.simulate({"c": 0.5} | spin, {}, 3.0, samples=4)
     start = found.rotation_matrix[0]
