@@ -22,7 +22,7 @@ from rigidsym.mechanics.quantities.catalogue import NAMES
 from rigidsym.models.forces import forces_on
 from rigidsym.models.library import rotation_from
 from rigidsym.models.rotation import RotationModel
-from rigidsym.system.processes import time_limit
+from rigidsym.system.processes import rare_collections, time_limit
 
 if TYPE_CHECKING:
     from rigidsym.mechanics.conversions.conversions import Conversions
@@ -171,6 +171,7 @@ class Motion(Derivation):
         }
 
 
+@rare_collections()
 def derive(
     model: RotationModel | str,
     only: str | Collection[str] = (),

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from functools import cached_property, lru_cache
-from typing import Any
 
 import sympy as sp
 from sympy.polys.rings import PolyElement
@@ -22,7 +21,7 @@ from rigidsym.algebra.generators import (
     roots_of,
 )
 from rigidsym.algebra.matrix import RingMatrix
-from rigidsym.algebra.ring import Generator, Quotient, Ring
+from rigidsym.algebra.ring import NUMBERS, Generator, Quotient, Ring
 from rigidsym.errors import AlgebraError
 
 _HIGHEST_MULTIPLE = 100  # cos nθ has n terms in cos θ, and products of such polynomials follow
@@ -88,13 +87,11 @@ class Codec:
         # Relations come first, since every expression that is read afterwards is reduced by them.
         relations = [r for e, kind in kinds if (r := self._relation(e, kind)) is not None]
         self._set_relations(relations)
-        self.ring.set_derivatives(
-            {
-                place: self.encode(rate_of(e))
-                for place, (e, _) in enumerate(kinds)
-                if order is not None and not is_highest(e, order)
-            }
-        )
+        self.ring.derivatives = {
+            place: self.encode(rate_of(e))
+            for place, (e, _) in enumerate(kinds)
+            if order is not None and not is_highest(e, order)
+        }
         # constraints and their time derivatives, as far as the ring can derive them
         # f(q) = 0 for all time implies df/dt = 0 and d²f/dt² = 0, which bind the rates and
         # accelerations. With them the ideal is closed under d/dt, and the derivative of a residue
@@ -173,7 +170,8 @@ class Codec:
         if place is not None:
             return Quotient.whole(ring, ring.reduce(ring.generator(place)))
         if expression.is_Rational:
-            return Quotient.whole(ring, ring.polynomials(_number(expression)))
+            number = NUMBERS.quo(int(expression.p), int(expression.q))
+            return Quotient.whole(ring, ring.polynomials(number))
         if expression.is_Add:
             return Quotient.sum(ring, [self.encode_quotient(part) for part in expression.args])
         if expression.is_Mul:
@@ -265,7 +263,3 @@ class Codec:
                 for monomial, coefficient in element.items()
             )
         )
-
-
-def _number(rational: sp.Rational) -> Any:
-    return sp.QQ(int(rational.p), int(rational.q))

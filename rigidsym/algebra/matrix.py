@@ -15,6 +15,7 @@ from rigidsym.algebra.ring import Ring, shortest
 
 Row = tuple[PolyElement, ...]
 Values = Sequence[Sequence[Any]]  # of the entries at a point, row by row
+Binary = Callable[[Any, Any], Any]
 Origin = tuple[Callable[..., Values], tuple["RingMatrix", ...]]
 
 
@@ -71,16 +72,15 @@ class RingMatrix:
         return RingMatrix(self.ring, tuple(rows), (_multiplied, (self, other)))
 
     def __add__(self, other: RingMatrix) -> RingMatrix:
-        return self._entrywise(add, other)
+        return self._entrywise(add, lambda a, b: self.ring.total((a, b)), other)
 
     def __sub__(self, other: RingMatrix) -> RingMatrix:
-        return self._entrywise(sub, other)
+        return self._entrywise(sub, lambda a, b: self.ring.total((a,), (b,)) if b else a, other)
 
-    def _entrywise(self, operation: Callable[[Any, Any], Any], other: RingMatrix) -> RingMatrix:
-        """Sums and differences of normal forms are normal forms."""
+    def _entrywise(self, of_values: Binary, in_ring: Binary, other: RingMatrix) -> RingMatrix:
         pairs = zip(self.rows, other.rows, strict=True)
-        rows = tuple(tuple(map(operation, *entries)) for entries in pairs)
-        return RingMatrix(self.ring, rows, (partial(_entrywise, operation), (self, other)))
+        rows = tuple(tuple(map(in_ring, *entries)) for entries in pairs)
+        return RingMatrix(self.ring, rows, (partial(_entrywise, of_values), (self, other)))
 
     def map(self, function: Callable[[PolyElement], PolyElement]) -> RingMatrix:
         return RingMatrix.of(self.ring, [[function(entry) for entry in row] for row in self.rows])
@@ -125,12 +125,18 @@ class RingMatrix:
         # elimination it needs no division, and zeros spare their minors.
         if not self.rows:
             return self.ring.one
-        first = self.rows[0]
-        signed = ((-1) ** j * self._minor(0, j).det() if e else e for j, e in enumerate(first))
-        return self.ring.dot(zip(first, signed, strict=True))
+        pairs = [
+            (entry, self._minor(0, j).det() if entry else entry)
+            for j, entry in enumerate(self.rows[0])
+        ]
+        return self.ring.dot(pairs[::2], minus=pairs[1::2])
 
     def adjugate(self) -> RingMatrix:
         """adj(M), with M adj(M) = det(M) 1."""
+        if len(self.rows) == 3:  # its columns are products of rows: M (v × w, w × u, u × v) = det 1
+            u, v, w = self.rows
+            columns = (cross(self.ring, *pair) for pair in ((v, w), (w, u), (u, v)))
+            return RingMatrix(self.ring, tuple(columns)).T
         # adj(M)_ij = (−1)^(i+j) times the minor without row j and column i.
         places = range(len(self.rows))
         return RingMatrix(
@@ -214,10 +220,11 @@ class RingMatrix:
             # Otherwise W q̇ = Ω and J q̇ = 0 are one square system, [W; J] G = [d 1; 0].
             square = RingMatrix(self.ring, (*self.rows, *bound.rows))
         # M adj(M) = det(M) 1, of which G is the first three columns.
-        if square.shape != (count, count) or not square.det():
+        if square.shape != (count, count):
             return None
-        columns = square.adjugate().T.rows[:3]
-        return RingMatrix(self.ring, columns).T, square.det()
+        columns = square.adjugate().T.rows
+        divisor = self.ring.dot(zip(square.rows[0], columns[0], strict=True))
+        return (RingMatrix(self.ring, columns[:3]).T, divisor) if divisor else None
 
     def _minor(self, row: int, column: int) -> RingMatrix:
         """The matrix without one row and one column."""
@@ -230,7 +237,7 @@ def _multiplied(rows: Values, others: Values) -> Values:
     return [[sum(map(mul, row, column)) for column in columns] for row in rows]
 
 
-def _entrywise(operation: Callable[[Any, Any], Any], rows: Values, others: Values) -> Values:
+def _entrywise(operation: Binary, rows: Values, others: Values) -> Values:
     return [list(map(operation, *pair)) for pair in zip(rows, others, strict=True)]
 
 

@@ -17,7 +17,6 @@ What was chosen is read back into the ring, and its difference from the value mu
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from fractions import Fraction
 from functools import cache, lru_cache
 from itertools import combinations
 from math import gcd, lcm
@@ -30,12 +29,12 @@ from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import Codec
 from rigidsym.algebra.matrix import RingMatrix, Row
-from rigidsym.algebra.ring import Monomial, Quotient, shortest
+from rigidsym.algebra.ring import NUMBERS, Monomial, Quotient, shortest
 from rigidsym.errors import AlgebraError
 
 _PRIME = 2**61 - 1  # modulo which images of polynomials are compared
 _MORE_TERMS = 2  # that a sum over one denominator may have; with more it is hardly ever shorter
-Terms = Mapping[Monomial, Any]  # coefficients: fractions
+Terms = Mapping[Monomial, Any]  # coefficients in Q
 
 
 class Rule(NamedTuple):
@@ -46,12 +45,6 @@ class Rule(NamedTuple):
     sign: int
     function: type[sp.sin] | type[sp.cos]
     angles: tuple[sp.Expr, sp.Expr]  # α and ±β
-
-
-@lru_cache(maxsize=32)
-def presenter_for(codec: Codec) -> Presenter:
-    """The presenter of one ring, shared like the ring itself."""
-    return Presenter(codec)
 
 
 class Presenter:
@@ -66,6 +59,7 @@ class Presenter:
         # takes long to make the function of a sum, and few are ever needed
         self._named = cache(self._expression)
         self._weight = cache(lambda place: int(sp.count_ops(self._named(place))))
+        self._sum = cache(self._collected)  # many forms have sums in common
         self._sums_below = {
             place: codec.encode(1 / expression)
             for place, expression in enumerate(self._generators)
@@ -132,16 +126,17 @@ class Presenter:
         if len(below) > 1:
             over, under = _leading_number(above), _leading_number(below)
             return sp.Mul(
-                _rational(over / under), self._terms(above, over), 1 / self._terms(below, under)
+                _rational(NUMBERS.quo(over, under)),
+                self._terms(above, over),
+                1 / self._terms(below, under),
             )
         if self.ring.is_one(below):
-            return min([self._terms(above), *self._over_one(above)], key=sp.count_ops)
+            plain, others = self._terms(above), [*self._over_one(above)]
+            return min([plain, *others], key=sp.count_ops) if others else plain
         # A single term below the bar divides term by term, as negative powers, so that sin θ/cos θ
         # is found as tan θ inside a sum.
         ((divisor, scale),) = below.items()
-        return self._terms(
-            {tuple(map(sub, m, divisor)): c for m, c in above.items()}, _fraction(scale)
-        )
+        return self._terms({tuple(map(sub, m, divisor)): c for m, c in above.items()}, scale)
 
     def _over_one(self, element: PolyElement) -> Iterator[sp.Expr]:
         """Terms that are divided by different powers of one sum, over the highest of them."""
@@ -154,12 +149,13 @@ class Presenter:
                     below = self._generators[place] ** max(powers)
                     yield sp.Mul(_rational(number), self._terms(whole, number), below)
 
-    def _terms(self, terms: Terms, scale: Fraction = Fraction(1)) -> sp.Expr:
-        fractions = {monomial: _fraction(c) / scale for monomial, c in terms.items()}
-        return self._sum(_folded(fractions, self._rules))
+    def _terms(self, terms: Terms, scale: Any = 1) -> sp.Expr:
+        scaled = {monomial: NUMBERS.quo(value, scale) for monomial, value in terms.items()}
+        return self._sum(*_folded(scaled, self._rules).items())
 
-    def _sum(self, terms: Terms) -> sp.Expr:
+    def _collected(self, *items: tuple[Monomial, Any]) -> sp.Expr:
         """The terms as a sum of products with common factors taken out."""
+        terms = dict(items)
         factor = self._best_factor(terms) if len(terms) > 1 else None
         if factor is None:
             return sp.Add(*(self._product(number, powers) for powers, number in terms.items()))
@@ -173,8 +169,9 @@ class Presenter:
         number = _content(inside.values())
         if all(value < 0 for value in inside.values()):  # fewer minus signs are left
             number = -number
-        rest = self._sum({tuple(map(sub, m, common)): c / number for m, c in inside.items()})
-        return sp.Add(self._product(number, common, rest), self._sum(outside))
+        rest = [(tuple(map(sub, m, common)), NUMBERS.quo(c, number)) for m, c in inside.items()]
+        product = self._product(number, common, self._sum(*rest))
+        return sp.Add(product, self._sum(*outside.items()))
 
     def _best_factor(self, terms: Terms) -> tuple[int, int] | None:
         """The place and the sign of the power that save most when taken out of several terms.
@@ -186,6 +183,8 @@ class Presenter:
         # Taken out of k terms, a factor of w operations saves k − 1 copies and as many
         # multiplications: (k − 1)(w + 1) operations.
         for place, column in enumerate(zip(*terms, strict=True)):
+            if column.count(0) > len(column) - 2:  # most places are empty
+                continue
             for sign in (1, -1):
                 powers = [power for power in column if power * sign > 0]
                 lowest = powers.count(min(powers, key=abs, default=0))
@@ -214,7 +213,10 @@ class Presenter:
         return _rational(number) * factors
 
 
-def _leading_number(element: PolyElement) -> Fraction:
+presenter_for = lru_cache(maxsize=32)(Presenter)  # shared like the ring itself
+
+
+def _leading_number(element: PolyElement) -> Any:
     """The common factor of the numbers in a sum, with a leading minus.
 
     The term of the lowest degree leads, so that 1 − cos θ is left and not cos θ − 1.
@@ -242,20 +244,14 @@ def _are_coprime(one: PolyElement, other: PolyElement) -> bool:
     return True
 
 
-def _content(numbers: Iterable[Any]) -> Fraction:
+def _content(numbers: Iterable[Any]) -> Any:
     """The positive number that all are whole multiples of, without a common factor."""
-    fractions = list(map(_fraction, numbers))
-    above, below = (f.numerator for f in fractions), (f.denominator for f in fractions)
-    return Fraction(gcd(*above), lcm(*below))
+    above, below = zip(*((n.numerator, n.denominator) for n in numbers), strict=True)
+    return NUMBERS.quo(gcd(*above), lcm(*below))
 
 
-def _fraction(coefficient: Any) -> Fraction:
-    """A coefficient, whichever number type SymPy holds it in."""
-    return Fraction(int(coefficient.numerator), int(coefficient.denominator))
-
-
-def _rational(number: Fraction) -> sp.Rational:
-    return sp.Rational(number.numerator, number.denominator)
+def _rational(number: Any) -> sp.Rational:
+    return sp.Rational(int(number.numerator), int(number.denominator))
 
 
 def _folded(terms: Terms, rules: Sequence[Rule]) -> Terms:

@@ -11,11 +11,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import reduce
+from functools import lru_cache, reduce
 from operator import add, itemgetter, mul, sub
 from typing import Any, NamedTuple
 
 import sympy as sp
+from sympy.polys.domains.rationalfield import RationalField
 from sympy.polys.groebnertools import groebner
 from sympy.polys.orderings import grevlex
 from sympy.polys.rings import PolyElement, PolyRing
@@ -26,6 +27,24 @@ Monomial = tuple[int, ...]
 Terms = dict[Monomial, Any]  # coefficients in Q
 Pair = tuple[PolyElement, PolyElement]
 Rule = tuple[Monomial, list[tuple[int, int]], Terms]  # leading monomial, its powers, the rest
+
+
+class _Rationals(RationalField):
+    """Q, with whole numbers as Python's: products of fractions take SymPy five times as long."""
+
+    zero, one, tp = 0, 1, (int, sp.QQ.tp)
+
+    def quo(self, a: Any, b: Any) -> Any:
+        """a/b, exactly; Python's a / b of whole numbers would be rounded."""
+        if b == 1:
+            return a
+        quotient = super().quo(a, b)
+        return quotient.numerator if quotient.denominator == 1 else quotient
+
+    exquo = quo
+
+
+NUMBERS = _Rationals()
 
 
 class Generator(NamedTuple):
@@ -46,12 +65,12 @@ class Ring:
     def __init__(self, generators: Sequence[Generator]) -> None:
         self.generators = tuple(generators)
         names = [f"g{index}" for index in range(len(self.generators))]
-        self.polynomials = PolyRing(names, sp.QQ, grevlex)
+        self.polynomials = PolyRing(names, NUMBERS, grevlex)
         self.zero: PolyElement = self.polynomials.zero
         self.one: PolyElement = self.polynomials.one
         self.index = {gen.expression: place for place, gen in enumerate(self.generators)}
         self.relations: tuple[PolyElement, ...] = ()
-        self.derivatives: dict[int, PolyElement] = {}
+        self.derivatives: Mapping[int, PolyElement] = {}
         self.relation_terms: list[tuple[Monomial, list[tuple[int, int]], Any, PolyElement]] = []
         self._normal_forms = _NormalForms([])
         self._monomial_rates: dict[Monomial, PolyElement] = {}
@@ -75,8 +94,8 @@ class Ring:
         rules: list[Rule] = []
         # c·m + rest = 0 becomes the rule m → −rest/c: s² + c² − 1 = 0 becomes s² → 1 − c².
         for element in basis:  # read as: leading monomial -> minus the rest
-            leading = element.leading_expv()
-            tail = {m: -c / element[leading] for m, c in element.items() if m != leading}
+            leading, divide = element.leading_expv(), NUMBERS.quo
+            tail = {m: divide(-c, element[leading]) for m, c in element.items() if m != leading}
             rules.append((leading, _powers(leading), tail))
         self._normal_forms = _NormalForms(rules)
         self.relation_terms = [
@@ -85,10 +104,6 @@ class Ring:
             for term, coefficient in relation.items()
             if any(term)
         ]
-        self._monomial_rates = {}
-
-    def set_derivatives(self, derivatives: Mapping[int, PolyElement]) -> None:
-        self.derivatives = dict(derivatives)
         self._monomial_rates = {}
 
     def reduce(self, element: PolyElement) -> PolyElement:
@@ -116,9 +131,16 @@ class Ring:
                         total[product] = known(product, 0) + weight * factor
         return self._settled(total) if total else self.zero
 
-    def total(self, elements: Iterable[PolyElement]) -> PolyElement:
-        """The sum of elements, in normal form."""
-        return self.dot((element, self.one) for element in elements)
+    def total(
+        self, elements: Iterable[PolyElement], minus: Iterable[PolyElement] = ()
+    ) -> PolyElement:
+        """The sum of elements in normal form, less those of `minus`."""
+        # SymPy's sums compare their rings first, which takes longer than a few terms.
+        result: Terms = {}
+        for sign, group in ((1, elements), (-1, minus)):
+            for element in group:
+                _add(result, sign, element)
+        return PolyElement(self.polynomials, {m: c for m, c in result.items() if c})
 
     def _settled(self, terms: Terms) -> PolyElement:
         """The polynomial of these terms, in normal form."""
@@ -135,10 +157,10 @@ class Ring:
                     _add(result, coefficient, form)
         if not all(result.values()):
             result = {m: c for m, c in result.items() if c}
-        return self.zero.new(result) if result else self.zero
+        return PolyElement(self.polynomials, result) if result else self.zero
 
     def is_zero(self, element: PolyElement) -> bool:
-        return not self.reduce(element)
+        return not element or not self.reduce(element)
 
     def is_one(self, element: PolyElement) -> bool:
         return element is self.one or dict.__eq__(element, self.one)
@@ -160,7 +182,7 @@ class Ring:
             if monomial not in self._monomial_rates:
                 self._monomial_rates[monomial] = self._monomial_rate(monomial)
             _add(result, coefficient, self._monomial_rates[monomial])
-        return self.zero.new({m: c for m, c in result.items() if c})
+        return PolyElement(self.polynomials, {m: c for m, c in result.items() if c})
 
     def _monomial_rate(self, monomial: Monomial) -> PolyElement:
         """d/dt of one monomial, by the product rule; `dt` remembers it."""
@@ -304,6 +326,7 @@ _MOST_STEPS = 60  # of the walk to a shorter form, each of which tries every rel
 _MOST_TERMS = 300
 
 
+@lru_cache(maxsize=4096)  # entries of one rotation return in its rates, and in other rotations
 def shortest(ring: Ring, element: PolyElement) -> PolyElement:
     """A shortest polynomial found that equals `element` in the ring."""
     if element.is_ground or len(element) > _MOST_TERMS:
@@ -347,7 +370,7 @@ def _neighbours(ring: Ring, element: PolyElement, length: tuple[int, int]) -> It
         for monomial, coefficient in element.items():
             if any(monomial[k] < power for k, power in needed):
                 continue
-            times, rest = coefficient / factor, tuple(map(sub, monomial, part))
+            times, rest = NUMBERS.quo(coefficient, factor), tuple(map(sub, monomial, part))
             count, degrees = length
             # The length of the difference is counted without building it, as only one neighbour is
             # used.

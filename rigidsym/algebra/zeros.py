@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
+from math import prod
 from typing import NamedTuple
 
 import sympy as sp
@@ -64,16 +65,19 @@ class _Angle(NamedTuple):
 
 def substituted(element: PolyElement, zero: Zero) -> PolyElement:
     """The element at a zero, not in normal form."""
-    gens = element.ring.gens
-    return element.compose([(gens[place], e) for root in zero for place, e in root.becomes])
+    moved = {place for monomial in element for place, power in enumerate(monomial) if power}
+    becomes = {place: e for root in zero for place, e in root.becomes if place in moved}
+    if not becomes:
+        return element
+    result = element.ring.zero
+    for powers, part in split(element, tuple(becomes)).items():
+        factors = (value**n for value, n in zip(becomes.values(), powers, strict=True) if n)
+        result += prod(factors, start=part)
+    return result
 
 
-@lru_cache(maxsize=256)
 def matrix_at(matrix: RingMatrix, zero: Zero) -> RingMatrix:
     """The matrix at a zero."""
-    places = [place for root in zero for place, _ in root.becomes]
-    if not any(monomial[k] for entry in matrix.entries for monomial in entry for k in places):
-        return matrix
     return RingMatrix.of(matrix.ring, [[substituted(e, zero) for e in row] for row in matrix.rows])
 
 
@@ -160,12 +164,6 @@ class FallingRank:
             return True
         there = self._example | there
         return all(is_identically_zero(c.xreplace(there)) for c in self._constraints) or None
-
-
-@lru_cache(maxsize=32)
-def solver_for(codec: Codec, coordinates: tuple[sp.Expr, ...]) -> Solver:
-    """The solver of one ring, shared like the ring itself."""
-    return Solver(codec, coordinates)
 
 
 class Solver:
@@ -343,6 +341,9 @@ class Solver:
             )
             size = float(coordinate) if coordinate.is_number else 0.0
             yield Root(place, becomes, (self._angles.index(angle), size, str(coordinate)))
+
+
+solver_for = lru_cache(maxsize=32)(Solver)  # shared like the ring itself
 
 
 def length_of(coordinates: Sequence[sp.Expr]) -> sp.Expr:

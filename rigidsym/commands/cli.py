@@ -19,16 +19,16 @@ import click
 
 from rigidsym.commands.command import DECLARED, message
 from rigidsym.errors import RigidsymError
+from rigidsym.system.processes import NEW_OBJECTS
 from rigidsym.version import __version__
 
 _INTERRUPTED = 130
-_NEW_OBJECTS = 200_000  # between two searches for cycles; importing SymPy makes 100,000
 _SUMMARIES = {name: entry["summary"] for name, entry in DECLARED["commands"].items()}
 
 
 def main() -> None:
     """The `rigidsym` command: runs, and turns errors into messages and exit codes."""
-    gc.set_threshold(_NEW_OBJECTS)
+    gc.set_threshold(NEW_OBJECTS)
     for name in ("stdout", "stderr"):  # None if the caller closed them, as `2>&-` does
         if getattr(sys, name) is None:
             setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115

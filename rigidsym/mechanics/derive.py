@@ -122,7 +122,9 @@ def derive(
             inputs += ("t",)
         if constants and not step.expression.free_symbols.isdisjoint(constants):
             inputs += ("parameters",)
-        return replace(step, number=number, quantity=quantity._replace(inputs=inputs))
+        if inputs != quantity.inputs:
+            quantity = quantity._replace(inputs=inputs)
+        return replace(step, number=number, quantity=quantity)
 
     return Derivation(
         name=model.name,
