@@ -107,18 +107,6 @@ def cosine_sine_of_pi(turns: sp.Rational) -> tuple[sp.Expr, sp.Expr]:
     return values
 
 
-def common_fractions(combinations: Iterable[Combination]) -> Combination:
-    """{atom: fraction}: each combination is a sum of whole multiples of fraction·atom."""
-    # The greatest common divisor of the coefficients: cos 2θ and sin(θ/3) are polynomials in the
-    # cosine and sine of gcd(2, 1/3) θ = θ/3.
-    fractions: Combination = {}
-    for terms in combinations:
-        for atom, coefficient in terms.items():
-            if atom is not sp.pi:
-                fractions[atom] = fractions.get(atom, sp.S.Zero).gcd(abs(coefficient))
-    return fractions
-
-
 TIME = sp.Symbol("t")  # the time symbol of sympy.physics.vector.dynamicsymbols
 _MOST_GENERATORS = 300  # a derivative that keeps bringing new functions must end somewhere
 
@@ -194,7 +182,12 @@ class GeneratorSet:
         In the order of the rates of the atoms, where those were asked for, so that rotations of
         the same coordinates share a ring. To be read once all is collected.
         """
-        common = common_fractions(self._angles)
+        # The greatest common divisor of the coefficients: cos 2θ and sin(θ/3) are polynomials in the
+        # cosine and sine of gcd(2, 1/3) θ = θ/3.
+        common: Combination = {}
+        for atom, coefficient in (pair for terms in self._angles for pair in terms.items()):
+            if atom is not sp.pi:
+                common[atom] = common.get(atom, sp.S.Zero).gcd(abs(coefficient))
         places = {expression: place for place, expression in enumerate(self.kinds)}
         in_order = sorted(common, key=lambda atom: places.get(rate_of(atom), len(places)))
         return {atom: common[atom] for atom in in_order}

@@ -15,7 +15,6 @@ from rigidsym.algebra.ring import Ring, shortest
 
 Row = tuple[PolyElement, ...]
 Values = Sequence[Sequence[Any]]  # of the entries at a point, row by row
-Binary = Callable[[Any, Any], Any]
 Origin = tuple[Callable[..., Values], tuple["RingMatrix", ...]]
 
 
@@ -72,15 +71,16 @@ class RingMatrix:
         return RingMatrix(self.ring, tuple(rows), (_multiplied, (self, other)))
 
     def __add__(self, other: RingMatrix) -> RingMatrix:
-        return self._entrywise(add, lambda a, b: self.ring.total((a, b)), other)
+        return self._entrywise(add, other)
 
     def __sub__(self, other: RingMatrix) -> RingMatrix:
-        return self._entrywise(sub, lambda a, b: self.ring.total((a,), (b,)) if b else a, other)
+        return self._entrywise(sub, other)
 
-    def _entrywise(self, of_values: Binary, in_ring: Binary, other: RingMatrix) -> RingMatrix:
+    def _entrywise(self, operation: Callable[[Any, Any], Any], other: RingMatrix) -> RingMatrix:
+        """Sums and differences of normal forms are normal forms."""
         pairs = zip(self.rows, other.rows, strict=True)
-        rows = tuple(tuple(map(in_ring, *entries)) for entries in pairs)
-        return RingMatrix(self.ring, rows, (partial(_entrywise, of_values), (self, other)))
+        rows = tuple(tuple(map(operation, *entries)) for entries in pairs)
+        return RingMatrix(self.ring, rows, (partial(_entrywise, operation), (self, other)))
 
     def map(self, function: Callable[[PolyElement], PolyElement]) -> RingMatrix:
         return RingMatrix.of(self.ring, [[function(entry) for entry in row] for row in self.rows])
@@ -133,10 +133,6 @@ class RingMatrix:
 
     def adjugate(self) -> RingMatrix:
         """adj(M), with M adj(M) = det(M) 1."""
-        if len(self.rows) == 3:  # its columns are products of rows: M (v × w, w × u, u × v) = det 1
-            u, v, w = self.rows
-            columns = (cross(self.ring, *pair) for pair in ((v, w), (w, u), (u, v)))
-            return RingMatrix(self.ring, tuple(columns)).T
         # adj(M)_ij = (−1)^(i+j) times the minor without row j and column i.
         places = range(len(self.rows))
         return RingMatrix(
@@ -237,7 +233,7 @@ def _multiplied(rows: Values, others: Values) -> Values:
     return [[sum(map(mul, row, column)) for column in columns] for row in rows]
 
 
-def _entrywise(operation: Binary, rows: Values, others: Values) -> Values:
+def _entrywise(operation: Callable[[Any, Any], Any], rows: Values, others: Values) -> Values:
     return [list(map(operation, *pair)) for pair in zip(rows, others, strict=True)]
 
 

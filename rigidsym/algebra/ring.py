@@ -131,16 +131,9 @@ class Ring:
                         total[product] = known(product, 0) + weight * factor
         return self._settled(total) if total else self.zero
 
-    def total(
-        self, elements: Iterable[PolyElement], minus: Iterable[PolyElement] = ()
-    ) -> PolyElement:
-        """The sum of elements in normal form, less those of `minus`."""
-        # SymPy's sums compare their rings first, which takes longer than a few terms.
-        result: Terms = {}
-        for sign, group in ((1, elements), (-1, minus)):
-            for element in group:
-                _add(result, sign, element)
-        return PolyElement(self.polynomials, {m: c for m, c in result.items() if c})
+    def total(self, elements: Iterable[PolyElement]) -> PolyElement:
+        """The sum of elements, in normal form."""
+        return self.dot((element, self.one) for element in elements)
 
     def _settled(self, terms: Terms) -> PolyElement:
         """The polynomial of these terms, in normal form."""

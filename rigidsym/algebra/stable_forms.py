@@ -141,7 +141,9 @@ def stable_forms(
     An entry without such a form stays as it is. `given` are the expressions that the entries were
     derived from.
     """
-    rewriter = rewriter_of(given, constraints)
+    rewriter = None  # unless there is exactly one norm
+    if any(map(_has_root, given)):
+        rewriter = rewriter_for(codec_for(given, constraints=constraints, order=2))
     if rewriter is None:
         return [halved(entries, given, constraints) for entries in groups]
     return [[rewriter.stable(entry) for entry in entries] for entries in groups]
@@ -161,15 +163,6 @@ class _Norm(NamedTuple):
     sine: int
     cosine: int
     powers: Mapping[int, int]  # place: power of n that stands there
-
-
-def rewriter_of(
-    expressions: Sequence[sp.Expr], constraints: Sequence[sp.Expr] = ()
-) -> Rewriter | None:
-    """The rewriter for expressions with exactly one norm; else None."""
-    if not any(map(_has_root, expressions)):
-        return None
-    return rewriter_for(codec_for(expressions, constraints=constraints, order=2))
 
 
 @lru_cache(maxsize=1 << 14)

@@ -122,9 +122,7 @@ def derive(
             inputs += ("t",)
         if constants and not step.expression.free_symbols.isdisjoint(constants):
             inputs += ("parameters",)
-        if inputs != quantity.inputs:
-            quantity = quantity._replace(inputs=inputs)
-        return replace(step, number=number, quantity=quantity)
+        return replace(step, number=number, quantity=quantity._replace(inputs=inputs))
 
     return Derivation(
         name=model.name,
