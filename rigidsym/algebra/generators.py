@@ -9,7 +9,6 @@ over the smallest fraction of each angle that occurs, so that cos 2θ and cos θ
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from enum import IntEnum
 from fractions import Fraction
 from functools import cached_property, lru_cache
@@ -182,8 +181,8 @@ class GeneratorSet:
         In the order of the rates of the atoms, where those were asked for, so that rotations of
         the same coordinates share a ring. To be read once all is collected.
         """
-        # The greatest common divisor of the coefficients: cos 2θ and sin(θ/3) are polynomials in the
-        # cosine and sine of gcd(2, 1/3) θ = θ/3.
+        # The greatest common divisor of the coefficients: cos 2θ and sin(θ/3) are polynomials in
+        # the cosine and sine of gcd(2, 1/3) θ = θ/3.
         common: Combination = {}
         for atom, coefficient in (pair for terms in self._angles for pair in terms.items()):
             if atom is not sp.pi:

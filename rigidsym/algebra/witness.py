@@ -14,11 +14,10 @@ zero.
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from decimal import Decimal, localcontext
-from functools import cache, cached_property, lru_cache, partial
-from math import prod
+from functools import cached_property, lru_cache, partial
 from typing import Any, NamedTuple
 
 import sympy as sp
@@ -29,7 +28,6 @@ from rigidsym.algebra.codec import Codec
 from rigidsym.algebra.evaluate import NotReal, RealValues, Unknown, context
 from rigidsym.algebra.generators import TIME, in_names, is_identically_zero
 from rigidsym.algebra.matrix import RingMatrix, Values
-from rigidsym.algebra.ring import Monomial
 from rigidsym.errors import ModelError
 
 DIGITS = 50
@@ -230,10 +228,7 @@ class Witness:
         # An interval without zero proves that the element is not zero. One point at 50 digits
         # decides nearly always; further points and more digits cost more and come later.
         return any(
-            0
-            not in _value(
-                partial(_product, self._bounds(at)), context(digits, of_intervals=True).mpf, element
-            )
+            0 not in _value(self._bounds(at), context(digits, of_intervals=True).mpf, element)
             for digits, count in ((DIGITS, 1), (DIGITS, _POINTS), (MORE_DIGITS, 1))
             for at in self._configurations(digits, count)
         )
@@ -252,27 +247,24 @@ class Witness:
         if all(abs(entry) < _SMALL for row in rows for entry in row):
             return False
         number = context(DIGITS, of_intervals=True).mpf
-        products = partial(_product, self._bounds(self._first))
-        rows = residual.values(partial(_value, products, number), {})
+        rows = residual.values(partial(_value, self._bounds(self._first), number), {})
         return any(0 not in entry for row in rows for entry in row)
 
     @cached_property
-    def _numbers(self) -> Callable[[Monomial], Decimal]:
-        """The values of products of generators at the first point, each worked out once."""
+    def _numbers(self) -> list[Decimal]:
+        """The values of the generators at the first point."""
         number = context(DIGITS + _GUARD).mpf
-        values = [Decimal(str(number(bounds.mid))) for bounds in self._bounds(self._first)]
-        return cache(partial(_product, values))
+        return [Decimal(str(number(bounds.mid))) for bounds in self._bounds(self._first)]
 
 
-def _product(values: Sequence[Any], monomial: Monomial) -> Any:
-    return prod(value**power for value, power in zip(values, monomial, strict=True) if power)
-
-
-def _value(product: Callable[[Monomial], Any], number: Any, element: PolyElement) -> Any:
-    """The value of an element, a number or an interval, from those of products of generators."""
+def _value(values: Sequence[Any], number: Any, element: PolyElement) -> Any:
+    """The value of an element, a number or an interval, from those of its generators."""
     # Evaluation respects sums and products, so one function serves numbers and intervals.
-    terms = (
-        number(int(coefficient.numerator)) / int(coefficient.denominator) * product(monomial)
-        for monomial, coefficient in element.items()
-    )
-    return sum(terms, number(0))
+    total = number(0)
+    for monomial, coefficient in element.items():
+        term = number(int(coefficient.numerator)) / int(coefficient.denominator)
+        for place, power in enumerate(monomial):
+            if power:
+                term = term * values[place] ** power
+        total = total + term
+    return total

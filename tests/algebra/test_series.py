@@ -14,7 +14,7 @@ from rigidsym.algebra.stable_forms import (
     FIRST_SERIES,
     Stumpff,
     halved,
-    rewriter_of,
+    rewriter_for,
     series_of,
 )
 from rigidsym.models.library import rotation_from
@@ -77,7 +77,7 @@ def test_arrays_and_floats_keep_the_bound_on_both_sides_of_the_switch(order, dty
 
 
 def rewritten(expression: sp.Expr) -> sp.Expr | None:
-    rewriter = rewriter_of([sp.sin(NORM) / NORM, X])
+    rewriter = rewriter_for(codec_for([sp.sin(NORM) / NORM, X]))
     assert rewriter is not None
     return rewriter.rewritten(expression)
 
