@@ -36,10 +36,7 @@ class _Rationals(RationalField):
 
     def quo(self, a: Any, b: Any) -> Any:
         """a/b, exactly; Python's a / b of whole numbers would be rounded."""
-        if b == 1:
-            return a
-        quotient = super().quo(a, b)
-        return quotient.numerator if quotient.denominator == 1 else quotient
+        return a if b == 1 else super().quo(a, b)
 
     exquo = quo
 
