@@ -25,6 +25,8 @@ from rigidsym.errors import CheckError
 from rigidsym.tools.certificate.checker import (
     BROKEN,
     LETTERS,
+    MOST_NUMBER,
+    MOST_POWER,
     PRINCIPAL,
     Record,
     Unproved,
@@ -604,11 +606,11 @@ def _tree(text: str) -> Tree:
         match node:
             case ast.Name(name):
                 return ("name", name[:-1])
-            case ast.Constant(int(number)):
+            case ast.Constant(int(number)) if number < MOST_NUMBER:
                 return ("number", number)
             case ast.UnaryOp(ast.USub(), operand):
                 return ("-", ("number", 0), tree(operand))
-            case ast.BinOp(base, ast.Pow(), ast.Constant(int(power))):
+            case ast.BinOp(base, ast.Pow(), ast.Constant(int(power))) if 0 < power <= MOST_POWER:
                 return ("**", tree(base), power)
             case ast.BinOp(one, operator, two) if type(operator) in _SIGNS:
                 return (_SIGNS[type(operator)], tree(one), tree(two))
