@@ -13,6 +13,14 @@ from typing import ClassVar, NamedTuple
 _LONGEST = 40  # letters of a name that a message looks for
 _FEW = 10  # known names that a message lists
 _SHOWN = 3  # of more than a few
+_SPELLINGS = {  # letters of quantities, and what their names begin with
+    "omega": "angular_velocity",
+    "alpha": "angular_acceleration",
+    "R": "rotation_matrix",
+    "W": "rate_matrix",
+    "L": "angular_momentum",
+    "dcm": "rotation_matrix",
+}
 
 
 def printable(text: str) -> str:
@@ -27,6 +35,9 @@ def offer(name: str, known: Iterable[str]) -> str:
     from difflib import get_close_matches  # few commands end with a message
 
     known = list(known)
+    spelled = "_".join(_SPELLINGS.get(word, word) for word in name.split("_"))
+    if spelled != name and [other for other in known if other.startswith(spelled)]:
+        name = spelled
     near = get_close_matches(name, known, n=2) if len(name) <= _LONGEST else []
     near = near or [other for other in known if name and other.startswith(name)][:2]
     if near:

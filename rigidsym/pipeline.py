@@ -102,8 +102,9 @@ def read(source: str, **options: Any) -> DerivationSpec:
     except ModelError as error:
         if options or not source.isidentifier():
             raise
-        hint = f"or a derivation file, NAME.toml or a shipped one; {offer(source, shipped)}"
-        raise ModelError(f"{error}\n{hint}") from None
+        raise ModelError(
+            f"{error}\nor a derivation file, NAME.toml or a shipped one; {offer(source, shipped)}"
+        ) from None
 
 
 # 2. derive

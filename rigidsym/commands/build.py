@@ -16,6 +16,7 @@ def command(sources: tuple[str, ...]) -> None:
     """Compile kernels in C into Python modules, NAME_c.py."""
     for source in map(Path, sources):
         if source.suffix != ".c":
-            wanted = "expected NAME.c, which `rigidsym derive ROTATION --target c` writes"
-            raise RequestError(f"{source}: {wanted}")
+            raise RequestError(
+                f"{source}: expected NAME.c, which `rigidsym derive ROTATION --target c` writes"
+            )
         click.echo(build(source))

@@ -39,8 +39,8 @@ def command(rotation: str, file: Path, **options: Any) -> None:
             threads=options["threads"],
             progress=progress,
         )
-    shown = f"{result.path}: {counted(result.rows, 'row')}; {', '.join(result.columns)}"
-    click.echo(shown, err=str(out) == "-")
+    summary = f"{result.path}: {counted(result.rows, 'row')}; {', '.join(result.columns)}"
+    click.echo(summary, err=str(out) == "-")
     if not result.rows:
         message(f"{file} has no rows of numbers: the result is only a header")
     for remark in result.remarks:

@@ -57,10 +57,10 @@ def write(output: Output, out: Path, *, force: bool) -> list[Path]:
     """
     folder = out / output.spec.name
     record = content_of(folder / f"{folder.name}.json")
-    known = record["files"] if isinstance(record.get("files"), dict) else {}
-    own = [folder / name for name in known if Path(name).name == name]  # none elsewhere
+    digests = record["files"] if isinstance(record.get("files"), dict) else {}
+    own = [folder / name for name in digests if Path(name).name == name]  # none elsewhere
     contents = {path: path.read_bytes() for path in own if path.is_file()}
-    edited = {path for path, text in contents.items() if digest(text) != known[path.name]}
+    edited = {path for path, text in contents.items() if digest(text) != digests[path.name]}
     new = {folder / name: text for name, text in output.files.items()}
     lost = [path for path in edited & new.keys() if contents[path] != new[path].encode()]
     if lost and not force:

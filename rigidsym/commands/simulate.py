@@ -13,7 +13,7 @@ from rigidsym.data.tables import check_ending, write_table
 from rigidsym.errors import DerivationError, ModelError
 from rigidsym.models.forces import Example
 from rigidsym.motion import Motion
-from rigidsym.pipeline import motion_of, read
+from rigidsym.pipeline import motion_of, read, read_file
 from rigidsym.simulation.problem import needed
 from rigidsym.simulation.solver import METHODS
 from rigidsym.system.files import write_text
@@ -60,7 +60,10 @@ def command(source: str, **options: Any) -> None:
 
 def _motion(source: str, *, is_page: bool) -> Motion:
     """The rotation with the quantities that a simulation needs, or with all for a page."""
-    spec = read(source)
+    try:
+        spec = read(source)
+    except ModelError:
+        spec = read_file(source)  # no rotation would do: the message offers derivation files
     if spec.dynamics is None:
         raise ModelError(
             f"{source} has no equations of motion; expected a derivation file with [body] and "

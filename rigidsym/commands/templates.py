@@ -14,7 +14,7 @@ from rigidsym.system.files import write_text
 @make("templates")
 def command(folder: Path) -> None:
     """Copy the shipped templates of notes into DIR, where you can change them."""
-    shipped = [f"{name}.jinja" for name in resources.names(resources.NOTES, ".jinja")]
+    shipped = resources.replaceable()
     taken = [name for name in shipped if (folder / name).exists()]
     if taken:
         raise click.ClickException(f"{folder} already has {', '.join(taken)}; nothing was copied")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
@@ -75,6 +75,11 @@ def principal_axes_of(inertia: ArrayLike) -> PrincipalAxes:
     return PrincipalAxes(moments=moments, axes=axes)
 
 
+def _without_rounding(values: Array, size: float) -> Array:
+    """The values, with 0 for those that rounding left in numbers of this size."""
+    return np.where(np.abs(values) > _ROUNDING * size, values, 0.0)
+
+
 @dataclass(frozen=True, kw_only=True, slots=True, repr=False)
 class MassProperties:
     """Mass, centre, inertia tensor and principal axes of a body, in SI units."""
@@ -86,7 +91,20 @@ class MassProperties:
     principal: PrincipalAxes = field(init=False)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "principal", principal_axes_of(self.inertia))
+        """What only rounding left of a zero is zero."""
+        largest = np.abs(self.inertia).max()
+        # the coordinates of the centre are compared with it and with the radius of gyration
+        size = np.abs(self.centre).max() + np.sqrt(largest / abs(self.mass))
+        inertia = _without_rounding(self.inertia, largest)
+        principal = principal_axes_of(inertia)
+        axes = _without_rounding(principal.axes, 1.0)
+        values = {
+            "inertia": inertia,
+            "centre": _without_rounding(self.centre, size),
+            "principal": replace(principal, axes=axes),
+        }
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
 
     @property
     def radii(self) -> Array:
@@ -110,13 +128,12 @@ class MassProperties:
         return "\n".join(lines)
 
     def as_table(self) -> dict[str, object]:
-        """The values of [body] in a derivation file; what only rounding left of a zero is zero."""
-        largest = np.abs(self.inertia).max()
-        # the coordinates of the centre are compared with it and with the radius of gyration
-        size = np.abs(self.centre).max() + np.sqrt(largest / self.mass)
-        tensor = np.where(np.abs(self.inertia) > _ROUNDING * largest, self.inertia, 0.0)
-        centre = np.where(np.abs(self.centre) > _ROUNDING * size, self.centre, 0.0)
-        return {"inertia": tensor.tolist(), "mass": self.mass, "centre": centre.tolist()}
+        """The values of [body] in a derivation file."""
+        return {
+            "inertia": self.inertia.tolist(),
+            "mass": self.mass,
+            "centre": self.centre.tolist(),
+        }
 
     def record(self) -> dict[str, Any]:
         """The properties as plain data."""
@@ -242,8 +259,10 @@ def _columns(table: Table, names: Sequence[str] | None) -> tuple[list[int], Arra
     axes, mass = [header.find([name]) for name in _AXES], header.find(_MASSES)
     columns = [column for column in (*axes, mass) if column is not None]
     if missing := [name for name, column in zip(_AXES, axes, strict=True) if column is None]:
-        remedy = "--columns names the columns in order"
-        raise BodyError(f"no column {', '.join(missing)} among {header.listed}; {remedy}")
+        raise BodyError(
+            f"no column {', '.join(missing)} among {header.listed}; --columns names the columns "
+            "in order"
+        )
     others = [name for k, name in enumerate(header.plain) if k not in columns]
     if mass is None and (near := get_close_matches("mass", others, n=1)):
         raise BodyError(f"no column m or mass among {header.listed}; is {near[0]} the mass?")

@@ -183,9 +183,9 @@ class NpyTable(ArrayTable):
             raise DataError(f"{path}: {error}") from None
         # NumPy parses the header as Python, and maps as many bytes as it states.
         except (ValueError, TypeError, SyntaxError, TokenError, EOFError, OverflowError):
-            size = path.stat().st_size
-            message = f"{path}: not an NPY file of numbers, or damaged ({size} bytes)"
-            raise DataError(message) from None
+            raise DataError(
+                f"{path}: not an NPY file of numbers, or damaged ({path.stat().st_size} bytes)"
+            ) from None
 
     def _blocks(self, columns: Sequence[int], kept: Sequence[int], rows: int) -> Iterator[Block]:
         for block in super()._blocks(columns, kept, rows):

@@ -80,12 +80,14 @@ def display(
     """
     pen, box = pen or LatexPen(letters.notation), BOX if equation.is_result else 0.0
     forms = _matrix_forms if equation.matrix is not None and equation.sides else _forms
-    for shown in forms(equation, letters, width - box, pen):
-        if shown.width <= width - box:
+    for layout in forms(equation, letters, width - box, pen):
+        if layout.width <= width - box:
             break  # or else the last one, which is a listing
     is_value = equation.matrix is not None or equation.scalar is not None
-    is_broken = is_value and (shown.is_broken or shown.width > width - box)
-    return shown._replace(width=shown.width + box, is_broken=is_broken, is_boxed=equation.is_result)
+    is_broken = is_value and (layout.is_broken or layout.width > width - box)
+    return layout._replace(
+        width=layout.width + box, is_broken=is_broken, is_boxed=equation.is_result
+    )
 
 
 def _forms(equation: Equation, letters: Letters, width: float, pen: LatexPen) -> Iterator[Display]:
@@ -136,7 +138,7 @@ def _matrix_forms(
 def pack(equations: Sequence[Equation], letters: Letters, width: float, pen: LatexPen) -> str:
     """Short equations, as many on a line as fit into `width` ems."""
     displays = [display(equation, letters, width, pen) for equation in equations]
-    lines = _packed((([shown.text], shown.width) for shown in displays), width)
+    lines = _packed((([layout.text], layout.width) for layout in displays), width)
     return lines[0] if len(lines) == 1 else environment("gathered", pen.joined(lines, True))
 
 

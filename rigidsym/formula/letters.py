@@ -83,9 +83,9 @@ class Letters:
 
     def name(self, symbol: sp.Expr) -> Formula:
         """The name of a symbol; raises AlgebraError for what is neither known nor a symbol."""
-        known = self.names.get(symbol) or _CONSTANTS.get(symbol)
-        if known is not None:
-            return known
+        name = self.names.get(symbol) or _CONSTANTS.get(symbol)
+        if name is not None:
+            return name
         if not isinstance(symbol, sp.Symbol | AppliedUndef):
             raise AlgebraError(
                 f"no printed form for {symbol} of type {type(symbol).__name__}: expected numbers, "
@@ -174,13 +174,13 @@ def _term_key(term: sp.Expr, letters: Letters) -> Key:
 
 def _rates(term: sp.Expr, letters: Letters) -> list[Place]:
     """The rates in a term, highest derivative first; of a bracket, those of its first term."""
-    found: list[Place] = []
+    places: list[Place] = []
     for factor in sp.Mul.make_args(term):
         base, exponent = power_of(factor)
         order, index = letters.places.get(base, NO_RATE)
         if order:
-            found += [(-order, index)] * int(abs(exponent))
+            places += [(-order, index)] * int(abs(exponent))
         elif base.is_Add:
             inside = _rates(ordered_terms(base.args, letters)[0], letters)
-            found += inside * (int(exponent) if exponent.is_Integer and exponent > 0 else 1)
-    return sorted(found)
+            places += inside * (int(exponent) if exponent.is_Integer and exponent > 0 else 1)
+    return sorted(places)

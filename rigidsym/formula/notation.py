@@ -39,10 +39,12 @@ class Notation:
     vector: str = "v"  # the letter of the vector that the coordinates are components of
 
     def __post_init__(self) -> None:
-        for name, known in CHOICES.items():
+        for name, choices in CHOICES.items():
             chosen = getattr(self, name)
-            if chosen not in known:
-                raise ModelError(f"notation, {name}: expected {' or '.join(known)}, got {chosen!r}")
+            if chosen not in choices:
+                raise ModelError(
+                    f"notation, {name}: expected {' or '.join(choices)}, got {chosen!r}"
+                )
 
     def applied(self, formula: tree.Formula) -> tree.Formula:
         """The formula in this notation; twice is the same as once."""

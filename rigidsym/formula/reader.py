@@ -266,9 +266,9 @@ _SPAN = re.compile(r"\$[^$]*\$|\{\}|.+?(?=\$|\{\}|\Z)", re.DOTALL)
 
 def sentence(typed: str, *spans: _Span) -> tuple[str | Formula | _Span, ...]:
     r"""The text r"The axis $\mathbf{e}$ of {}" with its formulas read, and a span for each {}."""
-    given = iter(spans)
+    values = iter(spans)
     return tuple(
-        next(given) if part == "{}" else formula(part[1:-1]) if part[0] == "$" else part
+        next(values) if part == "{}" else formula(part[1:-1]) if part[0] == "$" else part
         for part in _SPAN.findall(typed)
     )
 

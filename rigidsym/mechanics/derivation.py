@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
-from functools import cache, cached_property
+from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Self
 
 import sympy as sp
 
 from rigidsym.algebra.zeros import Place as Place
-from rigidsym.errors import QuantityError, offer
+from rigidsym.errors import QuantityError, TemplateFault, offer
 from rigidsym.formula.reader import Sentence, formula, named
 from rigidsym.formula.tree import NOTHING, Formula
 from rigidsym.models.rotation import Citation, RotationModel
@@ -24,20 +24,25 @@ Status = Literal["exact", "unproved"]
 OF_RATES = "rates"  # the section of the quantities that the singularities are about
 
 
-@cache
 def phrases(file: str) -> Mapping[str, Any]:
     """The sentences of a file of templates/notes/en by their keys."""
-    # both are imported by whatever prints a note, but not by a derivation that nobody prints
-    import tomllib
+    # imported by whatever prints a note, but not by a derivation that nobody prints
+    from rigidsym.system.resources import sentences
 
-    from rigidsym.system.resources import text
+    return sentences(f"en/{file}.toml")
 
-    return tomllib.loads(text("templates/notes", f"en/{file}.toml"))
+
+def phrase(file: str, key: str) -> str:
+    """One sentence of a file; raises TemplateFault, with the nearest key, if there is none."""
+    known = phrases(file)
+    if key not in known:
+        raise TemplateFault(f"templates/notes/en/{file}.toml: no {key!r}; {offer(key, known)}")
+    return str(known[key])
 
 
 def sentence_of(reason: str) -> str:
     """The sentence of a reason by its key; nothing for no reason."""
-    return str(phrases("reasons")[reason]) if reason else ""
+    return phrase("reasons", reason) if reason else ""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -95,8 +100,8 @@ class Quantity(NamedTuple):
     """
 
     symbol: Formula
-    about: str  # words: "angular velocity, space components"
     name: str = ""  # in Python, in kernels, in JSON: that of its entry
+    meaning: str = ""  # its words, a key of templates/notes/en/quantities.toml; by default the name
     unit: str = ""  # SI, "" for a pure number
     unit_of: str = ""  # the argument that it is a value of, whose unit it has
     inputs: tuple[str, ...] = ()  # the arguments it depends on, by name: "q", "q_dot", ...
@@ -118,6 +123,11 @@ class Quantity(NamedTuple):
     is_result: bool = False  # whether it is framed in the note
     of_centre: bool = False  # whether it has no meaning for a body with a fixed point
     variants: tuple[tuple[frozenset[str], Mapping[str, Any]], ...] = ()
+
+    @property
+    def about(self) -> str:
+        """Words: "angular velocity, space components"."""
+        return phrase("quantities", self.meaning or self.name)
 
     def presented(self, traits: Set[str]) -> Quantity:
         """The quantity as it is for a model with these traits; later variants take precedence."""
@@ -243,6 +253,11 @@ class Step:
     def because(self) -> str:
         """A sentence: how the quantity follows from the steps before."""
         return self.words or sentence_of(self.quantity.reason)
+
+    @property
+    def about(self) -> str:
+        """What it is, in words."""
+        return self.quantity.about
 
     @cached_property
     def shape(self) -> tuple[int, ...]:

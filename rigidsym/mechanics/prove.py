@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property
+from textwrap import shorten
 from typing import NamedTuple
 
 import sympy as sp
@@ -23,6 +24,8 @@ from rigidsym.errors import Defect, DerivationError, NotARotation, RigidsymError
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Proof
 from rigidsym.models.rotation import TIME, Pullback, RotationModel
+
+_LONGEST, _MOST = 200, 3  # characters of an entry, and entries, of a residual in a message
 
 
 class Conditions(NamedTuple):
@@ -117,13 +120,15 @@ class Prover:
             if error is NotARotation:
                 fails = f"not a rotation, since {claim.text} fails"
             entries = [
-                (str(in_names(left[i, j])), f" in row {i + 1}, column {j + 1}")
+                shorten(str(in_names(left[i, j])), _LONGEST, placeholder=" ...")
+                + f" in row {i + 1}, column {j + 1}" * (len(left) > 1)
                 for i in range(left.rows)
                 for j in range(left.cols)
                 if left[i, j] != 0
             ]
-            rest = "; ".join(text + (place if len(left) > 1 else "") for text, place in entries)
-            raise error(f"{self.subject.name}: {fails}; left over: {rest}")
+            rest = "; ".join(entries[:_MOST])
+            more = f"; and {len(entries) - _MOST} more" * (len(entries) > _MOST)
+            raise error(f"{self.subject.name}: {fails}; left over: {rest}{more}")
         return left
 
     def cancel(self, quotients: Sequence[Quotient], claim: Formula) -> Proof:

@@ -17,7 +17,7 @@ from sympy.core.function import AppliedUndef
 
 from rigidsym.algebra.generators import not_exact
 from rigidsym.errors import BodyError
-from rigidsym.models.rotation import SOURCES, TIME, Citation, symbolic
+from rigidsym.models.rotation import SOURCES, TIME, WORDS, Citation, symbolic
 
 Bounds = tuple[sp.Expr, sp.Expr]
 HERE = sp.ImmutableMatrix.zeros(3, 1)
@@ -137,10 +137,8 @@ KEYS: Mapping[type, str] = {  # of a [body] table, and of its parts
 
 _MODULE_NAME = re.compile(r"[a-z][a-z0-9_]*")
 SOURCE = SOURCES["Landau 32"]
-ABOUT_FIXED_POINT = (
-    "The body turns about a fixed point, which may be its centre of mass, and its inertia tensor "
-    "is about this point, along the axes of the body."
-)
+TITLES = WORDS["bodies"]
+PRODUCT, COORDINATE = TITLES["product_of_inertia"], TITLES["coordinate_of_centre"]
 _ROUNDING = 1e-12  # of the sum of the moments: what arithmetic in double precision leaves
 
 
@@ -219,15 +217,15 @@ class RigidBody:
         ):
             if matrix.shape != shape:
                 raise BodyError(f"expected {what} of shape {shape}, got {matrix.shape}")
-        known = {parameter.symbol for parameter in self.parameters}
-        if len(known) != len(self.parameters):
+        symbols = {parameter.symbol for parameter in self.parameters}
+        if len(symbols) != len(self.parameters):
             raise BodyError("a parameter is named twice")
         for entry in (self.mass, *self.inertia, *self.centre):
             if entry.has(TIME, AppliedUndef) or entry.has(sp.I, sp.nan, sp.oo, sp.zoo):
                 raise BodyError(f"{entry} is not a real constant")
             for number in entry.atoms(sp.Float):
                 raise BodyError(str(not_exact(number)))
-            for symbol in sorted(entry.free_symbols - known, key=str):
+            for symbol in sorted(entry.free_symbols - symbols, key=str):
                 raise BodyError(f"{symbol} is not among the parameters")
         for i, j in combinations(range(3), 2):
             residual = sp.expand(self.inertia[i, j] - self.inertia[j, i])
@@ -243,12 +241,8 @@ class RigidBody:
     def sentences(self, *, about_fixed_point: bool) -> tuple[str, ...]:
         """The body in plain sentences, to follow the convention of its rotation."""
         if about_fixed_point:
-            return (f"{self.title}. {ABOUT_FIXED_POINT}",)
-        return (
-            f"{self.title}, of mass {self.mass}; its inertia tensor is about the centre of mass, "
-            "along the axes of x′.",
-            "The centre of mass is at r_C = (X, Y, Z) in space.",
-        )
+            return (TITLES["with_fixed_point"].format(title=self.title),)
+        return TITLES["free"].format(title=self.title, mass=self.mass), TITLES["centre"]
 
     @property
     def values(self) -> dict[sp.Symbol, sp.Float]:
@@ -325,14 +319,14 @@ def principal_moments(
     mass is the symbol M by default. `parameters` describes further symbols. Raises BodyError.
     """
     moments = [symbolic(moment, "a principal moment") for moment in (A, B, C)]
-    kinds = {1: "Spherical body", 2: "Symmetric body", 3: "Body in its principal axes"}
+    kinds = {1: "spherical", 2: "symmetric", 3: "in_principal_axes"}
     return given_inertia(
         sp.diag(*moments),
         mass=mass,
         name=name,
         parameters=parameters,
         allow=allow,
-        title=kinds[len(set(moments))],
+        title=TITLES[kinds[len(set(moments))]],
         moment="principal moment of inertia",
     )
 
@@ -351,7 +345,7 @@ def given_inertia(
     name: str = "body",
     parameters: Sequence[Parameter] = (),
     allow: bool = False,
-    title: str = "Body with a given inertia tensor",
+    title: str = TITLES["by_tensor"],
     moment: str = "moment of inertia",
 ) -> RigidBody:
     """A body by its inertia tensor about the centre of mass, (3, 3), in kg m². Raises BodyError.
@@ -360,7 +354,7 @@ def given_inertia(
     """
     mass = sp.Symbol("M") if mass is None else symbolic(mass, "the mass")
     # Entries 0, 4 and 8 of nine are the diagonal.
-    meanings = [moment if k % 4 == 0 else _PRODUCT for k in range(9)]  # row by row
+    meanings = [moment if k % 4 == 0 else PRODUCT for k in range(9)]  # row by row
     return RigidBody(
         name=name,
         title=title,
@@ -371,30 +365,30 @@ def given_inertia(
             parameters,
             (mass, "mass"),
             *zip(inertia, meanings, strict=True),
-            *((entry, _COORDINATE) for entry in centre),
+            *((entry, COORDINATE) for entry in centre),
         ),
         declared=tuple(parameters),
         allow=allow,
     )
 
 
-_PRODUCT = "product of inertia, with its sign"
-_COORDINATE = "coordinate of the centre of mass"
 _UNITS = {
     "mass": "kg",
     "principal moment of inertia": "kg m^2",
     "moment of inertia": "kg m^2",
-    _PRODUCT: "kg m^2",
-    _COORDINATE: "m",
+    PRODUCT: "kg m^2",
+    COORDINATE: "m",
 }
 
 
-def described(given: Sequence[Parameter], *slots: tuple[sp.Expr, str]) -> tuple[Parameter, ...]:
+def described(
+    declarations: Sequence[Parameter], *slots: tuple[sp.Expr, str]
+) -> tuple[Parameter, ...]:
     """The parameters of all expressions, in the order of their places.
 
     What is `given` goes before; a symbol that stands alone in its place is described by it.
     """
-    declared = {parameter.symbol: parameter for parameter in given}
+    declared = {parameter.symbol: parameter for parameter in declarations}
     parameters: dict[sp.Symbol, Parameter] = {}
     for expression, what in slots:
         for symbol in sorted(expression.free_symbols, key=str):
@@ -403,7 +397,7 @@ def described(given: Sequence[Parameter], *slots: tuple[sp.Expr, str]) -> tuple[
             own = own or Parameter(symbol=symbol, positive=False)
             # A mass or a moment that is a symbol by itself is positive. Products of inertia and
             # coordinates have any sign, and so have symbols inside larger expressions.
-            is_signed = about in ("", _PRODUCT, _COORDINATE)
+            is_signed = about in ("", PRODUCT, COORDINATE)
             if symbol not in declared and not is_signed:
                 own = replace(own, positive=True)
             parameters[symbol] = own.described_by(about)

@@ -35,15 +35,15 @@ class Example(NamedTuple):
     time: float  # s
 
 
-def examples_of(model: RotationModel, given: Sequence[Mapping[str, Any]]) -> Iterator[Example]:
-    """The examples in the order given; each takes from the first what it does not name.
+def examples_of(model: RotationModel, examples: Sequence[Mapping[str, Any]]) -> Iterator[Example]:
+    """The examples in their order; each takes from the first what it does not name.
 
     Raises ModelError for a key or an initial value that does not exist, and for no time.
     """
     names = [q.func.__name__ for q in model.coordinates]
-    known = (*names, *(f"{name}_dot" for name in names), *OMEGA_COMPONENTS)
+    initials = (*names, *(f"{name}_dot" for name in names), *OMEGA_COMPONENTS)
     first: Mapping[str, Any] = {"time": 0}
-    for k, example in enumerate(given):
+    for k, example in enumerate(examples):
         for key in set(example) - set(Example._fields):
             raise ModelError(
                 f"an example: unknown key {key}; expected {', '.join(Example._fields)}"
@@ -53,8 +53,10 @@ def examples_of(model: RotationModel, given: Sequence[Mapping[str, Any]]) -> Ite
         )
         motion = Example(parameters, initial, example.get("time", first["time"]))
         for name in initial:
-            if name not in known:
-                raise ModelError(f"an example: unknown initial value {name}; {offer(name, known)}")
+            if name not in initials:
+                raise ModelError(
+                    f"an example: unknown initial value {name}; {offer(name, initials)}"
+                )
         numbers: list[Any] = [*parameters.values(), *initial.values(), motion.time]
         are_finite = all(isinstance(value, Real) and isfinite(value) for value in numbers)
         if not are_finite or motion.time <= 0:
@@ -63,16 +65,16 @@ def examples_of(model: RotationModel, given: Sequence[Mapping[str, Any]]) -> Ite
         yield motion
 
 
-def initial_values(model: RotationModel, given: Mapping[str, Any]) -> dict[str, Any]:
-    """All coordinates, and all rates or components of Ω′: no rotation, at rest, if not given."""
+def initial_values(model: RotationModel, values: Mapping[str, Any]) -> dict[str, Any]:
+    """All coordinates, and all rates or components of Ω′: no rotation, at rest, by default."""
     names = [q.func.__name__ for q in model.coordinates]
     start: dict[str, Any] = dict.fromkeys(names, 0.0)
-    if start.keys().isdisjoint(given):
+    if start.keys().isdisjoint(values):
         start = no_rotation(model)
     turning = [f"{name}_dot" for name in names]
-    if not set(OMEGA_COMPONENTS).isdisjoint(given):
+    if not set(OMEGA_COMPONENTS).isdisjoint(values):
         turning = list(OMEGA_COMPONENTS)
-    return {**start, **dict.fromkeys(turning, 0.0), **given}
+    return {**start, **dict.fromkeys(turning, 0.0), **values}
 
 
 def no_rotation(model: RotationModel) -> dict[str, float]:
@@ -183,30 +185,34 @@ class Forces:
         Raises ModelError for a potential that depends on the rates or on no coordinate, for parts
         that depend on the time, and for an example with a value of another constant.
         """
-        shown = f"the potential {as_typed(self.potential)} depends on"
+        depends = f"the potential {as_typed(self.potential)} depends on"
         if self.potential.has(sp.Derivative, *OMEGA_BODY):
-            raise ModelError(f"{shown} rates; expected V(q, t)")
+            raise ModelError(f"{depends} rates; expected V(q, t)")
         if self.potential.free_symbols and not self.potential.has(*model.coordinates):
             names = ", ".join(map(as_typed, model.coordinates))
             plain = {q.func.__name__ for q in model.coordinates}
             plain &= {symbol.name for symbol in self.potential.free_symbols}
-            remedy = (
-                f"{min(plain)} is a symbol here; expected a text, or the function {min(plain)}(t)"
-                if plain
-                else "expected one of them; a constant exerts no force, and is left out"
+            missing = f"{depends} none of the coordinates {names}"
+            if plain:
+                name = min(plain)
+                raise ModelError(
+                    f"{missing}; {name} is a symbol here; expected a text, or the function "
+                    f"{name}(t)"
+                )
+            raise ModelError(
+                f"{missing}; expected one of them; a constant exerts no force, and is left out"
             )
-            raise ModelError(f"{shown} none of the coordinates {names}; {remedy}")
         for expression in self._of_parts:
             what = "t" if depends_on_time(expression) else "Ω′"
             if what == "t" or expression.has(*OMEGA_BODY):
                 raise ModelError(
                     f"{as_typed(expression)} depends on {what}; expected a part that does not"
                 )
-        known = {p.symbol for p in body.parameters} | {*model.constants, *OMEGA_BODY, TIME}
-        symbols = set().union(*(expression.free_symbols for expression in self.expressions)) - known
-        constants = {str(symbol) for symbol in (known | symbols) - {*OMEGA_BODY, TIME}}
-        given = {name for example in self.examples for name in example.parameters}
-        for name in sorted(given - constants):
+        bound = {p.symbol for p in body.parameters} | {*model.constants, *OMEGA_BODY, TIME}
+        symbols = set().union(*(expression.free_symbols for expression in self.expressions)) - bound
+        constants = {str(symbol) for symbol in (bound | symbols) - {*OMEGA_BODY, TIME}}
+        of_examples = {name for example in self.examples for name in example.parameters}
+        for name in sorted(of_examples - constants):
             raise ModelError(
                 f"an example: unknown parameter {name}; {offer(name, sorted(constants))}"
             )
@@ -252,15 +258,15 @@ def forces_on(
     what is no coordinate, for a constant with the name of a quantity or nearly that of a rate, and
     for parts and examples that are none; ExpressionError for a text that cannot be read.
     """
-    known = {q.func.__name__: q for q in model.coordinates}
-    names = known | {f"{name}_dot": sp.diff(q, TIME) for name, q in known.items()}
+    coordinates = {q.func.__name__: q for q in model.coordinates}
+    names = coordinates | {f"{name}_dot": sp.diff(q, TIME) for name, q in coordinates.items()}
     for k, component in enumerate(OMEGA_BODY, start=1):
         names |= {f"omega_body_{k}": component, f"angular_velocity_body_{k}": component}
     names["t"] = TIME
     for name in forces:
-        if name not in known:
+        if name not in coordinates:
             raise ModelError(
-                f"a force on {name}, which is not a coordinate; expected {', '.join(known)}"
+                f"a force on {name}, which is not a coordinate; expected {', '.join(coordinates)}"
             )
     if len(torque) not in (0, 3):
         raise ModelError(f"torque: expected three components, got {len(torque)}")
@@ -268,7 +274,7 @@ def forces_on(
         raise ModelError(f"no method {method!r}; {offer(method, METHODS)}")
     return Forces(
         potential=_read(potential, names),
-        generalised={known[name]: _read(force, names) for name, force in forces.items()},
+        generalised={coordinates[name]: _read(force, names) for name, force in forces.items()},
         torque=tuple(_read(component, names) for component in torque),
         first_integrals={n: _read(value, names) for n, value in first_integrals.items()},
         method=method,
@@ -277,22 +283,22 @@ def forces_on(
     )
 
 
-def _part(given: Mapping[str, Any], names: Mapping[str, sp.Expr]) -> MovingPart:
+def _part(entry: Mapping[str, Any], names: Mapping[str, sp.Expr]) -> MovingPart:
     """Another body, {"rotation", "principal_moments"}, or a particle, {"velocity", "mass"}."""
     velocity: Sequence[Any] = ()
     rotation = None
-    if given.keys() == {"rotation", "principal_moments"}:
-        rotation = rotation_from(given["rotation"])
+    if entry.keys() == {"rotation", "principal_moments"}:
+        rotation = rotation_from(entry["rotation"])
         strange = [str(q.func) for q in rotation.coordinates if q not in names.values()]
         if strange:
             raise ModelError(f"a part turns by {strange[0]}, which is not a coordinate of the body")
-        inertia = given["principal_moments"]
-    elif given.keys() == {"velocity", "mass"}:
+        inertia = entry["principal_moments"]
+    elif entry.keys() == {"velocity", "mass"}:
         # T = ½ m v² = ½ vᵀ diag(m, m, m) v has the form of ½ Ω′ᵀ I′ Ω′, so one formula serves both.
-        velocity, inertia = given["velocity"], [given["mass"]] * 3
+        velocity, inertia = entry["velocity"], [entry["mass"]] * 3
     else:
         raise ModelError(
-            f"a part with {', '.join(given) or 'nothing'}; expected rotation and "
+            f"a part with {', '.join(entry) or 'nothing'}; expected rotation and "
             "principal_moments, or velocity and mass"
         )
     if len(inertia) != 3 or len(velocity) not in (0, 3):
@@ -306,13 +312,13 @@ def _part(given: Mapping[str, Any], names: Mapping[str, sp.Expr]) -> MovingPart:
     )
 
 
-def _read(given: sp.Expr | str | int, names: Mapping[str, sp.Expr]) -> sp.Expr:
-    if not isinstance(given, str):
-        return _with_roots(symbolic(given, "a potential or a force"))
-    for name in set(names_in(given)) - set(names):
+def _read(value: sp.Expr | str | int, names: Mapping[str, sp.Expr]) -> sp.Expr:
+    if not isinstance(value, str):
+        return _with_roots(symbolic(value, "a potential or a force"))
+    for name in set(names_in(value)) - set(names):
         _check_spelling(name, names)
-    used = {name: names.get(name) or sp.Symbol(check_name(name)) for name in names_in(given)}
-    return _with_roots(parse_expression(given, used))
+    used = {name: names.get(name) or sp.Symbol(check_name(name)) for name in names_in(value)}
+    return _with_roots(parse_expression(value, used))
 
 
 def _with_roots(value: sp.Expr) -> sp.Expr:
@@ -328,7 +334,7 @@ def _check_spelling(name: str, names: Mapping[str, sp.Expr]) -> None:
     plain = name.replace("_", "").lower()
     # Names of digits differ by intention, theta_1 and theta_2, so only names of letters are
     # compared by their likeness.
-    near = [known for known in names if known.replace("_", "").lower() == plain != known]
+    near = [other for other in names if other.replace("_", "").lower() == plain != other]
     if len(name) >= _LONG and not any(letter.isdigit() for letter in name):
         near += get_close_matches(name, names, n=1, cutoff=_ALIKE)
     if near and len(plain) > 1:  # T may be a constant beside the time t

@@ -105,11 +105,13 @@ def rotation_from(
     else:
         letters = text.translate(DIGITS)
         if len(letters) != 3 or not set(letters.lower()) <= {*AXES}:
-            shown = text if len(text) <= _SHOWN else text[:_SHOWN] + "…"
+            excerpt = text if len(text) <= _SHOWN else text[:_SHOWN] + "…"
             near = get_close_matches(text.lower(), [*PARAMETRISATIONS, *PRESETS], n=1)
+            bare = re.sub(r"[\W_]", "", text)  # Z-Y-X, 3-1-3
+            near = [bare] if bare.translate(DIGITS) in EULER_SEQUENCES else near
             meant = f"expected {_A_ROTATION} (`rigidsym list`)"
             meant = f"did you mean {near[0]}?" if near else meant
-            raise ModelError(f"{shown!r} is not a rotation\n{meant}")
+            raise ModelError(f"{excerpt!r} is not a rotation\n{meant}")
         model = EulerAngles(text, DEFAULT_ANGLES if names is None else names, passive=passive)
     if model.request:
         return model  # Euler angles know what asks for them

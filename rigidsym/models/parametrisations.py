@@ -137,16 +137,20 @@ def _euler_sequence(text: str) -> str:
     letters = text.translate(DIGITS)
     if letters in EULER_SEQUENCES:
         return letters
+    wrong = f"{text!r} is not an Euler sequence"
     if letters not in (letters.upper(), letters.lower()):
-        fault = "upper case is intrinsic and lower case extrinsic; do not mix them"
-    elif len(letters) != 3 or not set(letters.lower()) <= set(AXES):
-        fault = "expected three axes such as ZXZ (intrinsic), zxz (extrinsic) or 313 (intrinsic)"
-    else:
-        place = 1 if letters[0] == letters[1] else 2
-        alike = [s for s in EULER_SEQUENCES if s.isupper() == letters.isupper()]
-        follows = f"{text[place]} follows {text[place - 1]}"
-        fault = f"consecutive axes must differ: {follows}; {offer(letters, alike)}"
-    raise ModelError(f"{text!r} is not an Euler sequence: {fault}")
+        raise ModelError(
+            f"{wrong}: upper case is intrinsic and lower case extrinsic; do not mix them"
+        )
+    if len(letters) != 3 or not set(letters.lower()) <= set(AXES):
+        raise ModelError(
+            f"{wrong}: expected three axes such as ZXZ (intrinsic), zxz (extrinsic) or 313 "
+            "(intrinsic)"
+        )
+    place = 1 if letters[0] == letters[1] else 2
+    alike = [s for s in EULER_SEQUENCES if s.isupper() == letters.isupper()]
+    follows = f"{text[place]} follows {text[place - 1]}"
+    raise ModelError(f"{wrong}: consecutive axes must differ: {follows}; {offer(letters, alike)}")
 
 
 def _in_order(turns: Sequence[Turn], which: str) -> str:
@@ -189,14 +193,12 @@ def chain(turns: Sequence[Turn], *, passive: bool = False) -> RotationModel:
     constraints = tuple(dict.fromkeys(c for c in units if not is_identically_zero(c)))
     letters = "".join(turn.axis if turn.axis in AXES else "u" for turn in turns)
     steps = [f"{turn.angle_text} about {turn.axis}" for turn in turns]
-    counted, convention = "One turn", f"One turn: {steps[0]}."
-    if len(steps) > 1:
-        counted = f"{dict(enumerate(_NUMBERS, 1)).get(len(steps), len(steps))} turns"
-        moved = "each about an axis that the turns before it have moved"
-        convention = f"{counted}, {moved}: first {', then '.join(steps)}."
+    count = dict(enumerate(_NUMBERS, 1)).get(len(steps), len(steps))
+    words = WORDS["chains"]["several" if steps[1:] else "single"]
+    convention = words.format(count=count, steps=", then ".join(steps))
     return _model(
         f"chain_{letters}",
-        f"{counted} {written}",
+        f"{count} turn{'s' * (len(steps) > 1)} {written}",
         convention,
         coordinates=coordinates,
         matrix=product_of(tuple(turns)),
@@ -400,7 +402,7 @@ def given(
     return RotationModel(
         name=name,
         title=name,
-        convention=("The rotation is given entry by entry.",),
+        convention=(WORDS["chains"]["by_entries"],),
         coordinates=used,
         matrix=sp.ImmutableMatrix(matrix),
         constraints=tuple(constraints),

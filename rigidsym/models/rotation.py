@@ -114,8 +114,8 @@ def by_axis(turns: tuple[Turn, ...], angle: sp.Expr) -> list[tuple[Turn, sp.Immu
     """A turn by the angle about each axis of the turns, with its matrix; x, y and z come first."""
     axes = {(turn.components, turn.axis): turn for turn in turns}
     ordered = sorted(axes, key=lambda key: (bool(key[0]), key[1]))
-    found = [replace(axes[key], angle=angle) for key in ordered]
-    return [(turn, turn.matrix) for turn in found]
+    by_angle = (replace(axes[key], angle=angle) for key in ordered)
+    return [(turn, turn.matrix) for turn in by_angle]
 
 
 def carried_axes(turns: tuple[Turn, ...]) -> list[sp.ImmutableMatrix]:
@@ -265,9 +265,9 @@ class RotationModel:
 
 
 @lru_cache(maxsize=256)
-def _constants(held: tuple[sp.Basic, ...]) -> tuple[sp.Symbol, ...]:
+def _constants(parts: tuple[sp.Basic, ...]) -> tuple[sp.Symbol, ...]:
     """The symbols that do not move; asked for again and again in one derivation."""
-    return tuple(sp.ordered(set().union(*(part.free_symbols for part in held)) - {TIME}))
+    return tuple(sp.ordered(set().union(*(part.free_symbols for part in parts)) - {TIME}))
 
 
 def time_function(name: str) -> sp.Expr:

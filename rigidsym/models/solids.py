@@ -112,14 +112,14 @@ def check_lengths(name: str, values: Sequence[float | None]) -> None:
     """Raises BodyError for a number that cannot be a length of the shape; None is not checked."""
     shape = shape_of(name)
     keys = [length.key for length in shape.lengths for _ in length.names]
-    known = {key: v for key, v in zip(keys, values, strict=True) if v is not None}
+    numbers = {key: v for key, v in zip(keys, values, strict=True) if v is not None}
     for key, value in zip(keys, values, strict=True):
         if value is not None and not value > 0 and not shape.has_corners:
             raise BodyError(f"{name}: {key} is {value:g} m; expected a positive length")
     for larger, smaller in shape.larger:
         # A length without a value fulfils every such condition.
-        if known.get(larger, inf) < known.get(smaller, 0):
+        if numbers.get(larger, inf) < numbers.get(smaller, 0):
             raise BodyError(
-                f"{name}: {larger} is {known[larger]:g} m, less than {smaller} with "
-                f"{known[smaller]:g} m"
+                f"{name}: {larger} is {numbers[larger]:g} m, less than {smaller} with "
+                f"{numbers[smaller]:g} m"
             )

@@ -40,9 +40,8 @@ from rigidsym.notes.document import (
 from rigidsym.notes.equations import claims_of, equation_of, sums
 from rigidsym.notes.facts.rotation import RotationFacts, facts_of_rotation, product_of
 from rigidsym.notes.facts.singular import singular_facts
-from rigidsym.notes.facts.symbols import meanings_of
 from rigidsym.notes.fitting import as_vectors, fitted
-from rigidsym.notes.letters import letters_of
+from rigidsym.notes.letters import letters_of, meanings_of
 from rigidsym.notes.named_body import OFFSET, in_names, textbook_form
 from rigidsym.notes.template import blocks_of, sections_of
 from rigidsym.notes.words import (

@@ -138,8 +138,8 @@ class Document:
     @cached_property
     def displays(self) -> tuple[Equation, ...]:
         """All equations in order, including equations that share a line."""
-        shown = (b.equations if isinstance(b, EquationRow) else (b,) for b in self.blocks)
-        return tuple(e for e in chain.from_iterable(shown) if isinstance(e, Equation))
+        groups = (b.equations if isinstance(b, EquationRow) else (b,) for b in self.blocks)
+        return tuple(e for e in chain.from_iterable(groups) if isinstance(e, Equation))
 
     @cached_property
     def figures(self) -> tuple[Figure, ...]:

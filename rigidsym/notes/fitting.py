@@ -56,7 +56,7 @@ def fitted(
 ) -> Iterator[NoteBlock]:
     """An equation; where it would be long, in short."""
     name, model = step.quantity.name, derivation.model
-    shown, side = display(equation, letters, PAGE), _short_form(step, derivation, letters)
+    layout, side = display(equation, letters, PAGE), _short_form(step, derivation, letters)
     if side is None and not equation.sides[1:]:  # nothing else says what it is
         yield equation
         return
@@ -67,14 +67,14 @@ def fitted(
     by_vectors = (bool(model.vector) and not is_of_body) or (
         name == "rotation_rate" and not is_audit
     )
-    is_matrix = equation.matrix is not None and not shown.is_listed
-    lines = equation.matrix.rows if equation.matrix and is_matrix else shown.lines
+    is_matrix = equation.matrix is not None and not layout.is_listed
+    lines = equation.matrix.rows if equation.matrix and is_matrix else layout.lines
     most = _MOST_OF_ROTATION if name == "rotation_matrix" else _MOST_LINES
-    if (by_vectors and shown.is_listed) or (
-        shown.is_broken and (by_vectors or name in _RATHER_SHORT)
+    if (by_vectors and layout.is_listed) or (
+        layout.is_broken and (by_vectors or name in _RATHER_SHORT)
     ):
         yield short
-    elif shown.width > PAGE or (shown.is_broken and lines > most):
+    elif layout.width > PAGE or (layout.is_broken and lines > most):
         yield from (short, said("left_out"))  # the function evaluates it all the same
     else:
         yield equation

@@ -1,17 +1,19 @@
-"""The symbols of a derivation: their letters, the length of its vector, names of entries."""
+"""The symbols of a derivation: their letters and meanings, and the length of its vector."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
 from functools import lru_cache
+from itertools import chain
 
 import sympy as sp
 
 from rigidsym.formula.letters import Letters, VectorLength
 from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.formula.reader import formula
-from rigidsym.mechanics.derivation import Argument
+from rigidsym.formula.tree import Formula
+from rigidsym.mechanics.derivation import Argument, Derivation
 from rigidsym.mechanics.kinematics.workspace import LENGTH
 from rigidsym.mechanics.quantities.dynamics import LETTERS
 from rigidsym.models.rotation import RotationModel
@@ -23,6 +25,7 @@ _OF_VECTORS = tuple("abegkpsvw")
 _ORDERS = {"q": 0, "q_dot": 1, "q_ddot": 2, "centre": 0, "centre_dot": 1}
 _GIVEN_RATE = 1  # a given angular velocity is ordered as the rates are
 _BEFORE = dict.fromkeys(("centre", "centre_dot"), -3)  # what translates before what turns
+_PLACES = ("centre", "point", "direction")  # that moments are taken about
 _CONSTANT = "parameters"  # constants go before coordinates, in the order of their names
 
 
@@ -52,8 +55,8 @@ def _letters(
         names.update(zip(argument.symbols, argument.notation, strict=True))
         order, first = _ORDERS.get(argument.name, _GIVEN_RATE), _BEFORE.get(argument.name, 0)
         if argument.name != _CONSTANT:
-            found = {s: (order, first + k) for k, s in enumerate(argument.symbols)}
-            places = found | places  # the state y holds coordinates that have their order already
+            own = {s: (order, first + k) for k, s in enumerate(argument.symbols)}
+            places = own | places  # the state y holds coordinates that have their order already
     return Letters(notation=notation, length=length, names=names, places=places)
 
 
@@ -73,3 +76,32 @@ def length_of(model: RotationModel) -> VectorLength | None:
         if any(symbol in length.shortened(entry).free_symbols for entry in model.matrix):
             return length
     return None
+
+
+def meanings_of(derivation: Derivation) -> list[tuple[list[Formula], str, str]]:
+    """Coordinates, constants, points and lines: symbols of one meaning and one unit."""
+    arguments = {argument.name: argument for argument in derivation.arguments}
+    used = {name for step in derivation.steps for name in step.quantity.inputs}
+    q, turns = arguments["q"], derivation.model.turns
+    rows = [(name, "coordinates", unit) for name, unit in zip(q.notation, q.units, strict=True)]
+    of_body = {p.symbol: p for p in derivation.body.parameters} if derivation.body else {}
+    of_axes = {s for turn in turns for c in turn.components for s in c.free_symbols}
+    angles = {symbol for turn in turns for symbol in turn.angle.free_symbols}
+    of_all = (a for a in derivation.arguments if a.name == "parameters")
+    constants = (zip(a.symbols, a.notation, a.units, strict=True) for a in of_all)
+    for symbol, name, unit in chain.from_iterable(constants):
+        about = "constant"
+        if symbol in of_body:  # in Python a symbol may come without a word of what it is
+            about = of_body[symbol].about or "constant of the body"
+            unit = unit if of_body[symbol].about else unit or "—"
+        elif symbol in of_axes:
+            about = "components of an axis at rest"
+        elif symbol in angles:
+            about, unit = "constant angle", "rad"
+        rows.append((name, about, unit))
+    for place in (arguments[name] for name in _PLACES if name in used):
+        rows += [(name, place.about, place.units[0]) for name in place.notation]
+    groups: dict[tuple[str, str], list[Formula]] = {}
+    for name, about, unit in rows:
+        groups.setdefault((about, unit), []).append(name)
+    return [(names, *meaning) for meaning, names in groups.items()]

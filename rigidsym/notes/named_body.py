@@ -54,12 +54,12 @@ def in_names(derivation: Derivation) -> tuple[Derivation, Parts]:
     if present.isdisjoint(renamed) or {str(name) for name in names - own} & taken:
         return derivation, ()
     again = derive(derivation.model, [n for n in renamed if n in present], body=letters)
-    shown = {step.quantity.name: step.expression for step in again.steps}
+    expressions = {step.quantity.name: step.expression for step in again.steps}
     steps = []
     for step in derivation.steps:
         name, quantity = step.quantity.name, step.quantity
-        expression = shown.get(name, step.expression)
-        if name in shown and has_offset and name in _ABOUT_POINT:
+        expression = expressions.get(name, step.expression)
+        if name in expressions and has_offset and name in _ABOUT_POINT:
             expression = expression.xreplace(dict(zip(POINT, OFFSET, strict=True)))
             if name == "inertia_tensor_point":
                 quantity = quantity._replace(definition=_STEINER)

@@ -80,9 +80,6 @@ def note(
     return Note(composer.document(template_of(check_style(style))))
 
 
-STYLES = ("lecture", "audit")  # that are shipped, the default first
-
-
 def template_of(style: str) -> str:
     """The name of the template of a style: lecture is en/lecture, and fr/lecture is itself."""
     return style if "/" in style else f"en/{style}"
@@ -94,8 +91,8 @@ def check_style(style: str) -> str:
     try:
         resources.template(name)
     except (FileNotFoundError, ValueError):
-        known = ", ".join(STYLES)
+        names = ", ".join(resources.STYLES)
         raise ModelError(
-            f"no style {style!r}: expected {known}, or your own template {name} (--templates DIR)"
+            f"no style {style!r}: expected {names}, or your own template {name} (--templates DIR)"
         ) from None
     return style

@@ -94,12 +94,12 @@ def gimbal_lock(rng: Random) -> Facts:
     derivation = derive(EulerAngles(sequence))
     singular = singular_facts(derivation)
     assert singular is not None
-    assert singular.found.determinant is not None
+    assert singular.result.determinant is not None
     away = rng.randrange(1, 16)  # degrees from gimbal lock
     # |det W| is sin θ for proper Euler angles and cos θ for Tait-Bryan angles.
     theta = away if sequence[0] == sequence[2] else 90 - away
     angle = {derivation.model.coordinates[1]: sp.Float(radians(theta))}
-    size = abs(float(singular.found.determinant.xreplace(angle)))
+    size = abs(float(singular.result.determinant.xreplace(angle)))
     return {
         "derivation": derivation,
         "sequence": sequence,

@@ -104,6 +104,7 @@ def sections_of(name: str, letters: Letters, **facts: Any) -> Iterator[Section]:
     blocks: list[NoteBlock] = []
     for chunk in re.split(r"\n\s*\n", markdown.strip("\n")):
         heading, _, rest = chunk.partition("\n") if chunk.startswith("#") else ("", "", chunk)
+        _check_ends(chunk)
         if heading:
             yield section._replace(blocks=tuple(blocks))
             title = text_of(_text(heading.strip("# "), marks.things))
@@ -111,6 +112,25 @@ def sections_of(name: str, letters: Letters, **facts: Any) -> Iterator[Section]:
         if rest.strip():
             blocks += _blocks(rest.strip(), marks.things)
     yield section._replace(blocks=tuple(blocks))
+
+
+def _check_ends(chunk: str) -> None:
+    """Raises TemplateFault, with the line, if a formula of a paragraph has no end."""
+    is_display = chunk.startswith("$$")
+    if is_display and chunk.endswith("$$") and chunk.count("$") == 4:
+        return
+    if not is_display and chunk.count("$") % 2 == 0:
+        return
+    lines = chunk.strip("$\n").splitlines() if is_display else chunk.splitlines()
+    line = next(line for line in lines if is_display or line.count("$") % 2)
+    raise TemplateFault(
+        f"{_place_of(line)}: expected {'$$' if is_display else '$'} at the end of a formula"
+    )
+
+
+def _place_of(line: str) -> str:
+    """Where a line of the Markdown stands; a fact in it is not written in the template so."""
+    return resources.place_of(max(re.split(_MARK, line), key=len))
 
 
 def blocks_of(name: str, letters: Letters, **facts: Any) -> tuple[NoteBlock, ...]:
@@ -169,8 +189,7 @@ def _formula(typed: str, things: list[Any]) -> Formula:
     try:
         return formula(re.sub(_MARK, lambda _: f"#{next(places)}", typed.strip()), *parts)
     except AlgebraError as error:
-        words = max(re.split(_MARK, typed), key=len)  # a fact is not written in the template so
-        raise TemplateFault(f"{resources.place_of(words)}: {error}") from error
+        raise TemplateFault(f"{_place_of(typed)}: {error}") from error
 
 
 def _table(chunk: str, things: list[Any]) -> NoteTable:

@@ -50,11 +50,11 @@ def symbols_of(derivation: Derivation) -> dict[str, Formula]:
     if derivation.model.vector:
         length = length_of(derivation.model)
         named += (VECTOR, *([length.names[length.symbol]] if length else ()))
-    found = {symbol.text: symbol for symbol in named}
+    symbols = {symbol.text: symbol for symbol in named}
     for argument in derivation.arguments:
         if argument.name == "q":
-            found |= zip(argument.names, argument.notation, strict=True)
-    return found
+            symbols |= zip(argument.names, argument.notation, strict=True)
+    return symbols
 
 
 def with_symbols(words: str, symbols: Mapping[str, Formula]) -> Text:
@@ -67,8 +67,10 @@ def with_symbols(words: str, symbols: Mapping[str, Formula]) -> Text:
 def _any_of(texts: tuple[str, ...]) -> re.Pattern[str]:
     # A pattern takes the first alternative that matches: Ω′ has to come before Ω.
     longest_first = sorted(texts, key=len, reverse=True)
-    known = (rf"{t}(?= [+=]| about)" if t in _ALSO_WORDS else re.escape(t) for t in longest_first)
-    return re.compile(r"(?<!\w)(" + "|".join(known) + r")(?!\w)")
+    patterns = (
+        rf"{t}(?= [+=]| about)" if t in _ALSO_WORDS else re.escape(t) for t in longest_first
+    )
+    return re.compile(r"(?<!\w)(" + "|".join(patterns) + r")(?!\w)")
 
 
 def with_source(text: Text, source: Citation | None) -> Text:

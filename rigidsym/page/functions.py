@@ -95,9 +95,9 @@ def moments_of(body: RigidBody | None) -> tuple[sp.Expr, ...]:
     return tuple(body.inertia.diagonal()) if body and body.inertia.is_diagonal() else ()
 
 
-def _function(name: str, matrix: sp.MatrixBase, about: str, inputs: tuple[str, ...]) -> Step:
+def _function(name: str, matrix: sp.MatrixBase, *inputs: str) -> Step:
     """A function that is evaluated like the quantities, but is in no note."""
-    quantity = Quantity(name=name, symbol=Symbol(name), about=about, inputs=inputs)
+    quantity = Quantity(name=name, symbol=Symbol(name), inputs=inputs)
     return Step(quantity=quantity, expression=matrix.as_immutable())
 
 
@@ -107,8 +107,7 @@ def _more(derivation: Derivation) -> Iterator[Step]:
     constants = ("parameters",) if model.constants else ()
     if has_turns(model):
         rows = sp.Matrix([[*turn.direction, turn.angle, turn.rate] for turn in model.turns])
-        about = "axis, angle and rate of each turn, one turn a row"
-        yield _function("turns", rows, about, ("q", "q_dot", *constants))
+        yield _function("turns", rows, "q", "q_dot", *constants)
     conditions = sp.Matrix(model.constraints)
     if model.pullback is not None:  # of a matrix: R Rᵀ = 1
         # R Rᵀ is symmetric, so that R Rᵀ = 1 has six different entries.
@@ -117,6 +116,6 @@ def _more(derivation: Derivation) -> Iterator[Step]:
     if conditions:
         slopes = conditions.jacobian([*model.coordinates, *model.constants])
         for name, values in (("conditions", conditions), ("condition_slopes", slopes)):
-            yield _function(name, values, "constraints and their slopes", ("q", *constants))
+            yield _function(name, values, "q", *constants)
     if moments.free_symbols:
-        yield _function("moments", moments, "principal moments", ("parameters",))
+        yield _function("moments", moments, "parameters")

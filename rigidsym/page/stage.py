@@ -74,8 +74,8 @@ def _rays(model: RotationModel, scene: Scene | None, letters: Letters) -> Iterat
         axes = axes if has_turns(model) else [Symbol("e", "bold")]
         rays += [("node", axis, k, None) for k, axis in enumerate(axes)]
     for kind, name, frame, direction in rays:
-        shown = in_a_figure(letters.notation.applied(name))
-        yield {"kind": kind, "name": shown, "frame": frame, "direction": direction}
+        letter = in_a_figure(letters.notation.applied(name))
+        yield {"kind": kind, "name": letter, "frame": frame, "direction": direction}
 
 
 def _turns(model: RotationModel, scene: Scene | None, letters: Letters) -> Iterator[dict[str, Any]]:

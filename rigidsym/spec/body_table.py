@@ -260,8 +260,8 @@ def _known(table: _Table) -> distribution.Known:
     centre = table.read("centre", ("x_C", "y_C", "z_C")) if has_centre else [*distribution.HERE]
     for expressions, about, unit in (
         ([inertia[k][k] for k in range(3)], "moment of inertia", "kg m^2"),
-        ([*chain.from_iterable(inertia)], "product of inertia, with its sign", "kg m^2"),
-        (centre, "coordinate of the centre of mass", "m"),
+        ([*chain.from_iterable(inertia)], distribution.PRODUCT, "kg m^2"),
+        (centre, distribution.COORDINATE, "m"),
     ):
         table.symbols.explain(expressions, about, unit)
     return distribution.Known(

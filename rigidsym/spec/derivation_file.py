@@ -11,8 +11,9 @@ from pathlib import Path
 from typing import Any
 
 from rigidsym.errors import Fault, SpecError, offer
-from rigidsym.kernels.lowering.derivatives import read_requests
+from rigidsym.kernels.lowering.derivatives import read_request, read_requests
 from rigidsym.kernels.targets import TARGETS
+from rigidsym.mechanics.quantities.mass import BODY_ALONE, OF_BODY_ALONE
 from rigidsym.models.forces import forces_on
 from rigidsym.models.library import rotation_from, rotation_given
 from rigidsym.models.rotation import RotationModel
@@ -41,15 +42,17 @@ def read_file(file: str) -> DerivationSpec:
     try:
         text = read_bytes(path, _MOST_BYTES + 1).decode("utf-8")
     except FileNotFoundError:
-        fault = f"no such file, and no shipped derivation of this name; {offer(file, shipped)}"
+        fault = Fault(
+            f"no such file, and no shipped derivation of this name; {offer(file, shipped)}"
+        )
     except OSError as error:
-        fault = f"cannot be read: {error.strerror}"
+        fault = Fault(f"cannot be read: {error.strerror}")
     except UnicodeDecodeError as error:
         line = error.object.count(b"\n", 0, error.start) + 1
-        fault = f"not UTF-8 text, at line {line}"
+        fault = Fault(f"not UTF-8 text, at line {line}")
     else:
         return read_spec(text, source=file, name=path.stem, folder=path.parent)
-    raise SpecError(file, [Fault(fault)])
+    raise SpecError(file, [fault])
 
 
 def read_spec(text: str, *, source: str, name: str, folder: Path | None = None) -> DerivationSpec:
@@ -92,17 +95,17 @@ def _toml(text: str, source: str) -> dict[str, Any]:
     text = text.removeprefix("\ufeff")  # some editors put this mark before everything else
     longest = max(map(len, text.split("\n")))
     if len(text) >= _MOST_BYTES:
-        fault = f"no derivation file is so long; expected less than {_MOST_BYTES} bytes"
+        fault = Fault(f"no derivation file is so long; expected less than {_MOST_BYTES} bytes")
     elif longest > _LONGEST_LINE:
-        fault = f"a line has {longest} characters; expected at most {_LONGEST_LINE}"
+        fault = Fault(f"a line has {longest} characters; expected at most {_LONGEST_LINE}")
     else:
         try:
             return tomllib.loads(text)
         except tomllib.TOMLDecodeError as error:
-            fault = f"not TOML: {error}"
+            fault = Fault(f"not TOML: {error}")
         except RecursionError:
-            fault = "lists or tables nested too deeply to be read"
-    raise SpecError(source, [Fault(fault)])
+            fault = Fault("lists or tables nested too deeply to be read")
+    raise SpecError(source, [fault])
 
 
 def _spec(
@@ -129,6 +132,13 @@ def _spec(
         if data.get(key) and "body" not in data:
             place.at(key).fault("expected [body] as well")
     place.raise_faults(source)
+    derivatives, selected = data.get("derivatives", ()), data.get("quantities", ())
+    of_body = OF_BODY_ALONE if BODY_ALONE in selected else ()
+    for k, text in enumerate(derivatives if selected else ()):
+        if (entry := read_request(text).quantity) not in {*selected, *of_body}:
+            table = place if folder is None else place.at("output")
+            table.at("derivatives", k).fault(f"{entry} is not among the quantities; add it there")
+    place.raise_faults(source)
     keys = ("title", "theory", "style", "conversions", "certificates")
     chosen: dict[str, Any] = {key: data[key] for key in keys if key in data}
     for key in ("quantities", "kernels", "note"):
@@ -142,7 +152,7 @@ def _spec(
         source=source,
         body=body,
         dynamics=dynamics,
-        derivatives=tuple(map(str, read_requests(data.get("derivatives", ())))),
+        derivatives=tuple(map(str, read_requests(derivatives))),
         target_options={key: data[key] for key in TARGETS if data.get(key)},
         **chosen,
     )

@@ -114,8 +114,8 @@ def schema_of(kind: str) -> Schema:
     hints = {key: f"it belongs in [{t}]" for t in tables for key in tables[t]["properties"]}
     top = "it belongs at the top of the file, outside the tables"
     hints = declared["removed"] | hints | dict.fromkeys(schema["properties"], top)
-    for table in (schema, *tables.values()):
-        table["hints"] = hints
+    for name, table in {"": schema, **tables}.items():
+        table["hints"] = hints | declared["removed"].get(name, {})
     return schema
 
 
@@ -169,8 +169,9 @@ def _checked_table(value: Mapping[str, Any], schema: Schema, place: Place) -> di
             got = " and ".join(present) or "none"
             place.fault(f"expected one of {', '.join(kinds)}; got {got}")
         own = {key for kind in present for key in (kind, *kinds[kind])}
-        if (shape := value.get("shape")) in [*SHAPES]:
-            own |= {length.key for length in SHAPES[shape].lengths}
+        if "shape" in present:  # keys of an unknown one may be those of any
+            shape = value["shape"]
+            own |= {e.key for e in SHAPES[shape].lengths} if shape in [*SHAPES] else {*LENGTHS}
         others = {*kinds, *LENGTHS}.union(*kinds.values()) - own
         keys = {key: entry for key, entry in keys.items() if key not in others}
     for key in value.keys() - keys.keys():

@@ -8,9 +8,11 @@ strict about names.
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator
+import tomllib
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
+from difflib import get_close_matches
 from functools import cache
 from pathlib import Path
 from traceback import walk_tb
@@ -33,6 +35,10 @@ from rigidsym.system.files import cache_folder
 _PACKAGE = Path(__file__).resolve().parent.parent
 _OWN: ContextVar[Path | None] = ContextVar("own templates", default=None)
 NOTES = "templates/notes"  # those that users may replace
+STYLES = ("lecture", "audit")  # of notes, the default first
+# Tables of sentences that users may replace. What others hold is proved or read before.
+_TABLES = ("en/equations.toml", "en/quantities.toml", "en/reasons.toml")
+_ALIKE = 0.8  # share of letters that a misspelt name has in common with the right one
 _HOMES = (_PACKAGE / "_data", _PACKAGE.parent)
 
 
@@ -62,23 +68,79 @@ def names(kind: str, suffix: str) -> tuple[str, ...]:
     return tuple(sorted(file.removesuffix(suffix) for file in files))
 
 
+def replaceable() -> tuple[str, ...]:
+    """The files that users may replace: the templates of notes, and tables of sentences."""
+    return (*(f"{name}.jinja" for name in names(NOTES, ".jinja")), *_TABLES)
+
+
 @contextmanager
 def overridden_by(own: Path) -> Iterator[None]:
     """Inside, the templates in a folder of the user replace those of the same name.
 
-    Raises TemplateFault if the folder holds none of these, and no style, LANGUAGE/NAME.md.jinja.
+    Raises TemplateFault if the folder holds none of these, and no style, LANGUAGE/NAME.md.jinja;
+    for a file that would be ignored; and for a table of sentences with a fault.
     """
-    shipped = [f"{name}.jinja" for name in names(NOTES, ".jinja")]
+    shipped = replaceable()
     if not any((own / name).is_file() for name in shipped) and not any(own.glob("*/*.md.jinja")):
         raise TemplateFault(
             f"{own} contains no template of notes: expected a style, such as en/handout.md.jinja, "
             f"or one of {', '.join(shipped)}; `rigidsym templates {own}` copies these there"
         )
+    _check_names(own, shipped)
     token = _OWN.set(own)
     try:
+        for name in _TABLES:
+            sentences(name)
         yield
     finally:
         _OWN.reset(token)
+
+
+def _check_names(own: Path, shipped: Sequence[str]) -> None:
+    """Raises TemplateFault for a file that would be ignored: no style, and none refers to it.
+
+    A style may have any name but that of a part of the note, and none that looks misspelt.
+    """
+    stems = [Path(name).name.removesuffix(".md.jinja") for name in shipped]
+    languages = {file.parent for file in own.glob("*/*.md.jinja")}
+    files = [*own.glob("*.jinja"), *(file for folder in languages for file in folder.rglob("*.*"))]
+    texts = {
+        file.relative_to(own).as_posix(): file.read_text(encoding="utf-8", errors="replace")
+        for file in files
+        if file.suffix in (".jinja", ".toml")
+    }
+    for name in texts.keys() - {*shipped}:
+        stem, ending, rest = name.rpartition("/")[2].partition(".md.jinja")
+        near = get_close_matches(stem, stems, n=1, cutoff=_ALIKE)
+        # lecture_2 is a style of its own; lectrue, and fr/singular to which nothing refers, are not
+        is_new = stem in STYLES or not near or (near[0] != stem and near[0] in stem)
+        is_style = name.count("/") == 1 and ending and not rest and is_new
+        if not is_style and not any(name in text for n, text in texts.items() if n != name):
+            fault = "would be ignored: it is no style, and no template refers to it"
+            raise TemplateFault(f"{own / name} {fault}; {offer(name, shipped)}")
+
+
+def sentences(name: str) -> Mapping[str, Any]:
+    """The sentences of a table such as "en/reasons.toml" by their keys, the user's own first.
+
+    Raises TemplateFault, with the file, for one that is not TOML, and for an unknown key.
+    """
+    shipped = _sentences(*template(f"rigidsym/{name}"))
+    own, (_, file) = _sentences(*template(name)), template(name)
+    for key, sentence in own.items():
+        if key not in shipped:
+            raise TemplateFault(f"{file}: no sentence has the key {key}; {offer(key, shipped)}")
+        if type(sentence) is not type(shipped[key]):
+            raise TemplateFault(f"{file}, {key}: expected a text in quotes")
+    return {**shipped, **own}
+
+
+@cache
+def _sentences(text: str, file: str) -> Mapping[str, Any]:
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise TemplateFault(f"{file}: not TOML: {error}") from None
 
 
 def place_of(words: str) -> str:
@@ -106,14 +168,17 @@ def template(name: str) -> tuple[str, str]:
 
     "rigidsym/en/note.md.jinja" is the shipped one, which the user's own may extend. Raises
     FileNotFoundError if there is none and for a name that leads out of the folder, and
-    UnicodeDecodeError if it is not text.
+    TemplateFault if it is not text.
     """
     path = Path(name)
     if path.is_absolute() or ".." in path.parts:
         raise FileNotFoundError(f"{name} is not the name of a file among the templates")
     own = _OWN.get()
     if own is not None and (own / path).is_file():
-        return (own / path).read_text(encoding="utf-8"), str(own / path)
+        try:
+            return (own / path).read_text(encoding="utf-8"), str(own / path)
+        except UnicodeDecodeError as error:
+            raise TemplateFault(f"{name} is not text in UTF-8: {error.reason}") from error
     return _shipped(name.removeprefix("rigidsym/"))
 
 
@@ -147,8 +212,6 @@ class SandboxedTemplates(ImmutableSandboxedEnvironment):
         """Text, file, and whether they are still the same: else Jinja2 loads them again."""
         try:
             text, file = template(name)
-        except UnicodeDecodeError as error:
-            raise TemplateFault(f"{name} is not text in UTF-8: {error.reason}") from error
         except (FileNotFoundError, ValueError):  # also a name with NUL
             return None
         if not Path(file).is_relative_to(folder("templates")):

@@ -107,8 +107,8 @@ def parse_turns(text: str) -> tuple[tuple[str, str, int], ...]:
 def names_in(text: str) -> tuple[str, ...]:
     """The plain names in an expression that are not functions or pi, in order, each once."""
     _check_length(text)
-    found = (spelled(token[0]) for token in _tokens(text) if token.lastgroup == "name")
-    return tuple(dict.fromkeys(name for name in found if name not in (*FUNCTIONS, "pi")))
+    names = (spelled(token[0]) for token in _tokens(text) if token.lastgroup == "name")
+    return tuple(dict.fromkeys(name for name in names if name not in (*FUNCTIONS, "pi")))
 
 
 def _check_length(text: str) -> None:
@@ -128,8 +128,11 @@ def _tokens(text: str) -> list[re.Match[str]]:
         token = _TOKEN.match(text, place)
         if token is None:
             character = text[place]
-            hint = _HINTS.get(character, "expected a number, a name, ( ) or one of + - * / **")
-            raise ExpressionError(f"unexpected {character!r}; {hint}", column=place + 1)
+            raise ExpressionError(
+                f"unexpected {character!r}; "
+                + _HINTS.get(character, "expected a number, a name, ( ) or one of + - * / **"),
+                column=place + 1,
+            )
         tokens.append(token)
         place = token.end()
     return tokens
@@ -137,8 +140,8 @@ def _tokens(text: str) -> list[re.Match[str]]:
 
 def _expected(what: str, text: str, place: int) -> ExpressionError:
     rest = text[place:].lstrip()
-    found = repr(rest[0]) if rest else "the end"
-    return ExpressionError(f"expected {what}, found {found}", column=len(text) - len(rest) + 1)
+    character = repr(rest[0]) if rest else "the end"
+    return ExpressionError(f"expected {what}, found {character}", column=len(text) - len(rest) + 1)
 
 
 def _check_order(text: str) -> None:
@@ -154,8 +157,10 @@ def _check_order(text: str) -> None:
         if not is_value and kind == "operator" and symbol not in ("+", "-", "("):
             raise _expected("a number, a name or (", text, token.start())
         if symbol == "," and not (brackets and brackets[-1][1]):
-            hint = "a comma only separates arguments of a function; write decimals with a point"
-            raise ExpressionError(hint, column=column)
+            raise ExpressionError(
+                "a comma only separates arguments of a function; write decimals with a point",
+                column=column,
+            )
         if symbol == "(":
             brackets.append((column, is_call))
             if len(brackets) > _DEEPEST:

@@ -28,11 +28,27 @@ def test_a_fault_is_named_with_its_template_and_line(answered, tmp_path: Path):
             derived("ZXZ").note(style="mine").html()
         return str(caught.value).replace(f"{tmp_path}/", "").partition(", are_proved, ")[0]
 
-    own(tmp_path, "lecture.md.jinja", "in no language")
-    missing = pytest.raises(TemplateFault, match=r"no template of notes: .* en/lecture\.md\.jinja,")
-    with missing, resources.overridden_by(tmp_path):
-        pass
     answered("commands/template_faults.txt", answer)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "fault"),
+    [
+        ("lecture.md.jinja", "in no language", r"it is no style, .* did you mean en/lecture\.md"),
+        ("en/singlar.md.jinja", "", r"singlar.* did you mean en/singular\.md\.jinja"),
+        ("fr/singular.md.jinja", "", "no template refers to it"),
+        ("en/lecture.toml", "", "would be ignored"),
+        ("en/reasons.toml", "chain_rul = 'It'", "no sentence has the key chain_rul; did you mean"),
+        ("en/reasons.toml", "chain_rule = 1", "reasons.toml, chain_rule: expected a text"),
+        ("en/quantities.toml", "mass", "quantities.toml: not TOML"),
+    ],
+)
+def test_a_file_that_would_be_ignored_or_misread_is_refused(name, text, fault, tmp_path: Path):
+    own(tmp_path, "en/lecture_2.md.jinja", "# A style of its own")
+    with resources.overridden_by(tmp_path):
+        own(tmp_path, name, text)
+    with pytest.raises(TemplateFault, match=fault), resources.overridden_by(tmp_path):
+        pass
 
 
 def test_a_template_without_end_is_stopped_by_the_time_limit(tmp_path: Path):
@@ -50,11 +66,13 @@ def test_a_lecturer_changes_one_sentence(tmp_path: Path):
         "There {{ singular.outer_angles[0] }} **cannot** be told from $\\psi$; see `margin`."
         "{% endblock %}",
     )
+    own(tmp_path, "en/reasons.toml", 'chain_rule = "By *my* rule."')
     before = derived("ZXZ").note()
     with resources.overridden_by(tmp_path):
         note = derived("ZXZ").note()
     assert r"There $\phi$ **cannot** be told from $\psi$; see `margin`." in note.markdown()
     assert r"\textbf{cannot} be told from $\psi$" in note.latex()
+    assert r"By \*my\* rule." in note.markdown()
     assert "freedom is lost" not in note.markdown()
     assert len(note.document.sections) == len(before.document.sections)
 
@@ -126,8 +144,8 @@ def test_templates_are_copied_out_and_used_again(tmp_path: Path):
     mine, out = tmp_path / "own", tmp_path / "out"
     done = CliRunner().invoke(commands, ["templates", str(mine)])
     assert done.exit_code == 0, done.output
-    copies = {file.relative_to(mine).as_posix() for file in mine.rglob("*.jinja")}
-    assert copies == {f"{name}.jinja" for name in resources.names(resources.NOTES, ".jinja")}
+    copies = {file.relative_to(mine).as_posix() for file in mine.rglob("*.*")}
+    assert copies == {*resources.replaceable()}
     html = mine / "note.html.jinja"
     html.write_text(html.read_text("utf-8").replace("</main>", "<p>Mine</p></main>"), "utf-8")
     words = ("--templates", str(mine))

@@ -47,6 +47,7 @@ ORDER = (
     "pipeline",
     "tools",
     "commands",
+    "__main__",
 )
 
 PATHS = {  # by the module without the name of the package; "" is the package itself

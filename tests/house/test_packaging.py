@@ -129,12 +129,13 @@ def test_one_entry_is_derived_proved_and_printed_everywhere(tmp_path):
     shutil.copytree(ROOT / "rigidsym", package, ignore=shutil.ignore_patterns("__pycache__"))
     recipe = PAGE[PAGE.index("**A quantity.**") : PAGE.index("**A target.**")]
     (entry,) = re.findall(r"```python\n(.*?)```", recipe, re.DOTALL)
-    (sentence,) = re.findall(r"```toml\n(.*?)```", recipe, re.DOTALL)
+    sentences = re.findall(r"```toml\n(.*?)```", recipe, re.DOTALL)
     table = package / "mechanics" / "quantities" / "kinematics.py"
     head, name, rest = table.read_text("utf-8").partition("\nrate_matrix_space = ")
     table.write_text(f"{head}\n{entry}\n{name}{rest}", "utf-8")
-    reasons = tmp_path / "templates" / "notes" / "en" / "reasons.toml"
-    reasons.write_text(reasons.read_text("utf-8") + sentence, "utf-8")
+    for file, sentence in zip(("quantities", "reasons"), sentences, strict=True):
+        with (tmp_path / f"templates/notes/en/{file}.toml").open("a", encoding="utf-8") as stream:
+            stream.write(sentence)
     words = ("derive", "ZXZ", "--only", "angular_velocity_squared", "--target", "numpy,c")
     call(sys.executable, "-c", PROGRAM, *words, cwd=tmp_path, PYTHONPATH=str(tmp_path), PATH="")
     files = {

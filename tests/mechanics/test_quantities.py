@@ -15,10 +15,10 @@ import pytest
 import sympy as sp
 
 import rigidsym as rs
-from rigidsym.errors import DerivationError, NotARotation, QuantityError
+from rigidsym.errors import DerivationError, NotARotation, QuantityError, TemplateFault
 from rigidsym.mechanics.body import BodyValues
 from rigidsym.mechanics.conversions.conversions import Conversions
-from rigidsym.mechanics.derivation import Proof, phrases
+from rigidsym.mechanics.derivation import Proof, phrase, phrases
 from rigidsym.mechanics.dynamics.lagrange import equations_of_motion
 from rigidsym.mechanics.kinematics.chain import Chain
 from rigidsym.mechanics.kinematics.workspace import Values
@@ -42,14 +42,18 @@ BLIND = {  # laws that hold for twice a value, too, such as that it is symmetric
 }
 
 
-def test_every_reason_is_a_sentence_and_every_sentence_a_reason():
+@pytest.mark.parametrize(("file", "field"), [("reasons", "reason"), ("quantities", "meaning")])
+def test_every_quantity_has_its_sentences_and_no_sentence_is_left_over(file, field):
     entries = (*QUANTITIES.values(), *EULER_QUANTITIES.values())
-    reasons = {entry.reason for entry in entries} - {""}
-    reasons |= {c["reason"] for q in entries for _, c in q.variants if "reason" in c}
-    assert reasons <= phrases("reasons").keys()
-    mechanics = Path(rs.__file__).parent / "mechanics"
-    sources = "".join(path.read_text("utf-8") for path in mechanics.rglob("*.py"))
-    assert phrases("reasons").keys() - reasons <= {*re.findall(r'"(\w+)"', sources)}
+    keys = {getattr(entry, field) for entry in entries} - {""}
+    keys |= {c[field] for q in entries for _, c in q.variants if field in c}
+    keys |= {*QUANTITIES} if field == "meaning" else set()
+    assert keys <= phrases(file).keys()
+    package = Path(rs.__file__).parent
+    sources = "".join(path.read_text("utf-8") for path in package.rglob("*.py"))
+    assert phrases(file).keys() - keys <= {*re.findall(r'"(\w+)"', sources)}
+    with pytest.raises(TemplateFault, match=rf"en/{file}\.toml: no 'angular'; "):
+        phrase(file, "angular")
 
 
 def twice(value_of, k):

@@ -28,8 +28,9 @@ from rigidsym.models.rotation import elementary, time_function
 from rigidsym.notes.facts.singular import PointFacts
 from rigidsym.notes.formats.pdf import typeset
 from rigidsym.notes.formats.terminal import show
-from rigidsym.notes.note import STYLES, note
+from rigidsym.notes.note import note
 from rigidsym.pipeline import output_of, read_spec
+from rigidsym.system.resources import STYLES
 
 ZXZ = "euler_zxz_intrinsic"
 

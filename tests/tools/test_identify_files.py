@@ -236,3 +236,24 @@ def test_units_in_names_are_converted(tmp_path):
     found = identify_file(written(tmp_path / "log.csv", table, ",".join(names)))
     assert holds(found.answers[0], AEROSPACE)
     assert f"converted to degrees: {', '.join(names[:3])}" in found.text()
+    assert found.contradicted == ()
+
+
+@pytest.mark.parametrize(
+    ("units", "contradicted"),
+    [
+        (("deg", "", "rad/s"), ()),
+        (("rad", "", ""), ("angles in rad",)),
+        (("", "deg/s", "rad/s"), ("rates in deg", "omega in rad")),
+    ],
+)
+def test_units_in_names_that_the_numbers_contradict_are_named(units, contradicted, tmp_path):
+    names = HEADERS["named"].split(",")
+    for start, unit in zip((0, 12, 15), units, strict=True):
+        names[start : start + 3] = (
+            f"{n} [{unit}]" if unit else n for n in names[start : start + 3]
+        )
+    found = identify_file(written(tmp_path / "log.csv", rows(30), ",".join(names)))
+    assert found.contradicted == contradicted
+    text = " ".join(found.text().split())
+    assert (f"say {', '.join(contradicted)}: the numbers" in text) == bool(contradicted)

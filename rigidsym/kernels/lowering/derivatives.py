@@ -69,6 +69,12 @@ class Jacobian(Step):
     """The derivative of a quantity: an entry a row, and a component of the vector a column."""
 
     of: tuple[int, ...]  # the shape of the quantity
+    by: str  # the vector
+
+    @property
+    def about(self) -> str:
+        """What it is, in words."""
+        return f"Jacobian of {super().about} by {self.by}"
 
     @cached_property
     def shape(self) -> tuple[int, ...]:
@@ -103,10 +109,11 @@ def derivatives_of(
             quantity=Quantity(
                 name=request.name,
                 symbol=Symbol(f"∂{quantity.symbol.text}/∂{request.vector}"),
-                about=f"Jacobian of {quantity.about} by {request.vector}",
+                meaning=quantity.meaning or quantity.name,
                 inputs=quantity.inputs,
                 unit=quantity.unit,
             ),
             expression=slopes.xreplace(back).as_immutable(),
             of=step.shape,
+            by=request.vector,
         )

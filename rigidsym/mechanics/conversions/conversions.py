@@ -43,7 +43,7 @@ from rigidsym.mechanics.conversions.function import (
     short_way,
     square,
 )
-from rigidsym.mechanics.derivation import Derivation, Proof, Quantity, Step, argument, phrases
+from rigidsym.mechanics.derivation import Derivation, Proof, Quantity, Step, argument, phrases, when
 from rigidsym.mechanics.prove import Prover
 from rigidsym.models.parametrisations import PARAMETRISATIONS, parametrised
 from rigidsym.models.rotation import AXES, SOURCES, RotationModel, rotation_of
@@ -52,13 +52,13 @@ Claim = tuple[tuple[sp.Expr, ...], Formula]  # what vanishes, and how it is writ
 Way = Callable[[NamedValues, Vector], Vector]
 WORDS = phrases("conversions")
 LONGEST_CHAIN = 4  # turns whose product is written out: its terms double with each
-QUATERNION = Quantity(
+_QUATERNION = Quantity(
     name="quaternion",
     symbol=formula(r"\p"),
-    about="unit quaternion of the rotation, scalar first",
     inputs=("q",),
     shape="vector",
     source=SOURCES["Shuster"],
+    variants=(when("last", meaning="quaternion_scalar_last"),),
 )
 
 
@@ -410,10 +410,10 @@ class Conversions:
         )
         if not all(proof.is_exact for proof in proofs):
             return None  # where it is a root of a root, the ring may not know that
-        quantity = QUATERNION if is_fixed else QUATERNION._replace(inputs=("q", "parameters"))
+        quantity = _QUATERNION if is_fixed else _QUATERNION._replace(inputs=("q", "parameters"))
         if rule is not None:
             value = sp.ImmutableMatrix(rule.listed(tuple(value)))
-            quantity = quantity._replace(about=quantity.about.replace("first", rule.scalar))
+            quantity = quantity.presented({rule.scalar})
         words = text_of(self.because)
         return Step(quantity=quantity, expression=value, words=words, proofs=proofs)
 
@@ -467,7 +467,7 @@ def converted(derivation: Derivation) -> Converted:
             argument=q,
             values=tuple(values.lines),
             outputs=rule.listed(parts),
-            about=QUATERNION.about.replace("first", rule.scalar),
+            about=_QUATERNION.presented({rule.scalar}).about,
             remarks=(
                 *([f"Equation ({number}) of the note."] if step else []),
                 WORDS[rule.kind]["function"],

@@ -41,7 +41,6 @@ def _of_kinetic(claim: str, residual: Callable[[Any, Any], Any], **tree: Any) ->
 potential_energy = Quantity(
     **_ENERGY,
     symbol=formula("V"),
-    about="potential energy",
     inputs=("q",),
     value=lambda k: k.forces.potential,
     reason="potential_energy",
@@ -65,7 +64,6 @@ def _energies(sign: str, **of_tree: str) -> tuple[Any, ...]:
 lagrangian = Quantity(
     **_ENERGY,
     symbol=formula("L"),
-    about="Lagrangian",
     inputs=("q", "q_dot"),
     definition=formula("E_R - V"),
     source=SOURCES["Goldstein 1.4"],
@@ -85,7 +83,6 @@ def _has_power(symbols: str) -> tuple[Law, ...]:
 energy = Quantity(
     **_ENERGY,
     symbol=ENERGY,
-    about="energy",
     inputs=("q", "q_dot"),
     definition=formula("E_R + V"),
     value=lambda k: k.whole,
@@ -106,7 +103,6 @@ energy = Quantity(
 
 generalised_momenta = Quantity(
     symbol=formula(r"\p"),
-    about="generalised momenta",
     unit="kg m^2/s",
     inputs=("q", "q_dot"),
     shape="vector",
@@ -127,7 +123,6 @@ generalised_momenta = Quantity(
 
 mass_matrix = Quantity(
     symbol=formula(r"\M"),
-    about="mass matrix",
     unit="kg m^2",
     inputs=("q",),
     definition=formula(r"\W'^T\I'\W'"),
@@ -146,7 +141,6 @@ mass_matrix = Quantity(
 
 bias_vector = Quantity(
     symbol=formula(r"\h"),
-    about="gyroscopic and potential terms of the equations of motion",
     unit="N m",
     inputs=("q", "q_dot"),
     shape="vector",
@@ -166,7 +160,6 @@ bias_vector = Quantity(
 
 accelerations = Quantity(
     symbol=formula(r"\ddot\q"),
-    about="second derivatives of the coordinates",
     unit="rad/s^2",
     inputs=("q", "q_dot"),
     shape="vector",
@@ -189,7 +182,6 @@ accelerations = Quantity(
 hamiltonian = Quantity(
     **_ENERGY,
     symbol=formula("H"),
-    about="Hamiltonian",
     inputs=("q", "momenta"),
     definition=formula(r"\tfrac{1}{2}\,\p^T\,\M^{-1}\p + V"),
     source=SOURCES["Goldstein 8.1"],
@@ -202,7 +194,6 @@ hamiltonian = Quantity(
 effective_potential = Quantity(
     **_ENERGY,
     symbol=formula(r"V_{\mathrm{eff}}"),
-    about="effective potential of the coordinate that is not cyclic",
     inputs=("q", "momenta"),
     source=SOURCES["Goldstein 5.7"],
     value=lambda k: None if k.single is None else k.effective,
@@ -212,7 +203,6 @@ effective_potential = Quantity(
 
 angular_acceleration_from_torque = Quantity(
     symbol=formula(r"\dot\Om'"),
-    about="angular acceleration from the torque, body components (Euler's equations)",
     unit="rad/s^2",
     inputs=("omega_body", "torque"),
     shape="vector",
@@ -230,7 +220,6 @@ DYNAMICS_QUANTITIES = by_name(globals())
 
 torque_body = Quantity(
     symbol=formula(r"\N'"),
-    about="torque about the fixed point, body components",
     unit="N m",
     inputs=("q", "omega_body"),
     shape="vector",
@@ -254,27 +243,22 @@ FLOW_QUANTITIES = by_name(
     {
         "state_derivative": Quantity(
             symbol=formula(r"\dot\y"),
-            about="time derivative of the state y",
             inputs=("t", "y"),
             shape="vector",
             value=lambda k: k.state_derivative,
         ),
         "state_jacobian": Quantity(
             symbol=formula(r"\J"),
-            about="Jacobian of `state_derivative` with respect to y, one column per component of y",
             inputs=("t", "y"),
             value=lambda k: k.state_jacobian,
         ),
         "error_state_jacobian": Quantity(
             symbol=formula(r"\boldsymbol{\Phi}"),
-            about="for filters: F in ẋ = F x, for errors x of R (rotation vector) and Ω′, "
-            "body components",
             inputs=("t", "y"),
             value=lambda k: k.error_state_jacobian,
         ),
         "first_integrals": Quantity(
             symbol=formula(r"\F"),
-            about="quantities that are constant along every motion",
             inputs=("y",),
             shape="vector",
             value=lambda k: sp.ImmutableMatrix([each.expression for each in k.first_integrals]),

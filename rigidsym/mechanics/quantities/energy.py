@@ -33,7 +33,6 @@ _MOMENTUM: dict[str, Any] = {"unit": "kg m^2/s", "shape": "vector", "section": M
 translational_energy = Quantity(
     **_ENERGY,
     symbol=formula("E_C"),
-    about="kinetic energy of the motion of the centre of mass",
     inputs=("centre_dot",),
     definition=formula(r"\tfrac{1}{2} M\,|\dot\r_C|^2"),
     value=lambda k: k.half_of_squares(k.velocity),
@@ -47,7 +46,6 @@ translational_energy = Quantity(
 rotational_energy = Quantity(
     **_ENERGY,
     symbol=ROTATIONAL,
-    about="kinetic energy of the rotation about the centre of mass",
     inputs=("q", "q_dot"),
     definition=formula(r"\tfrac{1}{2}\,\Om'^T\,\I'\,\Om'"),
     value=lambda k: k.half_form(k.omega_body),
@@ -61,13 +59,12 @@ rotational_energy = Quantity(
     ),
     reason="quadratic_form",
     is_result=True,
-    variants=(when("fixed_point", about="kinetic energy of the rotation about the fixed point"),),
+    variants=(when("fixed_point", meaning="rotational_energy_fixed_point"),),
 )
 
 kinetic_energy = Quantity(
     **_ENERGY,
     symbol=formula("E_K"),
-    about="kinetic energy",
     inputs=("q", "q_dot", "centre_dot"),
     definition=formula("E_C + E_R"),
     value=lambda k: k.half_of_squares(k.velocity) + k.half_form(k.omega_body),
@@ -86,7 +83,6 @@ kinetic_energy = Quantity(
 angular_momentum_centre = Quantity(
     **_MOMENTUM,
     symbol=formula(r"\L_C"),
-    about="angular momentum of the motion of the centre of mass, space components",
     inputs=("centre", "centre_dot"),
     definition=formula(r"\r_C\times(M\,\dot\r_C)"),
     source=SOURCES["Goldstein 1.2"],
@@ -99,7 +95,6 @@ angular_momentum_centre = Quantity(
 angular_momentum_rotation_body = Quantity(
     **_MOMENTUM,
     symbol=MOMENTUM_BODY,
-    about="angular momentum of the rotation, body components",
     inputs=("q", "q_dot"),
     definition=formula(r"\I'\Om'"),
     source=SOURCES["Landau 33"],
@@ -116,7 +111,6 @@ angular_momentum_rotation_body = Quantity(
 angular_momentum_rotation = Quantity(
     **_MOMENTUM,
     symbol=MOMENTUM_ROTATION,
-    about="angular momentum of the rotation, space components",
     inputs=("q", "q_dot"),
     definition=formula(r"\I\Om"),
     source=SOURCES["Landau 33"],
@@ -136,7 +130,6 @@ angular_momentum_rotation = Quantity(
 angular_momentum = Quantity(
     **_MOMENTUM,
     symbol=formula(r"\L"),
-    about="angular momentum about the origin, space components",
     inputs=("q", "q_dot", "centre", "centre_dot"),
     definition=formula(r"\L_C + \L_R"),
     source=SOURCES["Goldstein 1.2"],

@@ -36,12 +36,11 @@ def _of_matrix(m: str) -> dict[str, Any]:
     return {"symbol": formula(rf"\{m}"), "laws": (is_orthogonal, is_proper)}
 
 
-def _of_derivative(m: str, noun: str) -> dict[str, Any]:
+def _of_derivative(m: str) -> dict[str, Any]:
     """R Rᵀ is constant."""
     claim = r"\frac{d\R}{dt}\R^T + \R\frac{d\R^T}{dt} = \0".replace("R", m)
     keeps_length = law(claim, lambda k, _: k.shown_spin + k.shown_spin.T)
-    symbol, about = formula(rf"\frac{{d\{m}}}{{dt}}"), f"time derivative of the {noun}"
-    return {"symbol": symbol, "about": about, "laws": (keeps_length,)}
+    return {"symbol": formula(rf"\frac{{d\{m}}}{{dt}}"), "laws": (keeps_length,)}
 
 
 def _of_spin(symbol: Formula, value: str) -> dict[str, Any]:
@@ -51,7 +50,6 @@ def _of_spin(symbol: Formula, value: str) -> dict[str, Any]:
 
 rotation_matrix = Quantity(
     **_of_matrix("R"),
-    about="rotation matrix, body to space components",
     inputs=("q",),
     value=lambda k: k.shown,
     vectors="rotation",
@@ -65,7 +63,7 @@ rotation_matrix = Quantity(
             PASSIVE,
             **_of_matrix("A"),
             definition=formula(r"\R^T"),
-            about="direction cosine matrix, space to body components",
+            meaning="direction_cosines",
             reason="transposed_product",
         ),
         when(PASSIVE, "given", reason="transposed_matrix"),
@@ -82,12 +80,12 @@ _SPINNING: dict[str, Any] = {"inputs": ("q", "q_dot"), "section": "angular_veloc
 
 rotation_rate = Quantity(
     **_SPINNING,
-    **_of_derivative("R", "rotation matrix"),
+    **_of_derivative("R"),
     unit="1/s",
     value=lambda k: k.shown_rate,
     reason="chain_rule",
     variants=(
-        when(PASSIVE, **_of_derivative("A", "direction cosine matrix")),
+        when(PASSIVE, **_of_derivative("A"), meaning="rate_of_direction_cosines"),
         when(
             CHAIN,
             also=("angular_velocity_space",),
@@ -103,7 +101,6 @@ _COSINES["laws"] += (law(r"#1 = -\C(\Om')", lambda k, x: x + hat(k.omega_body), 
 spin_matrix = Quantity(
     **_SPINNING,
     **_of_spin(SPIN, r"\C(\Om)"),
-    about="spin matrix, the operator Ω × in space components",
     unit="rad/s",
     source=SOURCES["Murray 2.4"],
     value=lambda k: k.shown_spin,
@@ -112,7 +109,7 @@ spin_matrix = Quantity(
         when(
             PASSIVE,
             **_COSINES,
-            about="spin matrix of the direction cosines, the operator −Ω′ × in body components",
+            meaning="spin_of_direction_cosines",
             reason="skew_matrix_of_cosines",
         ),
         when(CHAIN, also=("angular_velocity_space",), reason="operator", recursion=r"\C(\Om)"),
@@ -130,7 +127,6 @@ angular_velocity_space = Quantity(
     **_VELOCITY,
     frame=SPACE,
     symbol=SPACE.omega,
-    about="angular velocity, space components",
     definition=formula(r"\C^{-1}(#1)", SPIN),
     value=lambda k: k.omega_space,
     laws=(law(r"#1 = \C(\Om)", lambda k, x: k.spin - hat(x), SPIN),),
@@ -153,7 +149,6 @@ angular_velocity_body = Quantity(
     **_VELOCITY,
     frame=BODY,
     symbol=BODY.omega,
-    about="angular velocity, body components",
     definition=formula(r"\R^T\Om"),
     value=lambda k: k.omega_body,
     laws=(law(r"\Om = \R\,\Om'", lambda k, x: k.rotation @ x - k.omega_space),),
@@ -184,7 +179,6 @@ def _rate_matrix(frame: Frame, *, of_chain: str, columns: str) -> Quantity:
         **_OF_RATES,
         frame=frame,
         symbol=frame.matrix,
-        about=f"rate matrix to {name} components of the angular velocity",
         inputs=("q",),
         definition=formula(r"\frac{\partial #2}{\partial\dot\q}", *symbols),
         value=lambda k: k.rate_matrix(name),
@@ -204,14 +198,14 @@ def _inverse_rate_matrix(frame: Frame, **reasons: str) -> Quantity:
     """W⁻¹, or W⁺ where there are more coordinates than dimensions."""
     name = frame.name
 
-    def by(inverse: Formula, noun: str) -> dict[str, Any]:
+    def by(inverse: Formula) -> dict[str, Any]:
         claim = formula(r"#1 #2 = \1", frame.matrix, inverse)
         laws = (Law(claim, lambda k, x: k.excess(name, *x, k.one)),)
-        return {"symbol": inverse, "about": f"{noun} from {name} components", "laws": laws}
+        return {"symbol": inverse, "laws": laws}
 
     return Quantity(
         **_OF_RATES,
-        **by(frame.inverse, "inverse rate matrix"),
+        **by(frame.inverse),
         frame=frame,
         inputs=("q",),
         value=lambda k: k.inverse(name),
@@ -220,7 +214,7 @@ def _inverse_rate_matrix(frame: Frame, **reasons: str) -> Quantity:
         without=_WITHOUT,
         variants=(
             _OF_CHAIN,
-            when(WIDE, **by(frame.right_inverse, "right inverse of the rate matrix")),
+            when(WIDE, **by(frame.right_inverse), meaning=f"right_inverse_{name}"),
             *(when(WIDE, trait, reason=reason) for trait, reason in reasons.items()),
         ),
     )
@@ -240,7 +234,6 @@ def _rates(frame: Frame) -> Quantity:
         **by(frame.inverse),
         frame=frame,
         symbol=RATES,
-        about=f"rates of the coordinates from {name} components of the angular velocity",
         unit="rad/s",
         unit_of="q_dot",
         inputs=("q", f"omega_{name}"),
@@ -281,7 +274,6 @@ angular_acceleration_space = Quantity(
     **_ACCELERATION,
     frame=SPACE,
     symbol=formula(r"\dot\Om"),
-    about="angular acceleration, space components",
     definition=formula(r"\frac{d\Om}{dt}"),
     value=lambda k: k.alpha_space,
     laws=(law(r"#1 = \C(\dot\Om)", lambda k, x: k.spin_rate - hat(x), Rate(Bracket(SPIN))),),
@@ -301,7 +293,6 @@ angular_acceleration_body = Quantity(
     **_ACCELERATION,
     frame=BODY,
     symbol=formula(r"\dot\Om'"),
-    about="angular acceleration, body components",
     definition=formula(r"\R^T\frac{d\Om}{dt}"),
     value=lambda k: k.alpha_body,
     laws=(law(r"\dot\Om = \R\,\dot\Om'", lambda k, x: k.rotation @ x - k.alpha_space),),

@@ -48,7 +48,6 @@ def _integrated(
 
 mass = Quantity(
     symbol=MASS,
-    about="mass",
     unit="kg",
     shape="scalar",
     **_integrated(definition=r"\int\,dm"),
@@ -62,7 +61,6 @@ mass = Quantity(
 
 centre_of_mass = Quantity(
     symbol=formula(r"\c"),
-    about="centre of mass, in the axes of the description",
     unit="m",
     shape="vector",
     **_integrated(
@@ -91,7 +89,6 @@ _OF_PARTS = law(
 
 inertia_tensor = Quantity(
     symbol=INERTIA,
-    about="inertia tensor about the centre of mass, body components",
     unit="kg m^2",
     source=SOURCES["Landau 32"],
     value=lambda k: k.body.inertia,
@@ -110,7 +107,7 @@ inertia_tensor = Quantity(
         when("composite", laws=(_SYMMETRIC, _ABOUT_ORIGIN, _OF_PARTS), reason="tensors_of_parts"),
         when(
             "fixed_point",
-            about="inertia tensor about the fixed point, body components",
+            meaning="inertia_tensor_fixed_point",
             reason="given_tensor_about_fixed_point",
         ),
     ),
@@ -118,7 +115,6 @@ inertia_tensor = Quantity(
 
 inertia_tensor_point = Quantity(
     symbol=formula(r"\I'_P"),
-    about="inertia tensor about a point p, body components",
     unit="kg m^2",
     inputs=("point",),
     definition=formula(r"\I' + M\,(|\p-\c|^2\,\1 - (\p-\c)(\p-\c)^T)"),
@@ -144,7 +140,6 @@ def _moment_by_mass(k: Any, x: sp.Expr) -> sp.Matrix:
 
 moment_of_inertia = Quantity(
     symbol=formula("I_n"),
-    about="moment of inertia about the line through p along n, a unit vector",
     unit="kg m^2",
     inputs=("point", "direction"),
     shape="scalar",
@@ -159,7 +154,6 @@ moment_of_inertia = Quantity(
 
 principal_moments = Quantity(
     symbol=formula(r"\left(I_1, I_2, I_3\right)"),
-    about="principal moments of inertia",
     unit="kg m^2",
     shape="vector",
     source=SOURCES["Landau 32"],
@@ -183,7 +177,6 @@ principal_moments = Quantity(
 
 principal_axes = Quantity(
     symbol=formula(r"\E"),
-    about="principal axes as columns, right-handed, body components",
     source=SOURCES["Landau 32"],
     value=lambda k: k.principal and k.principal.axes,
     laws=(
@@ -203,7 +196,6 @@ principal_axes = Quantity(
 
 inertia_tensor_space = Quantity(
     symbol=INERTIA_SPACE,
-    about="inertia tensor about the centre of mass, space components",
     unit="kg m^2",
     inputs=("q",),
     definition=formula(r"\R\,\I'\,\R^T"),
@@ -222,7 +214,7 @@ inertia_tensor_space = Quantity(
     reason="tensor_rotated",
     section=OF_INERTIA,
     is_result=True,
-    variants=(when("fixed_point", about="inertia tensor about the fixed point, space components"),),
+    variants=(when("fixed_point", meaning="inertia_tensor_space_fixed_point"),),
 )
 
 INERTIA_QUANTITIES = by_name(globals())

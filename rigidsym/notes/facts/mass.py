@@ -75,8 +75,8 @@ class MassFacts:
         """
         told = [p for p in self.body.parameters if p.about and p.value is None]
         if self.derivation.forces is not None:
-            shown = [step.expression for step in self.derivation.steps]
-            told = [p for p in told if any(entry.has(p.symbol) for entry in shown)]
+            expressions = [step.expression for step in self.derivation.steps]
+            told = [p for p in told if any(entry.has(p.symbol) for entry in expressions)]
         groups = []
         for about, alike in groupby(told, key=lambda p: p.about):
             symbols = [p.symbol for p in alike]

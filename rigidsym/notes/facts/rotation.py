@@ -162,12 +162,12 @@ class RotationFacts:
     @property
     def matrices(self) -> list[NoteBlock]:
         """Of a turn by any angle about each axis."""
-        shown = [
+        pairs = [
             (t, Equation(sides=(product_of((t,), self.letters),), matrix=matrix))
             for t, matrix in by_axis(self.model.turns, self.any_angle)
         ]
-        short = tuple(equation for t, equation in shown if not t.components)
-        oblique = [equation for t, equation in shown if t.components]
+        short = tuple(equation for t, equation in pairs if not t.components)
+        oblique = [equation for t, equation in pairs if t.components]
         return [*([EquationRow(short)] if short else []), *oblique]
 
     @property

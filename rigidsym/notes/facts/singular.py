@@ -108,35 +108,37 @@ class SingularFacts:
     """Where the rate matrices lose rank."""
 
     model: RotationModel
-    found: Singularities
+    result: Singularities
 
     @property
     def is_gimbal_lock(self) -> bool:
-        return len(self.model.turns) > 1 and bool(self.found.points)
+        return len(self.model.turns) > 1 and bool(self.result.points)
 
     @property
     def has_constants(self) -> bool:
         """Whether a factor holds constants of the model and nothing that moves."""
         return any(
             factor.free_symbols and not factor.atoms(AppliedUndef)
-            for factor in sp.Mul.make_args(self.found.determinant)
+            for factor in sp.Mul.make_args(self.result.determinant)
         )
 
     @property
     def has_full_rank(self) -> bool:
-        return self.found.rank == 3
+        return self.result.rank == 3
 
     @cached_property
     def zeros(self) -> list[PointFacts]:
         return [
-            PointFacts(point, self.model.coordinates) for point in self.found.points if point.places
+            PointFacts(point, self.model.coordinates)
+            for point in self.result.points
+            if point.places
         ]
 
     @property
     def multiples(self) -> Multiples | None:
         places = {place for point in self.zeros for place in point.at.places}
         angle, *others = {place.coordinate for place in places} or {None}
-        if angle is None or others or not self.found.is_solved:
+        if angle is None or others or not self.result.is_solved:
             return None
         zeros = {place.value for place in places}
         if zeros == {sp.S.Zero, sp.pi}:
@@ -156,21 +158,15 @@ class SingularFacts:
         return [*([(_WHOLE_TURN, None)] if len(longer) < len(periods) else []), *longer]
 
     @property
-    def not_at_zero(self) -> sp.Expr | None:
-        """Of a length, which could be taken to be such a place where it is nothing."""
-        length = self.found.length
-        return None if length is None else sp.Eq(length, 0, evaluate=False)
-
-    @property
     def outer_angles(self) -> tuple[sp.Expr, ...]:
         """The angles of the two rotations that come to turn about one axis, in gimbal lock."""
         angles = angle_facts(self.model)
-        return (angles.all[0], angles.all[2]) if angles and self.found.points else ()
+        return (angles.all[0], angles.all[2]) if angles and self.result.points else ()
 
     @property
     def points(self) -> list[PointFacts]:
-        first = self.found.points[:_MOST_POINTS]
-        is_only_one = len(self.found.points) == 1
+        first = self.result.points[:_MOST_POINTS]
+        is_only_one = len(self.result.points) == 1
         return [
             PointFacts(p, self.model.coordinates, is_only_one and len(p.places) > _MOST_PLACES)
             for p in first
@@ -178,7 +174,7 @@ class SingularFacts:
 
     @property
     def more_points(self) -> int:
-        return max(0, len(self.found.points) - _MOST_POINTS)
+        return max(0, len(self.result.points) - _MOST_POINTS)
 
 
 def singular_facts(derivation: Derivation) -> SingularFacts | None:

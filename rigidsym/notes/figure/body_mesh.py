@@ -98,16 +98,16 @@ def lengths_of(
     what: Distribution, values: Mapping[sp.Symbol, float | None]
 ) -> dict[sp.Symbol, sp.Float] | None:
     """The parameters with their values, or a suitable length if they have none."""
-    known = {symbol: value for symbol, value in values.items() if value is not None}
+    numbers = {symbol: value for symbol, value in values.items() if value is not None}
     solids = [leaf.what for leaf in _leaves(what) if isinstance(leaf.what, Solid)]
-    missing = sorted(_constants(what) - {*known}, key=str)
+    missing = sorted(_constants(what) - {*numbers}, key=str)
     lengths = _FEW_LENGTHS.get(len(missing), _LENGTHS[: len(missing)])
     if len(missing) > len(lengths):
         return None
     # The order in which lengths fit is unknown, such as an inner radius below the outer one. All
     # orders are tried, the first ones with the preferred proportions.
     for chosen in islice(permutations(lengths), _MOST_TRIES):
-        pairs = {**known, **dict(zip(missing, chosen, strict=True))}
+        pairs = {**numbers, **dict(zip(missing, chosen, strict=True))}
         numbers = {symbol: sp.Float(value) for symbol, value in pairs.items()}
         if all(_is_proper(solid, numbers) for solid in solids):
             return numbers

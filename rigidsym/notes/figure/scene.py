@@ -241,15 +241,15 @@ def _separation(one: Point, other: Point) -> float:
 
 def _merged(rays: Iterator[Ray]) -> Iterator[Ray]:
     """Each direction once, with all its names: z = z′; an axis of a turn adds none."""
-    found: list[Ray] = []
+    merged: list[Ray] = []
     for ray in rays:
-        place = next((k for k, r in enumerate(found) if is_same(r.direction, ray.direction)), None)
+        place = next((k for k, r in enumerate(merged) if is_same(r.direction, ray.direction)), None)
         if place is None:
-            found.append(ray)
+            merged.append(ray)
         elif ray.kind == "body":
-            both = formula("#1 = #2", found[place].name, ray.name)
-            found[place] = found[place]._replace(name=both)
-    yield from found
+            both = formula("#1 = #2", merged[place].name, ray.name)
+            merged[place] = merged[place]._replace(name=both)
+    yield from merged
 
 
 @lru_cache(maxsize=16)

@@ -96,7 +96,8 @@ class HtmlPrinter(NotePrinter):
     def __init__(self, document: Document) -> None:
         super().__init__(document, WebPen(document.letters.notation))
         self.math = {
-            equation: math(shown.text, is_display=True) for equation, shown in self.shown.items()
+            equation: math(layout.text, is_display=True)
+            for equation, layout in self.displays.items()
         }
         self._blocks = resources.environment().get_template(BLOCKS).module
 

@@ -88,22 +88,22 @@ class _LatexPrinter(NotePrinter):
         return f"\\[\n{row}\n\\]"
 
     def equation(self, equation: Equation) -> str:
-        shown, label = self.shown[equation], self.label(equation.label)
+        layout, label = self.displays[equation], self.label(equation.label)
         lines = [announced] if (announced := self.announced(equation)) else []
         numbers = [e.number or 0 for e in self.document.equations]
         if equation.number and equation.number - 1 not in (0, *numbers):
             # the numbers of a theory leave some out, and TeX counts the equations
             lines.append(rf"\setcounter{{equation}}{{{equation.number - 1}}}")
-        if shown.lines > _TALL:
+        if layout.lines > _TALL:
             # lines between which a page may end, which a box would keep together
-            environment = shown.environment.replace("ed", "*")  # align* for aligned
-            lines += [rf"{{\freely\begin{{{environment}}}", shown.inside]
+            environment = layout.environment.replace("ed", "*")  # align* for aligned
+            lines += [rf"{{\freely\begin{{{environment}}}", layout.inside]
             lines += [rf"\numbered{{{label}}}"] if equation.number else []
             lines.append(rf"\end{{{environment}}}}}")
         elif equation.number:
-            lines += [rf"\begin{{resultof}}{{{label}}}", shown.text, r"\end{resultof}"]
+            lines += [rf"\begin{{resultof}}{{{label}}}", layout.text, r"\end{resultof}"]
         else:
-            lines.append(f"\\[\n{shown.text}\n\\]")
+            lines.append(f"\\[\n{layout.text}\n\\]")
         remarks = " ".join(f"{claim}." for claim in self.claims(equation))
         function = _typed(equation.function) if equation.function else ""
         if remarks or function:

@@ -87,12 +87,12 @@ class _MarkdownPrinter(NotePrinter):
         return _LINE_START.sub(_unlisted, self.text(block.text).lstrip())
 
     def equation(self, equation: Equation) -> str:
-        shown = self.shown[equation]
+        layout = self.displays[equation]
         tag = f"\n\\tag{{{equation.number}}}" if equation.number else ""
         function = [self.code(equation.function)] if equation.function else []
         remarks = " · ".join([*self.claims(equation), *function])
         return "\n\n".join(
-            filter(None, [self.announced(equation), _display(shown.text + tag), remarks])
+            filter(None, [self.announced(equation), _display(layout.text + tag), remarks])
         )
 
     def equationrow(self, block: EquationRow) -> str:

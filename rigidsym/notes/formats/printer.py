@@ -47,7 +47,7 @@ class NotePrinter:
         self.document = document
         self.pen = pen
         beside = self.beside_number or self.width
-        self.shown = {
+        self.displays = {
             equation: display(
                 equation, document.letters, beside if equation.number else self.width, pen
             )
@@ -106,7 +106,7 @@ class NotePrinter:
 
     def announced(self, equation: Equation) -> str:
         """What is said before an equation of the way it is set."""
-        return self.text(announcement(equation, self.shown[equation].is_listed))
+        return self.text(announcement(equation, self.displays[equation].is_listed))
 
     def claims(self, equation: Equation) -> Iterator[str]:
         """What was proved of an equation, and what was not."""

@@ -167,7 +167,7 @@ def _body(body: RigidBody) -> dict[str, Any]:
     """The body itself; its principal axes in numbers, where all its parameters have values."""
     from rigidsym.mechanics.mass.bodies import in_numbers, parts_of
 
-    found = in_numbers(body)
+    numbers = in_numbers(body)
     parts = [  # about their centres of mass; `turn` takes the axes of a part to those of the whole
         {"mass": mass, "centre": _vector(centre), "inertia": inertia, "turn": turn}
         for mass, centre, inertia, turn in parts_of(body)
@@ -179,7 +179,7 @@ def _body(body: RigidBody) -> dict[str, Any]:
         "inertia": body.inertia,
         **({"parts": parts} if parts else {}),
         "parameters": body.parameters,
-        "in_numbers": None if found is None else found.record(),
+        "in_numbers": None if numbers is None else numbers.record(),
     }
 
 

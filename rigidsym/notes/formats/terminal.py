@@ -196,11 +196,11 @@ class _Screen:
             facts["singular"] = singular
             gimbal_lock = " (gimbal lock)" if singular.is_gimbal_lock else ""
             self.section(f"Singular orientations{gimbal_lock}")
-            if singular.found.determinant is not None:
+            if singular.result.determinant is not None:
                 for block in blocks_of("en/singular_measure", letters, **facts):
                     if isinstance(block, Equation):
                         self.equation(block)
-                    elif isinstance(block, Paragraph) and singular.found.measure == "minors":
+                    elif isinstance(block, Paragraph) and singular.result.measure == "minors":
                         self.sentence(block.text)  # or Σ₁ would have no meaning
             for text in texts_of("en/singular", letters, **facts):
                 self.sentence(text)

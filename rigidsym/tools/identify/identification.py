@@ -49,6 +49,14 @@ class Identification:
         """Whether noise could be why nothing fits."""
         return self.distance <= _NEAR
 
+    @property
+    def contradicted(self) -> tuple[str, ...]:
+        """The units in the names of the columns, if no answer agrees with them."""
+        stated = self.columns.stated
+        if any(answer.reading.agrees_with(stated) for answer in self.answers):
+            return ()
+        return tuple(f"{part} in {unit}" for part, unit in stated.items() if self.answers)
+
     def text(self, *, everything: bool = False) -> str:
         """The report of `rigidsym identify`; with `everything`, that of --all.
 
@@ -76,6 +84,7 @@ class Identification:
             "tried": self.tried,
             "angle_names": list(names),
             "tolerance": self.tolerance._asdict(),
+            "contradicted": list(self.contradicted),
             "answers": [_answer(answer, names) for answer in self.answers],
             "nearest": self.nearest and _answer(self.nearest, names),
         }
@@ -156,9 +165,9 @@ def identify(
     >>> result.answers[0].reading.words()
     'xyz extrinsic, active, degrees, columns (a1, a2, a3), scalar first'
     """
-    given = {"angles": angles, "matrix": matrix, "quaternion": quaternion}
-    given |= {"rates": rates, "omega": omega}
-    return identified(from_arrays(given, names), tolerance)
+    parts = {"angles": angles, "matrix": matrix, "quaternion": quaternion}
+    parts |= {"rates": rates, "omega": omega}
+    return identified(from_arrays(parts, names), tolerance)
 
 
 def identify_file(

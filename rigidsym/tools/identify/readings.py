@@ -6,7 +6,7 @@ data, and lists the different ones.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import permutations, product
@@ -88,6 +88,13 @@ class Reading:
         """How Python takes the turns from the columns: "[..., [2, 1, 0]] * [1, -1, 1]"."""
         columns = f"[..., {[*self.columns]}]" if self.columns != (0, 1, 2) else ""
         return columns + (f" * {[*self.signs]}" if -1 in self.signs else "")
+
+    def agrees_with(self, stated: Mapping[str, str]) -> bool:
+        """Whether it has these units, deg or rad, of angles, and of both rates and Ω."""
+        rates, omega = (stated.get(part, "") for part in ("rates", "omega"))
+        units = f"rates in {rates}/s, Ω in {omega}/s" if rates != omega else ""
+        agrees = not (self.velocity and rates and omega) or self.velocity.units == units
+        return agrees and self.unit.startswith(stated.get("angles", ""))
 
     def in_other_manner(self) -> Reading:
         """The same R with the other kind of axes: intrinsic ZYX is extrinsic xyz, reversed."""

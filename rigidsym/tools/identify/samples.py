@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 from math import ceil
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -53,6 +54,7 @@ class Columns(NamedTuple):
     scalar_last: bool | None = None  # of a quaternion whose names tell which is the scalar
     factors: Sequence[float] = (1.0,)  # of all columns used, in order
     converted: Names = ()  # the columns that they convert
+    stated: Mapping[str, str] = MappingProxyType({})  # units in their names, deg or rad, by part
     unused: str = ""  # columns of rates without Ω, or of Ω without rates, in words
 
     @property
@@ -127,8 +129,8 @@ class Samples:
         for k in np.flatnonzero(wrong)[:MOST_SHOWN].tolist():
             fault = f"quaternion: its length is {sizes[k]:.4g}, expected 1"
             if is_matrix and sizes[k] < 0 and defects[k] <= SLACK:
-                reflects = "not a rotation but a reflection, its determinant is"
-                fault = f"matrix: {reflects} {sizes[k]:.4g}"
+                size = f"{sizes[k]:.4g}"
+                fault = f"matrix: not a rotation but a reflection, its determinant is {size}"
             elif is_matrix:
                 fault = (
                     f"matrix: not a rotation, M Mᵀ differs from 1 by {defects[k]:.2g} in an entry "
@@ -190,12 +192,15 @@ def by_name(names: Sequence[str]) -> Columns:
     velocity = {"rates": rates, "omega": nearest(OMEGAS)}
     complete = [part for part, group in velocity.items() if share(group) == 1]
     groups |= velocity if len(complete) == 2 else {}
-    faults = ["both a matrix and a quaternion are named; leave one out"] if has_two else []
+    faults = []
+    if has_two:
+        faults.append("both a matrix and a quaternion are named; leave one out")
     if missing := [n for group in groups.values() for n in group if not header.has(n)]:
         lacking = ", ".join(missing)
         lacking = lacking.replace(", ".join(MATRICES[0]), "r11, ..., r33 or qw, qx, qy, qz")
-        remedy = "--columns names the columns in order"
-        faults.append(f"no column {lacking} among {header.listed}; {remedy}")
+        faults.append(
+            f"no column {lacking} among {header.listed}; --columns names the columns in order"
+        )
     if faults:
         raise SampleError(faults)
 
@@ -204,10 +209,12 @@ def by_name(names: Sequence[str]) -> Columns:
 
     parts = {part: columns_of(group) for part, group in groups.items()}
     factors: dict[int, float] = {}
+    stated: dict[str, str] = {}
     for part, columns in parts.items():
         # to radians if a unit is a multiple of them, and else to degrees
         units = [header.unit(column).casefold().lstrip("numµ") for column in columns]
         base = "rad" if any(unit.startswith("rad") for unit in units) else "deg"
+        stated |= {part: base} if part in _PER and any(units) else {}
         for k in columns:
             factor = header.factor(k, base + _PER[part]) if part in _PER else None
             factors[k] = factor or 1.0
@@ -221,6 +228,7 @@ def by_name(names: Sequence[str]) -> Columns:
         names=angles,
         scalar_last=scalar_last,
         factors=[*factors.values()],
+        stated=stated,
         converted=tuple(header.names[k] for k, factor in factors.items() if factor != 1),
         unused=unused,
     )
@@ -317,8 +325,11 @@ def parts_missing(parts: Set[str]) -> list[str]:
     """Messages on a choice of parts that is not enough, or too much."""
     faults = [] if "angles" in parts else ["angles are missing"]
     if len(parts & {"matrix", "quaternion"}) != 1:
-        both = "give a matrix or a quaternion, not both"
-        faults.append(both if "matrix" in parts else "a matrix or a quaternion is missing")
+        faults.append(
+            "give a matrix or a quaternion, not both"
+            if "matrix" in parts
+            else "a matrix or a quaternion is missing"
+        )
     if len(parts & {"rates", "omega"}) == 1:
         faults.append("expected both rates and omega, or neither")
     return faults
