@@ -7,6 +7,7 @@ strict about names.
 
 from __future__ import annotations
 
+import re
 import sys
 import tomllib
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -99,7 +100,7 @@ def overridden_by(own: Path) -> Iterator[None]:
 def _check_names(own: Path, shipped: Sequence[str]) -> None:
     """Raises TemplateFault for a file that would be ignored: no style, and none refers to it.
 
-    A style may have any name but that of a part of the note, and none that looks misspelt.
+    A style has any name but that of a part of the note, and none that looks misspelt.
     """
     stems = [Path(name).name.removesuffix(".md.jinja") for name in shipped]
     languages = {file.parent for file in own.glob("*/*.md.jinja")}
@@ -110,14 +111,15 @@ def _check_names(own: Path, shipped: Sequence[str]) -> None:
         if file.suffix in (".jinja", ".toml")
     }
     for name in texts.keys() - {*shipped}:
-        stem, ending, rest = name.rpartition("/")[2].partition(".md.jinja")
-        near = get_close_matches(stem, stems, n=1, cutoff=_ALIKE)
+        style = re.fullmatch(r"[^/]+/([^/]+)\.md\.jinja", name)
+        near = style and (get_close_matches(style[1], stems, n=1, cutoff=_ALIKE) or [""])[0]
         # lecture_2 is a style of its own; lectrue, and fr/singular to which nothing refers, are not
-        is_new = stem in STYLES or not near or (near[0] != stem and near[0] in stem)
-        is_style = name.count("/") == 1 and ending and not rest and is_new
+        is_style = style and (style[1] in STYLES or (near != style[1] and near in style[1]))
         if not is_style and not any(name in text for n, text in texts.items() if n != name):
-            fault = "would be ignored: it is no style, and no template refers to it"
-            raise TemplateFault(f"{own / name} {fault}; {offer(name, shipped)}")
+            raise TemplateFault(
+                f"{own / name} would be ignored: it is no style, and no template refers to it; "
+                f"{offer(name, shipped)}"
+            )
 
 
 def sentences(name: str) -> Mapping[str, Any]:

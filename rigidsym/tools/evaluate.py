@@ -90,13 +90,36 @@ def evaluate(
         match = _matched(table, free, columns, keep, degrees=degrees)
     except DataError as error:
         raise DataError(f"{table.source}: {error}") from None
-    largest = np.zeros(len(match.components))
-    work = _Computation(table, calls, match, constants, free, degrees, threads, largest)
-    batches = table.batches(match.columns, rows, [*match.kept])
-    complete = without_missing(table, batches, [name for name, _ in match.components], missing)
+    names = [name for name, _ in match.components]
+    complete = without_missing(
+        table, table.batches(match.columns, rows, [*match.kept]), names, missing
+    )
+    factors = [180 / pi if degrees and _is_angle(unit) else 1.0 for _, unit in calls.results]
+    largest = np.zeros(len(names))  # the sizes in each column
+    lost, first = 0, ""  # how many rows have inputs and no value, and where the first is
+
+    def computed() -> Iterator[Rows]:
+        nonlocal lost, first
+        for batch in complete:
+            result = _values(calls, table, batch, match.scales, constants, free, threads)
+            is_lost = np.isfinite(batch.table).all(axis=1) & ~np.isfinite(result).all(axis=1)
+            if is_lost.any() and not lost:
+                first = table.place(int(batch.rows[is_lost.argmax()]))
+            lost += int(is_lost.sum())
+            np.fmax(largest, np.fmax.reduce(np.abs(batch.table), initial=0), out=largest)
+            yield _scaled(result, factors), batch.kept
+            if progress is not None:
+                progress(batch.share)
+
     titles = (*match.kept.values(), *(_title(*each, degrees=degrees) for each in calls.results))
-    total = write_table(where, titles, table.dtype, work.rows(complete, progress), stream)
-    return Evaluated(path=where, rows=total, columns=titles, remarks=tuple(work.remarks(total)))
+    total = write_table(where, titles, table.dtype, computed(), stream)
+    remarks = [*_remarks(match, largest, degrees=degrees)]
+    if lost:
+        remarks.append(
+            f"{lost} of {total} rows have no value, the first in {first}: a singular orientation "
+            "or a zero quaternion"
+        )
+    return Evaluated(path=where, rows=total, columns=titles, remarks=tuple(remarks))
 
 
 def _opened(source: Path | BinaryIO, path: Path | BinaryIO) -> tuple[Table, Path, BinaryIO | None]:
@@ -113,74 +136,45 @@ def _opened(source: Path | BinaryIO, path: Path | BinaryIO) -> tuple[Table, Path
     return table, path, None
 
 
-@dataclass(slots=True)
-class _Computation:
-    """The results for the rows of a table, and the remarks on them."""
+def _values(
+    calls: _Calls,
+    table: Table,
+    batch: Batch,
+    scales: Sequence[float],
+    constants: Mapping[str, Numbers],
+    free: Sequence[_Input],
+    threads: int,
+) -> Numbers:
+    """The values of all functions for the rows of a batch, side by side."""
+    count = len(batch.table)
+    ends = np.cumsum([len(each.names) for each in free])[:-1]
+    vectors = dict(constants)
+    parts = np.split(_scaled(batch.table, scales), ends, axis=1)
+    for each, part in zip(free, parts, strict=True):
+        vectors[each.name] = part.reshape(count, *each.shape)
+        if each is _MATRIX:
+            matrices = replace(batch, table=part)
+            samples_of(table, _ENTRIES, matrices, drops_missing=True).check(SLACK)
+    values = []
+    for name, arguments in calls.arguments.items():
+        function = getattr(calls.module, name)
+        value = function(*(vectors[each] for each in arguments), threads=threads)
+        is_constant = constants.keys() >= {*arguments}
+        value = np.asarray(value).reshape(1 if is_constant else count, -1)
+        values.append(np.broadcast_to(value, (count, value.shape[1])))
+    return np.concatenate(values, axis=1)
 
-    table: Table
-    calls: _Calls
-    match: _Match
-    constants: Mapping[str, Numbers]
-    free: Sequence[_Input]  # those that are not constants
-    degrees: bool
-    threads: int
-    largest: Numbers  # the sizes in each column
-    lost: int = 0  # rows that have inputs and no value
-    first: str = ""  # where the first of them is
 
-    def rows(self, batches: Iterable[Batch], progress: Progress | None) -> Iterator[Rows]:
-        """The results of each batch, with its columns to keep."""
-        factors = [
-            180 / pi if self.degrees and _is_angle(unit) else 1.0 for _, unit in self.calls.results
-        ]
-        for batch in batches:
-            result = self._result(batch)
-            is_lost = np.isfinite(batch.table).all(axis=1) & ~np.isfinite(result).all(axis=1)
-            if is_lost.any() and not self.lost:
-                self.first = self.table.place(int(batch.rows[is_lost.argmax()]))
-            self.lost += int(is_lost.sum())
-            sizes = np.fmax.reduce(np.abs(batch.table), initial=0)
-            np.fmax(self.largest, sizes, out=self.largest)
-            yield _scaled(result, factors), batch.kept
-            if progress is not None:
-                progress(batch.share)
-
-    def _result(self, batch: Batch) -> Numbers:
-        """The values of all functions side by side, in SI units."""
-        count = len(batch.table)
-        ends = np.cumsum([len(each.names) for each in self.free])[:-1]
-        parts = np.split(_scaled(batch.table, self.match.scales), ends, axis=1)
-        vectors = dict(self.constants)
-        for each, part in zip(self.free, parts, strict=True):
-            vectors[each.name] = part.reshape(count, *each.shape)
-            if each is _MATRIX:
-                matrices = replace(batch, table=part)
-                samples_of(self.table, _ENTRIES, matrices, drops_missing=True).check(SLACK)
-        values = []
-        for name, arguments in self.calls.arguments.items():
-            function = getattr(self.calls.module, name)
-            value = function(*(vectors[each] for each in arguments), threads=self.threads)
-            is_constant = self.constants.keys() >= {*arguments}
-            value = np.asarray(value).reshape(1 if is_constant else count, -1)
-            values.append(np.broadcast_to(value, (count, value.shape[1])))
-        return np.concatenate(values, axis=1)
-
-    def remarks(self, total: int) -> Iterator[str]:
-        """How columns without a unit were read, and how many rows have no value."""
-        components, unstated = self.match.components, self.match.unstated
-        if unstated:
-            read_as = ", ".join(_title(*components[k], degrees=self.degrees) for k in unstated)
-            yield f"columns without a unit are read as {read_as}"
-        for k in unstated:
-            name, unit = components[k]
-            if unit == "rad" and self.largest[k] > 2 * pi and not self.degrees:
-                size = in_both_units(self.largest[k])
-                yield f"{name} is as large as {size}; if they are degrees, --degrees reads them so"
-        if self.lost:
-            yield (
-                f"{self.lost} of {total} rows have no value, the first in {self.first}: "
-                "a singular orientation or a zero quaternion"
-            )
+def _remarks(match: _Match, largest: Numbers, *, degrees: bool) -> Iterator[str]:
+    """How columns without a unit were read, and which of them may be degrees."""
+    if match.unstated:
+        titles = (_title(*match.components[k], degrees=degrees) for k in match.unstated)
+        yield f"columns without a unit are read as {', '.join(titles)}"
+    for k in match.unstated:
+        name, unit = match.components[k]
+        if unit == "rad" and largest[k] > 2 * pi and not degrees:
+            size = in_both_units(largest[k])
+            yield f"{name} is as large as {size}; if they are degrees, --degrees reads them so"
 
 
 def _scaled(table: Numbers, factors: Sequence[float]) -> Numbers:
