@@ -137,20 +137,16 @@ def _euler_sequence(text: str) -> str:
     letters = text.translate(DIGITS)
     if letters in EULER_SEQUENCES:
         return letters
-    wrong = f"{text!r} is not an Euler sequence"
     if letters not in (letters.upper(), letters.lower()):
-        raise ModelError(
-            f"{wrong}: upper case is intrinsic and lower case extrinsic; do not mix them"
-        )
-    if len(letters) != 3 or not set(letters.lower()) <= set(AXES):
-        raise ModelError(
-            f"{wrong}: expected three axes such as ZXZ (intrinsic), zxz (extrinsic) or 313 "
-            "(intrinsic)"
-        )
-    place = 1 if letters[0] == letters[1] else 2
-    alike = [s for s in EULER_SEQUENCES if s.isupper() == letters.isupper()]
-    follows = f"{text[place]} follows {text[place - 1]}"
-    raise ModelError(f"{wrong}: consecutive axes must differ: {follows}; {offer(letters, alike)}")
+        fault = "upper case is intrinsic and lower case extrinsic; do not mix them"
+    elif len(letters) != 3 or not set(letters.lower()) <= set(AXES):
+        fault = "expected three axes such as ZXZ (intrinsic), zxz (extrinsic) or 313 (intrinsic)"
+    else:
+        place = 1 if letters[0] == letters[1] else 2
+        alike = [s for s in EULER_SEQUENCES if s.isupper() == letters.isupper()]
+        follows = f"{text[place]} follows {text[place - 1]}"
+        fault = f"consecutive axes must differ: {follows}; {offer(letters, alike)}"
+    raise ModelError(f"{text!r} is not an Euler sequence: {fault}")
 
 
 def _in_order(turns: Sequence[Turn], which: str) -> str:

@@ -10,8 +10,10 @@ from __future__ import annotations
 
 import ast
 import re
+import tomllib
 from collections.abc import Mapping
 from itertools import accumulate, takewhile
+from pathlib import Path
 
 import sympy as sp
 
@@ -31,22 +33,6 @@ _TOKEN = re.compile(
     re.ASCII,
 )
 _OPERATORS = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "**"}
-_HINTS = {
-    "^": "write ** for a power",
-    "²": "write **2",
-    "³": "write **3",
-    "·": "write *",
-    "×": "write *",
-    "÷": "write /",
-    "−": "write -",
-    "√": "write sqrt(...)",
-    "[": "group with ( and )",
-    "{": "group with ( and )",
-    "=": "expected an expression, not an equation",
-    "%": "angles are in radians; for degrees write pi/180*...",
-    "°": "angles are in radians; for degrees write pi/180*...",
-}
-
 _TURN = re.compile(r"([xyz]|\[[^\[\]]*\])\s*\(")
 _BETWEEN_TURNS = re.compile(r"\s*(\*?)\s*")
 
@@ -128,11 +114,11 @@ def _tokens(text: str) -> list[re.Match[str]]:
         token = _TOKEN.match(text, place)
         if token is None:
             character = text[place]
-            raise ExpressionError(
-                f"unexpected {character!r}; "
-                + _HINTS.get(character, "expected a number, a name, ( ) or one of + - * / **"),
-                column=place + 1,
+            hints = tomllib.loads(
+                Path(__file__).with_name("hints.toml").read_text(encoding="utf-8")
             )
+            hint = hints.get(character, hints["other"])
+            raise ExpressionError(f"unexpected {character!r}; {hint}", column=place + 1)
         tokens.append(token)
         place = token.end()
     return tokens

@@ -80,7 +80,15 @@ def evaluate(
     request that cannot be met, such as an unknown ending of the result, and QuantityError;
     SampleError, with the rows, for matrices that are not rotations.
     """
-    table, where, stream = _opened(source, path)
+    if isinstance(source, Path):
+        table = open_table(source)
+    else:
+        table = TextTable(Path("standard input"), source.read())
+    where, stream = (path, None) if isinstance(path, Path) else (Path("standard output"), path)
+    if stream is None:
+        check_ending(where)
+        if isinstance(source, Path) and where.resolve() == source.resolve():
+            raise RequestError(f"{where}: the result would replace the file that is read")
     calls = _calls_of(motion, quantities)
     constants = _constants(calls.inputs, given or {}, table.dtype)
     free = [each for each in calls.inputs if each.name not in constants]
@@ -113,27 +121,20 @@ def evaluate(
 
     titles = (*match.kept.values(), *(_title(*each, degrees=degrees) for each in calls.results))
     total = write_table(where, titles, table.dtype, computed(), stream)
-    remarks = [*_remarks(match, largest, degrees=degrees)]
+    read_as = ", ".join(_title(*match.components[k], degrees=degrees) for k in match.unstated)
+    remarks = [f"columns without a unit are read as {read_as}"] if read_as else []
+    remarks += [
+        f"{names[k]} is as large as {in_both_units(largest[k])}; if they are degrees, --degrees "
+        "reads them so"
+        for k in match.unstated
+        if match.components[k][1] == "rad" and largest[k] > 2 * pi and not degrees
+    ]
     if lost:
         remarks.append(
             f"{lost} of {total} rows have no value, the first in {first}: a singular orientation "
             "or a zero quaternion"
         )
     return Evaluated(path=where, rows=total, columns=titles, remarks=tuple(remarks))
-
-
-def _opened(source: Path | BinaryIO, path: Path | BinaryIO) -> tuple[Table, Path, BinaryIO | None]:
-    """The table, the name of the result, and the stream for it unless that is a file."""
-    if isinstance(source, Path):
-        table = open_table(source)
-    else:
-        table = TextTable(Path("standard input"), source.read())
-    if not isinstance(path, Path):
-        return table, Path("standard output"), path
-    check_ending(path)
-    if isinstance(source, Path) and path.resolve() == source.resolve():
-        raise RequestError(f"{path}: the result would replace the file that is read")
-    return table, path, None
 
 
 def _values(
@@ -163,18 +164,6 @@ def _values(
         value = np.asarray(value).reshape(1 if is_constant else count, -1)
         values.append(np.broadcast_to(value, (count, value.shape[1])))
     return np.concatenate(values, axis=1)
-
-
-def _remarks(match: _Match, largest: Numbers, *, degrees: bool) -> Iterator[str]:
-    """How columns without a unit were read, and which of them may be degrees."""
-    if match.unstated:
-        titles = (_title(*match.components[k], degrees=degrees) for k in match.unstated)
-        yield f"columns without a unit are read as {', '.join(titles)}"
-    for k in match.unstated:
-        name, unit = match.components[k]
-        if unit == "rad" and largest[k] > 2 * pi and not degrees:
-            size = in_both_units(largest[k])
-            yield f"{name} is as large as {size}; if they are degrees, --degrees reads them so"
 
 
 def _scaled(table: Numbers, factors: Sequence[float]) -> Numbers:

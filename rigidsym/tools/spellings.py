@@ -2,49 +2,23 @@
 
 from __future__ import annotations
 
+import tomllib
 from itertools import product
+from pathlib import Path
 
 Names = tuple[str, ...]
 
-RATES = ("{}_dot", "{}_rate", "d_{}")
-_ACCELERATIONS = ("{}_ddot", "{}_accel", "dd_{}")
-ANGLES: tuple[Names, ...] = (
-    ("angle1", "angle2", "angle3"),
-    ("a1", "a2", "a3"),
-    ("roll", "pitch", "yaw"),
-    ("roll", "pitch", "heading"),
-    ("phi", "theta", "psi"),
-    ("alpha", "beta", "gamma"),
-    ("rx", "ry", "rz"),
+_TABLES = tomllib.loads(Path(__file__).with_name("spellings.toml").read_text(encoding="utf-8"))
+RATES, _ACCELERATIONS, _MATRICES = (
+    tuple(_TABLES[key].split()) for key in ("rates", "accelerations", "matrices")
 )
-_INDICES = tuple(f"{row}{column}" for row, column in product("123", repeat=2))
-MATRICES: tuple[Names, ...] = (
-    *(tuple(letter + index for index in _INDICES) for letter in ("r", "m", "a", "c", "dcm")),
-    tuple(f"rotation_matrix_{index}" for index in _INDICES),
+ANGLES, NAMED_QUATERNIONS, _OTHERS, OMEGAS = (
+    tuple(tuple(names.split()) for names in _TABLES[key])
+    for key in ("angles", "named_quaternions", "quaternions", "omegas")
 )
-NAMED_QUATERNIONS: tuple[Names, ...] = (  # whose names tell which is the scalar
-    ("qw", "qx", "qy", "qz"),
-    ("w", "x", "y", "z"),
-    ("orientation_w", "orientation_x", "orientation_y", "orientation_z"),
-    ("rotation_w", "rotation_x", "rotation_y", "rotation_z"),
-)
-QUATERNIONS: tuple[Names, ...] = (
-    *NAMED_QUATERNIONS,
-    ("q0", "q1", "q2", "q3"),
-    ("q1", "q2", "q3", "q4"),
-    ("quaternion1", "quaternion2", "quaternion3", "quaternion4"),
-)
-OMEGAS: tuple[Names, ...] = (
-    ("omega1", "omega2", "omega3"),
-    ("omegax", "omegay", "omegaz"),
-    ("wx", "wy", "wz"),
-    ("gyrox", "gyroy", "gyroz"),
-    ("p", "q", "r"),
-    ("angular_velocity_x", "angular_velocity_y", "angular_velocity_z"),
-    ("gyrx", "gyry", "gyrz"),  # ArduPilot
-    ("gyro_rad_0", "gyro_rad_1", "gyro_rad_2"),  # PX4
-    ("xyz_0", "xyz_1", "xyz_2"),  # PX4, vehicle_angular_velocity
-)
+QUATERNIONS: tuple[Names, ...] = (*NAMED_QUATERNIONS, *_OTHERS)
+_INDICES = [f"{row}{column}" for row, column in product("123", repeat=2)]
+MATRICES: tuple[Names, ...] = tuple(tuple(head + index for index in _INDICES) for head in _MATRICES)
 
 
 def _quantity(name: str) -> Names:
