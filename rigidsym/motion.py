@@ -97,11 +97,7 @@ class Motion(Derivation):
         return Conversions(self.model)
 
     def note(
-        self,
-        *,
-        with_kernels: bool = True,
-        conversions: bool = False,
-        style: str = "lecture",
+        self, *, with_kernels: bool = True, conversions: bool = False, style: str = "lecture"
     ) -> Note:
         """The note on the derivation: `.latex()`, `.html()`, `.markdown()`.
 
@@ -135,12 +131,7 @@ class Motion(Derivation):
 
         return simulate(self, initial, parameters, t_end, **options)
 
-    def page(
-        self,
-        *,
-        with_kernels: bool = True,
-        start: Mapping[str, float] | None = None,
-    ) -> str:
+    def page(self, *, with_kernels: bool = True, start: Mapping[str, float] | None = None) -> str:
         """One HTML file that needs no network: the note, and a figure with sliders.
 
         `start` contains initial values of coordinates, rates and constants by name, in SI units.

@@ -116,13 +116,8 @@ def motion_of(spec: DerivationSpec) -> Motion:
         raise ModelError(f"{spec.name} has {len(spec.models)} rotations; expected one")
     (model,) = spec.models
     body = integrated(spec).body
-    motion = derive(
-        model,
-        only=spec.quantities,
-        body=body,
-        theory=spec.theory,
-        **(spec.dynamics or {}),
-    )
+    dynamics = spec.dynamics or {}
+    motion = derive(model, only=spec.quantities, body=body, theory=spec.theory, **dynamics)
     notation = spec.notation or DEFAULT
     return replace(motion, name=spec.name, title=spec.title or motion.title, notation=notation)
 
@@ -159,9 +154,7 @@ def _printed(motion: Motion, spec: DerivationSpec) -> Iterator[tuple[str, str]]:
     if not spec.note:
         return
     note = motion.note(
-        with_kernels="numpy" in spec.kernels,
-        conversions=spec.conversions,
-        style=spec.style,
+        with_kernels="numpy" in spec.kernels, conversions=spec.conversions, style=spec.style
     )
     for ending in FORMATS:
         if ending in spec.note or (ending == "tex" and PDF in spec.note):

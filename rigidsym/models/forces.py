@@ -192,16 +192,11 @@ class Forces:
             names = ", ".join(map(as_typed, model.coordinates))
             plain = {q.func.__name__ for q in model.coordinates}
             plain &= {symbol.name for symbol in self.potential.free_symbols}
-            missing = f"{depends} none of the coordinates {names}"
+            remedy = "expected one of them; a constant exerts no force, and is left out"
             if plain:
                 name = min(plain)
-                raise ModelError(
-                    f"{missing}; {name} is a symbol here; expected a text, or the function "
-                    f"{name}(t)"
-                )
-            raise ModelError(
-                f"{missing}; expected one of them; a constant exerts no force, and is left out"
-            )
+                remedy = f"{name} is a symbol here; expected a text, or the function {name}(t)"
+            raise ModelError(f"{depends} none of the coordinates {names}; {remedy}")
         for expression in self._of_parts:
             what = "t" if depends_on_time(expression) else "Ω′"
             if what == "t" or expression.has(*OMEGA_BODY):

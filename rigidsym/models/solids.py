@@ -52,9 +52,7 @@ class Shape(NamedTuple):
 SHAPES: Mapping[str, Shape] = {
     name: Shape(
         **entry
-        | {
-            "lengths": [Length(k, names.split(), about) for k, names, about in entry["lengths"]],
-        }
+        | {"lengths": [Length(k, names.split(), about) for k, names, about in entry["lengths"]]}
     )
     for name, entry in tomllib.loads(
         Path(__file__).with_name("solids.toml").read_text(encoding="utf-8")

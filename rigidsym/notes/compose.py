@@ -188,13 +188,8 @@ class Composer:
         for step in self.derivation.steps:
             if step.quantity.section == section:
                 blocks.append(Paragraph(self._lead(step)))
-                blocks += fitted(
-                    self._displayed[step.quantity.name],
-                    step,
-                    self.derivation,
-                    self.letters,
-                    is_audit=self.is_audit,
-                )
+                arguments = self._displayed[step.quantity.name], step, self.derivation, self.letters
+                blocks += fitted(*arguments, is_audit=self.is_audit)
         return blocks
 
     def equation(self, name: str) -> Equation:

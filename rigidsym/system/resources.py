@@ -78,8 +78,8 @@ def replaceable() -> tuple[str, ...]:
 def overridden_by(own: Path) -> Iterator[None]:
     """Inside, the templates in a folder of the user replace those of the same name.
 
-    Raises TemplateFault if the folder holds none of these, and no style, LANGUAGE/NAME.md.jinja;
-    for a file that would be ignored; and for a table of sentences with a fault.
+    Raises TemplateFault if the folder holds none of these, and no style, LANGUAGE/NAME.md.jinja,
+    and for a file that would be ignored.
     """
     shipped = replaceable()
     if not any((own / name).is_file() for name in shipped) and not any(own.glob("*/*.md.jinja")):
@@ -90,8 +90,6 @@ def overridden_by(own: Path) -> Iterator[None]:
     _check_names(own, shipped)
     token = _OWN.set(own)
     try:
-        for name in _TABLES:
-            sentences(name)
         yield
     finally:
         _OWN.reset(token)

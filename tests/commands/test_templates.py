@@ -48,7 +48,7 @@ def test_a_file_that_would_be_ignored_or_misread_is_refused(name, text, fault, t
     with resources.overridden_by(tmp_path):
         own(tmp_path, name, text)
     with pytest.raises(TemplateFault, match=fault), resources.overridden_by(tmp_path):
-        pass
+        resources.sentences(name)
 
 
 def test_a_template_without_end_is_stopped_by_the_time_limit(tmp_path: Path):

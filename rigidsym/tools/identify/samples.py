@@ -192,9 +192,7 @@ def by_name(names: Sequence[str]) -> Columns:
     velocity = {"rates": rates, "omega": nearest(OMEGAS)}
     complete = [part for part, group in velocity.items() if share(group) == 1]
     groups |= velocity if len(complete) == 2 else {}
-    faults = []
-    if has_two:
-        faults.append("both a matrix and a quaternion are named; leave one out")
+    faults = ["both a matrix and a quaternion are named; leave one out"] if has_two else []
     if missing := [n for group in groups.values() for n in group if not header.has(n)]:
         lacking = ", ".join(missing)
         lacking = lacking.replace(", ".join(MATRICES[0]), "r11, ..., r33 or qw, qx, qy, qz")
@@ -325,11 +323,8 @@ def parts_missing(parts: Set[str]) -> list[str]:
     """Messages on a choice of parts that is not enough, or too much."""
     faults = [] if "angles" in parts else ["angles are missing"]
     if len(parts & {"matrix", "quaternion"}) != 1:
-        faults.append(
-            "give a matrix or a quaternion, not both"
-            if "matrix" in parts
-            else "a matrix or a quaternion is missing"
-        )
+        both = "give a matrix or a quaternion, not both"
+        faults.append(both if "matrix" in parts else "a matrix or a quaternion is missing")
     if len(parts & {"rates", "omega"}) == 1:
         faults.append("expected both rates and omega, or neither")
     return faults
