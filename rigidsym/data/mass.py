@@ -98,13 +98,9 @@ class MassProperties:
         inertia = _without_rounding(self.inertia, largest)
         principal = principal_axes_of(inertia)
         axes = _without_rounding(principal.axes, 1.0)
-        values = {
-            "inertia": inertia,
-            "centre": _without_rounding(self.centre, size),
-            "principal": replace(principal, axes=axes),
-        }
-        for name, value in values.items():
-            object.__setattr__(self, name, value)
+        object.__setattr__(self, "inertia", inertia)
+        object.__setattr__(self, "centre", _without_rounding(self.centre, size))
+        object.__setattr__(self, "principal", replace(principal, axes=axes))
 
     @property
     def radii(self) -> Array:
@@ -129,11 +125,7 @@ class MassProperties:
 
     def as_table(self) -> dict[str, object]:
         """The values of [body] in a derivation file."""
-        return {
-            "inertia": self.inertia.tolist(),
-            "mass": self.mass,
-            "centre": self.centre.tolist(),
-        }
+        return {"inertia": self.inertia.tolist(), "mass": self.mass, "centre": self.centre.tolist()}
 
     def record(self) -> dict[str, Any]:
         """The properties as plain data."""
@@ -155,10 +147,7 @@ _MASSES = ("m", "mass", "masses")
 
 
 def inertia_of(
-    particles: Any,
-    *,
-    columns: Sequence[str] | None = None,
-    allow: bool = False,
+    particles: Any, *, columns: Sequence[str] | None = None, allow: bool = False
 ) -> MassProperties:
     """Mass, centre of mass, inertia tensor about it and principal axes of point masses.
 
@@ -259,10 +248,8 @@ def _columns(table: Table, names: Sequence[str] | None) -> tuple[list[int], Arra
     axes, mass = [header.find([name]) for name in _AXES], header.find(_MASSES)
     columns = [column for column in (*axes, mass) if column is not None]
     if missing := [name for name, column in zip(_AXES, axes, strict=True) if column is None]:
-        raise BodyError(
-            f"no column {', '.join(missing)} among {header.listed}; --columns names the columns "
-            "in order"
-        )
+        lacking = f"no column {', '.join(missing)} among {header.listed}"
+        raise BodyError(f"{lacking}; --columns names the columns in order")
     others = [name for k, name in enumerate(header.plain) if k not in columns]
     if mass is None and (near := get_close_matches("mass", others, n=1)):
         raise BodyError(f"no column m or mass among {header.listed}; is {near[0]} the mass?")

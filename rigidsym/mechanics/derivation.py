@@ -102,6 +102,7 @@ class Quantity(NamedTuple):
     symbol: Formula
     name: str = ""  # in Python, in kernels, in JSON: that of its entry
     meaning: str = ""  # its words, a key of templates/notes/en/quantities.toml; by default the name
+    by: str = ""  # of a Jacobian, the vector that the quantity is differentiated by
     unit: str = ""  # SI, "" for a pure number
     unit_of: str = ""  # the argument that it is a value of, whose unit it has
     inputs: tuple[str, ...] = ()  # the arguments it depends on, by name: "q", "q_dot", ...
@@ -126,8 +127,9 @@ class Quantity(NamedTuple):
 
     @property
     def about(self) -> str:
-        """Words: "angular velocity, space components"."""
-        return phrase("quantities", self.meaning or self.name)
+        """Words: "angular velocity, space components", "Jacobian of ... by q"."""
+        words = phrase("quantities", self.meaning or self.name)
+        return f"Jacobian of {words} by {self.by}" if self.by else words
 
     def presented(self, traits: Set[str]) -> Quantity:
         """The quantity as it is for a model with these traits; later variants take precedence."""
@@ -253,11 +255,6 @@ class Step:
     def because(self) -> str:
         """A sentence: how the quantity follows from the steps before."""
         return self.words or sentence_of(self.quantity.reason)
-
-    @property
-    def about(self) -> str:
-        """What it is, in words."""
-        return self.quantity.about
 
     @cached_property
     def shape(self) -> tuple[int, ...]:

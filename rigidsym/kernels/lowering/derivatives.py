@@ -69,12 +69,6 @@ class Jacobian(Step):
     """The derivative of a quantity: an entry a row, and a component of the vector a column."""
 
     of: tuple[int, ...]  # the shape of the quantity
-    by: str  # the vector
-
-    @property
-    def about(self) -> str:
-        """What it is, in words."""
-        return f"Jacobian of {super().about} by {self.by}"
 
     @cached_property
     def shape(self) -> tuple[int, ...]:
@@ -110,10 +104,10 @@ def derivatives_of(
                 name=request.name,
                 symbol=Symbol(f"∂{quantity.symbol.text}/∂{request.vector}"),
                 meaning=quantity.meaning or quantity.name,
+                by=request.vector,
                 inputs=quantity.inputs,
                 unit=quantity.unit,
             ),
             expression=slopes.xreplace(back).as_immutable(),
             of=step.shape,
-            by=request.vector,
         )

@@ -107,7 +107,7 @@ class _Lowering:
                 equation=step.number or None,
                 symbol=step.quantity.symbol.text,
                 definition=step.quantity.definition.text,
-                about=step.about,
+                about=step.quantity.about,
                 unit=step.quantity.unit,
             )
             for step, entries in zip(steps, forms, strict=True)

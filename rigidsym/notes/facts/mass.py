@@ -124,11 +124,7 @@ class MassFacts:
             return []
         moments, axes = self.numbers.principal.moments, self.numbers.principal.axes.T
         return [
-            {
-                "moment": number(moment),
-                "radius": number(radius),
-                "components": [*map(number, axis)],
-            }
+            {"moment": number(moment), "radius": number(radius), "components": [*map(number, axis)]}
             for moment, radius, axis in zip(moments, self.numbers.radii, axes, strict=True)
         ]
 

@@ -109,11 +109,7 @@ def _answer(answer: Answer, names: Sequence[str]) -> dict[str, Any]:
 
 
 def _reading(reading: Reading, names: Sequence[str]) -> dict[str, Any]:
-    return {
-        "words": reading.words(names),
-        "product": reading.product(names),
-        **asdict(reading),
-    }
+    return {"words": reading.words(names), "product": reading.product(names), **asdict(reading)}
 
 
 def identify(

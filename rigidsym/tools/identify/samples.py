@@ -196,9 +196,8 @@ def by_name(names: Sequence[str]) -> Columns:
     if missing := [n for group in groups.values() for n in group if not header.has(n)]:
         lacking = ", ".join(missing)
         lacking = lacking.replace(", ".join(MATRICES[0]), "r11, ..., r33 or qw, qx, qy, qz")
-        faults.append(
-            f"no column {lacking} among {header.listed}; --columns names the columns in order"
-        )
+        lacking = f"no column {lacking} among {header.listed}"
+        faults.append(f"{lacking}; --columns names the columns in order")
     if faults:
         raise SampleError(faults)
 
