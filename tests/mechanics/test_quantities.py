@@ -49,8 +49,7 @@ def test_every_quantity_has_its_sentences_and_no_sentence_is_left_over(file, fie
     keys |= {c[field] for q in entries for _, c in q.variants if field in c}
     keys |= {*QUANTITIES} if field == "meaning" else set()
     assert keys <= phrases(file).keys()
-    package = Path(rs.__file__).parent
-    sources = "".join(path.read_text("utf-8") for path in package.rglob("*.py"))
+    sources = "".join(p.read_text("utf-8") for p in Path(rs.__file__).parent.rglob("*.py"))
     assert phrases(file).keys() - keys <= {*re.findall(r'"(\w+)"', sources)}
     with pytest.raises(TemplateFault, match=rf"en/{file}\.toml: no 'angular'; "):
         phrase(file, "angular")

@@ -13,11 +13,7 @@ from rigidsym.models.library import PARAMETRISATIONS, PRESETS, rotation_from
 from rigidsym.models.rotation import hat
 from rigidsym.notes import fitting
 from rigidsym.notes.document import Document, Equation
-from rigidsym.notes.equations import (
-    by_half_angle,
-    sign_outside,
-    sum_of_vectors,
-)
+from rigidsym.notes.equations import by_half_angle, sign_outside, sum_of_vectors
 from rigidsym.notes.letters import length_of, letters_of
 
 TURNS = (
