@@ -124,11 +124,7 @@ def test_what_is_no_cloud_is_described_and_not_quoted(tmp_path, cloud, fault):
 
 @pytest.mark.parametrize(
     "inertia",
-    [
-        rows(3)[:, 1:] @ rows(3)[:, 1:].T + np.eye(3) * 9,
-        np.eye(3) * 2,
-        np.diag([1.0, 1.5, 1.0]),
-    ],
+    [rows(3)[:, 1:] @ rows(3)[:, 1:].T + np.eye(3) * 9, np.eye(3) * 2, np.diag([1.0, 1.5, 1.0])],
 )
 def test_principal_axes_are_right_handed_and_diagonalise(inertia):
     found = principal_axes_of(inertia)

@@ -64,14 +64,7 @@ def test_an_unknown_unit_is_refused_with_its_name(unit):
 
 
 @pytest.mark.parametrize(
-    "name",
-    [
-        "yaw [deg]",
-        "yaw_deg",
-        "yaw deg",
-        '"yaw, deg"',
-        "/imu/yaw [deg]",
-    ],
+    "name", ["yaw [deg]", "yaw_deg", "yaw deg", '"yaw, deg"', "/imu/yaw [deg]"]
 )
 def test_a_name_is_found_with_its_unit_however_it_is_written(name):
     header = ColumnNames(["time", name])

@@ -19,16 +19,7 @@ from rigidsym.formula.notation import Notation
 from rigidsym.formula.pen import break_lines
 from rigidsym.formula.reader import formula, named
 from rigidsym.formula.scalars import factored, formula_of, listed_entries
-from rigidsym.formula.tree import (
-    Bracket,
-    Formula,
-    Fraction,
-    Power,
-    Rate,
-    Sign,
-    Symbol,
-    row,
-)
+from rigidsym.formula.tree import Bracket, Formula, Fraction, Power, Rate, Sign, Symbol, row
 from rigidsym.formula.unicode_pen import UnicodePen, columns
 from rigidsym.mechanics.quantities.table import arguments_of
 from rigidsym.models.parametrisations import EulerAngles
@@ -207,12 +198,7 @@ def test_the_forms_of_the_pens_are_as_they_were(golden):
     lines = []
     for name, tree in forms():
         lines.append(name)
-        for pen in (
-            LatexPen(),
-            MarkdownPen(),
-            WebPen(),
-            UnicodePen(),
-        ):
+        for pen in (LatexPen(), MarkdownPen(), WebPen(), UnicodePen()):
             written = pen.write(tree).text.replace("\n", "⏎")
             if f"    {written}" not in lines[-6:]:
                 lines.append(f"    {written}")

@@ -139,7 +139,7 @@ def test_a_specification_checks_itself():
     with pytest.raises(SpecError) as caught:
         DerivationSpec(name="top", models=(model, replace(model, passive=True)))
     assert [str(fault) for fault in caught.value.faults] == [
-        "rotation.sequence[1]: writes the folder euler_zxz_intrinsic, as entry 0 does",
+        "rotation.sequence[1]: writes the folder euler_zxz_intrinsic, as entry 0 does"
     ]
     with pytest.raises(SpecError, match=r"numpy\.py would hide the Python module"):
         DerivationSpec(name="numpy", models=(model,))
