@@ -20,11 +20,7 @@ SEQUENCES = tuple("".join(axes) for axes in product("XYZ", repeat=3) if axes[1] 
 ANGLE_NAMES = ("a1", "a2", "a3")
 RADIANS_PER_DEGREE = pi / 180
 _OTHER: dict[Frame, Frame] = {"space": "body", "body": "space"}
-_FACTORS = {
-    "": 1.0,
-    "rates in deg/s, Ω in rad/s": pi / 180,
-    "rates in rad/s, Ω in deg/s": 180 / pi,
-}
+_FACTORS = {"": 1.0, "rates in deg/s, Ω in rad/s": pi / 180, "rates in rad/s, Ω in deg/s": 180 / pi}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
