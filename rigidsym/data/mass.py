@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
@@ -72,7 +72,7 @@ def principal_axes_of(inertia: ArrayLike) -> PrincipalAxes:
     for k in (0, 1):
         axes[:, k] *= np.sign(axes[np.argmax(np.abs(axes[:, k])), k])
     axes[:, 2] = np.cross(axes[:, 0], axes[:, 1])
-    return PrincipalAxes(moments=moments, axes=axes)
+    return PrincipalAxes(moments=moments, axes=_without_rounding(axes, 1.0))
 
 
 def _without_rounding(values: Array, size: float) -> Array:
@@ -96,11 +96,9 @@ class MassProperties:
         # the coordinates of the centre are compared with it and with the radius of gyration
         size = np.abs(self.centre).max() + np.sqrt(largest / abs(self.mass))
         inertia = _without_rounding(self.inertia, largest)
-        principal = principal_axes_of(inertia)
-        axes = _without_rounding(principal.axes, 1.0)
         object.__setattr__(self, "inertia", inertia)
         object.__setattr__(self, "centre", _without_rounding(self.centre, size))
-        object.__setattr__(self, "principal", replace(principal, axes=axes))
+        object.__setattr__(self, "principal", principal_axes_of(inertia))
 
     @property
     def radii(self) -> Array:

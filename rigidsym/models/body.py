@@ -319,14 +319,13 @@ def principal_moments(
     mass is the symbol M by default. `parameters` describes further symbols. Raises BodyError.
     """
     moments = [symbolic(moment, "a principal moment") for moment in (A, B, C)]
-    kinds = {1: "spherical", 2: "symmetric", 3: "in_principal_axes"}
     return given_inertia(
         sp.diag(*moments),
         mass=mass,
         name=name,
         parameters=parameters,
         allow=allow,
-        title=TITLES[kinds[len(set(moments))]],
+        title=TITLES[("spherical", "symmetric", "in_principal_axes")[len(set(moments)) - 1]],
         moment="principal moment of inertia",
     )
 

@@ -117,9 +117,8 @@ def sections_of(name: str, letters: Letters, **facts: Any) -> Iterator[Section]:
 def _check_ends(chunk: str) -> None:
     """Raises TemplateFault, with the line, if a formula of a paragraph has no end."""
     is_display = chunk.startswith("$$")
-    if is_display and chunk.endswith("$$") and chunk.count("$") == 4:
-        return
-    if not is_display and chunk.count("$") % 2 == 0:
+    count = chunk.count("$")
+    if (chunk.endswith("$$") and count == 4) if is_display else count % 2 == 0:
         return
     lines = chunk.strip("$\n").splitlines() if is_display else chunk.splitlines()
     line = next(line for line in lines if is_display or line.count("$") % 2)
