@@ -66,12 +66,31 @@ OF_MATRICES: dict[str, Callable[..., Any]] = {
     "trace": lambda matrix: matrix.trace(),
     "inv": lambda matrix: combined("**", matrix, sp.S.NegativeOne),
 }
-SPELLINGS = {f + end: f for f in FUNCTIONS for end in "fFl"} | {  # of functions in programs
-    **{"power": "pow", "powf": "pow", "powi": "pow", "square": "sq", "SQ": "sq", "fabs": "abs"},
-    **{"safe_asin": "asin", "safe_acos": "acos", "safe_sqrt": "sqrt"},  # ArduPilot
-    **{"arctan2": "atan2", "arcsin": "asin", "arccos": "acos", "arctan": "atan"},
-    **{"Sqrt": "sqrt", "Sin": "sin", "Cos": "cos", "Tan": "tan"},
+OF_NUMBERS = {*FUNCTIONS, "pow", "sq", "sind", "cosd", "tand", "deg2rad", "rad2deg"}
+_WORDS = {
+    **{"power": "pow", "powf": "pow", "powi": "pow", "powl": "pow"},
+    **{"square": "sq", "SQ": "sq", "fabs": "abs", "fabsf": "abs", "absf": "abs", "expf": "exp"},
 }
+_SPELLED = re.compile(  # tf2Sin, arm_cos_f32, FusionArcSin, safe_asin, atan2_approx
+    r"_?(?:tf2?|bt|b3|mju_|arm_|simd_|safe_?|fast_?|Fusion)?_?(a|arc)?(sin|cos|tan2?|sqrt)(?:_f32|[fFlL])?",
+    re.IGNORECASE,
+)
+_ANGLE_UNITS = re.compile(
+    r"\w*?(to)?_?(rad|deg)(?:ian|ree)?s?(?:_?(?:to|2)_?(rad|deg)(?:ian|ree)?s?)?", re.IGNORECASE
+)
+
+
+def function_word(name: str) -> str:
+    """The function of numbers that a program calls by this name, or the name itself."""
+    if match := _SPELLED.fullmatch(name):
+        return ("a" if match[1] else "") + match[2].lower()
+    match = _ANGLE_UNITS.fullmatch(name)
+    if match and (match[1] or match[3] or name in ("radians", "degrees")):
+        unit = (match[3] or match[2]).lower()
+        return "deg2rad" if unit == "rad" else "rad2deg"
+    return _WORDS.get(name, name)
+
+
 _SHORT = {"c": "cos", "s": "sin", "t": "tan", "C": "cos", "S": "sin", "T": "tan"}
 CONSTANTS = dict.fromkeys(("pi", "M_PI", "PI", "Pi"), sp.pi)
 CONSTANTS |= dict.fromkeys(("M_PI_2", "HALF_PI"), sp.pi / 2)

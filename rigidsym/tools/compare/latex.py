@@ -10,7 +10,7 @@ import re
 from rigidsym.errors import ExpressionError
 from rigidsym.text.bounds import FUNCTIONS
 from rigidsym.text.names import GREEK_LETTERS, spelled
-from rigidsym.tools.compare.language import SPELLINGS
+from rigidsym.tools.compare.language import function_word
 
 _FIRST = 0xE000  # a matrix stands in a formula as a letter of the private use area
 _MARKS = "\ue000-\uf8ff"
@@ -61,7 +61,7 @@ def python_of(text: str) -> str:
 def _styled(match: re.Match[str]) -> str:
     r"""\mathrm{cos} is a function, \mathbf{x} a letter, \mathrm{yaw} one name."""
     word = match[1] or ""
-    if SPELLINGS.get(word, word) in FUNCTIONS:
+    if function_word(word) in FUNCTIONS:
         return f"\\{word} "
     return f"{_QUOTE}{word}{_QUOTE}" if len(word) > 1 and word[0] != "\\" else f"{word} "
 
@@ -119,7 +119,7 @@ class _Walk:
             return f"({self.sum(_BRACKETS[self.tokens.pop()])})"
         if self.take(r"\frac", r"\tfrac", r"\dfrac"):
             return f"({self._argument()}/{self._argument()})"
-        if token[:1] == "\\" and (name := SPELLINGS.get(token[1:], token[1:])) in FUNCTIONS:
+        if token[:1] == "\\" and (name := function_word(token[1:])) in FUNCTIONS:
             self.tokens.pop()
             return self._call(name)
         if token in _SHORT and self.tokens[-2:-1] and self.tokens[-2] in _ANGLES:

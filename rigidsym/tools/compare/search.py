@@ -40,7 +40,7 @@ class FormulaInFile:
     def line(self) -> int:
         """Where the first wrong entry is assigned, or else where the formula begins."""
         places = [r.place for r in self.comparison.repairs if r.place] if self.comparison else []
-        own, columns = self.formula.of_entries, self.formula.forms[0].cols if places else 0
+        own, columns = self.formula.lines, self.formula.forms[0].cols if places else 0
         if not places or len(own) != len(self.formula.forms[0]):
             return self.formula.line
         return min(own[(row - 1) * columns + column - 1] for row, column in places)
@@ -105,7 +105,7 @@ def search(path: Path) -> Iterator[FormulaInFile]:
     variants: dict[Any, list[Formula]] = {}
     latest: FormulaInFile | None = None
     for formula in formulas(text, path.suffix):
-        variants.setdefault((formula.lines, formula.name), []).append(formula)
+        variants.setdefault((formula.line, formula.name), []).append(formula)
     for group in variants.values():
         # A formula with the values of all branches may be no quantity, while one branch is.
         is_case = len({each.forms for each in group if each.forms}) > 1

@@ -1,18 +1,25 @@
-"""Syntax trees of programs by tree-sitter, and the names, calls and entries in their text."""
+"""Programs as trees of a dozen kinds of nodes, whatever their language.
+
+tree-sitter gives the syntax tree, and `nodes.toml` the kind of each type of its nodes: name,
+member, index, call, list, matrix, row, record, unary, binary, choose, transposed, assign, if,
+switch, loop, return, break, function; other nodes are blocks of their parts. A node is lowered when
+it is looked at, since most of a program holds no formula.
+"""
 
 from __future__ import annotations
 
 import re
 import tomllib
 from collections.abc import Iterable, Iterator
-from functools import cache
+from dataclasses import dataclass
+from functools import cache, cached_property
 from importlib import import_module
 from itertools import count
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from rigidsym.errors import ExpressionError, MissingExtra
-from rigidsym.tools.compare.language import SPELLINGS
+from rigidsym.text.names import spelled
 
 if TYPE_CHECKING:
     from tree_sitter import Node
@@ -29,18 +36,15 @@ GRAMMARS = {
 _TABLES: dict[str, dict[str, Any]] = tomllib.loads(
     Path(__file__).with_name("nodes.toml").read_text(encoding="utf-8")
 )
-STATEMENTS, EXPRESSIONS = (  # type of a node: the method that gives it its meaning
-    {kind: f"_{name}" for name, kinds in _TABLES[title].items() for kind in kinds.split()}
-    for title in ("statements", "expressions")
+_KINDS, CALLS = (  # kind of a type of node, and meaning of a word
+    {word: name for name, words in _TABLES[title].items() for word in words.split()}
+    for title in ("kinds", "words")
 )
-PARTS, WORDS = (
-    {name: frozenset(words.split()) for name, words in _TABLES[title].items()}
-    for title in ("parts", "words")
-)
+_TYPES = {name: frozenset(types.split()) for name, types in _TABLES["types"].items()}
 ORDERS = [order for orders in _TABLES["orders"].values() for order in orders]
-CALLS = {word: meaning for meaning, words in WORDS.items() for word in words}
 _CHUNK = 2_048  # bytes that the parser reads at once
 _MOST_STEPS = 50_000  # of the parser: a megabyte without errors takes half as many
+_TYPE_ARGUMENTS = re.compile(r"(?:::)?<.*>|\[.*\]|\s", re.DOTALL)
 
 
 @cache
@@ -72,6 +76,200 @@ def parsed(text: str, suffix: str) -> Node:
     return root
 
 
+def _part(node: Node, fields: str) -> Node | None:
+    """The first of some parts that a node has."""
+    parts = map(node.child_by_field_name, fields.split())
+    return next((part for part in parts if part is not None), None)
+
+
+def _children(node: Node | None, types: str = "") -> list[Node]:
+    """The parts of a node, all or those of some types."""
+    nodes = node.named_children if node is not None else []
+    return [
+        c for c in nodes if (c.type in _TYPES[types] if types else c.type not in _TYPES["ignored"])
+    ]
+
+
+def _text(node: Node | None) -> str:
+    return node.text.decode(errors="replace") if node is not None and node.text else ""
+
+
+@dataclass(eq=False)
+class Tree:
+    """A node of the common tree."""
+
+    node: Node
+    kind: str = "block"
+    is_reference: bool = False  # &x, or an argument `out x`
+    own: list[Tree] | None = None  # parts that are not those of the node
+
+    @property
+    def line(self) -> int:
+        return int(self.node.start_point[0]) + 1
+
+    @cached_property
+    def text(self) -> str:
+        return _text(self.node)
+
+    @cached_property
+    def word(self) -> str:
+        """The name of a name, a member or a function, or an operator."""
+        node: Node | None = self.node
+        if self.kind == "function":
+            name = _part(self.node, "name declarator")
+            name = name or (self.node.parent and _part(self.node.parent, "left name declarator"))
+            return (re.findall(r"\w+", _text(name).partition("(")[0]) or [""])[-1]
+        if self.kind == "member":
+            node = _part(self.node, "name") or _children(self.node)[-1]
+        if self.kind in ("name", "member"):
+            return spelled(re.split(r"::|\.|\(", _TYPE_ARGUMENTS.sub("", _text(node)))[-1])
+        sign = _part(self.node, "operator")
+        return _text(sign or next((c for c in self.node.children if not c.is_named), None))
+
+    @cached_property
+    def parts(self) -> list[Tree]:
+        """The parts, in an order that depends on the kind."""
+        if self.own is not None:
+            return self.own
+        node, nodes = self.node, _children(self.node)
+        fields = _TABLES["fields"].get(self.kind, ())
+        parts = [part for names in fields if (part := _part(node, names)) is not None]
+        match self.kind:
+            case "name":
+                return []
+            case "call":  # the function, and its arguments
+                outer = _part(node, "arguments value initializer")
+                outer = outer or next(iter(_children(node, "arguments")), None)
+                plain = [c for c in _children(outer) if c.type not in _TYPES["keyword"]]
+                return [self._function(parts or nodes), *map(tree_of, plain)]
+            case "index":  # the array, and its indices
+                return [tree_of(nodes[0]), *_flat(nodes[1:], "list")]
+            case "comma":
+                return _flat(nodes, "comma")
+            case "choose" if not parts:  # of Python: a if test else b
+                nodes = [nodes[k] for k in (1, 0, 2)]
+            case "member" if not parts:  # no object, if there is only a name
+                nodes = nodes[:-1]
+            case "function":
+                nodes = parts or _children(node, "body")
+            case "assign" if len(parts) == 1 and node.type == "variable_declarator":  # C#
+                nodes = nodes[:2]
+            case "choose" | "assign" | "member":
+                nodes = parts or nodes
+            case "record":  # the values
+                nodes = [_part(pair, "value right") or pair for pair in self._pairs()]
+            case "if":
+                return [*self._branches()]
+            case "switch":
+                cases = [each for each in below(nodes) if each.type in _TYPES["case"]]
+                return [*map(tree_of, cases), Tree(node, own=[])]
+        return [*map(tree_of, nodes)]
+
+    def _function(self, nodes: list[Node]) -> Tree:
+        """The function of a call: a name, or a member of an object."""
+        outer = self.node.parent
+        if _part(self.node, "object") is not None:  # Java
+            return Tree(self.node, "member")
+        if (
+            outer is not None
+            and outer.type == "field_expression"
+            and self.node == _children(outer)[-1]
+        ):
+            return Tree(outer, "member")  # MATLAB: a.b(1)
+        return tree_of(nodes[0])
+
+    def _pairs(self) -> list[Node]:
+        return _children(_part(self.node, "body") or self.node)
+
+    def _branches(self) -> Iterator[Tree]:
+        """The blocks of which one is run, each without its condition; an empty one for none."""
+        others = self.node.children_by_field_name("alternative")
+        blocks = [self.node, *dict.fromkeys([*others, *_children(self.node, "branch")])]
+        for block in blocks:
+            condition = _part(block, "condition")
+            constant = Tree(condition).constant if condition is not None else None
+            skipped = [*blocks[1:], condition, _part(block, "name")]
+            if constant is not False:
+                yield Tree(block, own=[tree_of(c) for c in _children(block) if c not in skipped])
+            if constant or (block != self.node and condition is None):
+                return
+        yield Tree(self.node, own=[])
+
+    @property
+    def constant(self) -> bool | None:
+        """The value of a condition, if it is constant."""
+        values = {"0": False, "false": False, "1": True, "true": True}
+        return values.get(self.text.strip("() ").lower())
+
+    @property
+    def keys(self) -> list[str]:
+        """The names of the parts of a record."""
+        keys = (_part(pair, "key field designator left") or pair for pair in self._pairs())
+        return [_text(key).lstrip(".") for key in keys]
+
+    @property
+    def options(self) -> str:
+        """The arguments of a call that have keywords: axis=1."""
+        outer = _part(self.node, "arguments")
+        return "".join(re.sub(r"\s", "", _text(each)) for each in _children(outer, "keyword"))
+
+    @property
+    def called(self) -> str:
+        """The name of the function of a call."""
+        return self.parts[0].word
+
+    @property
+    def owner(self) -> Tree | None:
+        """The object whose method is called, or the module of the function."""
+        function = self.parts[0]
+        return function.parts[0] if function.kind == "member" and function.parts else None
+
+    @property
+    def base(self) -> str:
+        """The path of the owner; "?" for one that is an expression."""
+        text = re.sub(r"\s*(?:->|::|[?!]\.)\s*", ".", self.owner.text) if self.owner else ""
+        return text if re.fullmatch(r"[\w.]*", text) else "?"
+
+    @property
+    def is_statement(self) -> bool:
+        return (
+            bool(re.search("statement|declaration|macro", self.node.type)) or self.kind == "assign"
+        )
+
+    @property
+    def targets(self) -> list[Tree]:
+        """The parts of a tuple on the left, or the only one."""
+        return self.parts if self.kind in ("list", "record") else [self]
+
+    def is_one_of(self, types: str) -> bool:
+        return self.node.type in _TYPES[types]
+
+    def covers(self, byte: int) -> bool:
+        """Whether a block contains this place of the text."""
+        return any(p.node.start_byte <= byte < p.node.end_byte for p in self.parts or [self])
+
+
+def _flat(nodes: list[Node], kind: str) -> list[Tree]:
+    trees = [*map(tree_of, nodes)]
+    return [part for tree in trees for part in (tree.parts if tree.kind == kind else [tree])]
+
+
+def tree_of(node: Node) -> Tree:
+    """The common tree of a node, without brackets, casts and the like around it."""
+    is_reference = False
+    while (kind := _KINDS.get(node.type, "block")) == "wrap":
+        is_reference |= node.type in _TYPES["reference"]
+        inner = _part(node, "value declarator") or next(iter(_children(node)[-1:]), None)
+        if inner is None:
+            return Tree(node)
+        node = inner
+    if kind == "list" and (pairs := _children(node)) and pairs[0].type in _TYPES["pair"]:
+        kind = "record"
+    if kind == "member" and _children(node)[-1].type == "function_call":  # MATLAB: a.b(1)
+        node, kind = _children(node)[-1], "call"
+    return Tree(node, kind, is_reference)
+
+
 def below(nodes: Iterable[Node]) -> Iterator[Node]:
     """Nodes and all that they contain, in the order of the text, without recursion."""
     stack = [*nodes][::-1]
@@ -81,142 +279,22 @@ def below(nodes: Iterable[Node]) -> Iterator[Node]:
         stack += node.named_children[::-1]
 
 
-def part(node: Node, *fields: str) -> Node | None:
-    """The first of some parts that a node has."""
-    return next((p for f in fields if (p := node.child_by_field_name(f)) is not None), None)
-
-
-def text_of(node: Node | None) -> str:
-    return node.text.decode(errors="replace") if node is not None and node.text else ""
-
-
-def line_of(node: Node) -> int:
-    return node.start_point[0] + 1
-
-
-def children(node: Node) -> list[Node]:
-    return [c for c in node.named_children if c.type not in PARTS["ignored"]]
-
-
-def child(node: Node, *kinds: str) -> Node | None:
-    return next((c for c in node.named_children if c.type in kinds), None)
-
-
-def operator(node: Node) -> str:
-    own = part(node, "operator")
-    return text_of(own or next((c for c in node.children if not c.is_named), None))
-
-
-def arguments(node: Node) -> list[Node]:
-    outer = part(node, "arguments", "value") or child(node, "arguments")
-    return children(outer) if outer is not None else []
-
-
-def targets(left: Node) -> list[Node]:
-    """The parts of a tuple on the left, or the only one."""
-    return children(left) if left.type in PARTS["tuple"] else [left]
-
-
-def left_of(node: Node) -> Node | None:
-    """The name, entry or tuple that an assignment writes to."""
-    left = part(node, "left", "declarator", "name", "pattern", "argument")
-    left = left or next(iter(children(node)), None)
-    while left and left.type in ("array_declarator", "pointer_declarator", "reference_declarator"):
-        left = part(left, "declarator") or next(iter(children(left)), None)
-    return left
-
-
-def function_name(node: Node) -> str:
-    name: Node | None
-    if node.type in PARTS["unnamed"]:
-        name = part(node.parent, "left", "name", "declarator") if node.parent else None
-    else:
-        name = part(node, "name", "declarator")
-        while name is not None and name.type.endswith("declarator"):
-            name = part(name, "declarator")
-    return text_of(name).rpartition("::")[2]
+def walk(node: Node, *kinds: str) -> Iterator[Tree]:
+    """All trees of some kinds below a node, in the order of the text."""
+    return (
+        Tree(each, kind)
+        for each in below(node.named_children)
+        if (kind := _KINDS.get(each.type, "block")) in kinds
+    )
 
 
 def parameters(function: Node) -> list[str]:
     """The names of the parameters of a function."""
-    outer = part(function, "parameters", "declarator") or child(function, "function_arguments")
-    while outer is not None and outer.type.endswith("declarator"):
-        outer = part(outer, "parameters", "declarator")
+    types = _TYPES["parameters"]
+    outer = next((each for each in below(function.named_children) if each.type in types), None)
+    outer = _part(function, "parameter") or outer
     names = []
-    for parameter in children(outer) if outer is not None else ():
-        name: Node | None = parameter
-        while name is not None and name.type not in PARTS["name"]:
-            declarators = (c for c in name.named_children if "declar" in c.type)
-            name = (
-                part(name, "declarator", "pattern", "name")
-                or child(name, *PARTS["name"])
-                or next(declarators, None)
-            )
-        names += [text_of(name)] if name is not None else []
-    return names
-
-
-class Call(NamedTuple):
-    """A call: the object of a method, its name, and its arguments."""
-
-    owner: Node | None
-    base: str  # the path of the object; "?" for an object that is an expression
-    name: str
-    arguments: list[Node]
-    options: list[Node]  # arguments with keywords
-
-    @property
-    def path(self) -> str:
-        return f"{self.base}.{self.name}" if self.base else self.name
-
-
-def call_of(node: Node) -> Call:
-    """The parts of a call: np.array(x), Math.sin(x), R.transpose(), new Matrix3(...)."""
-    keyword = PARTS["keyword"]
-    plain = [each for each in arguments(node) if each.type not in keyword]
-    options = [each for each in arguments(node) if each.type in keyword]
-    owner = part(node, "object")
-    function = part(node, "name") if owner or node.type == "function_call" else None
-    function = function or part(node, "function", "constructor", "type")
-    if owner is None and function is not None and function.type in PARTS["member"]:
-        owner = part(function, "argument", "value", "object", "expression", "scope", "path")
-        function = part(function, "attribute", "field", "property", "name")
-    name = re.sub(r"<.*>", "", text_of(function)).replace("::", ".")
-    if owner is None:
-        base, _, name = name.rpartition(".")
-    else:
-        text = re.sub(r"\s*(?:->|::|[?!]\.)\s*", ".", text_of(owner))
-        base = text if re.fullmatch(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*", text) else "?"
-        name = name.rpartition(".")[2]  # Eigen::Matrix<T, 3, 3>::Zero
-    return Call(owner, base, name, plain, options)
-
-
-_SPELLED = re.compile(  # tf2Sin, arm_cos_f32, FusionArcSin
-    r"_?(?:tf2?|bt|b3|mju_|arm_|simd_|safe_?|fast_?|Fusion)?_?(a|arc)?(sin|cos|tan2?|sqrt)(?:_f32|[fFlL])?",
-    re.IGNORECASE,
-)
-_ANGLE_UNITS = re.compile(
-    r"\w*?(to)?_?(rad|deg)(?:ian|ree)?s?(?:_?(?:to|2)_?(rad|deg)(?:ian|ree)?s?)?", re.IGNORECASE
-)
-
-
-def function_word(name: str) -> str:
-    """The function of numbers that a program calls by this name, or the name itself."""
-    if name in SPELLINGS:
-        return SPELLINGS[name]
-    if match := _SPELLED.fullmatch(name):
-        return ("a" if match[1] else "") + match[2].lower()
-    match = _ANGLE_UNITS.fullmatch(name)
-    if match and (match[1] or match[3] or name in ("radians", "degrees")):
-        unit = (match[3] or match[2]).lower()
-        return "deg2rad" if unit == "rad" else "rad2deg"
-    return name
-
-
-def short_name(path: str) -> str:
-    """One name for a path: sin for np.sin, phi for state.phi, q_w for q.w, r_q0 for r.q0."""
-    parts = path.split(".")
-    parts = parts[parts[0] in ("self", "this") and len(parts) > 1 :]
-    last = SPELLINGS.get(parts[-1], parts[-1])
-    is_part = re.fullmatch(r"[A-Za-z]\d?", last) and len(parts) > 1
-    return f"{parts[-2]}_{last}" if is_part else last
+    for each in _children(outer) or [outer] if outer is not None else ():
+        own = _part(each, "declarator pattern name") or each
+        names += [_text(n) for n in below([own]) if _KINDS.get(n.type) == "name"][:1]
+    return [*map(spelled, names)]
