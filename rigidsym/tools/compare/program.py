@@ -388,6 +388,10 @@ class _Run:
             value = self.renamed(path, value)
         while path[-1] == _ALL and len(path) > 1:
             path = path[:-1]
+        if any(isinstance(key, slice) for key in path):
+            value = _settled(value) if isinstance(value, _Record) else value
+            if not isinstance(value, sp.MatrixBase):
+                raise self.unreadable(left, "is a block of another size")
         self.emit_at(path)
         self.put(path, value, left.line)
 
@@ -746,7 +750,7 @@ class _Run:
         """{w: a, x: b, y: c, z: d} of JavaScript, and Quaternion { x: a, ... } of Rust."""
         if len(tree.parts) == 1:
             return self.read(tree.parts[0])
-        if "".join(tree.keys).lower() not in ("xyz", "wxyz", "xyzw"):
+        if frozenset(map(str.lower, tree.keys)) not in _COMPLETE:
             raise self.unreadable(tree)
         return rows([self.read(each) for each in tree.parts])
 
@@ -828,11 +832,13 @@ class _Run:
     def path(self, tree: Tree) -> Path | None:
         """The path of R[0][1], q.w(), m.at(0, 1), state["phi"], self.phi or *p."""
         is_long = tree.node.end_byte - tree.node.start_byte > _LONGEST_PLACE
+        if tree.kind == "this":
+            return ("this",)
         if is_long or (tree.is_reference and self.program.is_formula):  # a + * b
             return None
         match tree.kind:
-            case "name" | "this":
-                return (tree.word if tree.kind == "name" else "this",)
+            case "name":
+                return (tree.word,)
             case "assign":
                 return self.path(tree.parts[0])
             case "unary" if tree.word in ("*", "&") and not self.program.is_formula:
@@ -896,7 +902,7 @@ class _Run:
             return None
         value: Any = self.part(self.values, path)
         value = self.definitions.get(value, value) if isinstance(value, sp.Symbol) else value
-        if value is None and path[0] not in self.inputs:
+        if value is None and path[0] not in self.inputs and isinstance(path[-1], str):
             value = self.program.constants.get(path[-1], _AXES.get(path[-1]))
         return int(value) if isinstance(value, int | sp.Integer) else None
 
