@@ -16,7 +16,7 @@ from contextlib import suppress
 from copy import deepcopy
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
-from itertools import islice
+from itertools import islice, product
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
@@ -84,6 +84,7 @@ _FLAT = {9: (3, 3), 12: (4, 3), 16: (4, 4)}
 _OF_VECTORS = {"transpose": "T", "skew": "C", "inverse": "inv"} | {
     word: word for word in ("dot", "cross", "outer", "norm")
 }
+_SCALARS, _VECTORS = {*"wWs"}, {"xyz", "Xyz", "v", "vec", "bv"}  # parts of a quaternion
 _OF_OBJECTS = (*_OF_VECTORS, "same", "clamp", "least", "pair")
 _RETURNED, _ARGUMENT = "returned", "argument"  # in place of a name
 _ALL = slice(None)
@@ -183,6 +184,7 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
     if suffix == ".rs":  # the body of a macro is code
         text = _MACRO.sub(lambda m: "mod macros {" + "\n" * m[0].count("\n"), text)
         text = re.sub(r"\$(?=\w)|\$\($|^\s*\)[+*]$", "", text, flags=re.MULTILINE)
+    text = re.sub(r"\b\w*LITERAL\(\s*(\w+)\s*\)", r"\1", text)  # a macro for C and C++
     try:
         root = parsed(text, suffix)
     except ExpressionError as error:
@@ -372,6 +374,7 @@ class _Run:
             if part is not None:
                 self.store(target, part)
             else:  # components of a value, such as w, x, y, z = q.as_quat(), are inputs
+                path = self.written(target)
                 symbol = self.unread_symbol(path, target.line)
                 self.put(path, symbol, target.line)
                 self.components.add(symbol)
@@ -388,16 +391,16 @@ class _Run:
             value = self.renamed(path, value)
         while path[-1] == _ALL and len(path) > 1:
             path = path[:-1]
-        if any(isinstance(key, slice) for key in path):
-            value = _settled(value) if isinstance(value, _Record) else value
-            if not isinstance(value, sp.MatrixBase):
-                raise self.unreadable(left, "is a block of another size")
+        if isinstance(value, _Record) and any(isinstance(key, slice) for key in path):
+            value = _settled(value)
         self.emit_at(path)
         self.put(path, value, left.line)
 
     def put(self, path: Path, value: Any, line: int) -> None:
         place = next((n for n, key in enumerate(path) if isinstance(key, slice)), None)
         if place is not None:
+            if not isinstance(value, sp.MatrixBase):
+                raise ExpressionError("a block of another size")
             parts = [*value] if value.cols == 1 else [value[k, :].T for k in range(value.rows)]
             start = path[place].start or 0
             if path[place].stop not in (None, start + len(parts)):
@@ -437,13 +440,10 @@ class _Run:
                 return own
         if isinstance(path[-1], int):
             return value
-        is_sum = (
-            value.is_Add
-            or value.is_number
-            or value.atoms(sp.Function) - value.atoms(sp.sin, sp.cos, sp.tan)
-        )
+        functions = value.atoms(sp.Function) - value.atoms(sp.sin, sp.cos, sp.tan)
+        is_sum = is_first and bool(value.is_Add or functions)
         is_long = _size(value) > _LONGEST or (value.is_Pow and value.exp == sp.Rational(1, 2))
-        if not is_long and not (is_first and is_sum):
+        if not (is_long or is_sum or value.is_number):
             return value
         symbol = self.new_symbol(path)
         self.definitions[symbol] = value
@@ -582,12 +582,9 @@ class _Run:
             value = sp.eye(4)
         elif meaning == "scale":  # m33Scale(factor, A, B)
             value = combined("*", *map(self.read, nodes[:2]))
-        elif (
-            meaning is None
-            and len(nodes) in (3, 4, 9, 16)
-            and re.match("set|make|init", name, re.I)
-        ):
-            values = [self.tried(each) for each in nodes]
+        elif meaning is None and re.match("set|make|init", name, re.IGNORECASE):
+            nodes = nodes[:-1] if len(nodes) in (5, 10, 17) else nodes  # a flag
+            values = [self.tried(each) for each in nodes] if len(nodes) in (3, 4, 9, 16) else [None]
             value = rows(values) if None not in values else None
         if value is not None and (target is not None or tree.owner is None):
             self.store(target or Tree(tree.node, "this"), sp.ImmutableMatrix(value))
@@ -652,6 +649,11 @@ class _Run:
                 self.add(_dotted(own), matrix, *lines)
             else:
                 self.emit(part, None, own)
+        for scalar, vector in product(_SCALARS & record.keys(), _VECTORS & record.keys()):
+            part = record[vector]  # of a quaternion
+            if _is_scalar(record[scalar]) and isinstance(part, _Record) and _settled(part):
+                whole, line = sp.Matrix([record[scalar], *_settled(part)]), record.lines[scalar]
+                self.add(_dotted((*path, scalar)), whole, line, *(n for _, n in part.leaves()))
         for kind, names in _groups(record):
             values: list[Any] = [self.definitions.get(record[n], record[n]) for n in names]
             if None in values:
@@ -778,6 +780,8 @@ class _Run:
         return value if tree.word == "+" else -value
 
     def read_binary(self, tree: Tree) -> Any:
+        if len(tree.parts) != 2:
+            raise self.unreadable(tree)
         left, right = map(self.read, tree.parts)
         sign = tree.word
         is_turn = sign == "%" and _is_scalar(right) and (right / sp.pi).is_number
@@ -878,8 +882,8 @@ class _Run:
         while indices[:1] == [...] or (len(indices) > 2 and indices[0] == _ALL):  # of a batch
             indices = indices[1:]
         shifted = [i - self.first if isinstance(i, int) else i for i in indices[:2]]
-        is_place = all(not isinstance(i, int) or 0 <= i < 64 for i in shifted) and indices
-        return (*path, *shifted) if is_place else None
+        is_place = all(not isinstance(i, int) or 0 <= i < 64 for i in shifted)
+        return (*path, *shifted) if is_place and trees else None
 
     def index(self, tree: Tree) -> Any:
         """An index as it is written, or the key of a table."""
@@ -929,6 +933,10 @@ class _Run:
         if path[0] not in self.values:
             self.inputs.add(path[0])
         start = self.values.get(path[0], sp.Symbol(path[0], real=True))
+        whole = self.part(self.values, path[:-1]) if path[-1] in [*"wxyz"] else None
+        is_list = isinstance(whole, _Record) and whole.keys() == {0, 1, 2, 3}
+        if is_list and self.program.suffix not in _WITH_SWIZZLES:  # in which order nobody knows
+            return sp.Symbol(_dotted(path), real=True)
         return self.entry(tree, start, path[1:])
 
     def entry(self, tree: Tree, value: Any, keys: Path) -> Any:
@@ -956,11 +964,12 @@ class _Run:
             return rows([self.entry(tree, value, (letter,)) for letter in letters])
         if isinstance(value, sp.MatrixBase):
             return self.block(tree, value, keys)
-        if key == _ALL and others and not isinstance(others[0], slice):  # of a batch: q[:, 0]
+        if key == _ALL and others:  # of a batch: q[:, 0]
             return self.entry(tree, value, tuple(others))
         if isinstance(key, slice):
             numbers = range(key.start or 0, key.stop or (4 if key.start else 3))
-            return rows([self.entry(tree, value, (k, *others)) for k in numbers])
+            parts = [self.entry(tree, value, (k, *others)) for k in numbers]
+            return parts[0] if len(parts) == 1 else rows(parts)
         part = _part(value, key + self.first if isinstance(key, int) else key)
         if part is None:
             raise self.unreadable(tree, "has no value")
@@ -981,7 +990,7 @@ class _Run:
             places.append(_ALL)
         try:
             part = matrix[places[0], 0] if len(places) == 1 else matrix[tuple(places)]
-        except (IndexError, TypeError):
+        except (IndexError, TypeError, ValueError):
             raise self.unreadable(tree, "has no value") from None
         part = matrix[places[0], :] if len(places) == 1 and isinstance(places[0], slice) else part
         if not isinstance(part, sp.MatrixBase):
@@ -1013,6 +1022,9 @@ class _Run:
                 return rows([called(each, [self.read(nodes[0])]) for each in ("sin", "cos")])
             case "number" if not arguments and self.program.suffix == ".rs":  # T::zero()
                 return sp.Integer("one" in name.lower())
+            case "multiply_add" if len(nodes) == 3:
+                factor, other, term = map(self.read, nodes)
+                return combined("+", combined("*", factor, other), term)
             case "cast" if len(nodes) == 1:
                 return self.read(nodes[0])
             case "wrapper" if is_listed:
@@ -1031,8 +1043,8 @@ class _Run:
                 return self.chosen(tree, nodes[1:])
             case _ if meaning in _OF_VECTORS and nodes:
                 return self.of_vectors(meaning, [self.read(each) for each in nodes])
-        is_new = self.program.suffix == ".rs" and name == "new" and len(arguments) == 3
-        is_new = is_new and all(each.kind == "call" for each in arguments)  # of three columns
+        is_new = self.program.suffix == ".rs" and name == "new" and len(arguments) in (3, 4)
+        is_new = is_new and all(each.kind == "call" for each in arguments)  # of columns
         if meaning == "stack" or _BY_COLUMNS.search(name) or is_new:
             return self.stacked(tree, is_new)
         if len(arguments) in (4, 5, 10, 17) and arguments[-1].text in ("true", "false"):  # a flag
@@ -1135,7 +1147,9 @@ def _settled(record: _Record) -> sp.ImmutableMatrix | None:
     keys = [key for key in record if key is not None]
     order: list[Any] = [*range(len(keys))]
     if set(keys) != set(order):
-        order = _COMPLETE.get(frozenset(map(str, keys)), [*"abc"] if set(keys) == {*"abc"} else [])
+        letters = {str(key).lower(): key for key in keys}
+        names = [*"abc"] if letters.keys() == {*"abc"} else _COMPLETE.get(frozenset(letters), [])
+        order = [letters[name] for name in names]
     parts = [record.get(key) for key in order]
     parts = [_settled(part) if isinstance(part, _Record) else part for part in parts]
     if not parts or None in parts:
@@ -1182,7 +1196,8 @@ def _dotted(path: Path) -> str:
 def _last(name: str) -> str:
     """A short name of a path: phi for state.phi, q_w for q.w, R_0_1 for self.R.0.1."""
     words = name.split(".")
-    words = words[words[0] in ("self", "this") and len(words) > 1 :]
+    is_own = words[0] in ("self", "this") and len(words) > 1 and not words[1].isdigit()
+    words = words[is_own:]
     count = next((n for n, word in enumerate(reversed(words)) if not word.isdigit()), 0) + 1
     count += bool(re.fullmatch(r"[A-Za-z]\d?", words[-count])) and count < len(words)
     return "_".join([*words[-count:-1], function_word(words[-1])])

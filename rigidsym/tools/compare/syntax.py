@@ -179,7 +179,8 @@ class Tree:
         return tree_of(nodes[0])
 
     def _pairs(self) -> list[Node]:
-        return _children(_part(self.node, "body") or self.node)
+        nodes = _children(_part(self.node, "body") or self.node)
+        return nodes[self.node.type == "struct_pattern" :]  # without its type
 
     def _branches(self) -> Iterator[Tree]:
         """The blocks of which one is run, each without its condition; an empty one for none."""
