@@ -14,6 +14,7 @@ import sympy as sp
 
 from rigidsym.errors import ExpressionError, offer
 from rigidsym.text.bounds import FUNCTIONS, Sized, apply, longest_number, operate
+from rigidsym.tools.compare.syntax import SPELLINGS
 
 _LARGEST = 20  # rows or columns
 _LARGEST_INVERSE = 4
@@ -67,10 +68,6 @@ OF_MATRICES: dict[str, Callable[..., Any]] = {
     "inv": lambda matrix: combined("**", matrix, sp.S.NegativeOne),
 }
 OF_NUMBERS = {*FUNCTIONS, "pow", "sq", "sind", "cosd", "tand", "deg2rad", "rad2deg"}
-_WORDS = {
-    **{"power": "pow", "powf": "pow", "powi": "pow", "powl": "pow"},
-    **{"square": "sq", "SQ": "sq", "fabs": "abs", "fabsf": "abs", "absf": "abs", "expf": "exp"},
-}
 _SPELLED = re.compile(  # tf2Sin, arm_cos_f32, FusionArcSin, safe_asin, atan2_approx
     r"_?(?:tf2?|bt|b3|mju_|arm_|simd_|safe_?|fast_?|Fusion)?_?(a|arc)?(sin|cos|tan2?|sqrt)(?:_f32|[fFlL])?",
     re.IGNORECASE,
@@ -88,7 +85,7 @@ def function_word(name: str) -> str:
     if match and (match[1] or match[3] or name in ("radians", "degrees")):
         unit = (match[3] or match[2]).lower()
         return "deg2rad" if unit == "rad" else "rad2deg"
-    return _WORDS.get(name, name)
+    return SPELLINGS.get(name, name)
 
 
 _SHORT = {"c": "cos", "s": "sin", "t": "tan", "C": "cos", "S": "sin", "T": "tan"}

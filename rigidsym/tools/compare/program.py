@@ -301,10 +301,9 @@ class _Run:
         scope = self.scope.tree
         late = [t for t in walk(scope.node, "assign", "outer") if t.is_one_of("late")]
         if self.program.suffix != ".py":
-            inner = (
-                t for f in walk(scope.node, "function") for t in walk(f.node, "assign", "call")
-            )
-            late += [t for t in inner if not t.is_one_of("declaration")]
+            for inner in walk(scope.node, "function"):
+                trees = walk(inner.node, "assign", "call")
+                late += [each for each in trees if not each.is_one_of("declaration")]
         self.untracked = self.written_in(late)
         body = scope
         if scope.kind == "function":
@@ -358,23 +357,17 @@ class _Run:
 
     def unpack(self, left: Tree, right: Tree) -> None:
         """w, x, y, z = q; c, s, t = cos(v); {x, y} = q."""
-        value, keys = (
-            self.tried(right),
-            left.keys if left.kind == "record" else [*range(len(left.parts))],
-        )
+        keys: Sequence[Any] = left.keys if left.kind == "record" else range(len(left.parts))
+        value: Any = self.tried(right)
         parts: list[Any] = [None] * len(keys)
         if isinstance(value, sp.MatrixBase) and len(value) == len(keys):
             parts = [*value]
         elif isinstance(value, sp.Function) or (left.kind == "record" and value is not None):
             parts = [_part(value, key) for key in keys]
         for target, part in zip(left.parts, parts, strict=True):
-            path = self.path(target)
-            if path is None:
-                continue
             if part is not None:
                 self.store(target, part)
-            else:  # components of a value, such as w, x, y, z = q.as_quat(), are inputs
-                path = self.written(target)
+            elif path := self.written(target):  # w, x, y, z = q.as_quat() are inputs
                 symbol = self.unread_symbol(path, target.line)
                 self.put(path, symbol, target.line)
                 self.components.add(symbol)
@@ -393,7 +386,7 @@ class _Run:
             path = path[:-1]
         if isinstance(value, _Record) and any(isinstance(key, slice) for key in path):
             value = _settled(value)
-        self.emit_at(path)
+        self.emit(self.values, [path[0]] * (len(path) == 1))
         self.put(path, value, left.line)
 
     def put(self, path: Path, value: Any, line: int) -> None:
@@ -432,7 +425,8 @@ class _Run:
                 return self.unread_symbol(path, 0)
             ratio = self.expanded(ratio)
             units = (180 / sp.pi, sp.pi / 180)
-            if ratio.is_number and any(abs(sp.N(ratio / unit) - 1) < 1e-3 for unit in units):
+            is_unit = ratio.is_number and ratio.is_finite
+            if is_unit and any(abs(ratio / unit - 1) < 1e-3 for unit in units):
                 return own
             if _is_length(1 / ratio) and own.free_symbols <= ratio.free_symbols:
                 return own
@@ -491,7 +485,7 @@ class _Run:
 
     def become_unread(self, path: Path, line: int) -> None:
         """A name, and all others for the same matrix, get new symbols in place of their values."""
-        self.emit_at(path)
+        self.emit(self.values, [path[0]] * (len(path) == 1))
         value = self.part(self.values, path)
         same = [(name,) for name, part in self.values.items() if part is value]
         for each in same if isinstance(value, _Record) and same else [path]:
@@ -543,9 +537,10 @@ class _Run:
     def run_loop(self, tree: Tree) -> None:
         """A loop may run many times or never: what changes in it is not read before and after."""
         self.forget(tree)
-        for each in tree.parts:
-            if each.kind == "name" and tree.parts.index(each) == 0:
+        for each in tree.parts[0].targets if tree.parts else ():
+            if each.kind == "name":  # for x, y in ...
                 self.become_unread((each.word,), tree.line)
+        for each in tree.parts:
             self.run(each)
         self.end = ""
         self.forget(tree)
@@ -610,36 +605,27 @@ class _Run:
         """Paths that a call may change: its object, matrices, and &name."""
         trees = [tree.owner, *tree.parts[1:]]
         paths = {self.written(each): each.is_reference for each in trees if each is not None}
-        return {
-            p
-            for p, is_reference in paths.items()
-            if p and (is_reference or isinstance(self.part(self.values, p), _Record))
-        }
+        matrices = {p for p in paths if isinstance(self.part(self.values, p), _Record)}
+        return matrices | {p for p, is_reference in paths.items() if is_reference}
 
     def run_comma(self, tree: Tree) -> None:
         """a = b, c = d; or R << a, b, c."""
         first, *others = tree.parts
-        if first.kind == "binary" and first.word == "<<":
-            self.store(
-                first.parts[0], rows([self.read(each) for each in (first.parts[1], *others)])
-            )
-        else:
-            for each in tree.parts:
-                self.run(each)
+        if first.kind == "binary":
+            self.run_binary(first, others)
+        for each in tree.parts if first.kind != "binary" else ():
+            self.run(each)
 
-    def run_binary(self, tree: Tree) -> None:
-        self.run_comma(Tree(tree.node, own=[tree]))
+    def run_binary(self, tree: Tree, others: Sequence[Tree] = ()) -> None:
+        if tree.word == "<<":
+            left, right = tree.parts
+            self.store(left, rows([self.read(each) for each in (right, *others)]))
 
     # Formulas
 
-    def emit_at(self, path: Path) -> None:
-        """A matrix has its final values, before another is assigned."""
-        if isinstance(self.part(self.values, path), _Record) and len(path) == 1:
-            self.emit(self.values, [path[0]])
-
     def emit(self, record: _Record, keys: Iterable[Any] | None = None, path: Path = ()) -> None:
         """All matrices and vectors among the parts of a record have their final values."""
-        for key in list(record if keys is None else keys):
+        for key in [*record] if keys is None else keys:
             part, own = record.get(key), (*path, key)
             if key is None or not isinstance(part, _Record) or key not in record.lines:
                 continue
@@ -650,10 +636,11 @@ class _Run:
             else:
                 self.emit(part, None, own)
         for scalar, vector in product(_SCALARS & record.keys(), _VECTORS & record.keys()):
-            part = record[vector]  # of a quaternion
-            if _is_scalar(record[scalar]) and isinstance(part, _Record) and _settled(part):
-                whole, line = sp.Matrix([record[scalar], *_settled(part)]), record.lines[scalar]
-                self.add(_dotted((*path, scalar)), whole, line, *(n for _, n in part.leaves()))
+            part, value, line = record[vector], record[scalar], record.lines.get(scalar)
+            settled = _settled(part) if isinstance(part, _Record) else None
+            if settled is not None and _is_scalar(value) and line:  # of a quaternion
+                lines = [line for _, line in part.leaves()]
+                self.add(_dotted((*path, scalar)), sp.Matrix([value, *settled]), line, *lines)
         for kind, names in _groups(record):
             values: list[Any] = [self.definitions.get(record[n], record[n]) for n in names]
             if None in values:
@@ -667,8 +654,7 @@ class _Run:
 
     def add(self, name: str, value: Any, *lines: int) -> None:
         """A matrix or a vector is a formula; so is each part of a long vector."""
-        is_array = isinstance(value, sp.MatrixBase) and len(value) > 1
-        if not is_array:
+        if not isinstance(value, sp.MatrixBase) or len(value) == 1:
             return
         value = _unflattened(sp.ImmutableMatrix(value))
         if (name, value) in self.emitted:
@@ -1033,10 +1019,6 @@ class _Run:
                 return self.read(nodes[0])
             case "zeros" | "unit":
                 return self.filled(tree)
-            case "row" | "column" if len(arguments) == 1 and tree.owner:
-                index = self.index(arguments[0])
-                keys = (index, _ALL) if meaning == "row" else (_ALL, index)
-                return self.entry(tree, self.read(tree.owner), keys)
             case "clamp" | "least" if len(nodes) > 1:
                 return self.unclamped(tree, [self.read(each) for each in nodes])
             case "where" if len(nodes) == 3:
@@ -1150,7 +1132,7 @@ def _settled(record: _Record) -> sp.ImmutableMatrix | None:
         letters = {str(key).lower(): key for key in keys}
         names = [*"abc"] if letters.keys() == {*"abc"} else _COMPLETE.get(frozenset(letters), [])
         order = [letters[name] for name in names]
-    parts = [record.get(key) for key in order]
+    parts: list[Any] = [record.get(key) for key in order]
     parts = [_settled(part) if isinstance(part, _Record) else part for part in parts]
     if not parts or None in parts:
         return None

@@ -24,21 +24,12 @@ from rigidsym.text.names import spelled
 if TYPE_CHECKING:
     from tree_sitter import Node
 
-GRAMMARS = {
-    ".py": "python",
-    **dict.fromkeys((".c", ".h"), "cpp"),  # C is read as C++: headers do not tell which it is
-    **dict.fromkeys((".cc", ".cpp", ".cxx", ".hh", ".hpp", ".hxx", ".ino", ".inl"), "cpp"),
-    **dict.fromkeys((".cu", ".cuh"), "cpp"),  # of CUDA, only the launch of a kernel is no C++
-    **dict.fromkeys((".js", ".mjs", ".jsx"), "javascript"),
-    **{".m": "matlab", ".ts": "typescript", ".rs": "rust", ".java": "java"},
-    ".cs": "c_sharp",
-}
 _TABLES: dict[str, dict[str, Any]] = tomllib.loads(
     Path(__file__).with_name("nodes.toml").read_text(encoding="utf-8")
 )
-_KINDS, CALLS = (  # kind of a type of node, and meaning of a word
+GRAMMARS, _KINDS, CALLS, SPELLINGS = (  # of a file, a type of node, a word, and a function
     {word: name for name, words in _TABLES[title].items() for word in words.split()}
-    for title in ("kinds", "words")
+    for title in ("grammars", "kinds", "words", "functions")
 )
 _TYPES = {name: frozenset(types.split()) for name, types in _TABLES["types"].items()}
 ORDERS = [order for orders in _TABLES["orders"].values() for order in orders]
@@ -167,16 +158,12 @@ class Tree:
 
     def _function(self, nodes: list[Node]) -> Tree:
         """The function of a call: a name, or a member of an object."""
-        outer = self.node.parent
-        if _part(self.node, "object") is not None:  # Java
-            return Tree(self.node, "member")
-        if (
-            outer is not None
-            and outer.type == "field_expression"
-            and self.node == _children(outer)[-1]
-        ):
-            return Tree(outer, "member")  # MATLAB: a.b(1)
-        return tree_of(nodes[0])
+        node, outer = self.node, self.node.parent
+        is_last = outer is not None and node == _children(outer)[-1]
+        if outer is not None and is_last and outer.type == "field_expression":  # MATLAB: a.b(1)
+            node = outer
+        is_member = node is outer or _part(node, "object") is not None  # Java
+        return Tree(node, "member") if is_member else tree_of(nodes[0])
 
     def _pairs(self) -> list[Node]:
         nodes = _children(_part(self.node, "body") or self.node)
@@ -233,9 +220,7 @@ class Tree:
 
     @property
     def is_statement(self) -> bool:
-        return (
-            bool(re.search("statement|declaration|macro", self.node.type)) or self.kind == "assign"
-        )
+        return re.search("statement|decl|macro|assign", self.node.type) is not None
 
     @property
     def targets(self) -> list[Tree]:
