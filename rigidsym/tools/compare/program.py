@@ -81,12 +81,10 @@ _AXES = {"x": 0, "y": 1, "z": 2, "X": 0, "Y": 1, "Z": 2}
 _INVERSE = (sp.atan2, sp.asin, sp.acos, sp.atan)
 _SIGNS = {".*": "%", "./": "/", ".^": "**", "^": "**"}  # MATLAB
 _FLAT = {9: (3, 3), 12: (4, 3), 16: (4, 4)}
-_OF_VECTORS = {"transpose": "T", "skew": "C", "inverse": "inv"} | {
-    word: word for word in ("dot", "cross", "outer", "norm")
-}
+_OF_VECTORS = ("T", "C", "inv", "dot", "cross", "outer", "norm")
 _SCALARS, _VECTORS = {*"wWs"}, {"xyz", "Xyz", "v", "vec", "bv"}  # parts of a quaternion
 _OF_OBJECTS = (*_OF_VECTORS, "same", "clamp", "least", "pair")
-_RETURNED, _ARGUMENT = "returned", "argument"  # in place of a name
+_RETURNED, _ARGUMENT = _UNNAMED = ("returned", "argument")  # in place of a name
 _ALL = slice(None)
 
 # Scalars that are one vector or matrix: patterns of a stem and an index. The name of an angle is
@@ -133,10 +131,6 @@ class Formula:
     def line(self) -> int:
         """Where it begins."""
         return min(self.lines)
-
-    @property
-    def is_named(self) -> bool:
-        return self.name not in (_RETURNED, _ARGUMENT)
 
 
 @dataclass
@@ -216,9 +210,9 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
             scope.formulas += run.formulas
     formulas: dict[Any, Formula] = {}
     for scope in scopes:
-        named = {each.forms for each in scope.formulas if each.forms and each.is_named}
-        for formula in scope.formulas:
-            if formula.is_named or formula.forms not in named:  # a fault counts once
+        named = {each.forms for each in scope.formulas if each.name not in _UNNAMED}
+        for formula in scope.formulas:  # a fault counts once
+            if formula.name not in _UNNAMED or formula.forms not in named - {()}:
                 formulas.setdefault((formula.lines, formula.forms or formula.name), formula)
     return sorted(formulas.values(), key=lambda each: each.line)
 
@@ -368,7 +362,7 @@ class _Run:
             if part is not None:
                 self.store(target, part)
             elif path := self.written(target):  # w, x, y, z = q.as_quat() are inputs
-                symbol = self.unread_symbol(path, target.line)
+                symbol = self.symbol_for(path, None, target.line)
                 self.put(path, symbol, target.line)
                 self.components.add(symbol)
 
@@ -422,7 +416,7 @@ class _Run:
             ratio = value / own
             values = [self.definitions.get(s, s) for s in ratio.free_symbols]
             if values == [None] and own not in ratio.free_symbols:  # q0 *= recipNorm
-                return self.unread_symbol(path, 0)
+                return self.symbol_for(path, None)
             ratio = self.expanded(ratio)
             units = (180 / sp.pi, sp.pi / 180)
             is_unit = ratio.is_number and ratio.is_finite
@@ -437,20 +431,15 @@ class _Run:
         functions = value.atoms(sp.Function) - value.atoms(sp.sin, sp.cos, sp.tan)
         is_sum = is_first and bool(value.is_Add or functions)
         is_long = _size(value) > _LONGEST or (value.is_Pow and value.exp == sp.Rational(1, 2))
-        if not (is_long or is_sum or value.is_number):
-            return value
-        symbol = self.new_symbol(path)
-        self.definitions[symbol] = value
-        return symbol
+        is_symbol = is_long or is_sum or value.is_number
+        return self.symbol_for(path, value) if is_symbol else value
 
-    def new_symbol(self, path: Path) -> sp.Symbol:
+    def symbol_for(self, path: Path, value: sp.Expr | None, line: int = 0) -> sp.Symbol:
+        """A symbol for a long value, or for one that is not read (None)."""
         symbol = sp.Symbol(_dotted(path), real=True)
-        is_used = symbol in self.definitions or path[0] in self.inputs
-        return sp.Dummy(symbol.name, real=True) if is_used else symbol
-
-    def unread_symbol(self, path: Path, line: int) -> sp.Symbol:
-        symbol = self.new_symbol(path)
-        self.definitions[symbol] = None
+        if symbol in self.definitions or path[0] in self.inputs:
+            symbol = sp.Dummy(symbol.name, real=True)
+        self.definitions[symbol] = value
         self.unread.setdefault(symbol.name, line)
         return symbol
 
@@ -489,7 +478,7 @@ class _Run:
         value = self.part(self.values, path)
         same = [(name,) for name, part in self.values.items() if part is value]
         for each in same if isinstance(value, _Record) and same else [path]:
-            self.put(each, self.unread_symbol(each, line), line)
+            self.put(each, self.symbol_for(each, None, line), line)
 
     def forget(self, tree: Tree) -> None:
         """All names that are written to in a statement become unread, if they have been used."""
@@ -1068,11 +1057,11 @@ class _Run:
         if meaning == "dot" and values[0] == values[-1] and isinstance(values[0], sp.Symbol):
             symbol = sp.Dummy(f"{values[0]}²", positive=True)
             return self.squares.setdefault(values[0], symbol)
-        if meaning in ("cross", "dot", "skew", "outer"):
+        if meaning in ("cross", "dot", "C", "outer"):
             values = [self.vector(value) for value in values]
         if meaning == "dot" and any(as_matrix(value).cols > 1 for value in values):
             return combined("@", *values)
-        return called(_OF_VECTORS[meaning], [as_matrix(value) for value in values])
+        return called(meaning, [as_matrix(value) for value in values])
 
     def filled(self, tree: Tree) -> Any:
         """zeros(3, 3), Matrix3d::Identity()."""
