@@ -365,11 +365,22 @@ WIDER = {
     "M(1,3)=-Stheta;M(2,1)=0;M(2,2)=Cphi;M(2,3)=Ctheta*Sphi;M(3,1)=0;M(3,2)=-Sphi;"
     "M(3,3)=Ctheta*Cphi;",
     "a.m": "x = [cos(a); sin(a); 0]; y = [-sin(a); cos(a); 0]; z = [0; 0; 1]; R = [x y z];\n",
+    "c.js": "function f(a, update) { switch (n) { case 1: { this.set(Math.sin(a/2), 0, 0,"
+    " Math.cos(a/2), update); break; } } }",
+    "c.cs": "class A { void F(float a) { Q r; r.W = Math.Cos(a/2); r.Xyz.X = Math.Sin(a/2);"
+    " r.Xyz.Y = 0; r.Xyz.Z = 0; } }",
+    "c.rs": "fn f(a: f32) -> Self { let (s, c) = a.sin_cos(); let i = f32::splat(1.0);"
+    " let o = f32::splat(0.0); Self::new(V::new(i, o, o, o), V::new(o, c, s, o),"
+    " V::new(o, -s, c, o), V::new(o, o, o, i)) }",
+    "j.py": "def f(a):\n    R = np.zeros(a.shape + (3, 3))\n    R[...] = np.eye(3)\n"
+    "    R[..., 0, 0] = R[..., 1, 1] = np.cos(a)\n    R[..., 1, 0] = np.sin(a)\n"
+    "    R[..., 0, 1] = -np.sin(a)\n    return R\n",
 }
 SAID = {
     **dict.fromkeys(
-        ("a.py", "b.js", "a.rs", "a.m", "f.py", "a.cs", "b.rs"), "rotation_matrix of z"
+        ("a.py", "b.js", "a.rs", "a.m", "f.py", "a.cs", "b.rs", "j.py"), "rotation_matrix of z"
     ),
+    **{"c.js": "quaternion of x", "c.cs": "quaternion of x", "c.rs": "rotation_matrix of x"},
     **dict.fromkeys(("b.py", "c.py", "d.py"), "euler_angles of xyz"),
     **{"e.py": "turned_vector", "g.py": "euler_angles of ZXZ", "b.cs": "quaternion_product"},
     **{"h.py": "rotation_matrix of quaternion", "i.py": "inverse_rate_matrix_body of xyz"},

@@ -380,7 +380,7 @@ class _Run:
             path = path[:-1]
         if isinstance(value, _Record) and any(isinstance(key, slice) for key in path):
             value = _settled(value)
-        self.emit(self.values, [path[0]] * (len(path) == 1))
+        self.emit_at(path)
         self.put(path, value, left.line)
 
     def put(self, path: Path, value: Any, line: int) -> None:
@@ -474,7 +474,7 @@ class _Run:
 
     def become_unread(self, path: Path, line: int) -> None:
         """A name, and all others for the same matrix, get new symbols in place of their values."""
-        self.emit(self.values, [path[0]] * (len(path) == 1))
+        self.emit_at(path)
         value = self.part(self.values, path)
         same = [(name,) for name, part in self.values.items() if part is value]
         for each in same if isinstance(value, _Record) and same else [path]:
@@ -594,6 +594,7 @@ class _Run:
         """Paths that a call may change: its object, matrices, and &name."""
         trees = [tree.owner, *tree.parts[1:]]
         paths = {self.written(each): each.is_reference for each in trees if each is not None}
+        paths.pop((), None)
         matrices = {p for p in paths if isinstance(self.part(self.values, p), _Record)}
         return matrices | {p for p, is_reference in paths.items() if is_reference}
 
@@ -611,6 +612,11 @@ class _Run:
             self.store(left, rows([self.read(each) for each in (right, *others)]))
 
     # Formulas
+
+    def emit_at(self, path: Path) -> None:
+        """A matrix has its final values, before another is assigned."""
+        if len(path) == 1 and isinstance(self.values.get(path[0]), _Record):
+            self.emit(self.values, path)
 
     def emit(self, record: _Record, keys: Iterable[Any] | None = None, path: Path = ()) -> None:
         """All matrices and vectors among the parts of a record have their final values."""
