@@ -534,6 +534,9 @@ class _Run:
         self.end = ""
         self.forget(tree)
 
+    def run_error(self, tree: Tree) -> None:
+        raise self.unreadable(tree)
+
     def run_break(self, _: Tree) -> None:
         self.end = "break"
 

@@ -253,6 +253,8 @@ def tree_of(node: Node) -> Tree:
         kind = "record"
     if kind == "member" and _children(node)[-1].type == "function_call":  # MATLAB: a.b(1)
         node, kind = _children(node)[-1], "call"
+    if kind not in ("block", "function") and any(c.is_error for c in node.children):
+        kind = "error"  # without the parts that it should have
     return Tree(node, kind, is_reference)
 
 
