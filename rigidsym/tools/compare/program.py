@@ -295,9 +295,10 @@ class _Run:
         scope = self.scope.tree
         late = [t for t in walk(scope.node, "assign", "outer") if t.is_one_of("late")]
         if self.program.suffix != ".py":
-            for inner in walk(scope.node, "function"):
-                trees = walk(inner.node, "assign", "call")
-                late += [each for each in trees if not each.is_one_of("declaration")]
+            inner = [
+                t for f in walk(scope.node, "function") for t in walk(f.node, "assign", "call")
+            ]
+            late += [t for t in inner if not t.is_one_of("declaration")]
         self.untracked = self.written_in(late)
         body = scope
         if scope.kind == "function":
@@ -386,11 +387,9 @@ class _Run:
     def put(self, path: Path, value: Any, line: int) -> None:
         place = next((n for n, key in enumerate(path) if isinstance(key, slice)), None)
         if place is not None:
-            if not isinstance(value, sp.MatrixBase):
-                raise ExpressionError("a block of another size")
-            parts = [*value] if value.cols == 1 else [value[k, :].T for k in range(value.rows)]
-            start = path[place].start or 0
-            if path[place].stop not in (None, start + len(parts)):
+            whole, start = as_matrix(value), path[place].start or 0
+            parts = [*whole] if whole.cols == 1 else [whole[k, :].T for k in range(whole.rows)]
+            if len(whole) == 1 or path[place].stop not in (None, start + len(parts)):
                 raise ExpressionError("a block of another size")
             for k, part in enumerate(parts, start):
                 self.put((*path[:place], k, *path[place + 1 :]), part, line)
@@ -431,8 +430,7 @@ class _Run:
         functions = value.atoms(sp.Function) - value.atoms(sp.sin, sp.cos, sp.tan)
         is_sum = is_first and bool(value.is_Add or functions)
         is_long = _size(value) > _LONGEST or (value.is_Pow and value.exp == sp.Rational(1, 2))
-        is_symbol = is_long or is_sum or value.is_number
-        return self.symbol_for(path, value) if is_symbol else value
+        return self.symbol_for(path, value) if is_long or is_sum or value.is_number else value
 
     def symbol_for(self, path: Path, value: sp.Expr | None, line: int = 0) -> sp.Symbol:
         """A symbol for a long value, or for one that is not read (None)."""
@@ -487,6 +485,8 @@ class _Run:
             if path in own or self.part(self.values, path) is not None or path[0] in self.inputs:
                 self.become_unread(path, tree.line)
 
+    run_error = forget
+
     def written_in(self, trees: Iterable[Tree]) -> set[Path]:
         """Paths that assignments, calls and streams may change."""
         paths: set[Path] = set()
@@ -511,7 +511,7 @@ class _Run:
 
     def run_if(self, tree: Tree) -> None:
         """if, #if, switch, and handlers of exceptions: each run takes one branch, or none."""
-        start, block = dict(self.values), self.branch(tree)
+        start, block = dict(self.values), tree.parts[self.scope.choice(tree.node, tree.parts)]
         self.run(block)
         self.end = "" if tree.kind == "switch" and self.end == "break" else self.end
         if block.parts:
@@ -519,9 +519,6 @@ class _Run:
             self.emit(self.values, [*new])
 
     run_switch = run_if
-
-    def branch(self, tree: Tree) -> Tree:
-        return tree.parts[self.scope.choice(tree.node, tree.parts)]
 
     def run_loop(self, tree: Tree) -> None:
         """A loop may run many times or never: what changes in it is not read before and after."""
@@ -533,9 +530,6 @@ class _Run:
             self.run(each)
         self.end = ""
         self.forget(tree)
-
-    def run_error(self, tree: Tree) -> None:
-        raise self.unreadable(tree)
 
     def run_break(self, _: Tree) -> None:
         self.end = "break"
@@ -549,9 +543,8 @@ class _Run:
             if self.results[-1] is not None and self.path(value) is None:
                 self.add(_RETURNED, self.results[-1], value.line)
             if self.results[-1] is None and _MAY_BE_MATRIX.search(value.text):
-                self.formulas.append(
-                    Formula(lines=(value.line,), name=_RETURNED, reason=self.reason)
-                )
+                fault = Formula(lines=(value.line,), name=_RETURNED, reason=self.reason)
+                self.formulas.append(fault)
         self.emit(self.values)
         self.end = "return"
 
@@ -719,7 +712,7 @@ class _Run:
         return self.read(tree.parts[-1])
 
     def read_if(self, tree: Tree) -> Any:
-        return self.read(self.branch(tree))
+        return self.read(tree.parts[self.scope.choice(tree.node, tree.parts)])
 
     def read_assign(self, tree: Tree) -> Any:
         """a = b inside an expression."""
@@ -1203,11 +1196,11 @@ def _unflattened(value: Any) -> Any:
 
 def _square(vector: sp.Symbol, names: Mapping[sp.Expr, sp.Expr], first: int) -> sp.Expr:
     """|v|² of a vector, or of a quaternion if a formula has its fourth component."""
-    letters = [f"{vector}.{letter}" for letter in "xyzw"]
-    digits = [f"{vector}.{k}" for k in range(first, 4 + first)]
     used = {symbol.name for symbol in names}
-    parts = letters if used & set(letters) else digits
-    symbols = [sp.Symbol(part, real=True) for part in parts[: 3 + (parts[3] in used)]]
+    has_letters = any(f"{vector}.{letter}" in used for letter in "xyzw")
+    keys = [*"xyzw"] if has_letters else range(first, 4 + first)
+    symbols = [sp.Symbol(f"{vector}.{key}", real=True) for key in keys]
+    symbols = symbols[: 3 + (symbols[3].name in used)]
     return sum(names.get(s, sp.Symbol(_last(s.name), real=True)) ** 2 for s in symbols)
 
 
