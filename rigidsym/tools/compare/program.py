@@ -753,8 +753,7 @@ class _Run:
     def read_unary(self, tree: Tree) -> Any:
         if tree.word not in ("+", "-"):
             return self.named(tree)
-        value = self.read(tree.parts[-1])
-        return value if tree.word == "+" else -value
+        return self.read(tree.parts[-1]) * (1 if tree.word == "+" else -1)
 
     def read_binary(self, tree: Tree) -> Any:
         if len(tree.parts) != 2:
@@ -999,9 +998,6 @@ class _Run:
                 return rows([called(each, [self.read(nodes[0])]) for each in ("sin", "cos")])
             case "number" if not arguments and self.program.suffix == ".rs":  # T::zero()
                 return sp.Integer("one" in name.lower())
-            case "multiply_add" if len(nodes) == 3:
-                factor, other, term = map(self.read, nodes)
-                return combined("+", combined("*", factor, other), term)
             case "cast" if len(nodes) == 1:
                 return self.read(nodes[0])
             case "wrapper" if is_listed:
