@@ -645,7 +645,7 @@ class _Run:
 
     def add(self, name: str, value: Any, *lines: int) -> None:
         """A matrix or a vector is a formula; so is each part of a long vector."""
-        if not isinstance(value, sp.MatrixBase) or len(value) == 1:
+        if not isinstance(value, sp.MatrixBase) or len(value) < 2:
             return
         value = _unflattened(sp.ImmutableMatrix(value))
         if (name, value) in self.emitted:
@@ -1123,11 +1123,9 @@ def _settled(record: _Record) -> sp.ImmutableMatrix | None:
     parts = [_settled(part) if isinstance(part, _Record) else part for part in parts]
     if not parts or None in parts:
         return None
-    shapes = {as_matrix(part).shape for part in parts}
-    is_column = shapes == {(1, 1)} and _is_scalar(parts[0])
-    if len(shapes) > 1 or (not is_column and next(iter(shapes))[1] != 1):
-        return None
-    return sp.ImmutableMatrix(parts if is_column else [[*part] for part in parts])
+    matrices = [*map(as_matrix, parts)]
+    is_regular = len({each.shape for each in matrices}) == 1 and matrices[0].cols == 1
+    return sp.ImmutableMatrix([[*each] for each in matrices]) if is_regular else None
 
 
 def _groups(record: _Record) -> Iterator[tuple[int, list[str]]]:

@@ -159,9 +159,8 @@ class Tree:
     def _function(self, nodes: list[Node]) -> Tree:
         """The function of a call: a name, or a member of an object."""
         node, outer = self.node, self.node.parent
-        is_last = outer is not None and node == _children(outer)[-1]
-        if outer is not None and is_last and outer.type == "field_expression":  # MATLAB: a.b(1)
-            node = outer
+        if outer is not None and outer.type == "field_expression" and node == _children(outer)[-1]:
+            node = outer  # MATLAB: a.b(1)
         is_member = node is outer or _part(node, "object") is not None  # Java
         return Tree(node, "member") if is_member else tree_of(nodes[0])
 
