@@ -9,16 +9,18 @@ from itertools import product
 from math import pi
 from pathlib import Path
 from types import ModuleType
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, NamedTuple
 
 import numpy as np
 
 from rigidsym.data.columns import ColumnNames, counted, in_both_units, names_for
 from rigidsym.data.tables import (
     ROWS,
+    Batch,
     Missing,
     Numbers,
     Rows,
+    Table,
     TextTable,
     check_ending,
     open_table,
@@ -87,70 +89,27 @@ def evaluate(
         check_ending(where)
         if isinstance(source, Path) and where.resolve() == source.resolve():
             raise RequestError(f"{where}: the result would replace the file that is read")
-    chosen = motion.select(derived_for(quantities))
-    converts = not CONVERSIONS.keys().isdisjoint(quantities)
-    module = chosen.kernels(conversions=converts).load()
-    rule = chosen.conversions.inverse if converts else None
-    quaternion = replace(_QUATERNION, names=rule.listed(_QUATERNION.names)) if rule else _QUATERNION
-    calls = {name: _arguments(chosen, module, name) for name in quantities}
-    taken = {argument for arguments in calls.values() for argument in arguments}
-    known = [_Input(a.name, a.names, a.units) for a in chosen.arguments]
-    inputs = [each for each in (*known, quaternion, _MATRIX) if each.name in taken]
-    constants = _constants(inputs, given or {}, table.dtype)
-    free = [each for each in inputs if each.name not in constants]
+    calls = _calls_of(motion, quantities)
+    constants = _constants(calls.inputs, given or {}, table.dtype)
+    free = [each for each in calls.inputs if each.name not in constants]
     if not free:
         raise RequestError(f"{table.source}: no column is used; every row has the same result")
-    components = [pair for each in free for pair in zip(each.names, each.units, strict=True)]
     try:
-        named = names_for(columns, table.width, table.names)
-        if named is None and table.width != len(components):
-            raise DataError(
-                f"{counted(table.width, 'column')} without names: expected {len(components)} "
-                f"({', '.join(name for name, _ in components)}); or name them with --columns"
-            )
-        header = ColumnNames(named or [name for name, _ in components])
-        used = [*range(table.width)] if named is None else _by_name(free, header)
-        scales, unstated = [], []
-        for k, (_, unit) in enumerate(components):
-            stated = None if named is None else header.factor(used[k], unit)
-            if stated is None:
-                stated = pi / 180 if degrees and _is_angle(unit) else 1.0
-                unstated += [k] if named is None or unit else []
-            scales.append(stated)
-        kept = {}
-        for name in keep:
-            if (place := header.find([name])) is None:
-                raise DataError(f"no column {name}; {offer(name, header.names)}")
-            kept[place] = header.names[place]
+        match = _matched(table, free, columns, keep, degrees=degrees)
     except DataError as error:
         raise DataError(f"{table.source}: {error}") from None
-    results = [result for name in quantities for result in _results(chosen, name, quaternion)]
-    factors = [180 / pi if degrees and _is_angle(unit) else 1.0 for _, unit in results]
-    ends = np.cumsum([len(each.names) for each in free])[:-1]
-    largest = np.zeros(len(components))  # the sizes in each column
+    names = [name for name, _ in match.components]
+    complete = without_missing(
+        table, table.batches(match.columns, rows, [*match.kept]), names, missing
+    )
+    factors = [180 / pi if degrees and _is_angle(unit) else 1.0 for _, unit in calls.results]
+    largest = np.zeros(len(names))  # the sizes in each column
     lost, first = 0, ""  # how many rows have inputs and no value, and where the first is
 
     def computed() -> Iterator[Rows]:
         nonlocal lost, first
-        batches = table.batches(used, rows, [*kept])
-        for batch in without_missing(table, batches, [name for name, _ in components], missing):
-            count = len(batch.table)
-            parts = np.split(_scaled(batch.table, scales), ends, axis=1)
-            vectors = constants | {
-                each.name: part.reshape(count, *each.shape)
-                for each, part in zip(free, parts, strict=True)
-            }
-            if _MATRIX in free:
-                matrices = replace(batch, table=parts[free.index(_MATRIX)])
-                samples_of(table, _ENTRY_COLUMNS, matrices, drops_missing=True).check(SLACK)
-            values = []
-            for name, arguments in calls.items():
-                function = getattr(module, name)
-                value = function(*(vectors[each] for each in arguments), threads=threads)
-                is_constant = constants.keys() >= {*arguments}
-                value = np.asarray(value).reshape(1 if is_constant else count, -1)
-                values.append(np.broadcast_to(value, (count, value.shape[1])))
-            result = np.concatenate(values, axis=1)
+        for batch in complete:
+            result = _values(calls, table, batch, match.scales, constants, free, threads)
             is_lost = np.isfinite(batch.table).all(axis=1) & ~np.isfinite(result).all(axis=1)
             if is_lost.any() and not lost:
                 first = table.place(int(batch.rows[is_lost.argmax()]))
@@ -160,20 +119,51 @@ def evaluate(
             if progress is not None:
                 progress(batch.share)
 
-    titles = (*kept.values(), *(_title(*result, degrees=degrees) for result in results))
+    titles = (*match.kept.values(), *(_title(*each, degrees=degrees) for each in calls.results))
     total = write_table(where, titles, table.dtype, computed(), stream)
-    read_as = ", ".join(_title(*components[k], degrees=degrees) for k in unstated)
+    read_as = ", ".join(_title(*match.components[k], degrees=degrees) for k in match.unstated)
     remarks = [f"columns without a unit are read as {read_as}"] if read_as else []
     remarks += [
-        f"{components[k][0]} is as large as {in_both_units(largest[k])}; if they are degrees, "
-        "--degrees reads them so"
-        for k in unstated
-        if components[k][1] == "rad" and largest[k] > 2 * pi and not degrees
+        f"{names[k]} is as large as {in_both_units(largest[k])}; if they are degrees, --degrees "
+        "reads them so"
+        for k in match.unstated
+        if match.components[k][1] == "rad" and largest[k] > 2 * pi and not degrees
     ]
     if lost:
-        cause = "a singular orientation or a zero quaternion"
-        remarks.append(f"{lost} of {total} rows have no value, the first in {first}: {cause}")
+        remarks.append(
+            f"{lost} of {total} rows have no value, the first in {first}: a singular orientation "
+            "or a zero quaternion"
+        )
     return Evaluated(path=where, rows=total, columns=titles, remarks=tuple(remarks))
+
+
+def _values(
+    calls: _Calls,
+    table: Table,
+    batch: Batch,
+    scales: Sequence[float],
+    constants: Mapping[str, Numbers],
+    free: Sequence[_Input],
+    threads: int,
+) -> Numbers:
+    """The values of all functions for the rows of a batch, side by side."""
+    count = len(batch.table)
+    ends = np.cumsum([len(each.names) for each in free])[:-1]
+    vectors = dict(constants)
+    parts = np.split(_scaled(batch.table, scales), ends, axis=1)
+    for each, part in zip(free, parts, strict=True):
+        vectors[each.name] = part.reshape(count, *each.shape)
+        if each is _MATRIX:
+            matrices = replace(batch, table=part)
+            samples_of(table, _ENTRIES, matrices, drops_missing=True).check(SLACK)
+    values = []
+    for name, arguments in calls.arguments.items():
+        function = getattr(calls.module, name)
+        value = function(*(vectors[each] for each in arguments), threads=threads)
+        is_constant = constants.keys() >= {*arguments}
+        value = np.asarray(value).reshape(1 if is_constant else count, -1)
+        values.append(np.broadcast_to(value, (count, value.shape[1])))
+    return np.concatenate(values, axis=1)
 
 
 def _scaled(table: Numbers, factors: Sequence[float]) -> Numbers:
@@ -198,7 +188,34 @@ class _Input:
 
 _QUATERNION = _Input("quaternion", ("qw", "qx", "qy", "qz"), ("",) * 4)
 _MATRIX = _Input("matrix", MATRICES[0], ("",) * 9, (3, 3))
-_ENTRY_COLUMNS = Columns({"matrix": range(9)})
+_ENTRIES = Columns({"matrix": range(9)})
+
+
+class _Calls(NamedTuple):
+    """Functions of one module, and what they take and return."""
+
+    module: ModuleType
+    arguments: Mapping[str, tuple[str, ...]]  # by the name of the function
+    inputs: Sequence[_Input]  # of all functions
+    results: Sequence[tuple[str, str]]  # names and units of their columns
+
+
+def _calls_of(motion: Motion, names: Sequence[str]) -> _Calls:
+    """The functions of these names; raises QuantityError or RequestError for one without rows."""
+    chosen = motion.select(derived_for(names))
+    converts = not CONVERSIONS.keys().isdisjoint(names)
+    module = chosen.kernels(conversions=converts).load()
+    rule = chosen.conversions.inverse if converts else None
+    quaternion = replace(_QUATERNION, names=rule.listed(_QUATERNION.names)) if rule else _QUATERNION
+    arguments = {name: _arguments(chosen, module, name) for name in names}
+    taken = {argument for each in arguments.values() for argument in each}
+    known = [_Input(a.name, a.names, a.units) for a in chosen.arguments]
+    return _Calls(
+        module=module,
+        arguments=arguments,
+        inputs=[each for each in (*known, quaternion, _MATRIX) if each.name in taken],
+        results=[result for name in names for result in _results(chosen, name, quaternion)],
+    )
 
 
 def derived_for(names: Sequence[str]) -> tuple[str, ...]:
@@ -272,6 +289,49 @@ def _constants(
     return constants
 
 
+class _Match(NamedTuple):
+    """Which column is which component, and the factors to SI units."""
+
+    components: Sequence[tuple[str, str]]  # names and units
+    columns: Sequence[int]
+    scales: Sequence[float]
+    unstated: Sequence[int]  # components whose columns state no unit
+    kept: Mapping[int, str]  # columns to copy, with their names
+
+
+def _matched(
+    table: Table,
+    inputs: Sequence[_Input],
+    columns: Sequence[str] | None,
+    keep: Sequence[str],
+    *,
+    degrees: bool,
+) -> _Match:
+    """The columns of the inputs by their names, or in their order; raises DataError."""
+    components = [pair for each in inputs for pair in zip(each.names, each.units, strict=True)]
+    named = names_for(columns, table.width, table.names)
+    if named is None and table.width != len(components):
+        raise DataError(
+            f"{counted(table.width, 'column')} without names: expected {len(components)} "
+            f"({', '.join(name for name, _ in components)}); or name them with --columns"
+        )
+    header = ColumnNames(named or [name for name, _ in components])
+    used = [*range(table.width)] if named is None else _by_name(inputs, header)
+    scales, unstated = [], []
+    for k, (_, unit) in enumerate(components):
+        stated = None if named is None else header.factor(used[k], unit)
+        if stated is None:
+            stated = pi / 180 if degrees and _is_angle(unit) else 1.0
+            unstated += [k] if named is None or unit else []
+        scales.append(stated)
+    kept = {}
+    for name in keep:
+        if (place := header.find([name])) is None:
+            raise DataError(f"no column {name}; {offer(name, header.names)}")
+        kept[place] = header.names[place]
+    return _Match(components, used, scales, unstated, kept)
+
+
 def _by_name(arguments: Sequence[_Input], header: ColumnNames) -> list[int]:
     columns: list[int] = []
     missing: list[str] = []
@@ -285,11 +345,12 @@ def _by_name(arguments: Sequence[_Input], header: ColumnNames) -> list[int]:
             else:
                 columns.append(column)
     if missing:
-        remedy = (
+        rates = {name for each in arguments if each.name == "q_dot" for name in each.names}
+        attitude = "without rates, --quantity rotation_matrix gives the attitude; "
+        raise DataError(
+            f"no column {', '.join(missing)} among {header.listed}; "
+            f"{attitude * ({*missing} == rates)}"
             "if the file names them otherwise, --columns names all its columns, in order, or "
             "--angles the coordinates, such as `--angles yaw,pitch,roll`"
         )
-        if {*missing} == {n for a in arguments if a.name == "q_dot" for n in a.names}:
-            remedy = "without rates, --quantity rotation_matrix gives the attitude; " + remedy
-        raise DataError(f"no column {', '.join(missing)} among {header.listed}; {remedy}")
     return columns
