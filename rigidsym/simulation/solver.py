@@ -16,7 +16,7 @@ from rigidsym.simulation.trajectory import Array, Trajectory
 from rigidsym.system.processes import time_limit
 
 METHODS = ("DOP853", "Radau", "exact")
-_POLE = 1e-3  # of the singularity margin: nearer to a pole, coordinates lose digits
+_POLE = 1e-3  # of twice the ratio of singular values of W′: nearer, coordinates lose digits
 # A motion comes to an end where the steps become a millionth of the longest one and stay so: at a
 # regular motion the error control never shortens them by more than some thousand times.
 _SHORT, _MANY = 1e-6, 300

@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 
 import rigidsym as rs
 from helpers.command import call
-from rigidsym.errors import LimitReached
+from rigidsym.errors import LimitReached, ModelError
 from rigidsym.models.body import Parameter
 from rigidsym.models.library import rotation_from
 from rigidsym.simulation.free_body import free_motion
@@ -334,6 +334,8 @@ def test_one_body_on_four_turns_moves_by_eulers_equations_and_stops_where_their_
     assert np.abs(found.rotation_matrix - start @ turned).max() < 1e-9
     stopped = motion.simulate({"b": 1e-6} | spin, {}, 1.0)
     assert "at a pole of the coordinates" in stopped.ended
+    with pytest.raises(ModelError, match="depend on more than the attitude"):
+        rs.derive("z(a) x(b) z(c) x(d)", body=body, potential="k*a**2")
 
 
 @pytest.mark.parametrize("inertia", [0, 1])

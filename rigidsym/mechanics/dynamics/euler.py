@@ -54,6 +54,9 @@ class EulerEquations(Flow):
         self._inverse = rotation.codec.decoded(inverse)
         self.divisor = rotation.codec.decode(divisor)
         self._matrix = rotation.model.matrix
+        # more turns than degrees of freedom, so that one attitude has many coordinates
+        is_spare = len(model.turns) > 3
+        self._rate_matrix = rotation.codec.decoded(rotation.rate_matrix("body")) if is_spare else ()
         q = model.coordinates
         # Rates in given forces are replaced by q̇ = W′⁻¹ Ω′, as they are not part of this state.
         turning = self._inverse * sp.Matrix(OMEGA_BODY) / self.divisor
@@ -61,7 +64,7 @@ class EulerEquations(Flow):
         self._gradient = [sp.diff(forces.potential, x) for x in q]
         self._forces = [forces.generalised.get(x, sp.S.Zero).xreplace(rates) for x in q]
         self._torque = [n.xreplace(rates) for n in forces.torque or (sp.S.Zero,) * 3]
-        entries = [*self._inverse, self.divisor, *self._matrix, *body.inertia]
+        entries = [*self._inverse, self.divisor, *self._matrix, *self._rate_matrix, *body.inertia]
         entries += [forces.potential, *self._gradient, *self._forces, *self._torque]
         entries += [*OMEGA_BODY, *forces.first_integrals.values()]
         codec = codec_for([e for e in entries if e != 0], constraints=model.constraints, order=1)
@@ -86,6 +89,15 @@ class EulerEquations(Flow):
         # N′ = W′⁻ᵀ (Q − ∂V/∂q).
         below = self.codec.encode(self.divisor)
         turning = self.codec.matrix(self._inverse).T @ self.codec.column(acting)
+        if self._rate_matrix:
+            generalised = self.codec.matrix(self._rate_matrix).T @ turning
+            if not (generalised - self.codec.column(acting).scale(below)).is_zero():
+                raise ModelError(
+                    f"{self.model.name}: the potential or the generalised forces depend on more "
+                    "than the attitude of the body, which has many coordinates on "
+                    f"{len(self.model.turns)} turns; expected a potential of the attitude, such "
+                    "as a weight, or `torque`"
+                )
         return given.scale(below) + turning, below
 
     @cached_property
