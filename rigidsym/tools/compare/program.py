@@ -637,7 +637,7 @@ class _Run:
             if None in values:
                 continue
             are_angles = all(value.has(*_INVERSE) for value in values)
-            is_change = names[0][0] == "Δ" and ANGLES_NAME.search(names[0]) is not None
+            is_change = names[0].startswith("Δ") and ANGLES_NAME.search(names[0]) is not None
             if kind > -2 or are_angles or is_change:
                 stem = _dotted(path) or re.sub(r"\d+$", "", names[0])
                 name = ", ".join(names) if len(names) < 9 else stem
@@ -818,7 +818,7 @@ class _Run:
             return None
         match tree.kind:
             case "name":
-                return (tree.word,)
+                return (tree.word,) if tree.word else None
             case "assign":
                 return self.path(tree.parts[0])
             case "unary" if tree.word in ("*", "&") and not self.program.is_formula:
@@ -1149,7 +1149,7 @@ def _roles(name: str) -> list[tuple[int, str, str]]:
     if stem_of(name):
         roles.append((-1, "", name))
     change, word = (
-        "Δ" * (name[0] == "Δ"),
+        "Δ" * name.startswith("Δ"),
         re.sub(r"^[Δδ]?_*|_?(val|rad|angle)?_*$", "", name.lower()),
     )
     kinds = [kind for kind, angles in enumerate(_COMPLETE) if word in angles]
