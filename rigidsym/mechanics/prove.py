@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property
-from textwrap import shorten
 from typing import NamedTuple
 
 import sympy as sp
@@ -120,11 +119,12 @@ class Prover:
             if error is NotARotation:
                 fails = f"not a rotation, since {claim.text} fails"
             entries = [
-                shorten(str(in_names(left[i, j])), _LONGEST, placeholder=" ...")
+                f"{text[:_LONGEST]}{' ...' * (len(text) > _LONGEST)}"
                 + f" in row {i + 1}, column {j + 1}" * (len(left) > 1)
                 for i in range(left.rows)
                 for j in range(left.cols)
                 if left[i, j] != 0
+                for text in (str(in_names(left[i, j])),)
             ]
             rest = "; ".join(entries[:_MOST])
             more = f"; and {len(entries) - _MOST} more" * (len(entries) > _MOST)
