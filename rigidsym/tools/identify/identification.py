@@ -53,9 +53,9 @@ class Identification:
     def contradicted(self) -> tuple[str, ...]:
         """The units in the names of the columns, if no answer agrees with them."""
         stated = self.columns.stated
-        if any(answer.reading.agrees_with(stated) for answer in self.answers):
-            return ()
-        return tuple(f"{part} in {unit}" for part, unit in stated.items() if self.answers)
+        parts = [answer.reading.disagreeing(stated) for answer in self.answers] or [set()]
+        wrong = set.intersection(*parts)
+        return tuple(f"{part} in {unit}" for part, unit in stated.items() if part in wrong)
 
     def text(self, *, everything: bool = False) -> str:
         """The report of `rigidsym identify`; with `everything`, that of --all.

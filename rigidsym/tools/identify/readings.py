@@ -85,12 +85,13 @@ class Reading:
         columns = f"[..., {[*self.columns]}]" if self.columns != (0, 1, 2) else ""
         return columns + (f" * {[*self.signs]}" if -1 in self.signs else "")
 
-    def agrees_with(self, stated: Mapping[str, str]) -> bool:
-        """Whether it has these units, deg or rad, of angles, and of both rates and Ω."""
+    def disagreeing(self, stated: Mapping[str, str]) -> set[str]:
+        """The parts in other units than these; of rates and Ω, only the quotient is known."""
         rates, omega = (stated.get(part, "") for part in ("rates", "omega"))
-        units = f"rates in {rates}/s, Ω in {omega}/s" if rates != omega else ""
-        agrees = not (self.velocity and rates and omega) or self.velocity.units == units
-        return agrees and self.unit.startswith(stated.get("angles", ""))
+        units = f"rates in {rates}, Ω in {omega}" if rates != omega else ""
+        agree = not (self.velocity and rates and omega) or self.velocity.units == units
+        parts = set() if agree else {"rates", "omega"}
+        return parts if self.unit.startswith(stated.get("angles", "")) else {"angles", *parts}
 
     def in_other_manner(self) -> Reading:
         """The same R with the other kind of axes: intrinsic ZYX is extrinsic xyz, reversed."""

@@ -54,7 +54,7 @@ class Columns(NamedTuple):
     scalar_last: bool | None = None  # of a quaternion whose names tell which is the scalar
     factors: Sequence[float] = (1.0,)  # of all columns used, in order
     converted: Names = ()  # the columns that they convert
-    stated: Mapping[str, str] = MappingProxyType({})  # units in their names, deg or rad, by part
+    stated: Mapping[str, str] = MappingProxyType({})  # units in their names, by part: deg/s
     unused: str = ""  # columns of rates without Ω, or of Ω without rates, in words
 
     @property
@@ -211,7 +211,7 @@ def by_name(names: Sequence[str]) -> Columns:
         # to radians if a unit is a multiple of them, and else to degrees
         units = [header.unit(column).casefold().lstrip("numµ") for column in columns]
         base = "rad" if any(unit.startswith("rad") for unit in units) else "deg"
-        stated |= {part: base} if part in _PER and any(units) else {}
+        stated |= {part: base + _PER[part]} if part in _PER and any(units) else {}
         for k in columns:
             factor = header.factor(k, base + _PER[part]) if part in _PER else None
             factors[k] = factor or 1.0
