@@ -21,6 +21,8 @@ from rigidsym.errors import LimitReached, RequestError, printable
 T = TypeVar("T")
 R = TypeVar("R")
 NEW_OBJECTS = 200_000  # between two searches for cycles; importing SymPy makes 100,000
+_THRESHOLDS: list[tuple[int, int, int]] = []  # of Python, at each entry of `rare_collections`
+_LOCK = threading.Lock()
 _TICK = 1.0  # seconds from a stop that was lost to the next
 
 
@@ -30,12 +32,17 @@ def rare_collections() -> Iterator[None]:
 
     A full search walks through all of SymPy: 50 ms, a tenth of the time of 24 conventions.
     """
-    first, *others = gc.get_threshold()
-    gc.set_threshold(first and max(first, NEW_OBJECTS), *others)  # 0: the user searches for none
+    with _LOCK:
+        _THRESHOLDS.append(gc.get_threshold())
+        first, *others = _THRESHOLDS[-1]
+        gc.set_threshold(first and max(first, NEW_OBJECTS), *others)  # 0: the user wants none
     try:
         yield
     finally:
-        gc.set_threshold(first, *others)
+        with _LOCK:
+            before = _THRESHOLDS.pop()
+            if not _THRESHOLDS:  # the last thread restores what the first one found
+                gc.set_threshold(*before)
 
 
 def cores() -> int:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
+from contextlib import ExitStack
 from pathlib import Path
 from time import sleep
 
@@ -15,7 +17,7 @@ from helpers.command import call
 from rigidsym.commands.cli import commands
 from rigidsym.errors import Fault, LimitReached, RequestError, SpecError
 from rigidsym.system import processes
-from rigidsym.system.processes import in_processes, time_limit
+from rigidsym.system.processes import in_processes, rare_collections, time_limit
 
 
 def test_a_time_limit_holds_in_python():
@@ -27,6 +29,16 @@ def test_a_time_limit_holds_in_python():
         rs.derive("ZXZ", timeout=float("nan"))
     assert rs.derive("z(a)", timeout=60).is_proved
     assert signal.getitimer(signal.ITIMER_REAL) == (0.0, 0.0)
+
+
+def test_derivations_that_overlap_leave_the_searches_for_cycles_as_they_were():
+    before = gc.get_threshold()
+    with ExitStack() as first, ExitStack() as second:
+        first.enter_context(rare_collections())
+        second.enter_context(rare_collections())
+        first.close()
+        assert gc.get_threshold()[0] >= processes.NEW_OBJECTS
+    assert gc.get_threshold() == before
 
 
 UNBOUNDED = {
