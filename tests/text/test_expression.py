@@ -154,8 +154,9 @@ def test_turns_are_read_left_to_right():
     }.items():
         assert tuple(turn[:2] for turn in parse_turns(text)) == turns
         assert all(text[column - 1 :].startswith(angle) for _, angle, column in parse_turns(text))
-    with pytest.raises(ExpressionError, match=f"3000 characters; .* most {MOST_CHARACTERS}"):
-        parse_turns("z(a" * 1000)
+    for text, message in (("", "a turn: .* the end"), ("z(a" * 1000, f"most {MOST_CHARACTERS}")):
+        with pytest.raises(ExpressionError, match=message):
+            parse_turns(text)
 
 
 def test_names_of_coordinates():
