@@ -265,11 +265,17 @@ _SPAN = re.compile(r"\$[^$]*\$|\{\}|.+?(?=\$|\{\}|\Z)", re.DOTALL)
 
 
 def sentence(typed: str, *spans: _Span) -> tuple[str | Formula | _Span, ...]:
-    r"""The text r"The axis $\mathbf{e}$ of {}" with its formulas read, and a span for each {}."""
+    r"""The text r"The axis $\mathbf{e}$ of {}" with its formulas read, and a span for each {}.
+
+    Raises AlgebraError for a formula that cannot be read or has no end, and for too many {}.
+    """
     values = iter(spans)
+    parts = _SPAN.findall(typed)
+    if typed.count("$") % 2 or parts.count("{}") > len(spans):
+        raise AlgebraError(f"'{typed}': expected pairs of $, and at most {len(spans)} '{{}}'")
     return tuple(
         next(values) if part == "{}" else formula(part[1:-1]) if part[0] == "$" else part
-        for part in _SPAN.findall(typed)
+        for part in parts
     )
 
 

@@ -22,7 +22,7 @@ from rigidsym.formula.reader import formula, text_of
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import COMMA, Bracket, Formula, joined
 from rigidsym.mechanics.conversions.function import SHEPPERD, outer_product
-from rigidsym.mechanics.derivation import OF_RATES, Derivation, Proof, Statement, Step, phrases
+from rigidsym.mechanics.derivation import OF_RATES, Derivation, Proof, Statement, Step, sentence_of
 from rigidsym.mechanics.quantities.kinematics import ROTATION
 from rigidsym.models.parametrisations import GIVEN
 from rigidsym.models.rotation import SOURCES, Citation, hat, lecture
@@ -246,7 +246,7 @@ class Composer:
             # the model's own source is cited here, where the rotation is given
             source = None if model.source.text == GIVEN else model.source
             if (rotation.is_quaternion or rotation.is_vector) and not model.passive:
-                because = phrases("equations")["matrix_of_this_rotation"]
+                because = sentence_of("matrix_of_this_rotation")
         elif source == model.source:
             source = None
         if source in self.cited:

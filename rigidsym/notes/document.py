@@ -12,7 +12,7 @@ from functools import cached_property
 from itertools import chain
 from typing import TYPE_CHECKING, NamedTuple
 
-from rigidsym.errors import ModelError
+from rigidsym.errors import AlgebraError, ModelError, TemplateFault
 from rigidsym.formula.display import Equation as Equation
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import sentence
@@ -81,8 +81,11 @@ class Paragraph(NamedTuple):
 
 
 def said(key: str, *spans: Span) -> Paragraph:
-    """A sentence of templates/notes/en/equations.toml."""
-    return Paragraph(sentence(phrases("equations")[key], *spans))
+    """A sentence of templates/notes/en/equations.toml; raises TemplateFault for a faulty one."""
+    try:
+        return Paragraph(sentence(phrases("equations")[key], *spans))
+    except AlgebraError as error:
+        raise TemplateFault(f"en/equations.toml, {key}: {error}") from error
 
 
 class EquationRow(NamedTuple):

@@ -64,6 +64,7 @@ def note(
     that module evaluates, all of them by default. Each equation of an audit names its function.
     Raises ModelError for a style without a template.
     """
+    resources.check_names(f"{template_of(check_style(style))}.md.jinja")
     computed = [step.quantity.name for step in derivation.steps if step.quantity.inputs]
     names = computed if functions is None else functions
     # composing draws figures, for which NumPy is imported; a style is checked without
@@ -77,7 +78,7 @@ def note(
         conversions=conversions,
         is_audit=style == "audit",
     )
-    return Note(composer.document(template_of(check_style(style))))
+    return Note(composer.document(template_of(style)))
 
 
 def template_of(style: str) -> str:

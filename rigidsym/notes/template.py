@@ -4,7 +4,8 @@ A template prints facts by `{{ }}`: formulas, expressions of SymPy, the user's o
 tables and figures. Each leaves a mark in the Markdown, a letter of the private use area, so that
 nothing in it is read as Markdown. Formulas are also typed between dollar signs, as in LaTeX, where
 they may hold facts; `$$` begins and ends a display, and `\qquad` parts equations that may share a
-line. Paragraphs, headings, **strong words**, `code` and tables are those of Markdown.
+line. `\$` is a dollar sign. Paragraphs, headings, **strong words**, `code` and tables are those of
+Markdown.
 """
 
 from __future__ import annotations
@@ -48,7 +49,8 @@ if TYPE_CHECKING:
 _FIRST = 0xE000  # of the private use area, whose letters no font has
 _MARK = "[\ue000-\uf8ff]"
 _INLINE = re.compile(
-    rf"\$(?P<math>[^$]+)\$|\*\*(?P<strong>.+?)\*\*|`(?P<code>[^`]+)`|(?P<mark>{_MARK})"
+    r"\\(?P<dollar>\$)|\$(?P<math>[^$]+)\$|\*\*(?P<strong>.+?)\*\*|`(?P<code>[^`]+)`"
+    rf"|(?P<mark>{_MARK})"
 )
 _MARKUP = re.compile(rf"[$*`|#&\n]|{_MARK}")  # what would be read as Markdown, or as a mark
 _TABLE = "Table:"
@@ -102,9 +104,10 @@ def sections_of(name: str, letters: Letters, **facts: Any) -> Iterator[Section]:
         _MARKS.reset(token)
     section = Section("", ())
     blocks: list[NoteBlock] = []
-    for chunk in re.split(r"\n\s*\n", markdown.strip("\n")):
+    for chunk in map(str.strip, re.split(r"\n\s*\n", markdown)):
         heading, _, rest = chunk.partition("\n") if chunk.startswith("#") else ("", "", chunk)
-        _check_ends(chunk)
+        _check_ends(heading)
+        _check_ends(rest)
         if heading:
             yield section._replace(blocks=tuple(blocks))
             title = text_of(_text(heading.strip("# "), marks.things))
@@ -117,14 +120,18 @@ def sections_of(name: str, letters: Letters, **facts: Any) -> Iterator[Section]:
 def _check_ends(chunk: str) -> None:
     """Raises TemplateFault, with the line, if a formula of a paragraph has no end."""
     is_display = chunk.startswith("$$")
-    count = chunk.count("$")
-    if (chunk.endswith("$$") and count == 4) if is_display else count % 2 == 0:
-        return
-    lines = chunk.strip("$\n").splitlines() if is_display else chunk.splitlines()
-    line = next(line for line in lines if is_display or line.count("$") % 2)
-    raise TemplateFault(
-        f"{_place_of(line)}: expected {'$$' if is_display else '$'} at the end of a formula"
-    )
+
+    def is_whole(typed: str) -> bool:
+        if is_display:
+            return re.fullmatch(r"\$\$[^$]+\$\$", typed) is not None
+        return "$" not in _INLINE.sub("", typed.replace("**", ""))
+
+    if not is_whole(chunk):
+        lines = (line for line in chunk.splitlines() if line.strip("$ ") and not is_whole(line))
+        raise TemplateFault(
+            f"{_place_of(next(lines, chunk))}: "
+            f"expected {'$$' if is_display else '$'} at the end of a formula"
+        )
 
 
 def _place_of(line: str) -> str:
@@ -223,7 +230,14 @@ def _spans(match: re.Match[str], things: list[Any]) -> Iterable[Span]:
         return (_formula(match["math"], things),)
     if match["strong"]:
         return (Strong(text_of(_text(match["strong"], things))),)
-    if match["code"]:
-        return (Code(text_of(_text(match["code"], things))),)
-    thing = things[ord(match["mark"]) - _FIRST]
+    if match["dollar"]:
+        return ("$",)
+    if match["code"]:  # in which only facts are read
+        code = re.sub(_MARK, lambda mark: text_of(_fact(mark[0], things)), match["code"])
+        return (Code(code),)
+    return _fact(match["mark"], things)
+
+
+def _fact(mark: str, things: list[Any]) -> Text:
+    thing = things[ord(mark) - _FIRST]
     return thing if type(thing) is tuple else (thing,)

@@ -7,13 +7,13 @@ from collections.abc import Mapping
 from functools import lru_cache
 from itertools import chain
 
-from rigidsym.formula.reader import formula, sentence
+from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Formula, Symbol, equal, transpose_of
-from rigidsym.mechanics.derivation import Derivation, phrases
+from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.quantities.kinematics import BODY, COSINES, RATES, ROTATION, SPACE
 from rigidsym.mechanics.quantities.mass import DIRECTION, OF_BODY_ALONE, POINT
 from rigidsym.models.rotation import AXES, Citation
-from rigidsym.notes.document import Cited, Equation, Text
+from rigidsym.notes.document import Cited, Equation, Text, said
 from rigidsym.notes.letters import VECTOR, length_of
 
 _DIGITS = 6
@@ -104,5 +104,5 @@ def number(value: float) -> str:
 def announcement(equation: Equation, is_listed: bool) -> Text:
     """What a reader has to be told of the way an equation is set, before it; often nothing."""
     if is_listed:
-        return sentence(phrases("equations")["entries"], equal(*equation.sides))
+        return said("entries", equal(*equation.sides)).text
     return ()

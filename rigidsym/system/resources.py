@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 import sys
 import tomllib
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from difflib import get_close_matches
@@ -39,7 +39,7 @@ NOTES = "templates/notes"  # those that users may replace
 STYLES = ("lecture", "audit")  # of notes, the default first
 # Tables of sentences that users may replace. What others hold is proved or read before.
 _TABLES = ("en/equations.toml", "en/quantities.toml", "en/reasons.toml")
-_ALIKE = 0.8  # share of letters that a misspelt name has in common with the right one
+_ALIKE = 0.9  # share of characters that a misspelt name has in common with the right one
 _HOMES = (_PACKAGE / "_data", _PACKAGE.parent)
 
 
@@ -78,8 +78,7 @@ def replaceable() -> tuple[str, ...]:
 def overridden_by(own: Path) -> Iterator[None]:
     """Inside, the templates in a folder of the user replace those of the same name.
 
-    Raises TemplateFault if the folder holds none of these, and no style, LANGUAGE/NAME.md.jinja,
-    and for a file that would be ignored.
+    Raises TemplateFault if the folder holds none of these, and no style, LANGUAGE/NAME.md.jinja.
     """
     shipped = replaceable()
     if not any((own / name).is_file() for name in shipped) and not any(own.glob("*/*.md.jinja")):
@@ -87,7 +86,6 @@ def overridden_by(own: Path) -> Iterator[None]:
             f"{own} contains no template of notes: expected a style, such as en/handout.md.jinja, "
             f"or one of {', '.join(shipped)}; `rigidsym templates {own}` copies these there"
         )
-    _check_names(own, shipped)
     token = _OWN.set(own)
     try:
         yield
@@ -95,29 +93,38 @@ def overridden_by(own: Path) -> Iterator[None]:
         _OWN.reset(token)
 
 
-def _check_names(own: Path, shipped: Sequence[str]) -> None:
-    """Raises TemplateFault for a file that would be ignored: no style, and none refers to it.
+def check_names(style: str) -> None:
+    """Raises TemplateFault for a file of the user's that is no template of a note in this style.
 
-    A style has any name but that of a part of the note, and none that looks misspelt.
+    That is one nearly with the name of a shipped file, to which no template refers. Folders of
+    other languages than English hold styles of any name.
     """
-    stems = [Path(name).name.removesuffix(".md.jinja") for name in shipped]
-    languages = {file.parent for file in own.glob("*/*.md.jinja")}
-    files = [*own.glob("*.jinja"), *(file for folder in languages for file in folder.rglob("*.*"))]
-    texts = {
-        file.relative_to(own).as_posix(): file.read_text(encoding="utf-8", errors="replace")
-        for file in files
-        if file.suffix in (".jinja", ".toml")
-    }
-    for name in texts.keys() - {*shipped}:
-        style = re.fullmatch(r"[^/]+/([^/]+)\.md\.jinja", name)
-        near = style and (get_close_matches(style[1], stems, n=1, cutoff=_ALIKE) or [""])[0]
-        # lecture_2 is a style of its own; lectrue, and fr/singular to which nothing refers, are not
-        is_style = style and (style[1] in STYLES or (near != style[1] and near in style[1]))
-        if not is_style and not any(name in text for n, text in texts.items() if n != name):
+    texts = _texts_of(own) if (own := _OWN.get()) else {}
+    shipped = [file.name for file in folder(NOTES).rglob("*.*")]
+    for name in texts.keys() - {*replaceable(), style}:
+        file = Path(name).name
+        near = get_close_matches(file, shipped, n=1, cutoff=_ALIKE)
+        # lecture_2 is a style of its own, and lectrue is not
+        is_style = not near or (file != near[0] and near[0].partition(".")[0] in file)
+        is_english = name.startswith("en/") or "/" not in name
+        if is_english and not is_style and not any(name in text for text in texts.values()):
             raise TemplateFault(
-                f"{own / name} would be ignored: it is no style, and no template refers to it; "
-                f"{offer(name, shipped)}"
+                f"{own}/{name} would be ignored, since no template refers to it; "
+                f"{offer(name, replaceable())}"
             )
+
+
+def _texts_of(home: Path) -> dict[str, str]:
+    """The templates of a folder, and the tables in the folders of its languages, by their names.
+
+    Names that begin with a dot are those of backups and locks of editors.
+    """
+    files = sorted((*home.glob("[!.]*.jinja"), *home.glob("[!.]*/**/[!.]*.*")))
+    return {
+        file.relative_to(home).as_posix(): file.read_text(encoding="utf-8", errors="replace")
+        for file in files
+        if file.suffix in (".jinja", ".toml") and file.is_file()
+    }
 
 
 def sentences(name: str) -> Mapping[str, Any]:
@@ -132,6 +139,8 @@ def sentences(name: str) -> Mapping[str, Any]:
             raise TemplateFault(f"{file}: no sentence has the key {key}; {offer(key, shipped)}")
         if type(sentence) is not type(shipped[key]):
             raise TemplateFault(f"{file}, {key}: expected a text in quotes")
+        if name == "en/reasons.toml" and re.search("[$`]", sentence):
+            raise TemplateFault(f"{file}, {key}: expected plain words and symbols such as Ω′")
     return {**shipped, **own}
 
 
@@ -146,10 +155,10 @@ def _sentences(text: str, file: str) -> Mapping[str, Any]:
 def place_of(words: str) -> str:
     """The file and line among the user's own templates where words stand, or their folder."""
     own = _OWN.get() or folder(NOTES)
-    for file in sorted(own.rglob("*.jinja")):
-        for number, line in enumerate(file.read_text(encoding="utf-8").splitlines(), start=1):
+    for name, text in _texts_of(own).items():
+        for number, line in enumerate(text.splitlines(), start=1):
             if words in line:
-                return f"{file}, line {number}"
+                return f"{own / name}, line {number}"
     return str(own)
 
 

@@ -10,6 +10,7 @@ from click.testing import CliRunner
 from helpers.motions import derived
 from rigidsym.commands.cli import commands
 from rigidsym.errors import LimitReached, TemplateFault
+from rigidsym.notes.document import said
 from rigidsym.system import resources
 from rigidsym.system.processes import time_limit
 
@@ -32,17 +33,30 @@ def test_a_fault_is_named_with_its_template_and_line(answered, tmp_path: Path):
 
 
 def test_a_file_that_would_be_ignored_or_misread_is_refused(tmp_path: Path):
-    own(tmp_path, "en/lecture_2.md.jinja", "# A style of its own")
+    own(tmp_path, "en/lectur.md.jinja", "# Named by --style")
+    for name in ("en/lecture_2.md.jinja", "es/lectura.md.jinja", "en/.#body.md.jinja", "a.jinja/b"):
+        own(tmp_path, name, "# A style of its own, or no template")
+
+    def read(name: str) -> None:
+        derived("ZXZ").note(style="lectur")
+        resources.sentences(name)
+        said("left_out")
+
     for name, text, fault in (
-        ("lecture.md.jinja", "in no language", "would be ignored: .* did you mean en/lecture"),
-        ("en/singlar.md.jinja", "", r"did you mean en/singular\.md"),
+        ("lecture.md.jinja", "in no language", "would be ignored, .* did you mean en/lecture"),
+        ("en/singlar.md.jinja", "", r"no template refers to it; did you mean en/singular\.md"),
+        ("en/lecture.toml", "", "would be ignored"),
         ("en/reasons.toml", "chain_rul = 'It'", "the key chain_rul; did you mean chain_rule"),
         ("en/reasons.toml", "chain_rule = 1", "chain_rule: expected a text"),
+        ("en/reasons.toml", "chain_rule = 'Of $x$'", "reasons.toml, chain_rule: expected plain"),
+        ("en/equations.toml", "left_out = 'Costs $x'", "equations.toml, left_out: .* pairs of"),
+        ("en/equations.toml", "left_out = '{}'", "equations.toml, left_out: .*'{}'"),
+        ("en/equations.toml", "left_out = '$\\foo$'", r"equations.toml, left_out: .*'\\foo'"),
         ("en/quantities.toml", "mass", "not TOML"),
     ):
         own(tmp_path, name, text)
         with pytest.raises(TemplateFault, match=fault), resources.overridden_by(tmp_path):
-            resources.sentences(name)
+            read(name)
         (tmp_path / name).unlink()
 
 
@@ -104,6 +118,8 @@ Voici la matrice de rotation :
 Dans le repère du corps, elle vaut
 
 {{ equation("angular_velocity_body") }}
+
+et $\\boldsymbol{\\Omega} = \\mathbf{R}\\,\\boldsymbol{\\Omega}'$.
 """
 
 
