@@ -991,7 +991,10 @@ class _Run:
         is_letter = name in [*"cstCST"] and len(nodes) == 1
         in_formula = self.program.is_formula and (name in OF_MATRICES or is_letter)
         if (name in OF_NUMBERS or in_formula) and nodes:
-            return called(name, [self.read(each) for each in nodes])
+            values = [self.read(each) for each in nodes]
+            # SymPy takes a long argument apart, which costs as much as several expressions.
+            self.program.steps["read"] += sum(map(_size, values)) // 5
+            return called(name, values)
         is_listed = bool(nodes) and (len(nodes) == 1 or nodes[0].kind in ("list", "matrix"))
         match meaning:
             case "pair" if len(nodes) == 1:
