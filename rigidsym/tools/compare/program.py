@@ -421,9 +421,8 @@ class _Run:
             is_unit = ratio.is_number and ratio.is_finite
             if is_unit and any(abs(ratio / unit - 1) < 1e-3 for unit in units):
                 return own
-            if _is_length(1 / ratio) and own.free_symbols <= ratio.free_symbols:
-                return own
-            if ratio.free_symbols and ratio.free_symbols <= {self.squares.get(own)}:
+            is_divided = _is_length(1 / ratio) and own.free_symbols <= ratio.free_symbols
+            if is_divided or ratio.free_symbols == {self.squares.get(own)}:
                 return own
         if isinstance(path[-1], int):
             return value

@@ -208,8 +208,7 @@ class Tree:
     @property
     def owner(self) -> Tree | None:
         """The object whose method is called, or the module of the function."""
-        function = self.parts[0]
-        return function.parts[0] if function.kind == "member" and function.parts else None
+        return next(iter(self.parts[0].parts), None) if self.parts[0].kind == "member" else None
 
     @property
     def base(self) -> str:
