@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import reprlib
 from dataclasses import replace
 from typing import Any
 
@@ -13,7 +14,7 @@ from rigidsym.data.tables import check_ending, write_table
 from rigidsym.errors import DerivationError, ModelError
 from rigidsym.models.forces import Example
 from rigidsym.motion import Motion
-from rigidsym.pipeline import motion_of, read, read_file
+from rigidsym.pipeline import motion_of, read
 from rigidsym.simulation.problem import needed
 from rigidsym.simulation.solver import METHODS
 from rigidsym.system.files import write_text
@@ -60,14 +61,11 @@ def command(source: str, **options: Any) -> None:
 
 def _motion(source: str, *, is_page: bool) -> Motion:
     """The rotation with the quantities that a simulation needs, or with all for a page."""
-    try:
-        spec = read(source)
-    except ModelError:
-        spec = read_file(source)  # no rotation would do: the message offers derivation files
+    spec = read(source)
     if spec.dynamics is None:
         raise ModelError(
-            f"{source} has no equations of motion; expected a derivation file with [body] and "
-            "[dynamics], or a shipped one such as heavy_symmetric_top (`rigidsym list`)"
+            f"{reprlib.repr(source)} has no equations of motion; expected a derivation file with "
+            "[body] and [dynamics], or a shipped one such as heavy_symmetric_top (`rigidsym list`)"
         )
     if len(spec.models) == 1 and not is_page:
         spec = replace(spec, quantities=needed(spec.dynamics.get("parts")))

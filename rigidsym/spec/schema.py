@@ -65,7 +65,7 @@ _FORMATS: Mapping[str, Callable[[str], Any]] = {  # that raise an error for othe
     "style": check_style,
     "derivative": _check_derivative,
 }
-_ANYWHERE = dict.fromkeys(sp.symbols("x:z"), (-sp.S.One, sp.S.One))  # coordinates in a density
+_ANYWHERE = dict.fromkeys(sp.symbols("x:z"), (-sp.oo, sp.oo))  # coordinates in a density
 _LARGEST = 1e300  # sums and products of numbers in a file stay finite
 
 
