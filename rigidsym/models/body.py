@@ -137,8 +137,8 @@ KEYS: Mapping[type, str] = {  # of a [body] table, and of its parts
 
 _MODULE_NAME = re.compile(r"[a-z][a-z0-9_]*")
 SOURCE = SOURCES["Landau 32"]
-TITLES = WORDS["bodies"]
-PRODUCT, COORDINATE = TITLES["product_of_inertia"], TITLES["coordinate_of_centre"]
+PHRASES = WORDS["bodies"]
+PRODUCT, COORDINATE = PHRASES["product_of_inertia"], PHRASES["coordinate_of_centre"]
 _ROUNDING = 1e-12  # of the sum of the moments: what arithmetic in double precision leaves
 
 
@@ -241,8 +241,8 @@ class RigidBody:
     def sentences(self, *, about_fixed_point: bool) -> tuple[str, ...]:
         """The body in plain sentences, to follow the convention of its rotation."""
         if about_fixed_point:
-            return (TITLES["with_fixed_point"].format(title=self.title),)
-        return TITLES["free"].format(title=self.title, mass=self.mass), TITLES["centre"]
+            return (PHRASES["with_fixed_point"].format(title=self.title),)
+        return PHRASES["free"].format(title=self.title, mass=self.mass), PHRASES["centre"]
 
     @property
     def values(self) -> dict[sp.Symbol, sp.Float]:
@@ -325,7 +325,7 @@ def principal_moments(
         name=name,
         parameters=parameters,
         allow=allow,
-        title=TITLES[("spherical", "symmetric", "in_principal_axes")[len(set(moments)) - 1]],
+        title=PHRASES[("spherical", "symmetric", "in_principal_axes")[len(set(moments)) - 1]],
         moment="principal moment of inertia",
     )
 
@@ -344,7 +344,7 @@ def given_inertia(
     name: str = "body",
     parameters: Sequence[Parameter] = (),
     allow: bool = False,
-    title: str = TITLES["by_tensor"],
+    title: str = PHRASES["by_tensor"],
     moment: str = "moment of inertia",
 ) -> RigidBody:
     """A body by its inertia tensor about the centre of mass, (3, 3), in kg m². Raises BodyError.
@@ -385,7 +385,8 @@ def described(
 ) -> tuple[Parameter, ...]:
     """The parameters of all expressions, in the order of their places.
 
-    What is `given` goes before; a symbol that stands alone in its place is described by it.
+    `declarations` take precedence; otherwise, a symbol that is a whole expression is described by
+    the words beside it.
     """
     declared = {parameter.symbol: parameter for parameter in declarations}
     parameters: dict[sp.Symbol, Parameter] = {}

@@ -15,7 +15,7 @@ from rigidsym.errors import BodyError
 from rigidsym.mechanics.mass.moments import about_centre, moments_of
 from rigidsym.models.body import (
     KEYS,
-    TITLES,
+    PHRASES,
     BodyDescription,
     Composite,
     Distribution,
@@ -37,7 +37,7 @@ _LONGEST = 10**6  # a larger denominator is a measured number's
 _TITLES = {
     "Particles": "System of particles",
     "Composite": "Composite body",
-    "Known": TITLES["by_tensor"],
+    "Known": PHRASES["by_tensor"],
 }
 
 

@@ -108,9 +108,9 @@ def lengths_of(
     # orders are tried, the first ones with the preferred proportions.
     for chosen in islice(permutations(lengths), _MOST_TRIES):
         pairs = {**numbers, **dict(zip(missing, chosen, strict=True))}
-        numbers = {symbol: sp.Float(value) for symbol, value in pairs.items()}
-        if all(_is_proper(solid, numbers) for solid in solids):
-            return numbers
+        trial = {symbol: sp.Float(value) for symbol, value in pairs.items()}
+        if all(_is_proper(solid, trial) for solid in solids):
+            return trial
     return None
 
 
