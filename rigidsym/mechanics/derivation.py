@@ -369,6 +369,15 @@ class Derivation:
             values[definition.symbol] = definition.expression.xreplace(values)
         return matrix.xreplace(values) if values else matrix
 
+    def parts_of(self, expression: sp.Basic, known: Set[sp.Basic]) -> list[Definition]:
+        """The definitions that an expression rests on, in their order, without known names."""
+        needed = expression.free_symbols - known
+        # A definition rests only on earlier ones, so one pass from the last to the first finds all.
+        for symbol, value in reversed(self.definitions):
+            if symbol in needed:
+                needed |= value.free_symbols - known
+        return [part for part in self.definitions if part.symbol in needed]
+
     @property
     def subject(self) -> str:
         """What the derivation is about, in words."""

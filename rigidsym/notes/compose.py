@@ -37,12 +37,12 @@ from rigidsym.notes.document import (
     Text,
     said,
 )
-from rigidsym.notes.equations import claims_of, equation_of, sums
+from rigidsym.notes.equations import claims_of, equation_of, in_parts, sums
 from rigidsym.notes.facts.rotation import RotationFacts, facts_of_rotation, product_of
 from rigidsym.notes.facts.singular import singular_facts
-from rigidsym.notes.fitting import as_vectors, fitted
+from rigidsym.notes.fitting import as_vectors, fitted, without_entries
 from rigidsym.notes.letters import letters_of, meanings_of
-from rigidsym.notes.named_body import OFFSET, in_names, textbook_form
+from rigidsym.notes.named_body import OFFSET, Parts, in_names, textbook_form
 from rigidsym.notes.template import blocks_of, sections_of
 from rigidsym.notes.words import (
     is_body_alone,
@@ -63,6 +63,7 @@ _SECTIONS = (
 # K(R), (4, 4), in the entries of R; each column is a multiple of the quaternion
 _COLUMNS = outer_product(sp.Matrix(3, 3, lambda i, j: sp.Symbol(f"R_{i + 1}{j + 1}")))
 _DIAGONAL = formula("(I'_{11}, I'_{22}, I'_{33})")
+_MOST_PARTS = 40  # definitions, a page of them; a result that needs more is only defined
 _WHERE_SHOWN = {  # what has no equation of its own in the lecture, and the one that it belongs to
     "rotation_rate": "velocity_by_the_rotation",
     "spin_matrix": "velocity_by_the_rotation",
@@ -105,6 +106,7 @@ class Composer:
         self.symbols = symbols_of(derivation)
         self.is_audit = is_audit
         self.cited: set[Citation] = set()
+        self._defined: set[sp.Basic] = set()  # names of intermediate quantities, once printed
 
     def document(self, name: str) -> Document:
         """The note, as a template orders its sections."""
@@ -162,6 +164,9 @@ class Composer:
             "cross_matrix": hat(sp.Matrix(sp.symbols("u_1:4"))),
             "columns": [_COLUMNS[:, k] for k in range(4)],
             "moments": self._moments,
+            "abbreviations": lambda value: self._abbreviations(
+                derivation.parts_of(value, self._defined)
+            ),
             "has_offset": any(step.expression.has(*OFFSET) for step in derivation.steps),
             "proofs": proofs,
             "are_proved": are_proved,
@@ -185,12 +190,26 @@ class Composer:
             near = offer(section, _SECTIONS)
             raise TemplateRuntimeError(f"no section {section!r} of equations; {near}")
         blocks: list[NoteBlock] = []
-        for step in self.derivation.steps:
+        derivation = self.derivation
+        for step in derivation.steps:
             if step.quantity.section == section:
                 blocks.append(Paragraph(self._lead(step)))
-                arguments = self._displayed[step.quantity.name], step, self.derivation, self.letters
-                blocks += fitted(*arguments, is_audit=self.is_audit)
+                equation = self._displayed[step.quantity.name]
+                # A recursion over the turns is printed in place of names.
+                value = sp.S.Zero if step.recursion else step.expression
+                parts = derivation.parts_of(value, self._defined)
+                count = len(self._defined) + len(parts)
+                if parts and count > _MOST_PARTS and equation.sides[1:]:
+                    blocks += (without_entries(equation), said("left_out"))
+                    continue
+                blocks += self._abbreviations(parts)
+                blocks += fitted(equation, step, derivation, self.letters, is_audit=self.is_audit)
         return blocks
+
+    def _abbreviations(self, parts: Parts) -> list[NoteBlock]:
+        """The definitions, which are printed once."""
+        self._defined |= {name for name, _ in parts}
+        return [said("abbreviations"), in_parts(parts, self.letters)] if parts else []
 
     def equation(self, name: str) -> Equation:
         """The numbered equation of a quantity, without the words that lead to it.
@@ -262,14 +281,7 @@ class Composer:
 
     def _moments(self) -> list[NoteBlock]:
         """The moments behind the names I₁, I₂, I₃."""
-        if not self.moments:
-            return []
-        names, values = zip(*self.moments, strict=True)
-        entries = tuple(formula_of(name, self.letters) for name in names)
-        return [
-            said("here"),
-            Equation(sides=(), matrix=sp.ImmutableMatrix(values), entries=entries),
-        ]
+        return [said("here"), in_parts(self.moments, self.letters)] if self.moments else []
 
     # The lecture
 

@@ -49,6 +49,13 @@ def equation_of(step: Step, arguments: Iterable[Argument]) -> Equation:
     )
 
 
+def in_parts(parts: Iterable[tuple[sp.Expr, sp.Expr]], letters: Letters) -> Equation:
+    """Names with what they stand for, without a side in common."""
+    names, values = zip(*parts, strict=True)
+    entries = tuple(formula_of(name, letters) for name in names)
+    return Equation(sides=(), matrix=sp.ImmutableMatrix(values), entries=entries)
+
+
 def sums(statement: Statement, letters: Letters) -> Matrix | None:
     """The matrix of sums Σ mᵢ (b² + c²); None where the statement has no summands."""
     if statement.summands is None:

@@ -60,7 +60,7 @@ def fitted(
     if side is None and not equation.sides[1:]:  # nothing else says what it is
         yield equation
         return
-    short = _without_entries(equation, () if side is None else (side,))
+    short = without_entries(equation, () if side is None else (side,))
     # Quantities of a rotation by a vector are said best by vectors. In a lecture, nine long entries
     # of dR/dt say less than the chain rule.
     is_of_body = name in {*INERTIA_QUANTITIES, *ENERGY_QUANTITIES}
@@ -90,10 +90,10 @@ def as_vectors(equation: Equation, step: Step, letters: Letters) -> Equation:
     sides = (*equation.sides, sum_of_vectors(step.vector_form, letters))
     whole = replace(equation, sides=sides)
     fits = not (step.quantity.name.startswith("rates_") or display(whole, letters, PAGE).is_listed)
-    return whole if fits else _without_entries(equation, sides[-1:])
+    return whole if fits else without_entries(equation, sides[-1:])
 
 
-def _without_entries(equation: Equation, sides: Sequence[Formula]) -> Equation:
+def without_entries(equation: Equation, sides: Sequence[Formula] = ()) -> Equation:
     """Ended by these sides in place of its entries; where nothing is left, it is a definition."""
     return replace(
         equation,

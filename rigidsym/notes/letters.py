@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 from functools import lru_cache
-from itertools import chain
+from itertools import chain, count
 
 import sympy as sp
 
@@ -53,6 +53,9 @@ def _letters(
     places = {length.rate: (_GIVEN_RATE, -1)} if length else {}
     for argument in arguments:
         names.update(zip(argument.symbols, argument.notation, strict=True))
+        if argument.name == "q_ddot":  # solved for under the names ddq1, ddq2, ...
+            solved = (sp.Symbol(f"ddq{k}") for k in count(1))
+            names.update(zip(solved, argument.notation, strict=False))
         order, first = _ORDERS.get(argument.name, _GIVEN_RATE), _BEFORE.get(argument.name, 0)
         if argument.name != _CONSTANT:
             own = {s: (order, first + k) for k, s in enumerate(argument.symbols)}

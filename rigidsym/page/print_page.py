@@ -170,5 +170,6 @@ def _value(step: Step, *, in_degrees: bool) -> dict[str, Any]:
         "about": quantity.about,
         "unit": unit,
         "shape": step.expression.shape,
+        "is_scalar": quantity.shape == "scalar",
         "factor": _DEGREE if is_turned else 1,
     }

@@ -13,7 +13,7 @@ from rigidsym.mechanics.quantities.mass import OF_BODY_ALONE
 from rigidsym.mechanics.quantities.table import POINT
 from rigidsym.models.rotation import TIME
 from rigidsym.motion import Motion
-from rigidsym.notes.document import Figure
+from rigidsym.notes.document import Equation, Figure
 from rigidsym.notes.figure.body_drawing import body_drawing
 from rigidsym.notes.figure.body_mesh import HOLE
 from rigidsym.notes.figure.drawing import Facet
@@ -129,6 +129,23 @@ def test_what_is_shown_in_names_has_the_value_that_was_derived():
             rest = rest.xreplace({symbol: numbers[symbol]})
         assert max(map(abs, rest)) < 1e-12
     assert replaced > 8
+
+
+def test_names_of_parts_are_defined_before_the_first_result_that_holds_them():
+    moments, part = sp.symbols("A B C"), {"rotation": "x(a)", "principal_moments": "DEF"}
+    only = ["mass_matrix", "accelerations", "first_integrals"]
+    motion = rs.derive("x(a) z(b)", only, body=rs.principal_moments(*moments), parts=[part])
+    defined, needed = set(), {definition.symbol for definition in motion.definitions}
+    document = motion.note().document
+    for section in document.sections:
+        for block in section.blocks:
+            if isinstance(block, Equation) and block.matrix:
+                defined |= {entry.text for entry in block.entries}
+                parts = block.matrix.free_symbols & needed
+                assert {document.letters.name(part).text for part in parts} <= defined
+    text = show(motion)
+    assert len(defined) > 9
+    assert all(f"\n  {name} = " in text for name in defined)
 
 
 def test_a_body_alone_has_a_note_and_a_text_without_a_rotation():

@@ -8,6 +8,8 @@ from dataclasses import replace
 from itertools import product
 from typing import TYPE_CHECKING, Any, Literal
 
+import sympy as sp
+
 from rigidsym.formula.display import display
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.notation import DEFAULT, Notation
@@ -15,10 +17,10 @@ from rigidsym.formula.pen import break_lines
 from rigidsym.formula.scalars import formula_of, listed_entries, matrix_of
 from rigidsym.formula.tree import Formula, equal
 from rigidsym.formula.unicode_pen import UnicodePen, columns
-from rigidsym.mechanics.derivation import Argument, Derivation, Step
+from rigidsym.mechanics.derivation import Argument, Derivation, Step, phrases
 from rigidsym.mechanics.quantities.kinematics import BODY, ROTATION, SPACE
 from rigidsym.notes.document import Equation, Paragraph
-from rigidsym.notes.equations import equation_of, sum_of_vectors
+from rigidsym.notes.equations import equation_of, in_parts, sum_of_vectors
 from rigidsym.notes.facts.rotation import facts_of_rotation, product_of
 from rigidsym.notes.facts.singular import singular_facts
 from rigidsym.notes.fitting import as_vectors
@@ -79,6 +81,7 @@ class _Screen:
         self.style = style
         self.pen = UnicodePen(letters.notation)
         self.lines: list[str] = []
+        self.defined: set[sp.Basic] = set()
 
     @property
     def whole(self) -> str:
@@ -172,6 +175,13 @@ class _Screen:
         if step.vector_form is not None:  # Ω = v̇ + ...
             self.sentence([equal(quantity.symbol, sum_of_vectors(step.vector_form, self.letters))])
 
+    def abbreviations(self, expression: sp.Basic, derivation: Derivation) -> None:
+        """The definitions that an expression rests on, which are printed once."""
+        if parts := derivation.parts_of(expression, self.defined):
+            self.sentence(phrases("equations")["here"])
+            self.equation(in_parts(parts, self.letters))
+            self.defined |= {part.symbol for part in parts}
+
     def derivation(self, derivation: Derivation, conversions: Conversions | None) -> None:
         model, steps, letters = derivation.model, derivation.steps, self.letters
         facts = facts_of_rotation(derivation, letters)
@@ -186,10 +196,13 @@ class _Screen:
         for step in steps:
             self.line()
             self.step(step, derivation.arguments)
+            if not step.recursion:
+                self.abbreviations(step.expression, derivation)
         if integrals := derivation.first_integrals:
             self.section("Constant along every motion (first integrals)")
             for integral in integrals:
                 self.equation(Equation(sides=(integral.symbol,), scalar=integral.expression))
+                self.abbreviations(integral.expression, derivation)
 
         singular = singular_facts(derivation)
         if singular is not None:
