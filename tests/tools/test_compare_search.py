@@ -106,8 +106,15 @@ def test_products_of_numpy_arrays_are_those_of_their_entries(tmp_path):
     b = "np.array([[1, 0, 0], [0, cos(b), -sin(b)], [0, sin(b), cos(b)]])"
     assert rs.compare(f"{a} @ {b}").is_equal
     assert rs.compare(f"{a} * {b}").found is None
-    for line, count in (("import numpy as np", 2), ("from sympy import *", 3)):
-        text = f"{line}\ndef f(a, b):\n    A = {a}\n    B = {b}\n    return A * B\n"
+    for line, product, count in (
+        ("import numpy as np", "A * B", 2),
+        ("import torch  # sympy", "A * B", 2),
+        ("import torch", "torch.mul(A, B)", 2),
+        ("import numpy as np", "np.inner(A, B)", 2),
+        ("from sympy import *", "A * B", 3),
+        ("from sympy import *\nimport numpy as np", "A * B", 2),
+    ):
+        text = f"{line}\ndef matrix(a, b):\n    A = {a}\n    B = {b}\n    return {product}\n"
         assert len(found_in(tmp_path, "a.py", text)) == count
 
 
@@ -234,6 +241,12 @@ CHANGED = {  # statements of a function of phi and psi: what its matrix is
     f"{SINES}; return np.array([c, -s, 0, s, c, 0, 0, 0, 1]).reshape((3, 3), order='F')": "",
     f"phi = psi % 1.4; {SINES}; return {TURN}": "; not read: phi in line 3",
     f"q = psi % 1.4; {SINES.replace('phi', 'q')}; return {TURN}": "; not read: q in line 3",
+    f"phi %= 2*np.pi; {SINES}; return {TURN}": "; not read: phi in line 3",
+    f"{SINES}; return np.array([c, -s, 0, s, c, 0, 0, 0, 1]).reshape(3, 3).T": "transposed",
+    f"{SINES}; M = {TURN}; M[[0, 1]] = M[[1, 0]]; return M": "equal to",  # before it is changed
+    f"{SINES}; M = {TURN.replace('-s', 's')}; M[0, -2] *= -1; return M": "",
+    f"{SINES}; M = {TURN.replace('-s', 's')}; M = M*signs; return M": "",
+    f"{SINES}; M = {TURN.replace('-s', 's')}; N = M.T; N[1, 0] = -s; return M": "transposed",
     f"turn = lambda phi: {TURN.replace('c', 'np.cos(phi)').replace('s,', 'np.sin(phi),')}; "
     f"{SINES}; return {TURN}": "equal to",
 }  # fmt: skip
@@ -247,6 +260,39 @@ def test_all_that_happens_to_a_name_before_its_use_is_followed(tmp_path, text, s
     whole = [each for each in said_of_all if "of z(" in each]
     assert bool(whole) == bool(said), whole
     assert all(said in each for each in whole)
+
+
+ROWS = "c, -s, 0, s, c, 0, 0, 0, 1"
+INNER = (
+    f"let c = Math.cos(a), s = Math.sin(a); # return [[{ROWS[:8]}], [{ROWS[10:17]}], [0, 0, 1]];"
+)
+OF_C = f"double c = cos(a), s = sin(a); # double R[9] = {{{ROWS}}};"
+ALIASES = {  # a file, a statement in place of # in its function: what is said of its matrix
+    ("a.js", INNER, "{ let s = c; }"): "equal to",
+    ("b.js", INNER, "{ var s = c; }"): "close to",
+    ("c.js", INNER, "s |= 0;"): None,
+    ("a.cpp", OF_C, "{ double s = c, *c; }"): "equal to",
+    ("b.cpp", OF_C, "double& t = s; t = -t;"): None,
+    ("c.cpp", OF_C, "double* t = &s; *t = -s;"): None,
+    ("d.cpp", OF_C, "s = sin((int)a);"): None,
+    ("e.cpp", OF_C, "int k = a/2; s = sin(k);"): None,
+    ("f.cpp", f"M R; double c = cos(a), s = sin(a); R << {ROWS}; #", "M S = R.transpose();"): "z(",
+    ("g.cpp", f"M R; double c = cos(a), s = sin(a); R << {ROWS.replace('-', '')}; #", "M& r = R; "
+    "r(0, 1) = -s;"): "equal to",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", ALIASES, ids=lambda case: case[0])
+def test_names_end_with_their_block_and_objects_may_have_two(tmp_path, case):
+    name, body, statement = case
+    text = body.replace("#", statement)
+    function = (
+        f"function f(a) {{ {text} }}" if name.endswith("js") else f"void f(double a) {{ {text} }}"
+    )
+    said = [str(each) for each in found_in(tmp_path, name, function)]
+    assert bool(said) == bool(ALIASES[case]), said
+    assert all(ALIASES[case] in each for each in said)
+    assert ("transposed" in "".join(said[1:])) == ("transpose" in statement)
 
 
 def test_an_inner_function_may_change_a_name_at_any_time(tmp_path):
@@ -452,6 +498,10 @@ def test_what_cannot_be_read_is_listed_with_its_reason(tmp_path):
     ("line", "is_wrong"),
     [
         ("rpy += dt*omega", True),
+        ("angles += dt*omega", False),
+        ("triangles_rpys += dt*omega", False),
+        ("rpy += omega", False),
+        ("roll += p; pitch += q; yaw += r", False),
         ("roll += p*dt; pitch += q*dt; yaw += r*dt", True),
         ("roll += (p + sin(roll)*tan(pitch)*q)*dt; pitch += q*dt; yaw += r*dt", False),
         ("x += p*dt; y += q*dt; z += r*dt", False),

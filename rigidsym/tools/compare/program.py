@@ -38,12 +38,22 @@ from rigidsym.tools.compare.language import (
 )
 from rigidsym.tools.compare.latex import python_of
 from rigidsym.tools.compare.quantities import stem_of
-from rigidsym.tools.compare.syntax import CALLS, ORDERS, Tree, parameters, parsed, tree_of, walk
+from rigidsym.tools.compare.syntax import (
+    CALLS,
+    INTEGER,
+    ORDERS,
+    Tree,
+    declared,
+    parameters,
+    parsed,
+    tree_of,
+    walk,
+)
 
 if TYPE_CHECKING:
     from tree_sitter import Node
 
-_SHARING = (".py", ".js", ".mjs", ".jsx", ".ts", ".java", ".cs")  # b = a is the same matrix
+_SHARING = (".py", ".js", ".mjs", ".jsx", ".ts", ".java")  # b = a is the same matrix
 _WITH_SWIZZLES = (".cs", ".cu", ".cuh")  # whose v * w is entry by entry
 _DEEPEST = 60  # nested nodes of an expression; formulas of real programs have fewer than 30
 _DEEPEST_BLOCK = 40
@@ -61,15 +71,23 @@ _MOST_RUNS = 24  # of a function, with other branches
 _INLINED = 3  # calls of functions of the same file inside one another
 
 _NUMBERS = re.compile(r"(-?)((?:\d[\d_]*\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)_?[fFlLuUdDmM]*(?:32|64)?")
-_NUMPY = re.compile(r"^\s*(?:import|from) (?:numpy|jax)\b", re.MULTILINE)
-_MATRICES = re.compile(r"\bsympy\b|\bcasadi\b|\b(?:np|numpy)\.mat\(|[mM]atrix\(")  # whose * is @
+_NUMPY = re.compile(
+    r"^[ \t]*(?:import|from) (?:numpy|jax|torch|tensorflow|casadi|cupy)\b", re.MULTILINE
+)
+_MATRICES = re.compile(  # whose * is @
+    r"^[ \t]*(?:import|from) sympy\b|(?<!def )\b[mM]atrix\(|\b(?:np|numpy)\.mat\(", re.MULTILINE
+)
 _BUILT = re.compile(  # of 3, 4, 9 or 16 numbers
     r"mat|rot|dcm|basis|tensor|^set|new|tf|\dx\d|vec|quat|array|xyz|float[34]$", re.IGNORECASE
 )
 _MAY_BE_MATRIX = re.compile(r"[\[{].*,|(?i:sin|cos|mat|quat|dcm)", re.DOTALL)
 _BY_COLUMNS = re.compile(r"from_?col|^f?mat3x?3?$|float[34]x[34]|column_stack|hstack|^c_$", re.I)
-ANGLES_NAME = re.compile(r"rpy|ypr|euler|attitude|angles|Δ_*(roll|phi)", re.IGNORECASE)
-_RATES_NAME = re.compile(r"omega|w|gyro|(body_?|angular_?)?rates?|ang(ular)?_?vel(ocity)?", re.I)
+ANGLES_NAME = re.compile(  # of changes of three Euler angles
+    r"Δ_*(?:(?:\w+_)?(?:rpy|ypr|euler)(?:_?angles?)?|(?:roll|phi)(?:_?(?:angle|rad))?(?:, .*)?)",
+    re.IGNORECASE,
+)
+STEP = re.compile(r"(?:delta_?|sample_?|half_?)?(?:d_?)?(?:[tT]s?|time|period)|h", re.IGNORECASE)
+_RATES_NAME = re.compile(r"omega|w|gyro|body_?rates?|ang(ular)?_?vel(ocity)?", re.IGNORECASE)
 _HARMLESS = re.compile("print|disp|log|assert|plot|show|append|push|test|check|expect", re.I)
 _MODULE = re.compile(
     r"(?:np|numpy|jnp|torch|tf|math|mx|cs|ca|F|std|self|this)\b|_?[A-Z]+[a-z]|[A-Z]{2,}|f\d\d"
@@ -84,6 +102,7 @@ _FLAT = {9: (3, 3), 12: (4, 3), 16: (4, 4)}
 _OF_VECTORS = ("T", "C", "inv", "dot", "cross", "outer", "norm")
 _SCALARS, _VECTORS = {*"wWs"}, {"xyz", "Xyz", "v", "vec", "bv"}  # parts of a quaternion
 _OF_OBJECTS = (*_OF_VECTORS, "same", "clamp", "least", "pair")
+_VIEWS = ("T", "transpose", "reshape", "view", "ravel", "squeeze", "asarray")  # of one matrix
 _RETURNED, _ARGUMENT = _UNNAMED = ("returned", "argument")  # in place of a name
 _ALL = slice(None)
 
@@ -126,6 +145,7 @@ class Formula:
     forms: tuple[sp.ImmutableMatrix, ...] = ()  # in terms of the inputs, and of long values
     reason: str = ""
     unread: tuple[tuple[str, int], ...] = ()  # names in it whose values are not read, and lines
+    is_final: bool = True  # not if what is not understood changes it: it may not be complete
 
     @property
     def line(self) -> int:
@@ -168,7 +188,7 @@ class _Program:
     suffix: str
     functions: Mapping[str, Node] = field(default_factory=dict)
     constants: Mapping[str, int] = field(default_factory=dict)  # q_i = 0 of the whole file
-    is_numpy: bool = False  # * is the product entry by entry
+    product: str = "*"  # what * is for matrices: "%" entry by entry, "" if nobody knows
     is_formula: bool = False  # a formula on its own, with the functions of `language`
     steps: Counter[str] = field(default_factory=Counter)  # expressions that were read
 
@@ -190,7 +210,7 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
         suffix,
         {each.word: each.node for each in functions if each.word},
         {match[1]: int(match[2]) for match in _INDEX_NAME.finditer(text)},
-        suffix == ".py" and bool(_NUMPY.search(text)) and not _MATRICES.search(text),
+        _product(text, suffix),
     )
     scopes = [_Scope(tree) for tree in (Tree(root), *functions)]
     if root.has_error:
@@ -213,8 +233,20 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
         named = {each.forms for each in scope.formulas if each.name not in _UNNAMED}
         for formula in scope.formulas:  # a fault counts once
             if formula.name not in _UNNAMED or formula.forms not in named - {()}:
-                formulas.setdefault((formula.lines, formula.forms or formula.name), formula)
+                key = (formula.lines, formula.forms or formula.name)
+                if key not in formulas or not formula.is_final:
+                    formulas[key] = formula
     return sorted(formulas.values(), key=lambda each: each.line)
+
+
+def _product(text: str, suffix: str) -> str:
+    """What * is for matrices: as in `_Program`."""
+    if suffix in _WITH_SWIZZLES:
+        return "" if re.search(r"\bfloat[34]x[34]\b", text) else "*"
+    by_entries, of_matrices = _NUMPY.search(text), _MATRICES.search(text)
+    if suffix != ".py" or (of_matrices and not by_entries):
+        return "*"
+    return "%" if by_entries and not of_matrices else ""
 
 
 def formula_matrix(text: str) -> sp.ImmutableMatrix:
@@ -232,7 +264,7 @@ def formula_matrix(text: str) -> sp.ImmutableMatrix:
     for suffix in (".cpp",) if "{" in text else (".py", ".m", ".cpp"):
         value = _assigned_value(text, suffix)
         if value is not None:
-            program = _Program(suffix, is_numpy=is_numpy, is_formula=True)
+            program = _Program(suffix, product="%" if is_numpy else "*", is_formula=True)
             matrix = as_matrix(_Run(program, _Scope(value)).read(value))
             matrix = matrix.xreplace(_short_names(matrix.free_symbols))
             return _unflattened(matrix) if "{" in text else matrix  # float R[9] = {...}
@@ -276,9 +308,11 @@ class _Run:
         self.later: dict[tuple[sp.Expr, Any], sp.Dummy] = {}  # parts of names assigned anew
         self.squares: dict[sp.Symbol, sp.Symbol] = {}  # |v|² of names without values
         self.untracked: set[Path] = set()
+        self.links: list[tuple[Path, Path]] = []  # names that may be the same object
         self.formulas: list[Formula] = []
         self.emitted: set[Any] = set()
         self.results: list[Any] = []  # None for one that is not read
+        self.is_final = True  # of matrices that are emitted
         self.end = ""  # "return" or "break" after one
         self.depth = 0
 
@@ -327,11 +361,34 @@ class _Run:
             elif method := getattr(self, f"run_{tree.kind}", None):
                 method(tree)
             else:
-                for each in tree.parts:
-                    self.run(each)
+                self.run_parts(tree)
         except ExpressionError:  # what the statement does is unknown
             self.forget(tree)
         self.depth -= 1
+
+    def run_parts(self, tree: Tree) -> None:
+        self.end_block(self.run_all(tree, tree.parts))
+
+    def run_all(self, block: Tree, statements: Iterable[Tree]) -> _Record:
+        """Run statements; the values that names have outside, if a block declares them anew."""
+        outside = _Record()
+        is_scope = self.depth > 1 and block.is_one_of("scope")
+        for each in statements:
+            for name in declared(each.node) - outside.keys() if is_scope else ():
+                outside[name], outside.lines[name] = (
+                    self.values.get(name),
+                    self.values.lines.get(name, 0),
+                )
+            self.run(each)
+        return outside
+
+    def end_block(self, outside: _Record) -> None:
+        inside = _Record({name: self.values.pop(name) for name in outside if name in self.values})
+        inside.lines = {name: self.values.lines[name] for name in inside}
+        self.emit(inside)
+        for name in outside:
+            if outside[name] is not None:
+                self.values[name], self.values.lines[name] = outside[name], outside.lines[name]
 
     def run_assign(self, tree: Tree) -> None:
         """a = b, a += b, and a, b = c."""
@@ -339,16 +396,45 @@ class _Run:
         sign = re.fullmatch(r"([-+*/@]+)=?", tree.word)
         if sign and values:
             self.update(tree, sign[1])
+        elif tree.word.endswith("=") and tree.word not in ("=", ":="):  # %=, ??=
+            raise self.unreadable(tree)
         elif values and left.targets != [left]:
             self.unpack(left, values[0])
         elif values:
-            value, source = self.read(values[0]), self.part(self.values, self.path(values[0]) or ())
-            if isinstance(source, _Record) and source is not self.values:
-                is_shared = self.program.suffix in _SHARING
-                value = source if is_shared else deepcopy(source)
-            self.store(left, value)
+            if INTEGER.fullmatch(tree.type) and not re.fullmatch(r"\w*", values[0].text):
+                raise self.unreadable(tree, "is rounded")
+            try:
+                self.store(left, self.assigned(values[0]), right=values[0])
+            finally:
+                self.link(tree)
         elif sign or tree.node.type == "assignment_expression":
             raise self.unreadable(tree)
+
+    def assigned(self, right: Tree) -> Any:
+        """The value of an assignment; another name for the same matrix, or a copy."""
+        value, source = self.read(right), self.part(self.values, self.path(right) or ())
+        if not isinstance(source, _Record) or source is self.values:
+            return value
+        return source if self.program.suffix in _SHARING else deepcopy(source)
+
+    def link(self, tree: Tree) -> None:
+        """What is written to a reference, a view, or a copy in C# may be another name's too."""
+        left, right = tree.parts
+        is_view = right.kind == "index" or right.word in _VIEWS
+        if right.kind == "call":
+            is_view = right.called in _VIEWS
+            right = right.parts[-1] if _MODULE.match(right.base) else right.owner or right
+        if right.kind not in ("name", "member", "index", "unary"):
+            return
+        names = self.written(left), self.written(right)
+        one, other = (isinstance(self.part(self.values, path), _Record) for path in names)
+        is_alias = {".cs": other, ".py": one and is_view}.get(self.program.suffix, False)
+        if all(names) and names[0] != names[1] and (is_alias or tree.is_alias):
+            self.links += [names, names[::-1]]
+
+    def linked(self, path: Path) -> list[Path]:
+        """Names that may be another name for what is at a path."""
+        return [b for a, b in self.links if all(x == y for x, y in zip(a, path, strict=False))]
 
     def unpack(self, left: Tree, right: Tree) -> None:
         """w, x, y, z = q; c, s, t = cos(v); {x, y} = q."""
@@ -367,7 +453,7 @@ class _Run:
                 self.put(path, symbol, target.line)
                 self.components.add(symbol)
 
-    def store(self, left: Tree, value: Any) -> None:
+    def store(self, left: Tree, value: Any, right: Tree | None = None) -> None:
         """An assignment to a name, a member, or an entry."""
         path = self.path(left)
         if path is None:
@@ -381,7 +467,11 @@ class _Run:
             path = path[:-1]
         if isinstance(value, _Record) and any(isinstance(key, slice) for key in path):
             value = _settled(value)
-        self.emit_at(path)
+        # A matrix may be complete only after R = R*S.
+        is_own = right is not None and re.search(rf"\b{path[0]}\b", right.text) is not None
+        self.emit_at(path, is_final=not is_own)
+        for other in self.linked(path):
+            self.lose(other, left.line)
         self.put(path, value, left.line)
 
     def put(self, path: Path, value: Any, line: int) -> None:
@@ -454,12 +544,12 @@ class _Run:
         """a += b."""
         left, right = tree.parts
         path, own, change = self.path(left), self.read(left), self.read(right)
-        value = combined(self.operation(tree, sign), own, change)
+        value = combined(self.operation(tree, sign, own, change), own, change)
         if path and sign == "+" and _is_scalar(change):  # q0 += (...)*dt
             name = f"Δ{_dotted(path).removeprefix('self.').removeprefix('this.')}"
             self.put((name,), change, left.line)
             rates = [s for s in change.free_symbols if _RATES_NAME.fullmatch(_last(s.name))]
-            if ANGLES_NAME.search(name) and len(rates) == 1:  # rpy += omega*dt
+            if ANGLES_NAME.fullmatch(name) and len(rates) == 1 and self.is_step(change):
                 parts = [change.xreplace({rates[0]: _part(rates[0], k)}) for k in "xyz"]
                 self.add(name, sp.Matrix(parts), left.line)
         record = self.values.get(path[0]) if path and len(path) == 1 else None
@@ -467,11 +557,20 @@ class _Run:
             record.clear()  # also of other names for this matrix
             record.update(_record(value, left.line))
         else:
-            self.store(left, value)
+            self.store(left, value, right=left)
+
+    def is_step(self, change: sp.Expr) -> bool:
+        """Whether inputs are multiplied by a step of time."""
+        symbols = change.free_symbols
+        return any(STEP.fullmatch(s.name) for s in symbols) and not symbols & {*self.definitions}
 
     def become_unread(self, path: Path, line: int) -> None:
-        """A name, and all others for the same matrix, get new symbols in place of their values."""
-        self.emit_at(path)
+        """A name, and all others for the same object, get new symbols in place of their values."""
+        for each in (path, *self.linked(path)):
+            self.lose(each, line)
+
+    def lose(self, path: Path, line: int) -> None:
+        self.emit_at(path, is_final=False)
         value = self.part(self.values, path)
         same = [(name,) for name, part in self.values.items() if part is value]
         for each in same if isinstance(value, _Record) and same else [path]:
@@ -510,12 +609,11 @@ class _Run:
 
     def run_if(self, tree: Tree) -> None:
         """if, #if, switch, and handlers of exceptions: each run takes one branch, or none."""
-        start, block = dict(self.values), tree.parts[self.scope.choice(tree.node, tree.parts)]
+        block = tree.parts[self.scope.choice(tree.node, tree.parts)]
         self.run(block)
         self.end = "" if tree.kind == "switch" and self.end == "break" else self.end
         if block.parts:
-            new = (k for k in self.values if not isinstance(start.get(k), _Record))
-            self.emit(self.values, [*new])
+            self.emit(self.values, [])
 
     run_switch = run_if
 
@@ -604,14 +702,16 @@ class _Run:
     def run_binary(self, tree: Tree, others: Sequence[Tree] = ()) -> None:
         if tree.word == "<<":
             left, right = tree.parts
-            self.store(left, rows([self.read(each) for each in (right, *others)]))
+            self.store(left, _unflattened(rows([self.read(each) for each in (right, *others)])))
 
     # Formulas
 
-    def emit_at(self, path: Path) -> None:
-        """A matrix has its final values, before another is assigned."""
+    def emit_at(self, path: Path, *, is_final: bool) -> None:
+        """A matrix has its values, before another is assigned."""
         if len(path) == 1 and isinstance(self.values.get(path[0]), _Record):
+            self.is_final = is_final
             self.emit(self.values, path)
+            self.is_final = True
 
     def emit(self, record: _Record, keys: Iterable[Any] | None = None, path: Path = ()) -> None:
         """All matrices and vectors among the parts of a record have their final values."""
@@ -636,7 +736,7 @@ class _Run:
             if None in values:
                 continue
             are_angles = all(value.has(*_INVERSE) for value in values)
-            is_change = names[0].startswith("Δ") and ANGLES_NAME.search(names[0]) is not None
+            is_change = bool(ANGLES_NAME.fullmatch(names[0])) and all(map(self.is_step, values))
             if kind > -2 or are_angles or is_change:
                 stem = _dotted(path) or re.sub(r"\d+$", "", names[0])
                 name = ", ".join(names) if len(names) < 9 else stem
@@ -667,7 +767,13 @@ class _Run:
         forms = [spelled_out(m.xreplace(names | squares), computed) for m in (whole, value)]
         places = tuple((_last(n), self.unread.get(n) or min(lines)) for n in sorted(unread))
         self.formulas.append(
-            Formula(lines=lines, name=_last(name), forms=tuple(dict.fromkeys(forms)), unread=places)
+            Formula(
+                lines=lines,
+                name=_last(name),
+                forms=tuple(dict.fromkeys(forms)),
+                unread=places,
+                is_final=self.is_final,
+            )
         )
 
     # Expressions
@@ -706,9 +812,11 @@ class _Run:
             return -value if digits[1] else value
         if not tree.parts or self.program.suffix != ".rs":
             return self.named(tree)
-        for each in tree.parts[:-1]:
-            self.run(each)
-        return self.read(tree.parts[-1])
+        outside = self.run_all(tree, tree.parts[:-1])
+        try:
+            return self.read(tree.parts[-1])
+        finally:
+            self.end_block(outside)
 
     def read_if(self, tree: Tree) -> Any:
         return self.read(tree.parts[self.scope.choice(tree.node, tree.parts)])
@@ -743,7 +851,8 @@ class _Run:
         return sp.ImmutableMatrix(sp.Matrix.hstack(*cells))
 
     def read_transposed(self, tree: Tree) -> Any:
-        return as_matrix(self.read(tree.parts[0])).T
+        matrix = as_matrix(self.read(tree.parts[0]))
+        return (matrix if self.first else _unflattened(matrix)).T
 
     def read_member(self, tree: Tree) -> Any:
         is_transposed = tree.word == "T" and tree.parts
@@ -769,7 +878,7 @@ class _Run:
         are_columns = all(getattr(side, "cols", 0) == 1 for side in (left, right))
         if sign == "*" and are_columns and self.program.suffix in _WITH_SWIZZLES:
             return combined("%", left, right)
-        return combined(self.operation(tree, sign), left, right)
+        return combined(self.operation(tree, sign, left, right), left, right)
 
     def as_vector(self, value: Any, other: Any) -> Any:
         """c v, where v has no value, in components if it is added to a vector."""
@@ -786,11 +895,15 @@ class _Run:
         parts = [_part(value, key) for key in keys] if _is_scalar(value) else [None]
         return value if None in parts else rows(parts)
 
-    def operation(self, tree: Tree, sign: str) -> str:
+    def operation(self, tree: Tree, sign: str, *sides: Any) -> str:
         sign = _SIGNS.get(sign, sign) if self.first else sign
         if sign not in ("+", "-", "*", "/", "**", "@", "%" if self.first else "*"):
             raise self.unreadable(tree)
-        return "%" if sign == "*" and self.program.is_numpy else sign
+        if sign != "*" or not all(isinstance(side, sp.MatrixBase) for side in sides):
+            return sign
+        if not self.program.product:
+            raise self.unreadable(tree, "is a product of matrices or of their entries")
+        return self.program.product
 
     def read_choose(self, tree: Tree) -> Any:
         constant = tree.parts[0].constant
@@ -957,7 +1070,9 @@ class _Run:
     def block(self, tree: Tree, matrix: sp.ImmutableMatrix, keys: Path) -> Any:
         """An entry, or those of slices as a column or a matrix."""
         places = ["xyzw".find(key.lower()) if isinstance(key, str) else key for key in keys]
-        if matrix.cols == 1 and len(places) == 2:
+        if matrix.cols == 1 and len(places) == 2 and len(matrix) in _FLAT:
+            matrix = _unflattened(matrix)
+        elif matrix.cols == 1 and len(places) == 2:
             places = [next((p for p in places if p not in (0, _ALL)), places[0])]
         if matrix.rows == 1 and len(places) == 1:
             places = [0, *places]
@@ -1000,12 +1115,16 @@ class _Run:
                 return rows([called(each, [self.read(nodes[0])]) for each in ("sin", "cos")])
             case "number" if not arguments and self.program.suffix == ".rs":  # T::zero()
                 return sp.Integer("one" in name.lower())
-            case "cast" if len(nodes) == 1:
+            case "cast" if len(nodes) == 1 and not INTEGER.fullmatch(
+                tree.parts[0].text.partition("<")[2].rstrip("> ")
+            ):
                 return self.read(nodes[0])
             case "wrapper" if is_listed:
                 return self.read(nodes[0])
             case "same" if nodes and "order=" not in tree.options:
-                return self.read(nodes[0])
+                value = self.read(nodes[0])
+                is_square = re.search(r"\b([34]), *\1\b", tree.text[-12:]) is not None
+                return _unflattened(value) if is_square else value
             case "zeros" | "unit":
                 return self.filled(tree)
             case "clamp" | "least" if len(nodes) > 1:
@@ -1060,7 +1179,9 @@ class _Run:
         if meaning in ("cross", "dot", "C", "outer"):
             values = [self.vector(value) for value in values]
         if meaning == "dot" and any(as_matrix(value).cols > 1 for value in values):
-            return combined("@", *values)
+            return combined("@", *map(_unflattened, values))
+        if meaning in ("T", "inv"):
+            values = [_unflattened(value) for value in values]
         return called(meaning, [as_matrix(value) for value in values])
 
     def filled(self, tree: Tree) -> Any:

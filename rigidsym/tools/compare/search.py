@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -14,7 +13,7 @@ import sympy as sp
 from rigidsym.errors import ExpressionError, RequestError
 from rigidsym.models.rotation import RotationModel
 from rigidsym.tools.compare.comparison import Comparison, identified
-from rigidsym.tools.compare.program import ANGLES_NAME, Formula, program_formulas
+from rigidsym.tools.compare.program import ANGLES_NAME, STEP, Formula, program_formulas
 from rigidsym.tools.compare.quantities import are_angles, are_body_rates, target
 from rigidsym.tools.compare.syntax import GRAMMARS
 
@@ -22,7 +21,6 @@ SUFFIXES = tuple(GRAMMARS)
 _MOST_BYTES = 300_000  # of a file
 _MOST_SYMBOLS = 12
 _NEAR_LINES = 12  # between the components of a vector and the vector
-_STEP = re.compile(r"(?:delta_?|sample_?|half_?)?(?:d_?)?(?:[tT]s?|time|period)|h", re.IGNORECASE)
 _TRIGONOMETRIC = (sp.sin, sp.cos, sp.tan)
 
 
@@ -119,12 +117,12 @@ def search(path: Path) -> Iterator[FormulaInFile]:
 
 def _compared(path: Path, formula: Formula, *, is_case: bool) -> FormulaInFile | None:
     for form in formula.forms:  # a long value may be an angle
-        if ANGLES_NAME.search(formula.name) and formula.name[0] == "Δ" and are_body_rates(form):
+        if ANGLES_NAME.fullmatch(formula.name) and are_body_rates(form):
             asked = target("xyz", "rates_from_angular_velocity_body")
             comparison = Comparison(formula=form, asked=asked, are_body_rates=True)
             return FormulaInFile(path, formula, comparison)
         try:
-            comparison = _identified(form, is_equal=is_case)
+            comparison = _identified(form, is_equal=is_case or not formula.is_final)
         except (ExpressionError, RecursionError) as error:  # a function without values
             return FormulaInFile(path, formula, reason=str(error))
         if comparison.found is not None or comparison.is_reflection:
@@ -173,7 +171,7 @@ def _block(matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
         scale = {s: s * 180 / sp.pi for s in matrix.free_symbols}
         in_radians = matrix * sp.pi / 180 if are_angles(matrix) else matrix.xreplace(scale)
         matrix = matrix if in_radians.has(sp.pi) else in_radians
-    step = next((s for s in matrix.free_symbols if _STEP.fullmatch(s.name)), None)
+    step = next((s for s in matrix.free_symbols if STEP.fullmatch(s.name)), None)
     if step is not None and not (rates := matrix.diff(step)).has(step):  # of q + (...)*dt
         matrix = sp.ImmutableMatrix(rates)
     edges = (tuple(matrix[-1, :]), tuple(matrix[:, -1]))  # by rows, or by columns

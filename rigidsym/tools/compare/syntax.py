@@ -35,6 +35,10 @@ _TYPES = {name: frozenset(types.split()) for name, types in _TABLES["types"].ite
 ORDERS = [order for orders in _TABLES["orders"].values() for order in orders]
 _CHUNK = 2_048  # bytes that the parser reads at once
 _MOST_STEPS = 50_000  # of the parser: a megabyte without errors takes half as many
+INTEGER = re.compile(  # a type
+    r"(?:(?:un)?signed )?(?:u?int(?:\d+(?:_t)?)?|u?long(?: long)?(?: int)?|u?short|u?char|s?byte"
+    r"|[ui](?:8|16|32|64|128|size)|s?size_t)|unsigned"
+)
 _TYPE_ARGUMENTS = re.compile(r"(?:::)?<.*>|\[.*\]|\s", re.DOTALL)
 
 
@@ -134,7 +138,7 @@ class Tree:
                 plain = [c for c in _children(outer) if c.type not in _TYPES["keyword"]]
                 return [self._function(parts or nodes), *map(tree_of, plain)]
             case "index":  # the array, and its indices
-                return [tree_of(nodes[0]), *_flat(nodes[1:], "list")]
+                return [tree_of(nodes[0]), *_indices(nodes[1:])]
             case "comma":
                 return _flat(nodes, "comma")
             case "choose" if not parts:  # of Python: a if test else b
@@ -217,6 +221,18 @@ class Tree:
         return text if re.fullmatch(r"[\w.]*", text) else "?"
 
     @property
+    def type(self) -> str:
+        """The type of a declaration."""
+        return _text(self.node.parent and _part(self.node.parent, "type"))
+
+    @property
+    def is_alias(self) -> bool:
+        """Whether an assignment gives an object another name: auto& b = a, b = &a."""
+        parts = (_part(self.node, fields) for fields in ("declarator", "right value"))
+        types = [part.type for part in parts if part is not None]
+        return not _TYPES["alias"].isdisjoint(types) or bool(re.search(r"=\s*&", self.text))
+
+    @property
     def is_statement(self) -> bool:
         return re.search("statement|decl|macro|assign", self.node.type) is not None
 
@@ -238,11 +254,20 @@ def _flat(nodes: list[Node], kind: str) -> list[Tree]:
     return [part for tree in trees for part in (tree.parts if tree.kind == kind else [tree])]
 
 
+def _indices(nodes: list[Node]) -> list[Tree]:
+    """m[i, j] has two indices, and m[[i, j]] of Python one, which is a list."""
+    return [*map(tree_of, nodes)] if nodes and nodes[0].type == "list" else _flat(nodes, "list")
+
+
 def tree_of(node: Node) -> Tree:
     """The common tree of a node, without brackets, casts and the like around it."""
     is_reference = False
     while (kind := _KINDS.get(node.type, "block")) == "wrap":
         is_reference |= node.type in _TYPES["reference"]
+        if node.type in _TYPES["cast"] and INTEGER.fullmatch(
+            _text(_part(node, "type"))
+        ):  # (int)a is another number
+            return Tree(node, "cast")
         inner = _part(node, "value declarator") or next(iter(_children(node)[-1:]), None)
         if inner is None:
             return Tree(node)
@@ -272,6 +297,22 @@ def walk(node: Node, *kinds: str) -> Iterator[Tree]:
         for each in below(node.named_children)
         if (kind := _KINDS.get(each.type, "block")) in kinds
     )
+
+
+def declared(statement: Node) -> set[str]:
+    """The names that a statement declares for its block alone."""
+    if statement.type not in _TYPES["local"]:
+        return set()
+    inner = next((c for c in statement.named_children if c.type == "variable_declaration"), None)
+    outer = inner or statement  # C# has both
+    parts = [c for c in outer.named_children if c.type == "variable_declarator"]
+    names: set[str] = set()
+    for each in [*outer.children_by_field_name("declarator"), *parts] or [outer]:
+        own: Node = each
+        while (part := _part(own, "declarator name pattern")) is not None:
+            own = part
+        names |= {spelled(_text(n)) for n in below([own]) if _KINDS.get(n.type) == "name"}
+    return names
 
 
 def parameters(function: Node) -> list[str]:
