@@ -38,17 +38,7 @@ from rigidsym.tools.compare.language import (
 )
 from rigidsym.tools.compare.latex import python_of
 from rigidsym.tools.compare.quantities import stem_of
-from rigidsym.tools.compare.syntax import (
-    CALLS,
-    INTEGER,
-    ORDERS,
-    Tree,
-    declared,
-    parameters,
-    parsed,
-    tree_of,
-    walk,
-)
+from rigidsym.tools.compare.syntax import CALLS, ORDERS, Tree, parameters, parsed, tree_of, walk
 
 if TYPE_CHECKING:
     from tree_sitter import Node
@@ -374,11 +364,9 @@ class _Run:
         outside = _Record()
         is_scope = self.depth > 1 and block.is_one_of("scope")
         for each in statements:
-            for name in declared(each.node) - outside.keys() if is_scope else ():
-                outside[name], outside.lines[name] = (
-                    self.values.get(name),
-                    self.values.lines.get(name, 0),
-                )
+            for name in each.declared - outside.keys() if is_scope else ():
+                outside[name] = self.values.get(name)
+                outside.lines[name] = self.values.lines.get(name, 0)
             self.run(each)
         return outside
 
@@ -401,7 +389,7 @@ class _Run:
         elif values and left.targets != [left]:
             self.unpack(left, values[0])
         elif values:
-            if INTEGER.fullmatch(tree.type) and not re.fullmatch(r"\w*", values[0].text):
+            if tree.is_integer and not re.fullmatch(r"\w*", values[0].text):
                 raise self.unreadable(tree, "is rounded")
             try:
                 self.store(left, self.assigned(values[0]), right=values[0])
@@ -766,15 +754,8 @@ class _Run:
         computed = [names.get(s, s) for s in self.definitions]
         forms = [spelled_out(m.xreplace(names | squares), computed) for m in (whole, value)]
         places = tuple((_last(n), self.unread.get(n) or min(lines)) for n in sorted(unread))
-        self.formulas.append(
-            Formula(
-                lines=lines,
-                name=_last(name),
-                forms=tuple(dict.fromkeys(forms)),
-                unread=places,
-                is_final=self.is_final,
-            )
-        )
+        formula = Formula(lines=lines, name=_last(name), forms=tuple(dict.fromkeys(forms)))
+        self.formulas.append(replace(formula, unread=places, is_final=self.is_final))
 
     # Expressions
 
@@ -1115,9 +1096,7 @@ class _Run:
                 return rows([called(each, [self.read(nodes[0])]) for each in ("sin", "cos")])
             case "number" if not arguments and self.program.suffix == ".rs":  # T::zero()
                 return sp.Integer("one" in name.lower())
-            case "cast" if len(nodes) == 1 and not INTEGER.fullmatch(
-                tree.parts[0].text.partition("<")[2].rstrip("> ")
-            ):
+            case "cast" if len(nodes) == 1 and not tree.is_integer:
                 return self.read(nodes[0])
             case "wrapper" if is_listed:
                 return self.read(nodes[0])

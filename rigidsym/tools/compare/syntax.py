@@ -35,7 +35,7 @@ _TYPES = {name: frozenset(types.split()) for name, types in _TABLES["types"].ite
 ORDERS = [order for orders in _TABLES["orders"].values() for order in orders]
 _CHUNK = 2_048  # bytes that the parser reads at once
 _MOST_STEPS = 50_000  # of the parser: a megabyte without errors takes half as many
-INTEGER = re.compile(  # a type
+_INTEGER = re.compile(  # a type
     r"(?:(?:un)?signed )?(?:u?int(?:\d+(?:_t)?)?|u?long(?: long)?(?: int)?|u?short|u?char|s?byte"
     r"|[ui](?:8|16|32|64|128|size)|s?size_t)|unsigned"
 )
@@ -221,9 +221,27 @@ class Tree:
         return text if re.fullmatch(r"[\w.]*", text) else "?"
 
     @property
-    def type(self) -> str:
-        """The type of a declaration."""
-        return _text(self.node.parent and _part(self.node.parent, "type"))
+    def declared(self) -> set[str]:
+        """The names that a statement declares for its block alone."""
+        if not self.is_one_of("local"):
+            return set()
+        inner = [c for c in self.node.named_children if c.type == "variable_declaration"]  # C#
+        node = next(iter(inner), self.node)
+        parts = [c for c in node.named_children if c.type == "variable_declarator"]
+        names: set[str] = set()
+        for own in [*node.children_by_field_name("declarator"), *parts] or [node]:
+            while part := _part(own, "declarator name pattern"):
+                own = part
+            names |= {spelled(_text(n)) for n in below([own]) if _KINDS.get(n.type) == "name"}
+        return names
+
+    @property
+    def is_integer(self) -> bool:
+        """Whether a declaration, or a call such as static_cast<int>, rounds to an integer."""
+        outer = self.node.parent and _part(self.node.parent, "type")
+        is_call = self.kind == "call"
+        text = self.parts[0].text.partition("<")[2].rstrip("> ") if is_call else _text(outer)
+        return _INTEGER.fullmatch(text) is not None
 
     @property
     def is_alias(self) -> bool:
@@ -264,7 +282,7 @@ def tree_of(node: Node) -> Tree:
     is_reference = False
     while (kind := _KINDS.get(node.type, "block")) == "wrap":
         is_reference |= node.type in _TYPES["reference"]
-        if node.type in _TYPES["cast"] and INTEGER.fullmatch(
+        if node.type in _TYPES["cast"] and _INTEGER.fullmatch(
             _text(_part(node, "type"))
         ):  # (int)a is another number
             return Tree(node, "cast")
@@ -297,22 +315,6 @@ def walk(node: Node, *kinds: str) -> Iterator[Tree]:
         for each in below(node.named_children)
         if (kind := _KINDS.get(each.type, "block")) in kinds
     )
-
-
-def declared(statement: Node) -> set[str]:
-    """The names that a statement declares for its block alone."""
-    if statement.type not in _TYPES["local"]:
-        return set()
-    inner = next((c for c in statement.named_children if c.type == "variable_declaration"), None)
-    outer = inner or statement  # C# has both
-    parts = [c for c in outer.named_children if c.type == "variable_declarator"]
-    names: set[str] = set()
-    for each in [*outer.children_by_field_name("declarator"), *parts] or [outer]:
-        own: Node = each
-        while (part := _part(own, "declarator name pattern")) is not None:
-            own = part
-        names |= {spelled(_text(n)) for n in below([own]) if _KINDS.get(n.type) == "name"}
-    return names
 
 
 def parameters(function: Node) -> list[str]:
