@@ -547,6 +547,10 @@ ATTACKS: dict[str, tuple[str, Change]] = {  # of two strangers who read the chec
         "ZXZ",
         lambda c: put("inverse_rate_matrix_body", 0, printed(c, W)["expression"][0])(c),
     ),
+    "an inverse with a row too many": (
+        "ZXZ",
+        lambda c: printed(c, "inverse_rate_matrix_body")["expression"].append(["1", "1", "1"]),
+    ),
     "powers of powers": ("ZXZ", powers_of_powers("({} + 1)**60")),
     "powers below a line": ("ZXZ", powers_of_powers("1/({} + 1)**60")),
     "a difference of 1/10**78": ("ZXZ", put(VELOCITY, 2, f"{TRUE} + phi/10**39/10**39")),
@@ -636,7 +640,7 @@ def refusal(content: Content, name: str) -> str:
     """A theorem that Coq has to refuse, after the facts that its proof may use."""
     text = theorems(content, [*checker.printed_in(content)]).text
     # Ω of a quaternion is the lemma that F turns with it, from which all else follows
-    is_lemma = name == VELOCITY and "turning ltac" in text
+    is_lemma = name == VELOCITY and "quaternion_turns" in text
     start = "Lemma step_1 " if is_lemma else f"Theorem {name.replace(' ', '_')} "
     before, theorem = text.split(start, 1)
     facts = re.sub(r"Proof\. intros\..*?Qed\.", "Admitted.", before, flags=re.DOTALL)

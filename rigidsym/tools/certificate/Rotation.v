@@ -1,7 +1,7 @@
 (* Rotations in Coq's own real numbers. Certificates (NAME.v) need this file. The first half defines
    the words of their theorems: turns, the operator C, derivatives, and "F turns with the angular
    velocity w". Read it; nothing else has to be believed. The second half proves what they need. *)
-Require Import Reals Lra.
+Require Import Reals Lra. Require Export FunctionalExtensionality.
 Open Scope R_scope.
 
 (* Vectors and matrices *)
@@ -97,9 +97,6 @@ Lemma cos_rate f t a : derivable_pt_lim f t a -> derivable_pt_lim (fun s => cos 
 Proof. intro H; exact (derivable_pt_lim_comp f cos t a _ H (derivable_pt_lim_cos (f t))). Qed.
 Lemma sin_rate f t a : derivable_pt_lim f t a -> derivable_pt_lim (fun s => sin (f s)) t (cos (f t) * a).
 Proof. intro H; exact (derivable_pt_lim_comp f sin t a _ H (derivable_pt_lim_sin (f t))). Qed.
-Lemma sqrt_rate f t a : 0 < f t -> derivable_pt_lim f t a ->
-  derivable_pt_lim (fun s => sqrt (f s)) t (/ (2 * sqrt (f t)) * a).
-Proof. intros p H; exact (derivable_pt_lim_comp f sqrt t a _ H (derivable_pt_lim_sqrt (f t) p)). Qed.
 Lemma constant_rate f t a c : (forall s, f s = c) -> derivable_pt_lim f t a -> a = 0.
 Proof.
   intros H d. apply (uniqueness_limite f t _ _ d). intros e p. exists (mkposreal 1 Rlt_0_1). intros h _ _.
@@ -119,7 +116,6 @@ Ltac derivative := match goal with
   | |- derivable_pt_lim (fun s => @?f s / @?g s) _ _ => apply (derivable_pt_lim_div f g); [ derivative .. | apart ]
   | |- derivable_pt_lim (fun s => cos (@?f s)) _ _ => apply (cos_rate f); derivative
   | |- derivable_pt_lim (fun s => sin (@?f s)) _ _ => apply (sin_rate f); derivative
-  | |- derivable_pt_lim (fun s => sqrt (@?f s)) _ _ => apply (sqrt_rate f); [ assumption | derivative ]
   end.
 Ltac turning e := split; [ repeat split; entries; e | eexists (M (V _ _ _) (V _ _ _) (V _ _ _)); split;
   [ repeat split; expand; derivative | entries; e ] ].
@@ -135,4 +131,19 @@ Theorem turn_turns v c s t a : dot v v = 1 -> c t * c t + s t * s t = 1 ->
 Proof.
   destruct v as [x y z]; cbv [dot v1 v2 v3]; intros. assert (m : z * z = 1 - x * x - y * y) by lra.
   assert (k : c t * c t = 1 - s t * s t) by lra. turning ltac:(ring [k m]).
+Qed.
+Lemma turn_rotation v c s : s * s = (1 - c) * (2 - (1 - c) * dot v v) -> is_rotation (turn v c s).
+Proof. destruct v; cbv [dot v1 v2 v3]; intro m; set (d := 1 - c) in m. repeat split; cbv [turn]; fold d; entries; ring [m]. Qed.
+Theorem quaternion_turns w x y z u c s t a b d e k : (* of the length 1 / sqrt u *)
+  (forall r, u r * (w r * w r + x r * x r + y r * y r + z r * z r) = 1) ->
+  (forall r, c r = 1 - 2 * u r) -> (forall r, s r = 2 * w r * u r) -> derivable_pt_lim w t a ->
+  derivable_pt_lim x t b -> derivable_pt_lim y t d -> derivable_pt_lim z t e -> derivable_pt_lim u t k ->
+  k = - (2 * u t * u t * (w t * a + x t * b + y t * d + z t * e)) ->
+  turns (fun r => turn (V (x r) (y r) (z r)) (c r) (s r)) t (scale (2 * u t)
+    (plus (scale (w t) (V b d e)) (plus (scale (- a) (V (x t) (y t) (z t))) (cross (V (x t) (y t) (z t)) (V b d e))))).
+Proof.
+  intros n C S ? ? ? ? ? K; rewrite (functional_extensionality c _ C), (functional_extensionality s _ S).
+  assert (m : u t * w t * w t = 1 - u t * x t * x t - u t * y t * y t - u t * z t * z t) by (rewrite <- (n t); ring).
+  split; [ apply turn_rotation; cbv [dot v1 v2 v3]; ring [m] | eexists (M (V _ _ _) (V _ _ _) (V _ _ _)); split ];
+    [ repeat split; expand; derivative | entries; rewrite K; ring [m] ].
 Qed.

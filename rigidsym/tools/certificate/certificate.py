@@ -28,6 +28,7 @@ from rigidsym.tools.certificate.checker import (
     MOST_NUMBER,
     MOST_POWER,
     PRINCIPAL,
+    SUM,
     Record,
     Unproved,
     printed_in,
@@ -49,6 +50,12 @@ total
 """
 _TAKEN = frozenset(_WORDS.split())
 _FIRST = "rotation_matrix", "angular_velocity_space"
+# w and u of quaternions w + x i + y j + z k, in the places of a turn: u (w² + x² + y² + z²) = 1
+_QUATERNIONS = {
+    "unit_quaternion": ("{0}", "1"),
+    "quaternion": ("{0}", f"1/{SUM}"),
+    "modified_rodrigues": (f"2 - {SUM}", f"1/{SUM}**2"),
+}
 _TURNS = {"space": "turns", "body": "turns_in_body"}
 _ABOUT_POINT = (
     "(add inertia (times {M} (mul (transpose (C (plus (V p_x p_y p_z) (scale (-1) {centre}))))"
@@ -264,17 +271,28 @@ class _Section:
                 proof = f"apply (turn_turns (V {' '.join(axis)}) {functions}); cbn; first"
                 proof += " [ calculation t | by_rules t ]"
                 yield _Factor(text, f"(scale {rate} (V {' '.join(axis)}))", proof, trees)
-            elif len(rotation["turns"]) == 1:
-                yield self._as_printed(text, trees)
-            else:
+            elif len(rotation["turns"]) != 1:
                 raise Unproved
+            elif kind in _QUATERNIONS:
+                places = [f"({place})" for place in turn.partition("(")[2][:-1].split(",")]
+                w, u = (self.real(_tree(f.format(*places)), "s") for f in _QUATERNIONS[kind])
+                functions = " ".join(f"(fun s => {each})" for each in (w, *axis, u, cosine, sine))
+                proof = "eapply (same (turns _ t)); [ eapply (quaternion_turns "
+                proof += (
+                    f"{functions}); first [ derivative | intro s; calculation s | calculation t ]"
+                )
+                yield self._as_printed(text, trees, f"{proof} | calculation t ]")
+            else:
+                yield self._as_printed(text, trees)
 
-    def _as_printed(self, text: str, trees: list[Tree]) -> _Factor:
-        """F whose entries Coq differentiates; that it turns with the printed Ω is the claim."""
+    def _as_printed(
+        self, text: str, trees: list[Tree], proof: str = "turning ltac:(calculation t)"
+    ) -> _Factor:
+        """F that turns with the printed Ω, which is the claim."""
         if "angular_velocity_space" not in self.claims:
             raise Unproved
         velocity = self.text(self.printed["angular_velocity_space"])
-        return _Factor(text, velocity, "turning ltac:(calculation t)", trees)
+        return _Factor(text, velocity, proof, trees)
 
     def head(self) -> Iterator[str]:
         """Coordinates as functions of time, facts, F, and its angular velocity."""
@@ -410,6 +428,13 @@ class _Section:
         if self.is_passive:
             raise Unproved
         claim = f"{self.divisors(name)}rate F t {self.text(self.printed[name])}"
+        if self.equal != "equal t":  # the printed R, which has no divisors, is differentiated
+            function = f"(fun s => {self.text(self.printed[_FIRST[0]], 's')})"
+            proof = f"rewrite (functional_extensionality _ {function} {_FIRST[0]})"
+            rates = (
+                "(eapply (same (derivable_pt_lim _ _)); [ derivative | first [ ring | equal t ] ])"
+            )
+            return _Statement(claim, f"{proof}; known t; repeat split; expand; {rates}")
         rate = f"(rate_of_turns _ _ _ {self.total})"
         return _Statement(claim, f"apply (same (rate F t) _ _ {rate}); {self.equal}")
 
