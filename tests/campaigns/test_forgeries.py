@@ -112,7 +112,8 @@ def with_a_moment_too_many(content: Content) -> None:
     axes, moments = copy.deepcopy(content["quantities"][:2])
     axes |= {"name": "principal_axes", "unit": "", "expression": [["1", "0", "0"]]}
     axes["expression"] += [["0", "1", "0"], ["0", "0", "1"]]
-    moments |= {"name": "principal_moments", "unit": "kg m^2"}
+    moments |= {"name": "principal_moments", "unit": "kg m^2", "shape": [4]}
+    axes["inputs"] = moments["inputs"] = []
     moments["expression"] = [*(inertia[k][k] for k in range(3)), "17*A"]
     content["quantities"] += [axes, moments]
 
@@ -218,10 +219,13 @@ def test_a_changed_entry_is_refused(change, name):
 
 
 def _arguments(content: Content, group: str) -> list[Content]:
-    components: list[Content] = next(
-        each["components"] for each in content["arguments"] if each["name"] == group
-    )
+    components: list[Content] = _groups(content, group)["components"]
     return components
+
+
+def _groups(content: Content, name: str) -> Content:
+    group: Content = next(each for each in content["arguments"] if each["name"] == name)
+    return group
 
 
 def renamed(group: str, place: int, name: str) -> Callable[[Content], None]:
@@ -562,7 +566,137 @@ ATTACKS: dict[str, tuple[str, Change]] = {  # of two strangers who read the chec
     "a mass that turns": ("box", in_body("mass", "M*phi")),
 }
 
-OTHERS = BESIDE | ATTACKS | {name: (of, change) for name, of, change in of_motions()}
+
+def cells(name: str, write: Callable[[Any], Any], shape: Any = None) -> Change:
+    """Another expression, with its shape unless that is to be false."""
+
+    def change(content: Content) -> None:
+        quantity = printed(content, name)
+        quantity["expression"] = write(quantity["expression"])
+        first = quantity["expression"][0]
+        columns = [len(first)] if isinstance(first, list) else []
+        quantity["shape"] = shape or [len(quantity["expression"]), *columns]
+
+    return change
+
+
+def wider(first: str, rest: str) -> Callable[[Any], Any]:
+    """A column more."""
+    return lambda rows: [[*rows[0], first], *([*row, rest] for row in rows[1:])]
+
+
+def of_entries(content: Content) -> None:
+    """R of four columns."""
+    entries = wider("0", "0")(printed(content, "rotation_matrix")["expression"])
+    content["rotation"], content["name"] = {"matrix": entries, "conditions": []}, "any"
+    content["quantities"] = []
+
+
+def only(name: str, text: str, *path: Any) -> Change:
+    """One quantity, with something added to an entry."""
+
+    def change(content: Content) -> None:
+        content["quantities"], content["first_integrals"] = [printed(content, name)], []
+        part = content["quantities"][0]
+        for place in ("expression", *path)[:-1]:
+            part = part[place]
+        part[("expression", *path)[-1]] += text
+
+    return change
+
+
+def in_time(content: Content) -> None:
+    content["motion"]["potential"] += " + A*t"
+    only("energy", " + A*t")(content)
+    _arguments(content, "parameters").append({"name": "t", "unit": "s"})
+
+
+def called_the_time(content: Content) -> None:
+    content |= json.loads(json.dumps(content).replace("theta", "t"))
+
+
+def without_a_unit(content: Content) -> None:
+    """An angle of a turn by the name of a coordinate that is said to be no angle."""
+    turned("z(phi)", "x(a)", "z(psi)")(content)
+    content["name"], content["quantities"] = "any", [printed(content, "rotation_matrix")]
+    defined("a", "theta")(content)
+    for group, unit in (("q", ""), ("q_dot", "1/s"), ("q_ddot", "1/s^2")):
+        _arguments(content, group)[1]["unit"] = unit
+
+
+def coordinates(content: Content) -> None:
+    """Nine of them, of which minors of M would be 9! products."""
+    for group, end in (("q", ""), ("q_dot", "_dot"), ("q_ddot", "_ddot")):
+        unit = _arguments(content, group)[0]["unit"]
+        names = [{"name": f"a{k}{end}", "unit": unit} for k in range(9)]
+        _groups(content, group)["components"] = names
+    content["arguments"] = [g for g in content["arguments"] if g["name"] not in ("y", "momenta")]
+    content["name"] = "any"
+    content["rotation"]["turns"] = [f"{'xyz'[k % 3]}(a{k})" for k in range(9)]
+    content["motion"] = {"potential": "a0", "forces": ["0"] * 9, "torque": ["0"] * 3}
+    content["quantities"], content["first_integrals"] = [printed(content, "mass_matrix")], []
+
+
+TORQUE, RATES = "angular_acceleration_from_torque", "rates_from_angular_velocity_space"
+ZXZ, HALVES = (
+    ("z(phi)", "x(theta)", "z(psi)"),
+    ("constant_turn(0, 0, 1, 2, 0)", "constant_turn(0, 0, 1, 1/2, 0)"),
+)
+STRANGER: dict[str, tuple[str, Change]] = {
+    "no entries": ("euler", cells(TORQUE, lambda rows: [[] for _ in rows], shape=[3])),
+    "a second column": ("euler", cells(TORQUE, lambda rows: [[row, "A"] for row in rows])),
+    "longer rows below": ("ZXZ", cells(W, lambda rows: [rows[0], *wider("1", "1")(rows)[1:]])),
+    "a shorter row below": ("ZXZ", cells(W, lambda rows: [rows[0], rows[1][:2], rows[2]])),
+    "a fourth axis": (
+        "oblique axes",
+        together(
+            cells("principal_axes", wider("0", "0")),
+            cells("principal_moments", lambda moments: [*moments, "17*M"]),
+        ),
+    ),
+    "R of four columns": ("ZXZ", of_entries),
+    "moments in a row": ("oblique axes", cells("principal_moments", lambda m: [m])),
+    "another shape": ("ZXZ", cells(W, lambda rows: rows, shape=[7])),
+    "no inputs": ("ZXZ", lambda c: printed(c, W).update(inputs=[])),
+    "a parameter that is the time": ("whole top", in_time),
+    "a coordinate that is the time": ("ZXZ", called_the_time),
+    "rates among constants": (
+        "ZXZ",
+        lambda c: c["arguments"].append(_groups(c, "q_dot") | {"name": "constants"}),
+    ),
+    "turns that are none": ("ZXZ", together(turned(*HALVES, *ZXZ), of_whole("name", "any"))),
+    "a length of angles": (
+        "ZXZ",
+        conditions(SPHERE, then=only("rotation_matrix", f" + {SPHERE}", 2, 2)),
+    ),
+    "a length of moments": (
+        "top",
+        conditions("A**2 + C**2 - 1", then=only("energy", " + A**2 + C**2 - 1")),
+    ),
+    **{f"{name} in kg": ("ZXZ", units(name, "kg")) for name in (W, RATES)},
+    **{
+        f"{name} in kg": ("damped top", units(name, "kg"))
+        for name in ("accelerations", "mass_matrix", "bias_vector", P)
+    },
+    "an energy in kg": ("top", units("constant energy", "kg")),
+    "parameters in other units": ("top", in_body("parameters", [{"name": "A", "unit": "lb ft"}])),
+    "an angle without a unit": ("ZXZ", without_a_unit),
+    **{
+        f"the name {name!r}": ("ZXZ", of_whole("name", name))
+        for name in (
+            *("euler_zxz_\u0435xtrinsic", "euler_xyz_intrinsic_passive", "Euler_xyz_intrinsic"),
+            *("euler_xyz_intrinsic ", "euler_zxz_\ud800"),
+        )
+    },
+    "a passive name of what is active": ("ZXZ", of_whole("name", "euler_zxz_intrinsic_passive")),
+    "turns in an object": ("ZXZ", of_rotation("turns", {"z(phi)": 1, "x(theta)": 2, "z(psi)": 3})),
+    "conditions in an object": ("ZXZ", of_rotation("conditions", {})),
+    "a rotation with a sequence": ("ZXZ", of_rotation("sequence", ["XYZ"])),
+    "nine coordinates": ("top", coordinates),
+}
+
+
+OTHERS = BESIDE | ATTACKS | STRANGER | {name: (of, change) for name, of, change in of_motions()}
 # True about the rest, so that only these are not accepted
 PARTLY = {"a quantity named angular_velocity_moon": "angular_velocity_moon"}
 PARTLY |= {"a quantity named truth": "truth"}
@@ -575,13 +709,20 @@ PARTLY |= {"integrals that hold a definition": "constant energy"}
 PARTLY |= {"a potential by definition, without its force": "accelerations"}
 PARTLY |= {"a divisor that is zero": "rotation_matrix"}
 PARTLY |= {"a divisor of a double angle by definition": VELOCITY}
-PARTLY |= {"a definition in a circle": VELOCITY}
+PARTLY |= {"a definition in a circle": VELOCITY, "nine coordinates": "mass_matrix"}
 
 
 @pytest.mark.parametrize("name", OTHERS)
 def test_another_forgery_is_refused(name):
     of, change = OTHERS[name]
     is_refused(changed(original(of), change), PARTLY.get(name))
+
+
+def test_a_file_without_a_number_is_refused(tmp_path):
+    path = tmp_path / "a.json"
+    path.write_text(json.dumps(record_of("ZXZ") | {"request": float("nan")}))
+    with pytest.raises(checker.BROKEN, match="NaN"):
+        checker.load(path)
 
 
 def test_double_keys_are_refused(tmp_path):
@@ -631,8 +772,8 @@ def entries() -> Iterator[tuple[str, Content]]:
         content["first_integrals"][k]["expression"] = f"{integral['expression']} + A*theta_dot"
         yield f"constant {integral['name']}", content
     for name, (of, change) in {**KNOWN, **BESIDE}.items():
-        # nor what leaves no false theorem to state: names and roots that are gone, conditions
-        if not re.search("divisor|singular|potential by definition|motion under", name):
+        # nor what leaves no false theorem to state: names, roots, conditions, units
+        if not re.search("divisor|singular|degrees|potential by definition|motion under", name):
             yield name, changed(of_motion("whole top") if of == "top" else record_of(of), change)
 
 

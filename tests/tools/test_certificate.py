@@ -20,7 +20,7 @@ from rigidsym.commands.cli import commands
 from rigidsym.errors import CheckError
 from rigidsym.notes.formats.record import record
 from rigidsym.tools.certificate import checker
-from rigidsym.tools.certificate.certificate import certificate_of
+from rigidsym.tools.certificate.certificate import certificate_of, theorems
 
 NAME = "euler_zxz_intrinsic"
 CHECKER = Path(checker.__file__)
@@ -53,9 +53,15 @@ def test_conditions_that_are_no_spheres_have_no_certificate():
     assert certificate.claims == []
     assert f"Without a theorem here: {', '.join(BASIC)}. " in certificate.text
     _, reasons = checker.verify(record_of("direction_cosines", BASIC))
-    assert (
-        "'r11*r21 + r12*r22 + r13*r23', which is no sum of squares" in reasons["rate_matrix_body"]
-    )
+    assert "which gives no vector the length 1" in reasons["rate_matrix_body"]
+
+
+def test_a_matrix_that_holds_rates_has_no_theorem():
+    # W q̇ = Ω is true of it, but for the rates of one motion only
+    changed = copy.deepcopy(record_of("ZXZ", BASIC))
+    row = printed(changed, "rate_matrix_body")["expression"][2]
+    row[0], row[1] = f"{row[0]} + theta_dot", f"{row[1]} - phi_dot"
+    assert theorems(changed, BASIC).uncovered == ["rate_matrix_body"]
 
 
 @pytest.mark.parametrize("text", ["rotation_vector", "z(phi) x(pi/4)", "z(phi/2) x(theta)"])
@@ -134,10 +140,15 @@ def test_the_files_are_written_and_checked(tmp_path):
     done = subprocess.run(alone, cwd=tmp_path, capture_output=True, text=True, check=True)
     assert "R is {'turns': ['z(phi)', 'x(theta)', 'z(psi)']" in done.stdout
     assert "  proved: R is a rotation, rotation_matrix" in done.stdout
+    (folder / "other.json").write_text("{}")
+    (folder / "odd.json").write_text('{"schema": "rigidsym.derivation", "name": "\\ud800"}')
+    edit(folder / RECORD, '"title": "', '"title": "My ')
+    assert "proved" not in call("check", "out", cwd=tmp_path, status=1).stdout
     edit(folder / RECORD, "-sin(phi)*sin(psi)", "sin(phi)*sin(psi)")
     done = subprocess.run(alone, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 1
     assert "REFUSED: rotation_matrix: entry 1 is false" in done.stdout
+    assert "other.json: skipped" in done.stdout
     nothing = [*alone[:-1], "none"]
     assert subprocess.run(nothing, cwd=tmp_path, check=False).returncode == 1
 

@@ -1,6 +1,6 @@
 (* Rotations in Coq's own real numbers. Certificates (NAME.v) need this file. The first half defines
    the words of their theorems: turns, the operator C, derivatives, and "F turns with the angular
-   velocity w". Read it; nothing else has to be believed. The second half proves what they need. *)
+   velocity w". Read it, or compare this file with the shipped one. The second half proves what they need. *)
 Require Import Reals Lra. Require Export FunctionalExtensionality.
 Open Scope R_scope.
 

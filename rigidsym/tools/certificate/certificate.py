@@ -457,9 +457,16 @@ class _Section:
     def of_angular_velocity(self, name: str, frame: str) -> _Statement:
         return self.turning(frame, self.text(self.printed[name]), name)
 
+    def without_rates(self, name: str) -> str:
+        """A remark on what is the same for all rates; else the theorem is true of a false one."""
+        if {*self.rates} & _names(("", *self.trees(name))):
+            raise Unproved
+        return f"(* no rate is in the printed {name} *) "
+
     def of_rate_matrix(self, name: str, frame: str) -> _Statement:
         rates = [self.name(rate) for rate in self.rates]
-        return self.turning(frame, self.combination(self.printed[name], rates), name)
+        statement = self.turning(frame, self.combination(self.printed[name], rates), name)
+        return _Statement(self.without_rates(name) + statement.claim, statement.proof)
 
     def of_inverse_rate_matrix(self, name: str, frame: str) -> _Statement:
         """W W⁻¹ a = a for all vectors a."""
@@ -567,7 +574,8 @@ class _Section:
         symmetry = (f"{entry[j][k]} = {entry[k][j]}" for j in n for k in range(j))
         # 2 T = Ω′·I′ Ω′
         twice = f"dot w (apply inertia w) = {square}"
-        return self.for_velocity(" /\\ ".join((twice, *symmetry)), name)
+        claim = self.without_rates(name) + " /\\ ".join((twice, *symmetry))
+        return self.for_velocity(claim, name)
 
     def of_hamiltonian(self, name: str) -> _Statement:
         """T + V, if p has the values of the printed momenta."""
@@ -575,7 +583,8 @@ class _Section:
         momenta = map(self.text, self.printed["generalised_momenta"])
         values = dict(zip([f"p_{q}" for q in self.names.q], momenta, strict=True))
         claim = f"{self.text(self.printed[name], 't', values)} = {_KINETIC} + {{potential}}"
-        return self.for_velocity(claim.format(**self.parts), name, "generalised_momenta")
+        claim = self.without_rates(name) + claim.format(**self.parts)
+        return self.for_velocity(claim, name, "generalised_momenta")
 
     def equations(self, right: Sequence[str]) -> str:
         """dp/dt - ∂L/∂q = right, for the printed L and p."""

@@ -42,6 +42,7 @@ LETTERS = {  # arguments besides coordinates and what belongs to them, with thei
     "torque": (["torque_1", "torque_2", "torque_3"], "N m"),
 }
 PRINCIPAL = "principal_axes", "principal_moments"
+ROTATIONS = {"turns", "conditions"}, {"matrix", "conditions"}
 SUM = "({0}**2 + {1}**2 + {2}**2 + {3}**2)"
 TURNS = {  # a vector v and numbers c and s: R = 1 + s C(v) + (1 - c) C(v)²
     "x": ("1", "0", "0", "cos({0})", "sin({0})"),
@@ -146,23 +147,29 @@ class Matrix:
     def __init__(self, rows: Iterable[Any]) -> None:
         self.rows = [[row] if isinstance(row, Number) else [*row] for row in rows]
         self.entries = [*chain(*self.rows)]
+        self.shape = [len(self.rows), *{*map(len, self.rows)}]
+        if len(self.shape) > 2 or 0 in self.shape[1:]:
+            raise Refused("rows of different lengths, or without entries")
 
     @property
     def T(self) -> Matrix:
         return Matrix(zip(*self.rows, strict=True))
 
+    def entrywise(self, operation: Callable[..., Number], other: Matrix) -> Matrix:
+        if self.shape != other.shape:
+            raise Refused("a wrong shape")
+        return Matrix(map(operation, *pair) for pair in zip(self.rows, other.rows, strict=True))
+
     def __add__(self, other: Matrix) -> Matrix:
-        return Matrix(map(add, *pair) for pair in zip(self.rows, other.rows, strict=True))
+        return self.entrywise(add, other)
 
     def __sub__(self, other: Matrix) -> Matrix:
-        if [*map(len, self.rows)] != [*map(len, other.rows)]:
-            raise Refused("a wrong shape")
-        return Matrix(map(sub, *pair) for pair in zip(self.rows, other.rows, strict=True))
+        return self.entrywise(sub, other)
 
     def __mul__(self, other: Matrix) -> Matrix:
         if len(self.entries) == 1 and len(other.rows) > 1:  # a scalar
             return Matrix([self.entries[0] * entry for entry in row] for row in other.rows)
-        if len(self.rows[0]) != len(other.rows):
+        if self.shape[1:] != other.shape[:1]:
             raise Refused("a wrong shape")
         columns = other.T.rows
         return Matrix([reduce(add, map(mul, row, c)) for c in columns] for row in self.rows)
@@ -202,6 +209,8 @@ def turn(*numbers: Number) -> Matrix:
 
 def is_rotation(A: Matrix) -> Matrix:
     """A Aᵀ - 1 and det A - 1, which are zero for a rotation."""
+    if A.shape != IDENTITY.shape:
+        raise Refused("R or principal axes of a wrong shape")
     return Matrix([*(A * A.T - IDENTITY).entries, A.determinant() - ONE])
 
 
@@ -225,11 +234,15 @@ def without_twins(pairs: Iterable[tuple[str, Any]]) -> dict[str, Any]:
     return dict(pairs)
 
 
+def claims_in(content: Mapping[str, Any]) -> dict[str, Any]:
+    """The quantities and first integrals by their names."""
+    claims = [(claim["name"], claim) for claim in content["quantities"]]
+    claims += [("constant " + claim["name"], claim) for claim in content["first_integrals"]]
+    return without_twins(claims)
+
+
 def printed_in(content: Mapping[str, Any]) -> dict[str, Any]:
-    """The printed expressions by their names."""
-    printed = [(q["name"], q["expression"]) for q in content["quantities"]]
-    printed += [("constant " + f["name"], f["expression"]) for f in content["first_integrals"]]
-    return without_twins(printed)
+    return {name: claim["expression"] for name, claim in claims_in(content).items()}
 
 
 def turn_of(text: str) -> tuple[str, list[str]]:
@@ -249,23 +262,28 @@ class Record:
     def __init__(self, content: Mapping[str, Any]) -> None:
         self.content, self.rotation = content, content["rotation"]
         self.turns, matrix = self.rotation.get("turns", []), self.rotation.get("matrix", [])
-        if bool(matrix) == bool(self.turns):
-            raise Refused("a rotation has either turns or a matrix")
-        self.texts = [turn_of(turn)[1] for turn in self.turns] or matrix
+        if {*self.rotation} not in ROTATIONS or {*map(type, self.rotation.values())} != {list}:
+            raise Refused("a rotation has lists of turns (or a matrix) and of conditions")
+        forms = [*map(turn_of, self.turns)]
+        self.texts = [texts for _, texts in forms] or matrix
+        # the names in axes and quaternions, to which conditions may give the length 1
+        vectors = [" ".join(texts if "quaternion" in kind else texts[:3]) for kind, texts in forms]
+        vectors_of = [{*re.findall(r"[A-Za-z]\w*", vector)} for vector in vectors]
         definitions = ((each["name"], each["expression"]) for each in content["definitions"])
         self.definitions = without_twins(definitions)
         groups = without_twins((g["name"], g["components"]) for g in content["arguments"])
         units = {group: [(c["name"], c["unit"]) for c in each] for group, each in groups.items()}
         self.q, self.constants = ([q for q, _ in units.get(g, [])] for g in ("q", "parameters"))
-        self.refuse_words(units)
         self.spheres = list[list[str]]()
         for condition in self.rotation["conditions"]:  # x² + y² + ... - 1 has real roots
             names = re.findall(r"\w+(?=\*\*2)", condition)
             is_sum = re.fullmatch(r"\w+\*\*2( \+ \w+\*\*2)+ - 1", condition)
-            if not is_sum or not ({*names} <= {*self.q} or {*names} <= {*self.constants}):
-                raise Unproved(f"the condition {condition!r}, which is no sum of squares less 1")
+            is_one_kind = {*names} <= {*self.q} or {*names} <= {*self.constants}
+            if not is_sum or not is_one_kind or {*names} not in vectors_of:
+                raise Unproved(f"the condition {condition!r}, which gives no vector the length 1")
             self.spheres.append(names)
         without_twins((name, "") for name in chain(*self.spheres))
+        self.refuse_words(units)
         numbers = {name: drawn(drawn(drawn())) for name in self.q}
         numbers |= {name: drawn() for name in self.constants}
         for sphere in self.spheres:
@@ -284,31 +302,47 @@ class Record:
         self.names["constants"] = constants | {"pi": drawn()}  # no polynomial has the root pi
         self.columns = {group: Matrix(names.values()) for group, names in self.names.items()}
 
-    def refuse_words(self, groups: Mapping[str, list[tuple[str, str]]]) -> None:
+    def refuse_words(self, groups: dict[str, list[tuple[str, str]]]) -> None:
         """Refuse words beside the expressions that would give a true claim another meaning."""
         name, presentation = self.content["name"], self.content["presentation"]
         if presentation not in ("active", "passive"):
             raise Refused(f"the presentation {presentation!r}")
-        if spelled := re.match("euler_([xyz]+)_(..)trinsic$", name):
+        spelled = re.fullmatch("euler_([xyz]{3})_(in|ex)trinsic(_passive)?", name)
+        if not re.fullmatch("(?!euler_.*trinsic)[a-z][a-z0-9_]*", name) and not spelled:
+            raise Refused(f"the name {name!r}")
+        if spelled:
             turns = [f"{axis}({q})" for axis, q in zip(spelled[1], self.q, strict=True)]
-            if [*self.turns] != (turns[::-1] if spelled[2] == "ex" else turns):
+            turns = turns[::-1] if spelled[2] == "ex" else turns
+            if self.turns != turns or bool(spelled[3]) != (presentation == "passive"):
                 raise Refused(f"the turns are not those of {name}")
         nodes = chain(*(ast.walk(read(text)) for text in chain(*self.texts)))
         angles = chain(*(ast.walk(node.args[0]) for node in nodes if isinstance(node, ast.Call)))
         in_angles = [node.id[:-1] for node in angles if isinstance(node, ast.Name)]
-        unit = dict.fromkeys(self.q, "") | dict.fromkeys(in_angles, "rad")
+        unit = self.unit = dict.fromkeys(self.q, "") | dict.fromkeys(in_angles, "rad")
+        unit |= dict.fromkeys(chain(*self.spheres), "")
         expected = {group: [(name, u) for name in names] for group, (names, u) in LETTERS.items()}
         expected["q_dot"] = [(f"{q}_dot", f"{unit[q] or 1}/s") for q in self.q]
         expected["q_ddot"] = [(f"{q}_ddot", f"{unit[q] or 1}/s^2") for q in self.q]
         expected["momenta"] = [(f"p_{q}", "kg m^2/s") for q in self.q]
+        expected["t"] = [("t", "s")]
         unit |= dict(chain(*expected.values()))
-        for group, letters in groups.items():
+        body = self.content.get("body", {"parameters": []})
+        of_body = {"body": [(each["name"], each["unit"]) for each in body["parameters"]]}
+        for group, letters in (groups | of_body).items():
             right = [(name, unit.setdefault(name, printed)) for name, printed in letters]
-            if letters != expected.get(group, right) or {*dict(letters)} & {*self.definitions}:
+            of_record = right if group in ("q", "parameters", "y", "body") else None
+            if letters != expected.get(group, of_record) or {*dict(letters)} & {*self.definitions}:
                 raise Refused(f"{group} are {letters}, or are defined")
         own = [*self.q, *self.constants, *self.definitions]
         taken = {*dict(chain(*expected.values())), "cos", "sin", "tan", "cot", "sqrt", "pi"}
         without_twins((name, "") for name in (*own, *taken))
+        if {*in_angles} & {*self.definitions}:  # what stands for an angle would have any unit
+            raise Refused("an angle of a turn is defined")
+
+    def unit_of(self, group: str) -> str:
+        """That of all names in a group, or "" if they differ."""
+        units = {self.unit[name] for name in self.names[group]}
+        return units.pop() if len(units) == 1 else ""
 
     def read(self, printed: Any, *groups: str) -> Matrix:
         """A scalar, the column of a vector, or a matrix, of constants and some groups of names."""
@@ -360,9 +394,11 @@ class Record:
     # groups of names that x may hold besides constants where others could hide a false term
 
     def of_rotation(self) -> Laws:
-        factors = (turn(*self.read(forms, "q").entries) for forms in self.texts if self.turns)
-        R = self.R = reduce(mul, factors) if self.turns else self.read(self.texts, "q")
-        is_rotation(R).refuse_unless_zero("R is a rotation")
+        factors = [turn(*self.read(forms, "q").entries) for forms in self.texts if self.turns]
+        factors = factors or [self.read(self.texts, "q")]
+        for factor in factors:
+            is_rotation(factor).refuse_unless_zero("R is a rotation")
+        R = self.R = reduce(mul, factors)
         presented = R.T if self.content["presentation"] == "passive" else R
         return {
             "rotation_matrix": ("", presented),
@@ -382,12 +418,12 @@ class Record:
         A, one = Matrix([*W.rows, *radii]), Matrix([*IDENTITY.rows, *([ZERO] * 3 for _ in radii)])
         rates, letters = self.columns["q_dot"], self.columns[f"omega_{frame}"]
         self.W, self.omega, self.is_free = W, omega, not radii  # in the body, which comes last
-        from_omega = (None, lambda x: A * x - one * letters, "q", f"omega_{frame}")
+        from_omega = (self.unit_of("q_dot"), lambda x: A * x - one * letters, "q", f"omega_{frame}")
         return {
             f"angular_velocity_{frame}": ("rad/s", lambda x: x.hat() - spin, "q", "q_dot"),
             f"angular_acceleration_{frame}": ("rad/s^2", omega.rate()),
-            f"rate_matrix_{frame}": (None, lambda x: x * rates - omega, "q"),
-            f"inverse_rate_matrix_{frame}": (None, lambda x: A * x - one, "q"),
+            f"rate_matrix_{frame}": ("", lambda x: x * rates - omega, "q"),
+            f"inverse_rate_matrix_{frame}": ("", lambda x: A * x - one, "q"),
             f"rates_from_angular_velocity_{frame}": from_omega,
         }
 
@@ -427,18 +463,19 @@ class Record:
         if not {*PRINCIPAL} <= {*printed}:
             raise Unproved("axes without moments, or moments without axes")
         axes, moments = (self.read(printed[name]) for name in PRINCIPAL)
-        pairs = (zip(row, moments.entries, strict=True) for row in axes.rows)
-        products = Matrix([entry * moment for entry, moment in row] for row in pairs)
+        pairs = (zip(row, moments.rows, strict=True) for row in axes.rows)
+        products = Matrix([entry * moment for entry, (moment,) in row] for row in pairs)
         return Matrix([*is_rotation(axes).entries, *(self.inertia * axes - products).entries])
 
     def of_motion(self) -> Laws:
         """d'Alembert's principle: W'ᵀ (dL'/dt + Ω' × L') + ∂V/∂q = Q, which is M q̈ + h = Q."""
-        if not self.is_free or self.definitions:
+        if not self.is_free or len(self.q) > 3 or self.definitions:
             raise Unproved("coordinates that depend on one another, or definitions")
         # the body turns about a fixed point, from which places are counted
         self.centre.refuse_unless_zero("the centre of mass")
         motion, W, energy, moving = self.content["motion"], self.W, self.energy, ("q", "q_dot")
         rates, seconds = self.columns["q_dot"], self.columns["q_ddot"]
+        second = self.unit_of("q_ddot")
         potential = self.read(motion["potential"], "q")
         forces, torque = (self.read(motion[part], *moving) for part in ("forces", "torque"))
         turning = self.momentum.rate() + self.omega.hat() * self.momentum
@@ -451,10 +488,10 @@ class Record:
             "potential_energy": ("J", potential),
             "lagrangian": ("J", energy - potential),
             "energy": ("J", energy + potential),
-            "generalised_momenta": (None, momenta),
-            "mass_matrix": (None, masses),
-            "bias_vector": (None, inertial - masses * seconds),
-            "accelerations": (None, lambda x: masses * (x - seconds) + balance, *moving),
+            "generalised_momenta": ("kg m^2/s", momenta),
+            "mass_matrix": ("kg m^2", masses),
+            "bias_vector": ("N m", inertial - masses * seconds),
+            "accelerations": (second, lambda x: masses * (x - seconds) + balance, *moving),
             "hamiltonian": ("J", lambda x: x - energy - potential, "q", "momenta"),
             "constant energy": (None, lambda x: x.rate() - rates.T * balance, *moving),
             **{
@@ -467,7 +504,6 @@ class Record:
 def verify(content: Mapping[str, Any]) -> tuple[list[str], dict[str, str]]:
     """What is proved, and why other claims are not; raises one of BROKEN if something is false."""
     proved, reasons, laws, lack = list[str](), dict[str, str](), Laws(), "it has no definition here"
-    units = {quantity["name"]: quantity["unit"] for quantity in content["quantities"]}
     try:
         record = Record(content)
         laws |= record.of_rotation()
@@ -476,14 +512,16 @@ def verify(content: Mapping[str, Any]) -> tuple[list[str], dict[str, str]]:
         laws |= record.of_motion() if "motion" in content else {}
     except Unproved as error:
         lack = str(error)
-    for name, expression in printed_in(content).items():
+    for name, claim in claims_in(content).items():
         try:
             if name not in laws:
                 raise Unproved(lack)
             unit, law, *groups = laws[name]
-            if unit not in (None, units.get(name)):
-                raise Refused(f"{name} is in {units[name]!r}")
-            x = record.read(expression, *(groups or {*record.names} - {"momenta"}))
+            groups = groups or [*{*record.names} - {"momenta"}]
+            x = record.read(claim["expression"], *{*claim.get("inputs", groups)} & {*groups})
+            shape = claim.get("shape", [])  # of a vector, without the 1 column
+            if claim.get("unit") != unit or [*shape, 1, 1][:2] != x.shape:
+                raise Refused(f"{name} has another unit or shape")
             (law(x) if callable(law) else x - law).refuse_unless_zero(name)
             proved.append(name)
         except (Unproved, RecursionError) as error:
@@ -492,25 +530,28 @@ def verify(content: Mapping[str, Any]) -> tuple[list[str], dict[str, str]]:
 
 
 def load(path: Path) -> Any:
-    """JSON without double keys; numbers with a point stay text."""
-    text = path.read_text(encoding="utf-8")
-    return json.loads(text, object_pairs_hook=without_twins, parse_float=str, parse_constant=str)
+    """JSON without double keys; numbers with a point stay text, and NaN is no fraction."""
+    text, hook = path.read_text(encoding="utf-8"), without_twins
+    return json.loads(text, object_pairs_hook=hook, parse_float=str, parse_constant=Fraction)
 
 
 if __name__ == "__main__":
-    status, lines = 0, list[str]()
+    status, records, lines = 0, 0, list[str]()
     for place in map(Path, sys.argv[1:]):
         for path in sorted(place.rglob("*.json")) if place.is_dir() else [place]:
             try:
                 content = load(path)
                 if place.is_dir() and content.get("schema") != "rigidsym.derivation":
+                    lines.append(f"{path}: skipped, since it is no record of a derivation")
                     continue
+                records += 1
                 proved, reasons = verify(content)
-                lines += [f"{path}: R is {content['rotation']}", f"  {STRENGTH}"]
-                lines += [f"  proved: {', '.join(proved) or 'nothing'}"]
+                lines.append(f"{path}: R is {content['rotation']}")
+                lines += [f"  {STRENGTH}", f"  proved: {', '.join(proved)}"] if proved else []
                 lines += [f"  not proved: {name}, since {why}" for name, why in reasons.items()]
             except (*BROKEN, OSError) as error:
                 status = 1
                 lines.append(f"{path}: REFUSED: {error}")
-    print("\n".join(lines) or "REFUSED: there is no record of a derivation here")
-    sys.exit(status or not lines)
+    lines += [] if records or status else ["REFUSED: there is no record of a derivation here"]
+    print("\n".join(lines).encode("ascii", "backslashreplace").decode())
+    sys.exit(status or not records)
