@@ -89,6 +89,7 @@ class _Commands(click.Group):
 
 @click.group(
     cls=_Commands,
+    invoke_without_command=True,
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog="Example: rigidsym derive ZXZ",
 )
@@ -98,3 +99,5 @@ def commands(context: click.Context) -> None:
     """Derive the kinematics of a rotation, prove each step, and write kernels and notes."""
     if os.environ.get("NO_COLOR"):
         context.color = False
+    if context.invoked_subcommand is None:
+        click.echo(context.get_help())

@@ -44,7 +44,7 @@ def command(source: str, **options: Any) -> None:
             method=options["method"],
             progress=progress,
         )
-    click.echo(result.report())
+    click.echo(replace(result, ended="").report())  # the error at the end says it
     if out is not None:
         columns = result.columns()
         rows = np.column_stack([*columns.values()])

@@ -69,6 +69,7 @@ def principal_axes_of(inertia: ArrayLike) -> PrincipalAxes:
         moments, axes = np.diag(matrix)[order], np.eye(3)[:, order]
     else:
         moments, axes = np.linalg.eigh((matrix + matrix.T) / 2)
+        moments = _without_rounding(moments, np.abs(moments).max())
     for k in (0, 1):
         axes[:, k] *= np.sign(axes[np.argmax(np.abs(axes[:, k])), k])
     axes[:, 2] = np.cross(axes[:, 0], axes[:, 1])

@@ -372,9 +372,10 @@ class TextTable(Table):
             for row in (values.is_null() & ~is_gap & ~is_wrong).arg_true():
                 text = column[row][:40]
                 fault = f"field {k + 1}{f': {text!r}' if self.quotes else ''} is not a number"
-                if is_unit(text):
+                unit = text[1:-1] if text.startswith(("[", "(")) else text
+                if is_unit(unit):
                     name = self.names[k] if self.names else "angle"
-                    fault += f"; a unit belongs to the name of its column, as in {name} [{text}]"
+                    fault += f"; a unit belongs to the name of its column, as in {name} [{unit}]"
                 faults.append((places[row], fault))
         if faults:
             messages = [f"line {line}: {fault}" for line, fault in sorted(faults)]

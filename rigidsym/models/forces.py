@@ -190,11 +190,12 @@ class Forces:
             raise ModelError(f"{depends} rates; expected V(q, t)")
         if self.potential.free_symbols and not self.potential.has(*model.coordinates):
             names = ", ".join(map(as_typed, model.coordinates))
-            plain = {q.func.__name__ for q in model.coordinates}
-            plain &= {symbol.name for symbol in self.potential.free_symbols}
-            remedy = "expected one of them; a constant exerts no force, and is left out"
-            if plain:
-                name = min(plain)
+            plain = [q.func.__name__ for q in model.coordinates]
+            own = sorted(symbol.name for symbol in self.potential.free_symbols)
+            near = [name for each in own for name in get_close_matches(each, plain, n=1)]
+            hint = f" (did you mean {near[0]}?)" if near else ""
+            remedy = f"expected one of them{hint}, or no potential: a constant exerts no force"
+            if name := next(filter(plain.__contains__, own), ""):
                 remedy = f"{name} is a symbol here; expected a text, or the function {name}(t)"
             raise ModelError(f"{depends} none of the coordinates {names}; {remedy}")
         for expression in self._of_parts:

@@ -40,6 +40,7 @@ _MASS = "mass_matrix"
 _GRAVITY = "m/s^2"  # the unit by which the acceleration in a weight is known
 _ORIENTATIONS = 12  # at which a weight is told from other potentials; c has three components
 _NO_DIVISOR = (0, sp.zoo, sp.nan)
+_REPLACED = "the initial rates are replaced by the smallest with the same angular velocity"
 _UNIT = 1e-9  # by which the entries of R Rᵀ − 1 may be off at the start
 
 
@@ -161,8 +162,8 @@ class Problem:
 
         What is omitted is 0, and without any coordinate R = 1.
         """
-        rates = self.names["q_dot"]
-        _check("initial values", initial, (*self.coordinates, *rates, OMEGA, *OMEGA_COMPONENTS))
+        names = self.names["q_dot"]
+        _check("initial values", initial, (*self.coordinates, *names, OMEGA, *OMEGA_COMPONENTS))
         given = dict(initial)
         if OMEGA in given:
             omega = np.ravel(given.pop(OMEGA)).tolist()
@@ -170,18 +171,22 @@ class Problem:
                 raise ModelError(f"{OMEGA}: expected three components, got {initial[OMEGA]}")
             given |= dict(zip(OMEGA_COMPONENTS, omega, strict=True))
         is_turning = not given.keys().isdisjoint(OMEGA_COMPONENTS)
-        if is_turning and not given.keys().isdisjoint(rates):
+        if is_turning and not given.keys().isdisjoint(names):
             raise ModelError(f"initial values: expected rates or {OMEGA}, not both")
         values = initial_values(self.model, given)
         q, velocity = (
-            np.array([values[name] for name in names], float)
-            for names in (self.coordinates, OMEGA_COMPONENTS if is_turning else rates)
+            np.array([values[name] for name in each], float)
+            for each in (self.coordinates, OMEGA_COMPONENTS if is_turning else names)
         )
         for name, value, unit in zip(self.coordinates, q, self.model.coordinate_units, strict=True):
             if unit == "rad" and abs(value) > 2 * np.pi:
                 self.remarks.append(f"{name} begins at {in_both_units(value)}")
         if self.is_euler and not is_turning:
-            velocity = self._at("angular_velocity_body", q, velocity)
+            rates, velocity = velocity, self._at("angular_velocity_body", q, velocity)
+            least = self.rates(q[None], velocity[None])[0]
+            if not np.allclose(rates, least):
+                start = ", ".join(map("{} = {:.6g}".format, names, least))
+                self.remarks.append(f"{_REPLACED}: {start}")
         if is_turning and not self.is_euler:
             velocity = self.rates(q[None], velocity[None])[0]
             if not np.isfinite(velocity).all():

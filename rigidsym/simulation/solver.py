@@ -170,13 +170,13 @@ def _solved(
         states = [np.repeat(start[None], count, axis=0)]
         longest, short, ended = 0.0, 0, ""
         while solver.status == "running" and not ended:
-            message = solver.step()
-            if solver.status == "failed" or not np.isfinite(solver.y).all():
-                ended = message or "the rates overflow"
+            solver.step()
+            if not np.isfinite(solver.y).all():
+                ended = "the rates overflow"
                 break
             longest = max(longest, solver.step_size)
             short = short + 1 if solver.step_size < _SHORT * longest else 0
-            if short >= _MANY:
+            if short >= _MANY or solver.status == "failed":
                 ended = "the accelerations change faster than steps can follow"
             reached = int(np.searchsorted(times, solver.t, side="right"))
             if reached > count:
@@ -193,8 +193,9 @@ def _solved(
 
 def _exact(problem: Problem, times: Array) -> Trajectory:
     """The free body in elliptic functions."""
-    if not problem.is_alone or not problem.torque.is_zero_matrix:
-        raise ModelError(f"{problem.derivation.name}: expected a free body for the exact solution")
+    if not problem.forces.leave_free(problem.model) or problem.no_quaternion:
+        name = problem.derivation.name
+        raise ModelError(f"{name}: expected a free body on three turns, or a quaternion, for exact")
     from scipy.spatial.transform import Rotation
 
     start = problem.start

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from inspect import signature
-from itertools import product
+from itertools import compress, product
 from math import pi
 from pathlib import Path
 from types import ModuleType
@@ -152,7 +152,7 @@ def _values(
     vectors = dict(constants)
     parts = np.split(_scaled(batch.table, scales), ends, axis=1)
     for each, part in zip(free, parts, strict=True):
-        vectors[each.name] = part.reshape(count, *each.shape)
+        vectors[each.name] = each.rows(part)
         if each is _MATRIX:
             matrices = replace(batch, table=part)
             samples_of(table, _ENTRIES, matrices, drops_missing=True).check(SLACK)
@@ -184,6 +184,15 @@ class _Input:
     names: tuple[str, ...]
     units: tuple[str, ...]
     shape: tuple[int, ...] = (-1,)  # of one row
+    every: tuple[str, ...] = ()  # of constants, also those on which no result depends
+
+    def rows(self, numbers: Numbers) -> Numbers:
+        """The argument, from numbers (n, k); NaN where no result depends on it."""
+        if not self.every:
+            return numbers.reshape(len(numbers), *self.shape)
+        whole = np.full((len(numbers), len(self.every)), np.nan, numbers.dtype)
+        whole[:, [self.every.index(name) for name in self.names]] = numbers
+        return whole
 
 
 _QUATERNION = _Input("quaternion", ("qw", "qx", "qy", "qz"), ("",) * 4)
@@ -209,11 +218,19 @@ def _calls_of(motion: Motion, names: Sequence[str]) -> _Calls:
     quaternion = replace(_QUATERNION, names=rule.listed(_QUATERNION.names)) if rule else _QUATERNION
     arguments = {name: _arguments(chosen, module, name) for name in names}
     taken = {argument for each in arguments.values() for argument in each}
-    known = [_Input(a.name, a.names, a.units) for a in chosen.arguments]
+    values = [chosen.step(name).expression for name in derived_for(names)]
+    values += [definition.expression for definition in chosen.definitions]
+    acting = set(chosen.model.constants).union(*(value.free_symbols for value in values))
+    known = {a.name: _Input(a.name, a.names, a.units) for a in chosen.arguments}
+    for a in chosen.arguments:
+        if a.name == "parameters":
+            used = [symbol in acting for symbol in a.symbols]
+            own, units = (tuple(compress(each, used)) for each in (a.names, a.units))
+            known[a.name] = _Input(a.name, own, units, every=a.names)
     return _Calls(
         module=module,
         arguments=arguments,
-        inputs=[each for each in (*known, quaternion, _MATRIX) if each.name in taken],
+        inputs=[each for each in (*known.values(), quaternion, _MATRIX) if each.name in taken],
         results=[result for name in names for result in _results(chosen, name, quaternion)],
     )
 
@@ -275,17 +292,20 @@ def _constants(
 
     Raises RequestError for numbers that belong to no input, and for some of a vector only.
     """
-    known = {name for each in inputs for name in each.names}
+    known = {name for each in inputs for name in each.every or each.names}
     if strange := [name for name in given if name not in known]:
         raise RequestError(f"{strange[0]} is not an input; {offer(strange[0], sorted(known))}")
     constants = {}
     for each in inputs:
         if given.keys() >= {*each.names}:
-            numbers = np.array([given[name] for name in each.names], dtype)
-            constants[each.name] = numbers.reshape(each.shape)
+            numbers = np.array([[given[name] for name in each.names]], dtype)
+            constants[each.name] = each.rows(numbers)[0]
         elif not given.keys().isdisjoint(each.names):
             names = ", ".join(each.names)
-            raise RequestError(f"expected numbers for all of {names}, or columns for all of them")
+            lacking = ", ".join(name for name in each.names if name not in given)
+            raise RequestError(
+                f"expected numbers for all of {names}, or columns; none for {lacking}"
+            )
     return constants
 
 
@@ -346,10 +366,12 @@ def _by_name(arguments: Sequence[_Input], header: ColumnNames) -> list[int]:
                 columns.append(column)
     if missing:
         rates = {name for each in arguments if each.name == "q_dot" for name in each.names}
+        constants = {name for each in arguments if each.every for name in each.names}
         attitude = "without rates, --quantity rotation_matrix gives the attitude; "
+        same = f"--given {min(constants, default='')}=NUMBER gives a constant; "
         raise DataError(
             f"no column {', '.join(missing)} among {header.listed}; "
-            f"{attitude * ({*missing} == rates)}"
+            f"{attitude * ({*missing} == rates)}{same * (not constants.isdisjoint(missing))}"
             "if the file names them otherwise, --columns names all its columns, in order, or "
             "--angles the coordinates, such as `--angles yaw,pitch,roll`"
         )

@@ -193,6 +193,7 @@ def invoked(*arguments: str) -> Result:
 @pytest.mark.parametrize("name", commands.list_commands(None))
 def test_every_help_has_an_example(name):
     assert f"Example: rigidsym {name}" in invoked(name, "--help").stdout
+    assert invoked().stdout == invoked("--help").stdout
 
 
 def test_one_equation_is_printed_and_nothing_written(tmp_path, monkeypatch):

@@ -132,6 +132,8 @@ def test_principal_axes_are_right_handed_and_diagonalise(inertia):
     diagonal = found.axes.T @ inertia @ found.axes
     assert np.allclose(diagonal, np.diag(found.moments), atol=1e-12 * inertia.max())
     assert (np.diff(found.moments) >= 0).all()
+    rod = inertia_of([[0.1, 0.2, 0.3], [-0.1, -0.2, -0.3]])
+    assert (rod.principal.moments == 0).tolist() == [True, False, False]
 
 
 MESHES = {

@@ -201,10 +201,7 @@ NOWHERE = ("did you mean omega_body_2?", "Omega_body_2 omegabody2")
     ("given", "message"),
     [
         ({"potential": "m*g*theta_dot"}, r"the potential .*theta_dot depends on rates"),
-        (
-            {"potential": "m*g*l*cos(beta)"},
-            "none of the coordinates phi, theta, psi; expected one of them; a constant exerts no",
-        ),
+        ({"potential": "m*g*l*cos(tetha)"}, r"expected one of them \(did you mean theta\?\), or"),
         ({"potential": sp.cos(sp.Symbol("theta"))}, r"theta is a symbol here; .* theta\(t\)"),
         ({"potential": TOP, "forces": {"chi": "1"}}, "a force on chi, which is not a coordinate"),
         *(({"torque": ["0", n, "0"]}, re.escape(NOWHERE[0])) for n in NOWHERE[1].split()),

@@ -115,6 +115,7 @@ def test_columns_are_found_and_named(words, log, head, row):
         ("1,2,3\n", "3 columns without names: expected 6"),
         ("\n\n", "no rows"),
         (f"{HEAD}\n-,deg,-,-,-,-\n", r"line 2.* as in theta \[deg\]"),
+        (f"{HEAD}\n-,(deg),-,-,-,-\n", r"line 2.* as in theta \[deg\]"),
         (b"\xff\xfep\0h\0i\0", "is text in UTF-16; expected text in UTF-8"),
         (b"\x1f\x8b\x08\0", "is compressed by gzip; expected text"),
     ],
@@ -132,11 +133,13 @@ def test_what_is_wrong_with_a_text_is_said(motion, tmp_path, text, message):
         ("angular_velocity_body", HEAD, "- has no rows of numbers"),
         ("from_rotation_matrix", "1,0,0,0,1,0,0,0,-1\n", "line 1: matrix: not a rotation but a"),
         ("from_quaternion", "1,0,0,0\n0,0,0,0\n", "1 of 2 rows have no value, the first in line 2"),
+        ("heavy_symmetric_top --quantity energy", "phi,theta\n1,2\n", "--given A=NUMBER gives a"),
         ("rotation_matrix", "1,-90,7\n", "theta is as large as 90 radians, which are 5156.62 deg"),
     ],
 )
 def test_what_a_user_should_know_of_a_result_is_said(quantity, text, message):
-    done = run("eval", "ZXZ", "-", "--out", "-", "--quantity", quantity, given=text)
+    words = quantity.split() if " " in quantity else ["ZXZ", "--quantity", quantity]
+    done = run("eval", *words, "-", "--out", "-", given=text)
     assert message in done.stderr
     assert (done.returncode == 0) == done.stdout.startswith((quantity, "phi [rad],"))
 
@@ -179,11 +182,12 @@ def test_what_no_row_changes_stands_in_every_row(motion, table, tmp_path):
 
 def test_the_body_and_the_forces_of_a_derivation_file_act(table, tmp_path):
     text = '[rotation]\nsequence = "ZXZ"\n[body]\nmass = 3\nprincipal_moments = [1.5, "B", 2.5]\n'
-    text += '[dynamics]\npotential = "g*cos(theta)"\n'
+    text += '[dynamics]\npotential = "g*cos(theta)"\nforces = { theta = "-k*theta_dot" }\n'
     (tmp_path / "top.toml").write_text(text, encoding="utf-8")
     np.save(tmp_path / "log.npy", table)
     words = (tmp_path / "top.toml", tmp_path / "log.npy", "--out", tmp_path / "r.npy")
     options = ("--quantity", "energy", "--given", "B=2.0", "--given", "g=10")
+    assert run("eval", *map(str, words), *options[:2]).stderr.endswith("none for B, g\n")
     done = run("eval", *map(str, words), *options)
     assert done.returncode == 0, done.stderr
     turned = rs.derive("ZXZ").kernels().load().angular_velocity_body(table[:, :3], table[:, 3:])
