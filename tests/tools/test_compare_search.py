@@ -7,6 +7,7 @@ stand in; only the formula is theirs.
 from __future__ import annotations
 
 import json
+from time import process_time
 
 import numpy as np
 import pytest
@@ -293,6 +294,73 @@ def test_names_end_with_their_block_and_objects_may_have_two(tmp_path, case):
     assert bool(said) == bool(ALIASES[case]), said
     assert all(ALIASES[case] in each for each in said)
     assert ("transposed" in "".join(said[1:])) == ("transpose" in statement)
+
+
+TURNED = "R[0]=c; R[1]=-s; R[2]=0; R[3]=s; R[4]=c; R[5]=0; R[6]=0; R[7]=0; R[8]=1;"
+COLUMNS = "(cos(a), sin(a), 0, -sin(a), cos(a), 0, 0, 0, 1)"
+SQUARES = "x*x + y*y"
+AXIS = (
+    "s = sin(a), c = cos(a), t = 1 - c; R[0]=t*x*x + c; R[1]=t*x*y - s*z; R[2]=t*x*z + s*y;"
+    "R[3]=t*x*y + s*z; R[4]=t*y*y + c; R[5]=t*y*z - s*x; R[6]=t*x*z - s*y; R[7]=t*y*z + s*x;"
+    "R[8]=t*z*z + c;"
+)
+EXACT = {  # bodies of void f(int k, double a, x, y, z, R[9]) in C++: the words for R
+    f"double h = 1/2*a, c = cos(h), s = sin(h); {TURNED}": "not read: h",
+    f"double c = cos(std::min(a, 1.0)), s = sin(std::min(a, 1.0)); {TURNED}": "",
+    f"double s = k ? sin(a) : 0, c = cos(a); {TURNED}": "in one of several branches",
+    f"double s = sin(a), c = cos(a); switch (k) {{ case 0: s = -s; case 1: s = 2*s; }} {TURNED}": (
+        "(a) (proved); in one of several branches"
+    ),
+    f"double s = cosine(a), c = cos(a); {TURNED}": "",
+    f"double s = sinus(a), c = cos(a); {TURNED}": "(proved)",
+    f"glm::dmat3 m{COLUMNS}; R = m;": "(a) (proved)",
+    f"x = x/sqrt({SQUARES}); y = y/sqrt({SQUARES}); {AXIS}": "",
+    f"double n = sqrt({SQUARES}); x /= n; y /= n; {AXIS}": "",
+    f"double n = sqrt({SQUARES} + z*z); x /= n; y /= n; z /= n; {AXIS}": "(proved)",
+}
+
+
+@pytest.mark.parametrize(("body", "words"), EXACT.items(), ids=range(len(EXACT)))
+def test_only_what_the_language_means_is_read(tmp_path, body, words):
+    own = "double sinus(double x) { return sin(x); } double cosine(double x) { return x; }"
+    text = f"{own} void f(int k, double a, double x, double y, double z, double R[9]) {{ {body} }}"
+    texts = [str(each) for each in found_in(tmp_path, "a.cpp", text)]
+    assert bool(texts) == bool(words), texts
+    assert all(words in each and "transposed" not in each for each in texts), texts
+
+
+FLAT = "[cos(a), sin(a), 0, -sin(a), cos(a), 0, 0, 0, 1]"
+OTHERS = {
+    "a.m": f"function R = f(a)\n  R = reshape({FLAT}, 3, 3);\nend\n",
+    "a.py": f"def f(a):\n    return np.reshape({FLAT}, (3, 3), 'F')\n",
+    "b.py": "def f(a):\n    a = degrees(a)\n    return [[cos(a), -sin(a), 0], [sin(a), cos(a), 0], "
+    "[0, 0, 1]]\n",
+}
+
+
+def test_columns_and_degrees_are_not_taken_for_rows_and_radians(tmp_path):
+    texts = [str(each) for name in OTHERS for each in found_in(tmp_path, name, OTHERS[name])]
+    assert [each.partition("returned: ")[0].endswith("(a) (proved)") for each in texts] == [True]
+
+
+LARGE = {  # programs that took minutes
+    "a.py": "import os" + "\n" * 200_000,
+    "a.rs": "fn f() {}" + "\n" * 200_000,
+    "a.js": f"const x = {'1' * 100_000}n;",
+    "b.js": f"function f() {{ return '{'[' * 100_000}'; }}",
+    "c.js": f"function f() {{ var q = (a{' ' * 100_000} + b).foo(1); return [q, q, q]; }}",
+    "d.js": "function f(){" * 300 + "}" * 300,
+    "a.c": "void f(int k) {" + "".join(f"x{k} = 1; if (k) y = 2;" for k in range(1_000)) + "}",
+    "b.py": "if k: y = 1\n" + "".join(f"elif k == {k}: y = {k}\n" for k in range(2_000)),
+    "e.js": f"function f() {{ {','.join(f'x{k}={k}' for k in range(3_000))}; }}",
+}
+
+
+@pytest.mark.parametrize("name", LARGE)
+def test_the_time_for_a_file_is_bounded(tmp_path, name):
+    start = process_time()
+    assert found_in(tmp_path, name, LARGE[name]) == []
+    assert process_time() - start < 10
 
 
 def test_an_inner_function_may_change_a_name_at_any_time(tmp_path):

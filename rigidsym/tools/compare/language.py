@@ -102,8 +102,14 @@ def _of_fitting_sizes(function: Callable[..., Any]) -> Callable[..., Any]:
     def checked(*arguments: Any) -> Any:
         try:
             return function(*arguments)
-        except (ValueError, TypeError, IndexError, AttributeError) as error:
-            raise ExpressionError(f"not a formula: {error}") from None
+        except (ValueError, TypeError, IndexError, AttributeError):
+            parts = [p for a in arguments for p in (a if isinstance(a, list) else [a])]
+            sizes = [
+                "{}x{}".format(*p.shape) if isinstance(p, sp.MatrixBase) else "a number"
+                for p in parts
+                if not isinstance(p, str)
+            ]
+            raise ExpressionError(f"sizes that do not fit: {' and '.join(sizes)}") from None
 
     return checked
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from copy import deepcopy
 from dataclasses import dataclass, field, replace
@@ -38,18 +38,31 @@ from rigidsym.tools.compare.language import (
 )
 from rigidsym.tools.compare.latex import python_of
 from rigidsym.tools.compare.quantities import stem_of
-from rigidsym.tools.compare.syntax import CALLS, ORDERS, Tree, parameters, parsed, tree_of, walk
+from rigidsym.tools.compare.syntax import (
+    CALLS,
+    GRAMMARS,
+    ORDERS,
+    Tree,
+    parameters,
+    parsed,
+    tree_of,
+    walk,
+)
 
 if TYPE_CHECKING:
     from tree_sitter import Node
 
 _SHARING = (".py", ".js", ".mjs", ".jsx", ".ts", ".java")  # b = a is the same matrix
+_OF_REALS = ("python", "javascript", "typescript", "matlab")  # grammars in which 1/2 is a half
+_GLM = re.compile(r"\bglm\b")  # whose matrices are columns: m[column][row]
+_ARRAY = re.compile(r"\b(?:float|double|real\w*|Scalar|T) +(\w+) *\[")  # by rows, float R[3][3]
 _WITH_SWIZZLES = (".cs", ".cu", ".cuh")  # whose v * w is entry by entry
 _DEEPEST = 60  # nested nodes of an expression; formulas of real programs have fewer than 30
 _DEEPEST_BLOCK = 40
 _LONGEST_LIST = 64
 _MOST_FORMULAS = 1_000  # of a file
 _MOST_STEPS = 12_000  # expressions of a file: what takes some seconds
+_NAMES_A_STEP = 8  # of which a branch looks for new matrices
 _MOST_NODES = 400_000  # of a file: a generated megabyte is not worth reading
 _MOST_CHARACTERS = 20_000  # of a formula
 _LONGEST_PLACE = 120  # characters
@@ -60,7 +73,10 @@ _LONGEST_STATE = 20  # entries of a vector whose parts are looked at
 _MOST_RUNS = 24  # of a function, with other branches
 _INLINED = 3  # calls of functions of the same file inside one another
 
-_NUMBERS = re.compile(r"(-?)((?:\d[\d_]*\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)_?[fFlLuUdDmM]*(?:32|64)?")
+_NUMBERS = re.compile(  # bounded, since backtracking is quadratic in the digits
+    r"(-?)((?:\d[\d_]{0,99}\.?\d{0,99}|\.\d{1,99})(?:[eE][+-]?\d{1,9})?)_?[fFlLuUdDmM]*(?:32|64)?"
+)
+_WHOLE_NUMBERS = re.compile(r"[\d\s()*/+lLuU-]+")
 _NUMPY = re.compile(
     r"^[ \t]*(?:import|from) (?:numpy|jax|torch|tensorflow|casadi|cupy)\b", re.MULTILINE
 )
@@ -70,8 +86,11 @@ _MATRICES = re.compile(  # whose * is @
 _BUILT = re.compile(  # of 3, 4, 9 or 16 numbers
     r"mat|rot|dcm|basis|tensor|^set|new|tf|\dx\d|vec|quat|array|xyz|float[34]$", re.IGNORECASE
 )
-_MAY_BE_MATRIX = re.compile(r"[\[{].*,|(?i:sin|cos|mat|quat|dcm)", re.DOTALL)
-_BY_COLUMNS = re.compile(r"from_?col|^f?mat3x?3?$|float[34]x[34]|column_stack|hstack|^c_$", re.I)
+_MAY_BE_MATRIX = re.compile(r"\A[^\[{]*[\[{].*,|(?i:sin|cos|mat|quat|dcm)", re.DOTALL)
+_BY_COLUMNS = re.compile(
+    r"from_?col|^[df]?mat[34](x?[34])?$|float[34]x[34]|column_stack|hstack|^c_$", re.I
+)
+_COLUMN_MATRIX = re.compile(r"\b[df]?mat[34](x[34])?$")
 ANGLES_NAME = re.compile(  # of changes of three Euler angles
     r"Δ_*(?:(?:\w+_)?(?:rpy|ypr|euler)(?:_?angles?)?|(?:roll|phi)(?:_?(?:angle|rad))?(?:, .*)?)",
     re.IGNORECASE,
@@ -109,6 +128,21 @@ _COMPLETE = {frozenset(order.split()): order.split() for order in ORDERS}
 Path = tuple[Any, ...]  # of a name and its members and indices: ("R", 0, 1), ("state", "phi")
 
 
+class _Bounded(sp.Function):
+    """x of clamp(x, -1, 1): no other number has an arc sine."""
+
+
+def _unbounded(matrix: Any) -> Any:
+    """The matrix without bounds of what has an arc sine or cosine."""
+    arcs = {f for f in matrix.atoms(sp.asin, sp.acos) if isinstance(f.args[0], _Bounded)}
+    return matrix.xreplace({f: f.func(_inner(f.args[0])) for f in arcs})
+
+
+def _inner(value: Any) -> Any:
+    """x, also of clamp(x, -1, 1)."""
+    return value.args[0] if isinstance(value, _Bounded) else value
+
+
 class _Record(dict[Any, Any]):
     """Parts of a value by member or index; None for all others, if they are inputs."""
 
@@ -134,6 +168,7 @@ class Formula:
     name: str
     forms: tuple[sp.ImmutableMatrix, ...] = ()  # in terms of the inputs, and of long values
     reason: str = ""
+    is_case: bool = False  # whether another branch has another value
     unread: tuple[tuple[str, int], ...] = ()  # names in it whose values are not read, and lines
     is_final: bool = True  # not if what is not understood changes it: it may not be complete
 
@@ -179,6 +214,8 @@ class _Program:
     functions: Mapping[str, Node] = field(default_factory=dict)
     constants: Mapping[str, int] = field(default_factory=dict)  # q_i = 0 of the whole file
     product: str = "*"  # what * is for matrices: "%" entry by entry, "" if nobody knows
+    is_glm: bool = False
+    arrays: Collection[str] = ()  # names of arrays of C
     is_formula: bool = False  # a formula on its own, with the functions of `language`
     steps: Counter[str] = field(default_factory=Counter)  # expressions that were read
 
@@ -187,7 +224,7 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
     """All matrices and vectors of a program, in the order of its lines."""
     if suffix == ".rs":  # the body of a macro is code
         text = _MACRO.sub(lambda m: "mod macros {" + "\n" * m[0].count("\n"), text)
-        text = re.sub(r"\$(?=\w)|\$\($|^\s*\)[+*]$", "", text, flags=re.MULTILINE)
+        text = re.sub(r"\$(?=\w)|\$\($|^[ \t]*\)[+*]$", "", text, flags=re.MULTILINE)
     text = re.sub(r"\b\w*LITERAL\(\s*(\w+)\s*\)", r"\1", text)  # a macro for C and C++
     try:
         root = parsed(text, suffix)
@@ -201,6 +238,8 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
         {each.word: each.node for each in functions if each.word},
         {match[1]: int(match[2]) for match in _INDEX_NAME.finditer(text)},
         _product(text, suffix),
+        bool(_GLM.search(text)),
+        set(_ARRAY.findall(text)),
     )
     scopes = [_Scope(tree) for tree in (Tree(root), *functions)]
     if root.has_error:
@@ -226,7 +265,10 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
                 key = (formula.lines, formula.forms or formula.name)
                 if key not in formulas or not formula.is_final:
                     formulas[key] = formula
-    return sorted(formulas.values(), key=lambda each: each.line)
+    varied = [(f.lines, f.name) for f in formulas.values() if any(m.free_symbols for m in f.forms)]
+    cases = {place for place, number in Counter(varied).items() if number > 1}
+    marked = (replace(f, is_case=(f.lines, f.name) in cases) for f in formulas.values())
+    return sorted(marked, key=lambda each: each.line)
 
 
 def _product(text: str, suffix: str) -> str:
@@ -294,6 +336,7 @@ class _Run:
         self.inputs: set[str] = set()  # names that were read before anything was assigned
         self.definitions: dict[sp.Symbol, sp.Expr | None] = {}  # what symbols stand for, if read
         self.components: set[sp.Symbol] = set()  # of values that are not read, which are inputs
+        self.normalised: set[sp.Basic] = set()  # components that were divided by the length
         self.unread: dict[str, int] = {}  # lines of names without values
         self.later: dict[tuple[sp.Expr, Any], sp.Dummy] = {}  # parts of names assigned anew
         self.squares: dict[sp.Symbol, sp.Symbol] = {}  # |v|² of names without values
@@ -319,10 +362,12 @@ class _Run:
         scope = self.scope.tree
         late = [t for t in walk(scope.node, "assign", "outer") if t.is_one_of("late")]
         if self.program.suffix != ".py":
-            inner = [
-                t for f in walk(scope.node, "function") for t in walk(f.node, "assign", "call")
-            ]
-            late += [t for t in inner if not t.is_one_of("declaration")]
+            end = 0  # of the inner function that contains a node, if any does
+            for each in walk(scope.node, "function", "assign", "call"):
+                if each.kind == "function":
+                    end = max(end, each.node.end_byte)
+                elif each.node.start_byte < end and not each.is_one_of("declaration"):
+                    late.append(each)
         self.untracked = self.written_in(late)
         body = scope
         if scope.kind == "function":
@@ -392,7 +437,10 @@ class _Run:
             if tree.is_integer and not re.fullmatch(r"\w*", values[0].text):
                 raise self.unreadable(tree, "is rounded")
             try:
-                self.store(left, self.assigned(values[0]), right=values[0])
+                value = self.assigned(values[0])
+                if values[0].kind == "list" and _COLUMN_MATRIX.search(tree.declared_type):
+                    value = self.columns(tree, value)
+                self.store(left, value, right=values[0])
             finally:
                 self.link(tree)
         elif sign or tree.node.type == "assignment_expression":
@@ -423,6 +471,13 @@ class _Run:
     def linked(self, path: Path) -> list[Path]:
         """Names that may be another name for what is at a path."""
         return [b for a, b in self.links if all(x == y for x, y in zip(a, path, strict=False))]
+
+    def columns(self, tree: Tree, value: Any) -> Any:
+        """mat3(...) of GLM, of which other libraries have rows."""
+        if not self.program.is_glm:
+            raise self.unreadable(tree)
+        value = _unflattened(value)
+        return value.T if isinstance(value, sp.MatrixBase) and value.rows == value.cols else value
 
     def unpack(self, left: Tree, right: Tree) -> None:
         """w, x, y, z = q; c, s, t = cos(v); {x, y} = q."""
@@ -455,6 +510,8 @@ class _Run:
             path = path[:-1]
         if isinstance(value, _Record) and any(isinstance(key, slice) for key in path):
             value = _settled(value)
+        if self.by_columns(path) and len(path) > 1 and isinstance(value, sp.MatrixBase):
+            raise self.unreadable(left, "may be a column")
         # A matrix may be complete only after R = R*S.
         is_own = right is not None and re.search(rf"\b{path[0]}\b", right.text) is not None
         self.emit_at(path, is_final=not is_own)
@@ -495,12 +552,15 @@ class _Run:
             if values == [None] and own not in ratio.free_symbols:  # q0 *= recipNorm
                 return self.symbol_for(path, None)
             ratio = self.expanded(ratio)
-            units = (180 / sp.pi, sp.pi / 180)
             is_unit = ratio.is_number and ratio.is_finite
-            if is_unit and any(abs(ratio / unit - 1) < 1e-3 for unit in units):
+            if is_unit and abs(ratio * 180 / sp.pi - 1) < 1e-3:  # radians from degrees
                 return own
-            is_divided = _is_length(1 / ratio) and own.free_symbols <= ratio.free_symbols
-            if is_divided or ratio.free_symbols == {self.squares.get(own)}:
+            if _is_length(1 / ratio) and self.are_components(own, ratio.free_symbols):
+                symbol = self.symbol_for(path, None)
+                self.components.add(symbol)
+                self.normalised.add(symbol)
+                return symbol
+            if ratio.free_symbols == {self.squares.get(own)}:
                 return own
         if isinstance(path[-1], int):
             return value
@@ -508,6 +568,14 @@ class _Run:
         is_sum = is_first and bool(value.is_Add or functions)
         is_long = _size(value) > _LONGEST or (value.is_Pow and value.exp == sp.Rational(1, 2))
         return self.symbol_for(path, value) if is_long or is_sum or value.is_number else value
+
+    def are_components(self, own: sp.Expr, symbols: set[sp.Basic]) -> bool:
+        """Whether these are all components of a vector, none of which has been normalised."""
+        roles = [role for s in symbols for role in _roles(str(s)) if role[0] >= 0]
+        stems = {role[:2] for role in roles if own.free_symbols <= symbols}
+        indices = [frozenset(i for *stem, i in roles if (*stem,) == each) for each in stems]
+        are_all = any(each in _COMPLETE and len(each) == len(symbols) for each in indices)
+        return are_all and not symbols & self.normalised
 
     def symbol_for(self, path: Path, value: sp.Expr | None, line: int = 0) -> sp.Symbol:
         """A symbol for a long value, or for one that is not read (None)."""
@@ -597,8 +665,12 @@ class _Run:
 
     def run_if(self, tree: Tree) -> None:
         """if, #if, switch, and handlers of exceptions: each run takes one branch, or none."""
-        block = tree.parts[self.scope.choice(tree.node, tree.parts)]
+        self.program.steps["read"] += len(self.values) // _NAMES_A_STEP
+        choice = self.scope.choice(tree.node, tree.parts)
+        block = tree.parts[choice]
         self.run(block)
+        for each in tree.parts[choice + 1 :] if block.is_one_of("falling") else ():
+            self.run(each)  # until a break
         self.end = "" if tree.kind == "switch" and self.end == "break" else self.end
         if block.parts:
             self.emit(self.values, [])
@@ -744,7 +816,7 @@ class _Run:
         if value.cols == 1 and 4 < value.rows <= _LONGEST_STATE:  # angles and rates in a state
             for k in range(value.rows - 2):
                 self.add(f"{name}[{k}:{k + 3}]", value[k : k + 3, :], min(lines))
-        whole = self.expanded(value)
+        value, whole = map(_unbounded, (value, self.expanded(value)))
         whole = value if _size(whole) > _MOST_PARTS else whole
         symbols = whole.free_symbols | value.free_symbols
         inputs = whole.free_symbols - self.components
@@ -852,6 +924,9 @@ class _Run:
         is_turn = sign == "%" and _is_scalar(right) and (right / sp.pi).is_number
         if is_turn and self.expanded(left).has(*_INVERSE):  # the same angle
             return left
+        is_rounded = sign == "/" and GRAMMARS[self.program.suffix] not in _OF_REALS
+        if is_rounded and _WHOLE_NUMBERS.fullmatch(tree.text) and not (left / right).is_Integer:
+            raise self.unreadable(tree, "is a division of whole numbers, which rounds")
         if sign in ("+", "-"):
             left, right = self.as_vector(left, right), self.as_vector(right, left)
         else:
@@ -889,16 +964,30 @@ class _Run:
     def read_choose(self, tree: Tree) -> Any:
         constant = tree.parts[0].constant
         if constant is None:
-            return self.chosen(tree, tree.parts[1:])
+            return self.chosen(tree, tree.parts[0], tree.parts[1:])
         return self.read(tree.parts[1 if constant else 2])
 
-    def chosen(self, tree: Tree, trees: Sequence[Tree]) -> Any:
-        """One of two values: a number belongs to a pole, or is a bound of a sine."""
+    def chosen(self, tree: Tree, condition: Tree, trees: Sequence[Tree]) -> Any:
+        """One of two values: a number that belongs to a pole or is a bound is left out."""
         values = [self.tried(each) for each in trees]
         fixed = [_is_scalar(value) and value.is_number for value in values]
-        if sum(fixed) != 1:
-            return self.read(trees[self.scope.choice(tree.node, trees)])
-        return values[fixed.index(False)]
+        is_order = condition.kind == "binary" and re.fullmatch("[<>]=?|[=!]==?", condition.word)
+        if sum(fixed) == 1 and is_order and None not in values:
+            other, limit = (values[fixed.index(is_fixed)] for is_fixed in (False, True))
+            sides = [self.tried(each) for each in condition.parts]
+            if _inner(other) in sides and abs(limit) == 1 and condition.word[0] in "<>":
+                is_above = (condition.word[0] == ">") == (sides[0] == _inner(other))
+                if (is_above == fixed[0]) == (limit == 1):
+                    return _Bounded(_inner(other))
+            elif None not in sides:
+                whole = self.expanded(as_matrix(other))
+                names = self.expanded(as_matrix(sum(sides))).free_symbols
+                has_pole = whole.has(*_INVERSE) or any(
+                    p.exp.is_negative for p in whole.atoms(sp.Pow)
+                )
+                if has_pole and names & whole.free_symbols:
+                    return other
+        return self.read(trees[self.scope.choice(tree.node, trees)])
 
     # Names, members and indices
 
@@ -952,7 +1041,12 @@ class _Run:
             indices = indices[1:]
         shifted = [i - self.first if isinstance(i, int) else i for i in indices[:2]]
         is_place = all(not isinstance(i, int) or 0 <= i < 64 for i in shifted)
+        if self.by_columns(path) and isinstance(path[-1], int):
+            path, shifted = path[:-1], [*shifted, path[-1]]
         return (*path, *shifted) if is_place and trees else None
+
+    def by_columns(self, path: Path) -> bool:
+        return self.program.is_glm and path[0] not in self.program.arrays
 
     def index(self, tree: Tree) -> Any:
         """An index as it is written, or the key of a table."""
@@ -1076,7 +1170,12 @@ class _Run:
             return self.named(tree)
         alias = _last(str(self.values.get(tree.called, "")))  # s, c = np.sin, np.cos
         name = function_word(alias if alias in FUNCTIONS else tree.called)
-        base, arguments, meaning = tree.base, tree.parts[1:], CALLS.get(name, "")
+        base, arguments = tree.base, tree.parts[1:]
+        is_own = base in ("", "self", "this", "Self") and tree.called in self.program.functions
+        if is_own:  # also if a library has a function of this name
+            with suppress(ExpressionError):  # of a constructor
+                return self.inline(tree, tree.called, arguments)
+        meaning = "" if is_own else CALLS.get(name, "")
         nodes, is_method = arguments, not _MODULE.match(base)
         is_short = name in OF_NUMBERS and len(nodes) < 1 + (name in ("pow", "atan2"))
         if tree.owner is not None and (
@@ -1085,7 +1184,7 @@ class _Run:
             nodes = [tree.owner, *nodes]
         is_letter = name in [*"cstCST"] and len(nodes) == 1
         in_formula = self.program.is_formula and (name in OF_MATRICES or is_letter)
-        if (name in OF_NUMBERS or in_formula) and nodes:
+        if (name in OF_NUMBERS or in_formula) and nodes and not is_own:
             values = [self.read(each) for each in nodes]
             # SymPy takes a long argument apart, which costs as much as several expressions.
             self.program.steps["read"] += sum(map(_size, values)) // 5
@@ -1100,16 +1199,20 @@ class _Run:
                 return self.read(nodes[0])
             case "wrapper" if is_listed:
                 return self.read(nodes[0])
-            case "same" if nodes and "order=" not in tree.options:
+            case "same" if nodes:
+                if "order=" in tree.options or any(t.text[1:-1] == "F" for t in arguments):
+                    raise self.unreadable(tree)  # by columns
                 value = self.read(nodes[0])
                 is_square = re.search(r"\b([34]), *\1\b", tree.text[-12:]) is not None
-                return _unflattened(value) if is_square else value
+                is_by_columns = self.first and name == "reshape" and 1 in as_matrix(value).shape
+                value = _unflattened(value) if is_square or is_by_columns else value
+                return value.T if is_by_columns and as_matrix(value).cols > 1 else value
             case "zeros" | "unit":
                 return self.filled(tree)
             case "clamp" | "least" if len(nodes) > 1:
-                return self.unclamped(tree, [self.read(each) for each in nodes])
+                return self.bounded(tree, meaning, [self.read(each) for each in nodes])
             case "where" if len(nodes) == 3:
-                return self.chosen(tree, nodes[1:])
+                return self.chosen(tree, nodes[0], nodes[1:])
             case _ if meaning in _OF_VECTORS and nodes:
                 return self.of_vectors(meaning, [self.read(each) for each in nodes])
         is_new = self.program.suffix == ".rs" and name == "new" and len(arguments) in (3, 4)
@@ -1118,9 +1221,6 @@ class _Run:
             return self.stacked(tree, is_new)
         if len(arguments) in (4, 5, 10, 17) and arguments[-1].text in ("true", "false"):  # a flag
             arguments = arguments[:-1]
-        if name in self.program.functions and base in ("", "self", "this", "Self"):
-            with suppress(ExpressionError):  # of a constructor, or of a name of another object
-                return self.inline(tree, name, arguments)
         values = [self.tried(each) for each in arguments]
         if None not in values and len(values) > 1 and _BUILT.search(f"{base}.{tree.called}"):
             if len(values) in (3, 4, 9, 16):
@@ -1140,13 +1240,18 @@ class _Run:
         for each in trees:
             self.add(_ARGUMENT, self.tried(each), each.line)
 
-    def unclamped(self, tree: Tree, values: Sequence[Any]) -> Any:
-        """x of clamp(x, -1, 1), or of min(1, x): the sine of any other number does not exist."""
+    def bounded(self, tree: Tree, meaning: str, values: Sequence[Any]) -> Any:
+        """x of clamp(x, -1, 1), of min(1, x) or of max(-1, x), for arc sines and cosines."""
         parts = [value.as_coeff_Add() for value in values]  # a bound may be -1 + epsilon
-        bounds = [0.99 < abs(c) < 1.01 and rest.as_coeff_Mul()[1].is_Atom for c, rest in parts]
-        if bounds.count(False) != 1:
+        signs = [
+            round(c) if 0.99 < abs(c) < 1.01 and rest.as_coeff_Mul()[1].is_Atom else 0
+            for c, rest in parts
+        ]
+        least = 1 if re.search("min", tree.called, re.IGNORECASE) else -1
+        wanted = ([0, -1, 1],) if meaning == "clamp" else ([0, least], [least, 0])
+        if signs not in wanted:
             raise self.unreadable(tree)
-        return values[bounds.index(False)]
+        return _Bounded(_inner(values[signs.index(0)]))
 
     def of_vectors(self, meaning: str, values: Sequence[Any]) -> Any:
         """An operation of matrices; a name without a value is a vector."""
@@ -1182,6 +1287,8 @@ class _Run:
         if len(nodes) == 1 and nodes[0].kind in ("list", "matrix"):
             nodes = nodes[0].parts
         parts = [as_matrix(self.read(each)) for each in nodes]
+        if _COLUMN_MATRIX.search(tree.called) and len(parts) in _FLAT:
+            return self.columns(tree, rows([*map(sum, parts)]))
         if all(each.cols == 1 for each in parts) and len({each.rows for each in parts}) > 1:
             return sp.ImmutableMatrix(sp.Matrix.vstack(*parts))  # (w, v)
         matrix = rows(parts)

@@ -97,8 +97,11 @@ def source_files(paths: Sequence[Path]) -> Iterator[Path]:
     yield from dict.fromkeys(files)
 
 
-def search(path: Path) -> Iterator[FormulaInFile]:
-    """The formulas of a file that are a known quantity or close to one, and unreadable ones."""
+def search(path: Path, expected: str = "") -> Iterator[FormulaInFile]:
+    """The formulas of a file that are a known quantity or close to one, and unreadable ones.
+
+    Of several rotations close to one, that about the `expected` axes, as in "z y x", is preferred.
+    """
     text = path.read_text(encoding="utf-8", errors="replace")
     variants: dict[Any, list[Formula]] = {}
     latest: FormulaInFile | None = None
@@ -107,7 +110,8 @@ def search(path: Path) -> Iterator[FormulaInFile]:
     for group in variants.values():
         # A formula with the values of all branches may be no quantity, while one branch is.
         is_case = len({each.forms for each in group if each.forms}) > 1
-        findings = [_compared(path, each, is_case=is_case) for each in group]
+        is_case |= any(each.is_case for each in group)
+        findings = [_compared(path, each, expected, is_case=is_case) for each in group]
         readable = [each for each in findings if each and each.comparison]
         for finding in [*readable, *filter(None, findings)][:1]:
             if latest is None or not finding.repeats(latest):  # a fault counts once
@@ -115,14 +119,16 @@ def search(path: Path) -> Iterator[FormulaInFile]:
             latest = finding if finding.comparison else latest
 
 
-def _compared(path: Path, formula: Formula, *, is_case: bool) -> FormulaInFile | None:
+def _compared(
+    path: Path, formula: Formula, expected: str, *, is_case: bool
+) -> FormulaInFile | None:
     for form in formula.forms:  # a long value may be an angle
         if ANGLES_NAME.fullmatch(formula.name) and are_body_rates(form):
             asked = target("xyz", "rates_from_angular_velocity_body")
             comparison = Comparison(formula=form, asked=asked, are_body_rates=True)
             return FormulaInFile(path, formula, comparison)
         try:
-            comparison = _identified(form, is_equal=is_case or not formula.is_final)
+            comparison = _identified(form, expected, is_equal=is_case or not formula.is_final)
         except (ExpressionError, RecursionError) as error:  # a function without values
             return FormulaInFile(path, formula, reason=str(error))
         if comparison.found is not None or comparison.is_reflection:
@@ -134,8 +140,8 @@ def _compared(path: Path, formula: Formula, *, is_case: bool) -> FormulaInFile |
 
 
 @lru_cache(maxsize=1024)  # programs repeat themselves
-def _identified(matrix: sp.ImmutableMatrix, *, is_equal: bool = False) -> Comparison:
-    return identified(matrix, only_equal=is_equal, is_in_program=True)
+def _identified(matrix: sp.ImmutableMatrix, expected: str, *, is_equal: bool) -> Comparison:
+    return identified(matrix, only_equal=is_equal, is_in_program=True, expected=expected)
 
 
 def formulas(text: str, suffix: str) -> Iterator[Formula]:

@@ -49,7 +49,7 @@ def _parser(grammar: str) -> Any:
 
         module = import_module(f"tree_sitter_{grammar}")
     except ImportError as error:
-        raise MissingExtra("reading formulas in Python, C and MATLAB", "compare") from error
+        raise MissingExtra("reading formulas in programs", "compare") from error
     language = module.language_typescript if grammar == "typescript" else module.language
     return Parser(Language(language()))
 
@@ -140,7 +140,11 @@ class Tree:
             case "index":  # the array, and its indices
                 return [tree_of(nodes[0]), *_indices(nodes[1:])]
             case "comma":
-                return _flat(nodes, "comma")
+                for end in (0, -1):  # as deep as there are parts
+                    while _KINDS.get(nodes[end].type) == "comma":
+                        inner = _children(nodes.pop(end))
+                        nodes = [*inner, *nodes] if end == 0 else [*nodes, *inner]
+                return [*map(tree_of, nodes)]
             case "choose" if not parts:  # of Python: a if test else b
                 nodes = [nodes[k] for k in (1, 0, 2)]
             case "member" if not parts:  # no object, if there is only a name
@@ -176,12 +180,14 @@ class Tree:
         """The blocks of which one is run, each without its condition; an empty one for none."""
         others = self.node.children_by_field_name("alternative")
         blocks = [self.node, *dict.fromkeys([*others, *_children(self.node, "branch")])]
+        alternatives = {block.id for block in blocks[1:]}
         for block in blocks:
             condition = _part(block, "condition")
             constant = Tree(condition).constant if condition is not None else None
-            skipped = [*blocks[1:], condition, _part(block, "name")]
+            skipped = alternatives | {c.id for c in (condition, _part(block, "name")) if c}
             if constant is not False:
-                yield Tree(block, own=[tree_of(c) for c in _children(block) if c not in skipped])
+                own = [tree_of(c) for c in _children(block) if c.id not in skipped]
+                yield Tree(block, own=own)
             if constant or (block != self.node and condition is None):
                 return
         yield Tree(self.node, own=[])
@@ -197,6 +203,11 @@ class Tree:
         """The names of the parts of a record."""
         keys = (_part(pair, "key field designator left") or pair for pair in self._pairs())
         return [_text(key).lstrip(".") for key in keys]
+
+    @property
+    def declared_type(self) -> str:
+        """The type of a new name in C++."""
+        return _text(_part(self.node.parent, "type")) if self.node.parent else ""
 
     @property
     def options(self) -> str:
@@ -217,7 +228,7 @@ class Tree:
     @property
     def base(self) -> str:
         """The path of the owner; "?" for one that is an expression."""
-        text = re.sub(r"\s*(?:->|::|[?!]\.)\s*", ".", self.owner.text) if self.owner else ""
+        text = re.sub(r"(?<!\s)\s*(?:->|::|[?!]\.)\s*", ".", self.owner.text) if self.owner else ""
         return text if re.fullmatch(r"[\w.]*", text) else "?"
 
     @property
