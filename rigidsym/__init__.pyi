@@ -18,11 +18,7 @@ from .models.parametrisations import (
     chain as chain,
     given as given,
 )
-from .models.rotation import (
-    Citation as Citation,
-    RotationModel as RotationModel,
-    Turn as Turn,
-)
+from .models.rotation import Citation as Citation, RotationModel as RotationModel, Turn as Turn
 from .motion import Motion as Motion, derive as derive, kernels as kernels
 from .tools.compare.comparison import Comparison as Comparison, compare as compare
 from .tools.identify.identification import Identification as Identification, identify as identify

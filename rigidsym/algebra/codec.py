@@ -29,10 +29,7 @@ Pair = tuple[PolyElement, PolyElement]  # cosine and sine of one angle
 
 
 def codec_for(
-    expressions: Iterable[sp.Expr],
-    *,
-    constraints: Iterable[sp.Expr] = (),
-    order: int | None = 2,
+    expressions: Iterable[sp.Expr], *, constraints: Iterable[sp.Expr] = (), order: int | None = 2
 ) -> Codec:
     """The ring that holds `expressions`, in which each constraint vanishes for all time.
 
@@ -47,12 +44,7 @@ def codec_for(
     for expression in dict.fromkeys((*expressions, *conditions)):
         needed.collect(sp.sympify(expression, strict=True))
     needed.close()
-    return _shared(
-        tuple(needed.generators()),
-        tuple(needed.fractions.items()),
-        conditions,
-        order,
-    )
+    return _shared(tuple(needed.generators()), tuple(needed.fractions.items()), conditions, order)
 
 
 @lru_cache(maxsize=32)

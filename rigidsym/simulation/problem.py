@@ -69,10 +69,7 @@ class Problem:
     """The state y of one derivation, (q, q̇) or (q, Ω′), its parameters and its kernels."""
 
     def __init__(
-        self,
-        derivation: Derivation,
-        initial: Mapping[str, Any],
-        parameters: Mapping[str, float],
+        self, derivation: Derivation, initial: Mapping[str, Any], parameters: Mapping[str, float]
     ) -> None:
         """Raises ModelError for names that are missing or unknown, and for an impossible body."""
         self.derivation = derivation

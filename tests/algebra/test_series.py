@@ -10,13 +10,7 @@ import sympy as sp
 
 from helpers.witness import mp
 from rigidsym.algebra.codec import codec_for
-from rigidsym.algebra.stable_forms import (
-    FIRST_SERIES,
-    Stumpff,
-    halved,
-    rewriter_for,
-    series_of,
-)
+from rigidsym.algebra.stable_forms import FIRST_SERIES, Stumpff, halved, rewriter_for, series_of
 from rigidsym.models.library import rotation_from
 from rigidsym.models.rotation import time_function
 from rigidsym.motion import derive
@@ -89,10 +83,7 @@ def rewritten(expression: sp.Expr) -> sp.Expr | None:
         ((1 - sp.cos(NORM)) / NORM**2, Stumpff(2, NORM**2)),
         ((NORM - sp.sin(NORM)) / NORM**3, Stumpff(3, NORM**2)),
         (X + sp.cos(NORM), X + Stumpff(0, NORM**2)),
-        (
-            (sp.sin(NORM) - NORM * sp.cos(NORM)) / NORM**3,
-            Stumpff(2, NORM**2) - Stumpff(3, NORM**2),
-        ),
+        ((sp.sin(NORM) - NORM * sp.cos(NORM)) / NORM**3, Stumpff(2, NORM**2) - Stumpff(3, NORM**2)),
         (NORM * sp.sin(NORM) / (1 - sp.cos(NORM)), Stumpff(1, NORM**2) / Stumpff(2, NORM**2)),
     ],
     ids=str,

@@ -56,12 +56,7 @@ NEEDS: dict[str, Callable[[], rs.Motion]] = {
     ),
     "damped top": lambda: rs.derive(
         "ZXZ",
-        [
-            "rotation_matrix",
-            "angular_velocity_body",
-            *OF_MOTION,
-            *PRINCIPAL,
-        ],
+        ["rotation_matrix", "angular_velocity_body", *OF_MOTION, *PRINCIPAL],
         body=rs.principal_moments(A, A, C),
         potential="m*g*l*cos(theta)",
         forces={"psi": "-k*psi_dot"},

@@ -147,8 +147,7 @@ def test_the_axis_is_undetermined_without_a_turn_and_accurate_beside_it(angle):
 
 
 @pytest.mark.parametrize(
-    ("dtype", "sizes"),
-    [(np.float64, (0.0, 1e-200, 1e-150)), (np.float32, (0.0, 1e-30, 1e-17))],
+    ("dtype", "sizes"), [(np.float64, (0.0, 1e-200, 1e-150)), (np.float32, (0.0, 1e-30, 1e-17))]
 )
 def test_a_quaternion_that_is_zero_or_underflows_is_no_rotation(dtype, sizes):
     for size in sizes:

@@ -24,8 +24,7 @@ from rigidsym.kernels.targets import compiling as c_build
 REQUIRED = os.environ.get("RIGIDSYM_REQUIRE_COMPILERS") == "1"  # then they fail, not skip
 COMPILERS = [
     pytest.param(
-        name,
-        marks=pytest.mark.skipif(not (REQUIRED or shutil.which(name)), reason=f"no {name}"),
+        name, marks=pytest.mark.skipif(not (REQUIRED or shutil.which(name)), reason=f"no {name}")
     )
     for name in ("gcc", "clang")
 ]

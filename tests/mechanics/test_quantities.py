@@ -93,10 +93,7 @@ def test_twice_the_value_of_an_entry_is_refuted_by_each_of_its_laws(name):
 
 @pytest.mark.parametrize(
     "names",
-    [
-        ("rotation_matrix", "angular_velocity_body"),
-        ("rates_from_angular_velocity_body",),
-    ],
+    [("rotation_matrix", "angular_velocity_body"), ("rates_from_angular_velocity_body",)],
     ids=" ".join,
 )
 @pytest.mark.parametrize("text", ["ZXZ", "quaternion", "z(phi) x(theta) z(psi) y(delta)"])

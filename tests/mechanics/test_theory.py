@@ -16,16 +16,7 @@ from sympy.physics.vector import dynamicsymbols
 
 import rigidsym as rs
 from helpers.typesetting import numbered_by_tex
-from helpers.witness import (
-    derivative,
-    evaluate,
-    hat,
-    mp,
-    paths,
-    rotation,
-    unhat,
-    values_along,
-)
+from helpers.witness import derivative, evaluate, hat, mp, paths, rotation, unhat, values_along
 from rigidsym.errors import DerivationError, ModelError, SpecError
 from rigidsym.mechanics import lecture as theory_of
 from rigidsym.mechanics.derivation import Statement

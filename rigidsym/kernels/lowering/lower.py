@@ -23,11 +23,7 @@ from rigidsym.kernels.lowering.graph import Graph, Weighted, write
 from rigidsym.kernels.lowering.naming import Names
 from rigidsym.kernels.lowering.rounding import guarded
 from rigidsym.mechanics.conversions.function import ConversionFunction, Converted
-from rigidsym.mechanics.derivation import (
-    Argument as Vector,
-    Derivation,
-    Step,
-)
+from rigidsym.mechanics.derivation import Argument as Vector, Derivation, Step
 
 MARGIN = "singularity_margin"
 NO_CONVERSIONS = Converted()

@@ -61,16 +61,12 @@ TARGETS: dict[str, Target] = {  # the default first
         options={"lean": ("none", "double", "float")},
     ),
     "javascript": Target(
-        about="NAME.mjs: an ES module without dependencies, and its types in NAME.d.mts; no unwrap",
+        about="NAME.mjs: an ES module without dependencies, and its types in NAME.d.mts; no unwrap"
     ),
     "jax": Target(
-        about="NAME_jax.py: a Python module for JAX: jit, vmap, grad; no unwrap",
-        package="jax",
+        about="NAME_jax.py: a Python module for JAX: jit, vmap, grad; no unwrap", package="jax"
     ),
-    "numba": Target(
-        about="NAME_numba.py: a Python module that Numba compiles",
-        package="numba",
-    ),
+    "numba": Target(about="NAME_numba.py: a Python module that Numba compiles", package="numba"),
 }
 
 

@@ -32,9 +32,7 @@ _LIMITS = {"limit0": "None", "limit1": "{}", "limit2": "{}, 2"}
 
 
 def infix(
-    expression: Expression,
-    forms: Mapping[str, str] = MappingProxyType({}),
-    number: str = "{}",
+    expression: Expression, forms: Mapping[str, str] = MappingProxyType({}), number: str = "{}"
 ) -> str:
     """The expression in one line; `forms` are how the target writes what is not arithmetic.
 

@@ -7,15 +7,7 @@ from itertools import groupby
 from math import isnan, prod
 from types import MappingProxyType
 
-from rigidsym.kernels.ir import (
-    FUNCTIONS,
-    Call,
-    Choice,
-    Kernel,
-    Name,
-    Number,
-    Program,
-)
+from rigidsym.kernels.ir import FUNCTIONS, Call, Choice, Kernel, Name, Number, Program
 from rigidsym.kernels.lowering.naming import Names
 from rigidsym.kernels.targets import python, remarks
 from rigidsym.kernels.targets.infix import broken, infix

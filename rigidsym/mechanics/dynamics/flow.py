@@ -19,22 +19,12 @@ from rigidsym.algebra.present import presenter_for
 from rigidsym.errors import ModelError
 from rigidsym.formula.reader import named
 from rigidsym.formula.tree import Formula
-from rigidsym.mechanics.derivation import (
-    Consequence,
-    FirstIntegral,
-    Proof,
-    Quantity,
-    Step,
-)
+from rigidsym.mechanics.derivation import Consequence, FirstIntegral, Proof, Quantity, Step
 from rigidsym.mechanics.dynamics.consequences import of_free_body
 from rigidsym.mechanics.kinematics.chain import Chain
 from rigidsym.mechanics.kinematics.workspace import Workspace
 from rigidsym.mechanics.quantities import dynamics as claims
-from rigidsym.mechanics.quantities.table import (
-    arguments_of,
-    arguments_of_flow,
-    arguments_of_motion,
-)
+from rigidsym.mechanics.quantities.table import arguments_of, arguments_of_flow, arguments_of_motion
 from rigidsym.models.body import RigidBody
 from rigidsym.models.forces import Forces
 from rigidsym.models.rotation import TIME, RotationModel

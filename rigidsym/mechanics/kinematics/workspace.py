@@ -142,10 +142,7 @@ class Values(Workspace):
     """R, dR/dt, Ω, Ω′, W, W′ and the inverses of one model, worked out when asked for."""
 
     def __init__(
-        self,
-        model: RotationModel,
-        body: RigidBody | None = None,
-        also: Iterable[sp.Expr] = (),
+        self, model: RotationModel, body: RigidBody | None = None, also: Iterable[sp.Expr] = ()
     ) -> None:
         """`also`: expressions for the ring to hold beside those of the model and the body."""
         self.model = model

@@ -24,14 +24,7 @@ from rigidsym.errors import BodyError
 from rigidsym.formula.reader import formula
 from rigidsym.mechanics.derivation import Proof
 from rigidsym.mechanics.prove import Conditions, Prover
-from rigidsym.models.body import (
-    Composite,
-    Distribution,
-    Known,
-    Part,
-    Particles,
-    Solid,
-)
+from rigidsym.models.body import Composite, Distribution, Known, Part, Particles, Solid
 
 _PAIRS = tuple((i, j) for i in range(4) for j in range(i, 4))
 _ANTIDERIVATIVES = formula(r"\frac{\partial F}{\partial u} = f \text{ for every integral}")

@@ -248,9 +248,7 @@ FLOW_QUANTITIES = by_name(
             value=lambda k: k.state_derivative,
         ),
         "state_jacobian": Quantity(
-            symbol=formula(r"\J"),
-            inputs=("t", "y"),
-            value=lambda k: k.state_jacobian,
+            symbol=formula(r"\J"), inputs=("t", "y"), value=lambda k: k.state_jacobian
         ),
         "error_state_jacobian": Quantity(
             symbol=formula(r"\boldsymbol{\Phi}"),

@@ -117,10 +117,7 @@ angular_momentum_rotation = Quantity(
     value=lambda k: k.momentum_form,
     laws=(
         law(r"\I\,\Om = \R\,\L'_R", lambda k, x: k.rotation @ (k.inertia @ k.back) - k.read(x)),
-        law(
-            r"\L_R\cdot\Om = 2 E_R",
-            lambda k, x: k.read(x).T @ k.omega_space - k.twice_rotational,
-        ),
+        law(r"\L_R\cdot\Om = 2 E_R", lambda k, x: k.read(x).T @ k.omega_space - k.twice_rotational),
         _over_particles(r"#1\,\x_i\times\dot\x_i = \L_R", lambda k: k.x.cross(k.x_dot)),
     ),
     reason="momentum_rotated",

@@ -202,10 +202,7 @@ inertia_tensor_space = Quantity(
     source=SOURCES["Goldstein 5.2"],
     value=lambda k: k.inertia_space,
     laws=(
-        law(
-            r"\I' = \R^T\,\I\,\R",
-            lambda k, x: k.rotation.T @ (x @ k.rotation) - k.inertia,
-        ),
+        law(r"\I' = \R^T\,\I\,\R", lambda k, x: k.rotation.T @ (x @ k.rotation) - k.inertia),
         law(
             r"\operatorname{tr} \I = \operatorname{tr} \I'",
             lambda k, x: k.scalar(k.trace(x - k.inertia)),
