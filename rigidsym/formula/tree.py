@@ -6,8 +6,8 @@ the terms; the pens (LaTeX and Unicode) choose spaces and the sizes of brackets.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields, replace
 from itertools import product
 from typing import Any, Literal
 
@@ -220,3 +220,12 @@ def indexed(symbol: Formula, shape: tuple[int, ...]) -> tuple[Formula, ...]:
     own = () if symbol.index is None else (symbol.index, COMMA)
     light = replace(symbol, face="italic")
     return tuple(replace(light, index=row(*own, number)) for number in numbers)
+
+
+def with_names(node: Any, names: Mapping[Formula, Formula]) -> Any:
+    """A formula with other names in place of some of its symbols; tuples of them, too."""
+    if isinstance(node, tuple):
+        return tuple(with_names(part, names) for part in node)
+    if not isinstance(node, Formula) or node in names:
+        return names.get(node, node)
+    return replace(node, **{f.name: with_names(getattr(node, f.name), names) for f in fields(node)})

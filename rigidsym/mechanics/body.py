@@ -6,7 +6,7 @@ and the inertia tensor are used; sums over its particles follow from them (`mech
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from functools import cache, cached_property, partial
 
@@ -17,6 +17,8 @@ from rigidsym.algebra.codec import codec_for
 from rigidsym.algebra.matrix import RingMatrix, hat
 from rigidsym.algebra.present import agrees, half_form, half_of_squares, shortest_of
 from rigidsym.errors import QuantityError
+from rigidsym.formula.reader import named
+from rigidsym.formula.tree import Formula, with_names
 from rigidsym.mechanics import particles
 from rigidsym.mechanics.derivation import Step
 from rigidsym.mechanics.dynamics.flow import Flow
@@ -29,7 +31,7 @@ from rigidsym.mechanics.mass.principal import Principal, principal_of
 from rigidsym.mechanics.prove import Prover
 from rigidsym.mechanics.quantities.catalogue import OF_BODY
 from rigidsym.mechanics.quantities.kinematics import KINEMATICS
-from rigidsym.mechanics.quantities.mass import BODY_ALONE, INERTIA_QUANTITIES
+from rigidsym.mechanics.quantities.mass import BODY_ALONE, INERTIA_QUANTITIES, MASS
 from rigidsym.mechanics.quantities.table import DIRECTION, POINT
 from rigidsym.models.body import (
     BodyDescription,
@@ -273,6 +275,21 @@ class NamedRotation(BodyValues):
         return replace(step, expression=expression, proofs=(*step.proofs, *proofs))
 
 
+def total_mass(body: RigidBody) -> Formula:
+    """The letter of the mass: its own, or M, or M₀ where M is the mass of a part."""
+    own = body.mass.name if isinstance(body.mass, sp.Symbol) else "M"
+    is_taken = body.mass != sp.Symbol(own) and sp.Symbol(own) in {p.symbol for p in body.parameters}
+    return named("M_0" if is_taken else own)
+
+
+def _in_letters(step: Step, names: Mapping[Formula, Formula]) -> Step:
+    quantity = step.quantity
+    symbol, definition = with_names((quantity.symbol, quantity.definition), names)
+    proofs = [replace(proof, claim=with_names(proof.claim, names)) for proof in step.proofs]
+    quantity = quantity._replace(symbol=symbol, definition=definition)
+    return replace(step, quantity=quantity, proofs=tuple(proofs))
+
+
 def steps_of_body(
     model: RotationModel,
     body: RigidBody | BodyDescription | Distribution,
@@ -297,6 +314,8 @@ def steps_of_body(
     wanted = only or {name for name, q in OF_BODY.items() if not (is_fixed and q.of_centre)}
     values = (NamedRotation if chain else BodyValues)(model, whole, has_fixed_point=is_fixed)
     steps = [step for n, q in OF_BODY.items() if n in wanted and (step := values.step(q))]
+    letters = {MASS: total_mass(whole)}
+    steps = [_in_letters(step, letters) for step in steps]
     if isinstance(values, NamedRotation) and chain:
         steps = [values.renamed(step, chain) for step in steps]
     # of a body alone, all quantities that it has are asked for

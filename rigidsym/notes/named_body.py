@@ -14,10 +14,11 @@ import sympy as sp
 
 from rigidsym.formula.reader import formula, named
 from rigidsym.formula.tree import PLUS, Formula, bracketed, joined
+from rigidsym.mechanics.body import total_mass
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.derive import derive
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
-from rigidsym.mechanics.quantities.mass import INERTIA, INERTIA_QUANTITIES, MASS, STEINER
+from rigidsym.mechanics.quantities.mass import INERTIA, INERTIA_QUANTITIES, STEINER
 from rigidsym.mechanics.quantities.table import POINT
 from rigidsym.models.body import Parameter, RigidBody, given_inertia
 
@@ -28,7 +29,6 @@ _ABOUT_POINT = ("inertia_tensor_point", "moment_of_inertia")
 _MOMENTS = sp.symbols("I_1:4")
 OFFSET = tuple(sp.Symbol(f"d_{axis}") for axis in "xyz")
 _DISTANCE = formula(r"\mathbf{d}")
-_STEINER = formula(STEINER, INERTIA, MASS, _DISTANCE, _DISTANCE)
 
 
 def in_names(derivation: Derivation) -> tuple[Derivation, Parts]:
@@ -55,6 +55,7 @@ def in_names(derivation: Derivation) -> tuple[Derivation, Parts]:
         return derivation, ()
     again = derive(derivation.model, [n for n in renamed if n in present], body=letters)
     expressions = {step.quantity.name: step.expression for step in again.steps}
+    steiner = formula(STEINER, INERTIA, total_mass(body), _DISTANCE, _DISTANCE)
     steps = []
     for step in derivation.steps:
         name, quantity = step.quantity.name, step.quantity
@@ -62,7 +63,7 @@ def in_names(derivation: Derivation) -> tuple[Derivation, Parts]:
         if name in expressions and has_offset and name in _ABOUT_POINT:
             expression = expression.xreplace(dict(zip(POINT, OFFSET, strict=True)))
             if name == "inertia_tensor_point":
-                quantity = quantity._replace(definition=_STEINER)
+                quantity = quantity._replace(definition=steiner)
         steps.append(replace(step, quantity=quantity, expression=expression))
     return replace(derivation, steps=tuple(steps)), parts
 

@@ -309,3 +309,16 @@ def test_kernels_evaluate_the_body():
     assert np.isclose(module.moment_of_inertia([3, 0, 0], [0, 0, 1], parameters), 27)
     space = module.inertia_tensor_space([0.3, 1.3, 2.3], parameters)
     assert np.allclose(np.linalg.eigvalsh(space), np.linalg.eigvalsh(tensor))
+
+
+def test_the_letter_of_the_total_mass_is_its_own_or_one_that_no_part_has():
+    M, m, r = sp.symbols("M m r")  # noqa: N806
+    pair = rs.Particles(
+        particles=(
+            rs.Particle(mass=M, position=sp.ImmutableMatrix([r, 0, 0])),
+            rs.Particle(mass=m, position=sp.ImmutableMatrix([0, r, 0])),
+        )
+    )
+    for body, letter in ((pair, "M_0"), (rs.solid("disc", mass=m), "m")):
+        step = rs.derive("x(phi)", ["translational_energy"], body=body).step("translational_energy")
+        assert f"\\,{letter}\\," in step.quantity.definition.latex

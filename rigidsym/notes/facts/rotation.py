@@ -26,7 +26,6 @@ from rigidsym.formula.tree import (
 )
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.quantities.kinematics import SPACE
-from rigidsym.mechanics.quantities.mass import MASS
 from rigidsym.mechanics.quantities.table import is_quaternion
 from rigidsym.models.rotation import RotationModel, Turn, by_axis, carried_axes
 from rigidsym.notes.document import Equation, EquationRow, Figure, NoteBlock
@@ -76,7 +75,9 @@ def facts_of_rotation(derivation: Derivation, letters: Letters) -> dict[str, Any
             "is_length_of_vector": length is not None and length.components == model.vector,
             # whether any quantity depends on the position of the centre of mass
             "is_centre_used": not derivation.forces or inputs & {"centre", "centre_dot"},
-            "mass": MASS if "mass" in quantities else body and body.mass,
+            "mass": derivation.step("mass").quantity.symbol
+            if "mass" in quantities
+            else body and body.mass,
         },
     }
 
