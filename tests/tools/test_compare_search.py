@@ -450,8 +450,8 @@ WIDER = {
     " fn f(a: $t) -> Self { let (s, c) = a.sin_cos(); Self::new(c, -s, $t::zero(), s, c,"
     " $t::zero(), $t::zero(), $t::zero(), $t::one()) }\n }\n)+\n}; }\n",
     "b.cpp": "void f(double a, double *m) { m.setIdentity(); m(0, 0) = m(1, 1) = cos(a);\n"
-    "#if FAST\nm(0, 1) = -(m(1, 0) = fast(a));\n#else\nm(0, 1) = -(m(1, 0) = sin(a));\n"
-    "#endif\n}",
+    "#if FAST\nm(0, 1) = -(m(1, 0) = fast(a));\n#elif NONE\nreturn;\n#else\n"
+    "m(0, 1) = -(m(1, 0) = sin(a));\n#endif\n}",
     "g.py": "def f(R):\n    return np.arctan2(R[0, 2], -R[1, 2]), "
     "np.arccos(np.clip(R[2, 2], -1, 1)), np.arctan2(R[2, 0], R[2, 1])\n",
     "h.py": "def f(q):\n    w, x, y, z = q\n    n = w*w + x*x + y*y + z*z\n    s = 2.0/n\n"
@@ -470,8 +470,6 @@ WIDER = {
     "a.m": "x = [cos(a); sin(a); 0]; y = [-sin(a); cos(a); 0]; z = [0; 0; 1]; R = [x y z];\n",
     "c.js": "function f(a, update) { switch (n) { case 1: { this.set(Math.sin(a/2), 0, 0,"
     " Math.cos(a/2), update); break; } } }",
-    "c.cs": "class A { void F(float a) { Q r; r.W = Math.Cos(a/2); r.Xyz.X = Math.Sin(a/2);"
-    " r.Xyz.Y = 0; r.Xyz.Z = 0; } }",
     "j.py": "def f(a):\n    R = np.zeros(a.shape + (3, 3))\n    R[...] = np.eye(3)\n"
     "    R[..., 0, 0] = R[..., 1, 1] = np.cos(a)\n    R[..., 1, 0] = np.sin(a)\n"
     "    R[..., 0, 1] = -np.sin(a)\n    return R\n",
@@ -480,7 +478,7 @@ SAID = {
     **dict.fromkeys(
         ("a.py", "b.js", "a.rs", "a.m", "f.py", "a.cs", "b.rs", "j.py"), "rotation_matrix of z"
     ),
-    **{"c.js": "quaternion of x", "c.cs": "quaternion of x"},
+    **{"c.js": "quaternion of x", "b.cpp": "rotation_matrix of z"},
     **dict.fromkeys(("b.py", "c.py", "d.py"), "euler_angles of xyz"),
     **{"e.py": "turned_vector", "g.py": "euler_angles of ZXZ", "b.cs": "quaternion_product"},
     **{"h.py": "rotation_matrix of quaternion", "i.py": "inverse_rate_matrix_body of xyz"},

@@ -16,7 +16,7 @@ from contextlib import suppress
 from copy import deepcopy
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
-from itertools import islice, product
+from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
@@ -109,7 +109,6 @@ _INVERSE = (sp.atan2, sp.asin, sp.acos, sp.atan)
 _SIGNS = {".*": "%", "./": "/", ".^": "**", "^": "**"}  # MATLAB
 _FLAT = {9: (3, 3), 12: (4, 3), 16: (4, 4)}
 _OF_VECTORS = ("T", "C", "inv", "dot", "cross", "outer", "norm")
-_SCALARS, _VECTORS = {*"wWs"}, {"xyz", "Xyz", "v", "vec", "bv"}  # parts of a quaternion
 _OF_OBJECTS = (*_OF_VECTORS, "same", "clamp", "least", "pair")
 _VIEWS = ("T", "transpose", "reshape", "view", "ravel", "squeeze", "asarray")  # of one matrix
 _RETURNED, _ARGUMENT = _UNNAMED = ("returned", "argument")  # in place of a name
@@ -785,12 +784,6 @@ class _Run:
                 self.add(_dotted(own), matrix, *lines)
             else:
                 self.emit(part, None, own)
-        for scalar, vector in product(_SCALARS & record.keys(), _VECTORS & record.keys()):
-            part, value, line = record[vector], record[scalar], record.lines.get(scalar)
-            settled = _settled(part) if isinstance(part, _Record) else None
-            if settled is not None and _is_scalar(value) and line:  # of a quaternion
-                lines = [line for _, line in part.leaves()]
-                self.add(_dotted((*path, scalar)), sp.Matrix([value, *settled]), line, *lines)
         for kind, names in _groups(record):
             values: list[Any] = [self.definitions.get(record[n], record[n]) for n in names]
             if None in values:
@@ -1007,7 +1000,7 @@ class _Run:
                 return self.path(tree.parts[-1])
             case "member" if tree.parts:
                 path = self.path(tree.parts[0])
-                return (*path, tree.word) if path else None
+                return _below(path, tree.word) if path else None
             case "index":
                 return self.indexed(self.path(tree.parts[0]), tree.parts[1:])
             case "call":
@@ -1020,7 +1013,7 @@ class _Run:
         owner = (self.path(tree.owner) or ()) if tree.owner else ()
         if not nodes:
             match = _GETTER.fullmatch(name)
-            return (*owner, match[1].lower()) if match and (owner or tree.owner is None) else None
+            return _below(owner, match[1].lower()) if match and (owner or not tree.owner) else None
         if CALLS.get(name) == "entry":
             return self.indexed(owner, nodes)
         is_entry = len(nodes) == 2 and len(word) == 1  # t(1, 2), but not T(2)
@@ -1105,16 +1098,12 @@ class _Run:
     def entry(self, tree: Tree, value: Any, keys: Path) -> Any:
         """A part of a value."""
         if isinstance(value, _Record):
-            if (
-                keys and keys[0] in value
-                if not isinstance(keys[0] if keys else None, slice)
-                else False
-            ):
-                return self.entry(tree, value[keys[0]], keys[1:])
-            matrix = _settled(value)
-            if matrix is None and None in value and (keys or len(value) == 1):
+            key = keys[0] if keys and not isinstance(keys[0], slice) else None
+            if key is not None and key in value:
+                return self.entry(tree, value[key], keys[1:])
+            if None in value and (key is not None or len(value) == 1):  # it is not assigned
                 return self.entry(tree, value[None], keys)
-            value = matrix
+            value = _settled(value)
         if value is None:
             raise self.unreadable(tree, "has entries without values")
         if not keys:
@@ -1270,10 +1259,11 @@ class _Run:
 
     def filled(self, tree: Tree) -> Any:
         """zeros(3, 3), Matrix3d::Identity()."""
-        texts = " ".join(each.text for each in tree.parts[1:])
-        sizes = [int(digits) for digits in re.findall(r"\d+", texts)][-2:] or [3]
+        sizes = [int(n) for each in tree.parts[1:] for n in re.findall(r"\d+", each.text)][-2:] or [
+            3
+        ]
         is_zero = CALLS[tree.called] == "zeros"
-        is_column = len(sizes) == 1 and bool(texts) and is_zero and not self.first
+        is_column = len(sizes) == 1 and len(tree.parts) > 1 and is_zero and not self.first
         height, width = sizes[0], 1 if is_column else sizes[-1]
         if not {height, width} <= {3, 4} or re.search("vec|quat", tree.base, re.IGNORECASE):
             raise self.unreadable(tree)
@@ -1365,6 +1355,11 @@ def _roles(name: str) -> list[tuple[int, str, str]]:
     return roles + [(-2 - kind, change, word) for kind in kinds if len(word) > 1 or word in "xyz"]
 
 
+def _below(path: Path, name: str) -> Path:
+    """The path of a member; of a row of a matrix, R[0].x, it is an entry."""
+    return (*path, _AXES.get(name, name) if path and isinstance(path[-1], int) else name)
+
+
 def _dotted(path: Path) -> str:
     return ".".join(map(str, path))
 
@@ -1374,15 +1369,16 @@ def _last(name: str) -> str:
     words = name.split(".")
     is_own = words[0] in ("self", "this") and len(words) > 1 and not words[1].isdigit()
     words = words[is_own:]
-    count = next((n for n, word in enumerate(reversed(words)) if not word.isdigit()), 0) + 1
-    count += bool(re.fullmatch(r"[A-Za-z]\d?", words[-count])) and count < len(words)
+    count = 1
+    while count < len(words) and re.fullmatch(r"[A-Za-z]?\d?\d?", words[-count]):
+        count += 1
     return "_".join([*words[-count:-1], function_word(words[-1])])
 
 
 def _short_names(symbols: Iterable[sp.Symbol]) -> dict[sp.Expr, sp.Expr]:
     """Plain symbols for those of paths, and for those of later values of a name."""
     names: dict[str, sp.Symbol] = {}
-    for symbol in sorted(symbols, key=lambda s: (isinstance(s, sp.Dummy), s.name)):
+    for symbol in sorted(symbols, key=lambda s: (s.is_Dummy, s.name.count("."), s.name)):
         name = _last(symbol.name)
         name = symbol.name.replace(".", "_") if name in names else name
         while name in names:
@@ -1414,7 +1410,7 @@ def _part(value: sp.Expr, key: int | str) -> Any:
         isinstance(value, sp.Function) or (value / vector).is_number
     ):
         return None
-    return value.xreplace({vector: sp.Symbol(f"{vector}.{key}", real=True)})
+    return value.xreplace({vector: sp.Symbol(f"{vector.name}.{key}", real=True)})
 
 
 def _is_scalar(value: Any) -> bool:

@@ -184,6 +184,9 @@ class Tree:
         for block in blocks:
             condition = _part(block, "condition")
             constant = Tree(condition).constant if condition is not None else None
+            if block != self.node and condition is not None and _KINDS.get(block.type) == "if":
+                yield tree_of(block)  # else if, which has the other branches in it
+                return
             skipped = alternatives | {c.id for c in (condition, _part(block, "name")) if c}
             if constant is not False:
                 own = [tree_of(c) for c in _children(block) if c.id not in skipped]
