@@ -1405,7 +1405,7 @@ def _square(vector: sp.Symbol, names: Mapping[sp.Expr, sp.Expr], first: int) -> 
 
 def _part(value: sp.Expr, key: int | str) -> Any:
     """A component of c v, or of a function of it, if v is a name without a value."""
-    vector = next(iter(value.free_symbols), None)
+    vector: Any = next(iter(value.free_symbols), None)
     if len(value.free_symbols) != 1 or not (
         isinstance(value, sp.Function) or (value / vector).is_number
     ):
