@@ -34,10 +34,10 @@ def phrases(file: str) -> Mapping[str, Any]:
 
 def phrase(file: str, key: str) -> str:
     """One sentence of a file; raises TemplateFault, with the nearest key, if there is none."""
-    known = phrases(file)
-    if key not in known:
-        raise TemplateFault(f"templates/notes/en/{file}.toml: no {key!r}; {offer(key, known)}")
-    return str(known[key])
+    sentences = phrases(file)
+    if key not in sentences:
+        raise TemplateFault(f"templates/notes/en/{file}.toml: no {key!r}; {offer(key, sentences)}")
+    return str(sentences[key])
 
 
 def sentence_of(reason: str) -> str:

@@ -99,7 +99,9 @@ def check_names(style: str) -> None:
     That is one nearly with the name of a shipped file, to which no template refers. Folders of
     other languages than English hold styles of any name.
     """
-    texts = _texts_of(own) if (own := _OWN.get()) else {}
+    if (own := _OWN.get()) is None:
+        return
+    texts = _texts_of(own)
     shipped = [file.name for file in folder(NOTES).rglob("*.*")]
     for name in texts.keys() - {*replaceable(), style}:
         file = Path(name).name
@@ -132,8 +134,10 @@ def sentences(name: str) -> Mapping[str, Any]:
 
     Raises TemplateFault, with the file, for one that is not TOML, and for an unknown key.
     """
-    shipped = _sentences(*template(f"rigidsym/{name}"))
-    own, (_, file) = _sentences(*template(name)), template(name)
+    text, file = template(name)
+    own, shipped = _sentences(text, file), _sentences(*template(f"rigidsym/{name}"))
+    if own is shipped:  # which is read for each phrase that a note prints
+        return shipped
     for key, sentence in own.items():
         if key not in shipped:
             raise TemplateFault(f"{file}: no sentence has the key {key}; {offer(key, shipped)}")
