@@ -83,9 +83,8 @@ class _Trial:
         goal = family[0]
         self.formula, self.family, self.wanted = formula, family, known.values_of(family)
         self.names = known.meanings(formula, goal, is_asked=is_asked)
-        self.numbers = np.empty(
-            (0, known.POINTS, *formula.shape)
-        )  # (meanings, points, rows, columns)
+        # (meanings, points, rows, columns)
+        self.numbers = np.empty((0, known.POINTS, *formula.shape))
         if self.names:
             points, values = dict(goal.points), Values()
             for symbol in formula.free_symbols:

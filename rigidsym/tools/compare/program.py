@@ -181,7 +181,8 @@ class Formula:
 class _Scope:
     """A function, or a whole file, and the branch that a run takes at each of its choices.
 
-    It is one that no run has taken; then one in which a later choice is still open, or the last.
+    A run prefers a branch that no run has taken, then one that contains an open choice, then the
+    last.
     """
 
     tree: Tree
@@ -344,7 +345,6 @@ class _Run:
         self.formulas: list[Formula] = []
         self.emitted: set[Any] = set()
         self.results: list[Any] = []  # None for one that is not read
-        self.is_final = True  # of matrices that are emitted
         self.end = ""  # "return" or "break" after one
         self.depth = 0
 
@@ -768,12 +768,17 @@ class _Run:
     def emit_at(self, path: Path, *, is_final: bool) -> None:
         """A matrix has its values, before another is assigned."""
         if len(path) == 1 and isinstance(self.values.get(path[0]), _Record):
-            self.is_final = is_final
-            self.emit(self.values, path)
-            self.is_final = True
+            self.emit(self.values, path, is_final=is_final)
 
-    def emit(self, record: _Record, keys: Iterable[Any] | None = None, path: Path = ()) -> None:
-        """All matrices and vectors among the parts of a record have their final values."""
+    def emit(
+        self,
+        record: _Record,
+        keys: Iterable[Any] | None = None,
+        path: Path = (),
+        *,
+        is_final: bool = True,
+    ) -> None:
+        """All matrices and vectors among the parts of a record have their values."""
         for key in [*record] if keys is None else keys:
             part, own = record.get(key), (*path, key)
             if key is None or not isinstance(part, _Record) or key not in record.lines:
@@ -781,9 +786,9 @@ class _Run:
             matrix = _settled(part)
             if matrix is not None and len(matrix) > 2:
                 lines = [line for _, line in part.leaves()]
-                self.add(_dotted(own), matrix, *lines)
+                self.add(_dotted(own), matrix, *lines, is_final=is_final)
             else:
-                self.emit(part, None, own)
+                self.emit(part, None, own, is_final=is_final)
         for kind, names in _groups(record):
             values: list[Any] = [self.definitions.get(record[n], record[n]) for n in names]
             if None in values:
@@ -793,9 +798,10 @@ class _Run:
             if kind > -2 or are_angles or is_change:
                 stem = _dotted(path) or re.sub(r"\d+$", "", names[0])
                 name = ", ".join(names) if len(names) < 9 else stem
-                self.add(name, sp.Matrix(values), *(record.lines[n] for n in names))
+                places = (record.lines[n] for n in names)
+                self.add(name, sp.Matrix(values), *places, is_final=is_final)
 
-    def add(self, name: str, value: Any, *lines: int) -> None:
+    def add(self, name: str, value: Any, *lines: int, is_final: bool = True) -> None:
         """A matrix or a vector is a formula; so is each part of a long vector."""
         if not isinstance(value, sp.MatrixBase) or len(value) < 2:
             return
@@ -808,7 +814,8 @@ class _Run:
             return
         if value.cols == 1 and 4 < value.rows <= _LONGEST_STATE:  # angles and rates in a state
             for k in range(value.rows - 2):
-                self.add(f"{name}[{k}:{k + 3}]", value[k : k + 3, :], min(lines))
+                part = value[k : k + 3, :]
+                self.add(f"{name}[{k}:{k + 3}]", part, min(lines), is_final=is_final)
         value, whole = map(_unbounded, (value, self.expanded(value)))
         whole = value if _size(whole) > _MOST_PARTS else whole
         symbols = whole.free_symbols | value.free_symbols
@@ -820,7 +827,7 @@ class _Run:
         forms = [spelled_out(m.xreplace(names | squares), computed) for m in (whole, value)]
         places = tuple((_last(n), self.unread.get(n) or min(lines)) for n in sorted(unread))
         formula = Formula(lines=lines, name=_last(name), forms=tuple(dict.fromkeys(forms)))
-        self.formulas.append(replace(formula, unread=places, is_final=self.is_final))
+        self.formulas.append(replace(formula, unread=places, is_final=is_final))
 
     # Expressions
 
@@ -1020,11 +1027,9 @@ class _Run:
         is_known = word in OF_NUMBERS or word in OF_MATRICES or word in CALLS
         is_function = is_known and not is_entry and self.part(self.values, (*owner, name)) is None
         is_function |= word in self.program.functions and not self.first
-        return (
-            None
-            if is_function or len(nodes) > 2 + self.first
-            else self.indexed((*owner, name), nodes)
-        )
+        if is_function or len(nodes) > 2 + self.first:
+            return None
+        return self.indexed((*owner, name), nodes)
 
     def indexed(self, path: Path | None, trees: Sequence[Tree]) -> Path | None:
         indices: list[Any] = [self.index(tree) for tree in trees]
@@ -1069,11 +1074,9 @@ class _Run:
     def part(self, value: Any, path: Path) -> Any:
         """What is stored at a path, or None."""
         for key in path:
-            value = (
-                value.get(key)
-                if isinstance(value, _Record) and not isinstance(key, slice)
-                else None
-            )
+            if isinstance(key, slice) or not isinstance(value, _Record):
+                return None
+            value = value.get(key)
         return value
 
     def named(self, tree: Tree) -> Any:
@@ -1109,10 +1112,8 @@ class _Run:
         if not keys:
             return value
         key, *others = keys
-        letters = (
-            {"vec": "xyz", "imag": "xyz", "v": "xyz"}.get(key, key) if isinstance(key, str) else ""
-        )
-        if len(letters) > 1 and re.fullmatch("[xyzw]{2,4}", letters):
+        letters = "xyz" if key in ("vec", "imag", "v") else key
+        if isinstance(letters, str) and re.fullmatch("[xyzw]{2,4}", letters):
             return rows([self.entry(tree, value, (letter,)) for letter in letters])
         if isinstance(value, sp.MatrixBase):
             return self.block(tree, value, keys)
@@ -1259,9 +1260,8 @@ class _Run:
 
     def filled(self, tree: Tree) -> Any:
         """zeros(3, 3), Matrix3d::Identity()."""
-        sizes = [int(n) for each in tree.parts[1:] for n in re.findall(r"\d+", each.text)][-2:] or [
-            3
-        ]
+        numbers = [int(n) for each in tree.parts[1:] for n in re.findall(r"\d+", each.text)]
+        sizes = numbers[-2:] or [3]
         is_zero = CALLS[tree.called] == "zeros"
         is_column = len(sizes) == 1 and len(tree.parts) > 1 and is_zero and not self.first
         height, width = sizes[0], 1 if is_column else sizes[-1]
@@ -1347,10 +1347,8 @@ def _roles(name: str) -> list[tuple[int, str, str]]:
     roles = [(k, m["stem"], m["index"].replace("_", "").lower()) for k, m in matches if m]
     if stem_of(name):
         roles.append((-1, "", name))
-    change, word = (
-        "Δ" * name.startswith("Δ"),
-        re.sub(r"^[Δδ]?_*|_?(val|rad|angle)?_*$", "", name.lower()),
-    )
+    change = "Δ" * name.startswith("Δ")
+    word = re.sub(r"^[Δδ]?_*|_?(val|rad|angle)?_*$", "", name.lower())
     kinds = [kind for kind, angles in enumerate(_COMPLETE) if word in angles]
     return roles + [(-2 - kind, change, word) for kind in kinds if len(word) > 1 or word in "xyz"]
 
@@ -1376,7 +1374,7 @@ def _last(name: str) -> str:
 
 
 def _short_names(symbols: Iterable[sp.Symbol]) -> dict[sp.Expr, sp.Expr]:
-    """Plain symbols for those of paths, and for those of later values of a name."""
+    """Short names for symbols of paths, and for the symbols of later values of a name."""
     names: dict[str, sp.Symbol] = {}
     for symbol in sorted(symbols, key=lambda s: (s.is_Dummy, s.name.count("."), s.name)):
         name = _last(symbol.name)

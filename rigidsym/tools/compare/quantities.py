@@ -93,7 +93,7 @@ def _opposite(matrix: sp.Matrix, inputs: Sequence[sp.Expr]) -> sp.Matrix:
 
 def _times(*factors: float) -> Way:
     """The way with entries times one factor, or each row times its own."""
-    numbers = [sp.nsimplify(factor) for factor in factors]
+    numbers = [*map(sp.Rational, factors)]
     return lambda matrix, *_: (
         sp.diag(*numbers) * matrix if len(numbers) == matrix.rows else numbers[0] * matrix
     )
