@@ -54,15 +54,16 @@ class EulerEquations(Flow):
         self._inverse = rotation.codec.decoded(inverse)
         self.divisor = rotation.codec.decode(divisor)
         self._matrix = rotation.model.matrix
-        # more turns than degrees of freedom, so that one attitude has many coordinates
-        is_spare = len(model.turns) > 3
-        self._rate_matrix = rotation.codec.decoded(rotation.rate_matrix("body")) if is_spare else ()
         q = model.coordinates
         # Rates in given forces are replaced by q̇ = W′⁻¹ Ω′, as they are not part of this state.
         turning = self._inverse * sp.Matrix(OMEGA_BODY) / self.divisor
         rates = {sp.diff(x, TIME): rate for x, rate in zip(q, turning, strict=True)}
         self._gradient = [sp.diff(forces.potential, x) for x in q]
         self._forces = [forces.generalised.get(x, sp.S.Zero).xreplace(rates) for x in q]
+        # On more turns than degrees of freedom, one attitude has many coordinates, of which forces
+        # may depend otherwise.
+        is_spare = len(model.turns) > 3 and any((*self._gradient, *self._forces))
+        self._rate_matrix = rotation.codec.decoded(rotation.rate_matrix("body")) if is_spare else ()
         self._torque = [n.xreplace(rates) for n in forces.torque or (sp.S.Zero,) * 3]
         entries = [*self._inverse, self.divisor, *self._matrix, *self._rate_matrix, *body.inertia]
         entries += [forces.potential, *self._gradient, *self._forces, *self._torque]
