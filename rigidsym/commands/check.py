@@ -76,7 +76,7 @@ def _findings(record: Path) -> Iterator[tuple[Path, str, str]]:
                 note = f"\n  proved: {', '.join(proved) or 'nothing'}"
                 note += f"\n  not proved: {', '.join(reasons) or 'nothing'}"
             is_edited = record.read_bytes() != fresh.files[record.name].encode("utf-8")
-            note = "" if is_edited else note  # what is proved of another record is no news
+            note = "" if is_edited else note  # it says nothing of the fresh record
         yield path, problem, note
     path = record.with_suffix(f".{CERTIFICATE}")
     if path.name not in fresh.files and path.exists():

@@ -77,7 +77,7 @@ def principal_axes_of(inertia: ArrayLike) -> PrincipalAxes:
 
 
 def _without_rounding(values: Array, size: float) -> Array:
-    """The values, with 0 for those that rounding left in numbers of this size."""
+    """The values, with 0 in place of rounding errors of numbers of this size."""
     return np.where(np.abs(values) > _ROUNDING * size, values, 0.0)
 
 

@@ -50,7 +50,7 @@ def equation_of(step: Step, arguments: Iterable[Argument]) -> Equation:
 
 
 def in_parts(parts: Iterable[tuple[sp.Expr, sp.Expr]], letters: Letters) -> Equation:
-    """Names with what they stand for, without a side in common."""
+    """The definition of each name, one below the other."""
     names, values = zip(*parts, strict=True)
     entries = tuple(formula_of(name, letters) for name in names)
     return Equation(sides=(), matrix=sp.ImmutableMatrix(values), entries=entries)

@@ -135,7 +135,7 @@ def _check_ends(chunk: str) -> None:
 
 
 def _place_of(line: str) -> str:
-    """Where a line of the Markdown stands; a fact in it is not written in the template so."""
+    """File and line of the template, by the longest part of a line of Markdown without facts."""
     return resources.place_of(max(re.split(_MARK, line), key=len))
 
 

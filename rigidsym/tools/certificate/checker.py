@@ -336,11 +336,11 @@ class Record:
         own = [*self.q, *self.constants, *self.definitions]
         taken = {*dict(chain(*expected.values())), "cos", "sin", "tan", "cot", "sqrt", "pi"}
         without_twins((name, "") for name in (*own, *taken))
-        if {*in_angles} & {*self.definitions}:  # what stands for an angle would have any unit
+        if {*in_angles} & {*self.definitions}:  # a definition states no unit
             raise Refused("an angle of a turn is defined")
 
     def unit_of(self, group: str) -> str:
-        """That of all names in a group, or "" if they differ."""
+        """The unit that all names of a group have, or "" if they differ."""
         units = {self.unit[name] for name in self.names[group]}
         return units.pop() if len(units) == 1 else ""
 
