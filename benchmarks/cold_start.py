@@ -54,20 +54,21 @@ def report(seconds: Mapping[str, Sequence[float]]) -> Report:
     ratio = ratios(seconds[DERIVE], seconds[IMPORT])
     return Report(
         title="Cold start: a whole process, from its start to its end",
-        tables=(_times(spreads), _ratio(ratio)),
+        tables=(
+            Table(
+                "Wall time",
+                (Column("command"), *spread_columns("ms", 0)),
+                tuple((name, *spread.in_order(1000)) for name, spread in spreads.items()),
+            ),
+            Table(
+                "Ratio, turn by turn",
+                (Column("time of"), Column("over time of"), *spread_columns("ratio", 2)),
+                ((DERIVE, IMPORT, *ratio.in_order()),),
+            ),
+        ),
         figures=_figures(spreads[HELP], ratio),
         notes=(f"rigidsym is run as {' '.join(rigidsym_command()[:2])}",),
     )
-
-
-def _times(spreads: Mapping[str, Spread]) -> Table:
-    rows = tuple((name, *spread.in_order(1000)) for name, spread in spreads.items())
-    return Table("Wall time", (Column("command"), *spread_columns("ms", 0)), rows)
-
-
-def _ratio(ratio: Spread) -> Table:
-    columns = (Column("time of"), Column("over time of"), *spread_columns("ratio", 2))
-    return Table("Ratio, turn by turn", columns, ((DERIVE, IMPORT, *ratio.in_order()),))
 
 
 def _figures(start: Spread, ratio: Spread) -> tuple[Figure, ...]:

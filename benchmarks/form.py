@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, astuple, dataclass
 
 from benchmarks import sympy_forms
 from benchmarks.measure import Settings, progress
@@ -53,10 +53,6 @@ class Comparison:
     def is_longer(self) -> bool:
         return self.ours > self.sympy_best
 
-    @property
-    def is_longer_than_factored(self) -> bool:
-        return self.ours > self.sympy_factored
-
 
 def run(settings: Settings) -> Report:
     """The table over all conventions for which a survey of SymPy's forms is kept."""
@@ -100,10 +96,10 @@ def compare(sequence: str, surveys: Mapping[str, Survey]) -> list[Comparison]:
 
 
 def report(comparisons: Sequence[Comparison]) -> Report:
-    """The tables, quantity by quantity and convention by convention."""
+    """The table, quantity by quantity; the data have every convention."""
     return Report(
         title="Form: operations by sympy.count_ops, summed over the entries",
-        tables=(_by_quantity(comparisons), _by_convention(comparisons)),
+        tables=(_by_quantity(comparisons),),
         figures=_figures(comparisons),
         notes=_notes(comparisons),
         data=tuple(asdict(comparison) for comparison in comparisons),
@@ -111,60 +107,25 @@ def report(comparisons: Sequence[Comparison]) -> Report:
 
 
 def _by_quantity(comparisons: Sequence[Comparison]) -> Table:
-    columns = (
-        Column("quantity"),
-        Column("ours"),
-        Column("SymPy: raw"),
-        Column("best"),
-        Column("factored"),
-        Column("entry by entry"),
-        Column("ours > best"),
-        Column("> factored"),
-        Column("the best form, most often"),
-    )
+    heads = ["quantity", "ours", "SymPy: raw", "best", "factored", "entry by entry"]
+    heads += ["ours > best", "> factored", "the best form, most often"]
     rows: list[tuple[Cell, ...]] = []
     for quantity, symbol in SYMBOLS.items():
         chosen = [c for c in comparisons if c.quantity == quantity]
         if chosen:
-            rows.append((symbol, *_ranges(chosen), *_longer(chosen), _most_common_form(chosen)))
-    return Table("By quantity, least to most over the conventions", columns, tuple(rows))
-
-
-def _ranges(chosen: Sequence[Comparison]) -> tuple[str, ...]:
-    return (
-        _range(c.ours for c in chosen),
-        _range(c.sympy_raw for c in chosen),
-        _range(c.sympy_best for c in chosen),
-        _range(c.sympy_factored for c in chosen),
-        _range(c.sympy_mixed for c in chosen),
+            counts = zip(*(astuple(c)[2:-1] for c in chosen), strict=True)
+            longer = sum(c.is_longer for c in chosen)
+            longer_than_factored = sum(c.ours > c.sympy_factored for c in chosen)
+            (form, _), *_ = Counter(c.best_form for c in chosen).most_common(1)
+            rows.append((symbol, *map(_range, counts), longer, longer_than_factored, form))
+    return Table(
+        "By quantity, least to most over the conventions", (*map(Column, heads),), tuple(rows)
     )
 
 
 def _range(values: Iterable[int]) -> str:
     found = sorted(values)
     return str(found[0]) if found[0] == found[-1] else f"{found[0]} to {found[-1]}"
-
-
-def _longer(chosen: Sequence[Comparison]) -> tuple[int, int]:
-    """In how many conventions ours is longer."""
-    return sum(c.is_longer for c in chosen), sum(c.is_longer_than_factored for c in chosen)
-
-
-def _most_common_form(chosen: Sequence[Comparison]) -> str:
-    return Counter(c.best_form for c in chosen).most_common(1)[0][0]
-
-
-def _by_convention(comparisons: Sequence[Comparison]) -> Table:
-    cells = {(c.convention, c.quantity): _cell(c) for c in comparisons}
-    conventions = tuple(dict.fromkeys(c.convention for c in comparisons))
-    rows = tuple((s, *(cells.get((s, q)) for q in SYMBOLS)) for s in conventions)
-    columns = (Column("convention"), *map(Column, SYMBOLS.values()))
-    return Table("By convention, ours/SymPy's best; ! where ours is longer", columns, rows)
-
-
-def _cell(comparison: Comparison) -> str:
-    mark = "!" if comparison.is_longer else ""
-    return f"{comparison.ours}/{comparison.sympy_best}{mark}"
 
 
 def _figures(comparisons: Sequence[Comparison]) -> tuple[Figure, ...]:

@@ -3,7 +3,7 @@
 All sides compute the same values in float64 on one core, by turns. Ours take one orientation a
 row, or a column. A user without us writes np.stack of lambdify's functions (cse) of the columns;
 heyoka's compiled function takes one component a row, its own layout. A plain copy of as many bytes
-is the limit that memory sets. `sizes --size 2000000` goes up to two million.
+is the limit that memory sets. `sizes` goes up to two million rows, or to those of `--size`.
 """
 
 from __future__ import annotations
@@ -222,11 +222,11 @@ def measured(name: str, size: int, repeats: int, layout: str = "rows", **options
 
 def run(settings: Settings) -> Report:
     """Every side, Ω′ and R, with `out` given."""
-    repeats = settings.repeats or 15
+    repeats, most = settings.repeats or 15, settings.size or 10**6
     with on_one_core():
         cases = {
             (size, name): measured(name, size, repeats, is_filled=True, is_large=True)
-            for size in (settings.size, settings.size // 10)
+            for size in (most, most // 10)
             for name in ("angular_velocity_body", "rotation_matrix")
         }
     return report(cases)
@@ -280,9 +280,10 @@ def sizes(settings: Settings) -> Report:
         for name, symbol in SYMBOLS.items():
             for place, (layout, options) in PLACES.items():
                 cases[f"{symbol}, {place}"] = {
-                    size: measured(name, size, settings.repeats or 11, layout, **options)
+                    size: measured(name, size, settings.repeats or repeats, layout, **options)
                     for size in SIZES
-                    if size <= settings.size
+                    for repeats in [11 if size < 10**5 else 5]  # for eight minutes in all
+                    if size <= (settings.size or 2 * 10**6)
                 }
     progress()
     return Report(

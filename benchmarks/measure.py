@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-import tracemalloc
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -41,7 +40,7 @@ class Settings:
     """What the command line may change."""
 
     repeats: int | None = None  # None: each benchmark's own
-    size: int = 1_000_000  # orientations in a batch of the kernels
+    size: int | None = None  # orientations in the largest batch, likewise
     samples: int = 40  # orientations of each kind whose errors are taken
     fresh: bool = False  # survey SymPy's forms anew
 
@@ -89,18 +88,6 @@ def on_one_core() -> Iterator[None]:
         yield
     finally:
         os.sched_setaffinity(0, before)
-
-
-def peak_memory(function: Callable[[], object]) -> int:
-    """Bytes held at the worst moment of one call, results included."""
-    tracemalloc.start()
-    try:
-        kept = function()
-        _, peak = tracemalloc.get_traced_memory()
-        del kept
-    finally:
-        tracemalloc.stop()
-    return peak
 
 
 def run_process(command: Sequence[str]) -> str:

@@ -102,7 +102,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the results there too")
     for option, default, about in (
         ("--repeats", None, "of each measurement, instead of its own number"),
-        ("--size", usual.size, "orientations in a batch of the kernels"),
+        ("--size", None, "orientations in the largest batch of the kernels, likewise"),
         ("--samples", usual.samples, "orientations of each kind whose errors are taken"),
     ):
         parser.add_argument(option, type=_count, default=default, metavar="N", help=about)
