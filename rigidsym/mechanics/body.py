@@ -6,7 +6,7 @@ and the inertia tensor are used; sums over its particles follow from them (`mech
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache, cached_property, partial
 
@@ -20,7 +20,7 @@ from rigidsym.errors import QuantityError
 from rigidsym.formula.reader import named
 from rigidsym.formula.tree import Formula, with_names
 from rigidsym.mechanics import particles
-from rigidsym.mechanics.derivation import Step
+from rigidsym.mechanics.derivation import Argument, Step
 from rigidsym.mechanics.dynamics.flow import Flow
 from rigidsym.mechanics.dynamics.lagrange import equations_of_motion
 from rigidsym.mechanics.kinematics.chain import Chain
@@ -275,11 +275,29 @@ class NamedRotation(BodyValues):
         return replace(step, expression=expression, proofs=(*step.proofs, *proofs))
 
 
-def total_mass(body: RigidBody) -> Formula:
+def total_mass(body: RigidBody) -> sp.Symbol:
     """The letter of the mass: its own, or M, or M₀ where M is the mass of a part."""
-    own = body.mass.name if isinstance(body.mass, sp.Symbol) else "M"
-    is_taken = body.mass != sp.Symbol(own) and sp.Symbol(own) in {p.symbol for p in body.parameters}
-    return named("M_0" if is_taken else own)
+    if body.mass.is_Symbol:
+        return body.mass
+    is_taken = any(p.symbol.name == "M" for p in body.parameters)
+    return sp.Symbol("M_0" if is_taken else "M")
+
+
+def moment_letters(
+    arguments: Iterable[Argument], moments: Sequence[sp.Expr]
+) -> tuple[sp.Symbol, ...]:
+    """I₁, I₂, I₃ for principal moments; J or K where an argument is printed as one of these."""
+    letters = {
+        letter: symbol
+        for each in arguments
+        for letter, symbol in zip(each.notation, each.symbols, strict=True)
+    }
+    for letter in "IJK":
+        names = tuple(sp.symbols(f"{letter}_1:4"))
+        pairs = zip(map(named, map(str, names)), moments, strict=True)
+        if all(letters.get(name, moment) == moment for name, moment in pairs):
+            break
+    return names
 
 
 def _in_letters(step: Step, names: Mapping[Formula, Formula]) -> Step:
@@ -314,7 +332,10 @@ def steps_of_body(
     wanted = only or {name for name, q in OF_BODY.items() if not (is_fixed and q.of_centre)}
     values = (NamedRotation if chain else BodyValues)(model, whole, has_fixed_point=is_fixed)
     steps = [step for n, q in OF_BODY.items() if n in wanted and (step := values.step(q))]
-    letters = {MASS: total_mass(whole)}
+    letters = {MASS: named(total_mass(whole).name)}
+    if any("principal" in step.quantity.name for step in steps) and values.principal:
+        own = moment_letters(values.arguments.values(), values.principal.moments)
+        letters |= {named(f"I_{k}"): named(str(letter)) for k, letter in enumerate(own, start=1)}
     steps = [_in_letters(step, letters) for step in steps]
     if isinstance(values, NamedRotation) and chain:
         steps = [values.renamed(step, chain) for step in steps]

@@ -331,15 +331,15 @@ class Composer:
         return table._replace(rows=tuple(rows.values()))
 
     def _proofs(self) -> list[tuple[EquationReference, Proof]]:
-        """Each claim once with its equation, in the order of the equations."""
+        """Each claim once, with the first equation that needs it, in the order of the equations."""
         stated = [(s.name, s.number, s.proofs) for s in self.derivation.theory]
         stated += [(s.quantity.name, s.number, s.proofs) for s in self.derivation.steps]
         numbers = {name: number or 0 for name, number, _ in stated}
-        once: dict[Any, tuple[EquationReference, Proof]] = {}
+        once: dict[tuple[Formula, str], tuple[EquationReference, Proof]] = {}
         for name, _, proofs in stated:
             reference = self._reference(name)
             for proof in proofs:
-                once.setdefault((reference, proof.claim), (reference, proof))
+                once.setdefault((proof.claim, proof.status), (reference, proof))
         return sorted(once.values(), key=lambda pair: numbers[pair[0].label])
 
 

@@ -14,7 +14,7 @@ import sympy as sp
 
 from rigidsym.formula.reader import formula, named
 from rigidsym.formula.tree import PLUS, Formula, bracketed, joined
-from rigidsym.mechanics.body import total_mass
+from rigidsym.mechanics.body import moment_letters, total_mass
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.derive import derive
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
@@ -26,7 +26,6 @@ Parts = Sequence[tuple[sp.Symbol, sp.Expr]]  # names with what they stand for
 
 _AS_DESCRIBED = ("mass", "centre_of_mass", "principal_moments", "principal_axes")
 _ABOUT_POINT = ("inertia_tensor_point", "moment_of_inertia")
-_MOMENTS = sp.symbols("I_1:4")
 OFFSET = tuple(sp.Symbol(f"d_{axis}") for axis in "xyz")
 _DISTANCE = formula(r"\mathbf{d}")
 
@@ -41,21 +40,21 @@ def in_names(derivation: Derivation) -> tuple[Derivation, Parts]:
         return derivation, ()
     is_short = all(entry.is_Atom for entry in (*body.inertia, body.mass))
     has_offset = any(body.centre)
-    parts, letters = _named(body, is_short)
+    moments = moment_letters(derivation.arguments, body.inertia.diagonal())
+    parts, letters = _named(body, () if is_short else moments)
     renamed: Sequence[str] = _ABOUT_POINT if has_offset else ()
     if not is_short:
         renamed = [n for n in (*INERTIA_QUANTITIES, *ENERGY_QUANTITIES) if n not in _AS_DESCRIBED]
         if not body.inertia.is_diagonal():
             renamed.remove("inertia_tensor")
     present = {step.quantity.name for step in derivation.steps}
-    taken = {str(symbol) for argument in derivation.arguments for symbol in argument.symbols}
-    names = {*letters.inertia.free_symbols, letters.mass, *(OFFSET if has_offset else ())}
-    own = body.inertia.free_symbols | {body.mass}
-    if present.isdisjoint(renamed) or {str(name) for name in names - own} & taken:
+    taken = {letter for argument in derivation.arguments for letter in argument.notation}
+    names = {*(OFFSET if has_offset else ()), letters.mass} - {body.mass}
+    if present.isdisjoint(renamed) or taken & {named(str(name)) for name in names}:
         return derivation, ()
     again = derive(derivation.model, [n for n in renamed if n in present], body=letters)
     expressions = {step.quantity.name: step.expression for step in again.steps}
-    steiner = formula(STEINER, INERTIA, total_mass(body), _DISTANCE, _DISTANCE)
+    steiner = formula(STEINER, INERTIA, named(letters.mass.name), _DISTANCE, _DISTANCE)
     steps = []
     for step in derivation.steps:
         name, quantity = step.quantity.name, step.quantity
@@ -68,22 +67,23 @@ def in_names(derivation: Derivation) -> tuple[Derivation, Parts]:
     return replace(derivation, steps=tuple(steps)), parts
 
 
-def _named(body: RigidBody, is_short: bool) -> tuple[Parts, RigidBody]:
+def _named(body: RigidBody, letters: Sequence[sp.Symbol]) -> tuple[Parts, RigidBody]:
     """The body about its centre of mass, with a letter for each moment or product of inertia.
 
-    The letters have what they stand for, if the body's own axes are principal axes.
+    The letters have what they stand for, if the body's own axes are principal axes. A short tensor,
+    for which there are no `letters`, stays as it is.
     """
     tensor, parts = body.inertia, []
-    if tensor.is_diagonal() and not is_short:
-        pairs = [*zip(_MOMENTS, tensor.diagonal(), strict=True)]
+    if tensor.is_diagonal() and letters:
+        pairs = [*zip(letters, tensor.diagonal(), strict=True)]
         # Reversed, so that equal moments have the first of their names: (I₁, I₁, I₃).
-        letters = {moment: name for name, moment in reversed(pairs) if moment}
-        parts = [(name, moment) for moment, name in reversed(letters.items())]
-        tensor = sp.diag(*(letters.get(moment, moment) for moment in tensor.diagonal()))
-    elif not is_short:
-        names = [[f"I'_{min(i, j) + 1}{max(i, j) + 1}" for j in range(3)] for i in range(3)]
-        tensor = sp.Matrix(3, 3, lambda i, j: body.inertia[i, j] and sp.Symbol(names[i][j]))
-    mass = body.mass if body.mass.is_Symbol else sp.Symbol("M")
+        names = {moment: name for name, moment in reversed(pairs) if moment}
+        parts = [(name, moment) for moment, name in reversed(names.items())]
+        tensor = sp.diag(*(names.get(moment, moment) for moment in tensor.diagonal()))
+    elif letters:
+        entries = [[f"I'_{min(i, j) + 1}{max(i, j) + 1}" for j in range(3)] for i in range(3)]
+        tensor = sp.Matrix(3, 3, lambda i, j: body.inertia[i, j] and sp.Symbol(entries[i][j]))
+    mass = total_mass(body)
     return parts, given_inertia(
         tensor,
         mass=mass,

@@ -9,6 +9,7 @@ import pytest
 import sympy as sp
 
 import rigidsym as rs
+from rigidsym.mechanics.body import total_mass
 from rigidsym.mechanics.quantities.mass import OF_BODY_ALONE
 from rigidsym.mechanics.quantities.table import POINT
 from rigidsym.models.rotation import TIME
@@ -108,15 +109,20 @@ hole = true
 
 
 @cache
-def drilled() -> Motion:
-    return motion_of(read_spec(DRILLED, source="drilled.toml", name="drilled"))
+def drilled(density: str = "rho", length: str = "a") -> Motion:
+    text = DRILLED.replace("rho", density).replace("2*a", f"2*{length}")
+    return motion_of(read_spec(text, source="drilled.toml", name="drilled"))
 
 
-def test_what_is_shown_in_names_has_the_value_that_was_derived():
-    derived = drilled()
+@pytest.mark.parametrize("names", [(), ("M", "I2")], ids=["free letters", "letters of others"])
+def test_what_is_shown_in_names_has_the_value_that_was_derived(names):
+    derived = drilled(*names)
     shown, moments = in_names(derived)
+    assert derived.step("principal_moments").quantity.symbol.text == (
+        "(J₁, J₂, J₃)" if names else "(I₁, I₂, I₃)"
+    )
     offset = zip(sp.symbols("d_x:z"), sp.Matrix(POINT) - derived.body.centre, strict=True)
-    values = {sp.Symbol("M"): derived.body.mass, **dict(moments), **dict(offset)}
+    values = {total_mass(derived.body): derived.body.mass, **dict(moments), **dict(offset)}
     rng = np.random.default_rng(1)
     symbols = {s for argument in derived.arguments for s in argument.symbols}
     numbers = {s: sp.Float(x) for s, x in zip(symbols, rng.uniform(0.3, 0.7, 99), strict=False)}
@@ -129,6 +135,12 @@ def test_what_is_shown_in_names_has_the_value_that_was_derived():
             rest = rest.xreplace({symbol: numbers[symbol]})
         assert max(map(abs, rest)) < 1e-12
     assert replaced > 8
+
+
+def test_letters_of_one_meaning_come_with_their_parts():
+    text = DRILLED.replace('b"\ndensity = "rho"', 'b"\ndensity = "sigma"')
+    note = motion_of(read_spec(text, source="drilled.toml", name="drilled")).note().markdown()
+    assert "is the density of the box, and $\\sigma$ is the density of the solid cylinder." in note
 
 
 def test_names_of_parts_are_defined_before_the_first_result_that_holds_them():

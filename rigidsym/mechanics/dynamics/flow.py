@@ -65,6 +65,7 @@ class Flow(Workspace):
         holds = {
             "no_potential": not potential,
             "no_gradient": not any(sp.diff(potential, q) for q in self.model.coordinates),
+            "unforced": not any((*self.forces.generalised.values(), *self.forces.torque)),
             "driven": not self.driving.is_zero(),
         }
         return frozenset((*self.kind, *(trait for trait in holds if holds[trait])))

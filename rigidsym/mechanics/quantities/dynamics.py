@@ -98,6 +98,8 @@ energy = Quantity(
             reason="power_of_torques",
         ),
         when(_EULER, "driven", laws=_has_power(r"\Om'^T\,\N' + #1")),
+        when("unforced", laws=_has_power("0"), reason="constant_energy"),
+        when("unforced", "driven", laws=_has_power("#1"), reason="driven_energy"),
     ),
 )
 

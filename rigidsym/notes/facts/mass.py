@@ -68,10 +68,11 @@ class MassFacts:
         )
 
     @property
-    def named(self) -> list[tuple[str, list[sp.Symbol]]]:
+    def named(self) -> list[tuple[str, list[sp.Symbol], list[str]]]:
         """Meanings with the letters of the body; those with a value are in the table of numbers.
 
-        The mass of a body on which forces act may not be in any equation.
+        A letter that shares its meaning with others comes with its parts of the body. The mass of a
+        body on which forces act may not be in any equation.
         """
         told = [p for p in self.body.parameters if p.about and p.value is None]
         if self.derivation.forces is not None:
@@ -81,8 +82,18 @@ class MassFacts:
         for about, alike in groupby(told, key=lambda p: p.about):
             symbols = [p.symbol for p in alike]
             apart = [symbols] if about == "principal moment of inertia" else [[s] for s in symbols]
-            groups += [(about, same) for same in apart]
+            is_shared = sum(p.about == about for p in told) > len(apart[0])
+            groups += [(about, s, self._parts_with(s[0]) if is_shared else []) for s in apart]
         return groups
+
+    def _parts_with(self, symbol: sp.Symbol) -> list[str]:
+        """The parts that the symbol belongs to: their labels or kinds, with numbers if alike."""
+        names = [part["of"].label or part["name"].lower() for part in self.parts]
+        return [
+            name if names.count(name) == 1 else f"{name} (part {k})"
+            for k, (name, part) in enumerate(zip(names, self._parts, strict=True), start=1)
+            if moments_of(part.what).matrix.has(symbol)
+        ]
 
     @property
     def parts(self) -> list[dict[str, Any]]:
