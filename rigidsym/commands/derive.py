@@ -16,6 +16,7 @@ from rigidsym.commands.output_folder import printed, with_existing_files, write
 from rigidsym.errors import RigidsymError
 from rigidsym.formula.notation import CHOICES, DEFAULT
 from rigidsym.kernels.lowering.derivatives import read_requests
+from rigidsym.mechanics.derivation import remark
 from rigidsym.notes.formats.pdf import typeset
 from rigidsym.notes.formats.record import record
 from rigidsym.notes.formats.terminal import show
@@ -102,7 +103,8 @@ def _made(single: DerivationSpec) -> tuple[Output, bytes | RigidsymError | None]
 def _show(output: Output, written: Sequence[Path], options: Options, *, is_only: bool) -> None:
     """The files, the record, the derivation or one line of it on standard output."""
     if output.uncovered:
-        message(f"{output.name}: the certificate does not cover {', '.join(output.uncovered)}")
+        steps = ", ".join(output.uncovered)
+        message(remark("certificate_does_not_cover", name=output.name, steps=steps))
     if options["quiet"]:
         click.echo("\n".join(map(str, written)))
     elif options["json"]:

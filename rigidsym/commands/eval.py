@@ -11,6 +11,7 @@ import click
 
 from rigidsym.commands.command import command as make, message, of_rotation
 from rigidsym.data.columns import counted
+from rigidsym.mechanics.derivation import remark
 from rigidsym.pipeline import motion_of, read
 from rigidsym.system.processes import bar
 from rigidsym.tools.evaluate import derived_for, evaluate
@@ -42,6 +43,6 @@ def command(rotation: str, file: Path, **options: Any) -> None:
     summary = f"{result.path}: {counted(result.rows, 'row')}; {', '.join(result.columns)}"
     click.echo(summary, err=str(out) == "-")
     if not result.rows:
-        message(f"{file} has no rows of numbers: the result is only a header")
-    for remark in result.remarks:
-        message(remark)
+        message(remark("no_rows", file=file))
+    for each in result.remarks:
+        message(each)

@@ -31,10 +31,6 @@ def inventory() -> str:
     passive = {name: "A = Rᵀ, " if model.passive else "" for name, model in presets.items()}
     shipped = {name: text("derivations", f"{name}.toml") for name in names("derivations", ".toml")}
     parametrisations = PARAMETRISATIONS.items()
-    targets = {
-        name: target.about + (f"; {target.missing} is not installed" * bool(target.missing))
-        for name, target in TARGETS.items()
-    }
     template = environment().get_template("list/inventory.txt.jinja")
     return template.render(
         table=_table,
@@ -52,7 +48,7 @@ def inventory() -> str:
         ],
         all_of_a_body=BODY_ALONE,
         quantities=[(name, entry.symbol.text, entry.about) for name, entry in QUANTITIES.items()],
-        targets=list(targets.items()),
+        targets=TARGETS,
         derivations=[(n, tomllib.loads(file).get("title", "")) for n, file in shipped.items()],
     ).rstrip()
 

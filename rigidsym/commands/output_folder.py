@@ -9,6 +9,7 @@ from typing import Any
 
 from rigidsym.commands.command import message
 from rigidsym.errors import EditedFiles, SpecError
+from rigidsym.mechanics.derivation import remark
 from rigidsym.pipeline import PDF, Output, digest, output_of, read_record
 from rigidsym.spec.derivation_spec import DerivationSpec
 from rigidsym.system.files import read_bytes, write_text
@@ -71,10 +72,10 @@ def write(output: Output, out: Path, *, force: bool) -> list[Path]:
     before = _spec_of(record)
     gone = sorted(contents.keys() - edited - new.keys())
     if before is not None and before.models != output.spec.models:
-        message(f"replacing {folder}, which held another rotation (use --out to keep both)")
+        message(remark("replacing_rotation", folder=folder))
     elif gone:
         names = ", ".join(path.name for path in gone)
-        message(f"removing {names} from {folder} (use --out to keep both)")
+        message(remark("removing_files", names=names, folder=folder))
     for path in gone:
         path.unlink()
     return [write_text(path, text) for path, text in new.items()]

@@ -26,12 +26,9 @@ from sympy.printing.conventions import split_super_sub
 from rigidsym.errors import AlgebraError
 from rigidsym.formula import tree
 from rigidsym.formula.tree import Formula
+from rigidsym.text.names import ALPHABET
 
-_NAMES = (
-    "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi omicron pi rho sigma "
-    "tau upsilon phi chi psi omega"
-)
-GREEK = dict(zip(_NAMES.split(), "αβγδεζηθικλμνξοπρστυφχψω", strict=True))
+GREEK = {name: letter for letter, name in ALPHABET.items()}
 GREEK |= {name.title(): letter.upper() for name, letter in GREEK.items()}
 GREEK |= {"lamda": "λ", "Lamda": "Λ"}  # in SymPy, since `lambda` is a keyword of Python
 VARIANTS = {"varphi": "ϕ", "vartheta": "ϑ", "varepsilon": "ϵ", "varrho": "ϱ", "varsigma": "ς"}

@@ -20,7 +20,7 @@ from rigidsym.errors import QuantityError
 from rigidsym.formula.reader import named
 from rigidsym.formula.tree import Formula, with_names
 from rigidsym.mechanics import particles
-from rigidsym.mechanics.derivation import Argument, Step
+from rigidsym.mechanics.derivation import Argument, Step, sentence_of
 from rigidsym.mechanics.dynamics.flow import Flow
 from rigidsym.mechanics.dynamics.lagrange import equations_of_motion
 from rigidsym.mechanics.kinematics.chain import Chain
@@ -348,6 +348,6 @@ def steps_of_body(
         entries |= motion.table
     names = {step.quantity.name for step in steps}
     if absent := [q for n, q in entries.items() if n in only and n not in names]:
-        reasons = (f"no quantity {quantity.name}: {quantity.without}" for quantity in absent)
+        reasons = (f"no quantity {q.name}: {sentence_of(q.without)}" for q in absent)
         raise QuantityError(f"{whole.name} has {'; '.join(reasons)}")
     return values, steps, motion

@@ -45,6 +45,11 @@ def sentence_of(reason: str) -> str:
     return phrase("reasons", reason) if reason else ""
 
 
+def remark(key: str, **values: Any) -> str:
+    """A remark on a result, for a terminal, with its values."""
+    return phrase("remarks", key).format(**values)
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Proof:
     """One claim and the result of its proof.
@@ -117,7 +122,7 @@ class Quantity(NamedTuple):
     also: tuple[str, ...] = ()  # quantities that the value is written with; their laws count, too
     reason: str = ""  # how it follows, a key of templates/notes/en/reasons.toml
     words: Callable[[Any], str] | None = None  # a sentence made of several reasons
-    without: str = ""  # why a model may not have it
+    without: str = ""  # why a model may not have it, a key of templates/notes/en/reasons.toml
     vectors: str = ""  # which form it has by a vector of coordinates: "rotation", "velocity", ...
     recursion: str = ""  # over the turns of a chain, in TeX; LAST is the number of turns
     section: str = ""  # of the note
@@ -165,15 +170,22 @@ class Argument(NamedTuple):
     names: tuple[str, ...]  # plain names of the components: "phi_dot"
     notation: tuple[Formula, ...]  # how a component is printed
     units: tuple[str, ...]  # a unit a component
-    about: str  # "coordinates", "space components of the angular velocity"
     is_scalar: bool = False  # one number, of shape ()
+    meaning: str = ""  # its words, a key of templates/notes/en/quantities.toml; by default the name
+    words: str = ""  # in place of these
+
+    @property
+    def about(self) -> str:
+        """Words: "coordinates", "space components of the angular velocity"."""
+        return self.words or phrase("quantities", self.meaning or self.name)
 
 
 def argument(
     name: str,
     symbols: Sequence[sp.Expr],
-    about: str,
     *,
+    meaning: str = "",
+    words: str = "",
     units: str | Sequence[str] = "",
     names: Sequence[str] = (),
     notation: Sequence[Formula] = (),
@@ -186,7 +198,8 @@ def argument(
         names=names,
         notation=tuple(notation or map(named, names)),
         units=(units,) * len(names) if isinstance(units, str) else tuple(units),
-        about=about,
+        meaning=meaning,
+        words=words,
     )
 
 
@@ -381,9 +394,8 @@ class Derivation:
     @property
     def subject(self) -> str:
         """What the derivation is about, in words."""
-        if self.theory:
-            return "The equations of the lecture, each with its proof"
-        return "Kinematics of a rotation" if self.body is None else "Motion of a rigid body"
+        kind = "motion" if self.body else "kinematics"
+        return phrase("quantities", "equations_of_lecture" if self.theory else kind)
 
     def argument(self, name: str) -> Argument:
         return next(argument for argument in self.arguments if argument.name == name)

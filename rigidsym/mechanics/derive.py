@@ -19,7 +19,14 @@ from typing import TYPE_CHECKING
 import sympy as sp
 
 from rigidsym.errors import QuantityError, offer
-from rigidsym.mechanics.derivation import OF_RATES, Consequence, Derivation, FirstIntegral, Step
+from rigidsym.mechanics.derivation import (
+    OF_RATES,
+    Consequence,
+    Derivation,
+    FirstIntegral,
+    Step,
+    sentence_of,
+)
 from rigidsym.mechanics.kinematics.chain import Chain, is_shorter
 from rigidsym.mechanics.kinematics.workspace import Values
 from rigidsym.mechanics.quantities.catalogue import OF_BODY, OF_MOTION
@@ -83,7 +90,7 @@ def derive(
     if absent := set(turning) - {step.quantity.name for step in steps}:
         entries = [KINEMATICS[name].presented(work.traits) for name in turning if name in absent]
         lacking = ", ".join(entry.name for entry in entries)
-        reasons = "; ".join(dict.fromkeys(entry.without for entry in entries))
+        reasons = "; ".join(dict.fromkeys(sentence_of(entry.without) for entry in entries))
         raise QuantityError(f"{model.name} has no quantity {lacking}: {reasons}")
     has_rates = not only or any(KINEMATICS[name].section == OF_RATES for name in turning)
     singularities = singularities_of(values) if has_rates and not chain else None

@@ -24,7 +24,7 @@ from rigidsym.algebra.evaluate import Floats, evaluate
 from rigidsym.data.columns import in_both_units
 from rigidsym.errors import ModelError, offer
 from rigidsym.kernels.module import generate
-from rigidsym.mechanics.derivation import Derivation, Step
+from rigidsym.mechanics.derivation import Derivation, Step, remark
 from rigidsym.mechanics.derive import derive
 from rigidsym.mechanics.dynamics.euler import EulerEquations
 from rigidsym.mechanics.dynamics.lagrange import is_bound
@@ -40,7 +40,6 @@ _MASS = "mass_matrix"
 _GRAVITY = "m/s^2"  # the unit by which the acceleration in a weight is known
 _ORIENTATIONS = 12  # at which a weight is told from other potentials; c has three components
 _NO_DIVISOR = (0, sp.zoo, sp.nan)
-_REPLACED = "the initial rates are replaced by the smallest with the same angular velocity"
 _UNIT = 1e-9  # by which the entries of R Rᵀ − 1 may be off at the start
 
 
@@ -183,7 +182,7 @@ class Problem:
             least = self.rates(q[None], velocity[None])[0]
             if not np.allclose(rates, least):
                 start = ", ".join(map("{} = {:.6g}".format, names, least))
-                self.remarks.append(f"{_REPLACED}: {start}")
+                self.remarks.append(remark("rates_replaced", rates=start))
         if is_turning and not self.is_euler:
             velocity = self.rates(q[None], velocity[None])[0]
             if not np.isfinite(velocity).all():
@@ -278,9 +277,9 @@ class Problem:
     def no_quaternion(self) -> str:
         """Why a quaternion cannot take the place of the coordinates; empty if it can."""
         if not self.is_alone:
-            return "several bodies move in these coordinates only"
+            return remark("several_bodies")
         if not hasattr(self.kernels, "from_quaternion"):
-            return "the coordinates do not follow from the rotation"
+            return remark("no_coordinates")
         # Common factors are cancelled: the torque of m g l cos θ in ZXZ divides by nothing, and a
         # force −k φ̇ leaves 1/sin² θ, since φ̇ has no limit at θ = 0. The pole of a vector is at
         # infinity or at a whole turn, from which a unit quaternion gives coordinates far away.
@@ -290,7 +289,7 @@ class Problem:
         assert poles is not None
         divisors = [sp.denom(sp.together(TR2(TR1(entry)))) for entry in self.torque]
         if not poles.is_solved and any(e.has(*self.model.coordinates) for e in divisors):
-            return "the torque may have no limit there"
+            return remark("perhaps_no_limit")
         there = [
             {place.coordinate: place.value + k * place.period for place in point.places}
             for point in poles.points
@@ -299,7 +298,7 @@ class Problem:
         if any(divisor.subs(at) in _NO_DIVISOR for divisor in divisors for at in there):
             names = ", ".join(as_typed(q) for q in self.forces.generalised)
             acting = f"forces on {names}" if names else "potential"
-            return f"the torque of the {acting} has no limit there"
+            return remark("no_limit", acting=acting)
         return ""
 
     @cached_property

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from rigidsym.errors import DerivationError, MissingExtra, ModelError, offer
-from rigidsym.mechanics.derivation import Derivation
+from rigidsym.mechanics.derivation import Derivation, remark
 from rigidsym.simulation.free_body import free_motion
 from rigidsym.simulation.problem import Problem, with_motion
 from rigidsym.simulation.trajectory import Array, Trajectory
@@ -120,21 +120,18 @@ def _integrated(
         course = _solved(problem.slopes, state, times, at, is_pole, progress, options)
         states, at, state, ended = course
         if is_pole(state) and problem.no_quaternion and len(states) < len(times):
-            where = "the integration stopped at a pole of the coordinates"
-            ended = f"{where}, at t = {at:.6g} s: {problem.no_quaternion}"
+            ended = remark("stopped_at_pole", t=at, reason=problem.no_quaternion)
     rest = times[len(states) :]
     if ended or not len(rest):
         return problem.trajectory(times[: len(states)], states, ended)
-    remark = f"near a pole of the coordinates at t = {at:.6g} s; continued as a quaternion"
-    if problem.is_quaternion:
-        remark = "integrated as a unit quaternion"
+    how = "integrated_as_quaternion" if problem.is_quaternion else "continued_as_quaternion"
     start = problem.quaternion(state)
     course = _solved(problem.quaternion_slopes, start, rest, at, None, progress, options)
     # The last state in coordinates belongs to no sample time, but it is the nearest one from which
     # the angles of the quaternion can be continued.
     before = np.concatenate([states, state[None]])
     states = np.concatenate([states, problem.states(before, course.states)])
-    return problem.trajectory(times[: len(states)], states, course.ended, [remark])
+    return problem.trajectory(times[: len(states)], states, course.ended, [remark(how, t=at)])
 
 
 class _Course(NamedTuple):
@@ -172,12 +169,12 @@ def _solved(
         while solver.status == "running" and not ended:
             solver.step()
             if not np.isfinite(solver.y).all():
-                ended = "the rates overflow"
+                ended = remark("rates_overflow")
                 break
             longest = max(longest, solver.step_size)
             short = short + 1 if solver.step_size < _SHORT * longest else 0
             if short >= _MANY or solver.status == "failed":
-                ended = "the accelerations change faster than steps can follow"
+                ended = remark("steps_too_short")
             reached = int(np.searchsorted(times, solver.t, side="right"))
             if reached > count:
                 states.append(solver.dense_output()(times[count:reached]).T)
@@ -187,7 +184,7 @@ def _solved(
             if is_end is not None and is_end(solver.y):
                 break
     if ended:
-        ended = f"the integration stopped at t = {solver.t:.6g} s: {ended}"
+        ended = remark("stopped", t=solver.t, reason=ended)
     return _Course(np.concatenate(states), float(solver.t), solver.y, ended)
 
 

@@ -134,13 +134,12 @@ def _check_argument(argument: Sized, column: int) -> None:
     numbers = [term for term in sp.Add.make_args(argument.expression) if term.is_number]
     if argument.degree > _HIGHEST_INSIDE:
         fault = f"a degree above {_HIGHEST_INSIDE} inside a function"
-    elif any(number.has(sp.Function) for number in numbers):
-        fault = "a function of a function of numbers"
-    elif any(not -most <= number <= most for number in numbers):
+        raise ExpressionError(f"too large: {fault}", column=column)
+    if any(number.has(sp.Function) for number in numbers):
+        raise ExpressionError("too large: a function of a function of numbers", column=column)
+    if any(not -most <= number <= most for number in numbers):
         fault = f"a number outside -{most} to {most} inside a function"
-    else:
-        return
-    raise ExpressionError(f"too large: {fault}", column=column)
+        raise ExpressionError(f"too large: {fault}", column=column)
 
 
 def _check_size(degree: int, terms: int, bits: int, column: int) -> None:

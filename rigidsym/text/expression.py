@@ -143,8 +143,10 @@ def _check_order(text: str) -> None:
         if not is_value and kind == "operator" and symbol not in ("+", "-", "("):
             raise _expected("a number, a name or (", text, token.start())
         if symbol == "," and not (brackets and brackets[-1][1]):
-            hint = "a comma only separates arguments of a function; write decimals with a point"
-            raise ExpressionError(hint, column=column)
+            raise ExpressionError(
+                "a comma only separates arguments of a function; write decimals with a point",
+                column=column,
+            )
         if symbol == "(":
             brackets.append((column, is_call))
             if len(brackets) > _DEEPEST:

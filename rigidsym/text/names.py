@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 import sympy as sp
+from sympy.core.alphabets import greeks
 from sympy.printing.pretty.pretty_symbology import pretty_symbol, pretty_use_unicode
 
 from rigidsym.errors import ExpressionError
@@ -12,23 +13,16 @@ from rigidsym.text.bounds import FUNCTIONS
 
 _LONGEST = 40
 
-_LETTERS = "αβγδεζηθικλμνξπρστυφχψωΓΔΘΛΞΠΣΥΦΨΩϕϑϵϰϱϖ\u00b5\u2126"  # the last two: micro, ohm
-_LETTER_NAMES = """
-alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau upsilon
-phi chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega
-phi theta epsilon kappa rho varpi mu Omega
-"""  # without omicron and the other capitals, which look like Latin letters
-_GREEK = dict(zip(_LETTERS, _LETTER_NAMES.split(), strict=True))
+ALPHABET = dict(zip("αβγδεζηθικλμνξοπρστυφχψω", greeks, strict=True))
+# without omicron and the other capitals, which look like Latin letters
+_GREEK = {letter: name for letter, name in ALPHABET.items() if letter != "ο"}
+_GREEK |= {letter: ALPHABET[letter.lower()].title() for letter in "ΓΔΘΛΞΠΣΥΦΨΩ"}
+_GREEK |= {"ϕ": "phi", "ϑ": "theta", "ϵ": "epsilon", "ϰ": "kappa", "ϱ": "rho", "ϖ": "varpi"}
+_GREEK |= {"\u00b5": "mu", "\u2126": "Omega"}  # the signs of micro and ohm
 GREEK_LETTERS = "".join(_GREEK)
 _SPELLING = str.maketrans(_GREEK)
 
-_TAKEN = {
-    **dict.fromkeys(FUNCTIONS, "a function"),
-    **dict.fromkeys(("q", "out", "np"), "a name that the generated functions use"),
-    **dict.fromkeys(("deg", "degree", "degrees"), "a unit; angles are in radians, 30° is pi/6"),
-    "pi": "the number π",
-    "t": "the time",
-}
+_TAKEN = {**dict.fromkeys(FUNCTIONS, "a function"), "pi": "the number π", "t": "the time"}
 _FORM = re.compile(r"[A-Za-z][A-Za-z0-9]*(?:_[A-Za-z0-9]+)*")
 _ANGULAR_VELOCITY = re.compile(r"Omega_(?:body_)?[123]|omega_(?:space|body)(?:_[123])?")
 
@@ -60,20 +54,24 @@ def check_name(text: str | sp.Symbol) -> str:
     name = spelled(text)
     if not 0 < len(name) <= _LONGEST:
         raise ExpressionError(f"expected a name of 1 to {_LONGEST} letters, got {len(name)}")
-    fault = _fault(name)
-    if fault:
-        raise ExpressionError(f"{text!r} is not a valid name: {fault}")
+    if not _FORM.fullmatch(name):
+        raise _invalid(
+            text,
+            "expected a letter (Latin or Greek), then letters, digits and single underscores",
+        )
+    if name in _TAKEN:
+        raise _invalid(text, f"{name} is {_TAKEN[name]}")
+    if name in ("q", "out", "np"):
+        raise _invalid(text, f"{name} is a name that the generated functions use")
+    if name in ("deg", "degree", "degrees"):
+        raise _invalid(text, f"{name} is a unit; angles are in radians, 30° is pi/6")
+    # theta_dot is the rate of theta in every text and in generated functions.
+    if name.endswith("dot"):
+        raise _invalid(text, "a name that ends in dot reads as a rate")
+    if _ANGULAR_VELOCITY.fullmatch(name):
+        raise _invalid(text, "it is a component of the angular velocity")
     return name
 
 
-def _fault(name: str) -> str:
-    if not _FORM.fullmatch(name):
-        return "expected a letter (Latin or Greek), then letters, digits and single underscores"
-    if name in _TAKEN:
-        return f"{name} is {_TAKEN[name]}"
-    # theta_dot is the rate of theta in every text and in generated functions.
-    if name.endswith("dot"):
-        return "a name that ends in dot reads as a rate"
-    if _ANGULAR_VELOCITY.fullmatch(name):
-        return "it is a component of the angular velocity"
-    return ""
+def _invalid(text: str, reason: str) -> ExpressionError:
+    return ExpressionError(f"{text!r} is not a valid name: {reason}")

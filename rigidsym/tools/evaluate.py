@@ -28,6 +28,7 @@ from rigidsym.data.tables import (
     write_table,
 )
 from rigidsym.errors import DataError, QuantityError, RequestError, offer
+from rigidsym.mechanics.derivation import remark
 from rigidsym.motion import Motion
 from rigidsym.system.processes import Progress
 from rigidsym.tools.identify.samples import SLACK, Columns, samples_of
@@ -122,18 +123,14 @@ def evaluate(
     titles = (*match.kept.values(), *(_title(*each, degrees=degrees) for each in calls.results))
     total = write_table(where, titles, table.dtype, computed(), stream)
     read_as = ", ".join(_title(*match.components[k], degrees=degrees) for k in match.unstated)
-    remarks = [f"columns without a unit are read as {read_as}"] if read_as else []
+    remarks = [remark("unit_assumed", columns=read_as)] if read_as else []
     remarks += [
-        f"{names[k]} is as large as {in_both_units(largest[k])}; if they are degrees, --degrees "
-        "reads them so"
+        remark("may_be_degrees", name=names[k], value=in_both_units(largest[k]))
         for k in match.unstated
         if match.components[k][1] == "rad" and largest[k] > 2 * pi and not degrees
     ]
     if lost:
-        remarks.append(
-            f"{lost} of {total} rows have no value, the first in {first}: a singular orientation "
-            "or a zero quaternion"
-        )
+        remarks.append(remark("rows_without_value", count=lost, total=total, first=first))
     return Evaluated(path=where, rows=total, columns=titles, remarks=tuple(remarks))
 
 
@@ -367,11 +364,12 @@ def _by_name(arguments: Sequence[_Input], header: ColumnNames) -> list[int]:
     if missing:
         rates = {name for each in arguments if each.name == "q_dot" for name in each.names}
         constants = {name for each in arguments if each.every for name in each.names}
-        attitude = "without rates, --quantity rotation_matrix gives the attitude; "
+        lacks_rates = {*missing} == rates
         same = f"--given {min(constants, default='')}=NUMBER gives a constant; "
         raise DataError(
             f"no column {', '.join(missing)} among {header.listed}; "
-            f"{attitude * ({*missing} == rates)}{same * (not constants.isdisjoint(missing))}"
+            f"{'without rates, --quantity rotation_matrix gives the attitude; ' * lacks_rates}"
+            f"{same * (not constants.isdisjoint(missing))}"
             "if the file names them otherwise, --columns names all its columns, in order, or "
             "--angles the coordinates, such as `--angles yaw,pitch,roll`"
         )

@@ -42,12 +42,15 @@ BLIND = {  # laws that hold for twice a value, too, such as that it is symmetric
 }
 
 
-@pytest.mark.parametrize(("file", "field"), [("reasons", "reason"), ("quantities", "meaning")])
-def test_every_quantity_has_its_sentences_and_no_sentence_is_left_over(file, field):
+SENTENCES = {"reasons": ("reason", "without"), "quantities": ("meaning",), "remarks": ()}
+
+
+@pytest.mark.parametrize("file", SENTENCES)
+def test_every_quantity_has_its_sentences_and_no_sentence_is_left_over(file):
     entries = (*QUANTITIES.values(), *EULER_QUANTITIES.values())
-    keys = {getattr(entry, field) for entry in entries} - {""}
-    keys |= {c[field] for q in entries for _, c in q.variants if field in c}
-    keys |= {*QUANTITIES} if field == "meaning" else set()
+    keys = {getattr(entry, field) for entry in entries for field in SENTENCES[file]} - {""}
+    keys |= {c[f] for q in entries for _, c in q.variants for f in SENTENCES[file] if f in c}
+    keys |= {*QUANTITIES} if file == "quantities" else set()
     assert keys <= phrases(file).keys()
     sources = "".join(p.read_text("utf-8") for p in Path(rs.__file__).parent.rglob("*.py"))
     assert phrases(file).keys() - keys <= {*re.findall(r'"(\w+)"', sources)}

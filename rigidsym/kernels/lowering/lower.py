@@ -23,7 +23,7 @@ from rigidsym.kernels.lowering.graph import Graph, Weighted, write
 from rigidsym.kernels.lowering.naming import Names
 from rigidsym.kernels.lowering.rounding import guarded
 from rigidsym.mechanics.conversions.function import ConversionFunction, Converted
-from rigidsym.mechanics.derivation import Argument as Vector, Derivation, Step
+from rigidsym.mechanics.derivation import Argument as Vector, Derivation, Step, phrase
 
 MARGIN = "singularity_margin"
 NO_CONVERSIONS = Converted()
@@ -136,7 +136,7 @@ class _Lowering:
         if found is None or (found.is_solved and not any(p.places for p in found.points)):
             return
         (minors,) = self._stable([found.minors])
-        about = "how far the coordinates are from a singular orientation; 0 at one"
+        about = phrase("quantities", MARGIN)
         if len(minors) == 1:
             value = sp.Abs(minors[0], evaluate=False)
         else:

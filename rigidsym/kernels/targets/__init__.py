@@ -28,7 +28,6 @@ if TYPE_CHECKING:
 class Target:
     """One language that kernels are printed in; printing needs nothing, loading may."""
 
-    about: str
     package: str = ""  # of Python, which the extra of the target's name installs
     programs: tuple[str, ...] = ()  # one of these is enough
     stands_alone: bool = True  # whether the main file needs no other
@@ -53,20 +52,15 @@ class Printer(Protocol):
 
 
 TARGETS: dict[str, Target] = {  # the default first
-    "numpy": Target(about="NAME.py: a Python module that depends only on NumPy"),
+    "numpy": Target(),
     "c": Target(
-        about="NAME.h, NAME.c: C99; rigidsym build compiles the Python module NAME_c.py",
         stands_alone=False,
         programs=("cc", "gcc", "clang"),
         options={"lean": ("none", "double", "float")},
     ),
-    "javascript": Target(
-        about="NAME.mjs: an ES module without dependencies, and its types in NAME.d.mts; no unwrap"
-    ),
-    "jax": Target(
-        about="NAME_jax.py: a Python module for JAX: jit, vmap, grad; no unwrap", package="jax"
-    ),
-    "numba": Target(about="NAME_numba.py: a Python module that Numba compiles", package="numba"),
+    "javascript": Target(),
+    "jax": Target(package="jax"),
+    "numba": Target(package="numba"),
 }
 
 

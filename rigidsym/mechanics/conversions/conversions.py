@@ -498,10 +498,10 @@ def _to_coordinates(rule: Rule, source: str) -> ConversionFunction:
         inputs, kind = rule.listed(inputs), f"scalar {rule.scalar}"
     texts, units = WORDS["functions"][source], rule.model.coordinate_units
     remarks = (rule.because, rule.branch, sentence(texts["remark"].format(SHEPPERD)))
-    name, about = source.removeprefix("rotation_"), texts["input"].format(kind)
+    name, words = source.removeprefix("rotation_"), texts["input"].format(kind)
     return ConversionFunction(
         name=f"from_{source}",
-        argument=argument(name, inputs, about, names=[symbol.name for symbol in inputs]),
+        argument=argument(name, inputs, words=words, names=[symbol.name for symbol in inputs]),
         is_matrix=is_matrix,
         values=tuple(values.lines),
         outputs=coordinates,

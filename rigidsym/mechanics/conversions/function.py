@@ -14,7 +14,7 @@ import sympy as sp
 from sympy.polys.rings import PolyElement
 
 from rigidsym.mechanics.derivation import Argument, Step
-from rigidsym.models.rotation import Citation
+from rigidsym.models.rotation import SOURCES
 
 Vector = tuple[sp.Expr, ...]
 Line = tuple[sp.Symbol, sp.Expr]
@@ -118,9 +118,7 @@ Part = TypeVar("Part", sp.Expr, PolyElement)
 
 PARTS = ("w", "x", "y", "z")
 MATRIX = tuple(f"r{row}{column}" for row in (1, 2, 3) for column in (1, 2, 3))
-SHEPPERD = Citation(
-    text="S. Shepperd, Quaternion from Rotation Matrix, Journal of Guidance and Control 1 (1978)"
-)
+SHEPPERD = SOURCES["Shepperd"]
 
 
 def product(first: Sequence[Part], second: Sequence[Part]) -> tuple[Part, ...]:

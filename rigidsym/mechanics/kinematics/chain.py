@@ -139,8 +139,8 @@ class Composition(Values):
             "space": _beside(matrix_1, a @ matrix_2),
             "body": _beside(b.T @ matrix_1, matrix_2),
         }
-        q_dot = argument("q_dot", [*rates_1, *rates_2], "rates in the order of the factors")
-        self.arguments = {"q_dot": q_dot}
+        # in the order of the factors
+        self.arguments = {"q_dot": argument("q_dot", [*rates_1, *rates_2])}
 
 
 def _beside(left: RingMatrix, right: RingMatrix) -> RingMatrix:

@@ -189,7 +189,7 @@ hamiltonian = Quantity(
     source=SOURCES["Goldstein 8.1"],
     value=lambda k: k.hamiltonian,
     laws=(law("H = E", lambda k, _: (k.energy_by_momenta, k.mass_matrix.det())),),
-    without="it is written only for one body with at most four turns",
+    without="too_many_momenta",
     reason="energy_in_momenta",
 )
 
@@ -199,7 +199,7 @@ effective_potential = Quantity(
     inputs=("q", "momenta"),
     source=SOURCES["Goldstein 5.7"],
     value=lambda k: None if k.single is None else k.effective,
-    without="all generalised momenta but one have to be constant, for one body",
+    without="momenta_vary",
     reason="hamiltonian_at_rest",
 )
 

@@ -166,9 +166,7 @@ angular_velocity_body = Quantity(
 # The rates of the coordinates: in both frames the same, apart from reasons
 
 _OF_RATES: dict[str, Any] = {"source": SOURCES["Diebel 5"], "section": OF_RATES}
-_WITHOUT = "its rate matrix has no inverse, since its rates do not give every angular velocity"
-_IN_NUMBERS = "for this many turns solve W q_dot = Omega in numbers, as by numpy.linalg.pinv(W)"
-_OF_CHAIN = when(CHAIN, without=_IN_NUMBERS)
+_OF_CHAIN = when(CHAIN, without="too_many_turns")
 
 
 def _rate_matrix(frame: Frame, *, of_chain: str, columns: str) -> Quantity:
@@ -211,7 +209,7 @@ def _inverse_rate_matrix(frame: Frame, **reasons: str) -> Quantity:
         value=lambda k: k.inverse(name),
         vectors="inverse",
         reason=f"inverse_{name}",
-        without=_WITHOUT,
+        without="no_inverse",
         variants=(
             _OF_CHAIN,
             when(WIDE, **by(frame.right_inverse), meaning=f"right_inverse_{name}"),
@@ -242,7 +240,7 @@ def _rates(frame: Frame) -> Quantity:
         vectors="rates",
         reason=f"rates_from_{name}",
         is_result=True,
-        without=_WITHOUT,
+        without="no_inverse",
         variants=(_OF_CHAIN, when(WIDE, **by(frame.right_inverse))),
     )
 

@@ -13,15 +13,9 @@ from rigidsym.formula.tree import Formula
 from rigidsym.notes.figure.drawing import TYPE_SIZE, Drawing, Label, Stroke
 from rigidsym.notes.figure.scene import Point
 from rigidsym.notes.formats.escape import cleaned
+from rigidsym.system.resources import environment
 
 _UNIT = 0.3865 / TYPE_SIZE  # cm: an em at 11 points
-_STYLES = (
-    "space/.style={black!80}, body/.style={blue!65!black, line width=1pt}, "
-    "node/.style={red!70!black, line width=.8pt, dash pattern=on 6pt off 2pt on 1pt off 2pt}, "
-    "vector/.style={red!70!black, line width=1pt}, "
-    "turn/.style={teal!75!black, line width=.9pt}, guide/.style={black!45}, "
-    "hidden/.style={densely dashed, opacity=.6}"
-)
 
 Color = tuple[int, int, int]  # red, green, blue, of 255
 
@@ -66,10 +60,9 @@ def tikz(drawing: Drawing) -> str:
     def label(x: Label) -> str:
         return rf"\node[{x.kind}, inner sep=0pt] at {path([x.place])} {{${x.symbol.latex}$}};"
 
-    options = f"scale={_UNIT:.3f}, >={{Latex[length=2mm]}}, line join=round, line cap=round"
-    shapes = _shapes(drawing, line, area, label)
-    begin = rf"\begin{{tikzpicture}}[{options}, {_STYLES}]"
-    return "\n".join([begin, *shapes, r"\end{tikzpicture}"])
+    shapes = "\n".join(_shapes(drawing, line, area, label))
+    template = environment().get_template("drawing.tex.jinja")
+    return template.render(scale=f"{_UNIT:.3f}", shapes=shapes)
 
 
 _SCALE = 18.0 / TYPE_SIZE  # pixels: an em of a label

@@ -6,9 +6,11 @@ Expressions are strings in the plain names of the arguments ("sin(theta)*phi_dot
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import tomllib
+from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 from operator import attrgetter
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
@@ -30,26 +32,10 @@ SCHEMA = "rigidsym.derivation"
 SCHEMA_VERSION = 2
 
 
-# attributes of each class in the order of the record, with its own keys where they differ
-_KEYS: Mapping[str, str] = {
-    "Proof": "claim status residual",
-    "FirstIntegral": "name expression proof",
-    "Definition": "name=symbol.name expression",
-    "Parameter": "name=symbol.name about unit value",
-    "Statement": "number name section sides summands because source proofs",
-    "Step": "number name=quantity.name about=quantity.about unit=quantity.unit "
-    "symbol=quantity.symbol inputs=quantity.inputs shape expression "
-    "because source=quantity.source proofs",
-    "Singularities": "rank measure determinant minors is_solved points",
-    "Singularity": "at=places rank lost_direction_space=lost_axis_space "
-    "lost_direction_body=lost_axis_body undetermined_rates=null_rates.T "
-    "reached_direction_space=reachable_axis",
-    # value + k modulo, for whole k, or k ≥ 0 for a length
-    "Place": "coordinate value modulo=period is_length",
-    # how coordinates go over into the unit quaternion, and come back from it and from R
-    "Conversions": "quaternion quaternion_from_matrix=from_matrix coordinates=inverse without",
-    "Rule": "because branch proofs",
-}
+# attributes of each class, "key=attribute" where their names differ
+_KEYS: Mapping[str, Sequence[str]] = tomllib.loads(
+    Path(__file__).with_name("record.toml").read_text(encoding="utf-8")
+)
 
 Names = Mapping[sp.Expr, sp.Symbol]
 
@@ -115,7 +101,7 @@ def _plain(data: Any, names: Names) -> Any:
 
 
 def _attributes(thing: Any) -> dict[str, Any]:
-    entries = (entry.partition("=") for entry in _KEYS[type(thing).__name__].split())
+    entries = (entry.partition("=") for entry in _KEYS[type(thing).__name__])
     record = {key: attrgetter(path or key)(thing) for key, _, path in entries}
     for key, value in record.items():
         if key in ("because", "branch") and not isinstance(value, str):
