@@ -85,8 +85,7 @@ def test_noise_needs_a_tolerance_and_is_named_without():
     assert holds(found.nearest, reading)
     assert 0.003 < found.nearest.residual < 0.03
     assert not rs.identify(angles, matrix=matrix, tolerance=0.9 * found.nearest.residual).fits
-    found = rs.identify(angles, matrix=matrix, tolerance=0.03)
-    (answer,) = found.answers
+    (answer,) = rs.identify(angles, matrix=matrix, tolerance=0.03).answers
     assert holds(answer, reading)
 
 

@@ -81,10 +81,8 @@ def test_all_bad_samples_are_named_with_their_amounts():
     good = sample(Reading(sequence="ZYX"), GENERIC[False])["matrix"]
     angles = np.tile(GENERIC[False], (5, 1))
     angles[1, 2] = np.nan
-    stretched = good * 1.1
-    mirrored = good @ np.diag([1, 1, -1])
     with pytest.raises(SampleError) as error:
-        rs.identify(angles, matrix=[good, good, stretched, mirrored, np.full((3, 3), np.inf)])
+        rs.identify(angles, matrix=[good, good, 1.1 * good, good * [1, 1, -1], np.inf * good])
     assert error.value.exit_code == 3
     assert str(error.value).splitlines() == [
         "the data: 4 faults",
@@ -207,8 +205,6 @@ def test_several_answers_are_cut_short_and_say_what_would_separate_them(tmp_path
     assert max(map(len, done.stdout.splitlines())) <= 80
     everything = call("identify", *words, "--all", cwd=tmp_path).stdout
     assert everything.count("from scipy.spatial.transform") == 96
-    data = json.loads(call("identify", *words, "--json", cwd=tmp_path).stdout)
-    assert len(data["answers"]) == 96
 
 
 def test_no_fit_is_an_answer_with_exit_code_1(tmp_path):
@@ -236,7 +232,6 @@ def test_units_in_names_are_converted(tmp_path):
     found = identify_file(written(tmp_path / "log.csv", table, ",".join(names)))
     assert holds(found.answers[0], AEROSPACE)
     assert f"converted to degrees: {', '.join(names[:3])}" in found.text()
-    assert found.contradicted == ()
 
 
 def test_units_in_names_that_the_numbers_contradict_are_named(tmp_path):
