@@ -30,9 +30,8 @@ def main() -> None:
     """The `rigidsym` command: runs, and turns errors into messages and exit codes."""
     gc.set_threshold(NEW_OBJECTS)
     for name in ("stdout", "stderr"):  # None if the caller closed them, as `2>&-` does
-        if getattr(sys, name) is None:
-            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115
-    for stream in (sys.stdout, sys.stderr):
+        stream = getattr(sys, name) or open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
+        setattr(sys, name, stream)
         if isinstance(stream, io.TextIOWrapper):  # a terminal that cannot show φ shows a ?
             stream.reconfigure(errors="replace")
     warnings.showwarning = lambda text, *_: message(str(text))
@@ -56,6 +55,11 @@ def main() -> None:
         place = f"{error.filename}: " if error.filename else ""
         message(f"{place}{error.strerror or error}")
         status = 1
+    for stream in (sys.stdout, sys.stderr):
+        try:
+            stream.flush()
+        except OSError:  # Python would try again at its end, and change the exit code to 120
+            os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
     gc.freeze()  # the process ends: what is left needs no search
     sys.exit(status if isinstance(status, int) else 0)
 
@@ -83,7 +87,6 @@ class _Commands(click.Group):
         try:
             return super().invoke(context)
         except BrokenPipeError:  # the reader (`| head`) had enough, which is no error
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             raise click.exceptions.Exit(0) from None
 
 

@@ -12,6 +12,7 @@ import sympy as sp
 from click.testing import CliRunner
 
 import rigidsym as rs
+from helpers.target_modules import loading
 from rigidsym import errors
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.commands.cli import commands
@@ -97,6 +98,7 @@ def bad_data(_: pytest.MonkeyPatch) -> None:
     said("eval", "ZXZ", "a.csv", "--quantity", "rotation_matrix", "--out", "r.csv")
 
 
+@loading("c")
 @pytest.mark.parametrize(
     ("program", "said"), [("echo no >&2; exit 1", "it says:\nno"), ("sleep 9", "after 0.2 seconds")]
 )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import os
 import shutil
 from collections.abc import Callable
 from functools import cache
@@ -33,10 +34,21 @@ ROTATIONS = {  # and some quantities of each
 EPS = {np.float64: 2.0**-52, np.float32: 2.0**-23}
 MISSING = {name: target.missing for name, target in TARGETS.items()}
 MISSING["javascript"] = "" if shutil.which("node") else "node"
-EVERY = [
-    pytest.param(name, marks=pytest.mark.skipif(bool(missing), reason=missing))
-    for name, missing in MISSING.items()
-]
+
+
+def required(programs: str) -> bool:
+    """Whether tests fail, rather than skip, without these."""
+    return os.environ.get(f"RIGIDSYM_REQUIRE_{programs}") == "1"
+
+
+def loading(target: str) -> pytest.MarkDecorator:
+    """A test that loads kernels of this target is skipped without what loading needs."""
+    missing = MISSING[target]
+    skipped = missing and not required("NODE" if target == "javascript" else "COMPILERS")
+    return pytest.mark.skipif(bool(skipped), reason=f"{target}: {missing} is not installed")
+
+
+EVERY = [pytest.param(name, marks=loading(name)) for name in TARGETS]
 _COMPILED = {"c", "numba", "jax"}  # in a second or so for each function
 
 

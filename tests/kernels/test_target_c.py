@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import ctypes
 import json
-import os
 import re
 import shutil
 import subprocess
 import sys
+import sysconfig
 from itertools import product
 from pathlib import Path
 
@@ -18,10 +18,11 @@ import sympy as sp
 
 import rigidsym as rs
 from helpers.command import call
+from helpers.target_modules import loading, required
 from helpers.witness import mp
 from rigidsym.kernels.targets import compiling as c_build
 
-REQUIRED = os.environ.get("RIGIDSYM_REQUIRE_COMPILERS") == "1"  # then they fail, not skip
+REQUIRED = required("COMPILERS")
 COMPILERS = [
     pytest.param(
         name, marks=pytest.mark.skipif(not (REQUIRED or shutil.which(name)), reason=f"no {name}")
@@ -123,6 +124,7 @@ def test_sanitizers_find_nothing_at_any_size(tmp_path, compiler):
         assert abs(values[2] - mp.cos(mp.mpf(angles[2]))) < 3e-7
 
 
+@loading("c")
 @pytest.mark.campaign
 @pytest.mark.parametrize("compiler", COMPILERS)
 @pytest.mark.parametrize("way", ["shuffled", "plain", *(["streamed"] if STREAMS else [])])
@@ -152,8 +154,8 @@ def test_rows_stand_where_they_belong(sources, zxz, compiler, way):
             np.testing.assert_allclose(found, wide, rtol=0, atol=4 * np.finfo(dtype).eps)
 
 
-@pytest.mark.skipif(not shutil.which("cc"), reason="no cc")
-def test_build_compiles_what_derive_wrote_and_says_what_is_missing(tmp_path):
+@loading("c")
+def test_build_compiles_what_derive_wrote_and_says_what_is_missing(tmp_path, monkeypatch):
     command = ("derive", "z(phi)", "--only", "rotation_matrix", "--target", "c", "--out", ".")
     call(*command, cwd=tmp_path)
     source = "chain_z/chain_z.c"
@@ -162,7 +164,10 @@ def test_build_compiles_what_derive_wrote_and_says_what_is_missing(tmp_path):
     folder = tmp_path / "chain_z"
     assert json.loads(run(sys.executable, "-c", code, cwd=folder)) == np.eye(3).tolist()
     bare = call("build", source, cwd=tmp_path, status=4, PATH="/nowhere", CC="")
-    assert "needs a C compiler, and none was found (cc, gcc, clang)" in bare.stderr
+    assert "needs a C compiler (cc, gcc, clang), which is not installed" in bare.stderr
+    monkeypatch.setattr(sysconfig, "get_paths", lambda: {"include": "/nowhere"})
+    bare = call("build", source, cwd=tmp_path, status=4)
+    assert "needs Python's header /nowhere/Python.h, which is not installed" in bare.stderr
     (folder / "chain_z.h").unlink()
     wrong = call("build", source, cwd=tmp_path, status=2).stderr
     assert wrong.startswith("rigidsym: chain_z/chain_z.h: not found;")
@@ -178,6 +183,7 @@ def test_modes_that_change_values_are_refused(tmp_path, compiler):
         assert "compile without -ffast-math" in done.stderr, flag
 
 
+@loading("c")
 def test_one_time_and_one_row_of_constants_serve_many_tops():
     a, c = sp.symbols("A C")
     body = rs.principal_moments(a, a, c)
@@ -193,6 +199,7 @@ def test_one_time_and_one_row_of_constants_serve_many_tops():
     assert single.dtype == np.float64  # a plain number is one
 
 
+@loading("c")
 def test_the_memory_of_a_large_result_is_used_again_when_nobody_refers_to_it(zxz):
     compiled, plain = zxz
     q = np.random.default_rng(5).uniform(-3, 3, (480_000, 3))  # 35 MB of matrices
@@ -209,6 +216,7 @@ def test_the_memory_of_a_large_result_is_used_again_when_nobody_refers_to_it(zxz
     np.testing.assert_array_equal(again[::-1][:50], third[:50])
 
 
+@loading("c")
 def test_a_source_is_compiled_once_with_a_cache_and_without_one(tmp_path, monkeypatch):
     (tmp_path / "file").write_text("", encoding="utf-8")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))

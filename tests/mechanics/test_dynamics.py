@@ -15,6 +15,7 @@ from sympy.physics.mechanics import LagrangesMethod
 
 import rigidsym as rs
 from helpers.node import load
+from helpers.target_modules import EVERY
 from helpers.witness import agree, evaluate, mp
 from rigidsym.errors import Defect
 from rigidsym.mechanics.dynamics import tree
@@ -97,14 +98,16 @@ def test_the_jacobian_of_the_state_is_its_slope():
 
 
 @pytest.mark.parametrize(
-    "target", ["numpy", "c", "numba", pytest.param("jax", marks=pytest.mark.campaign), "javascript"]
+    "target",
+    [
+        pytest.param("jax", marks=pytest.mark.campaign) if each.values == ("jax",) else each
+        for each in EVERY
+    ],
 )
-def test_every_language_has_the_derivative_of_the_state_for_one_and_for_many(target, request):
+def test_every_language_has_the_derivative_of_the_state_for_one_and_for_many(target):
     """state_derivative(t, y, parameters) = (q̇, q̈) and the first integrals; the accelerations of a
     driven top take the time as well
     """
-    if target == "javascript":
-        request.getfixturevalue("node")
     motion, names = flowing(), ("state_derivative", "first_integrals")
     functions = {name: motion.step(name) for name in names}
     kernels = load(replace(motion.select(["accelerations"]), functions=functions).kernels(target))

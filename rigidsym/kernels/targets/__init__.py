@@ -8,7 +8,6 @@ templates/LANGUAGE/.
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from importlib import import_module
@@ -29,7 +28,7 @@ class Target:
     """One language that kernels are printed in; printing needs nothing, loading may."""
 
     package: str = ""  # of Python, which the extra of the target's name installs
-    programs: tuple[str, ...] = ()  # one of these is enough
+    is_compiled: bool = False  # by a C compiler, into a Python module
     stands_alone: bool = True  # whether the main file needs no other
     options: Mapping[str, tuple[str, ...]] = field(default_factory=dict)  # defaults first
 
@@ -38,8 +37,10 @@ class Target:
         """What loading needs and is not installed here; empty if nothing is missing."""
         if self.package and find_spec(self.package) is None:
             return f"the package {self.package}"
-        if self.programs and not any(map(shutil.which, self.programs)):
-            return f"one of {', '.join(self.programs)}"
+        if self.is_compiled:
+            from rigidsym.kernels.targets.compiling import missing
+
+            return missing()
         return ""
 
 
@@ -55,7 +56,7 @@ TARGETS: dict[str, Target] = {  # the default first
     "numpy": Target(),
     "c": Target(
         stands_alone=False,
-        programs=("cc", "gcc", "clang"),
+        is_compiled=True,
         options={"lean": ("none", "double", "float")},
     ),
     "javascript": Target(),

@@ -15,6 +15,7 @@ from types import ModuleType
 
 from rigidsym.errors import CheckError, MissingTool, ToolFailed
 from rigidsym.kernels.loaded import load
+from rigidsym.system.files import whole_file
 
 COMPILERS = ("cc", "gcc", "clang")
 TIMEOUT = 300.0  # seconds
@@ -43,9 +44,9 @@ _LOG_LINES = 15
 def build(source: Path) -> Path:
     """Compile NAME.c and the files beside it, and return the module NAME_c.py.
 
-    The binary uses the instruction set of this processor. Raises MissingTool without a C compiler,
-    CheckError if a file is missing, and ToolFailed, with the end of the compiler's messages, if it
-    stops.
+    The binary uses the instruction set of this processor. Raises MissingTool without a C compiler
+    or Python's headers, CheckError if a file is missing, and ToolFailed, with the end of the
+    compiler's messages, if it stops.
     """
     name, folder = source.stem, source.parent
     needed = [folder / text.format(name) for text in (*_SOURCES, "{}.h", "{}_c.py")]
@@ -54,12 +55,8 @@ def build(source: Path) -> Path:
             f"{', '.join(missing)}: not found; rigidsym derive --target c writes them; omit --lean"
         )
     library = folder / f"_{name}_c{sysconfig.get_config_var('EXT_SUFFIX')}"
-    draft = library.with_name(f".{os.getpid()}{library.name}")  # whole or not at all
-    try:
-        compile_library(needed[:2], str(draft))
-        draft.replace(library)
-    finally:
-        draft.unlink(missing_ok=True)
+    with whole_file(library) as draft:
+        compile_library(needed[:2], draft.name)
     return needed[3]
 
 
@@ -80,31 +77,35 @@ def load_built(main: str, files: Mapping[str, str], make: Callable[[Path], objec
 
 
 def compiler() -> str:
-    """The compiler of the environment's CC, or the first that is installed."""
-    for name in filter(None, (os.environ.get("CC"), *COMPILERS)):
-        if found := shutil.which(name):
-            return found
-    raise MissingTool(
-        f"a Python module of C functions needs a C compiler, and none was found "
-        f"({', '.join(COMPILERS)}); on Debian: apt install gcc python3-dev"
-    )
+    """The compiler of the environment's CC, or the first that is installed; empty without one."""
+    names = filter(None, (os.environ.get("CC"), *COMPILERS))
+    return next(filter(None, map(shutil.which, names)), "")
+
+
+def missing() -> str:
+    """What compiling needs and is not installed here; empty if nothing is missing."""
+    if not compiler():
+        return f"a C compiler ({', '.join(COMPILERS)})"
+    header = Path(sysconfig.get_paths()["include"], "Python.h")  # Debian: in python3-dev
+    return "" if header.is_file() else f"Python's header {header}"
 
 
 def compile_library(sources: Sequence[Path], library: str) -> None:
     """A shared library of C sources. Raises MissingTool and ToolFailed as `build` does."""
     import numpy as np
 
-    folders = [sysconfig.get_paths()["include"], np.get_include()]
-    command = [compiler(), *_FLAGS, *(f"-I{folder}" for folder in folders), *map(str, sources)]
-    for tuned in (_OF_THIS_PROCESSOR, ()):
+    if tools := missing():
+        raise MissingTool(
+            f"a Python module of C functions needs {tools}, which is not installed; "
+            f"on Debian: apt install gcc python3-dev"
+        )
+    folders = sysconfig.get_paths()["include"], np.get_include()
+    files = [*(f"-I{folder}" for folder in folders), *map(str, sources), "-o", library, "-lm"]
+    plain = [compiler(), *_FLAGS, *files]
+    for command in ([*plain, *_OF_THIS_PROCESSOR], plain):
         try:
             done = subprocess.run(
-                [*command, *tuned, "-o", library, "-lm"],
-                capture_output=True,
-                text=True,
-                errors="replace",
-                timeout=TIMEOUT,
-                check=False,
+                command, capture_output=True, text=True, errors="replace", timeout=TIMEOUT
             )
         except subprocess.TimeoutExpired as error:
             raise ToolFailed(f"the C compiler was stopped after {TIMEOUT:g} seconds") from error
