@@ -173,7 +173,7 @@ class Composer:
             "has_status": self.is_audit or not are_proved,
             "has_rates": any(step.quantity.section == OF_RATES for step in derivation.steps),
             "symbols": self._symbols,
-            "meanings": meanings_of(derivation),
+            "meanings": meanings_of(derivation, has_rotation=not is_body_alone(derivation)),
             "module": self.module,
             "functions": self.functions,
             "is_body_alone": is_body_alone(derivation),

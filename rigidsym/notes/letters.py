@@ -81,12 +81,15 @@ def length_of(model: RotationModel) -> VectorLength | None:
     return None
 
 
-def meanings_of(derivation: Derivation) -> list[tuple[list[Formula], str, str]]:
+def meanings_of(
+    derivation: Derivation, *, has_rotation: bool
+) -> list[tuple[list[Formula], str, str]]:
     """Coordinates, constants, points and lines: symbols of one meaning and one unit."""
     arguments = {argument.name: argument for argument in derivation.arguments}
     used = {name for step in derivation.steps for name in step.quantity.inputs}
     q, turns = arguments["q"], derivation.model.turns
     rows = [(name, q.about, unit) for name, unit in zip(q.notation, q.units, strict=True)]
+    rows *= has_rotation
     of_body = {p.symbol: p for p in derivation.body.parameters} if derivation.body else {}
     of_axes = {s for turn in turns for c in turn.components for s in c.free_symbols}
     angles = {symbol for turn in turns for symbol in turn.angle.free_symbols}
