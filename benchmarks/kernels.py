@@ -178,7 +178,7 @@ def sides(
         calls[target] = partial(function, *arguments, **out)
         if target == "jax":
             calls[target] = _jitted(function, arguments)
-    if name == "rotation_matrix" and find_spec("scipy"):
+    if name == "rotation_matrix" and is_large and find_spec("scipy"):
         rotations: Any = import_module("scipy.spatial.transform").Rotation
         calls[SCIPY] = lambda: rotations.from_euler("ZXZ", arrays[0]).as_matrix()
     expected = stacked()

@@ -37,10 +37,7 @@ def _place(result, values, shape):
     """Write entries to where they belong."""
     if len(shape) == 2 and result.flags.c_contiguous:
         result, shape = result.reshape(*result.shape[:-2], prod(shape)), shape[:1]
-    is_small = result.ndim == 2 and len(shape) == 1 and len(result) < _SHORTEST
-    if is_small and {*map(type, values)} == {_ARRAY} and len({*map(len, values)}) == 1:
-        result.T[...] = values  # one call for all
-    elif len(shape) == 1:
+    if len(shape) == 1:
         for k, value in enumerate(values):
             result[..., k] = value
     else:

@@ -5,9 +5,10 @@ def _arrays(arguments):
         if type(array) is not _ARRAY or array.dtype is not _DOUBLE:
             array = _plain_floats(name, array)
             singles += array.dtype is _SINGLE
-        if array.shape[-1:] != _WIDTHS[name]:
-            raise ValueError(f"{name}: got shape {array.shape}; {_expected(name)}")
-        axes = array.shape[:-1]
+        shape = array.shape
+        if shape[-1:] != _WIDTHS[name]:
+            raise ValueError(f"{name}: got shape {shape}; {_expected(name)}")
+        axes = shape[:-1]
         if axes and axes != leading:
             is_uneven = is_uneven or leading != ()
             leading = axes
@@ -72,4 +73,5 @@ def _checked_out(out, shape, dtype):
 
 def _unshared(array, out):
     """The array, or a copy of it where writing to `out` would change it."""
-    return array.copy() if np.may_share_memory(array, out, max_work=10_000) else array
+    # a keyword would cost half as much again as the check
+    return array.copy() if np.may_share_memory(array, out, 10_000) else array

@@ -2,7 +2,7 @@
 
 _EPS = 2.0**-52  # of float64
 _LEAST = 2.0**-970  # of float64: the smallest normal number over eps
-_FAR = {"d": 2.0**103, "f": 2.0**45}  # half of 1/eps² by the type
+_FAR = {_DOUBLE: 2.0**103, _SINGLE: 2.0**45}  # half of 1/eps² by the type
 
 
 def _or_nan(value, scale, power=1):
@@ -12,7 +12,7 @@ def _or_nan(value, scale, power=1):
     """
     if scale is not None and value.ndim == 1:  # one sum tells when none is lost
         ratio = scale / value
-        if ratio.dot(ratio) < _FAR[value.dtype.char] ** power:
+        if ratio.dot(ratio) < _FAR[value.dtype] ** power:
             return value
     eps, least = (2.0**-23, 2.0**-103) if value.dtype.char == "f" else (_EPS, _LEAST)
     limit = least if scale is None else eps**power * np.abs(scale)

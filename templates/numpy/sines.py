@@ -22,10 +22,12 @@ def _sin_cos(*angles):
     few angles and in single precision NumPy's own sin and cos are the fastest.
     """
     first = angles[0]
+    if len(angles) == 1:
+        if first.size < _FEW or first.dtype is _SINGLE:
+            return _SINE(first), _COSINE(first)
+        return _by_tangent(first)
     if first.dtype is _SINGLE or first.size * len(angles) < _FEW:
         return *map(_SINE, angles), *map(_COSINE, angles)
-    if len(angles) == 1:
-        return _by_tangent(first)
     if first.size < _MANY:  # one array of all angles saves calls
         sines, cosines = _by_tangent(np.array(angles))
     else:
