@@ -15,7 +15,7 @@ import pytest
 
 from helpers.certificates import NEEDS, of_motion, printed, record_of, run_coq, spoil
 from rigidsym.tools.certificate import checker
-from rigidsym.tools.certificate.certificate import theorems
+from rigidsym.tools.certificate.certificate import printed_in, theorems
 
 Content = dict[str, Any]
 Change = Callable[[Content], object]
@@ -735,7 +735,7 @@ def test_double_keys_are_refused(tmp_path):
 def false_claims(content: Content) -> list[str]:
     """What the checker refuses, each quantity on its own."""
     false = []
-    for name in checker.printed_in(content):
+    for name in printed_in(content):
         one = {"quantities": [], "first_integrals": []}
         one["first_integrals" if name.startswith("constant ") else "quantities"] = [
             printed(content, name)
@@ -779,7 +779,7 @@ def entries() -> Iterator[tuple[str, Content]]:
 
 def refusal(content: Content, name: str) -> str:
     """A theorem that Coq has to refuse, after the facts that its proof may use."""
-    text = theorems(content, [*checker.printed_in(content)]).text
+    text = theorems(content, [*printed_in(content)]).text
     # Ω of a quaternion is the lemma that F turns with it, from which all else follows
     is_lemma = name == VELOCITY and "quaternion_turns" in text
     start = "Lemma step_1 " if is_lemma else f"Theorem {name.replace(' ', '_')} "
@@ -797,7 +797,7 @@ def forged_theorems() -> Iterator[tuple[str, str]]:
             # of a false description of the body or its motion, true theorems may be stated
             checker.verify(content | {"quantities": [], "first_integrals": []})
             false = false_claims(content)
-            stated = theorems(content, [*checker.printed_in(content)]).claims
+            stated = theorems(content, [*printed_in(content)]).claims
         except checker.BROKEN:
             continue  # it is refused before there is anything to state
         for name in [name for name in stated if name in false][:1]:

@@ -20,7 +20,7 @@ from rigidsym.commands.cli import commands
 from rigidsym.errors import CheckError
 from rigidsym.notes.formats.record import record
 from rigidsym.tools.certificate import checker
-from rigidsym.tools.certificate.certificate import certificate_of, theorems
+from rigidsym.tools.certificate.certificate import certificate_of, printed_in, theorems
 
 NAME = "euler_zxz_intrinsic"
 CHECKER = Path(checker.__file__)
@@ -101,7 +101,7 @@ UNCOVERED = {"whole top": ["effective_potential"]}
 def test_bodies_and_their_motions_are_proved(name):
     proved, reasons = checker.verify(of_motion(name))
     assert {*reasons} == {*UNCOVERED.get(name, ())}
-    assert {*proved} == {"R is a rotation", *checker.printed_in(of_motion(name))} - {*reasons}
+    assert {*proved} == {"R is a rotation", *printed_in(of_motion(name))} - {*reasons}
     if name == "whole top":
         assert {"constant energy", "constant momentum_phi", "constant momentum_psi"} < {*proved}
 

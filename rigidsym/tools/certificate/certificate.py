@@ -31,7 +31,7 @@ from rigidsym.tools.certificate.checker import (
     SUM,
     Record,
     Unproved,
-    printed_in,
+    claims_in,
     read,
     turn_of,
     verify,
@@ -129,6 +129,11 @@ def theorems(record: Mapping[str, Any], claims: Sequence[str]) -> Certificate:
         *(["End Claims."] if head else []),
     ]
     return Certificate(text="\n".join(lines) + "\n", claims=[*stated], uncovered=uncovered)
+
+
+def printed_in(record: Mapping[str, Any]) -> dict[str, Any]:
+    """The expressions of the quantities and first integrals by their names."""
+    return {name: claim["expression"] for name, claim in claims_in(record).items()}
 
 
 @dataclass(frozen=True, slots=True)
