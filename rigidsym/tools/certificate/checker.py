@@ -70,7 +70,7 @@ Rate = Callable[[str], "Number"]
 Laws = dict[str, tuple[Any, ...]]
 
 
-def demand(is_so: bool, why: str, error: type[ValueError] = Refused) -> None:
+def refuse_unless(is_so: bool, why: str, error: type[ValueError] = Refused) -> None:
     if not is_so:
         raise error(why)
 
@@ -82,7 +82,9 @@ class Number:
         self.degree, self.values, self.rule = degree, [*values], rule
         self.rates = dict[str, Number]()  # by TIME or a name
         size = sum(map(int.bit_length, self.values[0].as_integer_ratio()))
-        demand(degree <= MOST_DEGREE and size <= MOST_BITS, "too large an expression", Unproved)
+        refuse_unless(
+            degree <= MOST_DEGREE and size <= MOST_BITS, "too large an expression", Unproved
+        )
 
     def rate(self, by: str) -> Number:
         if by not in self.rates:
@@ -109,7 +111,7 @@ class Number:
         return self.combined(mul, other, lambda by: self.rate(by) * other + self * other.rate(by))
 
     def __truediv__(self, other: Number) -> Number:
-        demand(0 not in other.values, "a divisor is zero")
+        refuse_unless(0 not in other.values, "a divisor is zero")
         return self.combined(
             truediv, other, lambda by: (self.rate(by) - self / other * other.rate(by)) / other
         )
@@ -151,14 +153,14 @@ class Matrix:
         self.entries = [*chain(*self.rows)]
         self.shape = [len(self.rows), *{*map(len, self.rows)}]
         is_whole = len(self.shape) < 3 and 0 not in self.shape[1:]
-        demand(is_whole, "rows of different lengths, or without entries")
+        refuse_unless(is_whole, "rows of different lengths, or without entries")
 
     @property
     def T(self) -> Matrix:
         return Matrix(zip(*self.rows, strict=True))
 
     def __add__(self, other: Matrix) -> Matrix:
-        demand(self.shape == other.shape, "a wrong shape")
+        refuse_unless(self.shape == other.shape, "a wrong shape")
         return Matrix(map(add, *pair) for pair in zip(self.rows, other.rows, strict=True))
 
     def __sub__(self, other: Matrix) -> Matrix:
@@ -167,7 +169,7 @@ class Matrix:
     def __mul__(self, other: Matrix) -> Matrix:
         if len(self.entries) == 1 and len(other.rows) > 1:  # a scalar
             return Matrix([self.entries[0] * entry for entry in row] for row in other.rows)
-        demand(self.shape[1:] == other.shape[:1], "a wrong shape")
+        refuse_unless(self.shape[1:] == other.shape[:1], "a wrong shape")
         columns = other.T.rows
         return Matrix([reduce(add, map(mul, row, c)) for c in columns] for row in self.rows)
 
@@ -187,14 +189,14 @@ class Matrix:
             total = row[0] * minor.determinant() - total
         return total
 
-    def demand_zero(self, name: str) -> None:
+    def refuse_unless_zero(self, name: str) -> None:
         for k, number in enumerate(self.entries, start=1):
-            demand(not any(number.values), f"{name}: entry {k} is false at a real point")
+            refuse_unless(not any(number.values), f"{name}: entry {k} is false at a real point")
 
-    def demand_rotation(self, name: str) -> None:
-        demand(self.shape == IDENTITY.shape, f"{name} has a wrong shape")
-        (self * self.T - IDENTITY).demand_zero(name)
-        Matrix([self.determinant() - ONE]).demand_zero(name)
+    def refuse_unless_rotation(self, name: str) -> None:
+        refuse_unless(self.shape == IDENTITY.shape, f"{name} has a wrong shape")
+        (self * self.T - IDENTITY).refuse_unless_zero(name)
+        Matrix([self.determinant() - ONE]).refuse_unless_zero(name)
 
 
 IDENTITY = Matrix([[ONE, ZERO, ZERO], [ZERO, ONE, ZERO], [ZERO, ZERO, ONE]])
@@ -227,7 +229,7 @@ def distinct(pairs: Iterable[tuple[str, Any]]) -> dict[str, Any]:
     pairs = [*pairs]
     names = [name for name, _ in pairs]
     is_distinct = len({*names}) == len(names) and re.fullmatch(r"[ -~]*", "".join(names))
-    demand(bool(is_distinct), f"a name is there twice, or not plain ASCII: {names}"[:200])
+    refuse_unless(bool(is_distinct), f"a name is there twice, or not plain ASCII: {names}"[:200])
     return dict(pairs)
 
 
@@ -242,7 +244,7 @@ def turn_of(text: str) -> tuple[str, list[str]]:
     """What a turn such as "z(phi)" is about, and the five texts of TURNS."""
     kind, places = text.partition("(")[0], text.partition("(")[2][:-1].split(",")
     count = len({*re.findall("{.}", " ".join(TURNS.get(kind, ())))})
-    demand(text.endswith(")") and len(places) == count, f"the turn {text!r}")
+    refuse_unless(text.endswith(")") and len(places) == count, f"the turn {text!r}")
     for place in places:
         read(place)  # each of them is an expression, and no piece of one
     return kind, [form.format(*(f"({place})" for place in places)) for form in TURNS[kind]]
@@ -254,7 +256,7 @@ class Record:
     def __init__(self, content: Mapping[str, Any]) -> None:
         self.content, rotation = content, content["rotation"]
         are_lists = {*rotation} in ROTATIONS and {*map(type, rotation.values())} == {list}
-        demand(are_lists, "a rotation has lists of turns (or a matrix) and of conditions")
+        refuse_unless(are_lists, "a rotation has lists of turns (or a matrix) and of conditions")
         self.turns = [*map(turn_of, rotation.get("turns", []))]
         self.texts = [texts for _, texts in self.turns] or rotation.get("matrix", [])
         self.definitions = distinct((d["name"], d["expression"]) for d in content["definitions"])
@@ -268,10 +270,10 @@ class Record:
         self.spheres = [spheres.get(condition, []) for condition in rotation["conditions"]]
         for names in self.spheres:
             is_one_kind = {*names} <= {*self.q} or {*names} <= {*self.constants}
-            why = "a condition, which gives no vector the length 1"
-            demand(bool(names) and is_one_kind, why, Unproved)
+            is_length = bool(names) and is_one_kind
+            refuse_unless(is_length, "a condition, which gives no vector the length 1", Unproved)
         self.arguments = self.all_arguments(groups)
-        self.demand_name(rotation.get("turns", []))
+        self.refuse_other_name(rotation.get("turns", []))
         self.names = {g: {n: drawn() for n, _ in pairs} for g, pairs in self.arguments.items()}
         numbers = self.names["parameters"] | {q: drawn(drawn(drawn())) for q in self.q}
         for sphere in self.spheres:
@@ -309,21 +311,22 @@ class Record:
         for group, components in (*printed.items(), ("body", body["parameters"])):
             listed = [(each["name"], each["unit"]) for each in components]
             is_part = group in ("y", "body") and {*listed} <= pairs
-            demand(is_part or listed == groups.get(group), f"{group} are {listed}")
-        demand(not in_angles & {*self.definitions}, "an angle is defined, so that it has no unit")
+            refuse_unless(is_part or listed == groups.get(group), f"{group} are {listed}")
+        is_free = not in_angles & {*self.definitions}
+        refuse_unless(is_free, "an angle is defined, so that it has no unit")
         return groups
 
-    def demand_name(self, turns: Sequence[str]) -> None:
+    def refuse_other_name(self, turns: Sequence[str]) -> None:
         """A name that does not give R another meaning."""
         name, presentation = self.content["name"], self.content["presentation"]
-        demand(presentation in ("active", "passive"), f"the presentation {presentation!r}")
+        refuse_unless(presentation in ("active", "passive"), f"the presentation {presentation!r}")
         end = "_passive" * (presentation == "passive")
         axes = "".join(kind for kind, _ in self.turns)
         angles = [turn.partition("(")[2][:-1] for turn in turns]
         right = [f"euler_{axes}_intrinsic{end}"] if angles == self.q else []
         right += [f"euler_{axes[::-1]}_extrinsic{end}"] if angles[::-1] == self.q else []
         is_plain = re.fullmatch("(?!euler_.*trinsic)[a-z][a-z0-9_]*", name)
-        demand(bool(is_plain) or name in right, f"the name {name!r} of other turns")
+        refuse_unless(bool(is_plain) or name in right, f"the name {name!r} of other turns")
 
     def column(self, group: str) -> Matrix:
         return Matrix(self.names[group].values())
@@ -345,7 +348,7 @@ class Record:
             case ast.Name(suffixed):
                 name = suffixed[:-1]
                 if name not in names:
-                    demand(name in self.definitions, f"{name} must not be in an expression")
+                    refuse_unless(name in self.definitions, f"{name} must not be in an expression")
                     names[name] = self.value(read(self.definitions[name]), names)
                 return names[name]
             case ast.Constant(int(number)) if number < MOST_NUMBER:
@@ -372,7 +375,7 @@ class Record:
             count = rest if number is ONE else angle.rate(name)
             rest, turns = rest - count * number, count.values[0]
             is_whole = {*count.values} == {turns} and turns in range(-MOST_TURNS, MOST_TURNS + 1)
-            demand(is_whole, "an angle that is no sum of whole multiples", Unproved)
+            refuse_unless(is_whole, "an angle that is no sum of whole multiples", Unproved)
             s = s if turns > 0 else MINUS * s
             for _ in range(abs(int(turns))):
                 cosine, sine = cosine * c - sine * s, cosine * s + sine * c
@@ -386,10 +389,10 @@ class Record:
         factors = [turn(*numbers) for numbers in turns]
         factors = factors or [self.read(self.texts, "q")]
         for factor in factors:
-            factor.demand_rotation("R")
+            factor.refuse_unless_rotation("R")
         R = self.R = reduce(mul, factors)
         presented = R.T if self.content["presentation"] == "passive" else R
-        laws = {
+        laws: Laws = {
             "rotation_matrix": ("", presented),
             "rotation_rate": ("1/s", presented.rate()),
             "spin_matrix": ("rad/s", presented.rate() * presented.T),
@@ -420,7 +423,7 @@ class Record:
     def of_body(self) -> Laws:
         body, omega, R = self.content["body"], self.omega, self.R
         mass, centre, inertia = (self.read(body[part]) for part in ("mass", "centre", "inertia"))
-        (inertia - inertia.T).demand_zero("the inertia tensor")
+        (inertia - inertia.T).refuse_unless_zero("the inertia tensor")
         velocity, arm = self.column("centre_dot"), (self.column("point") - centre).hat()
         about_point = inertia + mass * (arm.T * arm)  # the parallel-axis theorem
         momentum, of_centre = inertia * omega, mass * (self.column("centre").hat() * velocity)
@@ -451,9 +454,9 @@ class Record:
     def principal(self, _: Matrix) -> Matrix:
         """E = (e₁ e₂ e₃) is a rotation, and I E = E diag(I₁, I₂, I₃): the e are eigenvectors."""
         claims = claims_in(self.content)
-        demand({*PRINCIPAL} <= {*claims}, "axes without moments, or the reverse", Unproved)
+        refuse_unless({*PRINCIPAL} <= {*claims}, "axes without moments, or the reverse", Unproved)
         axes, moments = (self.read(claims[name]["expression"]) for name in PRINCIPAL)
-        axes.demand_rotation("principal axes")
+        axes.refuse_unless_rotation("principal axes")
         (one,), (two,), (three,) = moments.rows
         diagonal = [[one, ZERO, ZERO], [ZERO, two, ZERO], [ZERO, ZERO, three]]
         return self.inertia * axes - axes * Matrix(diagonal)
@@ -461,9 +464,9 @@ class Record:
     def of_motion(self) -> Laws:
         """d'Alembert's principle: W'ᵀ (dL'/dt + Ω' × L') + ∂V/∂q = Q, which is M q̈ + h = Q."""
         is_plain = self.is_free and len(self.q) <= 3 and not self.definitions
-        demand(is_plain, "coordinates that depend on one another, or definitions", Unproved)
+        refuse_unless(is_plain, "coordinates that depend on one another, or definitions", Unproved)
         # the body turns about a fixed point, from which places are counted
-        self.centre.demand_zero("the centre of mass")
+        self.centre.refuse_unless_zero("the centre of mass")
         motion, W, energy, moving = self.content["motion"], self.W, self.energy, ("q", "q_dot")
         rates, seconds, second = self.column("q_dot"), self.column("q_ddot"), self.unit_of("q_ddot")
         potential = self.read(motion["potential"], "q")
@@ -472,9 +475,9 @@ class Record:
         inertial = W.T * turning + Matrix(potential.rate(q).entries for q in self.q)
         balance = inertial - forces - W.T * torque  # zero along a motion
         masses, momenta = W.T * self.inertia * W, W.T * self.momentum
-        demand(0 not in masses.determinant().values, "the mass matrix is singular")
+        refuse_unless(0 not in masses.determinant().values, "the mass matrix is singular")
         self.names["momenta"] = dict(zip(self.names["momenta"], momenta.entries, strict=True))
-        laws = {
+        laws: Laws = {
             "potential_energy": ("J", potential),
             "lagrangian": ("J", energy - potential),
             "energy": ("J", energy + potential),
@@ -503,14 +506,14 @@ def verify(content: Mapping[str, Any]) -> tuple[list[str], dict[str, str]]:
         lack = str(error)
     for name, claim in claims_in(content).items():
         try:
-            demand(name in laws, lack, Unproved)
+            refuse_unless(name in laws, lack, Unproved)
             unit, law, *groups = laws[name]
             groups = groups or [*{*record.names} - {"momenta", "t"}]
             x = record.read(claim["expression"], *{*claim.get("inputs", groups)} & {*groups})
             shape = claim.get("shape", [])  # of a vector, without the 1 column
             is_so = claim.get("unit") == unit and [*shape, 1, 1][:2] == x.shape
-            demand(is_so, f"{name} has another unit or shape")
-            (law(x) if callable(law) else x - law).demand_zero(name)
+            refuse_unless(is_so, f"{name} has another unit or shape")
+            (law(x) if callable(law) else x - law).refuse_unless_zero(name)
             proved.append(name)
         except (Unproved, RecursionError) as error:
             reasons[name] = str(error)
