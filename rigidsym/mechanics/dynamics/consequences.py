@@ -22,6 +22,7 @@ from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Consequence
 from rigidsym.mechanics.prove import identity
 from rigidsym.mechanics.quantities import dynamics as claims
+from rigidsym.mechanics.quantities.dynamics import TORQUE
 from rigidsym.mechanics.quantities.kinematics import BODY
 from rigidsym.models.forces import OMEGA_BODY
 from rigidsym.models.rotation import TIME, elementary
@@ -164,7 +165,7 @@ def _asymmetric(subject: str, moments: Sequence[sp.Expr]) -> Consequence:
         BODY.omega,
         r"\begin{pmatrix}a\,\operatorname{cn}(\tau t, k) \\ b\,\operatorname{sn}(\tau t, k) \\ "
         r"c\,\operatorname{dn}(\tau t, k)\end{pmatrix}",
-        (r"\I'\,\dot\Om' + \Om'\times\I'\,\Om' = 0", residual),
+        (f"{TORQUE} = 0", residual),
         where=(("a^2", a), ("b^2", b), ("c^2", c), (r"\tau^2", tau), ("k^2", modulus)),
         moments=moments,
         least=2 * _ENERGY * B,

@@ -44,6 +44,7 @@ from rigidsym.mechanics.kinematics.chain import (
 )
 from rigidsym.mechanics.prove import Conditions, Prover, consequence
 from rigidsym.mechanics.quantities import dynamics as claims
+from rigidsym.mechanics.quantities.dynamics import TORQUE
 from rigidsym.models.body import RigidBody
 from rigidsym.models.forces import OMEGA_BODY, Forces
 from rigidsym.models.rotation import TIME, RotationModel, Turn, as_typed
@@ -478,8 +479,8 @@ def of_any_body() -> tuple[Proof, ...]:
     power = omega.dot(tensor * rate) - omega.dot(torque)
     claims_of = {
         r"\frac{d}{dt}\frac{\partial T}{\partial\dot\q} - \frac{\partial T}{\partial\q} = "
-        r"\W'^T\left(\I'\,\dot\Om' + \Om'\times\I'\,\Om'\right)": lagrange,
-        r"\Om'\cdot(\I'\,\dot\Om' + \Om'\times\I'\,\Om') = \Om'\cdot\I'\,\dot\Om'": power,
+        rf"\W'^T\left({TORQUE}\right)": lagrange,
+        rf"\Om'\cdot({TORQUE}) = \Om'\cdot\I'\,\dot\Om'": power,
     }
     codec = codec_for([*W, *omega, *slope, *rate, *tensor], order=0)
     prover = Prover(Conditions("a body"), codec)

@@ -25,6 +25,7 @@ _TREE, _EULER, _FREE = "tree", "euler", "no_potential"  # traits
 # of bodies on joints and of particles, by the angular velocities of the joints
 _TURNING = r"\tfrac{1}{2}\sum_k \w_k^T\,\I_k\,\w_k + \tfrac{1}{2}\sum_p m_p\,|\v_p|^2"
 _SPEEDS = r", \quad \w_k = \dot{\theta}_k\,\n_k + \T_k^T\,\w_{k-1}"
+TORQUE = r"\I'\,\dot\Om' + \Om'\times\I'\,\Om'"  # that a motion takes, by Euler's equations
 _LAGRANGE = r"\frac{d}{dt}\frac{\partial {T}}{\partial\dot\q} - \frac{\partial {T}}{\partial\q} = "
 _ENERGY: dict[str, Any] = {"unit": "J", "shape": "scalar", "section": MOTION}
 
@@ -151,7 +152,7 @@ bias_vector = Quantity(
     reason="rest_of_lagrange",
     section=MOTION,
     **_of_kinetic(
-        _LAGRANGE + r"\W'^T\left(\I'\,\dot\Om' + \Om'\times\I'\,\Om'\right)",
+        _LAGRANGE + rf"\W'^T\left({TORQUE}\right)",
         lambda k, x: k.of_lagrange + k.bias - x,
         of_tree=_LAGRANGE + r"\M\ddot\q + \h - \frac{\partial V}{\partial\q}",
         reason="recursion_of_torques",
@@ -212,7 +213,7 @@ angular_acceleration_from_torque = Quantity(
     definition=formula(r"\I'^{-1}\left(\N' - \Om'\times\I'\,\Om'\right)"),
     source=SOURCES["Goldstein 5.5"],
     value=lambda k: k.free_turning,
-    laws=(law(r"\I'\,\dot\Om' + \Om'\times\I'\,\Om' = \N'", lambda k, x: k.excess_torque(x)),),
+    laws=(law(rf"{TORQUE} = \N'", lambda k, x: k.excess_torque(x)),),
     reason="euler_equations",
     section=MOTION,
     is_result=True,
