@@ -94,11 +94,10 @@ def no_rotation(model: RotationModel) -> dict[str, float]:
 METHODS = ("lagrange", "euler")
 OMEGA_BODY = sp.symbols("Omega_body_1:4")
 _LONG, _ALIKE = 4, 0.8  # letters of a name, and the share that two names have in common
-_OF_MOTION = re.compile(  # names of quantities, which are no constants
-    r"(angular_(velocity|acceleration|momentum)|(omega|alpha)(?=_[sb]))(_space|_body)?(_?[123])?"
+_OF_MOTION = (  # names of quantities, which are no constants
+    r"(?i)(angular_(velocity|acceleration|momentum)|(omega|alpha)(?=_[sb]))(_space|_body)?(_?[123])?"
     r"|(kinetic|potential|rotational|translational)_energy|rotation_matrix(_?[123]{2})?"
-    r"|generalised_momenta|lagrangian|hamiltonian|(quaternion|torque_body)(_?[0123])?",
-    re.IGNORECASE,
+    r"|generalised_momenta|lagrangian|hamiltonian|(quaternion|torque_body)(_?[0123])?"
 )
 _MOMENT = "principal moment of inertia"
 _NONE: Mapping[Any, sp.Expr] = MappingProxyType({})
@@ -335,7 +334,7 @@ def _check_spelling(name: str, names: Mapping[str, sp.Expr]) -> None:
         near += get_close_matches(name, names, n=1, cutoff=_ALIKE)
     if near and len(plain) > 1:  # T may be a constant beside the time t
         raise ModelError(f"unknown name {name}; did you mean {near[0]}?")
-    if _OF_MOTION.fullmatch(name):
+    if re.fullmatch(_OF_MOTION, name):
         raise ModelError(
             f"{name} is a quantity, not a constant; expected coordinates, rates (theta_dot), "
             "components of Ω′ (omega_body_1) and constants"

@@ -46,8 +46,9 @@ from rigidsym.system import resources
 if TYPE_CHECKING:
     from rigidsym.notes.figure.drawing import Drawing
 
-_FIRST = 0xE000  # of the private use area, whose letters no font has
-_MARK = "[\ue000-\uf8ff]"
+# Of a private use area, whose letters no font has; `re` compiles ranges up to U+FFFF slowly.
+_FIRST = 0xF0000
+_MARK = "[\U000f0000-\U000ffffd]"
 _INLINE = re.compile(
     r"\\(?P<dollar>\$)|\$(?P<math>[^$]+)\$|\*\*(?P<strong>.+?)\*\*|`(?P<code>[^`]+)`"
     rf"|(?P<mark>{_MARK})"

@@ -10,7 +10,7 @@ from subprocess import CompletedProcess
 
 import pytest
 
-from rigidsym.commands.cli import main
+from rigidsym.commands import cli
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -33,13 +33,13 @@ def run(*arguments: str, given: str = "", **environment: str) -> CompletedProces
         patch.setattr(sys, "stdin", stdin)
         for name, value in environment.items():
             patch.setenv(name, value)
-        with redirect_stdout(out), redirect_stderr(errors), pytest.raises(SystemExit) as ended:
-            main()
+        with redirect_stdout(out), redirect_stderr(errors):
+            status = cli.run()
     texts = []
     for stream in (out, errors):
         stream.seek(0)
         texts.append(stream.read())
-    return CompletedProcess(arguments, ended.value.code, *texts)
+    return CompletedProcess(arguments, status, *texts)
 
 
 def call(*arguments: str, cwd: Path, status: int = 0, **environment: str) -> CompletedProcess[str]:

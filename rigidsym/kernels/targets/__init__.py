@@ -17,7 +17,6 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Protocol, cast
 
 from rigidsym.errors import KernelError, MissingExtra, offer
-from rigidsym.kernels import loaded
 
 if TYPE_CHECKING:
     from rigidsym.kernels.ir import Program
@@ -97,4 +96,6 @@ def load(target: str, name: str, files: Mapping[str, str]) -> ModuleType:
         from rigidsym.kernels.targets.compiling import build, load_built
 
         return load_built(f"{name}_c", files, lambda folder: build(folder / main))
-    return loaded.load(main.stem, files)
+    from rigidsym.kernels.loaded import load as load_files
+
+    return load_files(main.stem, files)

@@ -5,6 +5,7 @@ The unit is the length of the unit vectors of space; labels are set in letters o
 
 from __future__ import annotations
 
+from bisect import bisect
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 from math import acos, atan2, ceil, cos, hypot, pi, radians, sin, tau
@@ -204,12 +205,15 @@ Named = tuple[Kind, Formula, Sequence[Place]]  # a label, and where it may go
 def labelled(named: Iterable[Named], strokes: Sequence[Stroke]) -> tuple[Label, ...]:
     """Labels at their first free places, the nearest first; else where they touch the least."""
     # Labels are placed one by one and never moved again; the first ones have the widest choice.
-    named, points = tuple(named), [*_sampled(strokes)]
+    named, points = tuple(named), sorted(_sampled(strokes))
     taken: list[Box] = []
 
     def touched(box: Box) -> int:
         grown = box.grown(_MARGIN)
-        return sum(map(grown.holds, points)) + sum(map(grown.meets, taken))
+        # few of the points, from left to right, are above or below the box
+        reach, x = grown.half_width + _MARGIN, grown.centre[0]
+        near = points[bisect(points, (x - reach,)) : bisect(points, (x + reach,))]
+        return sum(map(grown.holds, near)) + sum(map(grown.meets, taken))
 
     widths = half_widths([symbol for _, symbol, _ in named])
     for (_, _, places), half_width in zip(named, widths, strict=True):
