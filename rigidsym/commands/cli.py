@@ -21,7 +21,6 @@ from rigidsym.commands.command import DECLARED, message
 from rigidsym.errors import RigidsymError
 from rigidsym.version import __version__
 
-_INTERRUPTED = 130
 _SUMMARIES = {name: entry["summary"] for name, entry in DECLARED["commands"].items()}
 
 
@@ -56,7 +55,7 @@ def run() -> int:
         status = error.exit_code
     except (KeyboardInterrupt, click.Abort):
         message("interrupted")
-        status = _INTERRUPTED
+        status = 130  # as of a process that SIGINT ends
     except MemoryError:
         message("out of memory")
         status = 1

@@ -28,18 +28,17 @@ def inventory() -> str:
     """The whole list, as text."""
     aliases = {name: f" or {alias}" for alias, name in ALIASES.items()}
     presets = {name: rotation_from(name) for name in PRESETS}
-    passive = {name: "A = Rᵀ, " if model.passive else "" for name, model in presets.items()}
     shipped = {name: text("derivations", f"{name}.toml") for name in names("derivations", ".toml")}
-    parametrisations = PARAMETRISATIONS.items()
     template = environment().get_template("list/inventory.txt.jinja")
     return template.render(
         table=_table,
         sequences=[(name, f"R = {EulerAngles(name).product}") for name in EULER_SEQUENCES],
         parametrisations=[
-            (n + aliases.get(n, ""), f"R = {e.product}") for n, e in parametrisations
+            (name + aliases.get(name, ""), f"R = {entry.product}")
+            for name, entry in PARAMETRISATIONS.items()
         ],
         presets=[
-            (name, f"{passive[name]}R = {model.product}: {PRESETS[name].about}")
+            (name, f"{'A = Rᵀ, ' * model.passive}R = {model.product}: {PRESETS[name].about}")
             for name, model in presets.items()
         ],
         solids=[

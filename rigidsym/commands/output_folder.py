@@ -36,9 +36,9 @@ def with_existing_files(spec: DerivationSpec, out: Path) -> DerivationSpec:
     Other targets and notes of an earlier run are printed again with the rest, so that one record
     describes all of them and `rigidsym check` sees them.
     """
-    before = _spec_of(content_of(out / spec.name / f"{spec.name}.json"))
+    before = _spec_of(content_of(out / spec.name / f"{spec.name}.json"), spec)
     files = {key: getattr(spec, key) for key in ("kernels", "note", "certificates")}
-    if before is None or replace(before, **files) != spec:  # more than the files differs
+    if replace(before, **files) != spec:  # more than the files differs
         return spec
     notes = [name for name in before.note if name != PDF]  # it is typeset when it is asked for
     return replace(
@@ -69,9 +69,9 @@ def write(output: Output, out: Path, *, force: bool) -> list[Path]:
             f"{', '.join(sorted(map(str, lost)))} changed since it was generated; use --force to "
             "overwrite it, or --out for another folder"
         )
-    before = _spec_of(record)
+    before = _spec_of(record, output.spec)
     gone = sorted(contents.keys() - edited - new.keys())
-    if before is not None and before.models != output.spec.models:
+    if before.models != output.spec.models:
         message(remark("replacing_rotation", folder=folder))
     elif gone:
         names = ", ".join(path.name for path in gone)
@@ -81,12 +81,13 @@ def write(output: Output, out: Path, *, force: bool) -> list[Path]:
     return [write_text(path, text) for path, text in new.items()]
 
 
-def _spec_of(content: dict[str, Any]) -> DerivationSpec | None:
-    """The specification in the content of a record; None without one that can be read."""
-    try:
-        return read_record(content["request"]) if "request" in content else None
+def _spec_of(content: dict[str, Any], spec: DerivationSpec) -> DerivationSpec:
+    """The specification in the content of a record; `spec` if that is the same, or unreadable."""
+    request = content.get("request")
+    try:  # the same is not read, which takes 6 ms
+        return spec if request in (None, spec.to_data()) else read_record(request)
     except SpecError:
-        return None
+        return spec
 
 
 def content_of(record: Path) -> dict[str, Any]:

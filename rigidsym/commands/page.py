@@ -18,8 +18,7 @@ from rigidsym.pipeline import PAGE, integrated, page_name, read
 def command(source: str, **options: Any) -> None:
     """Write an interactive page for a browser: the note, and a figure with sliders."""
     out = options["out"]
-    spec = applied(options, integrated(read(source, **of_rotation(options))))
-    for single in spec.singles():
+    for single in applied(options, integrated(read(source, **of_rotation(options)))).singles():
         asked = replace(single, kernels=(), note=(PAGE,))
         write(printed(with_existing_files(asked, out)), out, force=options["force"])
         click.echo(out / single.name / page_name(single.name))

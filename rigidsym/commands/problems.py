@@ -34,5 +34,5 @@ def command(
             path = folder / f"{document.name}.{ending}"
             click.echo(write_text(path, render(document, ending)))
     for document in documents if pdf else ():
-        paper = typeset(render(document, "tex"))
-        click.echo(write_bytes(folder / f"{document.name}.pdf", paper.pdf))
+        path = folder / f"{document.name}.pdf"
+        click.echo(write_bytes(path, typeset(render(document, "tex")).pdf))

@@ -22,9 +22,8 @@ def command(files: tuple[str, ...], **options: Any) -> None:
             specs.append(applied(options, read_file(file)))
         except SpecError as error:
             wrong.append(error)
+    for other in wrong[:-1]:
+        message(str(other))
     if wrong:
-        *others, last = wrong
-        for other in others:
-            message(str(other))
-        raise last
+        raise wrong[-1]
     produce(specs, options)

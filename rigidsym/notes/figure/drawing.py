@@ -58,9 +58,6 @@ class Box(NamedTuple):
     half_width: float
     half_height: float
 
-    def grown(self, margin: float) -> Box:
-        return Box(self.centre, self.half_width + margin, self.half_height + margin)
-
     def meets(self, other: Box) -> bool:
         (x, y), (a, b) = self.centre, other.centre
         is_beside = abs(x - a) >= self.half_width + other.half_width
@@ -209,9 +206,9 @@ def labelled(named: Iterable[Named], strokes: Sequence[Stroke]) -> tuple[Label, 
     taken: list[Box] = []
 
     def touched(box: Box) -> int:
-        grown = box.grown(_MARGIN)
-        # few of the points, from left to right, are above or below the box
-        reach, x = grown.half_width + _MARGIN, grown.centre[0]
+        grown = Box(box.centre, box.half_width + _MARGIN, box.half_height + _MARGIN)
+        # few of the points, which are in order from left to right, are above or below the box
+        x, reach = box.centre[0], box.half_width + 2 * _MARGIN
         near = points[bisect(points, (x - reach,)) : bisect(points, (x + reach,))]
         return sum(map(grown.holds, near)) + sum(map(grown.meets, taken))
 
