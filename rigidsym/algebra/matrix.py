@@ -71,16 +71,12 @@ class RingMatrix:
         return RingMatrix(self.ring, tuple(rows), (_multiplied, (self, other)))
 
     def __add__(self, other: RingMatrix) -> RingMatrix:
-        return self._entrywise(add, other)
+        rows = _entrywise(add, self.rows, other.rows)
+        return RingMatrix(self.ring, rows, (partial(_entrywise, add), (self, other)))
 
     def __sub__(self, other: RingMatrix) -> RingMatrix:
-        return self._entrywise(sub, other)
-
-    def _entrywise(self, operation: Callable[[Any, Any], Any], other: RingMatrix) -> RingMatrix:
-        """Sums and differences of normal forms are normal forms."""
-        pairs = zip(self.rows, other.rows, strict=True)
-        rows = tuple(tuple(map(operation, *entries)) for entries in pairs)
-        return RingMatrix(self.ring, rows, (partial(_entrywise, operation), (self, other)))
+        rows = _entrywise(self.ring.difference, self.rows, other.rows)
+        return RingMatrix(self.ring, rows, (partial(_entrywise, sub), (self, other)))
 
     def map(self, function: Callable[[PolyElement], PolyElement]) -> RingMatrix:
         return RingMatrix.of(self.ring, [[function(entry) for entry in row] for row in self.rows])
@@ -121,24 +117,14 @@ class RingMatrix:
 
     def det(self) -> PolyElement:
         """The determinant, by the first row."""
-        # Laplace expansion: det M = Σ_j (−1)ʲ M_0j det(M without row 0 and column j). Unlike
-        # elimination it needs no division, and zeros spare their minors.
-        if not self.rows:
-            return self.ring.one
-        pairs = [
-            (entry, self._minor(0, j).det() if entry else entry)
-            for j, entry in enumerate(self.rows[0])
-        ]
-        return self.ring.dot(pairs[::2], minus=pairs[1::2])
+        return _det(self.ring, self.rows)
 
     def adjugate(self) -> RingMatrix:
         """adj(M), with M adj(M) = det(M) 1."""
-        # adj(M)_ij = (−1)^(i+j) times the minor without row j and column i.
+        # adj(M)_ij is the cofactor of M_ji, (−1)^(i+j) times the minor without row j and column i.
         places = range(len(self.rows))
-        return RingMatrix(
-            self.ring,
-            tuple(tuple((-1) ** (i + j) * self._minor(j, i).det() for j in places) for i in places),
-        )
+        rows = (tuple(self._cofactor(j, i) for j in places) for i in places)
+        return RingMatrix(self.ring, tuple(rows))
 
     def rank_and_minors(self, most: int | None = None) -> tuple[int, list[PolyElement]]:
         """The generic rank, or `most` if that is less, and the minors of that size but zeros.
@@ -222,10 +208,23 @@ class RingMatrix:
         divisor = self.ring.dot(zip(square.rows[0], columns[0], strict=True))
         return (RingMatrix(self.ring, columns[:3]).T, divisor) if divisor else None
 
-    def _minor(self, row: int, column: int) -> RingMatrix:
-        """The matrix without one row and one column."""
-        kept = [entries for place, entries in enumerate(self.rows) if place != row]
-        return RingMatrix(self.ring, tuple(e[:column] + e[column + 1 :] for e in kept))
+    def _cofactor(self, row: int, column: int) -> PolyElement:
+        kept = (entries for place, entries in enumerate(self.rows) if place != row)
+        minor = _det(self.ring, [e[:column] + e[column + 1 :] for e in kept])
+        return -minor if (row + column) % 2 else minor
+
+
+def _det(ring: Ring, rows: Sequence[Row]) -> PolyElement:
+    # Laplace expansion: det M = Σ_j (−1)ʲ M_0j det(M without row 0 and column j). Unlike
+    # elimination it needs no division, and zeros spare their minors.
+    if len(rows) < 2:
+        return rows[0][0] if rows else ring.one
+    first, *rest = rows
+    pairs = [
+        (entry, _det(ring, [e[:j] + e[j + 1 :] for e in rest]) if entry else entry)
+        for j, entry in enumerate(first)
+    ]
+    return ring.dot(pairs[::2], minus=pairs[1::2])
 
 
 def _multiplied(rows: Values, others: Values) -> Values:
@@ -233,8 +232,8 @@ def _multiplied(rows: Values, others: Values) -> Values:
     return [[sum(map(mul, row, column)) for column in columns] for row in rows]
 
 
-def _entrywise(operation: Callable[[Any, Any], Any], rows: Values, others: Values) -> Values:
-    return [list(map(operation, *pair)) for pair in zip(rows, others, strict=True)]
+def _entrywise(operation: Callable[..., Any], rows: Values, others: Values) -> tuple[Any, ...]:
+    return tuple(tuple(map(operation, *pair)) for pair in zip(rows, others, strict=True))
 
 
 Inverse = tuple[RingMatrix, PolyElement]  # G and d, for G/d

@@ -155,23 +155,22 @@ class Presenter:
 
     def _collected(self, *items: tuple[Monomial, Any]) -> sp.Expr:
         """The terms as a sum of products with common factors taken out."""
-        terms = dict(items)
-        factor = self._best_factor(terms) if len(terms) > 1 else None
-        if factor is None:
-            return sp.Add(*(self._product(number, powers) for powers, number in terms.items()))
-        place, sign = factor
         # Greedy Horner scheme: a b + a c + d becomes a (b + c) + d, and both sums are treated
         # likewise.
-        inside = {m: c for m, c in terms.items() if m[place] * sign > 0}
-        outside = {m: c for m, c in terms.items() if m[place] * sign <= 0}
-        # all that the terms have in common: the lowest powers of one sign, and their numbers
-        common = tuple(max(min(k), 0) + min(max(k), 0) for k in zip(*inside, strict=True))
-        number = _content(inside.values())
-        if all(value < 0 for value in inside.values()):  # fewer minus signs are left
-            number = -number
-        rest = [(tuple(map(sub, m, common)), NUMBERS.quo(c, number)) for m, c in inside.items()]
-        product = self._product(number, common, self._sum(*rest))
-        return sp.Add(product, self._sum(*outside.items()))
+        terms, products = dict(items), []
+        while len(terms) > 1 and (factor := self._best_factor(terms)):
+            place, sign = factor
+            inside = {m: c for m, c in terms.items() if m[place] * sign > 0}
+            terms = {m: c for m, c in terms.items() if m[place] * sign <= 0}
+            # all that the terms have in common: the lowest powers of one sign, and their numbers
+            common = tuple(max(min(k), 0) + min(max(k), 0) for k in zip(*inside, strict=True))
+            number = _content(inside.values())
+            if all(value < 0 for value in inside.values()):  # fewer minus signs are left
+                number = -number
+            rest = [(tuple(map(sub, m, common)), NUMBERS.quo(c, number)) for m, c in inside.items()]
+            products.append(self._product(number, common, self._sum(*rest)))
+        products += [self._product(number, powers) for powers, number in terms.items()]
+        return sp.Add(*products) if len(products) != 1 else products[0]
 
     def _best_factor(self, terms: Terms) -> tuple[int, int] | None:
         """The place and the sign of the power that save most when taken out of several terms.
@@ -207,10 +206,10 @@ class Presenter:
         parts += [
             self._named(k) if n == 1 else self._named(k) ** n for k, n in enumerate(rest) if n
         ]
-        factors = sp.Mul(*parts, *sums)
-        if abs(number) == 1:
-            return factors if number == 1 else -factors
-        return _rational(number) * factors
+        parts += sums
+        if number != 1:
+            parts.insert(0, _rational(number))
+        return sp.Mul(*parts) if len(parts) != 1 else parts[0]
 
 
 presenter_for = lru_cache(maxsize=32)(Presenter)  # shared like the ring itself

@@ -118,7 +118,7 @@ class Ring:
         known = total.get
         for sign, group in ((1, pairs), (-1, minus)) if minus else ((1, pairs),):
             for first, second in group:
-                if not second:
+                if not (first and second):
                     continue
                 terms = second.items()
                 for monomial, coefficient in first.items():
@@ -127,6 +127,11 @@ class Ring:
                         product = times(monomial, other)
                         total[product] = known(product, 0) + weight * factor
         return self._settled(total) if total else self.zero
+
+    def difference(self, first: PolyElement, second: PolyElement) -> PolyElement:
+        """The difference of two elements in normal form, which is one."""
+        # Both sides of nearly every claim are equal; SymPy would compare their rings first.
+        return self.zero if dict.__eq__(first, second) else first - second
 
     def total(self, elements: Iterable[PolyElement]) -> PolyElement:
         """The sum of elements, in normal form."""
@@ -328,9 +333,9 @@ def shortest(ring: Ring, element: PolyElement) -> PolyElement:
     least = length = (len(element), sum(map(sum, element)))  # the terms, then their degrees
     seen = {current}
     for _ in range(_MOST_STEPS):
-        shorter = [n for n in _neighbours(ring, current, length) if n.length <= length]
+        shorter = [n for n in _neighbours(ring, current, length) if n[0] <= length]
         shorter.sort(key=itemgetter(0))
-        found = ((n.length, current - n.relation.mul_term(n.term)) for n in shorter)
+        found = ((length, current - relation.mul_term(by)) for length, relation, by in shorter)
         fresh = next((neighbour for neighbour in found if neighbour[1] not in seen), None)
         if fresh is None:
             break
@@ -341,16 +346,14 @@ def shortest(ring: Ring, element: PolyElement) -> PolyElement:
     return best
 
 
-class Neighbour(NamedTuple):
-    """What is left when a multiple of a relation is subtracted; made only where it is short."""
-
-    length: tuple[int, int]
-    relation: PolyElement
-    term: tuple[Monomial, object]  # which multiplies the relation
+# the terms of a sum with their degrees, a relation, and the term that multiplies the relation
+Neighbour = tuple[tuple[int, int], PolyElement, tuple[Monomial, object]]
 
 
 def _neighbours(ring: Ring, element: PolyElement, length: tuple[int, int]) -> Iterator[Neighbour]:
-    """Each polynomial in which one term was replaced by means of one relation."""
+    """Each polynomial in which one term was replaced by means of one relation, before it is made:
+    its length, and the multiple of the relation that is to be subtracted.
+    """
     # The multiple t·r of a relation r is chosen so that one of its terms cancels one of the
     # element.
     highest = tuple(map(max, zip(*element, strict=True)))
@@ -371,4 +374,4 @@ def _neighbours(ring: Ring, element: PolyElement, length: tuple[int, int]) -> It
                     count, degrees = count + 1, degrees + sum(changed)
                 elif before == number * times:
                     count, degrees = count - 1, degrees - sum(changed)
-            yield Neighbour((count, degrees), relation, (rest, times))
+            yield (count, degrees), relation, (rest, times)

@@ -14,10 +14,12 @@ zero.
 from __future__ import annotations
 
 import random
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from decimal import Decimal, localcontext
-from functools import cached_property, lru_cache, partial
+from functools import cached_property, lru_cache
+from itertools import starmap
+from math import prod
 from typing import Any, NamedTuple
 
 import sympy as sp
@@ -28,6 +30,7 @@ from rigidsym.algebra.codec import Codec
 from rigidsym.algebra.evaluate import NotReal, RealValues, Unknown, context
 from rigidsym.algebra.generators import TIME, in_names, is_identically_zero
 from rigidsym.algebra.matrix import RingMatrix, Values
+from rigidsym.algebra.ring import Monomial
 from rigidsym.errors import ModelError
 
 DIGITS = 50
@@ -35,7 +38,7 @@ MORE_DIGITS = 400  # if fewer do not tell a divisor from zero: 10**120 times a h
 _GUARD = 20  # digits that evaluations may lose
 _SCALES = ("1", "1", "1", "-1", "-1", "1/10", "10", "-10", "1/100", "100")  # of random points
 _ATOMS = (sp.Symbol, sp.Derivative, AppliedUndef)
-_SMALL = 1e-45  # a value of a residual below it is zero
+_SMALL = Decimal("1e-45")  # a value of a residual below it is zero
 _POINTS = 3  # at which a claim may be refuted
 Example = tuple[tuple[sp.Expr, sp.Expr], ...]
 Numbers = dict[sp.Expr, sp.Expr]
@@ -228,7 +231,7 @@ class Witness:
         # An interval without zero proves that the element is not zero. One point at 50 digits
         # decides nearly always; further points and more digits cost more and come later.
         return any(
-            0 not in _value(self._bounds(at), context(digits, of_intervals=True).mpf, element)
+            0 not in self._interval(at, digits)(element)
             for digits, count in ((DIGITS, 1), (DIGITS, _POINTS), (MORE_DIGITS, 1))
             for at in self._configurations(digits, count)
         )
@@ -243,28 +246,33 @@ class Witness:
         # Rounding can make a zero look different from zero, so a disagreement must be confirmed by
         # intervals. An agreement needs no more: the ring has proved the zero already.
         with localcontext(prec=DIGITS + _GUARD):
-            rows = residual.values(partial(_value, self._numbers, Decimal), known)
+            rows = residual.values(self._decimal, known)
         if all(abs(entry) < _SMALL for row in rows for entry in row):
             return False
-        number = context(DIGITS, of_intervals=True).mpf
-        rows = residual.values(partial(_value, self._bounds(self._first), number), {})
+        rows = residual.values(self._interval(self._first, DIGITS), {})
         return any(0 not in entry for row in rows for entry in row)
 
+    def _interval(self, at: Configuration, digits: int) -> Callable[[PolyElement], Any]:
+        """Bounds on the values of elements at a point."""
+        return _evaluation(self._bounds(at), context(digits, of_intervals=True).mpf)
+
     @cached_property
-    def _numbers(self) -> list[Decimal]:
-        """The values of the generators at the first point."""
+    def _decimal(self) -> Callable[[PolyElement], Decimal]:
+        """The values of elements at the first point."""
         number = context(DIGITS + _GUARD).mpf
-        return [Decimal(str(number(bounds.mid))) for bounds in self._bounds(self._first)]
+        numbers = [Decimal(str(number(bounds.mid))) for bounds in self._bounds(self._first)]
+        return _evaluation(numbers, Decimal)
 
 
-def _value(values: Sequence[Any], number: Any, element: PolyElement) -> Any:
-    """The value of an element, a number or an interval, from those of its generators."""
-    # Evaluation respects sums and products, so one function serves numbers and intervals.
-    total = number(0)
-    for monomial, coefficient in element.items():
-        term = number(int(coefficient.numerator)) / int(coefficient.denominator)
-        for place, power in enumerate(monomial):
-            if power:
-                term = term * values[place] ** power
-        total = total + term
-    return total
+def _evaluation(values: Sequence[Any], number: Any) -> Callable[[PolyElement], Any]:
+    """The values of elements, numbers or intervals, from those of the generators."""
+
+    # Evaluation respects sums and products, so one function serves numbers and intervals. Few
+    # terms are new: most occur in many entries.
+    @lru_cache(maxsize=1 << 14)
+    def term(powers: Monomial, coefficient: Any) -> Any:
+        weight = number(int(coefficient.numerator)) / int(coefficient.denominator)
+        factors = (value**n for value, n in zip(values, powers, strict=True) if n)
+        return prod(factors, start=weight)
+
+    return lambda element: sum(starmap(term, element.items()), number(0))

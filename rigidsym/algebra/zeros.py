@@ -65,8 +65,8 @@ class _Angle(NamedTuple):
 
 def substituted(element: PolyElement, zero: Zero) -> PolyElement:
     """The element at a zero, not in normal form."""
-    moved = {place for monomial in element for place, power in enumerate(monomial) if power}
-    becomes = {place: e for root in zero for place, e in root.becomes if place in moved}
+    pairs = (pair for root in zero for pair in root.becomes)
+    becomes = {place: e for place, e in pairs if any(m[place] for m in element)}
     if not becomes:
         return element
     result = element.ring.zero

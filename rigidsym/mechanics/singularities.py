@@ -45,8 +45,7 @@ class _Study:
         # each axis has been moved by few turns, and W is shortest
         matrices = [turn.matrix for turn in model.turns[: len(model.turns) // 2]]
         rotation, rates = values.rotation, values.rate_matrix("space")
-        one = RingMatrix.identity(codec.ring, 3)
-        self.to_space = reduce(operator.matmul, map(codec.matrix, matrices), one)
+        self.to_space = reduce(operator.matmul, map(codec.matrix, matrices), values.one)
         self.to_body = rotation.T @ self.to_space
         # Pᵀ W has the rank and the kernel of W, since P is a rotation. J is stacked below it, so
         # that the rates of the whole kernel are those that give no Ω and keep the constraints.
@@ -104,7 +103,7 @@ class _Study:
         in_space = in_body = None
         if axis is not None:
             here = RingMatrix.column(there.ring, axis[:3])
-            both = [matrix_at(frame, zero) @ here for frame in (self.to_space, self.to_body)]
+            both = [matrix_at(frame @ here, zero) for frame in (self.to_space, self.to_body)]
             # One common factor is taken out of both, so that they stay the same vector in two
             # frames.
             entries = primitive(there.ring, [entry for vector in both for entry in vector.entries])

@@ -135,10 +135,9 @@ def _times(first: sp.ImmutableMatrix, second: sp.ImmutableMatrix) -> sp.Immutabl
     Zeros are left out, since SymPy would ask of each whether its partner is finite.
     """
     rows, columns = first.tolist(), second.T.tolist()
-    pairs = [[zip(row, column, strict=True) for column in columns] for row in rows]
-    return sp.ImmutableMatrix(
-        [[sp.Add(*(a * b for a, b in e if a and b)) for e in r] for r in pairs]
-    )
+    pairs = (zip(row, column, strict=True) for row in rows for column in columns)
+    entries = [sp.Add(*(a * b for a, b in each if a and b)) for each in pairs]
+    return sp.ImmutableMatrix(len(rows), len(columns), entries, copy=False)
 
 
 class Pullback(NamedTuple):
@@ -270,6 +269,7 @@ def _constants(parts: tuple[sp.Basic, ...]) -> tuple[sp.Symbol, ...]:
     return tuple(sp.ordered(set().union(*(part.free_symbols for part in parts)) - {TIME}))
 
 
+@lru_cache(maxsize=256)
 def time_function(name: str) -> sp.Expr:
     """The function of time `name`(t), the same object that dynamicsymbols(name) gives."""
     return sp.Function(name)(TIME)
