@@ -243,12 +243,11 @@ def turned(*turns: str) -> Callable[[Content], None]:
     return lambda content: content["rotation"].update(turns=list(turns))
 
 
-def in_motion(part: str, value: Any) -> Callable[[Content], None]:
-    return lambda content: content["motion"].update({part: value})
+def within(place: str) -> Callable[[str, Any], Change]:
+    return lambda part, value: lambda content: content[place].update({part: value})
 
 
-def in_body(part: str, value: Any) -> Callable[[Content], None]:
-    return lambda content: content["body"].update({part: value})
+in_motion, in_body, of_rotation = map(within, ("motion", "body", "rotation"))
 
 
 def units(name: str, unit: str) -> Change:
@@ -274,10 +273,6 @@ def potential_by_definition(content: Content) -> None:
     defined("a", "m*g*l*cos(theta)")(content)
     content["motion"]["potential"] = "a"
     everywhere("g", "0*g")(content)
-
-
-def of_rotation(part: str, value: Any) -> Change:
-    return lambda content: content["rotation"].update({part: value})
 
 
 def of_whole(part: str, value: str) -> Change:
@@ -404,7 +399,7 @@ def exchanged(*names: str) -> Change:
     return change
 
 
-def with_axes(*factors: str, moments: Any = ("25", "50", "60")) -> Change:
+def with_axes(*factors: str, moments: Any = ("50", "25", "60")) -> Change:
     """Principal axes times factors, which no theorem about lengths and volumes must miss."""
 
     def change(content: Content) -> None:
@@ -476,18 +471,15 @@ def of_motions() -> Iterator[tuple[str, str, Change]]:
         yield f"the entry {text!r:.20}", "ZXZ", put("rotation_matrix", 0, 0, text)
 
 
-def flat(name: str) -> Change:
+def cells(name: str, write: Callable[[Any], Any], shape: Any = None) -> Change:
+    """Another expression, with its shape unless that is to be false."""
+
     def change(content: Content) -> None:
         quantity = printed(content, name)
-        quantity["expression"] = [text for row in quantity["expression"] for text in row]
-
-    return change
-
-
-def row(name: str) -> Change:
-    def change(content: Content) -> None:
-        quantity = printed(content, name)
-        quantity["expression"] = [quantity["expression"]]
+        quantity["expression"] = write(quantity["expression"])
+        first = quantity["expression"][0]
+        columns = [len(first)] if isinstance(first, list) else []
+        quantity["shape"] = shape or [len(quantity["expression"]), *columns]
 
     return change
 
@@ -535,8 +527,11 @@ def powers_of_powers(form: str) -> Change:
 
 P = "generalised_momenta"
 ATTACKS: dict[str, tuple[str, Change]] = {  # of two strangers who read the checker
-    "nine entries of R in a row": ("ZXZ", flat("rotation_matrix")),
-    "Ω as a row": ("ZXZ", row(VELOCITY)),
+    "nine entries of R in a row": (
+        "ZXZ",
+        cells("rotation_matrix", lambda rows: [text for row in rows for text in row], [3, 3]),
+    ),
+    "Ω as a row": ("ZXZ", cells(VELOCITY, lambda rows: [rows], [3])),
     "momenta that are themselves": ("damped top", lambda c: put(P, 0, "p_phi")(c)),
     "an undefined potential": ("top", undefined(" + 1/(A - A)")),
     "a potential of unknown angles": ("top", undefined(" + 0*cot(pi)")),
@@ -565,19 +560,6 @@ ATTACKS: dict[str, tuple[str, Change]] = {  # of two strangers who read the chec
     "a body that moves": ("box", in_body("centre", ["X", "0", "0"])),
     "a mass that turns": ("box", in_body("mass", "M*phi")),
 }
-
-
-def cells(name: str, write: Callable[[Any], Any], shape: Any = None) -> Change:
-    """Another expression, with its shape unless that is to be false."""
-
-    def change(content: Content) -> None:
-        quantity = printed(content, name)
-        quantity["expression"] = write(quantity["expression"])
-        first = quantity["expression"][0]
-        columns = [len(first)] if isinstance(first, list) else []
-        quantity["shape"] = shape or [len(quantity["expression"]), *columns]
-
-    return change
 
 
 def wider(first: str, rest: str) -> Callable[[Any], Any]:
@@ -637,6 +619,17 @@ def coordinates(content: Content) -> None:
     content["quantities"], content["first_integrals"] = [printed(content, "mass_matrix")], []
 
 
+def with_axis(places: str, condition: str) -> Change:
+    groups = {"q": {"phi": "", "theta": "rad"}, "parameters": {"a": ""}}
+    arguments = [
+        {"name": group, "components": [{"name": n, "unit": u} for n, u in units.items()]}
+        for group, units in groups.items()
+    ]
+    rotation = {"turns": [f"axis_angle({places})"], "conditions": [condition]}
+    whole = {"name": "any", "arguments": arguments, "rotation": rotation, "quantities": []}
+    return lambda content: content.update(whole)
+
+
 TORQUE, RATES = "angular_acceleration_from_torque", "rates_from_angular_velocity_space"
 ZXZ, HALVES = (
     ("z(phi)", "x(theta)", "z(psi)"),
@@ -693,6 +686,8 @@ STRANGER: dict[str, tuple[str, Change]] = {
     "conditions in an object": ("ZXZ", of_rotation("conditions", {})),
     "a rotation with a sequence": ("ZXZ", of_rotation("sequence", ["XYZ"])),
     "nine coordinates": ("top", coordinates),
+    "an axis of one letter": ("ZXZ", with_axis("phi, 0, 0, theta", "phi**2 - 1")),
+    "an axis that moves in part": ("ZXZ", with_axis("phi, a, 0, theta", "a**2 + phi**2 - 1")),
 }
 
 
