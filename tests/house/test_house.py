@@ -132,7 +132,7 @@ def test_kernels_and_notes_know_nothing_of_one_another_nor_the_representation_of
 BUDGETS = {  # what was reached; who makes the house smaller lowers them
     "files": 182,
     "lines of code": 23_394,
-    "lines of tests": 16_105,
+    "lines of tests": 16_140,
     "lines of benchmarks": 2_500,
 }
 
@@ -144,8 +144,8 @@ def test_the_house_keeps_within_its_budgets():
     }
     sizes = {
         "files": len(PATHS),
-        "lines of code": 23_394,
-        "lines of tests": 16_105,
+        "lines of code": sum(map(lines_of_code, TEXTS.values())),
+        "lines of tests": lines["tests"],
         "lines of benchmarks": lines["benchmarks"],
     }
     assert {name: size for name, size in sizes.items() if size > BUDGETS[name]} == {}
