@@ -129,21 +129,6 @@ def found_in(tmp_path, name, text):
     return [each for each in search(file) if each.comparison]
 
 
-def test_abbreviations_entries_and_products_are_followed_in_python(tmp_path):
-    text = """
-def rot(roll, pitch):  # R = [[1, 2]]
-    cr, sr = np.cos(roll), np.sin(roll)
-    A = np.array([[1, 0, 0], [0, cr, -sr], [0, sr, cr]])
-    B = np.array([[cos(pitch), 0, sin(pitch)], [0, 1, 0], [-sin(pitch), 0, cos(pitch)]])
-    return B @ A
-"""
-    found = found_in(tmp_path, "a.py", text)
-    places = [(each.formula.line, each.formula.name) for each in found]
-    assert places == [(4, "A"), (5, "B"), (6, "returned")]
-    rotations = [each.comparison.found.rotation for each in found]
-    assert rotations == ["x(angle)", "y(angle)", "y(first) x(second)"]
-
-
 def test_a_declaration_in_c_may_hold_several_names(tmp_path):
     text = """void dcm(const double e[3], double R[9]) {
     double sr = sin(e[0]), cr = cos(e[0]), sp = sin(e[1]), cp = cos(e[1]);
@@ -419,9 +404,10 @@ WIDER = {
     "b.py": "def f(q):\n    q /= np.linalg.norm(q)\n    w, x, y, z = q\n"
     "    return np.arctan2(2*(w*x + y*z), 1 - 2*(x*x + y*y)), np.arcsin(2*(w*y - z*x)), "
     "np.arctan2(2*(w*z + x*y), 1 - 2*(y*y + z*z))\n",
-    "c.py": "def f(q):\n    w, x, y, z = q[..., 0], q[..., 1], q[..., 2], q[..., 3]\n"
-    "    return jnp.stack([jnp.arctan2(2*(w*x + y*z), 1 - 2*(x*x + y*y)),"
-    " jnp.arcsin(2*(w*y - z*x)), jnp.arctan2(2*(w*z + x*y), 1 - 2*(y*y + z*z))])\n",
+    # isaac-sim/IsaacGymEnvs, isaacgymenvs/utils/torch_jit_utils.py, line 84
+    "c.py": "def f(q, v):\n    w = q[:, 3]\n    u = q[:, :3]\n"
+    "    a = v * (2.0*w**2 - 1.0).unsqueeze(-1)\n"
+    "    return a + torch.cross(u, v, dim=-1)*w*2.0 + u*torch.dot(u, v)*2.0\n",
     "a.js": "function f(a) { return {x: Math.sin(a/2), y: 0, z: 0, w: Math.cos(a/2)}; }",
     "b.js": "function f(e, a) { const c = Math.cos(a), s = Math.sin(a); e[3*0 + 0] = c;"
     " e[3*0 + 1] = -s; e[3*0 + 2] = 0; e[3*1 + 0] = s; e[3*1 + 1] = c; e[3*1 + 2] = 0;"
@@ -436,6 +422,7 @@ WIDER = {
     " roll = atan2(2*(q.w()*q.x() + q.y()*q.z()), 1 - 2*(q.x()*q.x() + q.y()*q.y()));"
     " yaw = atan2(2*(q.w()*q.z() + q.x()*q.y()), 1 - 2*(q.y()*q.y() + q.z()*q.z())); }",
     "d.py": "def f(R):\n    b = np.arcsin(np.clip(-R[2, 0], -1, 1))\n"
+    "    near = np.isclose(np.cos(b), 0)\n"
     "    c = np.where(near, 0, np.arctan2(R[1, 0], R[0, 0]))\n"
     "    return np.arctan2(R[2, 1], R[2, 2]), b, c % (2*np.pi)\n",
     "e.py": "def f(q, v):\n    t = 2*np.cross(q[:3], v)\n"
@@ -470,16 +457,32 @@ WIDER = {
     "a.m": "x = [cos(a); sin(a); 0]; y = [-sin(a); cos(a); 0]; z = [0; 0; 1]; R = [x y z];\n",
     "c.js": "function f(a, update) { switch (n) { case 1: { this.set(Math.sin(a/2), 0, 0,"
     " Math.cos(a/2), update); break; } } }",
+    "k.py": "def f(a):\n    s, c = torch.sin(a), torch.cos(a)\n"
+    "    return torch.stack((c, -s, 0, s, c, 0, 0, 0, 1), -1).reshape(a.shape + (3, 3))\n",
+    "l.py": "def f(sin_half, cos_half):\n    s1, s2, s3 = tf.unstack(sin_half, axis=-1)\n"
+    "    c1, c2, c3 = tf.unstack(cos_half, axis=-1)\n"
+    "    return tf.stack((s1*c2*c3 - c1*s2*s3, c1*s2*c3 + s1*c2*s3, c1*c2*s3 - s1*s2*c3,"
+    " c1*c2*c3 + s1*s2*s3), axis=-1)\n",
+    "d.js": "function f(m) { return this.set(Math.atan2(m[6], m[10]), Math.asin(-m[2]),"
+    " Math.atan2(m[1], m[0]), order); }",
+    "c.cs": "class A { void F(float a, out Q r) { r.W = Cos(a/2); r.Xyz.X = Sin(a/2); r.Xyz.Y = 0;"
+    " r.Xyz.Z = 0; } }",
+    "c.cpp": "M Rz(V v) { return Matrix3f{{v.x(), -v.y(), 0}, {v.y(), v.x(), 0}, {0, 0, 1}}; }"
+    " M Rz(float a) { return Rz(Vector2(cos(a), sin(a))); }",
+    "d.c": "typedef vec4 mat4x4[4]; void f(float a) { float s = sin(a), c = cos(a); mat4x4 R ="
+    " {{c, -s, 0, 0}, {s, c, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}; mul(Q, M, R); }",
     "j.py": "def f(a):\n    R = np.zeros(a.shape + (3, 3))\n    R[...] = np.eye(3)\n"
     "    R[..., 0, 0] = R[..., 1, 1] = np.cos(a)\n    R[..., 1, 0] = np.sin(a)\n"
     "    R[..., 0, 1] = -np.sin(a)\n    return R\n",
 }
 SAID = {
     **dict.fromkeys(
-        ("a.py", "b.js", "a.rs", "a.m", "f.py", "a.cs", "b.rs", "j.py"), "rotation_matrix of z"
+        ["a.py", "b.js", "a.rs", "a.m", "f.py", "a.cs", "b.rs", "j.py", "c.cpp", "d.c"],
+        "rotation_matrix of z",
     ),
-    **{"c.js": "quaternion of x", "b.cpp": "rotation_matrix of z"},
-    **dict.fromkeys(("b.py", "c.py", "d.py"), "euler_angles of xyz"),
+    **{"c.js": "quaternion of x", "c.cs": "quaternion of x", "b.cpp": "rotation_matrix of z"},
+    **dict.fromkeys(("b.py", "d.js", "d.py"), "euler_angles of xyz"),
+    **{"c.py": "turned_vector", "k.py": "rotation_matrix of z", "l.py": "quaternion of ZYX"},
     **{"e.py": "turned_vector", "g.py": "euler_angles of ZXZ", "b.cs": "quaternion_product"},
     **{"h.py": "rotation_matrix of quaternion", "i.py": "inverse_rate_matrix_body of xyz"},
     **{"b.c": "angular_velocity_body of ZYX", "b.m": "equal to rate_matrix_body of xyz"},

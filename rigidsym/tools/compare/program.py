@@ -16,53 +16,33 @@ from contextlib import suppress
 from copy import deepcopy
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
-from itertools import islice
+from itertools import chain, islice
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
 from rigidsym.errors import ExpressionError, offer
 from rigidsym.text.bounds import FUNCTIONS
-from rigidsym.tools.compare.language import (
-    ANGLE,
-    CONSTANTS,
-    OF_MATRICES,
-    OF_NUMBERS,
-    as_matrix,
-    called,
-    combined,
-    function_word,
-    number,
-    rows,
-    spelled_out,
-)
+from rigidsym.tools.compare import language
+from rigidsym.tools.compare.language import as_matrix, called, combined, function_word, rows
 from rigidsym.tools.compare.latex import python_of
-from rigidsym.tools.compare.quantities import stem_of
-from rigidsym.tools.compare.syntax import (
-    CALLS,
-    GRAMMARS,
-    ORDERS,
-    Tree,
-    parameters,
-    parsed,
-    tree_of,
-    walk,
-)
+from rigidsym.tools.compare.quantities import are_angles, stem_of
+from rigidsym.tools.compare.syntax import CALLS, ORDERS, Tree, parameters, parsed, tree_of, walk
 
 if TYPE_CHECKING:
     from tree_sitter import Node
 
 _SHARING = (".py", ".js", ".mjs", ".jsx", ".ts", ".java")  # b = a is the same matrix
-_OF_REALS = ("python", "javascript", "typescript", "matlab")  # grammars in which 1/2 is a half
+_OF_REALS = (".py", ".m", ".js", ".mjs", ".jsx", ".ts")  # in which 1/2 is a half
 _GLM = re.compile(r"\bglm\b")  # whose matrices are columns: m[column][row]
-_ARRAY = re.compile(r"\b(?:float|double|real\w*|Scalar|T) +(\w+) *\[")  # by rows, float R[3][3]
+_ARRAY = re.compile(r"\b(?:float|double|real\w*|Scalar|T|typedef \w+) +(\w+) *\[")  # by rows
 _WITH_SWIZZLES = (".cs", ".cu", ".cuh")  # whose v * w is entry by entry
 _DEEPEST = 60  # nested nodes of an expression; formulas of real programs have fewer than 30
 _DEEPEST_BLOCK = 40
 _LONGEST_LIST = 64
 _MOST_FORMULAS = 1_000  # of a file
-_MOST_STEPS = 12_000  # expressions of a file: what takes some seconds
-_NAMES_A_STEP = 8  # of which a branch looks for new matrices
+_MOST_STEPS = 25_000  # expressions of a file: what takes some seconds
+_NAMES_A_STEP = 4  # of which a branch looks for new matrices
 _MOST_NODES = 400_000  # of a file: a generated megabyte is not worth reading
 _MOST_CHARACTERS = 20_000  # of a formula
 _LONGEST_PLACE = 120  # characters
@@ -70,7 +50,7 @@ _LONGEST = 40  # parts of a value without a symbol of its own
 _LONG_IN_LONG = 3  # symbols for long values that use other such symbols
 _MOST_PARTS = 2_000  # of a matrix
 _LONGEST_STATE = 20  # entries of a vector whose parts are looked at
-_MOST_RUNS = 24  # of a function, with other branches
+_MOST_RUNS = 40  # of a function, with other branches
 _INLINED = 3  # calls of functions of the same file inside one another
 
 _NUMBERS = re.compile(  # bounded, since backtracking is quadratic in the digits
@@ -97,11 +77,12 @@ ANGLES_NAME = re.compile(  # of changes of three Euler angles
 )
 STEP = re.compile(r"(?:delta_?|sample_?|half_?)?(?:d_?)?(?:[tT]s?|time|period)|h", re.IGNORECASE)
 _RATES_NAME = re.compile(r"omega|w|gyro|body_?rates?|ang(ular)?_?vel(ocity)?", re.IGNORECASE)
+_TURNS = re.compile(r"(?:sin|cos)(?:es|ines?)?_")  # of several angles
 _HARMLESS = re.compile("print|disp|log|assert|plot|show|append|push|test|check|expect", re.I)
 _MODULE = re.compile(
     r"(?:np|numpy|jnp|torch|tf|math|mx|cs|ca|F|std|self|this)\b|_?[A-Z]+[a-z]|[A-Z]{2,}|f\d\d"
 )
-_GETTER = re.compile(rf"(?:get)?_?([wxyz]|{ANGLE.pattern}|xyz|vec|imag)_?", re.IGNORECASE)
+_GETTER = re.compile(rf"(?:get)?_?([wxyz]|{language.ANGLE.pattern}|xyz|vec|imag)_?", re.IGNORECASE)
 _INDEX_NAME = re.compile(r"^(?:#define )?(\w+)(?: *= *| +)(\d\d?);?$", re.MULTILINE)
 _MACRO = re.compile(r"macro_rules!\s*\w+\s*\{\s*\([^{}]*?\)\s*=>\s*\{")
 _AXES = {"x": 0, "y": 1, "z": 2, "X": 0, "Y": 1, "Z": 2}
@@ -129,6 +110,9 @@ Path = tuple[Any, ...]  # of a name and its members and indices: ("R", 0, 1), ("
 
 class _Bounded(sp.Function):
     """x of clamp(x, -1, 1): no other number has an arc sine."""
+
+    def _sympystr(self, printer: Any) -> str:
+        return f"clamp({printer.doprint(self.args[0])}, -1, 1)"
 
 
 def _unbounded(matrix: Any) -> Any:
@@ -211,7 +195,7 @@ class _Program:
     """All functions know this of their file."""
 
     suffix: str
-    functions: Mapping[str, Node] = field(default_factory=dict)
+    functions: Mapping[str, Sequence[Node]] = field(default_factory=dict)
     constants: Mapping[str, int] = field(default_factory=dict)  # q_i = 0 of the whole file
     product: str = "*"  # what * is for matrices: "%" entry by entry, "" if nobody knows
     is_glm: bool = False
@@ -233,9 +217,12 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
     if root.descendant_count > _MOST_NODES:
         return [Formula(lines=(1,), name="", reason="the file is too long")]
     functions = [*walk(root, "function")]
+    functions_of: dict[str, list[Node]] = {}
+    for each in (function for function in functions if function.word):
+        functions_of.setdefault(each.word, []).append(each.node)
     program = _Program(
         suffix,
-        {each.word: each.node for each in functions if each.word},
+        functions_of,
         {match[1]: int(match[2]) for match in _INDEX_NAME.finditer(text)},
         _product(text, suffix),
         bool(_GLM.search(text)),
@@ -256,15 +243,15 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
             except RecursionError:  # SymPy, in a sum that a program nests in itself
                 reason = "expressions are nested too deeply"
                 run.formulas.append(Formula(lines=(scope.tree.line,), name="", reason=reason))
-            scope.formulas += run.formulas
+            named = {each.forms for each in run.formulas if each.name not in _UNNAMED} - {()}
+            for formula in run.formulas:  # a fault counts once
+                if formula.name not in _UNNAMED or formula.forms not in named:
+                    scope.formulas.append(formula)
     formulas: dict[Any, Formula] = {}
-    for scope in scopes:
-        named = {each.forms for each in scope.formulas if each.name not in _UNNAMED}
-        for formula in scope.formulas:  # a fault counts once
-            if formula.name not in _UNNAMED or formula.forms not in named - {()}:
-                key = (formula.lines, formula.forms or formula.name)
-                if key not in formulas or not formula.is_final:
-                    formulas[key] = formula
+    for formula in chain.from_iterable(scope.formulas for scope in scopes):
+        key = (formula.lines, formula.forms or formula.name)
+        if key not in formulas or not formula.is_final:
+            formulas[key] = formula
     varied = [(f.lines, f.name) for f in formulas.values() if any(m.free_symbols for m in f.forms)]
     cases = {place for place, number in Counter(varied).items() if number > 1}
     marked = (replace(f, is_case=(f.lines, f.name) in cases) for f in formulas.values())
@@ -342,6 +329,7 @@ class _Run:
         self.squares: dict[sp.Symbol, sp.Symbol] = {}  # |v|² of names without values
         self.untracked: set[Path] = set()
         self.links: list[tuple[Path, Path]] = []  # names that may be the same object
+        self.tests: dict[str, Tree] = {}  # a comparison by the name that it is given
         self.formulas: list[Formula] = []
         self.emitted: set[Any] = set()
         self.results: list[Any] = []  # None for one that is not read
@@ -435,6 +423,7 @@ class _Run:
         elif values:
             if tree.is_integer and not re.fullmatch(r"\w*", values[0].text):
                 raise self.unreadable(tree, "is rounded")
+            self.tests[left.text] = values[0]
             try:
                 value = self.assigned(values[0])
                 if values[0].kind == "list" and _COLUMN_MATRIX.search(tree.declared_type):
@@ -472,7 +461,9 @@ class _Run:
         return [b for a, b in self.links if all(x == y for x, y in zip(a, path, strict=False))]
 
     def columns(self, tree: Tree, value: Any) -> Any:
-        """mat3(...) of GLM, of which other libraries have rows."""
+        """mat3(...) of GLM, of which other libraries have rows, as arrays have."""
+        if tree.declared_type in self.program.arrays:
+            return value
         if not self.program.is_glm:
             raise self.unreadable(tree)
         value = _unflattened(value)
@@ -483,9 +474,10 @@ class _Run:
         keys: Sequence[Any] = left.keys if left.kind == "record" else range(len(left.parts))
         value: Any = self.tried(right)
         parts: list[Any] = [None] * len(keys)
+        is_whole = left.kind == "record" and value is not None
         if isinstance(value, sp.MatrixBase) and len(value) == len(keys):
             parts = [*value]
-        elif isinstance(value, sp.Function) or (left.kind == "record" and value is not None):
+        elif is_whole or isinstance(value, sp.Function) or _TURNS.match(str(value)):
             parts = [_part(value, key) for key in keys]
         for target, part in zip(left.parts, parts, strict=True):
             if part is not None:
@@ -803,7 +795,7 @@ class _Run:
 
     def add(self, name: str, value: Any, *lines: int, is_final: bool = True) -> None:
         """A matrix or a vector is a formula; so is each part of a long vector."""
-        if not isinstance(value, sp.MatrixBase) or len(value) < 2:
+        if self.inlined or not isinstance(value, sp.MatrixBase) or len(value) < 2:
             return
         value = _unflattened(sp.ImmutableMatrix(value))
         if (name, value) in self.emitted:
@@ -812,19 +804,20 @@ class _Run:
         self.program.steps["formulas"] += 1
         if self.program.steps["formulas"] > _MOST_FORMULAS:
             return
-        if value.cols == 1 and 4 < value.rows <= _LONGEST_STATE:  # angles and rates in a state
+        if value.cols == 1 and 3 < value.rows <= _LONGEST_STATE:  # angles and rates in a state
             for k in range(value.rows - 2):
                 part = value[k : k + 3, :]
-                self.add(f"{name}[{k}:{k + 3}]", part, min(lines), is_final=is_final)
+                if len(value) > 4 or are_angles(part):
+                    self.add(f"{name}[{k}:{k + 3}]", part, min(lines), is_final=is_final)
         value, whole = map(_unbounded, (value, self.expanded(value)))
         whole = value if _size(whole) > _MOST_PARTS else whole
         symbols = whole.free_symbols | value.free_symbols
         inputs = whole.free_symbols - self.components
         unread = {s.name for s in inputs if self.definitions.get(s, s) is None}
         names = _short_names(symbols - {*self.squares.values()})
-        squares = {s: _square(v, names, self.first) for v, s in self.squares.items()}
+        names |= {s: _square(v, names, self.first) for v, s in self.squares.items()}
         computed = [names.get(s, s) for s in self.definitions]
-        forms = [spelled_out(m.xreplace(names | squares), computed) for m in (whole, value)]
+        forms = [language.spelled_out(m.xreplace(names), computed) for m in (whole, value)]
         places = tuple((_last(n), self.unread.get(n) or min(lines)) for n in sorted(unread))
         formula = Formula(lines=lines, name=_last(name), forms=tuple(dict.fromkeys(forms)))
         self.formulas.append(replace(formula, unread=places, is_final=is_final))
@@ -861,7 +854,7 @@ class _Run:
         digits = _NUMBERS.fullmatch(tree.text) if not tree.parts else None
         if digits:
             text = digits[2].replace("_", "")
-            value = number(text if text.isdigit() else repr(float(text)))
+            value = language.number(text if text.isdigit() else repr(float(text)))
             return -value if digits[1] else value
         if not tree.parts or self.program.suffix != ".rs":
             return self.named(tree)
@@ -904,8 +897,9 @@ class _Run:
         return sp.ImmutableMatrix(sp.Matrix.hstack(*cells))
 
     def read_transposed(self, tree: Tree) -> Any:
-        matrix = as_matrix(self.read(tree.parts[0]))
-        return (matrix if self.first else _unflattened(matrix)).T
+        value = self.read(tree.parts[0])
+        value = value if self.first else _unflattened(value)
+        return value if _is_scalar(value) else value.T  # the rows of a name without a value
 
     def read_member(self, tree: Tree) -> Any:
         is_transposed = tree.word == "T" and tree.parts
@@ -924,7 +918,7 @@ class _Run:
         is_turn = sign == "%" and _is_scalar(right) and (right / sp.pi).is_number
         if is_turn and self.expanded(left).has(*_INVERSE):  # the same angle
             return left
-        is_rounded = sign == "/" and GRAMMARS[self.program.suffix] not in _OF_REALS
+        is_rounded = sign == "/" and self.program.suffix not in _OF_REALS
         if is_rounded and _WHOLE_NUMBERS.fullmatch(tree.text) and not (left / right).is_Integer:
             raise self.unreadable(tree, "is a division of whole numbers, which rounds")
         if sign in ("+", "-"):
@@ -940,9 +934,9 @@ class _Run:
         """c v, where v has no value, in components if it is added to a vector."""
         if not _is_scalar(value) or getattr(other, "shape", ()) != (3, 1):
             return value
-        factor, vector = value.as_independent(
-            *(s for s in value.free_symbols if s not in self.definitions)
-        )
+        names = [s for s in value.free_symbols if s not in self.definitions]
+        parts = {s.name.rpartition(".")[0] for s in other.free_symbols}
+        factor, vector = value.as_independent(*[s for s in names if s.name in parts] or names)
         return combined("*", factor, self.vector(vector)) if vector.is_Symbol else value
 
     def vector(self, value: Any) -> Any:
@@ -971,21 +965,24 @@ class _Run:
         """One of two values: a number that belongs to a pole or is a bound is left out."""
         values = [self.tried(each) for each in trees]
         fixed = [_is_scalar(value) and value.is_number for value in values]
+        condition = self.tests.get(condition.text, condition)
         is_order = condition.kind == "binary" and re.fullmatch("[<>]=?|[=!]==?", condition.word)
-        if sum(fixed) == 1 and is_order and None not in values:
+        is_near = condition.kind == "call" and condition.called == "isclose"
+        if sum(fixed) == 1 and (is_order or is_near) and None not in values:
             other, limit = (values[fixed.index(is_fixed)] for is_fixed in (False, True))
-            sides = [self.tried(each) for each in condition.parts]
-            if _inner(other) in sides and abs(limit) == 1 and condition.word[0] in "<>":
+            sides = [self.tried(each) for each in condition.parts[-2:]]
+            is_bound = bool(is_order) and condition.word[0] in "<>" and abs(limit) == 1
+            if is_bound and _inner(other) in sides:
                 is_above = (condition.word[0] == ">") == (sides[0] == _inner(other))
                 if (is_above == fixed[0]) == (limit == 1):
                     return _Bounded(_inner(other))
             elif None not in sides:
                 whole = self.expanded(as_matrix(other))
-                names = self.expanded(as_matrix(sum(sides))).free_symbols
+                names = {s for x in sides for s in self.expanded(as_matrix(x)).free_symbols}
                 has_pole = whole.has(*_INVERSE) or any(
                     p.exp.is_negative for p in whole.atoms(sp.Pow)
                 )
-                if has_pole and names & whole.free_symbols:
+                if has_pole and (is_near or names & whole.free_symbols):
                     return other
         return self.read(trees[self.scope.choice(tree.node, trees)])
 
@@ -1017,14 +1014,16 @@ class _Run:
     def path_of_call(self, tree: Tree) -> Path | None:
         """A call may be an entry, R(1, 2), or a component, q.w()."""
         name, nodes, word = tree.called, tree.parts[1:], function_word(tree.called)
-        owner = (self.path(tree.owner) or ()) if tree.owner else ()
+        owner = self.path(tree.owner) if tree.owner else ()
+        if owner is None:  # (a*b).sum(-1)
+            return None
         if not nodes:
             match = _GETTER.fullmatch(name)
-            return _below(owner, match[1].lower()) if match and (owner or not tree.owner) else None
+            return _below(owner, match[1].lower()) if match else None
         if CALLS.get(name) == "entry":
             return self.indexed(owner, nodes)
         is_entry = len(nodes) == 2 and len(word) == 1  # t(1, 2), but not T(2)
-        is_known = word in OF_NUMBERS or word in OF_MATRICES or word in CALLS
+        is_known = word in language.OF_NUMBERS or word in language.OF_MATRICES or word in CALLS
         is_function = is_known and not is_entry and self.part(self.values, (*owner, name)) is None
         is_function |= word in self.program.functions and not self.first
         if is_function or len(nodes) > 2 + self.first:
@@ -1085,8 +1084,8 @@ class _Run:
         if path is None:
             self.add_parts(tree.parts if tree.kind != "function" else ())
             raise self.unreadable(tree)
-        if isinstance(path[-1], str) and path[-1] in CONSTANTS:
-            return CONSTANTS[path[-1]]
+        if isinstance(path[-1], str) and path[-1] in language.CONSTANTS:
+            return language.CONSTANTS[path[-1]]
         if any(path[:n] in self.untracked for n in range(1, len(path) + 1) if self.untracked):
             raise self.unreadable(tree, "is changed inside an expression or an inner function")
         if path[0] not in self.values:
@@ -1159,7 +1158,7 @@ class _Run:
         if self.path(tree) is not None:  # R(0, 1), q.w()
             return self.named(tree)
         alias = _last(str(self.values.get(tree.called, "")))  # s, c = np.sin, np.cos
-        name = function_word(alias if alias in FUNCTIONS else tree.called)
+        name = function_word(alias if function_word(alias) in FUNCTIONS else tree.called)
         base, arguments = tree.base, tree.parts[1:]
         is_own = base in ("", "self", "this", "Self") and tree.called in self.program.functions
         if is_own:  # also if a library has a function of this name
@@ -1167,14 +1166,14 @@ class _Run:
                 return self.inline(tree, tree.called, arguments)
         meaning = "" if is_own else CALLS.get(name, "")
         nodes, is_method = arguments, not _MODULE.match(base)
-        is_short = name in OF_NUMBERS and len(nodes) < 1 + (name in ("pow", "atan2"))
+        is_short = name in language.OF_NUMBERS and len(nodes) < 1 + (name in ("pow", "atan2"))
         if tree.owner is not None and (
             is_short or (is_method and meaning in _OF_OBJECTS) or base == "?"
         ):
             nodes = [tree.owner, *nodes]
         is_letter = name in [*"cstCST"] and len(nodes) == 1
-        in_formula = self.program.is_formula and (name in OF_MATRICES or is_letter)
-        if (name in OF_NUMBERS or in_formula) and nodes and not is_own:
+        in_formula = self.program.is_formula and (name in language.OF_MATRICES or is_letter)
+        if (name in language.OF_NUMBERS or in_formula) and nodes and not is_own:
             values = [self.read(each) for each in nodes]
             # SymPy takes a long argument apart, which costs as much as several expressions.
             self.program.steps["read"] += sum(map(_size, values)) // 5
@@ -1218,7 +1217,7 @@ class _Run:
             if len(values) == 2:  # float4(v, w)
                 return rows([entry for value in values for entry in as_matrix(value)])
         if self.program.is_formula and tree.owner is None:
-            hint = offer(name, [*FUNCTIONS, *OF_MATRICES])
+            hint = offer(name, [*FUNCTIONS, *language.OF_MATRICES])
             raise ExpressionError(f"{name!r} is not a function; {hint}")
         self.add_parts(arguments)
         if len(values) in (3, 4, 9, 16) and None not in values:  # a constructor of another library
@@ -1271,6 +1270,8 @@ class _Run:
 
     def stacked(self, tree: Tree, by_columns: bool) -> Any:
         axis, nodes = tree.options, tree.parts[1:]
+        if len(nodes) == 2 and nodes[0].kind == "list" and re.fullmatch(r"-?\d", nodes[1].text):
+            axis, nodes = f"axis={nodes[1].text}", nodes[:1]
         if axis and not re.fullmatch(r"(axis|dim)=(0|1|-1|-2)", axis):
             raise self.unreadable(tree)
         by_columns |= bool(_BY_COLUMNS.search(tree.called)) ^ axis.endswith(("=1", "=-1"))
@@ -1286,10 +1287,14 @@ class _Run:
 
     def inline(self, tree: Tree, name: str, nodes: Sequence[Tree]) -> Any:
         """The value of a function of the same file."""
-        function = self.program.functions[name]
-        names = [each for each in parameters(function) if each not in ("self", "this")]
-        if len(names) != len(nodes) or self.inlined >= _INLINED:
+        fitting = []
+        for function in self.program.functions[name]:
+            names = [each for each in parameters(function) if each not in ("self", "this")]
+            if len(names) == len(nodes) and function != self.scope.tree.node:
+                fitting.append((function, names))
+        if len(fitting) != 1 or self.inlined >= _INLINED:  # of several nobody knows which
             raise self.unreadable(tree)
+        ((function, names),) = fitting
         scope = replace(self.scope, tree=tree_of(function))
         inner = _Run(self.program, scope, self.inlined + 1)
         for each, node in zip(names, nodes, strict=True):
@@ -1354,7 +1359,9 @@ def _roles(name: str) -> list[tuple[int, str, str]]:
 
 
 def _below(path: Path, name: str) -> Path:
-    """The path of a member; of a row of a matrix, R[0].x, it is an entry."""
+    """The path of a member; R[0].x is an entry of a matrix, and q.xyz.x is q.x."""
+    if path and str(path[-1]).lower() == "xyz" and name in _AXES:
+        path = path[:-1]
     return (*path, _AXES.get(name, name) if path and isinstance(path[-1], int) else name)
 
 
@@ -1370,7 +1377,7 @@ def _last(name: str) -> str:
     count = 1
     while count < len(words) and re.fullmatch(r"[A-Za-z]?\d?\d?", words[-count]):
         count += 1
-    return "_".join([*words[-count:-1], function_word(words[-1])])
+    return "_".join(words[-count:])
 
 
 def _short_names(symbols: Iterable[sp.Symbol]) -> dict[sp.Expr, sp.Expr]:

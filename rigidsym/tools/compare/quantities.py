@@ -461,7 +461,7 @@ def meanings(formula: sp.MatrixBase, goal: KnownQuantity, *, is_asked: bool) -> 
     # q2 comes before q10
     symbols = sorted(
         formula.free_symbols,
-        key=lambda s: [int(p) if p.isdigit() else p for p in re.split(r"(\d+)", s.name)],
+        key=lambda s: [int(p) if p.isdecimal() else p for p in re.split(r"(\d+)", s.name)],
     )
     own = {s: goal.names.get(s.name) or goal.names.get(f"{stem_of(s.name)}_dot") for s in symbols}
     if None not in own.values() and is_asked:
@@ -527,7 +527,7 @@ def _of_vectors(
 ) -> Iterator[Names]:
     """Every assignment of vectors of the formula to those that are wanted.
 
-    If the vectors are free, one name more may be the length of one, or its square.
+    If the vectors are free, one name more may be the length of one, its square, or 2/|q|².
     """
     sizes, squares = [*map(len, wanted)], [sum(x**2 for x in vector) for vector in wanted]
     is_known = False
@@ -539,7 +539,7 @@ def _of_vectors(
             is_known = True
             for parts in product(*map(_scalar_first, chosen)):
                 names = dict(zip(sum(parts, ()), sum(wanted, ()), strict=True))
-                lengths = [power for square in squares for power in (square, sp.sqrt(square))]
+                lengths = [form for x in squares for form in (x, sp.sqrt(x), 2 / x)]
                 yield from [names | {lone[0][0]: length} for length in lengths] if lone else [names]
     if not is_known and [len(symbols)] == sizes:
         yield from (dict(zip(symbols, order, strict=True)) for order in permutations(wanted[0]))
@@ -625,7 +625,7 @@ def evaluated(matrix: sp.MatrixBase, values: Values) -> Array:
         with np.errstate(all="ignore"):
             parts = [evaluate(entry, _FLOATS, values) for entry in matrix]
     except Unknown as error:
-        raise ExpressionError(f"{error.part} has no value here") from None
+        raise ExpressionError(f"{error.part} is not understood here") from None
     entries = np.broadcast_arrays(*parts, np.empty(POINTS))[:-1]
     return np.stack(entries, axis=-1).reshape(*entries[0].shape, *matrix.shape)
 
