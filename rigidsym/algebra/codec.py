@@ -9,11 +9,10 @@ import sympy as sp
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.generators import (
-    Combination,
+    Basis,
     GeneratorSet,
     Kind,
     as_sine_cosine,
-    combination,
     cosine_sine_of_pi,
     is_highest,
     is_uncertain,
@@ -44,18 +43,18 @@ def codec_for(
     for expression in dict.fromkeys((*expressions, *conditions)):
         needed.collect(sp.sympify(expression, strict=True))
     needed.close()
-    return _shared(tuple(needed.generators()), tuple(needed.fractions.items()), conditions, order)
+    return _shared(tuple(needed.generators()), needed.angles, conditions, order)
 
 
 @lru_cache(maxsize=32)
 def _shared(
     kinds: tuple[tuple[sp.Expr, Kind], ...],
-    fractions: tuple[tuple[sp.Expr, sp.Rational], ...],
+    angles: tuple[sp.Expr, ...],
     constraints: tuple[sp.Expr, ...],
     order: int | None,
 ) -> Codec:
     generators = [Generator(expression=e, opaque=is_uncertain(e, kind)) for e, kind in kinds]
-    codec = Codec(Ring(generators), dict(fractions))
+    codec = Codec(Ring(generators), angles)
     codec.settle(kinds, constraints, order)
     return codec
 
@@ -63,9 +62,9 @@ def _shared(
 class Codec:
     """A ring, with the way in (`encode`) and out (`decode`). Made by `codec_for`."""
 
-    def __init__(self, ring: Ring, fractions: Combination) -> None:
+    def __init__(self, ring: Ring, angles: Sequence[sp.Expr]) -> None:
         self.ring = ring
-        self._fractions = fractions
+        self._angles, self._basis = angles, Basis(angles)
         self._quotients: dict[sp.Expr, Quotient] = {}
         self._pairs: dict[sp.Expr, Pair] = {}
 
@@ -122,10 +121,7 @@ class Codec:
     def angle_pairs(self) -> tuple[tuple[int, int], ...]:
         """Places of (sine, cosine) of each angle among the generators."""
         index = self.ring.index
-        return tuple(
-            (index[sp.sin(fraction * atom)], index[sp.cos(fraction * atom)])
-            for atom, fraction in self._fractions.items()
-        )
+        return tuple((index[sp.sin(angle)], index[sp.cos(angle)]) for angle in self._angles)
 
     def encode(self, expression: sp.Expr) -> PolyElement:
         """Normal form of a polynomial expression; raises AlgebraError for a true quotient."""
@@ -209,27 +205,24 @@ class Codec:
         if argument in self._pairs:
             return self._pairs[argument]
         pair = self.ring.one, self.ring.zero
-        for atom, coefficient in combination(argument).items():
-            pair = self._added(pair, self._multiple(atom, coefficient))
+        for angle, times in self._basis.parts(argument).items():
+            pair = self._added(pair, self._multiple(angle, times))
         self._pairs[argument] = pair
         return pair
 
-    def _multiple(self, atom: sp.Expr, coefficient: sp.Rational) -> Pair:
-        if atom is sp.pi:
-            cosine, sine = cosine_sine_of_pi(coefficient)
+    def _multiple(self, angle: sp.Expr, times: sp.Rational) -> Pair:
+        if angle is sp.pi:
+            cosine, sine = cosine_sine_of_pi(times)
             return self.encode(cosine), self.encode(sine)
-        fraction = self._fractions.get(atom)
-        times = coefficient / fraction if fraction else sp.nan
-        if not times.is_Integer:
-            raise self._foreign(sp.sin(coefficient * atom))
+        index, ring = self.ring.index, self.ring
+        if sp.sin(angle) not in index or not times.is_Integer:
+            raise self._foreign(sp.sin(times * angle))
         if abs(times) > _HIGHEST_MULTIPLE:
             raise AlgebraError(
-                f"sin and cos of {coefficient * atom} beside those of {fraction * atom}: "
+                f"sin and cos of {times * angle} beside those of {angle}: "
                 f"expected multiples up to {_HIGHEST_MULTIPLE}"
             )
-        index, ring = self.ring.index, self.ring
-        cosine = ring.generator(index[sp.cos(fraction * atom)])
-        sine = ring.generator(index[sp.sin(fraction * atom)])
+        cosine, sine = (ring.generator(index[function(angle)]) for function in (sp.cos, sp.sin))
         single = cosine, sine if times > 0 else -sine
         # cos nθ and sin nθ by n additions of θ to the angle zero.
         pair = ring.one, ring.zero

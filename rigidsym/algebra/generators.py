@@ -3,15 +3,17 @@
 Nothing here is specific to rotations: the input is any expression, such as a quaternion, a mass or
 a potential, and the output the generators of a ring.
 
-Arguments of sine and cosine are rational combinations of atoms. Every sine and cosine is expanded
-over the smallest fraction of each angle that occurs, so that cos 2θ and cos θ meet in one ring.
+Arguments of sine and cosine are rational combinations of atoms. Independent ones are the angles of
+generators themselves, such as 2φ − ψ beside ψ/3. Dependent ones are expanded over the smallest
+fraction of each atom that occurs, so that cos 2θ and cos θ meet in one ring.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from enum import IntEnum
 from fractions import Fraction
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, reduce
 from typing import Any
 
 import sympy as sp
@@ -47,6 +49,39 @@ def combination(argument: sp.Expr) -> Combination:
             if not is_identically_zero(number):
                 combined[sign * factor * rest] = sign * coefficient
     return combined
+
+
+class Basis:
+    """Independent angles, and others as combinations of them."""
+
+    def __init__(self, angles: Iterable[sp.Expr] = ()) -> None:
+        # Gaussian elimination: each angle is solved for one of its atoms, which thereby is a
+        # combination of angles and of atoms that later angles are solved for.
+        self._solutions: dict[sp.Expr, Combination] = {}
+        self._angles: set[sp.Expr] = set()
+        for angle in angles:
+            self.add(angle)
+
+    def add(self, angle: sp.Expr) -> bool:
+        """Take an angle if it is independent of those before it; whether it is."""
+        parts = self.parts(angle)
+        pivot = next((atom for atom in parts if atom not in self._angles), None)
+        if pivot is None:
+            return False
+        by = parts.pop(pivot)
+        solution = {part: -coefficient / by for part, coefficient in parts.items()}
+        self._solutions[pivot] = {**solution, angle: 1 / by}
+        self._angles.add(angle)
+        return True
+
+    def parts(self, argument: sp.Expr) -> Combination:
+        """{angle: rational coefficient} of an argument; an atom that is in no angle is kept."""
+        parts = dict(combination(argument))
+        for atom, solution in self._solutions.items():
+            times = parts.pop(atom, sp.S.Zero)
+            for part, coefficient in solution.items() if times else ():
+                parts[part] = parts.get(part, sp.S.Zero) + times * coefficient
+        return {part: coefficient for part, coefficient in parts.items() if coefficient}
 
 
 def _is_quotient(term: sp.Expr) -> bool:
@@ -161,35 +196,51 @@ class GeneratorSet:
     def __init__(self, order: int | None) -> None:
         self.order = order
         self.kinds: dict[sp.Expr, Kind] = {}
-        self._angles: list[Combination] = []
+        self._directions: Combination = {}  # of the angles, with the common divisor of their sizes
         self._atoms: set[sp.Expr] = set()  # what sines and cosines are taken of
         self._underived: list[sp.Expr] = []
         self._seen: set[sp.Expr] = set()
 
     def generators(self) -> list[tuple[sp.Expr, Kind]]:
-        """All generators in the order of their kinds, sines and cosines over common fractions."""
+        """All generators in the order of their kinds, sines and cosines of `angles`."""
         generators = list(self.kinds.items())
-        for atom, fraction in self.fractions.items():
-            angle = fraction * atom
+        for angle in self.angles:
             generators += [(sp.sin(angle), Kind.SINE), (sp.cos(angle), Kind.COSINE)]
         return sorted(generators, key=lambda pair: pair[1])
 
     @cached_property
-    def fractions(self) -> Combination:
-        """{atom: fraction}: sines and cosines are generators at fraction·atom.
+    def angles(self) -> tuple[sp.Expr, ...]:
+        """The angles of generators; all that were collected are sums of whole multiples of them.
 
-        In the order of the rates of the atoms, where those were asked for, so that rotations of
+        In the order of the rates of their atoms, where those were asked for, so that rotations of
         the same coordinates share a ring. To be read once all is collected.
         """
+        # Directions in the space of the atoms are dependent if they are more than they have
+        # dimensions, as φ, ψ and φ + ψ. All that are linked to these by an atom are expanded.
+        basis = Basis()
+        expanded = {atom for d in self._directions if not basis.add(d) for atom in combination(d)}
+        while more := {
+            atom
+            for direction in self._directions
+            if not expanded.isdisjoint(atoms := combination(direction).keys())
+            for atom in atoms - expanded
+        }:
+            expanded |= more
         # The greatest common divisor of the coefficients: cos 2θ and sin(θ/3) are polynomials in
         # the cosine and sine of gcd(2, 1/3) θ = θ/3.
         common: Combination = {}
-        for atom, coefficient in (pair for terms in self._angles for pair in terms.items()):
-            if atom is not sp.pi:
-                common[atom] = common.get(atom, sp.S.Zero).gcd(abs(coefficient))
+        for direction, size in self._directions.items():
+            terms = combination(direction)
+            parts = {direction: sp.S.One} if expanded.isdisjoint(terms) else terms
+            for part, coefficient in parts.items():
+                common[part] = common.get(part, sp.S.Zero).gcd(size * abs(coefficient))
         places = {expression: place for place, expression in enumerate(self.kinds)}
-        in_order = sorted(common, key=lambda atom: places.get(rate_of(atom), len(places)))
-        return {atom: common[atom] for atom in in_order}
+
+        def place_of(direction: sp.Expr) -> int:
+            rates = map(rate_of, combination(direction))
+            return min(places.get(rate, len(places)) for rate in rates)
+
+        return tuple(common[part] * part for part in sorted(common, key=place_of))
 
     def close(self) -> None:
         """Take the time derivatives of all that was found, until nothing new appears."""
@@ -235,9 +286,15 @@ class GeneratorSet:
         if sp.pi in terms:
             for value in cosine_sine_of_pi(terms[sp.pi]):
                 self.collect(value)
-        self._angles.append(terms)
-        for atom in terms:
-            if atom is not sp.pi and atom not in self._atoms:
+        atoms = [atom for atom in terms if atom is not sp.pi]
+        size = reduce(sp.gcd, (terms[atom] for atom in atoms), sp.S.Zero)
+        if atoms:
+            direction = sp.Add(*(terms[atom] / size * atom for atom in atoms))
+            if direction.could_extract_minus_sign():
+                direction = -direction
+            self._directions[direction] = self._directions.get(direction, sp.S.Zero).gcd(size)
+        for atom in atoms:
+            if atom not in self._atoms:
                 self._atoms.add(atom)
                 self._underived.append(atom)
 

@@ -54,12 +54,13 @@ Pairs = list[tuple[sp.Expr, sp.Expr]]  # sines and cosines
 
 
 class _Angle(NamedTuple):
-    """The sine and the cosine of a fraction of one coordinate, or of the length of all."""
+    """The sine and the cosine of fraction · coordinate + offset."""
 
     sine: int
     cosine: int
     fraction: sp.Rational
-    coordinate: sp.Expr
+    coordinate: sp.Expr  # or a sum of coordinates, or the length of all
+    offset: sp.Expr
     is_length: bool
 
 
@@ -175,9 +176,10 @@ class Solver:
         length, angles = length_of(coordinates), []
         for sine, cosine in codec.angle_pairs:
             argument = self._ring.generators[sine].expression.args[0]
-            fraction, angle = argument.as_coeff_Mul()
-            if angle == length or set(combination(angle)) <= set(coordinates):
-                angles.append(_Angle(sine, cosine, fraction, angle, angle == length))
+            offset, moving = argument.as_independent(*coordinates, as_Add=True)
+            fraction, angle = moving.as_coeff_Mul()
+            if angle == length or (moving and set(combination(angle)) <= set(coordinates)):
+                angles.append(_Angle(sine, cosine, fraction, angle, offset, angle == length))
         self._angles = tuple(angles)
         self._of_factors: dict[PolyElement, list[Root] | None] = {}
         self.missing: set[sp.Expr] = set()  # roots of numbers that the ring would need for more
@@ -323,13 +325,13 @@ class Solver:
         self, angle: _Angle, value: sp.Expr, sine_and_cosine: tuple[PolyElement, ...]
     ) -> Iterator[Root]:
         """The coordinates within one period whose multiple is the value, up to whole turns."""
-        # (p/q) x = value + 2πk gives x = (value + 2πk) q/p. The period of sin(p x/q) is 2πq/p, so
+        # (p/q) x + δ = value + 2πk gives x = (value − δ + 2πk) q/p. The period of sin(p x/q) is 2πq/p, so
         # there are p of these in the common period 2πq.
         becomes = tuple(zip((angle.sine, angle.cosine), sine_and_cosine, strict=True))
         turns, times = int(angle.fraction.q), int(angle.fraction.p)
         period = 2 * sp.pi * turns
         for k in range(times):
-            coordinate = (value + 2 * sp.pi * k) / angle.fraction
+            coordinate = (value - angle.offset + 2 * sp.pi * k) / angle.fraction
             if coordinate.is_number:  # into (−period/2, period/2]; a length above zero
                 lowest = 0 if angle.is_length else -period / 2
                 coordinate -= period * (sp.ceiling((coordinate - lowest) / period) - 1)
