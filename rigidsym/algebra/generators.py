@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from enum import IntEnum
 from fractions import Fraction
-from functools import cached_property, lru_cache, reduce
+from functools import cached_property, lru_cache
 from typing import Any
 
 import sympy as sp
@@ -215,30 +215,20 @@ class GeneratorSet:
         In the order of the rates of their atoms, where those were asked for, so that rotations of
         the same coordinates share a ring. To be read once all is collected.
         """
-        # Directions in the space of the atoms are dependent if they are more than they have
-        # dimensions, as φ, ψ and φ + ψ. All that are linked to these by an atom are expanded.
         basis = Basis()
-        expanded = {atom for d in self._directions if not basis.add(d) for atom in combination(d)}
-        while more := {
-            atom
-            for direction in self._directions
-            if not expanded.isdisjoint(atoms := combination(direction).keys())
-            for atom in atoms - expanded
-        }:
-            expanded |= more
+        are_independent = all(map(basis.add, self._directions))
         # The greatest common divisor of the coefficients: cos 2θ and sin(θ/3) are polynomials in
         # the cosine and sine of gcd(2, 1/3) θ = θ/3.
         common: Combination = {}
         for direction, size in self._directions.items():
-            terms = combination(direction)
-            parts = {direction: sp.S.One} if expanded.isdisjoint(terms) else terms
+            # Of φ, ψ and φ + ψ, say, the third is dependent, and its sine is expanded.
+            parts = {direction: sp.S.One} if are_independent else combination(direction)
             for part, coefficient in parts.items():
                 common[part] = common.get(part, sp.S.Zero).gcd(size * abs(coefficient))
         places = {expression: place for place, expression in enumerate(self.kinds)}
 
-        def place_of(direction: sp.Expr) -> int:
-            rates = map(rate_of, combination(direction))
-            return min(places.get(rate, len(places)) for rate in rates)
+        def place_of(part: sp.Expr) -> int:
+            return min(places.get(rate_of(atom), len(places)) for atom in combination(part))
 
         return tuple(common[part] * part for part in sorted(common, key=place_of))
 
@@ -286,14 +276,13 @@ class GeneratorSet:
         if sp.pi in terms:
             for value in cosine_sine_of_pi(terms[sp.pi]):
                 self.collect(value)
-        atoms = [atom for atom in terms if atom is not sp.pi]
-        size = reduce(sp.gcd, (terms[atom] for atom in atoms), sp.S.Zero)
-        if atoms:
-            direction = sp.Add(*(terms[atom] / size * atom for atom in atoms))
-            if direction.could_extract_minus_sign():
-                direction = -direction
+        moving = [atom for atom in terms if atom is not sp.pi]
+        size, direction = sp.Add(*(terms[atom] * atom for atom in moving)).primitive()
+        if direction.could_extract_minus_sign():
+            direction = -direction
+        if moving:
             self._directions[direction] = self._directions.get(direction, sp.S.Zero).gcd(size)
-        for atom in atoms:
+        for atom in moving:
             if atom not in self._atoms:
                 self._atoms.add(atom)
                 self._underived.append(atom)

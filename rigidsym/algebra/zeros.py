@@ -325,8 +325,8 @@ class Solver:
         self, angle: _Angle, value: sp.Expr, sine_and_cosine: tuple[PolyElement, ...]
     ) -> Iterator[Root]:
         """The coordinates within one period whose multiple is the value, up to whole turns."""
-        # (p/q) x + δ = value + 2πk gives x = (value − δ + 2πk) q/p. The period of sin(p x/q) is 2πq/p, so
-        # there are p of these in the common period 2πq.
+        # (p/q) x + δ = value + 2πk gives x = (value − δ + 2πk) q/p. The period of sin(p x/q) is
+        # 2πq/p, so there are p of these in the common period 2πq.
         becomes = tuple(zip((angle.sine, angle.cosine), sine_and_cosine, strict=True))
         turns, times = int(angle.fraction.q), int(angle.fraction.p)
         period = 2 * sp.pi * turns

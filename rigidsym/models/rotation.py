@@ -97,9 +97,10 @@ class Turn:
 
     @property
     def angle_text(self) -> str:
-        """The angle in plain text."""
-        plain = in_names(self.angle)
-        return lettered(plain.name) if plain.is_Symbol else str(plain)
+        """The angle in plain text: 2φ − ψ for 2*phi - psi."""
+        text = re.sub(r"[A-Za-z]\w*", lambda name: lettered(name[0]), str(in_names(self.angle)))
+        text = re.sub(r"(?<=\d)\*(?!\*)", "", text).replace("**", "^").replace("*", " ")
+        return text.replace("-", "−")
 
     def __str__(self) -> str:
         return f"R{self.axis}({self.angle_text})"

@@ -38,7 +38,7 @@ from rigidsym.notes.document import (
     said,
 )
 from rigidsym.notes.equations import claims_of, equation_of, in_parts, sums
-from rigidsym.notes.facts.rotation import RotationFacts, facts_of_rotation, product_of
+from rigidsym.notes.facts.rotation import RotationFacts, facts_of_rotation, product_of, title_of
 from rigidsym.notes.facts.singular import singular_facts
 from rigidsym.notes.fitting import as_vectors, fitted, without_entries
 from rigidsym.notes.letters import letters_of, meanings_of
@@ -116,7 +116,7 @@ class Composer:
             sections = [s._replace(blocks=tuple(map(_without_proofs, s.blocks))) for s in sections]
         return Document(
             name=self.derivation.name,
-            title=self.derivation.title,
+            title=title_of(self.derivation, self.letters),
             subtitle="" if is_body_alone(self.derivation) else self.derivation.subject,
             letters=self.letters,
             sections=tuple(s for s in sections if s.title and s.blocks),

@@ -120,7 +120,7 @@ class Document:
     """A note. Equation labels are unique in it; sources are numbered in order of appearance."""
 
     name: str  # of the derivation: lower case, digits, underscores
-    title: str
+    title: Text
     subtitle: str
     letters: Letters
     sections: tuple[Section, ...]

@@ -165,7 +165,7 @@ def sheets_of(subject: str, *, count: int, variant: int) -> tuple[Document, Docu
     derivations = [p.facts["derivation"] for p in problems if "derivation" in p.facts]
     sheet = Document(
         name=f"problems_{subject}_{variant}",
-        title="Problems",
+        title=("Problems",),
         subtitle=f"{title}, variant {variant}",
         letters=letters_of([argument for d in derivations for argument in d.arguments]),
         sections=tuple(problem.question for problem in problems),
@@ -174,7 +174,9 @@ def sheets_of(subject: str, *, count: int, variant: int) -> tuple[Document, Docu
         problem.question._replace(blocks=(*problem.question.blocks, *problem.solution.blocks))
         for problem in problems
     )
-    return sheet, replace(sheet, name=f"{sheet.name}_solutions", title="Solutions", sections=solved)
+    return sheet, replace(
+        sheet, name=f"{sheet.name}_solutions", title=("Solutions",), sections=solved
+    )
 
 
 def problems_of(kinds: Sequence[Kind], count: int, seed: str) -> list[Problem]:

@@ -23,7 +23,7 @@ from rigidsym.system import resources
 LONG = "x(a_1) y(a_2) z(a_3) x(a_4) y(a_5) z(a_6)"  # more turns than a figure has arcs for
 CHAINS = (
     "z(phi) x(theta) [0,b,c](psi)",
-    "z(phi/2) x(theta) z(psi/3)",
+    "z(2*phi - psi) x(theta) z(psi/3)",
     "x(alpha0) z(phi) y(pi/4) x(theta)",
     LONG,
 )

@@ -31,9 +31,8 @@ CHAINS = (
     "x(alpha0) z(phi) y(pi/4) x(theta)",
     "[1,1,0](beta)",
     "z(phi) [a,b,c](beta) [1,2,2](psi)",
-    "z(2*phi - psi) x(theta) z(psi)",
     "z(phi) x(phi)",
-    "z(phi/2) x(theta) z(psi/3)",
+    "z(2*phi - psi) x(theta) z(psi/3)",
     "z(phi) x(theta/2) z(psi)",
     "z(a) x(b) x(c)",
 )

@@ -28,7 +28,7 @@ from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.quantities.kinematics import SPACE
 from rigidsym.mechanics.quantities.table import is_quaternion
 from rigidsym.models.rotation import RotationModel, Turn, by_axis, carried_axes
-from rigidsym.notes.document import Equation, EquationRow, Figure, NoteBlock
+from rigidsym.notes.document import Equation, EquationRow, Figure, NoteBlock, Text
 from rigidsym.notes.figure.drawing import drawn
 from rigidsym.notes.figure.scene import free_angle, scene_of
 from rigidsym.notes.template import figure_with
@@ -46,6 +46,7 @@ def facts_of_rotation(derivation: Derivation, letters: Letters) -> dict[str, Any
     """The facts of the templates on conventions and on the rotation, by their names there."""
     q, model, body = derivation.argument("q"), derivation.model, derivation.body
     symbols, length = symbols_of(derivation), letters.length
+    symbols |= {turn.angle_text: formula_of(turn.angle, letters) for turn in model.turns}
     inputs = {name for step in derivation.steps for name in step.quantity.inputs}
     quantities = {step.quantity.name for step in derivation.steps}
     unit, *other_units = sorted({*q.units})
@@ -218,6 +219,12 @@ def product_of(turns: Iterable[Turn], letters: Letters) -> Formula:
         Apply(Symbol("R", "bold", index=axis_of(t)), formula_of(t.angle, letters)) for t in turns
     )
     return row(*factors)
+
+
+def title_of(derivation: Derivation, letters: Letters) -> Text:
+    """The title, with each turn in it as a formula, so that lines may break between turns."""
+    turns = {str(turn): product_of([turn], letters) for turn in derivation.model.turns}
+    return with_symbols(derivation.title, turns) if turns else (derivation.title,)
 
 
 def axes_of_turns(model: RotationModel, letters: Letters) -> list[Formula]:

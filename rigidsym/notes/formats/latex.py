@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from rigidsym.formula.display import PAGE, pack
 from rigidsym.formula.latex_pen import LatexPen
+from rigidsym.formula.reader import text_of
 from rigidsym.formula.tree import Formula
 from rigidsym.notes.document import (
     Document,
@@ -45,7 +46,7 @@ def render(document: Document) -> str:
 def metadata(document: Document) -> str:
     """What a PDF says of itself, as the entries of its information dictionary."""
     said = {
-        "Title": document.title,
+        "Title": text_of(document.title),
         "Subject": document.subtitle,
         "Author": document.author or "rigidsym",
         "Creator": f"rigidsym {__version__}",

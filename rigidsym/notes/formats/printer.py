@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 
 from rigidsym.formula.display import display
 from rigidsym.formula.latex_pen import LatexPen
+from rigidsym.formula.reader import text_of
 from rigidsym.formula.tree import Formula
 from rigidsym.notes.document import (
     Cited,
@@ -58,7 +59,8 @@ class NotePrinter:
         """What every template places beside the sections."""
         document = self.document
         return {
-            "title": self.words(document.title),
+            "title": self.words(text_of(document.title)),
+            "heading": self.text(document.title),
             "subtitle": self.words(document.subtitle),
             "byline": self.words(" · ".join(document.byline)),
             "sources": [

@@ -21,7 +21,7 @@ from rigidsym.mechanics.derivation import Argument, Derivation, Step, phrases
 from rigidsym.mechanics.quantities.kinematics import BODY, ROTATION, SPACE
 from rigidsym.notes.document import Equation, Paragraph
 from rigidsym.notes.equations import equation_of, in_parts, sum_of_vectors
-from rigidsym.notes.facts.rotation import facts_of_rotation, product_of
+from rigidsym.notes.facts.rotation import facts_of_rotation, product_of, title_of
 from rigidsym.notes.facts.singular import singular_facts
 from rigidsym.notes.fitting import as_vectors
 from rigidsym.notes.letters import RESIDUAL, letters_of
@@ -186,7 +186,7 @@ class _Screen:
         model, steps, letters = derivation.model, derivation.steps, self.letters
         facts = facts_of_rotation(derivation, letters)
         facts |= {"angles": None, "has_dots": letters.notation.rates == "dot"}
-        self.heading(derivation.title)
+        self.heading(*title_of(derivation, letters))
         if not is_body_alone(derivation):
             self.line()
             for text in texts_of("en/convention", letters, **facts):
