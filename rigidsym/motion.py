@@ -73,8 +73,8 @@ class Motion(Derivation):
 
         `conversions` adds conversions to and from the unit quaternion and the matrix, and
         `unwrap`. `derivatives` adds functions that return the Jacobian of a quantity:
-        {"angular_velocity_body": ("q", "q_dot")} adds `angular_velocity_body_jacobian_q` and
-        `angular_velocity_body_jacobian_q_dot`.
+        {"spin_matrix": ("q", "q_dot")} adds `spin_matrix_jacobian_q` and
+        `spin_matrix_jacobian_q_dot`.
         `options` depend on the target: `kernels("c", lean="double")` prints C for firmware.
         Raises KernelError for an unknown target, option or derivative.
         """
@@ -237,7 +237,7 @@ def kernels(
     derivatives: Asked = (),
     **options: str | bool,
 ) -> ModuleType:
-    """The functions of a rotation, loaded: `rs.kernels("ZYX").angular_velocity_body(q, q_dot)`.
+    """The functions of a rotation, loaded: `rs.kernels("ZYX").rate_matrix_body(q)`.
 
     This is `derive`, `Motion.kernels` and `load` in one step, and raises the same errors.
     """

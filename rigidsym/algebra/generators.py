@@ -79,7 +79,7 @@ class Basis:
         parts = dict(combination(argument))
         for atom, solution in self._solutions.items():
             times = parts.pop(atom, sp.S.Zero)
-            for part, coefficient in solution.items() if times else ():
+            for part, coefficient in solution.items():
                 parts[part] = parts.get(part, sp.S.Zero) + times * coefficient
         return {part: coefficient for part, coefficient in parts.items() if coefficient}
 
@@ -197,7 +197,6 @@ class GeneratorSet:
         self.order = order
         self.kinds: dict[sp.Expr, Kind] = {}
         self._directions: Combination = {}  # of the angles, with the common divisor of their sizes
-        self._atoms: set[sp.Expr] = set()  # what sines and cosines are taken of
         self._underived: list[sp.Expr] = []
         self._seen: set[sp.Expr] = set()
 
@@ -282,10 +281,7 @@ class GeneratorSet:
             direction = -direction
         if moving:
             self._directions[direction] = self._directions.get(direction, sp.S.Zero).gcd(size)
-        for atom in moving:
-            if atom not in self._atoms:
-                self._atoms.add(atom)
-                self._underived.append(atom)
+        self._underived += moving
 
     def _add(self, expression: sp.Expr, kind: Kind) -> None:
         if expression in self.kinds:

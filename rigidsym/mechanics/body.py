@@ -325,7 +325,7 @@ def steps_of_body(
         whole = forces.with_parameters(whole, model)
     is_fixed = (
         forces is not None
-        and forces.fix_a_point
+        and all(part.rotation for part in forces.parts)  # no particle moves
         and whole.distribution is None
         and not any(OF_BODY[name].of_centre for name in only if name in OF_BODY)
     )

@@ -131,11 +131,6 @@ class Forces:
     parts: tuple[MovingPart, ...] = ()
     examples: tuple[Example, ...] = ()  # motions with numbers
 
-    @property
-    def fix_a_point(self) -> bool:
-        """Whether the body and its parts turn about a point at rest."""
-        return all(part.rotation is not None for part in self.parts)
-
     def leave_free(self, model: RotationModel) -> bool:
         """Whether nothing acts on a body that can turn in every way, and nothing moves with it."""
         acting = [*self.generalised.values(), *self.torque, *self.parts]
@@ -248,15 +243,15 @@ def forces_on(
 ) -> Forces:
     """What acts on a body, by the keys of [dynamics]; texts are read as in a file.
 
-    In a text `theta_dot` is the rate of theta, `omega_body_1` or `angular_velocity_body_1` a
-    component of Ω′ and `t` the time; other names are constants. Raises ModelError for a force on
+    In a text `theta_dot` is the rate of theta, `omega_body_1`, or its long name, a component of Ω′
+    and `t` the time; other names are constants. Raises ModelError for a force on
     what is no coordinate, for a constant with the name of a quantity or nearly that of a rate, and
     for parts and examples that are none; ExpressionError for a text that cannot be read.
     """
     coordinates = {q.func.__name__: q for q in model.coordinates}
     names = coordinates | {f"{name}_dot": sp.diff(q, TIME) for name, q in coordinates.items()}
-    for k, component in enumerate(OMEGA_BODY, start=1):
-        names |= {f"omega_body_{k}": component, f"angular_velocity_body_{k}": component}
+    for spelling in (OMEGA_COMPONENTS, ("omega_body_1", "omega_body_2", "omega_body_3")):
+        names |= zip(spelling, OMEGA_BODY, strict=True)
     names["t"] = TIME
     for name in forces:
         if name not in coordinates:
@@ -308,18 +303,13 @@ def _part(entry: Mapping[str, Any], names: Mapping[str, sp.Expr]) -> MovingPart:
 
 
 def _read(value: sp.Expr | str | int, names: Mapping[str, sp.Expr]) -> sp.Expr:
-    if not isinstance(value, str):
-        return _with_roots(symbolic(value, "a potential or a force"))
-    for name in set(names_in(value)) - set(names):
-        _check_spelling(name, names)
-    used = {name: names.get(name) or sp.Symbol(check_name(name)) for name in names_in(value)}
-    return _with_roots(parse_expression(value, used))
-
-
-def _with_roots(value: sp.Expr) -> sp.Expr:
-    """√x² for |x|, which exact algebra holds: its square is x², its rate x ẋ/√x²."""
-    # The ring knows (√x²)² = x², and of |x| nothing.
-    return value.replace(sp.Abs, lambda x: sp.sqrt(x**2))
+    if isinstance(value, str):
+        for name in set(names_in(value)) - set(names):
+            _check_spelling(name, names)
+        used = {name: names.get(name) or sp.Symbol(check_name(name)) for name in names_in(value)}
+        value = parse_expression(value, used)
+    # The ring knows (√x²)² = x² and the rate x ẋ/√x², and of |x| nothing.
+    return symbolic(value, "a potential or a force").replace(sp.Abs, lambda x: sp.sqrt(x**2))
 
 
 def _check_spelling(name: str, names: Mapping[str, sp.Expr]) -> None:

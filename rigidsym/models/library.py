@@ -86,7 +86,7 @@ def rotation_from(
     # The spelling is lenient for names, but upper and lower case matter in a sequence: ZXZ is
     # intrinsic and zxz is extrinsic.
     entry, preset = PARAMETRISATIONS.get(name), PRESETS.get(name)
-    if scalar_last and not (entry and entry.has_scalar):
+    if scalar_last and "{scalar}" not in (entry.title if entry else ""):
         raise ModelError(f"scalar-last applies only to quaternions; {text} is not one")
     if "(" in text:
         model = _turned(text, names, constants, passive)

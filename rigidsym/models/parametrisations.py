@@ -249,11 +249,6 @@ class Parametrisation(NamedTuple):
     radians: str = ""  # the coordinates that are angles
     pullback: str = ""  # the parametrisation that claims are proved in
 
-    @property
-    def has_scalar(self) -> bool:
-        """Whether its scalar may stand last."""
-        return "{scalar}" in self.title
-
 
 def _square(parts: Sequence[sp.Expr]) -> sp.Expr:
     return sum(part**2 for part in parts)

@@ -47,7 +47,7 @@ class DerivationSpec:
     note: tuple[str, ...] = ("tex", "html")
     style: str = "lecture"  # of the note
     conversions: bool = False  # to and from quaternion and matrix
-    derivatives: tuple[str, ...] = ()  # "angular_velocity_body by q"
+    derivatives: tuple[str, ...] = ()  # "kinetic_energy by q"
     certificates: bool = False  # theorems for Coq
     notation: Notation | None = None  # of notes and terminal; None: the default
     source: str = field(default="", compare=False, repr=False)  # the file, in messages
