@@ -214,16 +214,14 @@ class GeneratorSet:
         In the order of the rates of their atoms, where those were asked for, so that rotations of
         the same coordinates share a ring. To be read once all is collected.
         """
-        basis = Basis()
-        are_independent = all(map(basis.add, self._directions))
         # The greatest common divisor of the coefficients: cos 2θ and sin(θ/3) are polynomials in
         # the cosine and sine of gcd(2, 1/3) θ = θ/3.
-        common: Combination = {}
-        for direction, size in self._directions.items():
-            # Of φ, ψ and φ + ψ, say, the third is dependent, and its sine is expanded.
-            parts = {direction: sp.S.One} if are_independent else combination(direction)
-            for part, coefficient in parts.items():
-                common[part] = common.get(part, sp.S.Zero).gcd(size * abs(coefficient))
+        common = self._directions
+        if not all(map(Basis().add, common)):  # as of φ, ψ and φ + ψ, which are expanded
+            common = {}
+            for direction, size in self._directions.items():
+                for atom, coefficient in combination(direction).items():
+                    common[atom] = common.get(atom, sp.S.Zero).gcd(size * abs(coefficient))
         places = {expression: place for place, expression in enumerate(self.kinds)}
 
         def place_of(part: sp.Expr) -> int:

@@ -165,13 +165,10 @@ class Forces:
     def in_symbols_of(self, body: RigidBody) -> Forces:
         """With the symbols of the body where names are the same: m for a positive m."""
         own = {symbol.name: symbol for symbol in body.inertia.free_symbols | body.mass.free_symbols}
-
-        def named(expression: sp.Expr) -> sp.Expr:
-            # SymPy distinguishes a positive m from one without assumptions, though both print as m.
-            symbols = (s for s in expression.free_symbols if s.name in own)
-            return expression.xreplace({s: own[s.name] for s in symbols})
-
-        return self.map(named)
+        # SymPy distinguishes a positive m from one without assumptions, though both print as m.
+        return self.map(
+            lambda e: e.xreplace({s: own[s.name] for s in e.free_symbols if s.name in own})
+        )
 
     def with_parameters(self, body: RigidBody, model: RotationModel) -> RigidBody:
         """The body with the constants of the forces among its parameters.
@@ -183,15 +180,14 @@ class Forces:
         if self.potential.has(sp.Derivative, *OMEGA_BODY):
             raise ModelError(f"{depends} rates; expected V(q, t)")
         if self.potential.free_symbols and not self.potential.has(*model.coordinates):
-            names = ", ".join(map(as_typed, model.coordinates))
-            plain = [q.func.__name__ for q in model.coordinates]
+            plain = [*map(as_typed, model.coordinates)]
             own = sorted(symbol.name for symbol in self.potential.free_symbols)
             near = [name for each in own for name in get_close_matches(each, plain, n=1)]
             hint = f" (did you mean {near[0]}?)" if near else ""
             remedy = f"expected one of them{hint}, or no potential: a constant exerts no force"
             if name := next(filter(plain.__contains__, own), ""):
                 remedy = f"{name} is a symbol here; expected a text, or the function {name}(t)"
-            raise ModelError(f"{depends} none of the coordinates {names}; {remedy}")
+            raise ModelError(f"{depends} none of the coordinates {', '.join(plain)}; {remedy}")
         for expression in self._of_parts:
             what = "t" if depends_on_time(expression) else "Ω′"
             if what == "t" or expression.has(*OMEGA_BODY):
@@ -215,15 +211,10 @@ class Forces:
         return replace(body, parameters=(*body.parameters, *more))
 
     @property
-    def acting(self) -> Iterator[sp.Expr]:
-        """All that acts, and all that is claimed to be constant."""
-        yield from (self.potential, *self.generalised.values(), *self.torque)
-        yield from self.first_integrals.values()
-
-    @property
     def expressions(self) -> Iterator[sp.Expr]:
         """All that acts, all that is claimed to be constant, and the parts."""
-        yield from (*self.acting, *self._of_parts)
+        yield from (self.potential, *self.generalised.values(), *self.torque)
+        yield from (*self.first_integrals.values(), *self._of_parts)
 
     @property
     def _of_parts(self) -> Iterator[sp.Expr]:

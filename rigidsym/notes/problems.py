@@ -174,9 +174,8 @@ def sheets_of(subject: str, *, count: int, variant: int) -> tuple[Document, Docu
         problem.question._replace(blocks=(*problem.question.blocks, *problem.solution.blocks))
         for problem in problems
     )
-    return sheet, replace(
-        sheet, name=f"{sheet.name}_solutions", title=("Solutions",), sections=solved
-    )
+    answers = replace(sheet, name=f"{sheet.name}_solutions", title=("Solutions",), sections=solved)
+    return sheet, answers
 
 
 def problems_of(kinds: Sequence[Kind], count: int, seed: str) -> list[Problem]:

@@ -33,21 +33,13 @@ from rigidsym.text.names import check_name
 Schema = dict[str, Any]
 LENGTHS = {length.key: length for shape in SHAPES.values() for length in shape.lengths}
 
-_TYPES: Mapping[str, tuple[type, ...]] = {
-    "string": (str,),
-    "boolean": (bool,),
-    "number": (int, float),
-    "integer": (int,),
-    "array": (list,),
-    "object": (Mapping,),
-}
-_WORDS = {  # in messages
-    "string": "a text in quotes",
-    "number": "a number",
-    "integer": "a whole number",
-    "boolean": "true or false",
-    "array": "a list",
-    "object": "a table",
+_TYPES: Mapping[str, tuple[Any, str]] = {  # and what messages call them
+    "string": (str, "a text in quotes"),
+    "boolean": (bool, "true or false"),
+    "number": (int | float, "a number"),
+    "integer": (int, "a whole number"),
+    "array": (list, "a list"),
+    "object": (Mapping, "a table"),
 }
 
 
@@ -82,13 +74,11 @@ def schema_of(kind: str) -> Schema:
         choice = {"type": "string", "enum": [*names], "description": f"by default {names[0]}"}
         definitions["notation"]["properties"][key] = choice
     enums: dict[str, Iterable[Any]] = {
-        "shapes": SHAPES,
-        "quantities": QUANTITIES,
-        "kernels": TARGETS,
-        "note": NOTES,
+        f"{target}.{key}": values
+        for target, entry in TARGETS.items()
+        for key, values in entry.options.items()
     }
-    for target, entry in TARGETS.items():
-        enums |= {f"{target}.{key}": values for key, values in entry.options.items()}
+    enums |= {"shapes": SHAPES, "quantities": QUANTITIES, "kernels": TARGETS, "note": NOTES}
 
     def expanded(entry: Any) -> Any:
         """The entry with what it uses, and with the names that the code knows."""
@@ -148,7 +138,7 @@ def _is_of(value: object, types: str | list[str]) -> bool:
     """Whether a value is of one of the types; true and false are not numbers."""
     names = [types] if isinstance(types, str) else types
     return any(
-        isinstance(value, _TYPES[name]) and isinstance(value, bool) == (name == "boolean")
+        isinstance(value, _TYPES[name][0]) and isinstance(value, bool) == (name == "boolean")
         for name in names
     )
 
@@ -225,4 +215,4 @@ def expected(schema: Schema, place: Place) -> str:
         return 'a number, or an expression in quotes such as "2*a"'
     size = f" of {schema['maxItems']} entries" if "maxItems" in schema else ""
     such = [json.dumps(example, ensure_ascii=False) for example in schema.get("examples", ())]
-    return _WORDS[kind] + size + "".join(f" such as {text}" for text in such)
+    return _TYPES[kind][1] + size + "".join(f" such as {text}" for text in such)

@@ -28,7 +28,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from functools import cache, cached_property
 from itertools import product
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, NamedTuple
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
@@ -46,8 +46,6 @@ from rigidsym.mechanics.quantities.kinematics import KINEMATICS
 from rigidsym.mechanics.quantities.table import arguments_of
 from rigidsym.models.rotation import TIME, RotationModel, Turn, hat, time_function
 
-Vector: TypeAlias = sp.ImmutableMatrix  # (3, 1)
-Matrix: TypeAlias = sp.ImmutableMatrix  # (3, 3)
 _WRITTEN_OUT = 3  # turns that textbooks multiply out
 _ZERO, _ONE = sp.ImmutableMatrix(sp.zeros(3, 1)), sp.ImmutableMatrix(sp.eye(3))
 ANGLE = time_function("angle_of_the_turn")
@@ -242,9 +240,9 @@ class Names:
 class State(NamedTuple):
     """A partial product of turns with its angular velocity and acceleration, in names."""
 
-    R: Matrix = _ONE
-    omega: Vector = _ZERO
-    alpha: Vector = _ZERO
+    R: sp.ImmutableMatrix = _ONE  # (3, 3)
+    omega: sp.ImmutableMatrix = _ZERO  # (3, 1)
+    alpha: sp.ImmutableMatrix = _ZERO  # (3, 1)
 
 
 class Chain(Names, Workspace):
