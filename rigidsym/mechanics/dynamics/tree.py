@@ -34,14 +34,7 @@ from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Proof, Quantity
 from rigidsym.mechanics.dynamics.flow import LagrangeForm
-from rigidsym.mechanics.kinematics.chain import (
-    Chain,
-    Matrix,
-    Vector,
-    acceleration,
-    kinds_of,
-    velocity,
-)
+from rigidsym.mechanics.kinematics.chain import Chain, acceleration, kinds_of, velocity
 from rigidsym.mechanics.prove import Conditions, Prover, consequence
 from rigidsym.mechanics.quantities import dynamics as claims
 from rigidsym.mechanics.quantities.dynamics import TORQUE
@@ -59,9 +52,9 @@ class Joint:
     label: str
     turn: Turn
     slopes: sp.ImmutableMatrix  # of its angle by the coordinates, (1, n)
-    matrix: Matrix
+    matrix: sp.ImmutableMatrix  # (3, 3)
     speed: sp.Expr
-    omega: Vector
+    omega: sp.ImmutableMatrix  # (3, 1)
     before: Joint | None
     inertia: sp.ImmutableMatrix = field(default_factory=lambda: sp.ImmutableMatrix.zeros(3, 3))
 
@@ -77,8 +70,8 @@ class Particle(NamedTuple):
     slopes: sp.ImmutableMatrix  # J as it is given, (3, n)
     slopes_rate: sp.ImmutableMatrix  # dJ/dt
     jacobian: sp.ImmutableMatrix  # J in names
-    velocity: Vector
-    gained: Vector  # dv/dt for q̈ = 0
+    velocity: sp.ImmutableMatrix  # (3, 1)
+    gained: sp.ImmutableMatrix  # dv/dt for q̈ = 0
 
 
 class Solution(NamedTuple):
@@ -216,7 +209,7 @@ class TreeEquations(LagrangeForm):
         return sum((p.mass * (p.jacobian.T * value(p)) for p in self.particles), total)
 
     @cached_property
-    def _momenta(self) -> dict[Joint, Vector]:
+    def _momenta(self) -> dict[Joint, sp.ImmutableMatrix]:
         """Hₖ."""
         return self._carried("H", lambda joint: joint.inertia * joint.omega)
 
@@ -253,7 +246,7 @@ class TreeEquations(LagrangeForm):
     @cached_property
     def bias(self) -> sp.ImmutableMatrix:
         """h."""
-        gained: dict[Joint, Vector] = {}
+        gained: dict[Joint, sp.ImmutableMatrix] = {}
         for joint in self.joints.values():
             # θ̈ₖ at q̈ = 0 is d/dt(∂θₖ/∂q) q̇, which vanishes unless the angle is not linear in q.
             own = joint.axis * joint.slopes.diff(TIME) * sp.Matrix(self.rates)
