@@ -81,12 +81,10 @@ def test_generators_are_as_few_as_can_be():
         generators = codec_for(expressions).ring.generators
         return {gen.expression for gen in generators} - {a.diff(TIME), a.diff(TIME, 2)}
 
-    assert held(cos(2 * a), cos(a)) == {sin(a), cos(a)}
     assert held(cos(2 * a), sin(a / 3)) == {sin(a / 3), cos(a / 3)}
     assert held(sin(k), m) == {sin(k), cos(k), m}
     assert held(sin((m**2 - k**2) / (m - k) + 1 / length)) == held(cos(k + m + 1 / length))
-    sums = {function(angle) for function in (sin, cos) for angle in (2 * k - m, m / 3)}
-    assert held(sin(2 * k - m), cos(m / 3)) == sums
+    assert held(sin(2 * k - m), cos(m / 3)) == held(sin(2 * k - m)) | held(sin(m / 3))
     assert held(sin(k - m), sin(k), sin(m / 2)) == held(sin(k), sin(m / 2))
 
 
