@@ -1,4 +1,4 @@
-"""Independent arithmetic at 50 digits, to judge what the package prints.
+"""Independent arithmetic at 50 digits, and motions by SciPy, to judge what the package prints.
 
 Nothing here imports the package. Rotations are built from the turns one reads in a textbook,
 derivatives are numerical, and expressions are evaluated by a walk over their tree.
@@ -12,8 +12,10 @@ from dataclasses import dataclass
 from itertools import product
 from typing import Any
 
+import numpy as np
 import sympy as sp
 from mpmath import MPContext
+from scipy.integrate import solve_ivp
 
 mp = MPContext()  # a context of its own, so that no other test can change its precision
 mp.dps = 50
@@ -177,3 +179,18 @@ def agree(first: Matrix, second: Matrix) -> bool:
     """Whether two matrices agree to 40 digits of their size."""
     size = max(1, *(abs(entry) for entry in second))
     return bool(distance(first, second) <= TOLERANCE * size)
+
+
+def newton_euler(moments, torque, omega, times, rotation=((1, 0, 0), (0, 1, 0), (0, 0, 1))):
+    """Ω′ and R at the times, from Ω′ and R at 0, where `torque` gives N′ of R."""
+    tensor = np.diag(moments)
+
+    def slopes(_, y):
+        matrix, (a, b, c) = y[:9].reshape(3, 3), y[9:]
+        turning = matrix @ [[0, -c, b], [c, 0, -a], [-b, a, 0]]
+        forces = torque(matrix) - np.cross(y[9:], tensor @ y[9:])
+        return [*turning.ravel(), *np.linalg.solve(tensor, forces)]
+
+    start, span = [*np.ravel(rotation), *omega], (0, times[-1])
+    y = solve_ivp(slopes, span, start, "DOP853", times, rtol=1e-12, atol=1e-13).y.T
+    return y[:, 9:], y[:, :9].reshape(-1, 3, 3)

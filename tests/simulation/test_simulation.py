@@ -13,6 +13,7 @@ from scipy.spatial.transform import Rotation
 
 import rigidsym as rs
 from helpers.command import call
+from helpers.witness import newton_euler
 from rigidsym.errors import LimitReached, ModelError
 from rigidsym.models.body import Parameter
 from rigidsym.models.library import rotation_from
@@ -35,21 +36,6 @@ def top() -> rs.Motion:
 def free(symmetric: bool = True) -> rs.Motion:
     model = rs.EulerAngles("ZXZ", angles=("phi", "theta", "psi"))
     return rs.derive(model, body=rs.principal_moments(A, A if symmetric else B, C), potential=0)
-
-
-def newton_euler(moments, torque, omega, times):
-    """Ω′ and R by SciPy from R = 1, where `torque` gives N′ of R."""
-    tensor = np.diag(moments)
-
-    def slopes(_, y):
-        rotation, (a, b, c) = y[:9].reshape(3, 3), y[9:]
-        turning = rotation @ [[0, -c, b], [c, 0, -a], [-b, a, 0]]
-        forces = torque(rotation) - np.cross(y[9:], tensor @ y[9:])
-        return [*turning.ravel(), *np.linalg.solve(tensor, forces)]
-
-    start = [*np.eye(3).ravel(), *omega]
-    y = solve_ivp(slopes, times[[0, -1]], start, "DOP853", times, rtol=1e-12, atol=1e-13).y.T
-    return y[:, 9:], y[:, :9].reshape(-1, 3, 3)
 
 
 # --- the free body
