@@ -204,22 +204,17 @@ def test_the_speller_knows_every_word_of_the_texts():
     assert list(check.misspelt(check.texts())) == []
 
 
-@pytest.fixture(scope="module")
-def literature():
-    return of_docs("literature")
-
-
 @pytest.mark.campaign
-def test_every_verdict_on_the_literature_is_that_of_the_prover_and_every_repair_is_proved(
-    literature,
-):
+def test_every_verdict_on_the_literature_is_that_of_the_prover_and_every_repair_is_proved():
+    literature = of_docs("literature")
     for decision in literature.decisions():
         assert decision.verdict == decision.claim.verdict, decision.claim.title
         assert decision.is_repaired or decision.verdict != "wrong", decision.claim.title
 
 
 @pytest.mark.campaign
-def test_a_changed_sign_is_found(literature):
+def test_a_changed_sign_is_found():
+    literature = of_docs("literature")
     claim = next(c for c in literature.claims() if c.place == "eq. (2.14)")
     changed = claim.printed.replace("C(e)*sin", "-C(e)*sin").replace("+ -", "- ")
     decision = literature.decide(replace(claim, printed=changed))

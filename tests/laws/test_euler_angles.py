@@ -10,9 +10,7 @@ import sympy as sp
 from helpers.parametrisations import MOVING, Moving
 from helpers.witness import CONVENTIONS, mp, number
 
-FRAMES = ("space", "body")
 every_case = pytest.mark.parametrize("m", [m for m in MOVING if m.text in CONVENTIONS], ids=repr)
-in_both_frames = pytest.mark.parametrize("frame", FRAMES)
 
 
 # Singular angles

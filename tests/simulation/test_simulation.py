@@ -20,7 +20,7 @@ from rigidsym.models.library import rotation_from
 from rigidsym.simulation.free_body import free_motion
 from rigidsym.simulation.problem import NEEDED
 
-A, B, C = sp.symbols("A B C")
+A, C = sp.symbols("A C")
 TOP = {"A": 1.3, "C": 0.7, "m": 2.0, "g": 9.81, "l": 0.4}
 REST = dict.fromkeys(("phi", "theta", "psi", "phi_dot", "theta_dot", "psi_dot"), 0.0)
 
@@ -30,12 +30,6 @@ def top() -> rs.Motion:
     model = rs.EulerAngles("ZXZ", angles=("phi", "theta", "psi"))
     body = rs.principal_moments(A, A, C)
     return rs.derive(model, body=body, potential="m*g*l*cos(theta)")
-
-
-@cache
-def free(symmetric: bool = True) -> rs.Motion:
-    model = rs.EulerAngles("ZXZ", angles=("phi", "theta", "psi"))
-    return rs.derive(model, body=rs.principal_moments(A, A if symmetric else B, C), potential=0)
 
 
 # --- the free body
