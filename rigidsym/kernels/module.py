@@ -90,7 +90,7 @@ def generate(
     5. The files, printed.
 
     `conversions` adds those between the coordinates, the unit quaternion and the matrix,
-    `derivatives` those that are asked for: ["angular_velocity_body by q"]. `options` are those of
+    `derivatives` those that are asked for: ["rotation_matrix by q"]. `options` are those of
     the target. Raises KernelError for an unknown target, option or derivative, for an expression
     that kernels cannot hold, and if no derived quantity depends on any input.
     """

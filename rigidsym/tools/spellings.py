@@ -21,14 +21,11 @@ _INDICES = [f"{row}{column}" for row, column in product("123", repeat=2)]
 MATRICES: tuple[Names, ...] = tuple(tuple(head + index for index in _INDICES) for head in _MATRICES)
 
 
-def _quantity(name: str) -> Names:
-    """The columns of a vector that `eval` or `simulate` has written."""
-    return (f"{name}_1", f"{name}_2", f"{name}_3")
-
-
-_GROUPS = {
-    "omega_space": (_quantity("angular_velocity_space"), *OMEGAS),
-    "omega_body": (_quantity("angular_velocity_body"), *OMEGAS),
+_GROUPS = {  # first the columns that `eval` and `simulate` write
+    **{
+        f"omega_{frame}": (tuple(f"angular_velocity_{frame}_{k}" for k in (1, 2, 3)), *OMEGAS)
+        for frame in ("space", "body")
+    },
     "quaternion": QUATERNIONS[:5],
     "matrix": MATRICES,
 }

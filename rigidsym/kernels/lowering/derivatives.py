@@ -30,7 +30,7 @@ class DerivativeRequest(NamedTuple):
 
     @property
     def name(self) -> str:
-        """Of the function: angular_velocity_body_jacobian_q."""
+        """Of the function: rotation_matrix_jacobian_q."""
         return f"{self.quantity}_jacobian_{self.vector}"
 
     def __str__(self) -> str:
@@ -46,13 +46,13 @@ def read_request(text: str) -> DerivativeRequest:
     if words is None:
         raise KernelError(
             f"no derivative {text!r}; "
-            "expected a quantity and a vector, such as angular_velocity_body:q"
+            "expected a quantity and a vector, such as rotation_matrix:q"
         )
     return DerivativeRequest(quantity=words[1], vector=words[2])
 
 
 def read_requests(asked: Asked) -> tuple[DerivativeRequest, ...]:
-    """The requests, each once, in their order; {"angular_velocity_body": ("q", "q_dot")} too.
+    """The requests, each once, in their order; {"rotation_matrix": ("q",)} too.
 
     Raises KernelError for a text that is none.
     """

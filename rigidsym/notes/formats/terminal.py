@@ -163,7 +163,7 @@ class _Screen:
         self.lines += [" " * start + _INDENT * line.level + line.text for line in others]
 
     def step(self, step: Step, arguments: Sequence[Argument]) -> None:
-        """(5) angular velocity, body components           angular_velocity_body, rad/s"""
+        """(4) angular velocity, space components         angular_velocity_space, rad/s"""
         quantity = step.quantity
         unit = f", {unit_in_words(quantity.unit)}" if quantity.unit else ""
         about = with_symbols(quantity.about, _OMEGA)
