@@ -165,7 +165,8 @@ class Formula:
 class _Scope:
     """A function, or a whole file, and the branch that a run takes at each of its choices.
 
-    A run prefers a branch that no run has taken, then one that contains an open choice, then the
+    A run prefers the last branch that no run has taken, since it is the one without exceptions,
+    then one that contains an open choice, then the
     last.
     """
 
@@ -181,7 +182,7 @@ class _Scope:
         if node.id not in self.now:
             free = [k for k in range(len(blocks)) if (node.id, k) not in self.taken]
             within = [k for k, b in enumerate(blocks) if any(map(b.covers, self.places.values()))]
-            self.now[node.id] = (free or within or [len(blocks) - 1])[0]
+            self.now[node.id] = (free[::-1] or within or [len(blocks) - 1])[0]
             self.is_new |= bool(free)
             self.taken.add((node.id, self.now[node.id]))
             self.places[node.id] = node.start_byte
