@@ -45,8 +45,7 @@ def read_request(text: str) -> DerivativeRequest:
     words = _TEXT.fullmatch(text.strip())
     if words is None:
         raise KernelError(
-            f"no derivative {text!r}; "
-            "expected a quantity and a vector, such as rotation_matrix:q"
+            f"no derivative {text!r}; expected a quantity and a vector, such as rotation_matrix:q"
         )
     return DerivativeRequest(quantity=words[1], vector=words[2])
 
