@@ -29,7 +29,7 @@ gc.set_threshold(100_000)
 
 # Bytes that a process may keep from one file of tests to the next, and may add before it forgets
 # again: packages and what they compiled stay, and a search through them takes half a second.
-KEPT = {"most": 600e6, "more": 100e6}
+KEPT = {"most": 600e6, "more": 25e6}
 
 GOLDEN = Path(__file__).parent / "golden"
 
