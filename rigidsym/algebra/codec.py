@@ -14,6 +14,7 @@ from rigidsym.algebra.generators import (
     Kind,
     as_sine_cosine,
     cosine_sine_of_pi,
+    in_names,
     is_highest,
     is_uncertain,
     rate_of,
@@ -127,7 +128,9 @@ class Codec:
         """Normal form of a polynomial expression; raises AlgebraError for a true quotient."""
         value = self.encode_quotient(expression)
         if not self.ring.is_one(value.denominator):
-            raise AlgebraError(f"{expression} is a quotient, and its inverse is not in the ring")
+            raise AlgebraError(
+                f"{in_names(expression)} is a quotient, and its inverse is not in the ring"
+            )
         return value.numerator
 
     def column(self, expressions: Iterable[sp.Expr]) -> RingMatrix:
@@ -175,8 +178,8 @@ class Codec:
         raise self._foreign(expression)
 
     def _foreign(self, expression: sp.Expr) -> AlgebraError:
-        names = ", ".join(str(gen.expression) for gen in self.ring.generators)
-        return AlgebraError(f"{expression} is not in the ring of {names}")
+        names = ", ".join(str(in_names(gen.expression)) for gen in self.ring.generators)
+        return AlgebraError(f"{in_names(expression)} is not in the ring of {names}")
 
     def _power(self, base: sp.Expr, exponent: sp.Rational) -> Quotient:
         whole = int(exponent.p)
@@ -219,7 +222,7 @@ class Codec:
             raise self._foreign(sp.sin(times * angle))
         if abs(times) > _HIGHEST_MULTIPLE:
             raise AlgebraError(
-                f"sin and cos of {times * angle} beside those of {angle}: "
+                f"sin and cos of {in_names(times * angle)} beside those of {in_names(angle)}: "
                 f"expected multiples up to {_HIGHEST_MULTIPLE}"
             )
         cosine, sine = (ring.generator(index[function(angle)]) for function in (sp.cos, sp.sin))

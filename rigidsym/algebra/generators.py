@@ -33,8 +33,8 @@ def combination(argument: sp.Expr) -> Combination:
         # What cancels is no atom of its own, beside quotients that do not cancel.
         cancelled = sp.expand(sp.cancel(argument)).as_coefficients_dict()
         terms = min(cancelled, terms, key=lambda parts: sum(map(_is_quotient, parts)))
-    # Irrational multiples of one thing are one multiple of it: they may add up to zero, and the
-    # addition theorems would expand ten of them into a thousand terms.
+    # Irrational multiples of one thing are atoms, so that combinations of arguments are those of
+    # their atoms; but together they may add up to zero.
     multiples: dict[sp.Expr, sp.Expr] = {}
     for atom, coefficient in terms.items():
         if not coefficient.is_Rational:
@@ -43,12 +43,12 @@ def combination(argument: sp.Expr) -> Combination:
         multiples[rest] = multiples.get(rest, sp.S.Zero) + coefficient * number
     combined: Combination = {}
     for rest, total in multiples.items():
-        for number in sp.Add.make_args(total) if rest == 1 else (total,):
+        for number in () if is_identically_zero(total) else sp.Add.make_args(total):
             coefficient, factor = number.as_content_primitive()
             sign = -1 if factor.could_extract_minus_sign() else 1
-            if not is_identically_zero(number):
-                combined[sign * factor * rest] = sign * coefficient
-    return combined
+            atom = sign * factor * rest
+            combined[atom] = combined.get(atom, sp.S.Zero) + sign * coefficient
+    return {atom: coefficient for atom, coefficient in combined.items() if coefficient}
 
 
 class Basis:
@@ -286,8 +286,8 @@ class GeneratorSet:
             return
         if len(self.kinds) >= _MOST_GENERATORS:
             raise AlgebraError(
-                f"more than {_MOST_GENERATORS} generators: the derivatives of {expression} contain "
-                "ever new functions"
+                f"more than {_MOST_GENERATORS} generators: the derivatives of "
+                f"{in_names(expression)} contain ever new functions"
             )
         self.kinds[expression] = kind
         self._underived.append(expression)
@@ -348,4 +348,5 @@ def _kind(expression: sp.Expr) -> Kind:
         raise not_exact(expression)
     if isinstance(expression, sp.Function | sp.Pow) and not expression.has(sp.zoo, sp.nan, sp.oo):
         return Kind.OPAQUE
-    raise AlgebraError(f"{expression} ({type(expression).__name__}) is not in the ring")
+    name = type(expression).__name__
+    raise AlgebraError(f"{in_names(expression)} ({name}) is not in the ring")

@@ -36,6 +36,7 @@ IDENTITIES = [
     (cos(a / 2 + b / 3) ** 2, (1 + cos(a + 2 * b / 3)) / 2),
     (sin(a + b) * sin(a - b), cos(b) ** 2 - cos(a) ** 2),
     (sin(k * a) ** 2 + cos(k * a) ** 2, 1),
+    (2 * cos(sqrt(2) * a + b) * cos(a - b), cos(sqrt(2) * a + a) + cos(sqrt(2) * a - a + 2 * b)),
     (sin((a + b) * u), sin(a * u) * cos(b * u) + cos(a * u) * sin(b * u)),
     (tan(a), sin(a) / cos(a)),
     (tan(2 * a), 2 * tan(a) / (1 - tan(a) ** 2)),
@@ -155,11 +156,11 @@ def test_what_no_ring_holds_is_refused_in_words(expression):
 def test_quotients_and_foreign_expressions_are_not_polynomials():
     codec = codec_for([sin(a), cos(a)])
     for foreign in (sin(b), sin(a / 2), u, sqrt(2), sp.cosh(u)):
-        with pytest.raises(AlgebraError, match="not in the ring"):
+        with pytest.raises(AlgebraError, match=r"not in the ring of sin\(a\)"):
             codec.encode(foreign)
     with pytest.raises(AlgebraError, match="division by an expression that is zero"):
         codec.encode_quotient(1 / (sin(a) ** 2 + cos(a) ** 2 - 1))
-    with pytest.raises(AlgebraError, match=r"is a quotient, and its inverse is not in the ring$"):
+    with pytest.raises(AlgebraError, match=r"^1/cos\(a\) is a quotient, and its inverse"):
         codec.encode(1 / cos(a))
     assert codec.encode_quotient(1 / cos(a)).denominator == codec.encode(cos(a))
 
