@@ -177,7 +177,9 @@ class Solver:
         for sine, cosine in codec.angle_pairs:
             argument = self._ring.generators[sine].expression.args[0]
             offset, moving = argument.as_independent(*coordinates, as_Add=True)
-            fraction, angle = moving.as_coeff_Mul()
+            fraction, angle = moving.primitive()
+            if angle.could_extract_minus_sign():  # as of α − θ
+                fraction, angle = -fraction, -angle
             if angle == length or (moving and set(combination(angle)) <= set(coordinates)):
                 angles.append(_Angle(sine, cosine, fraction, angle, offset, angle == length))
         self._angles = tuple(angles)
@@ -326,23 +328,23 @@ class Solver:
     ) -> Iterator[Root]:
         """The coordinates within one period whose multiple is the value, up to whole turns."""
         # (p/q) x + δ = value + 2πk gives x = (value − δ + 2πk) q/p. The period of sin(p x/q) is
-        # 2πq/p, so there are p of these in the common period 2πq.
+        # 2πq/|p|, so there are |p| of these in the common period 2πq.
         becomes = tuple(zip((angle.sine, angle.cosine), sine_and_cosine, strict=True))
-        turns, times = int(angle.fraction.q), int(angle.fraction.p)
+        turns, times = int(angle.fraction.q), abs(int(angle.fraction.p))
         period = 2 * sp.pi * turns
         for k in range(times):
             coordinate = (value - angle.offset + 2 * sp.pi * k) / angle.fraction
-            if coordinate.is_number:  # into (−period/2, period/2]; a length above zero
-                lowest = 0 if angle.is_length else -period / 2
-                coordinate -= period * (sp.ceiling((coordinate - lowest) / period) - 1)
+            # Its number goes into (−period/2, period/2]; that of a length above zero.
+            size, rest = coordinate.as_independent(sp.Symbol, as_Add=True)
+            lowest = 0 if angle.is_length else -period / 2
+            size -= period * (sp.ceiling((size - lowest) / period) - 1)
             place = Place(
                 coordinate=angle.coordinate,
-                value=coordinate,
+                value=size + rest,
                 period=period,
                 is_length=angle.is_length,
             )
-            size = float(coordinate) if coordinate.is_number else 0.0
-            yield Root(place, becomes, (self._angles.index(angle), size, str(coordinate)))
+            yield Root(place, becomes, (self._angles.index(angle), float(size), str(place.value)))
 
 
 solver_for = lru_cache(maxsize=32)(Solver)  # shared like the ring itself

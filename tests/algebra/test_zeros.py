@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import sympy as sp
-from sympy import Rational, cos, pi, sin
+from sympy import Rational, cos, sin
 
 import rigidsym as rs
 from rigidsym.algebra.codec import codec_for
@@ -72,11 +72,26 @@ def test_a_polynomial_that_is_not_solved_says_so():
     assert zeros(cos(phi) ** 3 - 2 * cos(phi) + 3) == ([], True)  # its roots are beyond 1
 
 
-def test_singular_orientations_of_turns_by_sums_and_multiples_are_listed():
-    by_sum = rs.derive(rs.rotation_from("z(phi) x(phi + theta) z(psi)")).singularities
-    assert by_sum.is_solved
-    assert [point.places[0][:2] for point in by_sum.points] == [(phi + theta, 0), (phi + theta, pi)]
-    by_double = rs.derive(rs.rotation_from("z(phi) y(2*theta) x(psi)")).singularities
-    assert by_double.is_solved
-    values = {point.places[0].value for point in by_double.points}
-    assert values == {Rational(k, 4) * pi for k in (-3, -1, 1, 3)}
+@pytest.mark.parametrize(
+    ("turns", "count"),
+    [
+        ("z(phi) x(phi + theta) z(psi)", 2),
+        ("z(phi) y(2*theta) x(psi)", 4),
+        ("z(phi) x(alpha0 - theta) z(psi)", 2),
+        ("z(phi) x(theta - zeta0) z(psi)", 2),
+        ("z(phi) y(theta - alpha0) x(psi)", 2),
+        ("z(phi) y(2*theta - zeta0) x(psi)", 4),
+        ("z(phi) y(zeta0 - theta/2) x(psi)", 2),
+        ("z(phi) x(2*alpha0 - 2*theta - 2*phi) z(psi)", 4),
+    ],
+)
+def test_singular_orientations_of_turns_by_sums_and_multiples_are_listed(turns, count):
+    motion = rs.derive(rs.rotation_from(turns))
+    points = motion.singularities.points
+    assert motion.singularities.is_solved
+    assert len({point.places[0].value for point in points}) == count
+    for (place,) in (point.places for point in points):
+        there = {theta: theta + place.value - place.coordinate}
+        determinant = motion.rate_matrix_space.det().xreplace(there)
+        values = dict.fromkeys(determinant.free_symbols, 0.3) | {phi: 0.7}
+        assert abs(determinant.xreplace(values).evalf()) < 1e-12
