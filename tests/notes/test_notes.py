@@ -104,14 +104,17 @@ def test_no_line_is_wider_than_the_terminal(motion, width):
 
 def test_what_idle_rates_leave_determined():
     a, b, c = q = [time_function(name) for name in "abc"]
-    place = Place(coordinate=b, value=sp.S.Zero, period=2 * sp.pi)
-    for idle, expected in (
-        ((2, 0, 3), [3 * a - 2 * c]),
-        ((0, 0, 1), [a]),
-        ((1, 1, 0), [a.diff(TIME) - b.diff(TIME), c.diff(TIME)]),  # they leave the place b = 0
-        ((sp.sqrt(2), 0, 1), []),
+    rates = [coordinate.diff(TIME) for coordinate in q]
+    for fixed, idle, expected in (
+        ([b], (2, 0, 3), [3 * a - 2 * c]),
+        ([b], (0, 0, 1), [a]),
+        ([b], (1, 1, 0), [rates[0] - rates[1], rates[2]]),  # they leave the place b = 0
+        ([b], (sp.sqrt(2), 0, 1), []),
+        ([b + c], (1, 1, -1), [a - b]),  # and a + c, which is a − b where b + c is fixed
+        ([a + b, b + c], (2, -1, 1), [rates[0] + 2 * rates[1], rates[0] - 2 * rates[2]]),
     ):
-        at = SimpleNamespace(places=(place,), null_rates=sp.ImmutableMatrix(idle))
+        places = [Place(coordinate=f, value=sp.S.Zero, period=2 * sp.pi) for f in fixed]
+        at = SimpleNamespace(places=places, null_rates=sp.ImmutableMatrix(idle))
         assert PointFacts(at, q).determined == expected, idle
 
 
