@@ -12,6 +12,7 @@ from typing import Any
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.ring import Ring, shortest
+from rigidsym.errors import AlgebraError
 
 Row = tuple[PolyElement, ...]
 Values = Sequence[Sequence[Any]]  # of the entries at a point, row by row
@@ -75,6 +76,8 @@ class RingMatrix:
         return RingMatrix(self.ring, rows, (partial(_entrywise, add), (self, other)))
 
     def __sub__(self, other: RingMatrix) -> RingMatrix:
+        if self.ring is not other.ring:  # where equal monomials stand for other things
+            raise AlgebraError("the matrices are over different rings")
         rows = _entrywise(self.ring.difference, self.rows, other.rows)
         return RingMatrix(self.ring, rows, (partial(_entrywise, sub), (self, other)))
 

@@ -99,6 +99,9 @@ def test_what_the_ring_cannot_do_is_said():
         Quotient(ring, s, ring.reduce(s**2 + c**2 - 1))
     with pytest.raises(AlgebraError, match=r"^the relations contradict one another: .*1 = 0$"):
         ring.set_relations([s - 1, s - 2])
+    other = codec_for([sp.sin(X), PHI], order=1).ring
+    with pytest.raises(AlgebraError, match="different rings"):
+        RingMatrix.identity(ring, 2) - RingMatrix.identity(other, 2)
 
 
 def test_members_of_the_ideal_and_they_alone_are_zero():
