@@ -65,9 +65,12 @@ def test_what_is_refused_and_where(answered):
 REFUSED = (
     "__import__('os')",
     "phi.__class__",
+    "().__class__",
+    "(phi := 1)",
     "(lambda: 0)()",
     "phi\x00",
     "𝐬𝐢𝐧(phi)",  # Python's own reader takes these for sin
+    "ｐｈｉ",
     # too large
     "9**9**9**9",
     "*".join(["9**64"] * 300),
