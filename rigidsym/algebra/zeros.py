@@ -338,12 +338,7 @@ class Solver:
             size, rest = coordinate.as_independent(sp.Symbol, as_Add=True)
             lowest = 0 if angle.is_length else -period / 2
             size -= period * (sp.ceiling((size - lowest) / period) - 1)
-            place = Place(
-                coordinate=angle.coordinate,
-                value=size + rest,
-                period=period,
-                is_length=angle.is_length,
-            )
+            place = Place(angle.coordinate, size + rest, period, is_length=angle.is_length)
             yield Root(place, becomes, (self._angles.index(angle), float(size), str(place.value)))
 
 
