@@ -9,7 +9,7 @@ import click
 
 from rigidsym.commands.command import command as make
 from rigidsym.commands.output_folder import CERTIFICATE, content_of, printed
-from rigidsym.errors import CheckError, SpecError
+from rigidsym.errors import CheckError, SpecError, printable
 from rigidsym.notes.formats.record import SCHEMA, SCHEMA_VERSION
 from rigidsym.pipeline import read_record
 from rigidsym.tools.certificate.checker import BROKEN, load, verify
@@ -23,7 +23,8 @@ def command(context: click.Context, paths: tuple[Path, ...]) -> None:
     is_wrong = False
     for record in records:
         for path, problem, note in _findings(record):
-            click.echo(f"{path}: {problem or 'up to date'}{note}")
+            finding = printable(f"{path}: {problem or 'up to date'}").replace("\n", "\\n")
+            click.echo(finding + note)
             is_wrong = is_wrong or bool(problem)
     context.exit(is_wrong)
 

@@ -630,11 +630,42 @@ def with_axis(places: str, condition: str) -> Change:
     return lambda content: content.update(whole)
 
 
+def grouped(name: str, *components: str) -> Change:
+    """Another group of arguments, with the units that they have elsewhere."""
+    units = {"psi": "rad", "phi": "rad", "n_x": "", "t": "s", "k": "m"}
+    listed = [{"name": each, "unit": units[each]} for each in components]
+    return lambda c: c["arguments"].append({"name": name, "components": listed})
+
+
+def given(name: str, part: str, value: Any) -> Change:
+    return lambda content: printed(content, name).update({part: value})
+
+
+def with_turns(turn: str, units: dict[str, str], *conditions: str, **definitions: str) -> Change:
+    """One turn of coordinates with the units that are said, and R only."""
+    components = [{"name": name, "unit": unit} for name, unit in units.items()]
+    whole = {"name": "any", "arguments": [{"name": "q", "components": components}]}
+    whole |= {"rotation": {"turns": [turn], "conditions": [*conditions]}, "quantities": []}
+    whole |= {"definitions": [{"name": n, "expression": e} for n, e in definitions.items()]}
+    return lambda content: content.update(whole)
+
+
+def by_defined_entries(content: Content) -> None:
+    with_turns("", {"phi": ""}, co="cos(phi)", si="sin(phi)")(content)
+    rows = [["co", "-si", "0"], ["si", "co", "0"], ["0", "0", "1"]]
+    content["rotation"] = {"matrix": rows, "conditions": []}
+
+
+def without_rates(content: Content) -> None:
+    content["arguments"] = [_groups(content, "q")]
+
+
 TORQUE, RATES = "angular_acceleration_from_torque", "rates_from_angular_velocity_space"
 ZXZ, HALVES = (
     ("z(phi)", "x(theta)", "z(psi)"),
     ("constant_turn(0, 0, 1, 2, 0)", "constant_turn(0, 0, 1, 1/2, 0)"),
 )
+HELD = ["q", "momenta", "parameters", "torque"]
 STRANGER: dict[str, tuple[str, Change]] = {
     "no entries": ("euler", cells(TORQUE, lambda rows: [[] for _ in rows], shape=[3])),
     "a second column": ("euler", cells(TORQUE, lambda rows: [[row, "A"] for row in rows])),
@@ -687,6 +718,39 @@ STRANGER: dict[str, tuple[str, Change]] = {
     "a rotation with a sequence": ("ZXZ", of_rotation("sequence", ["XYZ"])),
     "nine coordinates": ("top", coordinates),
     "an axis of one letter": ("ZXZ", with_axis("phi, 0, 0, theta", "phi**2 - 1")),
+    "a state in another order": ("ZXZ", grouped("y", "psi", "phi", "psi", "n_x", "t")),
+    "a group by the name of the body": ("ZXZ", grouped("body", "t", "t")),
+    "parameters of no body": ("ZXZ", grouped("parameters", "k")),
+    "a body of coordinates": ("top", in_body("parameters", [{"name": "phi", "unit": "rad"}])),
+    "a body without its parameters": ("top", in_body("parameters", [])),
+    **{
+        f"the shape {shape}": ("ZXZ", given(name, "shape", shape))
+        for name, shape in (
+            *(("rotation_matrix", [3, 3, 1]), (VELOCITY, [3, 1, 1])),
+            *((VELOCITY, [3, 1]), (VELOCITY, [3, True])),
+        )
+    },
+    "an integral with a shape": ("top", given("constant energy", "shape", [1, 1, 5])),
+    **{
+        f"inputs {inputs}": ("ZXZ", given("rotation_matrix", "inputs", inputs))
+        for inputs in (["q", "nonsense"], ["q", "q"], ["q", "momenta"], {"q": "space"}, "q")
+    },
+    "inputs of another quantity": ("whole top", given("hamiltonian", "inputs", HELD)),
+    "inputs without parameters": ("top", given("accelerations", "inputs", ["q", "q_dot"])),
+    "inputs that are not listed": ("ZXZ", without_rates),
+    "an angle by definitions": (
+        "ZXZ",
+        with_turns("constant_turn(0, 0, 1, co, si)", {"phi": ""}, co="cos(phi)", si="sin(phi)"),
+    ),
+    "an angle in defined entries": ("ZXZ", by_defined_entries),
+    "an axis by definitions": (
+        "ZXZ",
+        with_turns("axis_angle(0, 0, n, phi)", {"phi": "rad"}, n="-1"),
+    ),
+    "an angle that is a letter of its axis": (
+        "ZXZ",
+        with_turns("axis_angle(a, b, 0, a)", {"a": "", "b": ""}, "a**2 + b**2 - 1"),
+    ),
     "an axis that moves in part": ("ZXZ", with_axis("phi, a, 0, theta", "a**2 + phi**2 - 1")),
 }
 

@@ -153,6 +153,20 @@ def test_the_files_are_written_and_checked(tmp_path):
     assert subprocess.run(nothing, cwd=tmp_path, check=False).returncode == 1
 
 
+def test_a_record_of_which_nothing_is_proved_is_refused_and_its_path_is_one_line(folder, tmp_path):
+    said = answered("check", str(folder.rename(tmp_path / "a\nproved: all")))[1]
+    assert "a\\nproved: all" in said
+    assert "a\nproved" not in said
+    forged = tmp_path / "b\nproved: all.json"
+    undecided = {"turns": ["z(phi)", "x(theta)", "z(psi)"], "conditions": ["1"]}
+    forged.write_text(json.dumps(record_of("ZXZ", BASIC) | {"rotation": undecided}))
+    alone = [sys.executable, "-I", "-S", str(CHECKER), str(forged)]
+    done = subprocess.run(alone, capture_output=True, text=True, check=False)
+    (line,) = done.stdout.splitlines()
+    assert r"b\nproved: all.json: REFUSED: nothing is proved: a condition" in line
+    assert done.returncode == 1
+
+
 @pytest.mark.usefixtures("coq")
 @pytest.mark.parametrize(
     ("text", "quantities"),

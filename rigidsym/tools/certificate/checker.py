@@ -42,6 +42,7 @@ LETTERS = {  # arguments besides coordinates and what belongs to them, with thei
 }
 RESERVED = "cos", "sin", "tan", "cot", "sqrt", "pi"
 ROTATIONS = {"turns", "conditions"}, {"matrix", "conditions"}
+PLACES = "q", "parameters"
 PRINCIPAL = "principal_axes", "principal_moments"
 SUM = "({0}**2 + {1}**2 + {2}**2 + {3}**2)"
 TURNS = {  # a vector v and numbers c and s: R = 1 + s C(v) + (1 - c) C(v)²
@@ -82,9 +83,8 @@ class Number:
         self.degree, self.values, self.rule = degree, [*values], rule
         self.rates = dict[str, Number]()  # by TIME or a name
         size = sum(map(int.bit_length, self.values[0].as_integer_ratio()))
-        refuse_unless(
-            degree <= MOST_DEGREE and size <= MOST_BITS, "too large an expression", Unproved
-        )
+        is_small = degree <= MOST_DEGREE and size <= MOST_BITS
+        refuse_unless(is_small, "too large an expression", Unproved)
 
     def rate(self, by: str) -> Number:
         if by not in self.rates:
@@ -260,8 +260,8 @@ class Record:
         self.turns = [*map(turn_of, rotation.get("turns", []))]
         self.texts = [texts for _, texts in self.turns] or rotation.get("matrix", [])
         self.definitions = distinct((d["name"], d["expression"]) for d in content["definitions"])
-        listed = [(group["name"], group["components"]) for group in content["arguments"]]
-        groups = {"q": [], "parameters": []} | distinct(listed)
+        self.listed = distinct((g["name"], g["components"]) for g in content["arguments"])
+        groups = {"q": [], "parameters": []} | self.listed
         self.q, self.constants = ([c["name"] for c in groups[g]] for g in ("q", "parameters"))
         # x² + y² + ... - 1 has real roots; it gives an axis or a quaternion the length 1
         parts = (texts if "quaternion" in kind else texts[:3] for kind, texts in self.turns)
@@ -269,8 +269,7 @@ class Record:
         spheres = {" + ".join(f"{name}**2" for name in v) + " - 1": v for v in vectors if v[1:]}
         self.spheres = [spheres.get(condition, []) for condition in rotation["conditions"]]
         for names in self.spheres:
-            is_one_kind = {*names} <= {*self.q} or {*names} <= {*self.constants}
-            is_length = bool(names) and is_one_kind
+            is_length = bool(names) and any({*names} <= {*of} for of in (self.q, self.constants))
             refuse_unless(is_length, "a condition, which gives no vector the length 1", Unproved)
         self.arguments = self.all_arguments(groups)
         self.refuse_other_name(rotation.get("turns", []))
@@ -285,16 +284,17 @@ class Record:
             rate = self.names["q_dot"][f"{q}_dot"] = numbers[q].rate(TIME)
             rate.rates[f"{q}_dot"] = ONE
             self.names["q_ddot"][f"{q}_ddot"] = rate.rate(TIME)
-        self.names["parameters"]["pi"] = drawn()  # no polynomial has the root pi
+        self.pi = drawn()  # no polynomial has the root pi
         self.circles = {name: (x, circle(x)) for name, x in (numbers | {"1": ONE}).items()}
         self.circle = cache(self.circle_of_sum)
 
     def all_arguments(self, printed: Mapping[str, Any]) -> dict[str, list[tuple[str, str]]]:
         """All that a record may list, with the units that follow from its turns."""
-        nodes = chain(*map(ast.walk, map(read, chain(*self.texts))))
+        trees = [*map(read, chain(*self.texts))]
+        in_turns, nodes = names_in(*trees), chain(*map(ast.walk, trees))
         in_angles = names_in(*(node.args[0] for node in nodes if isinstance(node, ast.Call)))
-        in_spheres = distinct((name, "") for name in chain(*self.spheres))
-        unit = dict.fromkeys(self.q, "") | dict.fromkeys(in_angles, "rad") | in_spheres
+        angles, lengths = ((n, "rad") for n in in_angles), ((n, "") for n in chain(*self.spheres))
+        unit = dict.fromkeys(self.q, "") | distinct([*angles, *lengths])
         groups = {group: [(name, u) for name in names] for group, (names, u) in LETTERS.items()}
         groups |= {
             "q_dot": [(f"{q}_dot", f"{unit[q] or 1}/s") for q in self.q],
@@ -303,17 +303,16 @@ class Record:
         }
         taken = {name for name, _ in chain(*groups.values())} | {*RESERVED}
         distinct((name, "") for name in (*self.q, *self.constants, *self.definitions, *taken))
-        parameters = ((each["name"], each["unit"]) for each in printed["parameters"])
-        groups["parameters"] = [(name, unit.get(name, free)) for name, free in parameters]
+        body = self.content.get("body", {"parameters": []})["parameters"]
+        constants = [p for p in printed["parameters"] if p["name"] in in_turns] + body
+        groups["parameters"] = [(p["name"], unit.get(p["name"], p["unit"])) for p in constants]
         groups["q"] = [(q, unit[q]) for q in self.q]
-        pairs = {*chain(*groups.values())}
-        body = self.content.get("body", {"parameters": []})
-        for group, components in (*printed.items(), ("body", body["parameters"])):
-            listed = [(each["name"], each["unit"]) for each in components]
-            is_part = group in ("y", "body") and {*listed} <= pairs
-            refuse_unless(is_part or listed == groups.get(group), f"{group} are {listed}")
-        is_free = not in_angles & {*self.definitions}
-        refuse_unless(is_free, "an angle is defined, so that it has no unit")
+        states = [groups["q"] + groups[rates] for rates in ("q_dot", "omega_body")]
+        for group, components in printed.items():
+            pairs = [(each["name"], each["unit"]) for each in components]
+            is_right = pairs in states if group == "y" else pairs == groups.get(group)
+            refuse_unless(is_right, f"{group} are {pairs}")
+        refuse_unless(in_turns.isdisjoint(self.definitions), "a turn holds a definition")
         return groups
 
     def refuse_other_name(self, turns: Sequence[str]) -> None:
@@ -336,9 +335,9 @@ class Record:
         units = {unit for _, unit in self.arguments[group]}
         return units.pop() if len(units) == 1 else ""
 
-    def read(self, printed: Any, *groups: str) -> Matrix:
-        """A scalar, the column of a vector, or a matrix, of parameters and some groups of names."""
-        names = dict(chain(*(self.names[group].items() for group in ("parameters", *groups))))
+    def read(self, printed: Any, groups: Iterable[str] = ("parameters",)) -> Matrix:
+        """A scalar, the column of a vector, or a matrix, of some groups of names."""
+        names = dict(chain([("pi", self.pi)], *(self.names[group].items() for group in groups)))
         rows = printed if isinstance(printed, list) else [printed]
         rows = [row if isinstance(row, list) else [row] for row in rows]
         return Matrix([self.value(read(text), names) for text in row] for row in rows)
@@ -346,8 +345,7 @@ class Record:
     def value(self, node: ast.expr, names: dict[str, Number]) -> Number:
         match node:
             case ast.Name(suffixed):
-                name = suffixed[:-1]
-                if name not in names:
+                if (name := suffixed[:-1]) not in names:
                     refuse_unless(name in self.definitions, f"{name} must not be in an expression")
                     names[name] = self.value(read(self.definitions[name]), names)
                 return names[name]
@@ -382,12 +380,11 @@ class Record:
         return cosine, sine
 
     # What is claimed: the unit of a printed x; its value, or what is zero if x is right; and the
-    # groups of names that x may hold besides parameters where others could hide a false term
+    # groups of names that x may depend on besides parameters; others could hide a false term
 
     def of_rotation(self) -> Laws:
-        turns = (self.read(texts, "q").entries for _, texts in self.turns)
-        factors = [turn(*numbers) for numbers in turns]
-        factors = factors or [self.read(self.texts, "q")]
+        turns = (self.read(texts, PLACES).entries for _, texts in self.turns)
+        factors = [turn(*numbers) for numbers in turns] or [self.read(self.texts, PLACES)]
         for factor in factors:
             factor.refuse_unless_rotation("R")
         R = self.R = reduce(mul, factors)
@@ -467,10 +464,10 @@ class Record:
         refuse_unless(is_plain, "coordinates that depend on one another, or definitions", Unproved)
         # the body turns about a fixed point, from which places are counted
         self.centre.refuse_unless_zero("the centre of mass")
-        motion, W, energy, moving = self.content["motion"], self.W, self.energy, ("q", "q_dot")
+        motion, W, energy, moving = self.content["motion"], self.W, self.energy, (*PLACES, "q_dot")
         rates, seconds, second = self.column("q_dot"), self.column("q_ddot"), self.unit_of("q_ddot")
-        potential = self.read(motion["potential"], "q")
-        forces, torque = (self.read(motion[part], *moving) for part in ("forces", "torque"))
+        potential = self.read(motion["potential"], PLACES)
+        forces, torque = (self.read(motion[part], moving) for part in ("forces", "torque"))
         turning = self.momentum.rate() + self.omega.hat() * self.momentum
         inertial = W.T * turning + Matrix(potential.rate(q).entries for q in self.q)
         balance = inertial - forces - W.T * torque  # zero along a motion
@@ -508,11 +505,15 @@ def verify(content: Mapping[str, Any]) -> tuple[list[str], dict[str, str]]:
         try:
             refuse_unless(name in laws, lack, Unproved)
             unit, law, *groups = laws[name]
-            groups = groups or [*{*record.names} - {"momenta", "t"}]
-            x = record.read(claim["expression"], *{*claim.get("inputs", groups)} & {*groups})
-            shape = claim.get("shape", [])  # of a vector, without the 1 column
-            is_so = claim.get("unit") == unit and [*shape, 1, 1][:2] == x.shape
-            refuse_unless(is_so, f"{name} has another unit or shape")
+            allowed = {"parameters", *(groups or {*record.names} - {"momenta", "t"})}
+            allowed &= {*record.listed}
+            inputs, printed = claim.get("inputs", [*allowed]), claim["expression"]
+            are_so = inputs == [*dict.fromkeys(group for group in inputs if group in allowed)]
+            refuse_unless(are_so, f"{name} does not depend on {inputs}")
+            x = record.read(printed, inputs)
+            depth = isinstance(printed, list) + isinstance(printed[0], list)
+            is_so = repr(claim.get("shape", [])) == repr(x.shape[:depth])
+            refuse_unless(is_so and claim.get("unit") == unit, f"{name} has another unit or shape")
             (law(x) if callable(law) else x - law).refuse_unless_zero(name)
             proved.append(name)
         except (Unproved, RecursionError) as error:
@@ -537,14 +538,13 @@ if __name__ == "__main__":
                     continue
                 records += 1
                 proved, reasons = verify(content)
-                lines += [
-                    f"{path}: R is {content['rotation']}",
-                    *(STRENGTH, "  proved: " + ", ".join(proved)) * bool(proved),
-                ]
+                refuse_unless(bool(proved), f"nothing is proved: {', '.join({*reasons.values()})}")
+                lines += [f"{path}: R is {content['rotation']}", STRENGTH]
+                lines.append("  proved: " + ", ".join(proved))
                 lines += [f"  not proved: {name}, since {why}" for name, why in reasons.items()]
             except (*BROKEN, OSError) as error:
                 status = 1
                 lines.append(f"{path}: REFUSED: {error}")
     lines += [] if records or status else ["REFUSED: there is no record of a derivation here"]
-    print("\n".join(lines).encode("ascii", "backslashreplace").decode())
+    print(*(line.encode("unicode_escape").decode() for line in lines), sep="\n")
     sys.exit(status or not records)
