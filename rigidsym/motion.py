@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
-from rigidsym.errors import ModelError, QuantityError, offer
+from rigidsym.errors import ModelError, offer
 from rigidsym.formula.notation import CHOICES as CHOICES, DEFAULT as DEFAULT, Notation as Notation
 from rigidsym.formula.tree import Words
 from rigidsym.kernels.lowering.derivatives import Asked
@@ -211,9 +211,6 @@ def derive(
     if not (isinstance(only, Collection) and all(isinstance(name, str) for name in only)):
         raise TypeError(f"only: expected names of quantities, got {only!r}")
     wanted = (only,) if isinstance(only, str) else tuple(only)
-    for name in wanted:
-        if name not in QUANTITIES:
-            raise QuantityError(f"no quantity {name!r}; {offer(name, QUANTITIES)}")
     with nullcontext() if timeout is None else time_limit(timeout):
         acting = None
         given = {"potential": potential, "forces": forces, "torque": torque, "method": method}

@@ -51,6 +51,18 @@ def combination(argument: sp.Expr) -> Combination:
     return {atom: coefficient for atom, coefficient in combined.items() if coefficient}
 
 
+def exact_angle(argument: sp.Expr) -> Combination:
+    """The combination of an angle; raises AlgebraError if its sine has no exact form."""
+    terms = combination(argument)
+    if sp.S.One in terms:
+        raise AlgebraError(
+            f"sin and cos of {in_names(argument)} have no exact form: expected a multiple of pi "
+            "(angles are in radians, 30° is pi/6), or a symbol for the number"
+        )
+    cosine_sine_of_pi(terms.get(sp.pi, sp.S.Zero))
+    return terms
+
+
 class Basis:
     """Independent angles, and others as combinations of them."""
 
@@ -263,12 +275,7 @@ class GeneratorSet:
             self._add(expression, _kind(expression))
 
     def _collect_angle(self, argument: sp.Expr) -> None:
-        terms = combination(argument)
-        if sp.S.One in terms:
-            raise AlgebraError(
-                f"sin and cos of {argument} have no exact form: expected a multiple of pi "
-                "(angles are in radians, 30° is pi/6), or a symbol for the number"
-            )
+        terms = exact_angle(argument)
         # By the addition theorem, sin(θ + π/4) = (sin θ + cos θ)/√2, so the ring needs these roots.
         if sp.pi in terms:
             for value in cosine_sine_of_pi(terms[sp.pi]):

@@ -74,7 +74,7 @@ def _findings(record: Path) -> Iterator[tuple[Path, str, str]]:
             except BROKEN as error:
                 problem = f"{record.name} is refused: {error}"
             else:
-                note = f"\n  proved: {', '.join(proved) or 'nothing'}"
+                note = f"\n  proved in {record.name}: {', '.join(proved) or 'nothing'}"
                 note += f"\n  not proved: {', '.join(reasons) or 'nothing'}"
             is_edited = record.read_bytes() != fresh.files[record.name].encode("utf-8")
             note = "" if is_edited else note  # it says nothing of the fresh record

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
-from rigidsym.errors import QuantityError, offer
+from rigidsym.errors import QuantityError
 from rigidsym.mechanics.derivation import (
     OF_RATES,
     Consequence,
@@ -29,7 +29,7 @@ from rigidsym.mechanics.derivation import (
 )
 from rigidsym.mechanics.kinematics.chain import Chain, is_shorter
 from rigidsym.mechanics.kinematics.workspace import Values
-from rigidsym.mechanics.quantities.catalogue import OF_BODY, OF_MOTION
+from rigidsym.mechanics.quantities.catalogue import check_quantity
 from rigidsym.mechanics.quantities.kinematics import KINEMATICS
 from rigidsym.mechanics.quantities.mass import BODY_ALONE, OF_BODY_ALONE
 from rigidsym.mechanics.singularities import singularities_of
@@ -66,14 +66,8 @@ def derive(
 
         wanted = only and {*only, *NEEDED}
         return with_theory(derive(model, wanted, body=body, forces=forces))
-    of_body = (BODY_ALONE, *OF_BODY)
-    names = (*KINEMATICS, *(of_body if body else ()), *(OF_MOTION if forces else ()))
     for name in only:
-        if name not in names:
-            why = offer(name, names)
-            if name in of_body or name in OF_MOTION:
-                why = f"it needs a body{'' if name in of_body else ' and forces or a potential'}"
-            raise QuantityError(f"no quantity {name}; {why}")
+        check_quantity(name, body=body, forces=forces)
     if BODY_ALONE in only:
         only = {*only, *OF_BODY_ALONE}
     chain, values = Chain(model) if is_shorter(model) else None, Values(model)

@@ -5,7 +5,6 @@ A distribution is particles, a solid, or a composition of parts.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import combinations
@@ -18,6 +17,7 @@ from sympy.core.function import AppliedUndef
 from rigidsym.algebra.generators import not_exact
 from rigidsym.errors import BodyError
 from rigidsym.models.rotation import SOURCES, TIME, WORDS, Citation, symbolic
+from rigidsym.text.names import A_MODULE_NAME, MODULE_NAME
 
 Bounds = tuple[sp.Expr, sp.Expr]
 HERE = sp.ImmutableMatrix.zeros(3, 1)
@@ -135,7 +135,6 @@ KEYS: Mapping[type, str] = {  # of a [body] table, and of its parts
 }
 
 
-_MODULE_NAME = re.compile(r"[a-z][a-z0-9_]*")
 SOURCE = SOURCES["Landau 32"]
 PHRASES = WORDS["bodies"]
 PRODUCT, COORDINATE = PHRASES["product_of_inertia"], PHRASES["coordinate_of_centre"]
@@ -189,10 +188,9 @@ class RigidBody:
     )  # what asks for it in a file
 
     def __post_init__(self) -> None:
-        if not _MODULE_NAME.fullmatch(self.name):
+        if not MODULE_NAME.fullmatch(self.name):
             raise BodyError(
-                f"{self.name!r} cannot name a body: expected lower-case letters, digits and "
-                "underscores, beginning with a letter"
+                f"{self.name!r} cannot name a body (it has the name of its file): {A_MODULE_NAME}"
             )
         try:
             self._check()

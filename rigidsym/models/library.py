@@ -12,7 +12,8 @@ from typing import Any, NamedTuple
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
-from rigidsym.errors import ExpressionError, ModelError
+from rigidsym.algebra.generators import exact_angle
+from rigidsym.errors import AlgebraError, ExpressionError, ModelError
 from rigidsym.models.parametrisations import (
     DEFAULT_ANGLES,
     DIGITS,
@@ -227,6 +228,9 @@ def _turn(axis: str, angle: str, column: int, symbol: Callable[[str], sp.Expr]) 
     """One turn, with the symbols of the names in its angle; those in an axis are constants."""
     try:
         value = parse_expression(angle, {name: symbol(name) for name in names_in(angle)})
+        exact_angle(value)
+    except AlgebraError as error:
+        raise ExpressionError(str(error), column=column) from None
     except ExpressionError as error:
         # From the column inside the angle to the column in the whole text.
         raise ExpressionError(error.message, column=column + error.column - 1) from None

@@ -15,10 +15,9 @@ from sympy.core.function import AppliedUndef
 
 from rigidsym.algebra.generators import TIME as TIME, in_names, rate_of
 from rigidsym.errors import ModelError
-from rigidsym.text.names import lettered
+from rigidsym.text.names import A_MODULE_NAME, MODULE_NAME, lettered
 
 AXES = ("x", "y", "z")
-_MODULE_NAME = re.compile(r"[a-z][a-z0-9_]*")
 _NUMBERS = (sp.NumberSymbol, type(sp.I))
 
 
@@ -180,11 +179,8 @@ class RotationModel:
     )  # what asks for it in a file
 
     def __post_init__(self) -> None:
-        if not _MODULE_NAME.fullmatch(self.name):
-            raise ModelError(
-                f"{self.name!r} cannot name a model: expected lower-case letters, digits and "
-                "underscores, beginning with a letter"
-            )
+        if not MODULE_NAME.fullmatch(self.name):
+            raise ModelError(f"{self.name!r} cannot name a model: {A_MODULE_NAME}")
         try:
             self._check()
         except ModelError as error:

@@ -13,6 +13,7 @@ from typing import Any
 from rigidsym.errors import Fault, SpecError, offer
 from rigidsym.kernels.lowering.derivatives import read_request, read_requests
 from rigidsym.kernels.targets import TARGETS
+from rigidsym.mechanics.quantities.catalogue import check_quantity
 from rigidsym.mechanics.quantities.mass import BODY_ALONE, OF_BODY_ALONE
 from rigidsym.models.forces import forces_on
 from rigidsym.models.library import rotation_from, rotation_given
@@ -132,17 +133,18 @@ def _spec(
             place.at(key).fault("expected [body] as well")
     place.raise_faults(source)
     derivatives, selected = data.get("derivatives", ()), data.get("quantities", ())
+    table = place if folder is None else place.at("output")
+    for k, entry in enumerate(selected):
+        with table.at("quantities", k).noting():
+            check_quantity(entry, body=body, forces=dynamics is not None)
     of_body = OF_BODY_ALONE if BODY_ALONE in selected else ()
     for k, text in enumerate(derivatives if selected else ()):
         if (entry := read_request(text).quantity) not in {*selected, *of_body}:
-            table = place if folder is None else place.at("output")
             table.at("derivatives", k).fault(f"{entry} is not among the quantities; add it there")
     place.raise_faults(source)
     keys = ("title", "theory", "style", "conversions", "certificates")
     chosen: dict[str, Any] = {key: data[key] for key in keys if key in data}
-    for key in ("quantities", "kernels", "note"):
-        if key in data:
-            chosen[key] = tuple(data[key])
+    chosen |= {key: tuple(data[key]) for key in ("quantities", "kernels", "note") if key in data}
     if "notation" in data:
         chosen["notation"] = Notation(**data["notation"])
     return DerivationSpec(

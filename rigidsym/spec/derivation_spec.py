@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import keyword
-import re
 import reprlib
 import sys
 from collections.abc import Mapping, Sequence
@@ -16,9 +15,7 @@ from rigidsym.models.rotation import RotationModel
 from rigidsym.motion import DEFAULT, Notation
 from rigidsym.notes.formats import FORMATS
 from rigidsym.spec.faults import Place
-
-_NAME = re.compile(r"[a-z][a-z0-9_]*")
-
+from rigidsym.text.names import A_MODULE_NAME, MODULE_NAME
 
 Body = RigidBody | BodyDescription
 PDF = "pdf"  # typeset from the LaTeX, which is written beside it
@@ -124,11 +121,9 @@ def spec_for(
 
 def _check_name(name: str, place: Place) -> None:
     """Note why a derivation, its folder and its Python module cannot have a name."""
-    if not _NAME.fullmatch(name):
-        place.fault(
-            "a derivation has the name of its file: expected a lower-case letter, then lower-case "
-            f"letters, digits or underscores, got {reprlib.repr(name)}"
-        )
+    if not MODULE_NAME.fullmatch(name):
+        got = f"got {reprlib.repr(name)}"
+        place.fault(f"a derivation has the name of its file: {A_MODULE_NAME}, {got}")
     elif keyword.iskeyword(name):
         place.fault(f"a derivation has the name of its file: {name} is a reserved word of Python")
     elif name in sys.stdlib_module_names or name in ("numpy", "sympy", "rigidsym"):

@@ -19,9 +19,10 @@ from unicodedata import category
 import sympy as sp
 
 from rigidsym.algebra.evaluate import is_never_negative
-from rigidsym.errors import QuantityError, offer
+from rigidsym.errors import offer
 from rigidsym.kernels.lowering.derivatives import read_request
 from rigidsym.kernels.targets import TARGETS
+from rigidsym.mechanics.quantities.catalogue import check_quantity
 from rigidsym.models.library import read_part, turned_by
 from rigidsym.models.solids import SHAPES
 from rigidsym.motion import CHOICES, QUANTITIES
@@ -45,9 +46,7 @@ _TYPES: Mapping[str, tuple[Any, str]] = {  # and what messages call them
 
 def _check_derivative(text: str) -> None:
     """Raise KernelError or QuantityError for a text that is no derivative of a quantity."""
-    name = read_request(text).quantity
-    if name not in QUANTITIES:
-        raise QuantityError(f"no quantity {reprlib.repr(name)}; {offer(name, QUANTITIES)}")
+    check_quantity(read_request(text).quantity)
 
 
 _FORMATS: Mapping[str, Callable[[str], Any]] = {  # that raise an error for other texts
@@ -158,9 +157,10 @@ def _checked_table(value: Mapping[str, Any], schema: Schema, place: Place) -> di
         if len(present) != 1:
             got = " and ".join(present) or "none"
             place.fault(f"expected one of {', '.join(kinds)}; got {got}")
-        own = {key for kind in present for key in (kind, *kinds[kind])}
-        if "shape" in present:  # keys of an unknown one may be those of any
-            shape = value["shape"]
+        # without a kind, as if its key has a typing error, those of any are right
+        own = {key for kind in present or kinds for key in (kind, *kinds[kind])}
+        if "shape" in own:  # keys of an unknown one may be those of any
+            shape = value.get("shape")
             own |= {e.key for e in SHAPES[shape].lengths} if shape in [*SHAPES] else {*LENGTHS}
         others = {*kinds, *LENGTHS}.union(*kinds.values()) - own
         keys = {key: entry for key, entry in keys.items() if key not in others}

@@ -26,6 +26,9 @@ _TAKEN = {**dict.fromkeys(FUNCTIONS, "a function"), "pi": "the number π", "t": 
 _FORM = re.compile(r"[A-Za-z][A-Za-z0-9]*(?:_[A-Za-z0-9]+)*")
 _ANGULAR_VELOCITY = re.compile(r"Omega_(?:body_)?[123]|omega_(?:space|body)(?:_[123])?")
 
+MODULE_NAME = re.compile(r"[a-z][a-z0-9_]*")  # of a derivation, its folder and its module
+A_MODULE_NAME = "expected lower-case letters, digits and underscores, beginning with a letter"
+
 
 def spelled(text: str) -> str:
     """The name in Latin letters: `phi_1` for `φ_1`."""

@@ -29,16 +29,11 @@ from rigidsym.data.tables import (
 )
 from rigidsym.errors import DataError, QuantityError, RequestError, offer
 from rigidsym.mechanics.derivation import remark
+from rigidsym.mechanics.quantities.catalogue import CONVERSIONS
 from rigidsym.motion import Motion
 from rigidsym.system.processes import Progress
 from rigidsym.tools.identify.samples import SLACK, Columns, samples_of
 from rigidsym.tools.spellings import MATRICES, groups_of, of_component
-
-CONVERSIONS = {  # and what they take
-    "quaternion": "q",
-    "from_quaternion": "quaternion",
-    "from_rotation_matrix": "matrix",
-}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

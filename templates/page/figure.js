@@ -413,14 +413,21 @@ function pen(stroke) {
   return [element("polyline", line), ...(stroke.arrow ? [headOf(stroke)] : [])];
 }
 
-/** A label; the dot of a rate is drawn, since fonts differ in where they set it. */
+/** A label without the dots of its rates, and the numbers of the letters that have one. */
 function lettering({ kind, name, centre: [x, y] }) {
-  const letters = name.normalize("NFD").replace("\u0307", "");
+  const parts = name.normalize("NFD").split("\u0307").map((part) => part.normalize("NFC"));
   const place = { x: (x * SCALE).toFixed(1), y: (-y * SCALE).toFixed(1), dy: ".32em" };
-  const text = element("text", { class: kind, ...place }, letters.normalize("NFC"));
-  if (letters.length === name.normalize("NFD").length) return [text];
-  const dot = { cx: (x * SCALE + 1.5).toFixed(1), cy: (-y * SCALE - 0.52 * TYPE * SCALE).toFixed(1), r: 1.6 };
-  return [text, element("circle", { class: `dot ${kind}`, ...dot })];
+  const text = element("text", { class: kind, ...place }, parts.join(""));
+  return { text, dotted: parts.slice(0, -1).map((_, k) => parts.slice(0, k + 1).join("").length - 1) };
+}
+
+/** The dots of a label that is in the page; they are drawn, since fonts differ in where they set them. */
+function dotsOf({ text, dotted }) {
+  const cy = (text.getAttribute("y") - 0.52 * TYPE * SCALE).toFixed(1);
+  return dotted.map((k) => {
+    const middle = (text.getStartPositionOfChar(k).x + text.getEndPositionOfChar(k).x) / 2;
+    return element("circle", { class: `dot ${text.getAttribute("class")}`, cx: (middle + 1.5).toFixed(1), cy, r: 1.6 });
+  });
 }
 
 /**
@@ -440,6 +447,7 @@ function draw(group, pose, camera, { shown, body, omega, omegaName, trace, done,
     ...turns,
     ...(omega ? omegaLines(pose, omega, omegaName, shown.has("sum"), camera) : []),
   ];
+  const labels = labelsOf(lines).map(lettering);
   const faces = body ? seenFaces(body, pose.frames.at(-1), camera) : [];
   group.replaceChildren(
     ...behind.filter(({ hidden }) => hidden).flatMap(pen),
@@ -447,6 +455,7 @@ function draw(group, pose, camera, { shown, body, omega, omegaName, trace, done,
     ...turns.map(({ centre, points }) => element("polygon", { class: "area turn", points: written([centre, ...points]) })),
     ...behind.filter(({ hidden }) => !hidden).flatMap(pen),
     ...lines.flatMap(pen),
-    ...labelsOf(lines).flatMap(lettering),
+    ...labels.map(({ text }) => text),
   );
+  group.append(...labels.flatMap(dotsOf)); // where the letters are is known once they are in the page
 }

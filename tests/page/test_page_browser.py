@@ -217,6 +217,15 @@ def test_the_turns_add_up_to_the_angular_velocity(tab, rotation, tmp_path):
     np.testing.assert_allclose(terms[-1][-1], omega[-1], atol=0.2)
 
 
+def test_each_letter_of_a_rate_has_its_dot(tab, tmp_path):
+    opened(tab, page_of("z(2*phi-psi) x(theta) z(psi/3)"), tmp_path)
+    dotted = """[...document.querySelectorAll('#figure text.term')].map((text) =>
+      [...document.querySelectorAll('#figure circle.dot')].map((dot) => text.textContent[
+        text.getCharNumAtPosition({ x: dot.cx.baseVal.value - 1.5, y: text.getAttribute('y') })
+      ]).join(" ").trim())"""
+    assert tab.run(dotted) == ["ϕ ψ", "θ", "ψ"]
+
+
 def test_the_turns_are_made_one_by_one(tab, tmp_path):
     opened(tab, page_of("ZXZ"), tmp_path)
     tab.click("[data-show=frames]")

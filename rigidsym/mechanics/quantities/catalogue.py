@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from rigidsym.errors import QuantityError, offer
 from rigidsym.mechanics.quantities.dynamics import FLOW_QUANTITIES, MOTION_QUANTITIES
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
 from rigidsym.mechanics.quantities.kinematics import KINEMATICS
@@ -11,3 +12,19 @@ OF_BODY = {**INERTIA_QUANTITIES, **ENERGY_QUANTITIES}
 OF_MOTION = {**MOTION_QUANTITIES, **FLOW_QUANTITIES}  # of a body with forces or a potential
 QUANTITIES = {**KINEMATICS, **OF_BODY, **OF_MOTION}
 NAMES = (*KINEMATICS, BODY_ALONE, *OF_BODY, *OF_MOTION)  # that `only` may list
+CONVERSIONS = {  # and what they take
+    "quaternion": "q",
+    "from_quaternion": "quaternion",
+    "from_rotation_matrix": "matrix",
+}
+
+
+def check_quantity(name: str, *, body: object = True, forces: object = True) -> None:
+    """Raise QuantityError for a name that is no quantity, or one of what a derivation lacks."""
+    is_moving = name in OF_MOTION
+    if name not in NAMES:
+        why = "--conversions adds it" if name in CONVERSIONS else offer(name, NAMES)
+        raise QuantityError(f"no quantity {name!r}; {why}")
+    if not (forces if is_moving else body or name in KINEMATICS):
+        needed = "a body" + " and forces or a potential" * is_moving
+        raise QuantityError(f"no quantity {name}; it needs {needed}")
