@@ -277,9 +277,8 @@ class GeneratorSet:
     def _collect_angle(self, argument: sp.Expr) -> None:
         terms = exact_angle(argument)
         # By the addition theorem, sin(θ + π/4) = (sin θ + cos θ)/√2, so the ring needs these roots.
-        if sp.pi in terms:
-            for value in cosine_sine_of_pi(terms[sp.pi]):
-                self.collect(value)
+        for value in cosine_sine_of_pi(terms.get(sp.pi, sp.S.Zero)):
+            self.collect(value)
         moving = [atom for atom in terms if atom is not sp.pi]
         size, direction = sp.Add(*(terms[atom] * atom for atom in moving)).primitive()
         if direction.could_extract_minus_sign():

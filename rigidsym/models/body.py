@@ -189,9 +189,7 @@ class RigidBody:
 
     def __post_init__(self) -> None:
         if not MODULE_NAME.fullmatch(self.name):
-            raise BodyError(
-                f"{self.name!r} cannot name a body (it has the name of its file): {A_MODULE_NAME}"
-            )
+            raise BodyError(f"{self.name!r} cannot name a body or its file: {A_MODULE_NAME}")
         try:
             self._check()
         except BodyError as error:

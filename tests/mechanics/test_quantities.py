@@ -113,18 +113,9 @@ def test_what_is_derived_alone_is_what_is_selected(text, names):
     assert has_rates == (alone.singularities is not None)
 
 
-@pytest.mark.parametrize(
-    ("text", "name", "message"),
-    [
-        ("z(phi) x(theta)", "rates_from_angular_velocity_space", "chain_zx has no .* no inverse"),
-        ("ZXZ", "anglar_velocity_body", "did you mean angular_velocity_body"),
-        ("ZXZ", "inertia_tensor", "it needs a body$"),
-        ("ZXZ", "accelerations", "it needs a body and forces or a potential"),
-    ],
-)
-def test_quantities_that_there_are_not_are_refused(text, name, message):
-    with pytest.raises(QuantityError, match=message):
-        rs.derive(text, only=(name,))
+def test_quantities_that_there_are_not_are_refused():
+    with pytest.raises(QuantityError, match="chain_zx has no .* no inverse"):
+        rs.derive("z(phi) x(theta)", only="rates_from_angular_velocity_space")
     with pytest.raises(AttributeError, match="did you mean angular_velocity_body"):
         rs.derive("ZXZ").anglar_velocity_body  # noqa: B018
 

@@ -194,7 +194,7 @@ def test_the_name_of_the_file_names_folder_and_module(name, fault):
     with pytest.raises(SpecError, match=fault):
         read('[rotation]\nsequence = "ZXZ"\n', name)
     if name == "My File":
-        with pytest.raises(SpecError, match="'My File' cannot name a body .it has the name of its"):
+        with pytest.raises(SpecError, match="'My File' cannot name a body or its file"):
             read('[body]\nprincipal_moments = ["A", "B", "C"]\n', name)
 
 

@@ -21,10 +21,9 @@ CONVERSIONS = {  # and what they take
 
 def check_quantity(name: str, *, body: object = True, forces: object = True) -> None:
     """Raise QuantityError for a name that is no quantity, or one of what a derivation lacks."""
-    is_moving = name in OF_MOTION
     if name not in NAMES:
         why = "--conversions adds it" if name in CONVERSIONS else offer(name, NAMES)
         raise QuantityError(f"no quantity {name!r}; {why}")
-    if not (forces if is_moving else body or name in KINEMATICS):
-        needed = "a body" + " and forces or a potential" * is_moving
+    if not (forces if name in OF_MOTION else body or name in KINEMATICS):
+        needed = "a body and forces or a potential" if name in OF_MOTION else "a body"
         raise QuantityError(f"no quantity {name}; it needs {needed}")
