@@ -114,7 +114,7 @@ def test_what_is_derived_alone_is_what_is_selected(text, names):
 
 
 def test_quantities_that_there_are_not_are_refused():
-    with pytest.raises(QuantityError, match="chain_zx has no .* no inverse"):
+    with pytest.raises(QuantityError, match=r"chain_zx has no .* no inverse"):
         rs.derive("z(phi) x(theta)", only="rates_from_angular_velocity_space")
     with pytest.raises(AttributeError, match="did you mean angular_velocity_body"):
         rs.derive("ZXZ").anglar_velocity_body  # noqa: B018
