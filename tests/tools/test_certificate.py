@@ -135,8 +135,7 @@ def test_the_files_are_written_and_checked(tmp_path):
     call("derive", "ZXZ", "--certificates", cwd=tmp_path)
     folder = tmp_path / "out" / NAME
     assert {f"{NAME}.v", "Rotation.v"} <= {file.name for file in folder.iterdir()}
-    said = call("check", "out", cwd=tmp_path).stdout
-    assert f"{NAME}.v: up to date\n  proved in {NAME}.json: R is a" in said
+    assert f"  proved in {NAME}.json: R is a" in call("check", "out", cwd=tmp_path).stdout
     alone = [sys.executable, "-I", "-S", str(CHECKER), "out"]
     done = subprocess.run(alone, cwd=tmp_path, capture_output=True, text=True, check=True)
     assert "R is {'turns': ['z(phi)', 'x(theta)', 'z(psi)']" in done.stdout
