@@ -1,6 +1,8 @@
 """`python -m rigidsym` is the command `rigidsym`."""
 
-from rigidsym.commands.cli import main
+import sys
+
+from rigidsym.commands.cli import run
 
 if __name__ == "__main__":
-    main()
+    sys.exit(run())

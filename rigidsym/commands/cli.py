@@ -13,21 +13,24 @@ import sys
 import warnings
 from difflib import get_close_matches
 from importlib import import_module
-from typing import Any, NoReturn
+from typing import NoReturn
 
 import click
 
 from rigidsym.commands.command import DECLARED, message
 from rigidsym.errors import RigidsymError
+from rigidsym.system.processes import rare_collections
 from rigidsym.version import __version__
 
 _SUMMARIES = {name: entry["summary"] for name, entry in DECLARED["commands"].items()}
 
 
+@rare_collections()
 def main() -> NoReturn:
     """The process of the `rigidsym` command.
 
-    It ends without freeing every object of SymPy by itself, which takes 25 ms.
+    It ends without freeing every object of SymPy by itself, which takes 25 ms. `python -m rigidsym`
+    ends as any program does, so that profilers and debuggers, which come after it, can finish.
     """
     status = run()
     atexit._run_exitfuncs()
@@ -53,6 +56,8 @@ def run() -> int:
     except RigidsymError as error:
         message(str(error))
         status = error.exit_code
+    except SystemExit:  # from Click, if the reader (`| head`) had enough, which is no error
+        status = 0
     except (KeyboardInterrupt, click.Abort):
         message("interrupted")
         status = 130  # as of a process that SIGINT ends
@@ -84,12 +89,6 @@ class _Commands(click.Group):
     def format_commands(self, context: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002
         with formatter.section("Commands"):
             formatter.write_dl(list(_SUMMARIES.items()))
-
-    def invoke(self, context: click.Context) -> Any:
-        try:
-            return super().invoke(context)
-        except BrokenPipeError:  # the reader (`| head`) had enough, which is no error
-            raise click.exceptions.Exit(0) from None
 
 
 @click.group(

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache, cached_property, partial
+from itertools import chain as chained, count
 
 import sympy as sp
 from sympy.polys.rings import PolyElement
@@ -275,25 +276,27 @@ class NamedRotation(BodyValues):
         return replace(step, expression=expression, proofs=(*step.proofs, *proofs))
 
 
-def total_mass(body: RigidBody) -> sp.Symbol:
-    """The letter of the mass: its own, or M, or M₀ where M is the mass of a part."""
+def total_mass(body: RigidBody, arguments: Collection[Argument]) -> sp.Symbol:
+    """The letter of the mass: its own, or M, or M₀ where an argument is printed as M, or M₀₀."""
     if body.mass.is_Symbol:
         return body.mass
-    is_taken = any(p.symbol.name == "M" for p in body.parameters)
-    return sp.Symbol("M_0" if is_taken else "M")
+    name = "M"
+    while any(named(name) in each.notation for each in arguments):
+        name += "0"
+    return sp.Symbol(name)
 
 
 def moment_letters(
     arguments: Iterable[Argument], moments: Sequence[sp.Expr]
 ) -> tuple[sp.Symbol, ...]:
-    """I₁, I₂, I₃ for principal moments; J or K where an argument is printed as one of these."""
+    """I₁, I₂, I₃ for principal moments; J, K, I₀₁ where an argument is printed as one of these."""
     letters = {
         letter: symbol
         for each in arguments
         for letter, symbol in zip(each.notation, each.symbols, strict=True)
     }
-    for letter in "IJK":
-        names = tuple(sp.symbols(f"{letter}_1:4"))
+    for stem in chained(("I_", "J_", "K_"), ("I_" + "0" * n for n in count(1))):
+        names = tuple(sp.Symbol(f"{stem}{k}") for k in (1, 2, 3))
         pairs = zip(map(named, map(str, names)), moments, strict=True)
         if all(letters.get(name, moment) == moment for name, moment in pairs):
             break
@@ -332,7 +335,7 @@ def steps_of_body(
     wanted = only or {name for name, q in OF_BODY.items() if not (is_fixed and q.of_centre)}
     values = (NamedRotation if chain else BodyValues)(model, whole, has_fixed_point=is_fixed)
     steps = [step for n, q in OF_BODY.items() if n in wanted and (step := values.step(q))]
-    letters = {MASS: named(total_mass(whole).name)}
+    letters = {MASS: named(total_mass(whole, values.arguments.values()).name)}
     if any("principal" in step.quantity.name for step in steps) and values.principal:
         own = moment_letters(values.arguments.values(), values.principal.moments)
         letters |= {named(f"I_{k}"): named(str(letter)) for k, letter in enumerate(own, start=1)}

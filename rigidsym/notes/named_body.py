@@ -41,7 +41,8 @@ def in_names(derivation: Derivation) -> tuple[Derivation, Parts]:
     is_short = all(entry.is_Atom for entry in (*body.inertia, body.mass))
     has_offset = any(body.centre)
     moments = moment_letters(derivation.arguments, body.inertia.diagonal())
-    parts, letters = _named(body, () if is_short else moments)
+    mass = total_mass(body, derivation.arguments)
+    parts, letters = _named(body, mass, () if is_short else moments)
     renamed: Sequence[str] = _ABOUT_POINT if has_offset else ()
     if not is_short:
         renamed = [n for n in (*INERTIA_QUANTITIES, *ENERGY_QUANTITIES) if n not in _AS_DESCRIBED]
@@ -67,23 +68,22 @@ def in_names(derivation: Derivation) -> tuple[Derivation, Parts]:
     return replace(derivation, steps=tuple(steps)), parts
 
 
-def _named(body: RigidBody, letters: Sequence[sp.Symbol]) -> tuple[Parts, RigidBody]:
+def _named(body: RigidBody, mass: sp.Symbol, own: Sequence[sp.Symbol]) -> tuple[Parts, RigidBody]:
     """The body about its centre of mass, with a letter for each moment or product of inertia.
 
     The letters have what they stand for, if the body's own axes are principal axes. A short tensor,
-    for which there are no `letters`, stays as it is.
+    for which there are none of its `own`, stays as it is.
     """
     tensor, parts = body.inertia, []
-    if tensor.is_diagonal() and letters:
-        pairs = [*zip(letters, tensor.diagonal(), strict=True)]
+    if tensor.is_diagonal() and own:
+        pairs = [*zip(own, tensor.diagonal(), strict=True)]
         # Reversed, so that equal moments have the first of their names: (I₁, I₁, I₃).
         names = {moment: name for name, moment in reversed(pairs) if moment}
         parts = [(name, moment) for moment, name in reversed(names.items())]
         tensor = sp.diag(*(names.get(moment, moment) for moment in tensor.diagonal()))
-    elif letters:
+    elif own:
         entries = [[f"I'_{min(i, j) + 1}{max(i, j) + 1}" for j in range(3)] for i in range(3)]
         tensor = sp.Matrix(3, 3, lambda i, j: body.inertia[i, j] and sp.Symbol(entries[i][j]))
-    mass = total_mass(body)
     return parts, given_inertia(
         tensor,
         mass=mass,

@@ -111,8 +111,15 @@ def test_without_tex_all_else_is_written(tmp_path):
     assert len(list((tmp_path / "out" / NAME).iterdir())) == 4
 
 
+def test_a_profile_of_the_module_is_written(tmp_path):
+    words = f"-m cProfile -o {tmp_path}/profile -m rigidsym --version".split()
+    subprocess.run([sys.executable, *words], cwd=ROOT, check=True)
+    assert (tmp_path / "profile").is_file()
+
+
 def test_a_closed_pipe_is_no_error():
-    command = ["bash", "-o", "pipefail", "-c", '"$@" list | true', "bash", *RIGIDSYM]
+    lines = '"$@" list | true && "$@" --version | true'
+    command = ["bash", "-o", "pipefail", "-c", lines, "bash", *RIGIDSYM]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, check=False)
     assert (done.returncode, done.stderr) == (0, b"")
 
@@ -159,14 +166,13 @@ def test_the_exit_code_does_not_need_streams_that_work(closed):
 )
 def test_heavy_packages_are_imported_only_where_they_are_used(tmp_path, words, heavy):
     probe = (
-        "import sys\nfrom rigidsym.commands.cli import commands\n"
+        "import gc, sys\ngc.set_threshold(0)\nfrom rigidsym.commands.cli import commands\n"
         f"try:\n    commands.main({words})\nexcept SystemExit:\n    pass\n"
-        f"print(sorted({heavy} & set(sys.modules)))"
+        f"print(sorted({heavy} & set(sys.modules)), gc.get_threshold()[0])"
     )
-    command = [sys.executable, "-c", probe]
-    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    printed = subprocess.check_output(command, cwd=tmp_path, env=environment, text=True)
-    assert printed.splitlines()[-1] == "[]"
+    env = {**os.environ, "PYTHONPATH": str(ROOT)}
+    out = subprocess.check_output([sys.executable, "-c", probe], cwd=tmp_path, env=env, text=True)
+    assert out.splitlines()[-1] == "[] 0"
 
 
 @pytest.mark.parametrize(  # with a FIFO to which nobody writes, which would be read for ever

@@ -312,13 +312,7 @@ def test_kernels_evaluate_the_body():
 
 
 def test_the_letter_of_the_total_mass_is_its_own_or_one_that_no_part_has():
-    M, m, r = sp.symbols("M m r")  # noqa: N806
-    pair = rs.Particles(
-        particles=(
-            rs.Particle(mass=M, position=sp.ImmutableMatrix([r, 0, 0])),
-            rs.Particle(mass=m, position=sp.ImmutableMatrix([0, r, 0])),
-        )
-    )
-    for body, letter in ((pair, "M_0"), (rs.solid("disc", mass=m), "m")):
+    dense, light = (rs.solid("box", density=sp.Symbol("M")), rs.solid("disc", mass=sp.Symbol("m")))
+    for body, letter in ((dense, "M_0"), (light, "m")):
         step = rs.derive("x(phi)", ["translational_energy"], body=body).step("translational_energy")
         assert f"\\,{letter}\\," in step.quantity.definition.latex

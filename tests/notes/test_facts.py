@@ -109,20 +109,20 @@ hole = true
 
 
 @cache
-def drilled(density: str = "rho", length: str = "a") -> Motion:
-    text = DRILLED.replace("rho", density).replace("2*a", f"2*{length}")
+def drilled(density: str = "rho", length: str = "a", half: str = "b") -> Motion:
+    text = DRILLED.replace("rho", density).replace("2*a", f"2*{length}").replace('"b/', f'"{half}/')
     return motion_of(read_spec(text, source="drilled.toml", name="drilled"))
 
 
-@pytest.mark.parametrize("names", [(), ("M", "I2")], ids=["free letters", "letters of others"])
-def test_what_is_shown_in_names_has_the_value_that_was_derived(names):
-    derived = drilled(*names)
+@pytest.mark.parametrize("letters", ["I", "J M I2 M0", "I₀ K1 I1 J1"])  # a free one, and taken ones
+def test_what_is_shown_in_names_has_the_value_that_was_derived(letters):
+    own, *taken = letters.split()
+    derived = drilled(*taken)
     shown, moments = in_names(derived)
-    assert derived.step("principal_moments").quantity.symbol.text == (
-        "(J₁, J₂, J₃)" if names else "(I₁, I₂, I₃)"
-    )
+    assert derived.step("principal_moments").quantity.symbol.text == f"({own}₁, {own}₂, {own}₃)"
     offset = zip(sp.symbols("d_x:z"), sp.Matrix(POINT) - derived.body.centre, strict=True)
-    values = {total_mass(derived.body): derived.body.mass, **dict(moments), **dict(offset)}
+    mass = total_mass(derived.body, derived.arguments)
+    values = {mass: derived.body.mass, **dict(moments), **dict(offset)}
     rng = np.random.default_rng(1)
     symbols = {s for argument in derived.arguments for s in argument.symbols}
     numbers = {s: sp.Float(x) for s, x in zip(symbols, rng.uniform(0.3, 0.7, 99), strict=False)}
