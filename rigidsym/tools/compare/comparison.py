@@ -25,7 +25,7 @@ from rigidsym.motion import Motion
 from rigidsym.system.resources import environment
 from rigidsym.tools.compare import quantities as known
 from rigidsym.tools.compare.language import spelled_out
-from rigidsym.tools.compare.program import formula_matrix
+from rigidsym.tools.compare.program import formula_matrix, is_length
 from rigidsym.tools.compare.quantities import ANGLES, Array, Family, KnownQuantity, Names, Values
 
 _MOST_REPAIRS = 2  # of a formula that nobody has named
@@ -134,10 +134,13 @@ class Comparison:
         odd = [(str(name), known.oddness(meant)) for name, meant in (self.names or {}).items()]
         opposite = " and ".join(sorted(name for name, kind in odd if kind % 2))
         turned = " and ".join(sorted(name for name, kind in odd if kind > 1))
+        own = {meant: name for name, meant in (self.names or {}).items()}
+        lengths = [x for x in own if is_length(x) or is_length(2 / x)]
         words = (
             self.found.arrangement if self.found else "",
             opposite and f"with the opposite sense of {opposite} (a convention, or wrong signs)",
             turned and f"with {turned} from another axis, a quarter turn away",
+            "".join(f"if {own.pop(x)} = {x.xreplace(own)}" for x in lengths),
             self.scale and f"up to the factor {self.scale}",
         )
         return ", ".join(filter(None, words))

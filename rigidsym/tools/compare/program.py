@@ -85,8 +85,11 @@ _MODULE = re.compile(
 _GETTER = re.compile(rf"(?:get)?_?([wxyz]|{language.ANGLE.pattern}|xyz|vec|imag)_?", re.IGNORECASE)
 _INDEX_NAME = re.compile(r"^(?:#define )?(\w+)(?: *= *| +)(\d\d?);?$", re.MULTILINE)
 _MACRO = re.compile(r"macro_rules!\s*\w+\s*\{\s*\([^{}]*?\)\s*=>\s*\{")
+_OTHER_AXIS = re.compile(r"(?:axis|dim) *=(?! *0\b)|, *-?[1-9] *\)$")
 _AXES = {"x": 0, "y": 1, "z": 2, "X": 0, "Y": 1, "Z": 2}
 _INVERSE = (sp.atan2, sp.asin, sp.acos, sp.atan)
+_OPPOSITE = str.maketrans("<>=!", "><!=")
+_INDICES = re.compile(r"(\.(\d|[wxyz]))*$")
 _SIGNS = {".*": "%", "./": "/", ".^": "**", "^": "**"}  # MATLAB
 _FLAT = {9: (3, 3), 12: (4, 3), 16: (4, 4)}
 _OF_VECTORS = ("T", "C", "inv", "dot", "cross", "outer", "norm")
@@ -165,9 +168,8 @@ class Formula:
 class _Scope:
     """A function, or a whole file, and the branch that a run takes at each of its choices.
 
-    A run prefers the last branch that no run has taken, since it is the one without exceptions,
-    then one that contains an open choice, then the
-    last.
+    A run prefers the last branch that no run has taken, since guards mostly come first; then one
+    that contains an open choice, and then the last.
     """
 
     tree: Tree
@@ -196,7 +198,7 @@ class _Program:
     """All functions know this of their file."""
 
     suffix: str
-    functions: Mapping[str, Sequence[Node]] = field(default_factory=dict)
+    functions: Mapping[str, Mapping[int, Sequence[Tree]]] = field(default_factory=dict)
     constants: Mapping[str, int] = field(default_factory=dict)  # q_i = 0 of the whole file
     product: str = "*"  # what * is for matrices: "%" entry by entry, "" if nobody knows
     is_glm: bool = False
@@ -218,12 +220,9 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
     if root.descendant_count > _MOST_NODES:
         return [Formula(lines=(1,), name="", reason="the file is too long")]
     functions = [*walk(root, "function")]
-    functions_of: dict[str, list[Node]] = {}
-    for each in (function for function in functions if function.word):
-        functions_of.setdefault(each.word, []).append(each.node)
     program = _Program(
         suffix,
-        functions_of,
+        _overloads(functions, suffix),
         {match[1]: int(match[2]) for match in _INDEX_NAME.finditer(text)},
         _product(text, suffix),
         bool(_GLM.search(text)),
@@ -244,9 +243,9 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
             except RecursionError:  # SymPy, in a sum that a program nests in itself
                 reason = "expressions are nested too deeply"
                 run.formulas.append(Formula(lines=(scope.tree.line,), name="", reason=reason))
-            named = {each.forms for each in run.formulas if each.name not in _UNNAMED} - {()}
+            named = {f.forms[:1] for f in run.formulas if f.name not in _UNNAMED} - {()}
             for formula in run.formulas:  # a fault counts once
-                if formula.name not in _UNNAMED or formula.forms not in named:
+                if formula.name not in _UNNAMED or formula.forms[:1] not in named:
                     scope.formulas.append(formula)
     formulas: dict[Any, Formula] = {}
     for formula in chain.from_iterable(scope.formulas for scope in scopes):
@@ -257,6 +256,20 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
     cases = {place for place, number in Counter(varied).items() if number > 1}
     marked = (replace(f, is_case=(f.lines, f.name) in cases) for f in formulas.values())
     return sorted(marked, key=lambda each: each.line)
+
+
+def _overloads(functions: Iterable[Tree], suffix: str) -> dict[str, dict[int, list[Tree]]]:
+    """Functions by name and number of parameters, if these tell which one is called."""
+    overloads: dict[str, dict[int, list[Tree]]] = {}
+    places: dict[str, list[Any]] = {}
+    for each in (function for function in functions if function.word):
+        count = len({*parameters(each.node)} - {"self", "this"})
+        overloads.setdefault(each.word, {}).setdefault(count, []).append(each)
+        places.setdefault(each.word, []).append((each.around, *each.types))
+    for name, own in places.items():
+        if len(own) > 1 and (suffix in (*_OF_REALS, ".rs") or len({*own}) > 1):
+            overloads[name] = {}
+    return overloads
 
 
 def _product(text: str, suffix: str) -> str:
@@ -473,6 +486,8 @@ class _Run:
     def unpack(self, left: Tree, right: Tree) -> None:
         """w, x, y, z = q; c, s, t = cos(v); {x, y} = q."""
         keys: Sequence[Any] = left.keys if left.kind == "record" else range(len(left.parts))
+        if right.kind == "call" and CALLS.get(right.called) == "parts":  # in which no row is read
+            right = right.parts[1] if _MODULE.match(right.base) else right.owner or right
         value: Any = self.tried(right)
         parts: list[Any] = [None] * len(keys)
         is_whole = left.kind == "record" and value is not None
@@ -543,11 +558,12 @@ class _Run:
             values = [self.definitions.get(s, s) for s in ratio.free_symbols]
             if values == [None] and own not in ratio.free_symbols:  # q0 *= recipNorm
                 return self.symbol_for(path, None)
-            ratio = self.expanded(ratio)
+            if not ratio.has(sp.Function):  # whose expansion would take most of the time
+                ratio = self.expanded(ratio)
             is_unit = ratio.is_number and ratio.is_finite
             if is_unit and abs(ratio * 180 / sp.pi - 1) < 1e-3:  # radians from degrees
                 return own
-            if _is_length(1 / ratio) and self.are_components(own, ratio.free_symbols):
+            if is_length(1 / ratio) and self.are_components(own, ratio.free_symbols):
                 symbol = self.symbol_for(path, None)
                 self.components.add(symbol)
                 self.normalised.add(symbol)
@@ -786,7 +802,8 @@ class _Run:
             values: list[Any] = [self.definitions.get(record[n], record[n]) for n in names]
             if None in values:
                 continue
-            are_angles = all(value.has(*_INVERSE) for value in values)
+            # At a pole, an angle is a number: this is no formula, but another case of one.
+            are_angles = all(value.has(*_INVERSE) or value.is_number for value in values)
             is_change = bool(ANGLES_NAME.fullmatch(names[0])) and all(map(self.is_step, values))
             if kind > -2 or are_angles or is_change:
                 stem = _dotted(path) or re.sub(r"\d+$", "", names[0])
@@ -966,26 +983,38 @@ class _Run:
         """One of two values: a number that belongs to a pole or is a bound is left out."""
         values = [self.tried(each) for each in trees]
         fixed = [_is_scalar(value) and value.is_number for value in values]
-        condition = self.tests.get(condition.text, condition)
-        is_order = condition.kind == "binary" and re.fullmatch("[<>]=?|[=!]==?", condition.word)
-        is_near = condition.kind == "call" and condition.called == "isclose"
-        if sum(fixed) == 1 and (is_order or is_near) and None not in values:
+        if sum(fixed) == 1 and None not in values:
             other, limit = (values[fixed.index(is_fixed)] for is_fixed in (False, True))
-            sides = [self.tried(each) for each in condition.parts[-2:]]
-            is_bound = bool(is_order) and condition.word[0] in "<>" and abs(limit) == 1
-            if is_bound and _inner(other) in sides:
-                is_above = (condition.word[0] == ">") == (sides[0] == _inner(other))
-                if (is_above == fixed[0]) == (limit == 1):
-                    return _Bounded(_inner(other))
-            elif None not in sides:
-                whole = self.expanded(as_matrix(other))
-                names = {s for x in sides for s in self.expanded(as_matrix(x)).free_symbols}
-                has_pole = whole.has(*_INVERSE) or any(
-                    p.exp.is_negative for p in whole.atoms(sp.Pow)
-                )
-                if has_pole and (is_near or names & whole.free_symbols):
-                    return other
+            own, sign, number = self.sides(self.tests.get(condition.text, condition))
+            if not fixed[0]:  # the number is the value if the condition is false
+                sign = sign.translate(_OPPOSITE)
+            is_above = sign[:1] == ">"
+            if own == _inner(other) and sign[:1] in "<>":
+                if limit == (1 if is_above else -1) and abs(number - limit) < 0.01:
+                    return _Bounded(own)
+            elif sign and self.is_pole(own, sign, number, other):
+                return other
         return self.read(trees[self.scope.choice(tree.node, trees)])
+
+    def sides(self, condition: Tree) -> tuple[Any, str, Any]:
+        """An expression, one of = ! < >, and a number; no sign for another condition."""
+        sign, parts = condition.word, condition.parts
+        if condition.kind == "call" and condition.called == "isclose":
+            sign, parts = "==", parts[1:3]
+        values = [self.tried(each) for each in parts]
+        if re.fullmatch("[<>]=?|[=!]==?", sign) and all(map(_is_scalar, values)):
+            for own, other, signs in ((*values, "<>"), (*values[::-1], "><")):
+                if (number := self.expanded(other)).is_number:
+                    return own, sign[0].translate(str.maketrans("<>", signs)), number
+        return None, "", None
+
+    def is_pole(self, own: sp.Expr, sign: str, number: sp.Expr, value: sp.Expr) -> bool:
+        """Whether a value, of the same vector or matrix, has a pole where it is replaced."""
+        is_near = sign == "=" or sign == (">" if number > 0.5 else "<")
+        whole, own = self.expanded(value), self.expanded(own)
+        one, other = ({_INDICES.sub("", s.name) for s in x.free_symbols} for x in (whole, own))
+        has_power = any(power.exp.is_negative for power in whole.atoms(sp.Pow))
+        return is_near and (has_power or whole.has(*_INVERSE)) and not one.isdisjoint(other)
 
     # Names, members and indices
 
@@ -1124,7 +1153,7 @@ class _Run:
             parts = [self.entry(tree, value, (k, *others)) for k in numbers]
             return parts[0] if len(parts) == 1 else rows(parts)
         part = _part(value, key + self.first if isinstance(key, int) else key)
-        if part is None:
+        if part is None or value in self.components:  # which are numbers
             raise self.unreadable(tree, "has no value")
         if value in self.definitions:  # a part of what is not read, or assigned anew
             part = self.later.setdefault((value, key), sp.Dummy(part.name, real=True))
@@ -1279,6 +1308,10 @@ class _Run:
         if len(nodes) == 1 and nodes[0].kind in ("list", "matrix"):
             nodes = nodes[0].parts
         parts = [as_matrix(self.read(each)) for each in nodes]
+        for each in nodes if axis.endswith("=1") else ():  # of a batch, this is the axis of rows
+            part = self.tests.get(each.text, each)
+            if part.kind == "call" and _OTHER_AXIS.search(part.text):
+                raise self.unreadable(tree, "may be of a batch")
         if _COLUMN_MATRIX.search(tree.called) and len(parts) in _FLAT:
             return self.columns(tree, rows([*map(sum, parts)]))
         if all(each.cols == 1 for each in parts) and len({each.rows for each in parts}) > 1:
@@ -1288,16 +1321,18 @@ class _Run:
 
     def inline(self, tree: Tree, name: str, nodes: Sequence[Tree]) -> Any:
         """The value of a function of the same file."""
-        fitting = []
-        for function in self.program.functions[name]:
-            names = [each for each in parameters(function) if each not in ("self", "this")]
-            if len(names) == len(nodes) and function != self.scope.tree.node:
-                fitting.append((function, names))
-        if len(fitting) != 1 or self.inlined >= _INLINED:  # of several nobody knows which
+        fitting = self.program.functions[name].get(len(nodes), ())
+        own = [each for each in fitting if each.node != self.scope.tree.node]
+        if len(own) != 1 or self.inlined >= _INLINED:
             raise self.unreadable(tree)
-        ((function, names),) = fitting
-        scope = replace(self.scope, tree=tree_of(function))
-        inner = _Run(self.program, scope, self.inlined + 1)
+        around = own[0].around
+        is_known = around.start_byte <= tree.node.start_byte < around.end_byte
+        is_known &= own[0].types in ([], self.scope.tree.types)
+        if not tree.base and (not is_known or name in self.inputs):  # of another file
+            raise self.unreadable(tree)
+        scope = replace(self.scope, tree=tree_of(own[0].node))
+        inner, names = _Run(self.program, scope, self.inlined + 1), parameters(own[0].node)
+        names = [name for name in names if name not in ("self", "this")]
         for each, node in zip(names, nodes, strict=True):
             value = self.read(node)
             inner.values[each] = _record(value, 0) if isinstance(value, sp.MatrixBase) else value
@@ -1428,7 +1463,7 @@ def _size(value: Any) -> int:
     return sum(1 for _ in islice(sp.preorder_traversal(value), _MOST_PARTS + 1))
 
 
-def _is_length(value: sp.Expr) -> bool:
+def is_length(value: sp.Expr) -> bool:
     """Whether this is a sum of squares, or the root of one."""
     terms = sp.Add.make_args(value.base if value.is_Pow and value.exp == sp.S.Half else value)
     return len(terms) > 1 and all(t.is_Pow and t.exp == 2 for t in terms)

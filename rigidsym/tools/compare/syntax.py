@@ -250,6 +250,19 @@ class Tree:
         return names
 
     @property
+    def around(self) -> Node:
+        """The class, namespace or function that contains a function, or the file."""
+        node = self.node.parent or self.node
+        while node.parent and node.type not in _TYPES["around"]:
+            node = node.parent
+        return node
+
+    @property
+    def types(self) -> list[str]:
+        """The type of which a function of C++ is: A of `void A::f()`."""
+        return re.findall(r"(\w+)::~?\w+ *\(", _text(_part(self.node, "declarator")))[:1]
+
+    @property
     def is_integer(self) -> bool:
         """Whether a declaration, or a call such as static_cast<int>, rounds to an integer."""
         outer = self.node.parent and _part(self.node.parent, "type")
