@@ -261,11 +261,11 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
 def _overloads(functions: Iterable[Tree], suffix: str) -> dict[str, dict[int, list[Tree]]]:
     """Functions by name and number of parameters, if these tell which one is called."""
     overloads: dict[str, dict[int, list[Tree]]] = {}
-    places: dict[str, list[Any]] = {}
+    places: dict[str, list[Node]] = {}
     for each in (function for function in functions if function.word):
         count = len({*parameters(each.node)} - {"self", "this"})
         overloads.setdefault(each.word, {}).setdefault(count, []).append(each)
-        places.setdefault(each.word, []).append((each.around, *each.types))
+        places.setdefault(each.word, []).append(each.around)
     for name, own in places.items():
         if len(own) > 1 and (suffix in (*_OF_REALS, ".rs") or len({*own}) > 1):
             overloads[name] = {}
@@ -988,9 +988,8 @@ class _Run:
             own, sign, number = self.sides(self.tests.get(condition.text, condition))
             if not fixed[0]:  # the number is the value if the condition is false
                 sign = sign.translate(_OPPOSITE)
-            is_above = sign[:1] == ">"
-            if own == _inner(other) and sign[:1] in "<>":
-                if limit == (1 if is_above else -1) and abs(number - limit) < 0.01:
+            if own == _inner(other) and sign in "<>":
+                if limit == {">": 1, "<": -1}[sign] and abs(number - limit) < 0.01:
                     return _Bounded(own)
             elif sign and self.is_pole(own, sign, number, other):
                 return other
@@ -1327,7 +1326,6 @@ class _Run:
             raise self.unreadable(tree)
         around = own[0].around
         is_known = around.start_byte <= tree.node.start_byte < around.end_byte
-        is_known &= own[0].types in ([], self.scope.tree.types)
         if not tree.base and (not is_known or name in self.inputs):  # of another file
             raise self.unreadable(tree)
         scope = replace(self.scope, tree=tree_of(own[0].node))

@@ -258,11 +258,6 @@ class Tree:
         return node
 
     @property
-    def types(self) -> list[str]:
-        """The type of which a function of C++ is: A of `void A::f()`."""
-        return re.findall(r"(\w+)::~?\w+ *\(", _text(_part(self.node, "declarator")))[:1]
-
-    @property
     def is_integer(self) -> bool:
         """Whether a declaration, or a call such as static_cast<int>, rounds to an integer."""
         outer = self.node.parent and _part(self.node.parent, "type")
