@@ -170,7 +170,10 @@ def test_a_record_of_which_nothing_is_proved_is_refused_and_its_path_is_one_line
 @pytest.mark.usefixtures("coq")
 @pytest.mark.parametrize(
     ("text", "quantities"),
-    [("ZXZ", None), ("unit_quaternion", None), (OTHERS[8], BASIC), ("gibbs_vector", None)],
+    [
+        *((text, None) for text in ("ZXZ", "z(phi) x(phi+psi) z(psi)", "unit_quaternion")),
+        *((OTHERS[8], BASIC), ("gibbs_vector", None)),
+    ],
 )
 def test_coq_accepts_kinematics_and_refuses_a_wrong_one(tmp_path, text, quantities):
     certificate = certificate_of(record_of(text, quantities))

@@ -319,8 +319,10 @@ class _Section:
         using = f" [{' '.join(self.facts)}]" if self.facts else ""
         known = "; ".join(f"pose proof {fact}" for fact in self.known)
         yield f"Ltac known t := {known or 'idtac'}."
+        # an angle may be the sum of two others, whose sines and cosines are printed, too
+        sums = f"rewrite ?sin_plus, ?cos_plus, ?sin_minus, ?cos_minus; ring{using}"
         yield "Ltac calculation t :="
-        yield f"  entries; first [ ring{using} | known t; field{using}; apart ]."
+        yield f"  entries; first [ ring{using} | known t; field{using}; apart | {sums} ]."
         yield "Ltac by_rules t := known t; eapply (same (derivable_pt_lim _ _));"
         yield "  [ derivative | calculation t ]."
         if "body" in self.record:
