@@ -26,6 +26,7 @@ from schema import rows, schema
 import rigidsym
 from rigidsym import errors
 from rigidsym.commands.cli import commands as cli
+from rigidsym.commands.list import inventory
 from rigidsym.kernels.targets import TARGETS
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
 from rigidsym.mechanics.quantities.kinematics import KINEMATICS
@@ -134,9 +135,13 @@ def solids() -> str:
 
 
 def targets() -> str:
-    return table(
-        ("target", "what it writes"), [(literal(k), _plain(t.about)) for k, t in TARGETS.items()]
-    )
+    """As `rigidsym list` describes them, whatever is installed here."""
+    lines = dict(line.split(maxsplit=1) for line in inventory().splitlines() if line.count(" ") > 2)
+    rows = [
+        (literal(name), _plain(lines[name].removesuffix(f"; {target.missing} is not installed")))
+        for name, target in TARGETS.items()
+    ]
+    return table(("target", "what it writes"), rows)
 
 
 # derivation files
