@@ -49,6 +49,7 @@ def loading(target: str) -> pytest.MarkDecorator:
 
 
 EVERY = [pytest.param(name, marks=loading(name)) for name in TARGETS]
+OTHERS = EVERY[1:]  # all but NumPy
 _COMPILED = {"c", "numba", "jax"}  # in a second or so for each function
 
 

@@ -14,7 +14,7 @@ import rigidsym as rs
 from helpers.motions import derived
 from helpers.node import load
 from helpers.printed_lines import LEAN, of_rotations
-from helpers.target_modules import EVERY, inputs, module
+from helpers.target_modules import EVERY, OTHERS, inputs, module
 from rigidsym import __version__
 from rigidsym.errors import KernelError
 from rigidsym.kernels.module import generate
@@ -76,7 +76,7 @@ WORDS = [
 ]
 
 
-LOADED = [pytest.param(*p.values, marks=[*p.marks, pytest.mark.campaign]) for p in EVERY[1:]]
+LOADED = [pytest.param(*p.values, marks=[*p.marks, pytest.mark.campaign]) for p in OTHERS]
 
 
 @pytest.mark.parametrize("target", [*EVERY[:1], *LOADED])
