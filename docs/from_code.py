@@ -136,9 +136,10 @@ def solids() -> str:
 
 def targets() -> str:
     """As `rigidsym list` describes them, whatever is installed here."""
-    lines = dict(line.split(maxsplit=1) for line in inventory().splitlines() if line.count(" ") > 2)
+    lines = [line.strip().partition(" ") for line in inventory().splitlines()]
+    about = {name: text.strip() for name, _, text in lines}
     rows = [
-        (literal(name), _plain(lines[name].removesuffix(f"; {target.missing} is not installed")))
+        (literal(name), _plain(about[name].removesuffix(f"; {target.missing} is not installed")))
         for name, target in TARGETS.items()
     ]
     return table(("target", "what it writes"), rows)

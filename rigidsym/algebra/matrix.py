@@ -76,7 +76,7 @@ class RingMatrix:
         return RingMatrix(self.ring, rows, (partial(_entrywise, add), (self, other)))
 
     def __sub__(self, other: RingMatrix) -> RingMatrix:
-        if self.ring is not other.ring:  # where equal monomials stand for other things
+        if self.ring is not other.ring:  # the same monomial means something else there
             raise AlgebraError("the matrices are over different rings")
         rows = _entrywise(self.ring.difference, self.rows, other.rows)
         return RingMatrix(self.ring, rows, (partial(_entrywise, sub), (self, other)))

@@ -335,8 +335,8 @@ def shortest(ring: Ring, element: PolyElement) -> PolyElement:
     for _ in range(_MOST_STEPS):
         shorter = [n for n in _neighbours(ring, current, length) if n[0] <= length]
         shorter.sort(key=itemgetter(0))
-        found = ((length, current - relation.mul_term(by)) for length, relation, by in shorter)
-        fresh = next((neighbour for neighbour in found if neighbour[1] not in seen), None)
+        reduced = ((length, current - relation.mul_term(by)) for length, relation, by in shorter)
+        fresh = next((neighbour for neighbour in reduced if neighbour[1] not in seen), None)
         if fresh is None:
             break
         length, current = fresh

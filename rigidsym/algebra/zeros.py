@@ -334,7 +334,7 @@ class Solver:
         period = 2 * sp.pi * turns
         for k in range(times):
             coordinate = (value - angle.offset + 2 * sp.pi * k) / angle.fraction
-            # Its number goes into (−period/2, period/2]; that of a length above zero.
+            # A length is made positive; any other number lies in (−period/2, period/2].
             size, rest = coordinate.as_independent(sp.Symbol, as_Add=True)
             lowest = 0 if angle.is_length else -period / 2
             size -= period * (sp.ceiling((size - lowest) / period) - 1)

@@ -382,13 +382,13 @@ class Derivation:
             values[definition.symbol] = definition.expression.xreplace(values)
         return matrix.xreplace(values) if values else matrix
 
-    def parts_of(self, expression: sp.Basic, known: Set[sp.Basic]) -> list[Definition]:
-        """The definitions that an expression rests on, in their order, without known names."""
-        needed = expression.free_symbols - known
+    def definitions_in(self, expression: sp.Basic, defined: Set[sp.Basic]) -> list[Definition]:
+        """The definitions that an expression rests on, in their order, without those `defined`."""
+        needed = expression.free_symbols - defined
         # A definition rests only on earlier ones, so one pass from the last to the first finds all.
         for symbol, value in reversed(self.definitions):
             if symbol in needed:
-                needed |= value.free_symbols - known
+                needed |= value.free_symbols - defined
         return [part for part in self.definitions if part.symbol in needed]
 
     @property

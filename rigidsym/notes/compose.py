@@ -165,7 +165,7 @@ class Composer:
             "columns": [_COLUMNS[:, k] for k in range(4)],
             "moments": self._moments,
             "abbreviations": lambda value: self._abbreviations(
-                derivation.parts_of(value, self._defined)
+                derivation.definitions_in(value, self._defined)
             ),
             "has_offset": any(step.expression.has(*OFFSET) for step in derivation.steps),
             "proofs": proofs,
@@ -197,7 +197,7 @@ class Composer:
                 equation = self._displayed[step.quantity.name]
                 # A recursion over the turns is printed in place of names.
                 value = sp.S.Zero if step.recursion else step.expression
-                parts = derivation.parts_of(value, self._defined)
+                parts = derivation.definitions_in(value, self._defined)
                 count = len(self._defined) + len(parts)
                 if parts and count > _MOST_PARTS and equation.sides[1:]:
                     blocks += (without_entries(equation), said("left_out"))

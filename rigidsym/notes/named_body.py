@@ -71,7 +71,7 @@ def in_names(derivation: Derivation) -> tuple[Derivation, Parts]:
 def _named(body: RigidBody, mass: sp.Symbol, own: Sequence[sp.Symbol]) -> tuple[Parts, RigidBody]:
     """The body about its centre of mass, with a letter for each moment or product of inertia.
 
-    The letters have what they stand for, if the body's own axes are principal axes. A short tensor,
+    If the body's own axes are principal axes, each letter comes with its value. A short tensor,
     for which there are none of its `own`, stays as it is.
     """
     tensor, parts = body.inertia, []

@@ -253,7 +253,7 @@ INNER = (
     f"let c = Math.cos(a), s = Math.sin(a); # return [[{ROWS[:8]}], [{ROWS[10:17]}], [0, 0, 1]];"
 )
 OF_C = f"double c = cos(a), s = sin(a); # double R[9] = {{{ROWS}}};"
-ALIASES = {  # a file, a statement in place of # in its function: what is said of its matrix
+ALIASES = {  # a file, a statement in place of # in its function: the verdict on its matrix
     ("a.js", INNER, "{ let s = c; }"): "equal to",
     ("b.js", INNER, "{ var s = c; }"): "close to",
     ("c.js", INNER, "s |= 0;"): None,
@@ -340,7 +340,7 @@ BATCH = (
     "    return torch.stack([r, torch.stack([s, c, 0*c], {}), torch.stack([0*c, 0*c, 1], {})], 1)\n"
 )
 OF_Q = "[{}(y*y+z*z), s*(x*y-w*z), s*(x*z+w*y)], [s*(x*y+w*z), {}(x*x+z*z), s*(y*z-w*x)], [s*(x*z-"
-CERTAIN = {  # a program: the end of what is said
+CERTAIN = {  # a program: the end of the verdict
     ("a.cpp", f"void f(double a) {{{ABOUT}"): "(proved)",
     ("b.cpp", f"void f(double a) {{{ABOUT} double h(double a, int k) {{ return a; }}"): "(proved)",
     ("c.cpp", f"struct A {{ double h(double a, int k = 1); void f(double a) {{{ABOUT}}}; "

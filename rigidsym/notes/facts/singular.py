@@ -70,16 +70,16 @@ class PointFacts:
         if not all(entry.is_Rational for entry in null_rates):
             return []
         q, fixed = self.coordinates, [place.coordinate for place in self.at.places]
-        known = sp.Matrix(len(fixed), len(q), [f.diff(by) for f in fixed for by in q])
-        if leaves := any(known * null_rates):
-            known = known[:0, :]
+        gradients = sp.Matrix(len(fixed), len(q), [f.diff(by) for f in fixed for by in q])
+        if leaves := any(gradients * null_rates):
+            gradients = gradients[:0, :]
         named = [by.diff(TIME) for by in q] if leaves else q
         # A combination c·q is kept if c·n = 0 for every null vector n of the rates. Its factors
         # become the smallest whole numbers, the first of them above zero. What is fixed comes
         # first, and only what is independent of it remains.
         kept = [(c / next(filter(None, c))).T for c in sp.Matrix(null_rates.T).nullspace()]
-        rows = sp.Matrix.vstack(known, *kept)
-        independent = [k for k in rows.T.rref()[1] if k >= known.rows]
+        rows = sp.Matrix.vstack(gradients, *kept)
+        independent = [k for k in rows.T.rref()[1] if k >= gradients.rows]
         return [rows[k, :].dot(named).as_content_primitive()[1] for k in independent]
 
     @property

@@ -177,7 +177,7 @@ class _Screen:
 
     def abbreviations(self, expression: sp.Basic, derivation: Derivation) -> None:
         """The definitions that an expression rests on, which are printed once."""
-        if parts := derivation.parts_of(expression, self.defined):
+        if parts := derivation.definitions_in(expression, self.defined):
             self.sentence(phrases("equations")["here"])
             self.equation(in_parts(parts, self.letters))
             self.defined |= {part.symbol for part in parts}

@@ -351,7 +351,7 @@ def _nearest(trials: Sequence[_Trial], least: float, expected: str = "") -> list
 
 
 def _is_customary(reading: Reading, expected: str) -> bool:
-    """Whether the rotation is the expected one, or that of the names roll, pitch and yaw."""
+    """Whether the rotation is the expected one, or what roll, pitch and yaw usually mean."""
     goal = reading.goal
     if not goal.rotation or "q" not in goal.inputs:
         return False

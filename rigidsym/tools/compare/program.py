@@ -456,7 +456,7 @@ class _Run:
         return source if self.program.suffix in _SHARING else deepcopy(source)
 
     def link(self, tree: Tree) -> None:
-        """What is written to a reference, a view, or a copy in C# may be another name's too."""
+        """Two names may share one object: a reference, a view, or a copy in C#."""
         left, right = tree.parts
         is_view = right.kind == "index" or right.word in _VIEWS
         if right.kind == "call":
