@@ -18,7 +18,6 @@ from sympy.core.cache import clear_cache
 
 import rigidsym as rs
 from helpers.motions import derived
-from rigidsym.notes.formats.pdf import has_tex
 
 # The same examples in every run: a suite that is red today was red yesterday.
 settings.register_profile("same", derandomize=True, deadline=None)
@@ -52,13 +51,6 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     gc.freeze()  # what was imported stays
 
 
-def needed(is_there: bool, name: str) -> None:
-    """Without this program, a test is skipped, or fails where the program is required."""
-    if not is_there:
-        required = os.environ.get(f"RIGIDSYM_REQUIRE_{name.upper()}") == "1"
-        (pytest.fail if required else pytest.skip)(f"{name} is not installed")
-
-
 def forget(modules: Iterable[ModuleType]) -> None:
     """Empty what the functions of these modules keep, and not those that they import."""
     for module in modules:
@@ -88,34 +80,24 @@ def memory(request: pytest.FixtureRequest) -> Iterator[None]:
         KEPT["most"] = max(KEPT["most"], resident() + KEPT["more"])
 
 
-@pytest.fixture
-def tex() -> None:
-    needed(has_tex(), "TeX")
+def program(name: str, command: str) -> Callable[[], None]:
+    """A fixture that skips a test without this program, or fails where it is required."""
+
+    @pytest.fixture(scope="session", name=name.lower())
+    def needed() -> None:
+        if shutil.which(command) is None:
+            is_required = os.environ.get(f"RIGIDSYM_REQUIRE_{name.upper()}") == "1"
+            (pytest.fail if is_required else pytest.skip)(f"{name} is not installed")
+
+    return needed
 
 
-@pytest.fixture(scope="session")
-def chromium() -> None:
-    needed(shutil.which("chromium") is not None, "Chromium")
-
-
-@pytest.fixture(scope="session")
-def java() -> None:
-    needed(shutil.which("java") is not None, "Java")
-
-
-@pytest.fixture(scope="session")
-def coq() -> None:
-    needed(shutil.which("coqc") is not None, "Coq")
-
-
-@pytest.fixture(scope="session")
-def gappa() -> None:
-    needed(shutil.which("gappa") is not None, "Gappa")
-
-
-@pytest.fixture(scope="session")
-def node() -> None:
-    needed(shutil.which("node") is not None, "Node")
+tex, chromium, java = (
+    program("TeX", "pdflatex"),
+    program("Chromium", "chromium"),
+    program("Java", "java"),
+)
+coq, gappa, node = program("Coq", "coqc"), program("Gappa", "gappa"), program("Node", "node")
 
 
 @pytest.fixture

@@ -2,7 +2,8 @@
 
 One operator, constant, comparison, order of arguments or result of a statement is changed at a
 time, and the tests that execute this statement run in a forked process until one fails, the
-quickest first. They are found with the coverage of every test, which a run of the suite writes:
+quickest first. A seed draws the same changes as long as the package stays as it is. The tests are
+found with the coverage of every test, which a run of the suite writes:
 
     python -m pytest --cov=rigidsym --cov-context=test --cov-report= --junitxml=times.xml
 """
@@ -12,7 +13,6 @@ from __future__ import annotations
 import argparse
 import ast
 import importlib
-import json
 import os
 import random
 import resource
@@ -20,7 +20,7 @@ import sys
 from collections import Counter
 from collections.abc import Iterator
 from copy import deepcopy
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from importlib.machinery import ModuleSpec, SourceFileLoader
 from importlib.util import spec_from_file_location
 from itertools import accumulate
@@ -42,13 +42,12 @@ OTHER: dict[type[ast.AST], type[ast.AST]] = {
 
 @dataclass(frozen=True)
 class Mutant:
-    """A change of one node of a statement, which is found again where the statement has moved."""
+    """A change of one node of a statement."""
 
-    path: str  # of the module, "algebra/ring.py"
-    function: str  # "Ring.reduce", or "" outside all
-    statement: str  # its own expressions, without those of the statements inside
-    place: int  # of the node among those of the statement
-    after: str  # the expressions with the change
+    path: Path
+    statement: int  # among those of the file
+    node: int  # among those of the statement
+    about: str  # where it is, and the expressions with the change
 
 
 def statements(node: ast.AST, scope: str = "") -> Iterator[tuple[str, ast.stmt, list[ast.expr]]]:
@@ -90,33 +89,25 @@ def changed(node: ast.expr) -> bool:
     return True
 
 
-def spelled(expressions: list[ast.expr]) -> str:
-    return "; ".join(map(ast.unparse, expressions))
-
-
 def mutants(package: Path) -> Iterator[Mutant]:
     for path in sorted(package.rglob("*.py")):
-        for function, _, own in statements(ast.parse(path.read_text("utf-8"))):
+        for place, (function, _, own) in enumerate(statements(ast.parse(path.read_text("utf-8")))):
             nodes = [node for part in own for node in ast.walk(part)]
             in_text = {id(n) for f in nodes if isinstance(f, ast.JoinedStr) for n in ast.walk(f)}
-            for place, node in enumerate(nodes):
+            for k, node in enumerate(nodes):
                 copies = deepcopy(own)
-                copy = [n for part in copies for n in ast.walk(part)][place]
+                copy = [n for part in copies for n in ast.walk(part)][k]
                 if id(node) not in in_text and isinstance(copy, ast.expr) and changed(copy):
-                    where = path.relative_to(package).as_posix()
-                    yield Mutant(where, function, spelled(own), place, spelled(copies))
+                    where = f"{path.relative_to(package).as_posix()}:{function}"
+                    yield Mutant(path, place, k, f"{where} | {'; '.join(map(ast.unparse, copies))}")
 
 
-def applied(mutant: Mutant, package: Path) -> tuple[Path, ast.Module, range] | None:
-    """The module with the change, and the lines that it had; None where the statement is gone."""
-    for path in sorted(package.rglob("*.py"), key=lambda p: p != package / mutant.path):
-        tree = ast.parse(path.read_text("utf-8"))
-        for function, node, own in statements(tree):
-            if function == mutant.function and spelled(own) == mutant.statement:
-                changed([n for part in own for n in ast.walk(part)][mutant.place])
-                last = max(part.end_lineno or 0 for part in own)
-                return path, tree, range(node.lineno, last + 1)
-    return None
+def applied(mutant: Mutant) -> tuple[ast.Module, range]:
+    """The module with the change, and the lines that it had."""
+    tree = ast.parse(mutant.path.read_text("utf-8"))
+    _, node, own = [*statements(tree)][mutant.statement]
+    changed([n for part in own for n in ast.walk(part)][mutant.node])
+    return tree, range(node.lineno, max(part.end_lineno or 0 for part in own) + 1)
 
 
 @dataclass(frozen=True)
@@ -171,18 +162,18 @@ class QuickestFirst:
         items[:] = sorted(chosen, key=lambda item: order[item.nodeid])
 
 
-def is_noticed(loader: Changed, names: list[str], root: Path, limit: int) -> bool:
+def is_noticed(loader: Changed, names: list[str], limit: int) -> bool:
     """Whether one of the tests fails, or never ends, in a process of its own."""
     child = os.fork()
     if not child:
         resource.setrlimit(resource.RLIMIT_CPU, (limit, limit))
-        os.chdir(root)
-        sys.path[:0] = [str(root), str(root / "tests")]
+        os.chdir(ROOT)
+        sys.path[:0] = [str(ROOT), str(ROOT / "tests")]
         sys.meta_path.insert(0, loader)
         nowhere = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, 1)
         os.dup2(nowhere, 2)
-        os.environ["PYTHONPATH"] = str(root)
+        os.environ["PYTHONPATH"] = str(ROOT)
         files = sorted({name.partition("::")[0] for name in names})
         options = ["-qx", "-n0", "-m", "", "-p", "no:cacheprovider"]
         os._exit(int(pytest.main([*options, *files], plugins=[QuickestFirst(names)])))
@@ -195,31 +186,21 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--count", type=int, default=200)
     parser.add_argument("--seed", type=int, default=26)
-    parser.add_argument("--root", type=Path, default=ROOT, help="of the checkout with the tests")
-    parser.add_argument("--kept", type=Path, help="a file with mutants; it is written if missing")
     parser.add_argument("--most", type=float, default=12, help="seconds of tests for a mutant")
-    given = parser.parse_args()
-    package = given.root / "rigidsym"
-    if given.kept and given.kept.is_file():
-        chosen = [Mutant(**line) for line in json.loads(given.kept.read_text())][: given.count]
-    else:
-        chosen = random.Random(given.seed).sample([*mutants(package)], given.count)
-        if given.kept:
-            given.kept.write_text(json.dumps([asdict(mutant) for mutant in chosen]))
+    options = parser.parse_args()
+    chosen = random.Random(options.seed).sample([*mutants(ROOT / "rigidsym")], options.count)
     for name in IMPORTED_ONCE.split():
         importlib.import_module(name)
-    tests, count = Tests(given.root / ".coverage", given.root / "times.xml"), Counter[str]()
+    tests, count = Tests(ROOT / ".coverage", ROOT / "times.xml"), Counter[str]()
     for mutant in chosen:
-        change, word = applied(mutant, package), "gone"
-        if change is not None:
-            path, tree, lines = change
-            names = tests.of(path, lines, given.most)
-            module = ".".join(path.relative_to(given.root).with_suffix("").parts)
-            loader = Changed(module.removesuffix(".__init__"), str(path), tree)
-            limit = 30 + 5 * int(sum(tests.seconds[name] for name in names))
-            word = "noticed" if names and is_noticed(loader, names, given.root, limit) else "missed"
+        tree, lines = applied(mutant)
+        names = tests.of(mutant.path, lines, options.most)
+        module = ".".join(mutant.path.relative_to(ROOT).with_suffix("").parts)
+        loader = Changed(module.removesuffix(".__init__"), str(mutant.path), tree)
+        limit = 30 + 5 * int(sum(tests.seconds[name] for name in names))
+        word = "noticed" if names and is_noticed(loader, names, limit) else "missed"
         count[word] += 1
-        print(word, f"{mutant.path}:{mutant.function}", mutant.after, sep=" | ", flush=True)
+        print(f"{word} | {mutant.about}", flush=True)
     print(*(f"{word}: {number}" for word, number in count.most_common()), sep="\n")
 
 
