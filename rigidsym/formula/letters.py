@@ -76,6 +76,7 @@ class Letters:
     places: Mapping[sp.Expr, Place] = field(default_factory=dict)
     notation: Notation = DEFAULT
     length: VectorLength | None = None  # written in place of the components that make it up
+    own: Mapping[Formula, Formula] = field(default_factory=dict)  # in place of those of the notes
 
     def shortened(self, expression: sp.Expr) -> sp.Expr:
         """What is printed in place of an expression: the same, with the length where it has one."""

@@ -6,10 +6,9 @@ and the inertia tensor are used; sums over its particles follow from them (`mech
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from functools import cache, cached_property, partial
-from itertools import chain as chained, count
 
 import sympy as sp
 from sympy.polys.rings import PolyElement
@@ -18,10 +17,9 @@ from rigidsym.algebra.codec import codec_for
 from rigidsym.algebra.matrix import RingMatrix, hat
 from rigidsym.algebra.present import agrees, half_form, half_of_squares, shortest_of
 from rigidsym.errors import QuantityError
-from rigidsym.formula.reader import named
 from rigidsym.formula.tree import Formula, with_names
 from rigidsym.mechanics import particles
-from rigidsym.mechanics.derivation import Argument, Step, sentence_of
+from rigidsym.mechanics.derivation import Step, sentence_of
 from rigidsym.mechanics.dynamics.flow import Flow
 from rigidsym.mechanics.dynamics.lagrange import equations_of_motion
 from rigidsym.mechanics.kinematics.chain import Chain
@@ -32,8 +30,8 @@ from rigidsym.mechanics.mass.principal import Principal, principal_of
 from rigidsym.mechanics.prove import Prover
 from rigidsym.mechanics.quantities.catalogue import OF_BODY
 from rigidsym.mechanics.quantities.kinematics import KINEMATICS
-from rigidsym.mechanics.quantities.mass import BODY_ALONE, INERTIA_QUANTITIES, MASS
-from rigidsym.mechanics.quantities.table import DIRECTION, POINT
+from rigidsym.mechanics.quantities.mass import BODY_ALONE, INERTIA_QUANTITIES
+from rigidsym.mechanics.quantities.table import DIRECTION, POINT, own_letters, own_names
 from rigidsym.models.body import (
     BodyDescription,
     Composite,
@@ -276,56 +274,39 @@ class NamedRotation(BodyValues):
         return replace(step, expression=expression, proofs=(*step.proofs, *proofs))
 
 
-def total_mass(body: RigidBody, arguments: Collection[Argument]) -> sp.Symbol:
-    """The letter of the mass: its own, or M, or M₀ where an argument is printed as M, or M₀₀."""
-    if body.mass.is_Symbol:
-        return body.mass
-    name = "M"
-    while any(named(name) in each.notation for each in arguments):
-        name += "0"
-    return sp.Symbol(name)
-
-
-def moment_letters(
-    arguments: Iterable[Argument], moments: Sequence[sp.Expr]
-) -> tuple[sp.Symbol, ...]:
-    """I₁, I₂, I₃ for principal moments; J, K, I₀₁ where an argument is printed as one of these."""
-    letters = {
-        letter: symbol
-        for each in arguments
-        for letter, symbol in zip(each.notation, each.symbols, strict=True)
-    }
-    for stem in chained(("I_", "J_", "K_"), ("I_" + "0" * n for n in count(1))):
-        names = tuple(sp.Symbol(f"{stem}{k}") for k in (1, 2, 3))
-        pairs = zip(map(named, map(str, names)), moments, strict=True)
-        if all(letters.get(name, moment) == moment for name, moment in pairs):
-            break
-    return names
-
-
-def _in_letters(step: Step, names: Mapping[Formula, Formula]) -> Step:
+def _in_letters(step: Step, letters: Mapping[Formula, Formula]) -> Step:
     quantity = step.quantity
-    symbol, definition = with_names((quantity.symbol, quantity.definition), names)
-    proofs = [replace(proof, claim=with_names(proof.claim, names)) for proof in step.proofs]
+    symbol, definition = with_names((quantity.symbol, quantity.definition), letters)
+    proofs = [proof.in_letters(letters) for proof in step.proofs]
+    recursion = with_names(step.recursion, letters)
     quantity = quantity._replace(symbol=symbol, definition=definition)
-    return replace(step, quantity=quantity, proofs=tuple(proofs))
+    return replace(step, quantity=quantity, proofs=tuple(proofs), recursion=recursion)
+
+
+def described(
+    model: RotationModel,
+    body: RigidBody | BodyDescription | Distribution,
+    forces: Forces | None,
+) -> tuple[RigidBody, Forces | None]:
+    """The body, integrated, with the constants of the forces, and the forces in its symbols."""
+    whole = rigid_body(body)
+    if forces is None:
+        return whole, None
+    forces = forces.in_symbols_of(whole)
+    return forces.with_parameters(whole, model), forces
 
 
 def steps_of_body(
     model: RotationModel,
-    body: RigidBody | BodyDescription | Distribution,
+    whole: RigidBody,
     forces: Forces | None,
     only: Collection[str],
     chain: Chain | None,
 ) -> tuple[BodyValues, list[Step], Flow | None]:
-    """The body, integrated; the steps to its quantities; and its equations of motion under forces.
+    """The body; the steps to its quantities; and its equations of motion under forces.
 
     With a `chain`, R and Ω′ are those that it names.
     """
-    whole = rigid_body(body)
-    if forces is not None:
-        forces = forces.in_symbols_of(whole)
-        whole = forces.with_parameters(whole, model)
     is_fixed = (
         forces is not None
         and all(part.rotation for part in forces.parts)  # no particle moves
@@ -335,11 +316,6 @@ def steps_of_body(
     wanted = only or {name for name, q in OF_BODY.items() if not (is_fixed and q.of_centre)}
     values = (NamedRotation if chain else BodyValues)(model, whole, has_fixed_point=is_fixed)
     steps = [step for n, q in OF_BODY.items() if n in wanted and (step := values.step(q))]
-    letters = {MASS: named(total_mass(whole, values.arguments.values()).name)}
-    if any("principal" in step.quantity.name for step in steps) and values.principal:
-        own = moment_letters(values.arguments.values(), values.principal.moments)
-        letters |= {named(f"I_{k}"): named(str(letter)) for k, letter in enumerate(own, start=1)}
-    steps = [_in_letters(step, letters) for step in steps]
     if isinstance(values, NamedRotation) and chain:
         steps = [values.renamed(step, chain) for step in steps]
     # of a body alone, all quantities that it has are asked for
@@ -353,4 +329,5 @@ def steps_of_body(
     if absent := [q for n, q in entries.items() if n in only and n not in names]:
         reasons = (f"no quantity {q.name}: {sentence_of(q.without)}" for q in absent)
         raise QuantityError(f"{whole.name} has {'; '.join(reasons)}")
-    return values, steps, motion
+    letters = own_letters(own_names(values.arguments.values(), whole, forces))
+    return values, [_in_letters(step, letters) for step in steps] if letters else steps, motion

@@ -13,7 +13,7 @@ import sympy as sp
 from rigidsym.algebra.zeros import Place as Place
 from rigidsym.errors import QuantityError, TemplateFault, offer
 from rigidsym.formula.reader import Sentence, formula, named
-from rigidsym.formula.tree import NOTHING, Formula
+from rigidsym.formula.tree import NOTHING, Formula, with_names
 from rigidsym.models.rotation import Citation, RotationModel
 
 if TYPE_CHECKING:
@@ -65,6 +65,10 @@ class Proof:
     @property
     def is_exact(self) -> bool:
         return self.status == "exact"
+
+    def in_letters(self, letters: Mapping[Formula, Formula]) -> Self:
+        """The proof with other letters in its claim."""
+        return replace(self, claim=with_names(self.claim, letters))
 
 
 Shape = Literal["scalar", "vector", "matrix"]  # (), (n,) and (m, n) in kernels and JSON

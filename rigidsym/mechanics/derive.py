@@ -70,7 +70,12 @@ def derive(
         check_quantity(name, body=body, forces=forces)
     if BODY_ALONE in only:
         only = {*only, *OF_BODY_ALONE}
-    chain, values = Chain(model) if is_shorter(model) else None, Values(model)
+    if body is not None:
+        from rigidsym.mechanics.body import described, steps_of_body
+
+        body, forces = described(model, body, forces)
+    taken = [parameter.symbol.name for parameter in body.parameters] if body else []
+    chain, values = Chain(model, taken) if is_shorter(model) else None, Values(model)
     turning = [name for name in only if name in KINEMATICS]
     work, wanted = chain or values, turning or only
     rotation, *others = KINEMATICS.values()
@@ -90,8 +95,6 @@ def derive(
     singularities = singularities_of(values) if has_rates and not chain else None
     motion: Flow | None = None
     if body is not None:
-        from rigidsym.mechanics.body import steps_of_body
-
         values, moving, motion = steps_of_body(model, body, forces, only, chain)
         steps += moving
     arguments, definer, is_driven = values.arguments, chain, False

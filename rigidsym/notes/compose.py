@@ -20,10 +20,12 @@ from rigidsym.errors import offer
 from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.formula.reader import formula, text_of
 from rigidsym.formula.scalars import formula_of
-from rigidsym.formula.tree import COMMA, Bracket, Formula, joined
+from rigidsym.formula.tree import COMMA, Bracket, Formula, joined, with_names
 from rigidsym.mechanics.conversions.function import SHEPPERD, outer_product
 from rigidsym.mechanics.derivation import OF_RATES, Derivation, Proof, Statement, Step, sentence_of
+from rigidsym.mechanics.quantities.dynamics import LETTERS
 from rigidsym.mechanics.quantities.kinematics import ROTATION
+from rigidsym.mechanics.quantities.table import own_letters, own_names
 from rigidsym.models.parametrisations import GIVEN
 from rigidsym.models.rotation import SOURCES, Citation, hat, lecture
 from rigidsym.notes.document import (
@@ -103,6 +105,11 @@ class Composer:
         self.functions = tuple(functions)
         self.conversions = conversions
         self.letters = letters_of(derivation.arguments, notation, derivation.model)
+        if derivation.body:
+            body, forces = derivation.body, derivation.forces
+            own = own_letters(own_names(derivation.arguments, body, forces))
+            names = {symbol: with_names(letter, own) for symbol, letter in LETTERS.items()}
+            self.letters = replace(self.letters, names={**self.letters.names, **names}, own=own)
         self.symbols = symbols_of(derivation)
         self.is_audit = is_audit
         self.cited: set[Citation] = set()

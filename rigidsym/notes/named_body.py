@@ -13,13 +13,13 @@ from dataclasses import replace
 import sympy as sp
 
 from rigidsym.formula.reader import formula, named
-from rigidsym.formula.tree import PLUS, Formula, bracketed, joined
-from rigidsym.mechanics.body import moment_letters, total_mass
-from rigidsym.mechanics.derivation import Derivation
+from rigidsym.formula.tree import NOTHING, PLUS, Formula, bracketed, joined, with_names
+from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.derive import derive
+from rigidsym.mechanics.dynamics.flow import free_turning
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
 from rigidsym.mechanics.quantities.mass import INERTIA, INERTIA_QUANTITIES, STEINER
-from rigidsym.mechanics.quantities.table import POINT
+from rigidsym.mechanics.quantities.table import POINT, own_names
 from rigidsym.models.body import Parameter, RigidBody, given_inertia
 
 Parts = Sequence[tuple[sp.Symbol, sp.Expr]]  # names with what they stand for
@@ -38,20 +38,21 @@ def in_names(derivation: Derivation) -> tuple[Derivation, Parts]:
     body = derivation.body
     if body is None:
         return derivation, ()
-    is_short = all(entry.is_Atom for entry in (*body.inertia, body.mass))
+    is_short = all(entry.is_Atom for entry in body.inertia)
     has_offset = any(body.centre)
-    moments = moment_letters(derivation.arguments, body.inertia.diagonal())
-    mass = total_mass(body, derivation.arguments)
-    parts, letters = _named(body, mass, () if is_short else moments)
+    own = own_names(derivation.arguments, body, derivation.forces)
+    moments = [] if is_short else [sp.Symbol(own[f"I_{k}"]) for k in (1, 2, 3)]
+    mass = body.mass if isinstance(body.mass, sp.Symbol) else sp.Symbol(own["M"])
+    parts, letters = _named(body, mass, moments)
     renamed: Sequence[str] = _ABOUT_POINT if has_offset else ()
-    if not is_short:
+    if not is_short or mass != body.mass:
         renamed = [n for n in (*INERTIA_QUANTITIES, *ENERGY_QUANTITIES) if n not in _AS_DESCRIBED]
         if not body.inertia.is_diagonal():
             renamed.remove("inertia_tensor")
     present = {step.quantity.name for step in derivation.steps}
     taken = {letter for argument in derivation.arguments for letter in argument.notation}
-    names = {*(OFFSET if has_offset else ()), letters.mass} - {body.mass}
-    if present.isdisjoint(renamed) or taken & {named(str(name)) for name in names}:
+    names = {named(str(name)) for name in OFFSET} if has_offset else set()
+    if present.isdisjoint(renamed) or taken & names:
         return derivation, ()
     again = derive(derivation.model, [n for n in renamed if n in present], body=letters)
     expressions = {step.quantity.name: step.expression for step in again.steps}
@@ -64,8 +65,19 @@ def in_names(derivation: Derivation) -> tuple[Derivation, Parts]:
             expression = expression.xreplace(dict(zip(POINT, OFFSET, strict=True)))
             if name == "inertia_tensor_point":
                 quantity = quantity._replace(definition=steiner)
+        elif name == "angular_acceleration_from_torque" and moments:
+            expression = free_turning(letters.inertia, derivation.argument("torque").symbols)
         steps.append(replace(step, quantity=quantity, expression=expression))
+    if mass != body.mass and "mass" not in present and any(_holds(s, mass) for s in steps):
+        parts = (*parts, (mass, body.mass))
     return replace(derivation, steps=tuple(steps)), parts
+
+
+def _holds(step: Step, mass: sp.Symbol) -> bool:
+    """Whether the letter of the mass is in the equation of a step, or in what is claimed of it."""
+    formulas = (step.quantity.definition, *(proof.claim for proof in step.proofs))
+    letter = {named(mass.name): NOTHING}
+    return step.expression.has(mass) or with_names(formulas, letter) != formulas
 
 
 def _named(body: RigidBody, mass: sp.Symbol, own: Sequence[sp.Symbol]) -> tuple[Parts, RigidBody]:

@@ -25,7 +25,7 @@ from rigidsym.errors import AlgebraError, TemplateFault
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import formula, text_of
 from rigidsym.formula.scalars import formula_of
-from rigidsym.formula.tree import Formula
+from rigidsym.formula.tree import Formula, with_names
 from rigidsym.models.rotation import Citation
 from rigidsym.notes.document import (
     Cited,
@@ -111,10 +111,10 @@ def sections_of(name: str, letters: Letters, **facts: Any) -> Iterator[Section]:
         _check_ends(rest)
         if heading:
             yield section._replace(blocks=tuple(blocks))
-            title = text_of(_text(heading.strip("# "), marks.things))
+            title = text_of(_text(heading.strip("# "), marks))
             section, blocks = Section(title, ()), []
         if rest.strip():
-            blocks += _blocks(rest.strip(), marks.things)
+            blocks += _blocks(rest.strip(), marks)
     yield section._replace(blocks=tuple(blocks))
 
 
@@ -158,65 +158,65 @@ def figure_with(name: str, drawing: Drawing, letters: Letters, **facts: Any) -> 
     return Figure(drawing, caption, others[0] if others else ())
 
 
-def _blocks(chunk: str, things: list[Any]) -> Iterator[NoteBlock]:
+def _blocks(chunk: str, marks: _Marks) -> Iterator[NoteBlock]:
     if chunk.startswith("$$"):
         inside = chunk.strip("$").strip()
-        equations = tuple(_equation(part, things) for part in inside.split(r"\qquad"))
+        equations = tuple(_equation(part, marks) for part in inside.split(r"\qquad"))
         yield EquationRow(equations) if len(equations) > 1 else equations[0]
     elif chunk.startswith(("|", _TABLE)):
-        yield _table(chunk, things)
-    elif all(isinstance(thing, _BLOCKS) for thing in _marked(chunk, things)):
-        for thing in _marked(chunk, things):
+        yield _table(chunk, marks)
+    elif all(isinstance(thing, _BLOCKS) for thing in _marked(chunk, marks)):
+        for thing in _marked(chunk, marks):
             yield from thing if isinstance(thing, list) else (thing,)
     else:
-        yield Paragraph(_text(chunk, things))
+        yield Paragraph(_text(chunk, marks))
 
 
-def _marked(chunk: str, things: list[Any]) -> Iterator[Any]:
+def _marked(chunk: str, marks: _Marks) -> Iterator[Any]:
     """The things of a chunk that has nothing but marks, and None for anything else."""
     for letter in chunk.replace("\n", ""):
-        yield things[ord(letter) - _FIRST] if re.match(_MARK, letter) else None
+        yield marks.things[ord(letter) - _FIRST] if re.match(_MARK, letter) else None
 
 
-def _equation(typed: str, things: list[Any]) -> Equation:
+def _equation(typed: str, marks: _Marks) -> Equation:
     """Sides that are equal; a matrix as the last of them may be listed where it is too wide."""
     *sides, last = re.split(r"\s=\s", typed.strip())
-    thing = things[ord(last) - _FIRST] if re.fullmatch(_MARK, last) else None
+    thing = marks.things[ord(last) - _FIRST] if re.fullmatch(_MARK, last) else None
     if isinstance(thing, sp.MatrixBase):
-        return Equation(
-            sides=tuple(_formula(s, things) for s in sides), matrix=thing.as_immutable()
-        )
-    return Equation(sides=tuple(_formula(side, things) for side in (*sides, last)))
+        return Equation(sides=tuple(_formula(s, marks) for s in sides), matrix=thing.as_immutable())
+    return Equation(sides=tuple(_formula(side, marks) for side in (*sides, last)))
 
 
-def _formula(typed: str, things: list[Any]) -> Formula:
+def _formula(typed: str, marks: _Marks) -> Formula:
     """A typed formula, with the facts in it."""
-    parts = [things[ord(mark) - _FIRST] for mark in re.findall(_MARK, typed)]
+    parts = [marks.things[ord(mark) - _FIRST] for mark in re.findall(_MARK, typed)]
     places = iter(range(1, 1 + len(parts)))
     try:
-        return formula(re.sub(_MARK, lambda _: f"#{next(places)}", typed.strip()), *parts)
+        read = formula(re.sub(_MARK, lambda _: f"#{next(places)}", typed.strip()), *parts)
+        # facts may hold letters of the user's, which stay
+        return read if parts else with_names(read, marks.letters.own)
     except AlgebraError as error:
         raise TemplateFault(f"{_place_of(typed)}: {error}") from error
 
 
-def _table(chunk: str, things: list[Any]) -> NoteTable:
+def _table(chunk: str, marks: _Marks) -> NoteTable:
     """The rows of a table, below "Table:" and its caption; `:---` begins a column of words."""
     lines = chunk.splitlines()
     caption = lines.pop(0).removeprefix(_TABLE).strip() if chunk.startswith(_TABLE) else ""
     rows = [[cell.strip() for cell in line.strip().strip("|").split("|")] for line in lines]
     of_words = next((k for k, cell in enumerate(rows[1]) if cell.startswith(":")), None)
-    head, *others = (tuple(_text(cell, things) for cell in row) for row in (rows[0], *rows[2:]))
-    return NoteTable(text_of(_text(caption, things)), head, tuple(others), of_words)
+    head, *others = (tuple(_text(cell, marks) for cell in row) for row in (rows[0], *rows[2:]))
+    return NoteTable(text_of(_text(caption, marks)), head, tuple(others), of_words)
 
 
-def _text(words: str, things: list[Any]) -> Text:
+def _text(words: str, marks: _Marks) -> Text:
     """The spans of a line, in which neighbouring words are one span."""
     line = " ".join(part.strip() for part in words.splitlines()).replace("&nbsp;", "\u00a0")
     spans: list[Span] = []
     end = 0
     for match in _INLINE.finditer(line):
         spans.append(line[end : match.start()])
-        spans += _spans(match, things)
+        spans += _spans(match, marks)
         end = match.end()
     spans.append(line[end:])
     text: list[Span] = []
@@ -226,19 +226,19 @@ def _text(words: str, things: list[Any]) -> Text:
     return tuple(span for span in text if span != "")
 
 
-def _spans(match: re.Match[str], things: list[Any]) -> Iterable[Span]:
+def _spans(match: re.Match[str], marks: _Marks) -> Iterable[Span]:
     if match["math"]:
-        return (_formula(match["math"], things),)
+        return (_formula(match["math"], marks),)
     if match["strong"]:
-        return (Strong(text_of(_text(match["strong"], things))),)
+        return (Strong(text_of(_text(match["strong"], marks))),)
     if match["dollar"]:
         return ("$",)
     if match["code"]:  # in which only facts are read
-        code = re.sub(_MARK, lambda mark: text_of(_fact(mark[0], things)), match["code"])
+        code = re.sub(_MARK, lambda mark: text_of(_fact(mark[0], marks)), match["code"])
         return (Code(code),)
-    return _fact(match["mark"], things)
+    return _fact(match["mark"], marks)
 
 
-def _fact(mark: str, things: list[Any]) -> Text:
-    thing = things[ord(mark) - _FIRST]
+def _fact(mark: str, marks: _Marks) -> Text:
+    thing = marks.things[ord(mark) - _FIRST]
     return thing if type(thing) is tuple else (thing,)

@@ -9,9 +9,8 @@ import pytest
 import sympy as sp
 
 import rigidsym as rs
-from rigidsym.mechanics.body import total_mass
 from rigidsym.mechanics.quantities.mass import OF_BODY_ALONE
-from rigidsym.mechanics.quantities.table import POINT
+from rigidsym.mechanics.quantities.table import POINT, own_names
 from rigidsym.models.rotation import TIME
 from rigidsym.motion import Motion
 from rigidsym.notes.document import Equation, Figure
@@ -121,7 +120,7 @@ def test_what_is_shown_in_names_has_the_value_that_was_derived(letters):
     shown, moments = in_names(derived)
     assert derived.step("principal_moments").quantity.symbol.text == f"({own}₁, {own}₂, {own}₃)"
     offset = zip(sp.symbols("d_x:z"), sp.Matrix(POINT) - derived.body.centre, strict=True)
-    mass = total_mass(derived.body, derived.arguments)
+    mass = sp.Symbol(own_names(derived.arguments, derived.body)["M"])
     values = {mass: derived.body.mass, **dict(moments), **dict(offset)}
     rng = np.random.default_rng(1)
     symbols = {s for argument in derived.arguments for s in argument.symbols}

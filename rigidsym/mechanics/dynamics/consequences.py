@@ -18,7 +18,7 @@ from typing import Any, TypeAlias
 import sympy as sp
 
 from rigidsym.formula.reader import formula, named
-from rigidsym.formula.tree import Formula
+from rigidsym.formula.tree import Formula, with_names
 from rigidsym.mechanics.derivation import Consequence
 from rigidsym.mechanics.prove import identity
 from rigidsym.mechanics.quantities import dynamics as claims
@@ -33,7 +33,7 @@ _LONGEST = 40  # operations of a condition for steady motion that tells a reader
 
 
 def _consequence(
-    subject: str,
+    work: Any,
     name: str,
     left: Written,
     value: Written,
@@ -41,30 +41,31 @@ def _consequence(
     where: Sequence[tuple[Written, sp.Expr]] = (),
     **spans: Any,
 ) -> Consequence:
-    """A consequence for a rotation `subject`, with its claims and their residuals."""
+    """A consequence of the equations of motion `work`, with its claims and their residuals."""
+
+    def read(part: Written) -> Any:
+        return with_names(formula(part), work.letters) if isinstance(part, str) else part
+
+    subject = work.model.name
     return Consequence(
         name=name,
         spans=spans,
-        left=_read(left),
-        value=_read(value),
-        proofs=tuple(identity(sp.ImmutableMatrix([*e]), _read(n), subject) for n, e in proofs),
-        where=tuple((_read(n), e) for n, e in where),
+        left=read(left),
+        value=read(value),
+        proofs=tuple(identity(sp.ImmutableMatrix([*e]), read(n), subject) for n, e in proofs),
+        where=tuple((read(n), e) for n, e in where),
     )
 
 
-def _read(value: Written) -> Any:
-    return formula(value) if isinstance(value, str) else value
-
-
 def of_free_body(
-    subject: str, inertia: sp.ImmutableMatrix, slopes: Sequence[sp.Expr]
+    work: Any, inertia: sp.ImmutableMatrix, slopes: Sequence[sp.Expr]
 ) -> Iterator[Consequence]:
     """What is known of a body on which nothing acts; `slopes` are dΩ′/dt."""
     omega = sp.Matrix(OMEGA_BODY)
     momentum = inertia * omega
     energy = omega.dot(momentum) / 2
     yield _consequence(  # L is normal to the ellipsoid of energy, whose tangent plane is at rest
-        subject,
+        work,
         "poinsot",
         "d",
         2 * _ENERGY / _LENGTH,
@@ -77,15 +78,15 @@ def of_free_body(
     if not inertia.is_diagonal():
         return
     moments = A, B, C = tuple(inertia.diagonal())
-    yield from _principal_axes(subject, moments, slopes)
+    yield from _principal_axes(work, moments, slopes)
     if A == B != C:
-        yield from _symmetric(subject, inertia, slopes)
+        yield from _symmetric(work, inertia, slopes)
     elif len({A, B, C}) == 3:
-        yield _asymmetric(subject, moments)
+        yield _asymmetric(work, moments)
 
 
 def _principal_axes(
-    subject: str, moments: Sequence[sp.Expr], slopes: Sequence[sp.Expr]
+    work: Any, moments: Sequence[sp.Expr], slopes: Sequence[sp.Expr]
 ) -> Iterator[Consequence]:
     """A deviation along the axes i and j obeys dΩ_i/dt = a Ω_j and dΩ_j/dt = b Ω_i, so that it
     grows or turns with λ² = a b; axes that the moments do not fix are left out.
@@ -104,11 +105,11 @@ def _principal_axes(
             first = "symmetry_axis" if one == other else "principal_axis"
             name = "another_axis" if name else first
             proof = (r"\lambda^2 = a b", [a * b - squared])
-            yield _consequence(subject, name, r"\lambda^2", squared, proof, axis=axis, rate=spin)
+            yield _consequence(work, name, r"\lambda^2", squared, proof, axis=axis, rate=spin)
 
 
 def _symmetric(
-    subject: str, inertia: sp.ImmutableMatrix, slopes: Sequence[sp.Expr]
+    work: Any, inertia: sp.ImmutableMatrix, slopes: Sequence[sp.Expr]
 ) -> Iterator[Consequence]:
     """Ω′ turns about the axis of symmetry: dΩ₁/dt = −κ Ω₂, dΩ₂/dt = κ Ω₁, Ω₃ constant.
 
@@ -119,7 +120,7 @@ def _symmetric(
     kappa = (along - across) / across * third
     residual = [slopes[0] + kappa * second, slopes[1] - kappa * first, slopes[2]]
     claim = r"\dot{\Omega}'_1 + i\dot{\Omega}'_2 = i\kappa(\Omega'_1 + i\Omega'_2)"
-    yield _consequence(subject, "symmetric_body", r"\kappa", kappa, (claim, residual))
+    yield _consequence(work, "symmetric_body", r"\kappa", kappa, (claim, residual))
     angle, precession = sp.Dummy("beta"), _LENGTH / across
     spin = -kappa.xreplace({third: _LENGTH * sp.cos(angle) / along})
     # Regular precession: with the third axis of space along L, the angle β is constant,
@@ -130,7 +131,7 @@ def _symmetric(
     momentum = rotation * inertia * sp.Matrix([skew[2, 1], skew[0, 2], skew[1, 0]])
     claim = r"\R\,\I'\,\Om' = \begin{pmatrix}0 \\ 0 \\ \left|\L\right|\end{pmatrix}"
     yield _consequence(
-        subject,
+        work,
         "symmetric_body_in_space",
         r"\mathbf{R}(t)",
         r"\R_z(\alpha_0 + \dot{\alpha}t)\,\R_x(\beta)\,\R_z(\gamma_0 + \dot{\gamma}t)",
@@ -143,7 +144,7 @@ def _symmetric(
     )
 
 
-def _asymmetric(subject: str, moments: Sequence[sp.Expr]) -> Consequence:
+def _asymmetric(work: Any, moments: Sequence[sp.Expr]) -> Consequence:
     """Ω′ = (a cn, b sn, c dn) for A < B < C and L² > 2 E B."""
     A, B, C = moments
     # Landau and Lifshitz, section 37. The derivatives cn' = −sn dn, sn' = cn dn and dn' = −k² sn cn
@@ -160,7 +161,7 @@ def _asymmetric(subject: str, moments: Sequence[sp.Expr]) -> Consequence:
         A * a * (1 - s**2) + B * b * s**2 + C * c * (1 - modulus * s**2) - 2 * _ENERGY,
     ]
     return _consequence(
-        subject,
+        work,
         "asymmetric_body",
         BODY.omega,
         r"\begin{pmatrix}a\,\operatorname{cn}(\tau t, k) \\ b\,\operatorname{sn}(\tau t, k) \\ "
@@ -181,27 +182,29 @@ class OneDimension:
         q, momenta = work.model.coordinates, work.present.matrix(work.momenta)
         # All but the k-th coordinate are ignorable.
         others = [j for j in range(len(q)) if j != k]
-        self.subject, self.q, self.rate = work.model.name, q[k], sp.diff(q[k], TIME)
+        self.work, self.q, self.rate = work, q[k], sp.diff(q[k], TIME)
         self.mass = work.present.matrix(work.mass_matrix)[k, k]  # m, of ½ m θ̇²
         self.potential = work.effective  # V_eff in θ and p_j
         self.acceleration = work.present.matrix(*work.solved)[k]
         self.momenta = {work.arguments["momenta"].symbols[j]: momenta[j] for j in others}  # p_j
         self.rates = {sp.diff(q[j], TIME): q[j] for j in others}
-        # the energy, cos θ, and all momenta if they are equal, in letters that nobody has taken
-        taken = {symbol.name for symbol in work.whole.free_symbols}
-        self.E, self.u, self.p = (sp.Symbol(n + "_0" * (n in taken)) for n in ("E", "u", "p"))
+        # the energy, cos θ, and all momenta if they are equal
+        self.E, self.u, self.p = (sp.Symbol(work.own_names[name]) for name in ("E", "u", "p"))
         self.values = {**self.momenta, self.E: work.whole}
 
     def consequences(self) -> Iterator[Consequence]:
-        value = self.mass * self.rate**2 / 2 + self.potential
-        claim = r"E = \tfrac{1}{2}m\dot{q}^2 + V_{\mathrm{eff}}"
+        value, own = self.mass * self.rate**2 / 2 + self.potential, _name(self.q)
+        names = (named(self.E.name), own, _name(self.q, order=1))
+        claim = formula(r"#1 = \tfrac{1}{2}\,p_{#2}\,#3 + V_{\mathrm{eff}}", *names)
         yield self._follows("effective_potential", "E", value, claim, self.E - value, q=self.q)
-        name, claim = "other_coordinates", r"\dot{q} = \frac{\partial V_{\mathrm{eff}}}{\partial p}"
+        name = "other_coordinates"
         for (rate, q), p in zip(self.rates.items(), self.momenta, strict=True):
             # each term as one fraction, with its factors if that is shorter
             terms = sp.Add.make_args(sp.diff(self.potential, p))
             value = sp.Add(*(min(sp.cancel(e), sp.factor(e), key=sp.count_ops) for e in terms))
-            spans = {"own": _name(self.q), "angle": _name(q), "rate": _name(q, order=1)}
+            spans = {"own": own, "angle": _name(q), "rate": _name(q, order=1)}
+            names = (spans["rate"], spans["angle"])
+            claim = formula(r"#1 = \frac{\partial V_{\mathrm{eff}}}{\partial p_{#2}}", *names)
             yield self._follows(name, rate, value, claim, rate - value, **spans)
             name = "another_coordinate"
         if len(self.rates) == 2:
@@ -224,7 +227,7 @@ class OneDimension:
         """A consequence; in a residual with θ(t), E and p_j are those of the motion, else free."""
         if residual.has(self.q):
             residual = residual.xreplace(self.values)
-        return _consequence(self.subject, name, left, value, (claim, [residual]), **spans)
+        return _consequence(self.work, name, left, value, (claim, [residual]), **spans)
 
     def _steady(self) -> Iterator[Consequence]:
         """θ at rest: a condition on the rate of the precession, quadratic for a top."""
@@ -251,7 +254,8 @@ class OneDimension:
             value = condition.as_expr().xreplace({x: turning})
             if sp.count_ops(value) <= _LONGEST:
                 residual = of_spin - sp.cancel(of_spin / value) * value
-                value, claim = sp.collect(value, turning), r"\ddot{q} = 0"
+                value, claim = sp.collect(value, turning), _name(self.q, order=2)
+                claim = formula("#1 = 0", claim)
                 yield self._follows("steady_motion", "0", value, claim, residual, q=self.q)
             return
 

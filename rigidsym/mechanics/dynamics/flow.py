@@ -18,15 +18,21 @@ from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.present import presenter_for
 from rigidsym.errors import ModelError
 from rigidsym.formula.reader import named
-from rigidsym.formula.tree import Formula
+from rigidsym.formula.tree import Formula, with_names
 from rigidsym.mechanics.derivation import Consequence, FirstIntegral, Proof, Quantity, Step
 from rigidsym.mechanics.dynamics.consequences import of_free_body
 from rigidsym.mechanics.kinematics.chain import Chain
 from rigidsym.mechanics.kinematics.workspace import Workspace
 from rigidsym.mechanics.quantities import dynamics as claims
-from rigidsym.mechanics.quantities.table import arguments_of, arguments_of_flow, arguments_of_motion
+from rigidsym.mechanics.quantities.table import (
+    arguments_of,
+    arguments_of_flow,
+    arguments_of_motion,
+    own_letters,
+    own_names,
+)
 from rigidsym.models.body import RigidBody
-from rigidsym.models.forces import Forces
+from rigidsym.models.forces import OMEGA_BODY, Forces
 from rigidsym.models.rotation import TIME, RotationModel
 
 # A part of the state, and its time derivative as numerators over one divisor.
@@ -49,7 +55,9 @@ class Flow(Workspace):
     def __init__(self, model: RotationModel, body: RigidBody, forces: Forces, codec: Codec) -> None:
         self.model, self.forces, self.codec = model, forces, codec
         self.body: RigidBody = body
-        self.arguments = {a.name: a for a in arguments_of(model)}
+        self.arguments = {a.name: a for a in arguments_of(model, body)}
+        self.own_names = own_names(self.arguments.values(), body, forces)
+        self.letters = own_letters(self.own_names)
         self.added = arguments_of_motion(model)  # by the equations of motion
         self.added += arguments_of_flow([self.arguments["q"], self.arguments[self.second]])
         self.arguments |= {a.name: a for a in self.added}
@@ -101,7 +109,14 @@ class Flow(Workspace):
             self.constant(name, named(name), value)
             for name, value in self.forces.first_integrals.items()
         )
-        return (*self.own_integrals(), *claimed)
+        letters = self.letters
+        own = (
+            each._replace(
+                symbol=letters.get(each.symbol, each.symbol), proof=each.proof.in_letters(letters)
+            )
+            for each in self.own_integrals()
+        )
+        return (*own, *claimed)
 
     def own_integrals(self) -> Iterator[FirstIntegral]:
         """The first integrals that this form of the equations looks for."""
@@ -110,9 +125,10 @@ class Flow(Workspace):
     def consequences(self) -> Iterator[Consequence]:
         """What follows of the motion as a whole."""
         if not self.driving.is_zero():
+            rate = claims.energy.presented(self.traits).laws[0].claim
             yield Consequence(
                 name="driven_energy",
-                spans={"rate": claims.energy.presented(self.traits).laws[0].claim},
+                spans={"rate": with_names(rate, self.letters)},
                 left=claims.DRIVING,
                 value=self.present.matrix(self.driving)[0],
             )
@@ -120,7 +136,7 @@ class Flow(Workspace):
             # The results for the free body are about dΩ′/dt at N′ = 0.
             still = dict.fromkeys(self.arguments["torque"].symbols, sp.S.Zero)
             slopes = self.free_turning.xreplace(still)
-            yield from of_free_body(self.model.name, self.body.inertia, [*slopes])
+            yield from of_free_body(self, self.body.inertia, [*slopes])
 
     def in_state(self, value: sp.Expr) -> sp.Expr:
         """The value with Ω′ written in the state."""
@@ -157,12 +173,7 @@ class Flow(Workspace):
 
     @cached_property
     def free_turning(self) -> sp.ImmutableMatrix:
-        """dΩ′/dt for free Ω′ and N′, in a ring of their own."""
-        omega, torque = self.arguments["omega_body"].symbols, self.arguments["torque"].symbols
-        # Ω′ and N′ are independent symbols here, so no angle occurs and the ring stays small.
-        codec = codec_for([e for e in (*self.body.inertia, *omega, *torque) if e != 0], order=0)
-        tensor, w, n = codec.matrix(self.body.inertia), *map(codec.column, (omega, torque))
-        return presenter_for(codec).matrix(*solved_euler(tensor, w, n, codec.ring.one))
+        return free_turning(self.body.inertia, self.arguments["torque"].symbols)
 
     def excess_torque(self, slopes: sp.MatrixBase) -> sp.MatrixBase:
         """I′ dΩ′/dt + Ω′ × I′ Ω′ − N′."""
@@ -211,6 +222,20 @@ class LagrangeForm(Flow):
             if constant is not None:
                 name = f"momentum_{q.func.__name__}"
                 yield FirstIntegral(name, symbols[k], momenta[k], constant)
+
+
+def free_turning(inertia: sp.ImmutableMatrix, torque: Sequence[sp.Expr]) -> sp.ImmutableMatrix:
+    """dΩ′/dt for free Ω′ and N′, in a ring of their own."""
+    # Ω′ and N′ are independent symbols here, so no angle occurs and the ring stays small.
+    codec = codec_for([e for e in (*inertia, *OMEGA_BODY, *torque) if e != 0], order=0)
+    tensor, w, n = codec.matrix(inertia), *map(codec.column, (OMEGA_BODY, torque))
+    above, below = solved_euler(tensor, w, n, codec.ring.one)
+    if not inertia.is_diagonal():
+        return presenter_for(codec).matrix(above, below)
+    # Each component over its own moment: the ring finds no common factor of fractions.
+    rows = (n - turned(tensor, w)).entries
+    parts = [(RingMatrix.column(codec.ring, [row]), tensor[k, k]) for k, row in enumerate(rows)]
+    return sp.ImmutableMatrix([presenter_for(codec).matrix(*part)[0] for part in parts])
 
 
 def turned(tensor: RingMatrix, omega: RingMatrix) -> RingMatrix:

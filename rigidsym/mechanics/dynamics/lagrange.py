@@ -58,7 +58,8 @@ def equations_of_motion(
             'angles; expected such a rotation, or method = "euler"'
         )
     if chain is not None or forces.parts:
-        return TreeEquations(model, body, forces, chain or Chain(model))
+        taken = (parameter.symbol.name for parameter in body.parameters)
+        return TreeEquations(model, body, forces, chain or Chain(model, taken))
     return LagrangeEquations(model, body, forces)
 
 

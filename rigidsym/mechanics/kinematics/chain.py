@@ -176,11 +176,12 @@ def kinds_of(turns: Iterable[Turn], model: RotationModel) -> tuple[tuple[Turn, C
 class Names:
     """Symbols for parts of the expressions about one model, each defined by those before it."""
 
-    def __init__(self, model: RotationModel) -> None:
+    def __init__(self, model: RotationModel, taken: Iterable[str] = ()) -> None:
+        """`taken` are names that mean something else, as those of a body."""
         self.model = model
         self._meanings: dict[sp.Symbol, sp.Expr] = {}
         plain = {q.func.__name__ for q in model.coordinates}
-        self._taken = plain | {constant.name for constant in model.constants}
+        self._taken = {*plain, *taken} | {constant.name for constant in model.constants}
 
     def define(self, name: str, value: sp.Expr) -> sp.Expr:
         """A symbol for the value, the same each time; a number, an input or a sine of one stays."""
@@ -248,8 +249,8 @@ class State(NamedTuple):
 class Chain(Names, Workspace):
     """The rotation and the angular velocity of a product of turns, in names for their parts."""
 
-    def __init__(self, model: RotationModel) -> None:
-        super().__init__(model)
+    def __init__(self, model: RotationModel, taken: Iterable[str] = ()) -> None:
+        super().__init__(model, taken)
         self.arguments = {argument.name: argument for argument in arguments_of(model)}
         self.traits = traits_of(model) | {"chain"}
         self.axes = [sp.ImmutableMatrix(turn.direction) for turn in model.turns]

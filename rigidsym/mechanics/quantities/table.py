@@ -6,9 +6,9 @@ add.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
-from itertools import chain
+from itertools import chain, count
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
@@ -16,18 +16,30 @@ import sympy as sp
 from rigidsym.algebra.generators import rate_of
 from rigidsym.errors import ModelError
 from rigidsym.formula.reader import formula, named
+from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Argument, argument
 from rigidsym.models.forces import OMEGA_BODY
 from rigidsym.models.rotation import TIME, RotationModel, time_function
 
 if TYPE_CHECKING:
     from rigidsym.models.body import RigidBody
+    from rigidsym.models.forces import Forces
 
 
 POINT = sp.symbols("p_x:z")
 DIRECTION = sp.symbols("n_x:z")
 # beside the axes x, y, z of space, a quaternion (w, x, y, z) is printed in other letters
 _QUATERNION = {"w": "q_0", "x": "q_1", "y": "q_2", "z": "q_3"}
+# The names of our own, and others for a system that has one of them. Those in one text change
+# together; behind the last text an index 0 goes before their own, or two, as in E_0 and I_01.
+_OWN_NAMES = (
+    ("I_1 I_2 I_3", "J_1 J_2 J_3", "K_1 K_2 K_3"),
+    ("V", "U"),
+    ("T", "K"),
+    ("alpha beta gamma alpha_0 gamma_0", "xi eta zeta xi_0 zeta_0"),
+    *((names,) for names in ("a b c", "L_1 L_2 L_3", "M", "E", "E_C", "E_R", "E_K", "H", "I_n")),
+    *((name,) for name in ("L", "d", "f", "k", "p", "u", "kappa", "lambda", "tau")),
+)
 
 
 def arguments_of(model: RotationModel, body: RigidBody | None = None) -> tuple[Argument, ...]:
@@ -99,6 +111,40 @@ def arguments_of_flow(state: Sequence[Argument]) -> tuple[Argument, ...]:
         units=joined("units"),
         words=f"the state: {', '.join(part.name for part in state)}",
     )
+
+
+def own_names(
+    arguments: Iterable[Argument], body: RigidBody, forces: Forces | None = None
+) -> Mapping[str, str]:
+    """The names of our own: M, I_1, E, V, ..., or others where the system has a constant so called.
+
+    Its moments may be I₁, I₂, I₃ themselves, and the mass has the name that the system gives it, if
+    it has one.
+    """
+    values = dict(zip(_OWN_NAMES[0][0].split(), body.inertia.diagonal(), strict=True))
+    values = (values if body.inertia.is_diagonal() else {}) | {"M": body.mass}
+    claimed = forces.first_integrals if forces else ()
+    taken: dict[Formula, Any] = dict.fromkeys(map(named, claimed), True)
+    for each in arguments:
+        if each.name in ("q", "parameters"):
+            taken |= zip(each.notation, each.symbols, strict=True)
+    names: dict[str, str] = {}
+    for texts in _OWN_NAMES:
+        own = texts[0].split()
+        parts = [name.partition("_") for name in own]
+        zeros = ([f"{stem}_{'0' * n}{index}" for stem, _, index in parts] for n in count(1))
+        for others in chain(map(str.split, texts), zeros):
+            alike = ((taken.get(named(n)), values.get(o)) for n, o in zip(others, own, strict=True))
+            if all(symbol is None or symbol == value for symbol, value in alike):
+                break
+        names |= zip(own, others, strict=True)
+    return names | ({"M": body.mass.name} if isinstance(body.mass, sp.Symbol) else {})
+
+
+def own_letters(names: Mapping[str, str]) -> Mapping[Formula, Formula]:
+    """In print, of the names that changed; a rate as well, with its dot."""
+    changed = [(name, other) for name, other in names.items() if name != other]
+    return {named(name, n): named(other, n) for name, other in changed for n in (0, 1)}
 
 
 def _parameters(model: RotationModel, body: RigidBody | None) -> tuple[Argument, ...]:
