@@ -24,22 +24,14 @@ from rigidsym.mechanics.dynamics.flow import Flow
 from rigidsym.mechanics.dynamics.lagrange import equations_of_motion
 from rigidsym.mechanics.kinematics.chain import Chain
 from rigidsym.mechanics.kinematics.workspace import Values
-from rigidsym.mechanics.mass.bodies import rigid_body
 from rigidsym.mechanics.mass.moments import Moments, about_centre, moments_of
 from rigidsym.mechanics.mass.principal import Principal, principal_of
 from rigidsym.mechanics.prove import Prover
 from rigidsym.mechanics.quantities.catalogue import OF_BODY
 from rigidsym.mechanics.quantities.kinematics import KINEMATICS
 from rigidsym.mechanics.quantities.mass import BODY_ALONE, INERTIA_QUANTITIES
-from rigidsym.mechanics.quantities.table import DIRECTION, POINT, own_letters, own_names
-from rigidsym.models.body import (
-    BodyDescription,
-    Composite,
-    Distribution,
-    Known,
-    Particles,
-    RigidBody,
-)
+from rigidsym.mechanics.quantities.table import DIRECTION, POINT, own_letters
+from rigidsym.models.body import Composite, Known, Particles, RigidBody
 from rigidsym.models.forces import Forces
 from rigidsym.models.parametrisations import parametrised
 from rigidsym.models.rotation import RotationModel
@@ -283,19 +275,6 @@ def _in_letters(step: Step, letters: Mapping[Formula, Formula]) -> Step:
     return replace(step, quantity=quantity, proofs=tuple(proofs), recursion=recursion)
 
 
-def described(
-    model: RotationModel,
-    body: RigidBody | BodyDescription | Distribution,
-    forces: Forces | None,
-) -> tuple[RigidBody, Forces | None]:
-    """The body, integrated, with the constants of the forces, and the forces in its symbols."""
-    whole = rigid_body(body)
-    if forces is None:
-        return whole, None
-    forces = forces.in_symbols_of(whole)
-    return forces.with_parameters(whole, model), forces
-
-
 def steps_of_body(
     model: RotationModel,
     whole: RigidBody,
@@ -329,5 +308,5 @@ def steps_of_body(
     if absent := [q for n, q in entries.items() if n in only and n not in names]:
         reasons = (f"no quantity {q.name}: {sentence_of(q.without)}" for q in absent)
         raise QuantityError(f"{whole.name} has {'; '.join(reasons)}")
-    letters = own_letters(own_names(values.arguments.values(), whole, forces))
+    letters = own_letters(values.arguments.values(), whole, forces)
     return values, [_in_letters(step, letters) for step in steps] if letters else steps, motion

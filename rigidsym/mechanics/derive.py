@@ -71,9 +71,13 @@ def derive(
     if BODY_ALONE in only:
         only = {*only, *OF_BODY_ALONE}
     if body is not None:
-        from rigidsym.mechanics.body import described, steps_of_body
+        from rigidsym.mechanics.body import steps_of_body
+        from rigidsym.mechanics.mass.bodies import rigid_body
 
-        body, forces = described(model, body, forces)
+        body = rigid_body(body)
+        if forces is not None:
+            forces = forces.in_symbols_of(body)
+            body = forces.with_parameters(body, model)
     taken = [parameter.symbol.name for parameter in body.parameters] if body else []
     chain, values = Chain(model, taken) if is_shorter(model) else None, Values(model)
     turning = [name for name in only if name in KINEMATICS]
@@ -106,8 +110,7 @@ def derive(
         forces, definer = motion.forces, motion.names or chain
         is_driven = forces.depend_on_time
         arguments = arguments | {argument.name: argument for argument in motion.added}
-        makers = motion.functions().items()
-        functions = {name: make() for name, make in makers if not only or name in only}
+        functions = {**motion.functions(only)}
         if not only or "effective_potential" in only:
             consequences = tuple(motion.consequences())
         integrals = motion.first_integrals

@@ -25,20 +25,10 @@ from rigidsym.mechanics.conversions.function import SHEPPERD, outer_product
 from rigidsym.mechanics.derivation import OF_RATES, Derivation, Proof, Statement, Step, sentence_of
 from rigidsym.mechanics.quantities.dynamics import LETTERS
 from rigidsym.mechanics.quantities.kinematics import ROTATION
-from rigidsym.mechanics.quantities.table import own_letters, own_names
+from rigidsym.mechanics.quantities.table import own_letters
 from rigidsym.models.parametrisations import GIVEN
 from rigidsym.models.rotation import SOURCES, Citation, hat, lecture
-from rigidsym.notes.document import (
-    Document,
-    Equation,
-    EquationReference,
-    FigureReference,
-    NoteBlock,
-    NoteTable,
-    Paragraph,
-    Text,
-    said,
-)
+from rigidsym.notes import document as doc
 from rigidsym.notes.equations import claims_of, equation_of, in_parts, sums
 from rigidsym.notes.facts.rotation import RotationFacts, facts_of_rotation, product_of, title_of
 from rigidsym.notes.facts.singular import singular_facts
@@ -107,7 +97,7 @@ class Composer:
         self.letters = letters_of(derivation.arguments, notation, derivation.model)
         if derivation.body:
             body, forces = derivation.body, derivation.forces
-            own = own_letters(own_names(derivation.arguments, body, forces))
+            own = own_letters(derivation.arguments, body, forces)
             names = {symbol: with_names(letter, own) for symbol, letter in LETTERS.items()}
             self.letters = replace(self.letters, names={**self.letters.names, **names}, own=own)
         self.symbols = symbols_of(derivation)
@@ -115,19 +105,21 @@ class Composer:
         self.cited: set[Citation] = set()
         self._defined: set[sp.Basic] = set()  # names of intermediate quantities, once printed
 
-    def document(self, name: str) -> Document:
+    def document(self, name: str) -> doc.Document:
         """The note, as a template orders its sections."""
         sections = list(sections_of(name, self.letters, **self.facts()))
         byline = [block for section in sections if not section.title for block in section.blocks]
         if not self.is_audit:  # a lecture leaves out that identities were verified
             sections = [s._replace(blocks=tuple(map(_without_proofs, s.blocks))) for s in sections]
-        return Document(
+        return doc.Document(
             name=self.derivation.name,
             title=title_of(self.derivation, self.letters),
             subtitle="" if is_body_alone(self.derivation) else self.derivation.subject,
             letters=self.letters,
             sections=tuple(s for s in sections if s.title and s.blocks),
-            byline=tuple(text_of(block.text) for block in byline if isinstance(block, Paragraph)),
+            byline=tuple(
+                text_of(block.text) for block in byline if isinstance(block, doc.Paragraph)
+            ),
             language=name.split("/")[0],
         )
 
@@ -167,7 +159,7 @@ class Composer:
             "sources": SOURCES,
             "source_of_theory": lecture(),
             "shepperd": SHEPPERD,
-            "first_figure": FigureReference(1),
+            "first_figure": doc.FigureReference(1),
             "cross_matrix": hat(sp.Matrix(sp.symbols("u_1:4"))),
             "columns": [_COLUMNS[:, k] for k in range(4)],
             "moments": self._moments,
@@ -187,7 +179,7 @@ class Composer:
             "has_dots": self.letters.notation.rates == "dot",
         }
 
-    def steps(self, section: str) -> list[NoteBlock]:
+    def steps(self, section: str) -> list[doc.NoteBlock]:
         """The equations of a section, each behind how it follows.
 
         They are printed in order: a name that was explained once is only referred to. Raises
@@ -196,29 +188,29 @@ class Composer:
         if section not in _SECTIONS:
             near = offer(section, _SECTIONS)
             raise TemplateRuntimeError(f"no section {section!r} of equations; {near}")
-        blocks: list[NoteBlock] = []
+        blocks: list[doc.NoteBlock] = []
         derivation = self.derivation
         for step in derivation.steps:
             if step.quantity.section == section:
-                blocks.append(Paragraph(self._lead(step)))
+                blocks.append(doc.Paragraph(self._lead(step)))
                 equation = self._displayed[step.quantity.name]
                 # A recursion over the turns is printed in place of names.
                 value = sp.S.Zero if step.recursion else step.expression
                 parts = derivation.definitions_in(value, self._defined)
                 count = len(self._defined) + len(parts)
                 if parts and count > _MOST_PARTS and equation.sides[1:]:
-                    blocks += (without_entries(equation), said("left_out"))
+                    blocks += (without_entries(equation), doc.said("left_out"))
                     continue
                 blocks += self._abbreviations(parts)
                 blocks += fitted(equation, step, derivation, self.letters, is_audit=self.is_audit)
         return blocks
 
-    def _abbreviations(self, parts: Parts) -> list[NoteBlock]:
+    def _abbreviations(self, parts: Parts) -> list[doc.NoteBlock]:
         """The definitions, which are printed once."""
         self._defined |= {name for name, _ in parts}
-        return [said("abbreviations"), in_parts(parts, self.letters)] if parts else []
+        return [doc.said("abbreviations"), in_parts(parts, self.letters)] if parts else []
 
-    def equation(self, name: str) -> Equation:
+    def equation(self, name: str) -> doc.Equation:
         """The numbered equation of a quantity, without the words that lead to it.
 
         Raises TemplateRuntimeError, with the nearest name, if the derivation lacks it.
@@ -228,12 +220,14 @@ class Composer:
             raise TemplateRuntimeError(f"nothing is derived by the name {name!r}; {near}")
         return self._displayed[name]
 
-    def _reference(self, name: str) -> EquationReference:
+    def _reference(self, name: str) -> doc.EquationReference:
         """To the equation of a quantity, or in the lecture to the one that it belongs to."""
-        return EquationReference(_WHERE_SHOWN.get(name, name) if self.derivation.theory else name)
+        return doc.EquationReference(
+            _WHERE_SHOWN.get(name, name) if self.derivation.theory else name
+        )
 
     @cached_property
-    def _displayed(self) -> Mapping[str, Equation]:
+    def _displayed(self) -> Mapping[str, doc.Equation]:
         """The equations of all steps, with vectors if they have such a form, as they fit."""
         equations = {
             s.quantity.name: as_vectors(self._equation(s), s, self.letters)
@@ -245,7 +239,7 @@ class Composer:
             equations["rotation_matrix"] = replace(entries, proved=(), function="")
         return equations
 
-    def _equation(self, step: Step) -> Equation:
+    def _equation(self, step: Step) -> doc.Equation:
         """The equation of a step; in the lecture some have no number of their own."""
         name = step.quantity.name
         equation = equation_of(step, self.derivation.arguments)
@@ -260,9 +254,11 @@ class Composer:
             # (I₁, I₁, I₃), or the entries of I′ if they differ
             end = _DIAGONAL if len({*moments}) == 3 else self._in_a_row(moments)
             equation = replace(equation, sides=(*equation.sides, end), matrix=None, entries=())
-        return replace(equation, sides=(*equation.sides, *textbook_form(name, self.derivation)))
+        return replace(
+            equation, sides=(*equation.sides, *textbook_form(name, self.derivation, self.letters))
+        )
 
-    def _lead(self, step: Step) -> Text:
+    def _lead(self, step: Step) -> doc.Text:
         """How the quantity follows; a source is cited once, and the theory needs no other."""
         because, source, model = step.because, step.quantity.source, self.model
         if self.derivation.theory:
@@ -286,17 +282,17 @@ class Composer:
     def _in_a_row(self, entries: Iterable[sp.Expr]) -> Formula:
         return Bracket(joined([formula_of(entry, self.letters) for entry in entries], COMMA))
 
-    def _moments(self) -> list[NoteBlock]:
+    def _moments(self) -> list[doc.NoteBlock]:
         """The moments behind the names I₁, I₂, I₃."""
-        return [said("here"), in_parts(self.moments, self.letters)] if self.moments else []
+        return [doc.said("here"), in_parts(self.moments, self.letters)] if self.moments else []
 
     # The lecture
 
-    def _statement(self, statement: Statement) -> Iterator[NoteBlock]:
+    def _statement(self, statement: Statement) -> Iterator[doc.NoteBlock]:
         matrix = sums(statement, self.letters)
         proved, unproved = claims_of(statement.proofs)
-        yield Paragraph(statement.because)
-        yield Equation(
+        yield doc.Paragraph(statement.because)
+        yield doc.Equation(
             sides=(*statement.sides, *([matrix] if matrix else [])),
             number=statement.number,
             label=statement.name if statement.number else "",
@@ -306,7 +302,7 @@ class Composer:
         )
 
     @cached_property
-    def _product(self) -> Equation | None:
+    def _product(self) -> doc.Equation | None:
         """R as a product of turns, which has the number in the lecture."""
         if not (self.derivation.theory and self.model.turns):
             return None
@@ -328,21 +324,21 @@ class Composer:
         equation = replace(equation, is_result=True, function=function)
         return {"because": because, "equation": equation}
 
-    def _symbols(self) -> NoteTable:
+    def _symbols(self) -> doc.NoteTable:
         """Each symbol once, with its first meaning."""
         (table,) = blocks_of("en/symbols", self.letters, **self.facts())
-        assert isinstance(table, NoteTable)
-        rows: dict[Text, tuple[Text, ...]] = {}
+        assert isinstance(table, doc.NoteTable)
+        rows: dict[doc.Text, tuple[doc.Text, ...]] = {}
         for cells in table.rows:
             rows.setdefault(cells[0], cells)
         return table._replace(rows=tuple(rows.values()))
 
-    def _proofs(self) -> list[tuple[EquationReference, Proof]]:
+    def _proofs(self) -> list[tuple[doc.EquationReference, Proof]]:
         """Each claim once, with the first equation that needs it, in the order of the equations."""
         stated = [(s.name, s.number, s.proofs) for s in self.derivation.theory]
         stated += [(s.quantity.name, s.number, s.proofs) for s in self.derivation.steps]
         numbers = {name: number or 0 for name, number, _ in stated}
-        once: dict[tuple[Formula, str], tuple[EquationReference, Proof]] = {}
+        once: dict[tuple[Formula, str], tuple[doc.EquationReference, Proof]] = {}
         for name, _, proofs in stated:
             reference = self._reference(name)
             for proof in proofs:
@@ -350,8 +346,8 @@ class Composer:
         return sorted(once.values(), key=lambda pair: numbers[pair[0].label])
 
 
-def _without_proofs(block: NoteBlock) -> NoteBlock:
-    return replace(block, proved=()) if isinstance(block, Equation) else block
+def _without_proofs(block: doc.NoteBlock) -> doc.NoteBlock:
+    return replace(block, proved=()) if isinstance(block, doc.Equation) else block
 
 
 def _call(step: Step) -> str:

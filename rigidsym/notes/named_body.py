@@ -12,8 +12,10 @@ from dataclasses import replace
 
 import sympy as sp
 
+from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import formula, named
-from rigidsym.formula.tree import NOTHING, PLUS, Formula, bracketed, joined, with_names
+from rigidsym.formula.scalars import formula_of
+from rigidsym.formula.tree import NOTHING, Formula, with_names
 from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.derive import derive
 from rigidsym.mechanics.dynamics.flow import free_turning
@@ -21,6 +23,7 @@ from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
 from rigidsym.mechanics.quantities.mass import INERTIA, INERTIA_QUANTITIES, STEINER
 from rigidsym.mechanics.quantities.table import POINT, own_names
 from rigidsym.models.body import Parameter, RigidBody, given_inertia
+from rigidsym.models.forces import OMEGA_BODY
 
 Parts = Sequence[tuple[sp.Symbol, sp.Expr]]  # names with what they stand for
 
@@ -105,7 +108,7 @@ def _named(body: RigidBody, mass: sp.Symbol, own: Sequence[sp.Symbol]) -> tuple[
     )
 
 
-def textbook_form(name: str, derivation: Derivation) -> tuple[Formula, ...]:
+def textbook_form(name: str, derivation: Derivation, letters: Letters) -> tuple[Formula, ...]:
     """E_R = ½ (I₁ Ω′₁² + I₂ Ω′₂² + I₃ Ω′₃²).
 
     Empty for other quantities, and where the axes of the body are no principal axes with names.
@@ -114,14 +117,9 @@ def textbook_form(name: str, derivation: Derivation) -> tuple[Formula, ...]:
     inertia = expressions.get("inertia_tensor")
     if name != "rotational_energy" or inertia is None or not inertia.is_diagonal():
         return ()
-    moments = inertia.diagonal()
+    moments = [*inertia.diagonal()]
     if not all(moment.is_Atom for moment in moments):
         return ()
-    terms = [
-        formula(rf"#1\,{{\Omega'_{k}}}^2", named(str(moment)))
-        for k, moment in enumerate(moments, start=1)
-        if moment != 0
-    ]
-    whole = joined(terms, PLUS)
-    half = formula(r"\tfrac{1}{2}\,#1", bracketed(whole) if len(terms) > 1 else whole)
-    return (half,)
+    squares = zip(moments, (omega**2 for omega in OMEGA_BODY), strict=True)
+    whole = sp.Add(*(moment * square for moment, square in squares))
+    return (formula_of(sp.Mul(sp.Rational(1, 2), whole, evaluate=False), letters),)

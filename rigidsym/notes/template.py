@@ -27,24 +27,11 @@ from rigidsym.formula.reader import formula, text_of
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import Formula, with_names
 from rigidsym.models.rotation import Citation
-from rigidsym.notes.document import (
-    Cited,
-    Code,
-    Equation,
-    EquationRow,
-    Figure,
-    NoteBlock,
-    NoteTable,
-    Paragraph,
-    Section,
-    Span,
-    Strong,
-    Text,
-)
 from rigidsym.system import resources
 
 if TYPE_CHECKING:
-    from rigidsym.notes.figure.drawing import Drawing
+    from rigidsym.notes import document as doc
+from rigidsym.notes.figure.drawing import Drawing
 
 # Of a private use area, whose letters no font has; `re` compiles ranges up to U+FFFF slowly.
 _FIRST = 0xF0000
@@ -55,7 +42,7 @@ _INLINE = re.compile(
 )
 _MARKUP = re.compile(rf"[$*`|#&\n]|{_MARK}")  # what would be read as Markdown, or as a mark
 _TABLE = "Table:"
-_BLOCKS = (Paragraph, Equation, EquationRow, NoteTable, Figure, list)
+_BLOCKS = (doc.Paragraph, doc.Equation, doc.EquationRow, doc.NoteTable, doc.Figure, list)
 
 
 class _Marks(NamedTuple):
@@ -82,7 +69,7 @@ def _printed(_: Context, value: Any) -> Markup:
     if isinstance(value, sp.Basic) and not isinstance(value, sp.MatrixBase):
         value = formula_of(value, marks.letters)
     elif isinstance(value, Citation):
-        value = Cited(value)
+        value = doc.Cited(value)
     elif type(value) is tuple and value and isinstance(value[0], _BLOCKS):
         value = [*value]  # blocks; other tuples are texts
     marks.things.append(value)
@@ -90,7 +77,7 @@ def _printed(_: Context, value: Any) -> Markup:
     return Markup(chr(_FIRST + len(marks.things) - 1))
 
 
-def sections_of(name: str, letters: Letters, **facts: Any) -> Iterator[Section]:
+def sections_of(name: str, letters: Letters, **facts: Any) -> Iterator[doc.Section]:
     """The sections of a template: first what comes before any heading, with an empty title.
 
     Raises TemplateFault, with the template and its line, for a fact that there is not, and for a
@@ -103,8 +90,8 @@ def sections_of(name: str, letters: Letters, **facts: Any) -> Iterator[Section]:
         markdown = environment.get_template(f"{name}.md.jinja").render(facts)
     finally:
         _MARKS.reset(token)
-    section = Section("", ())
-    blocks: list[NoteBlock] = []
+    section = doc.Section("", ())
+    blocks: list[doc.NoteBlock] = []
     for chunk in map(str.strip, re.split(r"\n\s*\n", markdown)):
         heading, _, rest = chunk.partition("\n") if chunk.startswith("#") else ("", "", chunk)
         _check_ends(heading)
@@ -112,7 +99,7 @@ def sections_of(name: str, letters: Letters, **facts: Any) -> Iterator[Section]:
         if heading:
             yield section._replace(blocks=tuple(blocks))
             title = text_of(_text(heading.strip("# "), marks))
-            section, blocks = Section(title, ()), []
+            section, blocks = doc.Section(title, ()), []
         if rest.strip():
             blocks += _blocks(rest.strip(), marks)
     yield section._replace(blocks=tuple(blocks))
@@ -140,36 +127,36 @@ def _place_of(line: str) -> str:
     return resources.place_of(max(re.split(_MARK, line), key=len))
 
 
-def blocks_of(name: str, letters: Letters, **facts: Any) -> tuple[NoteBlock, ...]:
+def blocks_of(name: str, letters: Letters, **facts: Any) -> tuple[doc.NoteBlock, ...]:
     """The blocks of a template without headings."""
     (section,) = sections_of(name, letters, **facts)
     return section.blocks
 
 
-def texts_of(name: str, letters: Letters, **facts: Any) -> tuple[Text, ...]:
+def texts_of(name: str, letters: Letters, **facts: Any) -> tuple[doc.Text, ...]:
     """The paragraphs of a template of sentences only."""
     blocks = blocks_of(name, letters, **facts)
-    return tuple(block.text for block in blocks if isinstance(block, Paragraph))
+    return tuple(block.text for block in blocks if isinstance(block, doc.Paragraph))
 
 
-def figure_with(name: str, drawing: Drawing, letters: Letters, **facts: Any) -> Figure:
+def figure_with(name: str, drawing: Drawing, letters: Letters, **facts: Any) -> doc.Figure:
     """A drawing with its caption, the first paragraph of a template; the others describe it."""
     caption, *others = texts_of(name, letters, **facts)
-    return Figure(drawing, caption, others[0] if others else ())
+    return doc.Figure(drawing, caption, others[0] if others else ())
 
 
-def _blocks(chunk: str, marks: _Marks) -> Iterator[NoteBlock]:
+def _blocks(chunk: str, marks: _Marks) -> Iterator[doc.NoteBlock]:
     if chunk.startswith("$$"):
         inside = chunk.strip("$").strip()
         equations = tuple(_equation(part, marks) for part in inside.split(r"\qquad"))
-        yield EquationRow(equations) if len(equations) > 1 else equations[0]
+        yield doc.EquationRow(equations) if len(equations) > 1 else equations[0]
     elif chunk.startswith(("|", _TABLE)):
         yield _table(chunk, marks)
     elif all(isinstance(thing, _BLOCKS) for thing in _marked(chunk, marks)):
         for thing in _marked(chunk, marks):
             yield from thing if isinstance(thing, list) else (thing,)
     else:
-        yield Paragraph(_text(chunk, marks))
+        yield doc.Paragraph(_text(chunk, marks))
 
 
 def _marked(chunk: str, marks: _Marks) -> Iterator[Any]:
@@ -178,13 +165,15 @@ def _marked(chunk: str, marks: _Marks) -> Iterator[Any]:
         yield marks.things[ord(letter) - _FIRST] if re.match(_MARK, letter) else None
 
 
-def _equation(typed: str, marks: _Marks) -> Equation:
+def _equation(typed: str, marks: _Marks) -> doc.Equation:
     """Sides that are equal; a matrix as the last of them may be listed where it is too wide."""
     *sides, last = re.split(r"\s=\s", typed.strip())
     thing = marks.things[ord(last) - _FIRST] if re.fullmatch(_MARK, last) else None
     if isinstance(thing, sp.MatrixBase):
-        return Equation(sides=tuple(_formula(s, marks) for s in sides), matrix=thing.as_immutable())
-    return Equation(sides=tuple(_formula(side, marks) for side in (*sides, last)))
+        return doc.Equation(
+            sides=tuple(_formula(s, marks) for s in sides), matrix=thing.as_immutable()
+        )
+    return doc.Equation(sides=tuple(_formula(side, marks) for side in (*sides, last)))
 
 
 def _formula(typed: str, marks: _Marks) -> Formula:
@@ -199,46 +188,46 @@ def _formula(typed: str, marks: _Marks) -> Formula:
         raise TemplateFault(f"{_place_of(typed)}: {error}") from error
 
 
-def _table(chunk: str, marks: _Marks) -> NoteTable:
+def _table(chunk: str, marks: _Marks) -> doc.NoteTable:
     """The rows of a table, below "Table:" and its caption; `:---` begins a column of words."""
     lines = chunk.splitlines()
     caption = lines.pop(0).removeprefix(_TABLE).strip() if chunk.startswith(_TABLE) else ""
     rows = [[cell.strip() for cell in line.strip().strip("|").split("|")] for line in lines]
     of_words = next((k for k, cell in enumerate(rows[1]) if cell.startswith(":")), None)
     head, *others = (tuple(_text(cell, marks) for cell in row) for row in (rows[0], *rows[2:]))
-    return NoteTable(text_of(_text(caption, marks)), head, tuple(others), of_words)
+    return doc.NoteTable(text_of(_text(caption, marks)), head, tuple(others), of_words)
 
 
-def _text(words: str, marks: _Marks) -> Text:
+def _text(words: str, marks: _Marks) -> doc.Text:
     """The spans of a line, in which neighbouring words are one span."""
     line = " ".join(part.strip() for part in words.splitlines()).replace("&nbsp;", "\u00a0")
-    spans: list[Span] = []
+    spans: list[doc.Span] = []
     end = 0
     for match in _INLINE.finditer(line):
         spans.append(line[end : match.start()])
         spans += _spans(match, marks)
         end = match.end()
     spans.append(line[end:])
-    text: list[Span] = []
+    text: list[doc.Span] = []
     for are_words, group in groupby(spans, lambda span: isinstance(span, str)):
         neighbours = list(group)
         text += ["".join(map(str, neighbours))] if are_words else neighbours
     return tuple(span for span in text if span != "")
 
 
-def _spans(match: re.Match[str], marks: _Marks) -> Iterable[Span]:
+def _spans(match: re.Match[str], marks: _Marks) -> Iterable[doc.Span]:
     if match["math"]:
         return (_formula(match["math"], marks),)
     if match["strong"]:
-        return (Strong(text_of(_text(match["strong"], marks))),)
+        return (doc.Strong(text_of(_text(match["strong"], marks))),)
     if match["dollar"]:
         return ("$",)
     if match["code"]:  # in which only facts are read
         code = re.sub(_MARK, lambda mark: text_of(_fact(mark[0], marks)), match["code"])
-        return (Code(code),)
+        return (doc.Code(code),)
     return _fact(match["mark"], marks)
 
 
-def _fact(mark: str, marks: _Marks) -> Text:
+def _fact(mark: str, marks: _Marks) -> doc.Text:
     thing = marks.things[ord(mark) - _FIRST]
     return thing if type(thing) is tuple else (thing,)

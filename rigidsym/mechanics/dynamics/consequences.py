@@ -24,6 +24,7 @@ from rigidsym.mechanics.prove import identity
 from rigidsym.mechanics.quantities import dynamics as claims
 from rigidsym.mechanics.quantities.dynamics import TORQUE
 from rigidsym.mechanics.quantities.kinematics import BODY
+from rigidsym.mechanics.quantities.table import own_names
 from rigidsym.models.forces import OMEGA_BODY
 from rigidsym.models.rotation import TIME, elementary
 
@@ -189,7 +190,8 @@ class OneDimension:
         self.momenta = {work.arguments["momenta"].symbols[j]: momenta[j] for j in others}  # p_j
         self.rates = {sp.diff(q[j], TIME): q[j] for j in others}
         # the energy, cos θ, and all momenta if they are equal
-        self.E, self.u, self.p = (sp.Symbol(work.own_names[name]) for name in ("E", "u", "p"))
+        names = own_names(work.arguments.values(), work.body, work.forces)
+        self.E, self.u, self.p = (sp.Symbol(names[name]) for name in ("E", "u", "p"))
         self.values = {**self.momenta, self.E: work.whole}
 
     def consequences(self) -> Iterator[Consequence]:
@@ -203,8 +205,8 @@ class OneDimension:
             terms = sp.Add.make_args(sp.diff(self.potential, p))
             value = sp.Add(*(min(sp.cancel(e), sp.factor(e), key=sp.count_ops) for e in terms))
             spans = {"own": own, "angle": _name(q), "rate": _name(q, order=1)}
-            names = (spans["rate"], spans["angle"])
-            claim = formula(r"#1 = \frac{\partial V_{\mathrm{eff}}}{\partial p_{#2}}", *names)
+            of_rate = r"#2 = \frac{\partial V_{\mathrm{eff}}}{\partial p_{#1}}"
+            claim = formula(of_rate, spans["angle"], spans["rate"])
             yield self._follows(name, rate, value, claim, rate - value, **spans)
             name = "another_coordinate"
         if len(self.rates) == 2:

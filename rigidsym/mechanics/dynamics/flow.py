@@ -6,8 +6,8 @@ function F of the state is ∇F·f + ∂F/∂t, reduced in the ring: F is a firs
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from functools import cached_property, partial
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from functools import cached_property
 from typing import Any, TypeAlias
 
 import sympy as sp
@@ -29,7 +29,6 @@ from rigidsym.mechanics.quantities.table import (
     arguments_of_flow,
     arguments_of_motion,
     own_letters,
-    own_names,
 )
 from rigidsym.models.body import RigidBody
 from rigidsym.models.forces import OMEGA_BODY, Forces
@@ -56,8 +55,7 @@ class Flow(Workspace):
         self.model, self.forces, self.codec = model, forces, codec
         self.body: RigidBody = body
         self.arguments = {a.name: a for a in arguments_of(model, body)}
-        self.own_names = own_names(self.arguments.values(), body, forces)
-        self.letters = own_letters(self.own_names)
+        self.letters = own_letters(self.arguments.values(), body, forces)
         self.added = arguments_of_motion(model)  # by the equations of motion
         self.added += arguments_of_flow([self.arguments["q"], self.arguments[self.second]])
         self.arguments |= {a.name: a for a in self.added}
@@ -149,16 +147,12 @@ class Flow(Workspace):
         proof = self.prove.vanishes(residual, claims.is_constant(symbol), divisor)
         return FirstIntegral(name=name, symbol=symbol, expression=value, proof=proof)
 
-    def functions(self) -> Mapping[str, Callable[[], Step]]:
-        """The derivative of the state, its Jacobians and the first integrals, each when needed."""
+    def functions(self, only: Collection[str]) -> Mapping[str, Step]:
+        """The derivative of the state, its Jacobians and the first integrals, if wanted."""
         lacking = {*self.lacking} | (set() if self.first_integrals else {"first_integrals"})
-        entries = claims.FLOW_QUANTITIES.items()
-        return {n: partial(self._function, entry) for n, entry in entries if n not in lacking}
-
-    def _function(self, entry: Quantity) -> Step:
-        step = self.step(entry)
-        assert step is not None
-        return step
+        wanted = {*(only or claims.FLOW_QUANTITIES)} - lacking
+        steps = (self.step(entry) for n, entry in claims.FLOW_QUANTITIES.items() if n in wanted)
+        return {step.quantity.name: step for step in steps if step}
 
     @cached_property
     def state_derivative(self) -> sp.ImmutableMatrix:

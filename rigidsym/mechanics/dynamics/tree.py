@@ -40,7 +40,7 @@ from rigidsym.mechanics.quantities import dynamics as claims
 from rigidsym.mechanics.quantities.dynamics import TORQUE
 from rigidsym.models.body import RigidBody
 from rigidsym.models.forces import OMEGA_BODY, Forces
-from rigidsym.models.rotation import TIME, RotationModel, Turn, as_typed
+from rigidsym.models.rotation import TIME, RotationModel, Turn, as_typed, hat
 
 _ZERO = sp.ImmutableMatrix(sp.zeros(3, 1))
 
@@ -194,9 +194,14 @@ class TreeEquations(LagrangeForm):
         for joint in reversed(total):  # each after those that it carries
             total[joint] = self.names.named(f"{letter}{joint.label}", total[joint])
             if joint.before:
-                # A vector goes back to the axes of the joint before as T v, a tensor as T I Tᵀ.
-                back = joint.matrix * total[joint]
-                total[joint.before] += back * joint.matrix.T if of_tensors else back
+                # A vector goes back to the axes of the joint before as T v, a tensor as T I Tᵀ:
+                # a tensor that is symmetric about the axis, so that C(n) I = I C(n), as it is.
+                back, turn = joint.matrix * total[joint], hat(joint.axis)
+                if of_tensors and turn * total[joint] == total[joint] * turn:
+                    back = total[joint]
+                elif of_tensors:
+                    back = back * joint.matrix.T
+                total[joint.before] += back
         return total
 
     def _by_coordinate(self, by_angle: Mapping[Joint, sp.Expr]) -> sp.Matrix:
@@ -335,9 +340,6 @@ class TreeEquations(LagrangeForm):
     @cached_property
     def state_derivative(self) -> sp.ImmutableMatrix:
         return sp.ImmutableMatrix([*self.rates, *self.solved])
-
-    def recursion(self, quantity: Quantity) -> Formula | None:
-        return formula(quantity.recursion) if quantity.recursion else None
 
     # Proofs
 

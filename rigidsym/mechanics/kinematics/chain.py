@@ -199,13 +199,15 @@ class Names:
         return symbol
 
     def named(self, group: str, matrix: sp.MatrixBase) -> sp.ImmutableMatrix:
-        """The matrix with a name for each entry that is worth one, group_1 or group_12."""
-        places = product(range(1, matrix.rows + 1), range(1, matrix.cols + 1))
-        entries = [
-            self.define(f"{group}_{row}" + (str(column) if matrix.cols > 1 else ""), entry)
-            for (row, column), entry in zip(places, matrix, strict=True)
-        ]
-        return sp.ImmutableMatrix(*matrix.shape, entries)
+        """The matrix with a name for each entry that is worth one, group_1 or group_12; equal
+        entries have one name.
+        """
+        names: dict[sp.Expr, sp.Expr] = {}
+        for place, entry in zip(product(*map(range, matrix.shape)), matrix, strict=True):
+            index = "".join(str(k + 1) for k in place[: matrix.cols])
+            if entry not in names:
+                names[entry] = self.define(f"{group}_{index}", entry)
+        return sp.ImmutableMatrix(matrix.applyfunc(names.get))
 
     def printed(self, name: sp.Expr, value: sp.Expr) -> sp.Expr:
         """The definition of a name as it is printed; of a value that has none, the value."""

@@ -22,9 +22,6 @@ ENERGY = formula("E")
 MOTION = "motion"  # section of the note
 DRIVING = formula(r"\frac{\partial V}{\partial t}")
 _TREE, _EULER, _FREE = "tree", "euler", "no_potential"  # traits
-# of bodies on joints and of particles, by the angular velocities of the joints
-_TURNING = r"\tfrac{1}{2}\sum_k \w_k^T\,\I_k\,\w_k + \tfrac{1}{2}\sum_p m_p\,|\v_p|^2"
-_SPEEDS = r", \quad \w_k = \dot{\theta}_k\,\n_k + \T_k^T\,\w_{k-1}"
 TORQUE = r"\I'\,\dot\Om' + \Om'\times\I'\,\Om'"  # that a motion takes, by Euler's equations
 _LAGRANGE = r"\frac{d}{dt}\frac{\partial {T}}{\partial\dot\q} - \frac{\partial {T}}{\partial\q} = "
 _ENERGY: dict[str, Any] = {"unit": "J", "shape": "scalar", "section": MOTION}
@@ -51,14 +48,10 @@ potential_energy = Quantity(
 
 def _energies(sign: str, **of_tree: str) -> tuple[Any, ...]:
     """The kinetic energy of a body or a tree, and the potential energy if there is one."""
-    whole, plain = (
-        {"definition": formula(f"T{rest}"), "recursion": f"{_TURNING}{rest}{_SPEEDS}"}
-        for rest in (f" {sign} V", "")
-    )
     return (
         when(_FREE, definition=formula("E_R")),
-        when(_TREE, **whole, **of_tree),
-        when(_TREE, _FREE, **plain),
+        when(_TREE, definition=formula(f"T {sign} V"), **of_tree),
+        when(_TREE, _FREE, definition=formula("T")),
     )
 
 
@@ -119,8 +112,6 @@ generalised_momenta = Quantity(
         lambda k, x: k.codec.column([sp.diff(k.kinetic, rate) for rate in k.rates]) - x,
         definition=formula(r"\frac{\partial T}{\partial\dot\q}"),
         reason="carried_momentum",
-        recursion=r"\left(\n_k\cdot\H_k\right)_k, \quad "
-        r"\H_k = \I_k\,\w_k + \sum \T_{k+1}\,\H_{k+1}",
     ),
 )
 
@@ -137,8 +128,6 @@ mass_matrix = Quantity(
         lambda k, x: k.q_dot.T @ x @ k.q_dot - k.codec.column([2 * k.kinetic]),
         definition=formula(r"\sum \J^T\I\J"),
         reason="composite_inertia",
-        recursion=r"\left(\n_i\cdot\T_{i+1}\ldots\T_j\,\J_j\,\n_j\right)_{i\le j}, \quad "
-        r"\J_k = \I_k + \sum \T_{k+1}\,\J_{k+1}\,\T_{k+1}^T",
     ),
 )
 
@@ -156,8 +145,6 @@ bias_vector = Quantity(
         lambda k, x: k.of_lagrange + k.bias - x,
         of_tree=_LAGRANGE + r"\M\ddot\q + \h - \frac{\partial V}{\partial\q}",
         reason="recursion_of_torques",
-        recursion=r"\left(\n_k\cdot\N_k\right)_k + \frac{\partial V}{\partial\q}, \quad "
-        r"\N_k = \I_k\,\a_k + \w_k\times\I_k\,\w_k + \sum \T_{k+1}\,\N_{k+1}",
     ),
 )
 
@@ -173,13 +160,7 @@ accelerations = Quantity(
     reason="solved",
     section=MOTION,
     is_result=True,
-    variants=(
-        when(
-            _TREE,
-            reason="factorised",
-            recursion=r"\left(\L\,\D\,\L^T\right)^{-1}\left(\Q - \h\right)",
-        ),
-    ),
+    variants=(when(_TREE, reason="factorised"),),
 )
 
 hamiltonian = Quantity(

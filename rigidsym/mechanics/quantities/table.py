@@ -103,14 +103,9 @@ def arguments_of_flow(state: Sequence[Argument]) -> tuple[Argument, ...]:
     def joined(field: str) -> tuple[Any, ...]:
         return tuple(chain.from_iterable(getattr(part, field) for part in state))
 
-    return time, Argument(
-        name="y",
-        symbols=joined("symbols"),
-        names=joined("names"),
-        notation=joined("notation"),
-        units=joined("units"),
-        words=f"the state: {', '.join(part.name for part in state)}",
-    )
+    words = f"the state: {', '.join(part.name for part in state)}"
+    fields = {field: joined(field) for field in ("symbols", "names", "notation", "units")}
+    return time, Argument(name="y", words=words, **fields)
 
 
 def own_names(
@@ -141,9 +136,12 @@ def own_names(
     return names | ({"M": body.mass.name} if isinstance(body.mass, sp.Symbol) else {})
 
 
-def own_letters(names: Mapping[str, str]) -> Mapping[Formula, Formula]:
-    """In print, of the names that changed; a rate as well, with its dot."""
-    changed = [(name, other) for name, other in names.items() if name != other]
+def own_letters(
+    arguments: Iterable[Argument], body: RigidBody, forces: Forces | None = None
+) -> Mapping[Formula, Formula]:
+    """In print, for the names of our own that change; a rate as well, with its dot."""
+    names = own_names(arguments, body, forces).items()
+    changed = [(name, other) for name, other in names if name != other]
     return {named(name, n): named(other, n) for name, other in changed for n in (0, 1)}
 
 

@@ -9,7 +9,9 @@ import numpy as np
 
 from rigidsym.data.mass import principal_axes_of
 from rigidsym.formula.reader import formula
+from rigidsym.formula.tree import with_names
 from rigidsym.mechanics.derivation import Derivation
+from rigidsym.mechanics.quantities.table import own_letters
 from rigidsym.notes.figure.body_mesh import Color, Vector, area_of, numbers_of, own_shape, unit
 from rigidsym.notes.figure.drawing import Drawing, Facet, Named, Stroke, beyond, labelled
 from rigidsym.notes.figure.scene import BODY, Point, camera
@@ -40,7 +42,10 @@ def body_drawing(derivation: Derivation) -> tuple[Drawing, bool] | None:
     if body is None or not shape:
         return None
     is_principal = body.inertia.is_diagonal()
-    names, axes = (BODY, np.eye(3)) if is_principal else (_MOMENTS, _principal_axes(derivation))
+    names, axes = BODY, np.eye(3)
+    if not is_principal:
+        letters = own_letters(derivation.arguments, body, derivation.forces)
+        names, axes = with_names(_MOMENTS, letters), _principal_axes(derivation)
     ends = [np.array([0 * axis, _REACH * axis]) for axis in axes]
     # The whole axes are dashed lines on top, on which the pieces that the body does not hide are
     # solid lines.

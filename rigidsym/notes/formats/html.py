@@ -16,16 +16,7 @@ from rigidsym.formula.latex_pen import WebPen
 from rigidsym.formula.pen import Height
 from rigidsym.formula.reader import text_of
 from rigidsym.formula.tree import Formula
-from rigidsym.notes.document import (
-    Document,
-    Equation,
-    EquationRow,
-    Figure,
-    NoteBlock,
-    Paragraph,
-    Section,
-    Text,
-)
+from rigidsym.notes import document as doc
 from rigidsym.notes.formats.drawings import svg
 from rigidsym.notes.formats.escape import cleaned
 from rigidsym.notes.formats.printer import NotePrinter
@@ -38,7 +29,7 @@ _WITH_POINTS = re.compile(r"\(<math .*?</math>[.,;:)]*|<math (?:(?!</math>).)*</
 _INLINE = 13.0  # ems of a formula between words on a phone
 
 
-def render(document: Document) -> str:
+def render(document: doc.Document) -> str:
     """The note as an HTML file; the same document gives the same bytes."""
     return rendered(TEMPLATE, HtmlPrinter(document))
 
@@ -93,7 +84,7 @@ class HtmlPrinter(NotePrinter):
     figure_title = "<strong>Figure {number}.</strong>"
     citation = '[<a href="#{label}">{number}</a>{place}]'
 
-    def __init__(self, document: Document) -> None:
+    def __init__(self, document: doc.Document) -> None:
         super().__init__(document, WebPen(document.letters.notation))
         self.math = {
             equation: math(layout.text, is_display=True)
@@ -101,18 +92,20 @@ class HtmlPrinter(NotePrinter):
         }
         self._blocks = resources.environment().get_template(BLOCKS).module
 
-    def body(self, section: Section) -> str:
+    def body(self, section: doc.Section) -> str:
         blocks = list(map(self.block, section.blocks))
         for place, (block, after) in enumerate(pairwise(section.blocks)):
-            if isinstance(block, Paragraph) and isinstance(after, Equation | EquationRow):
+            if isinstance(block, doc.Paragraph) and isinstance(
+                after, doc.Equation | doc.EquationRow
+            ):
                 # no page ends between the words and the formula
                 blocks[place] = blocks[place].replace("<p>", '<p class="lead">', 1)
         return "\n".join(blocks)
 
-    def block(self, block: NoteBlock) -> str:
+    def block(self, block: doc.NoteBlock) -> str:
         return str(getattr(self._blocks, type(block).__name__.lower())(self, block)).strip()
 
-    def drawing(self, figure: Figure) -> str:
+    def drawing(self, figure: doc.Figure) -> str:
         number = self.document.figures.index(figure) + 1
         return svg(
             figure.drawing,
@@ -121,7 +114,7 @@ class HtmlPrinter(NotePrinter):
             name=f"figure-{number}",
         )
 
-    def text(self, text: Text) -> str:
+    def text(self, text: doc.Text) -> str:
         """No line may part a formula from the brackets and points beside it."""
         return _WITH_POINTS.sub(r'<span class="whole">\g<0></span>', super().text(text))
 

@@ -6,16 +6,7 @@ from rigidsym.formula.display import PAGE, pack
 from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.reader import text_of
 from rigidsym.formula.tree import Formula
-from rigidsym.notes.document import (
-    Document,
-    Equation,
-    EquationReference,
-    EquationRow,
-    Figure,
-    NoteTable,
-    Paragraph,
-    Text,
-)
+from rigidsym.notes import document as doc
 from rigidsym.notes.formats.drawings import tikz
 from rigidsym.notes.formats.escape import cleaned, escape
 from rigidsym.notes.formats.printer import NotePrinter
@@ -35,7 +26,7 @@ _LINE = 41.5  # ems: 160 mm at 11 points
 _TALL = 14  # lines of a display, of about 25 high ones on a page: more than these may part
 
 
-def render(document: Document) -> str:
+def render(document: doc.Document) -> str:
     """The note as a LaTeX file; the same document gives the same bytes."""
     printer = _LatexPrinter(document, LatexPen(document.letters.notation))
     sections = [(escape(s.title), printer.body(s)) for s in document.sections]
@@ -43,7 +34,7 @@ def render(document: Document) -> str:
     return resources.environment(**_DELIMITERS).get_template(TEMPLATE).render(parts)
 
 
-def metadata(document: Document) -> str:
+def metadata(document: doc.Document) -> str:
     """What a PDF says of itself, as the entries of its information dictionary."""
     said = {
         "Title": text_of(document.title),
@@ -80,15 +71,15 @@ class _LatexPrinter(NotePrinter):
         typed = _typed(text)
         return typed.replace(r"\_", r"\_\allowbreak ").replace("(", r"(\allowbreak ")
 
-    def paragraph(self, block: Paragraph) -> str:
+    def paragraph(self, block: doc.Paragraph) -> str:
         # no empty line: a display that follows belongs to the paragraph
         return "\n" + self.text(block.text)
 
-    def equationrow(self, block: EquationRow) -> str:
+    def equationrow(self, block: doc.EquationRow) -> str:
         row = pack(block.equations, self.document.letters, _LINE, self.pen)
         return f"\\[\n{row}\n\\]"
 
-    def equation(self, equation: Equation) -> str:
+    def equation(self, equation: doc.Equation) -> str:
         layout, label = self.displays[equation], self.label(equation.label)
         lines = [announced] if (announced := self.announced(equation)) else []
         numbers = [e.number or 0 for e in self.document.equations]
@@ -116,7 +107,7 @@ class _LatexPrinter(NotePrinter):
         piece = self.pen.write(claim)
         return rf"$\displaystyle {piece.text}$" if piece.height else f"${piece.text}$"
 
-    def notetable(self, table: NoteTable) -> str:
+    def notetable(self, table: doc.NoteTable) -> str:
         # l for a column of one line a cell, T for the one of words
         columns = "".join("T" if k == table.of_words else "l" for k in range(len(table.head)))
         rows = (" & ".join(map(self._cell, row)) for row in (table.head, *table.rows))
@@ -125,17 +116,17 @@ class _LatexPrinter(NotePrinter):
         begin = rf"\begin{{ruled}}{{{columns}}}{{{len(table.head)}}}{{{caption}}}"
         return "\n".join([begin, f"{{{lines[0]}}}", *lines[1:], r"\end{ruled}"])
 
-    def _cell(self, text: Text) -> str:
+    def _cell(self, text: doc.Text) -> str:
         written = ""
         for span in text:
             part = self.claim(span) if isinstance(span, Formula) else self.span(span)
             if isinstance(span, Formula) and self.pen.write(span).height:
                 part = rf"\tall{{{part}}}"  # or the fractions of neighbouring rows would touch
             written += part
-        is_number = len(text) == 1 and isinstance(text[0], EquationReference)
+        is_number = len(text) == 1 and isinstance(text[0], doc.EquationReference)
         return rf"\numbercell{{{written}}}" if is_number else written
 
-    def figure(self, figure: Figure) -> str:
+    def figure(self, figure: doc.Figure) -> str:
         drawing = f"\n\\begin{{drawing}}\n{tikz(figure.drawing)}\n\\end{{drawing}}"
         return f"{drawing}\n\\inthefigure{{{self.figure_words(figure)}}}"
 

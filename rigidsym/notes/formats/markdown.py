@@ -12,16 +12,7 @@ from collections.abc import Sequence
 
 from rigidsym.formula.display import pack
 from rigidsym.formula.latex_pen import MarkdownPen
-from rigidsym.notes.document import (
-    Document,
-    Equation,
-    EquationRow,
-    Figure,
-    NoteTable,
-    Paragraph,
-    Section,
-    Text,
-)
+from rigidsym.notes import document as doc
 from rigidsym.notes.formats.escape import cleaned
 from rigidsym.notes.formats.printer import NotePrinter
 from rigidsym.version import OWNERSHIP
@@ -32,7 +23,7 @@ _DOLLARS = re.compile(r"\$+")
 _LINE_START = re.compile(r"^(\s*)(?:([-+=])|(\d+)([.)]))")
 
 
-def render(document: Document) -> str:
+def render(document: doc.Document) -> str:
     """The note as Markdown; the same document gives the same bytes."""
     printer = _MarkdownPrinter(document, MarkdownPen(document.letters.notation))
     lines = (document.subtitle, " · ".join(document.byline))
@@ -75,7 +66,7 @@ class _MarkdownPrinter(NotePrinter):
     figure_title = "**Figure {number}.**"
     citation = "[{number}{place}]"
 
-    def section(self, section: Section) -> str:
+    def section(self, section: doc.Section) -> str:
         return "\n\n".join([f"## {escape(section.title)}", *map(self.block, section.blocks)])
 
     def sources(self) -> str:
@@ -83,10 +74,10 @@ class _MarkdownPrinter(NotePrinter):
         lines = (f"{place}. {escape(source)}" for place, source in sources)
         return "\n".join(["## Sources", "", *lines])
 
-    def paragraph(self, block: Paragraph) -> str:
+    def paragraph(self, block: doc.Paragraph) -> str:
         return _LINE_START.sub(_unlisted, self.text(block.text).lstrip())
 
-    def equation(self, equation: Equation) -> str:
+    def equation(self, equation: doc.Equation) -> str:
         layout = self.displays[equation]
         tag = f"\n\\tag{{{equation.number}}}" if equation.number else ""
         function = [self.code(equation.function)] if equation.function else []
@@ -95,17 +86,17 @@ class _MarkdownPrinter(NotePrinter):
             filter(None, [self.announced(equation), _display(layout.text + tag), remarks])
         )
 
-    def equationrow(self, block: EquationRow) -> str:
+    def equationrow(self, block: doc.EquationRow) -> str:
         return _display(pack(block.equations, self.document.letters, _WIDTH, self.pen))
 
-    def figure(self, figure: Figure) -> str:
+    def figure(self, figure: doc.Figure) -> str:
         return self.figure_words(figure)
 
-    def notetable(self, table: NoteTable) -> str:
+    def notetable(self, table: doc.NoteTable) -> str:
         rows = [self._row(table.head), "|---" * len(table.head) + "|", *map(self._row, table.rows)]
         return f"*{escape(table.caption)}*\n\n" + "\n".join(rows)
 
-    def _row(self, cells: Sequence[Text]) -> str:
+    def _row(self, cells: Sequence[doc.Text]) -> str:
         return f"| {' | '.join(map(self.text, cells))} |"
 
 

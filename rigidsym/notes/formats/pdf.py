@@ -19,14 +19,8 @@ from rigidsym.errors import MissingTool, ToolFailed
 DEBIAN_PACKAGES = ("texlive-latex-recommended", "texlive-pictures", "lmodern")
 TIMEOUT = 120.0  # seconds
 
-_COMMAND = (
-    "pdflatex",
-    "-interaction=nonstopmode",
-    "-halt-on-error",
-    "-file-line-error",
-    "-no-shell-escape",
-    "note.tex",
-)
+_OPTIONS = ("-interaction=nonstopmode", "-halt-on-error", "-file-line-error", "-no-shell-escape")
+_COMMAND = ("pdflatex", *_OPTIONS, "note.tex")
 _CONFINED = {"openin_any": "p", "openout_any": "p"}
 _SAME_EVERY_TIME = {"SOURCE_DATE_EPOCH": "0", "FORCE_SOURCE_DATE": "1"}
 _WARNING = re.compile(r"^(?:Over|Under)full .*|^.*\bWarning: .*|^No file .*", re.MULTILINE)

@@ -12,20 +12,7 @@ from rigidsym.formula.display import display
 from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.reader import text_of
 from rigidsym.formula.tree import Formula
-from rigidsym.notes.document import (
-    Cited,
-    Code,
-    Document,
-    Equation,
-    EquationReference,
-    Figure,
-    FigureReference,
-    NoteBlock,
-    Section,
-    Span,
-    Strong,
-    Text,
-)
+from rigidsym.notes import document as doc
 from rigidsym.notes.words import announcement
 
 
@@ -44,7 +31,7 @@ class NotePrinter:
     citation: ClassVar[str]
     place_in_source: ClassVar[str] = ", {}"
 
-    def __init__(self, document: Document, pen: LatexPen) -> None:
+    def __init__(self, document: doc.Document, pen: LatexPen) -> None:
         self.document = document
         self.pen = pen
         beside = self.beside_number or self.width
@@ -69,34 +56,34 @@ class NotePrinter:
             ],
         }
 
-    def body(self, section: Section) -> str:
+    def body(self, section: doc.Section) -> str:
         return "\n".join(map(self.block, section.blocks))
 
-    def block(self, block: NoteBlock) -> str:
+    def block(self, block: doc.NoteBlock) -> str:
         return str(getattr(self, type(block).__name__.lower())(block))
 
     def label(self, label: str) -> str:
         return self.words(label)
 
-    def text(self, text: Text) -> str:
+    def text(self, text: doc.Text) -> str:
         return "".join(map(self.span, text))
 
-    def span(self, span: Span) -> str:
+    def span(self, span: doc.Span) -> str:
         match span:
             case str():
                 return self.words(span)
             case Formula():
                 return self.formula(span)
-            case Code(text):
+            case doc.Code(text):
                 return self.code(text)
-            case Strong(text):
+            case doc.Strong(text):
                 return self.strong.format(self.words(text))
-            case EquationReference(label):
+            case doc.EquationReference(label):
                 number = self.document.number(label)
                 return self.reference.format(label=self.label(label), number=number)
-            case FigureReference(number):
+            case doc.FigureReference(number):
                 return self._of_figure(self.figure_number, number)
-            case Cited():
+            case doc.Cited():
                 number = self.document.source_number(span)
                 place = self.place_in_source.format(self.words(span.place)) if span.place else ""
                 label = self.label(f"source-{number}")
@@ -106,11 +93,11 @@ class NotePrinter:
         """A formula among words."""
         return f"${self.pen.write(formula).text}$"
 
-    def announced(self, equation: Equation) -> str:
+    def announced(self, equation: doc.Equation) -> str:
         """What is said before an equation of the way it is set."""
         return self.text(announcement(equation, self.displays[equation].is_listed))
 
-    def claims(self, equation: Equation) -> Iterator[str]:
+    def claims(self, equation: doc.Equation) -> Iterator[str]:
         """What was proved of an equation, and what was not."""
         unproved = self.strong.format("Unproved")
         for kind, claims in (("Proved", equation.proved), (unproved, equation.unproved)):
@@ -120,7 +107,7 @@ class NotePrinter:
     def claim(self, claim: Formula) -> str:
         return self.formula(claim)
 
-    def figure_words(self, figure: Figure) -> str:
+    def figure_words(self, figure: doc.Figure) -> str:
         """What is said below a figure."""
         number = self.document.figures.index(figure) + 1
         words = self.text((*figure.caption, " ", *figure.description))
