@@ -27,11 +27,11 @@ from rigidsym.formula.reader import formula, text_of
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import Formula, with_names
 from rigidsym.models.rotation import Citation
+from rigidsym.notes import document as doc
 from rigidsym.system import resources
 
 if TYPE_CHECKING:
-    from rigidsym.notes import document as doc
-from rigidsym.notes.figure.drawing import Drawing
+    from rigidsym.notes.figure.drawing import Drawing
 
 # Of a private use area, whose letters no font has; `re` compiles ranges up to U+FFFF slowly.
 _FIRST = 0xF0000
