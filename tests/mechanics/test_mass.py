@@ -311,8 +311,15 @@ def test_kernels_evaluate_the_body():
     assert np.allclose(np.linalg.eigvalsh(space), np.linalg.eigvalsh(tensor))
 
 
-def test_the_letter_of_the_total_mass_is_its_own_or_one_that_no_part_has():
+def test_a_constant_keeps_its_letter_and_ours_is_another():
     dense, light = (rs.solid("box", density=sp.Symbol("M")), rs.solid("disc", mass=sp.Symbol("m")))
     for body, letter in ((dense, "M_0"), (light, "m")):
         step = rs.derive("x(phi)", ["translational_energy"], body=body).step("translational_energy")
         assert f"\\,{letter}\\," in step.quantity.definition.latex
+    body = rs.principal_moments(*sp.symbols("E L a"))
+    motion = rs.derive("ZXZ", body=body, potential="V*H*cos(theta)", first_integrals={"T": "0*phi"})
+    letters = {step.quantity.name: step.quantity.symbol.text for step in motion.steps}
+    names = ("potential_energy", "lagrangian", "energy", "hamiltonian")
+    assert [letters[name] for name in names] == ["U", "L₀", "E₀", "H₀"]
+    assert [each.symbol.text for each in motion.first_integrals] == ["E₀", "p_φ", "T"]
+    assert {"dE₀/dt = 0", "H₀ = E₀"} <= {proof.claim.text for proof in motion.proofs}

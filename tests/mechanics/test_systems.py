@@ -108,12 +108,14 @@ def test_the_dual_spin_satellite_has_the_equations_that_sympy_finds():
 
 
 def test_a_tree_that_branches_has_the_equations_that_sympy_finds():
-    """A frame that turns by φ carries the body and, by the angle 2θ, another one."""
+    """A frame that turns by φ carries the body and, by the angle 2θ, another one, whose moments are
+    called what intermediate quantities would be.
+    """
     space, outer, turned = frame(("z", PHI), ("x", THETA))
     other = outer.orientnew("G", "Axis", [2 * THETA, outer.y])
-    branch = {"rotation": "z(phi) y(2*theta)", "principal_moments": ["J_1", "J_2", "J_3"]}
+    branch = {"rotation": "z(phi) y(2*theta)", "principal_moments": ["h2", "D2", "ddq1"]}
     lagrangian = kinetic(space, turned, sp.symbols("I_11 I_22 I_33 I_12 I_23 I_13"))
-    lagrangian += kinetic(space, other, sp.symbols("J_1:4"))
+    lagrangian += kinetic(space, other, sp.symbols("h2 D2 ddq1"))
     body, only = rs.general_inertia(), ["mass_matrix", "accelerations"]
     motion = rs.derive("z(phi) x(theta)", only, body=body, parts=[branch])
     assert motion.is_proved

@@ -194,8 +194,8 @@ class TreeEquations(LagrangeForm):
         for joint in reversed(total):  # each after those that it carries
             total[joint] = self.names.named(f"{letter}{joint.label}", total[joint])
             if joint.before:
-                # A vector goes back to the axes of the joint before as T v, a tensor as T I Tᵀ:
-                # a tensor that is symmetric about the axis, so that C(n) I = I C(n), as it is.
+                # A vector goes back to the axes of the joint before as T v, a tensor as T I Tᵀ. A
+                # tensor that is symmetric about the axis, C(n) I = I C(n), is the same in both.
                 back, turn = joint.matrix * total[joint], hat(joint.axis)
                 if of_tensors and turn * total[joint] == total[joint] * turn:
                     back = total[joint]
