@@ -49,16 +49,16 @@ OTHERS = (*PARAMETRISATIONS, *CHAINS, *FILES)
 ODD = "</title></script><script>document.title='owned'</script><img src=x onerror=alert(1)> & \"'"
 
 
-def odd_model() -> rs.RotationModel:
+def odd_model(words: str = ODD, equation: str = ODD) -> rs.RotationModel:
     """A rotation whose words hold markup."""
     a, b = time_function("a"), time_function("b")
     return rs.RotationModel(
         name="odd",
-        title=ODD,
-        convention=(ODD,),
+        title=words,
+        convention=("1. " + words,),
         coordinates=(a, b),
         matrix=elementary("z", a) * elementary("x", b),
-        source=Citation(text=ODD, equation=ODD),
+        source=Citation(text=words, equation=equation),
     )
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import sympy as sp
 
-from helpers.witness import derivative, evaluate, hat, mp, number, paths, rotation, unhat
+from helpers.witness import evaluate, hat, mp, number, paths, rotation, unhat
 from rigidsym.models.library import PARAMETRISATIONS, PRESETS, rotation_from
 from rigidsym.models.parametrisations import EULER_SEQUENCES
 from rigidsym.motion import Motion, derive
@@ -47,22 +47,15 @@ def turned(axis: list[Any], angle: Any) -> Any:
 def by_quaternion(w: Any, x: Any, y: Any, z: Any) -> Any:
     """R whose columns are q e q*, by the products i j = k."""
 
-    def times(p, q):
-        return [
-            p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3],
-            p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2],
-            p[0] * q[2] - p[1] * q[3] + p[2] * q[0] + p[3] * q[1],
-            p[0] * q[3] + p[1] * q[2] - p[2] * q[1] + p[3] * q[0],
-        ]
+    def times(p: list[Any], q: list[Any]) -> list[Any]:
+        (a, *u), (b, *v) = p, q
+        vector = a * mp.matrix(v) + b * mp.matrix(u) + hat(u) * mp.matrix(v)
+        return [a * b - mp.fdot(u, v), *vector]
 
     size = w * w + x * x + y * y + z * z
-    result = mp.matrix(3, 3)
-    for column in range(3):
-        unit = [0, *(int(column == k) for k in range(3))]
-        image = times(times([w, x, y, z], unit), [w, -x, -y, -z])
-        for row in range(3):
-            result[row, column] = image[row + 1] / size
-    return result
+    units = ([0, *(int(row == k) for k in range(3))] for row in range(3))
+    columns = [times(times([w, x, y, z], unit), [w, -x, -y, -z])[1:] for unit in units]
+    return mp.matrix(columns).T / size
 
 
 def by_cayley(vector: list[Any]) -> Any:
@@ -143,7 +136,7 @@ def turning(text: str) -> tuple[Any, Any, Any]:
     def at(t: Any) -> Any:
         return build(list(curve(t)))
 
-    return at(mp.mpf(0)), derivative(at), derivative(at, order=2)
+    return at(mp.mpf(0)), mp.diff(at, 0), mp.diff(at, 0, 2)
 
 
 @dataclass(frozen=True, eq=False)

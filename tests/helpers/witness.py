@@ -108,19 +108,6 @@ def paths(count: int, size: int = 3, seed: int = 1) -> tuple[Path, ...]:
     return tuple(Path(numbers(), numbers(), numbers()) for _ in range(count))
 
 
-def derivative(function: Callable[[Any], Matrix], order: int = 1) -> Matrix:
-    """The first or second derivative at t = 0 of a function with matrix values.
-
-    By central differences: with steps of 10⁻²⁵ at 110 digits, 50 digits are left.
-    """
-    with mp.workdps(110):
-        step = mp.mpf(10) ** -25
-        before, after = function(-step), function(step)
-        if order == 1:
-            return (after - before) / (2 * step)
-        return (after - 2 * function(mp.mpf(0)) + before) / step**2
-
-
 def values_along(coordinates: Iterable[sp.Expr], path: Path, t: Any = 0) -> dict[sp.Expr, Any]:
     """What the coordinates and their derivatives are worth at time t of a path."""
     found: dict[sp.Expr, Any] = {}

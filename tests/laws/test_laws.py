@@ -11,10 +11,13 @@ of quaternions by code that shares nothing with the package. "Agree" means to 40
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import pytest
+import sympy as sp
 
 from helpers.parametrisations import MOVING, Moving
-from helpers.witness import agree, hat, mp
+from helpers.witness import CONVENTIONS, agree, hat, mp, number
 
 ONE = mp.eye(3)
 every_rotation = pytest.mark.parametrize("m", MOVING, ids=repr)
@@ -113,3 +116,37 @@ def test_rates_from_a_velocity_give_that_velocity_back(m: Moving, frame: str):
         assert agree(getattr(m, f"rate_matrix_{frame}") * found, velocity)
         assert agree(found.T * (m.argument("q_dot") - found), mp.matrix([0]))
         assert agree(m.at("spin_matrix", q_dot=found), m.spin_matrix)
+
+
+# Singular angles of the 24 conventions
+
+every_convention = pytest.mark.parametrize(
+    "m", [m for m in MOVING if m.text in CONVENTIONS], ids=repr
+)
+
+
+@every_convention
+def test_determinant_is_that_of_both_rate_matrices(m: Moving):
+    value = number(m.motion.singularities.determinant, dict(m.values))
+    for matrix in (m.rate_matrix_space, m.rate_matrix_body):
+        assert abs(mp.det(matrix) - value) < mp.mpf(10) ** -40
+
+
+@every_convention
+def test_the_stated_angles_are_all(m: Moving):
+    """Between them the determinant keeps its sign, so that a count of changes finds them all."""
+    found = m.motion.singularities
+    middle = m.motion.model.coordinates[1]
+    assert found.is_solved
+    assert found.determinant.atoms(sp.Function) <= {middle, sp.sin(middle), sp.cos(middle)}
+    half = sp.pi / 2
+    first, _, last = m.text.lower()
+    expected = {0, sp.pi} if first == last else {-half, half}
+    places = [place for point in found.points for place in point.places]
+    assert {place.value for place in places} == expected
+    assert {place.coordinate for place in places} == {middle}
+    assert {place.period for place in places} == {2 * sp.pi}
+    grid = [2 * mp.pi * (k + mp.mpf(1) / 3) / 97 for k in range(98)]
+    signs = [mp.sign(number(found.determinant, {middle: angle})) for angle in grid]
+    changes = sum(a != b for a, b in pairwise(signs))
+    assert changes == len(found.points)

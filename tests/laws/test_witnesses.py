@@ -17,8 +17,8 @@ from helpers.witness import (
     CONVENTIONS,
     Path,
     agree,
-    derivative,
     evaluate,
+    mp,
     paths,
     rotation,
     unhat,
@@ -75,6 +75,6 @@ def test_a_wrong_convention_is_seen_by_each_witness():
     """The witnesses tell the conventions apart, so that their agreement says something."""
     (path,) = paths(1, seed=3)
     curves = [lambda t, c=convention: rotation(c, path.at(t)) for convention in CONVENTIONS]
-    for some in ([R(0) for R in curves], [unhat(derivative(R) * R(0).T) for R in curves]):
+    for some in ([R(0) for R in curves], [unhat(mp.diff(R, 0) * R(0).T) for R in curves]):
         for k, one in enumerate(some):
             assert not any(agree(one, other) for other in some[:k])

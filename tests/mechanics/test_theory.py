@@ -16,7 +16,7 @@ from sympy.physics.vector import dynamicsymbols
 
 import rigidsym as rs
 from helpers.typesetting import numbered_by_tex
-from helpers.witness import derivative, evaluate, hat, mp, paths, rotation, unhat, values_along
+from helpers.witness import evaluate, hat, mp, paths, rotation, unhat, values_along
 from rigidsym.errors import DerivationError, ModelError, SpecError
 from rigidsym.mechanics import lecture as theory_of
 from rigidsym.mechanics.derivation import Statement
@@ -56,9 +56,9 @@ class World:
         self.m = abs(whole[:, 3]) + 1
         self.M = self.m.sum()
         self.at_rest = whole[:, :3] - self.sum(whole[:, :3]) / self.M
-        self.R, self.R_dot = map(array, (turn(0), derivative(turn)))
-        self.omega = array(unhat(derivative(turn) * turn(0).T))
-        self.r_C, self.v_C = map(array, (centre(0), derivative(centre)))
+        self.R, self.R_dot = map(array, (turn(0), mp.diff(turn, 0)))
+        self.omega = array(unhat(mp.diff(turn, 0) * turn(0).T))
+        self.r_C, self.v_C = map(array, (centre(0), mp.diff(centre, 0)))
         self.r = self.r_C + self.at_rest @ self.R.T
         self.v = self.v_C + self.at_rest @ self.R_dot.T
         self.x, self.x_dot = self.r - self.sum(self.r) / self.M, self.v - self.v_C

@@ -16,7 +16,6 @@ from helpers.motions import derived
 from helpers.pages import ODD, Elements, odd_model
 from rigidsym.kernels.targets import TARGETS
 from rigidsym.mechanics.derive import derive
-from rigidsym.models.rotation import Citation, RotationModel, elementary, time_function
 from rigidsym.notes.formats import FORMATS, escape as latex, html, markdown
 from rigidsym.notes.note import note
 from rigidsym.pipeline import PAGE, output_of, read, read_file
@@ -107,16 +106,7 @@ def test_characters_that_are_not_printed_are_blanks(text, expected):
 
 def test_markup_in_a_title_and_a_source_comes_out_as_text():
     odd = r"<script>alert(1)</script> | 50% \input{x} & $\alpha$ `c` **b** [a](b)"
-    a, b = time_function("a"), time_function("b")
-    model = RotationModel(
-        name="odd",
-        title=odd,
-        convention=("1. " + odd,),
-        coordinates=(a, b),
-        matrix=elementary("z", a) * elementary("x", b),
-        source=Citation(text=odd, equation="#1"),
-    )
-    made = note(derive(model))
+    made = note(derive(odd_model(odd, "#1")))
     assert odd not in made.latex()
     assert made.latex().count(latex.escape(odd)) == 2
     assert r"\cite[eq.~\#1]{odd:source-1}" in made.latex()
