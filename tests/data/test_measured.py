@@ -221,26 +221,14 @@ MUTATIONS = 30  # of each kind of file
 
 
 def mutated(content: bytes, rng: np.random.Generator) -> bytes:
-    """One to four bytes or stretches of a file changed."""
-    some = bytearray(content)
+    """A file in which one to four stretches are lost, doubled or written over."""
     for _ in range(rng.integers(1, 5)):
-        at = int(rng.integers(len(some) or 1))
-        length = int(rng.integers(1, 20))
-        kind = rng.integers(6)
-        if kind == 0:
-            some[at : at + 1] = rng.bytes(1)
-        elif kind == 1:
-            del some[at : at + length]
-        elif kind == 2:
-            some[at:at] = some[at : at + length]
-        elif kind == 3:
-            some[at : at + length] = rng.bytes(length)
-        elif kind == 4:
-            del some[at:]
-        else:
-            words = (b"nan", b"-1", b"1e999", b"99999999999", b"\xff\xfe", b"\0", b"/", b"\n")
-            some[at : at + 3] = words[rng.integers(len(words))]
-    return bytes(some)
+        at, length = int(rng.integers(len(content) + 1)), int(rng.integers(1, 20))
+        end = (at + 1, at + 3, at + length, len(content))[min(3, rng.integers(10))]
+        words = (b"nan", b"-1", b"1e999", b"99999999999", b"\xff\xfe", b"\0", b"/", b"\n")
+        parts = (b"", 2 * content[at : at + length], rng.bytes(end - at), *words)
+        content = content[:at] + parts[rng.integers(len(parts))] + content[end:]
+    return content
 
 
 ANGLES = np.random.default_rng(1).uniform(-60, 60, (4, 3))

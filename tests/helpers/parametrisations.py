@@ -22,7 +22,7 @@ CONSTANTS = {"alpha0": (2, 7), "a": (2, 7), "b": (3, 7), "c": (6, 7)}  # a unit 
 
 IN_A_PLANE = CONSTANTS | {"b": (3, 5), "c": (4, 5)}  # for an axis without a first component
 
-LONG = "x(a_1) y(a_2) z(a_3) x(a_4) y(a_5)"  # five turns: nothing is multiplied out, nor inverted
+LONG = "x(a_1) y(a_2) [2,1,3](a_3) x(a_4) z(a_5)"  # nothing is multiplied out, nor inverted
 CHAINS = (
     "z(phi)",
     "y(phi) x(theta)",

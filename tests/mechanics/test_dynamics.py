@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import random
 import re
 from dataclasses import replace
 from functools import cache
@@ -11,9 +10,9 @@ import numpy as np
 import pytest
 import sympy as sp
 from scipy.spatial.transform import Rotation
-from sympy.physics.mechanics import LagrangesMethod
 
 import rigidsym as rs
+from helpers.motions import solves_lagrange, values_for
 from helpers.node import load
 from helpers.target_modules import EVERY
 from helpers.witness import agree, evaluate, mp
@@ -33,12 +32,6 @@ def top(sequence: str = "ZXZ", moments=(A, A, C), potential: str = TOP, **more) 
     return rs.derive(model, body=rs.principal_moments(*moments), potential=potential, **more)
 
 
-def values_for(motion: rs.Motion, seed: int = 3) -> dict:
-    generator = random.Random(seed)
-    symbols = [s for argument in motion.arguments for s in argument.symbols]
-    return {symbol: mp.mpf(generator.randint(100, 900)) / 700 for symbol in symbols}
-
-
 @pytest.mark.parametrize(
     ("sequence", "moments", "potential", "forces"),
     [
@@ -54,15 +47,9 @@ def values_for(motion: rs.Motion, seed: int = 3) -> dict:
 def test_accelerations_are_those_of_sympy(sequence, moments, potential, forces):
     motion = top(sequence, moments, potential, forces=forces)
     assert motion.is_proved
-    q = list(motion.model.coordinates)
-    method = LagrangesMethod(motion.lagrangian, q)
-    equations = method.form_lagranges_equations()
-    values = values_for(motion)
-    known = dict(values)
-    for coordinate, acceleration in zip(q, evaluate(motion.accelerations, values), strict=True):
-        known[sp.diff(coordinate, "t", 2)] = acceleration
-    acting = sp.Matrix([read(forces.get(c.func.__name__, "0"), q) for c in q])
-    assert agree(evaluate(equations, known), evaluate(acting, known))
+    q = motion.model.coordinates
+    acting = [read(forces.get(c.func.__name__, "0"), q) for c in q]
+    assert solves_lagrange(motion, motion.lagrangian, sp.Matrix(acting))
 
 
 def read(force: str, coordinates) -> sp.Expr:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import random
 from functools import cache
 
 import numpy as np
@@ -10,10 +9,11 @@ import pytest
 import sympy as sp
 from scipy.spatial.transform import Rotation
 from scipy.special import ellipj
-from sympy.physics.mechanics import LagrangesMethod, ReferenceFrame, dynamicsymbols, inertia
+from sympy.physics.mechanics import ReferenceFrame, dynamicsymbols, inertia
 
 import rigidsym as rs
-from helpers.witness import agree, evaluate, mp
+from helpers.motions import solves_lagrange, values_for
+from helpers.witness import agree, evaluate
 from rigidsym.mechanics.quantities.dynamics import ENERGY_SYMBOL, LENGTH_SYMBOL
 from rigidsym.models.forces import OMEGA_BODY
 from rigidsym.pipeline import motion_of, read
@@ -28,12 +28,6 @@ def shipped(name: str) -> rs.Motion:
     return motion_of(read(name))
 
 
-def values_for(motion: rs.Motion) -> dict:
-    generator = random.Random(7)
-    symbols = [s for argument in motion.arguments for s in argument.symbols]
-    return {symbol: mp.mpf(generator.randint(100, 900)) / 700 for symbol in symbols}
-
-
 def frame(*turns) -> list[ReferenceFrame]:
     """Frames after each turn: (axis, angle)."""
     found = [ReferenceFrame("N")]
@@ -46,17 +40,6 @@ def frame(*turns) -> list[ReferenceFrame]:
 def kinetic(space, turned, moments):
     omega = turned.ang_vel_in(space)
     return omega.dot(inertia(turned, *moments).dot(omega)) / 2
-
-
-def satisfied(motion: rs.Motion, lagrangian, q, forces=None) -> bool:
-    """Whether the accelerations solve SymPy's equations."""
-    equations = LagrangesMethod(lagrangian, q).form_lagranges_equations()
-    values = values_for(motion)
-    values |= dict(
-        zip([sp.diff(x, T, 2) for x in q], evaluate(motion.accelerations, values), strict=True)
-    )
-    acting = sp.zeros(len(q), 1) if forces is None else forces
-    return agree(evaluate(equations, values), evaluate(acting, values))
 
 
 @cache
@@ -91,7 +74,7 @@ def test_the_gimbal_with_a_payload_off_its_axes_has_the_equations_that_sympy_fin
     motion = gimbal()
     assert motion.is_proved
     assert not motion.first_integrals
-    assert satisfied(motion, lagrangian, q, forces + sp.Matrix([0, 0, sp.Symbol("u")]))
+    assert solves_lagrange(motion, lagrangian, forces + sp.Matrix([0, 0, sp.Symbol("u")]))
 
 
 @pytest.mark.campaign
@@ -103,7 +86,7 @@ def test_the_dual_spin_satellite_has_the_equations_that_sympy_finds():
     )
     motion = shipped("dual_spin_satellite")
     forces = sp.Matrix([0, 0, 0, torque])
-    assert satisfied(motion, lagrangian, [PHI, THETA, PSI, SIGMA], forces)
+    assert solves_lagrange(motion, lagrangian, forces)
     assert [integral.name for integral in motion.first_integrals] == ["momentum_phi"]
 
 
@@ -119,7 +102,7 @@ def test_a_tree_that_branches_has_the_equations_that_sympy_finds():
     body, only = rs.general_inertia(), ["mass_matrix", "accelerations"]
     motion = rs.derive("z(phi) x(theta)", only, body=body, parts=[branch])
     assert motion.is_proved
-    assert satisfied(motion, lagrangian, [PHI, THETA])
+    assert solves_lagrange(motion, lagrangian)
 
 
 def test_kovalevskayas_integral_is_proved_and_a_wrong_one_refuted():
@@ -254,7 +237,7 @@ def test_the_quadcopter_has_the_equations_that_sympy_finds():
     omega = sp.Matrix([body.ang_vel_in(space).dot(axis) for axis in (body.x, body.y, body.z)])
     q = [PSI, THETA, PHI]
     forces = omega.jacobian([x.diff(T) for x in q]).T * sp.Matrix(torque)
-    assert satisfied(shipped("quadcopter_attitude"), kinetic(space, body, (A, B, C)), q, forces)
+    assert solves_lagrange(shipped("quadcopter_attitude"), kinetic(space, body, (A, B, C)), forces)
 
 
 def test_the_angular_velocity_in_a_force_is_that_of_the_body_in_every_place():
