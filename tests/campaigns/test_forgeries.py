@@ -20,7 +20,8 @@ from rigidsym.tools.certificate.certificate import printed_in, theorems
 Content = dict[str, Any]
 Change = Callable[[Content], object]
 Forgeries = dict[str, dict[str, Change]]  # by the record that is forged, and by name
-VELOCITY, W, P = "angular_velocity_space", "rate_matrix_body", "generalised_momenta"
+R, VELOCITY, W = "rotation_matrix", "angular_velocity_space", "rate_matrix_body"
+P = "generalised_momenta"
 TORQUE, RATES = "angular_acceleration_from_torque", "rates_from_angular_velocity_space"
 
 
@@ -162,7 +163,7 @@ def wider(first: str, rest: str) -> Callable[[Any], Any]:
 
 def grouped(name: str, *components: str) -> Change:
     """Another group of arguments, with the units that they have elsewhere."""
-    units = {"psi": "rad", "phi": "rad", "n_x": "", "t": "s", "k": "m", "K": "rad/s", "a": "deg"}
+    units = {"psi": "rad", "phi": "rad", "n_x": "", "t": "s", "k": "m", "K": "rad/s", "a": ""}
     listed = [{"name": each, "unit": units[each]} for each in components]
     return lambda c: c["arguments"].append({"name": name, "components": listed})
 
@@ -220,6 +221,7 @@ OF_ZXZ: dict[str, Change] = {
     "a constant angle in degrees": together(
         *(write("rotation", "turns", 1, "x(a)"), write("name", "chain"), only("rotation_matrix")),
         *(everywhere("theta", "a"), grouped("parameters", "a")),
+        write("arguments", "parameters", "components", "a", "unit", "deg"),
     ),
     "a power that costs minutes": put(VELOCITY, 2, "0*cos(phi)**90000"),
     "a power of degree zero": put(VELOCITY, 2, "0*(phi**0)**900000000000"),
@@ -386,13 +388,6 @@ def powers_of_powers(form: str) -> Change:
     return of_velocity("0*a8", ("a0", "phi"), *definitions)
 
 
-def of_entries(content: Content) -> None:
-    """R of four columns."""
-    entries = wider("0", "0")(printed(content, "rotation_matrix")["expression"])
-    content["rotation"], content["name"] = {"matrix": entries, "conditions": []}, "any"
-    content["quantities"] = []
-
-
 def called_the_time(content: Content) -> None:
     content |= json.loads(json.dumps(content).replace("theta", "t"))
 
@@ -420,14 +415,8 @@ def coordinates(content: Content) -> None:
 
 
 def with_axis(places: str, condition: str) -> Change:
-    groups = {"q": {"phi": "", "theta": "rad"}, "parameters": {"a": ""}}
-    arguments = [
-        {"name": group, "components": [{"name": n, "unit": u} for n, u in units.items()]}
-        for group, units in groups.items()
-    ]
-    rotation = {"turns": [f"axis_angle({places})"], "conditions": [condition]}
-    whole = {"name": "any", "arguments": arguments, "rotation": rotation, "quantities": []}
-    return lambda content: content.update(whole)
+    turn = with_turns(f"axis_angle({places})", {"phi": "", "theta": "rad"}, condition)
+    return together(turn, grouped("parameters", "a"))
 
 
 # Forgeries of bodies and motions, of rates and of the language of expressions
@@ -463,7 +452,12 @@ OTHERS: Forgeries = {
         "a turn about coordinates": turned("axis_angle(phi, theta, psi, 1)"),
         "longer rows below": cells(W, lambda rows: [rows[0], *wider("1", "1")(rows)[1:]]),
         "a shorter row below": cells(W, lambda rows: [rows[0], rows[1][:2], rows[2]]),
-        "R of four columns": of_entries,
+        "R of four columns": lambda c: together(
+            write(
+                "rotation", {"matrix": wider("0", "0")(at(c, R, "expression")), "conditions": []}
+            ),
+            *(write("name", "any"), write("quantities", [])),
+        )(c),
         "another shape": cells(W, lambda rows: rows, shape=[7]),
         "no inputs": write(W, "inputs", []),
         "a coordinate that is the time": called_the_time,
@@ -708,18 +702,12 @@ def test_a_changed_entry_is_refused(change, name):
     is_refused(changed(record_of("ZXZ"), spoil), name)
 
 
-def test_a_file_without_a_number_is_refused(tmp_path):
-    path = tmp_path / "a.json"
-    path.write_text(json.dumps(record_of("ZXZ") | {"request": float("nan")}))
-    with pytest.raises(checker.BROKEN, match="NaN"):
-        checker.load(path)
-
-
-def test_double_keys_are_refused(tmp_path):
-    path = tmp_path / "a.json"
-    path.write_text(json.dumps(record_of("ZXZ")).replace('"title"', '"title": "", "title"', 1))
-    with pytest.raises(checker.Refused, match="a name is there twice"):
-        checker.load(path)
+def test_files_without_a_number_or_with_double_keys_are_refused(tmp_path):
+    path, text = tmp_path / "a.json", json.dumps(record_of("ZXZ"))
+    for title, fault in (("NaN", "NaN"), ('"", "title": ""', "a name is there twice")):
+        path.write_text(text.replace('"title"', f'"title": {title}, "about"', 1))
+        with pytest.raises(checker.BROKEN, match=fault):
+            checker.load(path)
 
 
 def false_claims(content: Content) -> list[str]:

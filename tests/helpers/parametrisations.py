@@ -33,7 +33,7 @@ CHAINS = (
     "z(phi) [a,b,c](beta) [1,2,2](psi)",
     "z(phi) x(phi)",
     "z(2*phi - psi) x(theta) z(psi/3)",
-    "z(phi) x(theta/2) z(psi)",
+    "z(phi - 2*pi/3) x(theta/2) z(psi)",
     "z(a) x(b) x(c)",
 )
 

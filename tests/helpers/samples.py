@@ -112,10 +112,7 @@ WRONG = {
     "quaternion with a wrong sign": (
         model(
             QUATERNION - 4 * w * SKEW * sp.diag(1, 0, 0),
-            w,
-            x,
-            y,
-            z,
+            *(w, x, y, z),
             constraints=(w**2 + SQUARE - 1,),
         ),
         "R Rᵀ = 1",

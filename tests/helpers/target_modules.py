@@ -25,6 +25,11 @@ FEW = (  # with and without a divisor
     "angular_velocity_body",
     "rates_from_angular_velocity_body",
 )
+INVERSES = [
+    f"{name}_{frame}"
+    for name in ("inverse_rate_matrix", "rates_from_angular_velocity")
+    for frame in ("space", "body")
+]
 ROTATIONS = {  # and some quantities of each
     "ZXZ": (),  # all
     "rotation_vector": ("rotation_matrix", "angular_acceleration_body", "inverse_rate_matrix_body"),

@@ -21,7 +21,7 @@ from rigidsym.algebra.integrate import Integrator
 from rigidsym.errors import DerivationError
 from rigidsym.mechanics.kinematics.workspace import forms
 from rigidsym.mechanics.mass.moments import moments_of
-from rigidsym.models.body import Solid
+from rigidsym.models.solids import shaped
 
 Arrows = set[tuple[str, str]]
 PACKAGE = Path(rigidsym.__file__).parent
@@ -234,19 +234,10 @@ def test_a_wrong_coefficient_of_a_vector_form_is_refused(monkeypatch):
 
 def test_a_wrong_antiderivative_is_refused(monkeypatch):
     right = Integrator.antiderivative
-    a, u, v = sp.symbols("a u v")
-    disc = Solid(
-        title="disc",
-        coordinates=(u, v),
-        place=sp.ImmutableMatrix([u * sp.cos(v), u * sp.sin(v), 0]),
-        bounds=((sp.S.Zero, a), (sp.S.Zero, 2 * sp.pi)),
-        element=u,
-        density=sp.S.One,
-    )
 
     def wrong(self, element):
         return right(self, element) + self.codec.encode(self.variable)
 
     monkeypatch.setattr(Integrator, "antiderivative", wrong)
     with pytest.raises(DerivationError, match="for every integral is false"):
-        moments_of(disc)
+        moments_of(shaped("disc", [sp.Symbol("a")], density=sp.S.One))

@@ -15,26 +15,7 @@ import xarray as xr
 from numpy.testing import assert_allclose, assert_array_equal
 
 import rigidsym as rs
-from helpers.target_modules import FEW, inputs, module
-
-
-@pytest.mark.parametrize("count", [6, 79, 120, 240, 4096])
-@pytest.mark.parametrize("arrange", [np.ascontiguousarray, np.asfortranarray])
-def test_every_way_to_compute_gives_the_same_within_rounding(count, arrange):
-    """One by one, by sines or by tangents, of each angle or of all at once."""
-    rows = [0, count // 2, count - 1]
-    for name in FEW:
-        arrays = [arrange(array) for array in inputs("ZXZ", name, (count,))]
-        function = getattr(module(), name)
-        twin = getattr(module(), f"{name}_scalar")
-        points = np.hstack([array[rows] for array in arrays]).tolist()
-        found = function(*arrays)
-        expected = np.reshape([twin(*point) for point in points], found[rows].shape)
-        out = np.empty_like(found)
-        assert function(*arrays, out=out) is out
-        assert_array_equal(out, found)
-        assert_allclose(found[rows], expected, rtol=1e-13, atol=1e-13)
-
+from helpers.target_modules import module
 
 Q = np.zeros((5, 3))
 WRITE_PROTECTED = np.zeros((5, 3))

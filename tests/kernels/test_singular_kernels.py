@@ -11,18 +11,13 @@ import sympy as sp
 from numpy.testing import assert_array_equal
 
 from helpers.motions import derived
-from helpers.target_modules import exact, worst_error
+from helpers.target_modules import INVERSES, exact, worst_error
 from helpers.witness import mp
 from rigidsym.algebra.stable_forms import series_of
 from rigidsym.models.library import rotation_from
 from rigidsym.motion import derive
 
 DTYPES = [np.float64, np.float32]
-INVERSES = [
-    f"{name}_{frame}"
-    for name in ("inverse_rate_matrix", "rates_from_angular_velocity")
-    for frame in ("space", "body")
-]
 OMEGA = (0.7, -1.1, 0.4)
 
 

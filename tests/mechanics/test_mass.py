@@ -128,15 +128,8 @@ def test_a_solid_of_any_density_by_its_bounds():
     x, y, z = sp.symbols("x y z")
     density = rho * (1 + z / h)
     bounds = ((sp.S.Zero, a), (sp.S.Zero, a - x), (sp.S.Zero, h))
-    found = body_of(
-        Solid(
-            title="Wedge",
-            coordinates=(x, y, z),
-            place=column(x, y, z),
-            bounds=bounds,
-            density=density,
-        )
-    )
+    corner = (x, y, z)
+    found = body_of(solid_of(corner, coordinates=corner, bounds=bounds, density=density))
 
     def whole(integrand: sp.Expr) -> sp.Expr:
         return sp.integrate(density * integrand, (z, 0, h), (y, 0, a - x), (x, 0, a))

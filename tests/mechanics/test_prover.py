@@ -11,6 +11,7 @@ import sympy as sp
 from sympy import Abs, Rational, acos, cos, cosh, exp, log, pi, sin, sqrt
 
 import rigidsym as rs
+from helpers.samples import about_z
 from rigidsym.algebra.codec import Codec, codec_for
 from rigidsym.algebra.generators import combination
 from rigidsym.algebra.matrix import RingMatrix
@@ -38,10 +39,6 @@ def own(matrix: sp.Matrix, *constraints: sp.Expr, example=()) -> RotationModel:
 
 def turns(*pairs: tuple[str, sp.Expr]) -> RotationModel:
     return chain([Turn(axis=axis, angle=angle) for axis, angle in pairs])
-
-
-def about_z(cosine: sp.Expr, sine: sp.Expr) -> sp.Matrix:
-    return sp.Matrix([[cosine, -sine, 0], [sine, cosine, 0], [0, 0, 1]])
 
 
 # Conditions that hold nowhere: everything would follow from them

@@ -15,6 +15,7 @@ import sympy as sp
 from scipy.spatial.transform import Rotation
 
 from helpers.parametrisations import CHAINS, LONG, WITNESSES, constants_of, motion_of
+from helpers.target_modules import INVERSES
 from helpers.witness import evaluate, mp, number
 from rigidsym.models.library import PARAMETRISATIONS
 
@@ -174,13 +175,6 @@ def test_on_a_grid_the_rank_falls_at_the_stated_points_only(text):
             away = ((q - at(text, point)) * per_turn)[fixed]
             is_stated |= bool(fixed) and np.allclose(np.exp(1j * away), 1)
         assert (rank(rate_matrix(text, q)) < stated.rank) == is_stated, q
-
-
-INVERSES = [
-    f"{name}_{frame}"
-    for name in ("inverse_rate_matrix", "rates_from_angular_velocity")
-    for frame in ("space", "body")
-]
 
 
 @pytest.mark.parametrize("text", EVERY)
