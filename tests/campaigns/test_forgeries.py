@@ -66,6 +66,12 @@ def component(group: str, place: int, part: str, value: str) -> Change:
     return write("arguments", group, "components", place, part, value)
 
 
+def measured(place: int, *units: str) -> Change:
+    """Other units of a coordinate, its rate and its acceleration."""
+    groups = zip(("q", "q_dot", "q_ddot"), units, strict=True)
+    return together(*(component(group, place, "unit", unit) for group, unit in groups))
+
+
 def together(*changes: Change) -> Change:
     return lambda content: [change(content) for change in changes]
 
@@ -375,14 +381,6 @@ def with_a_skew_part(content: Content) -> None:
     content["body"]["inertia"][0][1] = content["body"]["inertia"][0][0]
 
 
-def by_degrees(content: Content) -> None:
-    """Angles in degrees, hidden in a turn with a constant axis."""
-    first = "constant_turn(0, 0, 1, cos(phi), sin(phi))"
-    content["rotation"]["turns"][0], content["name"] = first, "chain"
-    for group, unit in (("q", "deg"), ("q_dot", "deg/s"), ("q_ddot", "deg/s^2")):
-        component(group, 0, "unit", unit)(content)
-
-
 def powers_of_powers(form: str) -> Change:
     definitions = [(f"a{k}", form.format(f"a{k - 1}")) for k in range(1, 9)]
     return of_velocity("0*a8", ("a0", "phi"), *definitions)
@@ -390,15 +388,6 @@ def powers_of_powers(form: str) -> Change:
 
 def called_the_time(content: Content) -> None:
     content |= json.loads(json.dumps(content).replace("theta", "t"))
-
-
-def without_a_unit(content: Content) -> None:
-    """An angle of a turn by the name of a coordinate that is said to be no angle."""
-    turned("z(phi)", "x(a)", "z(psi)")(content)
-    content["name"], content["quantities"] = "any", [printed(content, "rotation_matrix")]
-    defined("a", "theta")(content)
-    for group, unit in (("q", ""), ("q_dot", "1/s"), ("q_ddot", "1/s^2")):
-        component(group, 1, "unit", unit)(content)
 
 
 def coordinates(content: Content) -> None:
@@ -435,7 +424,10 @@ OTHERS: Forgeries = {
             "rotation_matrix", lambda rows: [text for row in rows for text in row], [3, 3]
         ),
         "Ω as a row": cells(VELOCITY, lambda rows: [rows], [3]),
-        "degrees in a constant turn": by_degrees,
+        "degrees in a constant turn": together(
+            write("rotation", "turns", 0, "constant_turn(0, 0, 1, cos(phi), sin(phi))"),
+            *(write("name", "chain"), measured(0, "deg", "deg/s", "deg/s^2")),
+        ),
         "a letter that is defined": defined("omega_space_1", "0"),
         "a momentum in W": put(W, 2, 0, "cos(theta) + p_phi - p_phi"),
         "the transpose of an inverse": lambda c: put(
@@ -473,7 +465,11 @@ OTHERS: Forgeries = {
             ),
         ),
         **{f"{name} in kg": write(name, "unit", "kg") for name in (W, RATES)},
-        "an angle without a unit": without_a_unit,
+        # of a turn, by the name of a coordinate that is said to be no angle
+        "an angle without a unit": together(
+            *(turned("z(phi)", "x(a)", "z(psi)"), write("name", "any"), only(R)),
+            *(defined("a", "theta"), measured(1, "", "1/s", "1/s^2")),
+        ),
         **{
             f"the name {name!r}": write("name", name)
             for name in (

@@ -13,7 +13,7 @@ from contextlib import chdir
 
 import pytest
 import sympy as sp
-from click.testing import CliRunner, Result
+from click.testing import CliRunner
 
 import rigidsym as rs
 from helpers.command import RIGIDSYM, ROOT, call, run
@@ -194,23 +194,19 @@ def test_an_input_that_is_no_regular_file_is_refused(words, status, tmp_path):
 BODY = "angular_velocity_body"
 
 
-def invoked(*arguments: str) -> Result:
-    return CliRunner().invoke(commands, arguments)
-
-
 @pytest.mark.parametrize("name", commands.list_commands(None))
 def test_every_help_has_an_example(name):
-    assert f"Example: rigidsym {name}" in invoked(name, "--help").stdout
-    assert invoked().stdout == invoked("--help").stdout
+    assert f"Example: rigidsym {name}" in run(name, "--help").stdout
+    assert run().stdout == run("--help").stdout
 
 
 def test_one_equation_is_printed_and_nothing_written(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     motion = rs.derive("ZXZ", BODY)
-    latex = invoked("derive", "ZXZ", "--only", BODY, "--format", "latex").stdout
+    latex = run("derive", "ZXZ", "--only", BODY, "--format", "latex").stdout
     assert latex == motion.latex(BODY) + "\n"
-    assert "Ω′ = Rᵀ Ω" in invoked("derive", "ZXZ", "--only", BODY, "--format", "text").stdout
-    (found,) = json.loads(invoked("derive", "ZXZ", "--only", BODY, "--format", "json").stdout)
+    assert "Ω′ = Rᵀ Ω" in run("derive", "ZXZ", "--only", BODY, "--format", "text").stdout
+    (found,) = json.loads(run("derive", "ZXZ", "--only", BODY, "--format", "json").stdout)
     assert found["name"] == BODY
     assert list(tmp_path.iterdir()) == []
 
@@ -220,8 +216,8 @@ def test_two_derivations_of_one_name_are_refused(tmp_path):
     for file, axes in zip(files, ("ZXZ", "ZYX"), strict=True):
         file.parent.mkdir()
         file.write_text(f'[rotation]\nsequence = "{axes}"\n')
-    done = invoked("run", *map(str, files), "--out", str(tmp_path / "out"))
-    assert done.exit_code == 2
+    done = run("run", *map(str, files), "--out", str(tmp_path / "out"))
+    assert done.returncode == 2
     assert "two different derivations are named own and would write one folder" in done.stderr
 
 

@@ -24,10 +24,6 @@ HEAD, WXYZ, ABOUT_X = ",".join(NAMES), "qw,qx,qy,qz", [np.cos(1), np.sin(1), 0, 
 LAST = "unit_quaternion --scalar-last --quantity"
 
 
-def as_npy(path: Path, table: np.ndarray) -> None:
-    np.save(path, table)
-
-
 def as_text(path: Path, table: np.ndarray) -> None:
     lines = [",".join(map(repr, row)) for row in table.tolist()]
     path.write_text("\n".join([",".join(NAMES), *lines]) + "\n", encoding="utf-8")
@@ -38,7 +34,7 @@ def as_parquet(path: Path, table: np.ndarray) -> None:
     pl.DataFrame(columns).write_parquet(path, row_group_size=300)
 
 
-WRITERS = {".npy": as_npy, ".csv": as_text, ".parquet": as_parquet}
+WRITERS = {".npy": np.save, ".csv": as_text, ".parquet": as_parquet}
 
 
 def read(path: Path) -> np.ndarray:
