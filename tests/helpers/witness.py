@@ -23,10 +23,8 @@ mp.dps = 50
 Matrix = Any  # mp.matrix
 Values = Mapping[sp.Expr, Any]
 
-AXIS_SEQUENCES = tuple(
-    "".join(axes) for axes in product("xyz", repeat=3) if axes[0] != axes[1] != axes[2]
-)
-CONVENTIONS = (*(axes.upper() for axes in AXIS_SEQUENCES), *AXIS_SEQUENCES)
+_SEQUENCES = ["".join(a) for a in product("xyz", repeat=3) if a[0] != a[1] != a[2]]
+CONVENTIONS = (*(axes.upper() for axes in _SEQUENCES), *_SEQUENCES)
 TOLERANCE = mp.mpf(10) ** -40
 
 _TIME = sp.Symbol("t")

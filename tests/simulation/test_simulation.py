@@ -251,14 +251,12 @@ def test_a_heavy_body_is_carried_through_the_poles_of_its_coordinates(rotation):
     assert found.drift["energy"] < 1e-8
 
 
-DAMPED = {"phi": "-k*phi_dot", "theta": "-k*theta_dot", "psi": "-k*psi_dot"}
-
-
 def test_a_pole_at_which_a_force_has_no_limit_ends_the_motion_with_the_time_and_the_reason():
     """−k φ̇ damps the turn about the line of nodes with k/sin² θ; p_φ = L₃ and p_ψ = L₃′ decay by
     −k φ̇ and −k ψ̇
     """
-    acting = {"potential": "m*g*l*cos(theta)", "forces": DAMPED}
+    friction = {q: f"-k*{q}_dot" for q in ("phi", "theta", "psi")}
+    acting = {"potential": "m*g*l*cos(theta)", "forces": friction}
     damped = rs.derive("ZXZ", NEEDED, body=rs.principal_moments(A, A, C), **acting)
     values = {"A": 1, "C": 0.6, "m": 1, "g": 9.81, "l": 0.4, "k": 0.1}
     found = damped.simulate({"theta": 0.5, "psi_dot": 20}, values, 3.0)
@@ -356,7 +354,8 @@ def test_two_links_are_solved_for_their_accelerations_in_numbers():
             },
         ],
     )
-    found = links.simulate({"a": 1.0, "b": 0.5}, LINKS, 5.0, samples=51)
+    values = {"l": 0.4, "m": 1.5, "g": 9.81, "J": 0.01}
+    found = links.simulate({"a": 1.0, "b": 0.5}, values, 5.0, samples=51)
 
     def slopes(_, y):  # with the angles to the vertical
         a, c, u, w = y
@@ -368,9 +367,6 @@ def test_two_links_are_solved_for_their_accelerations_in_numbers():
     exact = solve_ivp(slopes, (0, 5), [1, 1.5, 0, 0], "DOP853", found.t, rtol=1e-12, atol=1e-13).y.T
     assert np.abs(found.q.sum(axis=1) - exact[:, 1]).max() < 1e-6
     assert found.drift["energy"] < 1e-8
-
-
-LINKS = {"l": 0.4, "m": 1.5, "g": 9.81, "J": 0.01}
 
 
 BLOWN_UP = """[rotation]
