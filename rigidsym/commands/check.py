@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from itertools import chain
 from pathlib import Path
 
 import click
@@ -20,13 +21,20 @@ from rigidsym.tools.certificate.checker import BROKEN, load, verify
 def command(context: click.Context, paths: tuple[Path, ...]) -> None:
     """Compare generated files with a fresh derivation."""
     records = dict.fromkeys(record for path in paths for record in _records(path))
-    is_wrong = False
-    for record in records:
-        for path, problem, note in _findings(record):
-            finding = printable(f"{path}: {problem or 'up to date'}").replace("\n", "\\n")
-            click.echo(finding + note)
-            is_wrong = is_wrong or bool(problem)
+    is_wrong, derived = False, set[Path]()
+    for path, problem, note in chain(*map(_findings, records), _strangers(paths, derived)):
+        finding = printable(f"{path}: {problem or 'up to date'}").replace("\n", "\\n")
+        click.echo(finding + note)
+        derived.add(path)
+        is_wrong = is_wrong or bool(problem)
     context.exit(is_wrong)
+
+
+def _strangers(paths: Iterable[Path], derived: set[Path]) -> Iterator[tuple[Path, str, str]]:
+    """Theorems beside the records that none of them derives: they may prove something else."""
+    folders = (path.rglob if path.is_dir() else path.parent.glob for path in paths)
+    for path in sorted({*chain(*(files(f"*.{CERTIFICATE}") for files in folders))} - derived):
+        yield path, "belongs to no record here; derive with --certificates, or remove it", ""
 
 
 def _records(path: Path) -> list[Path]:
@@ -74,11 +82,8 @@ def _findings(record: Path) -> Iterator[tuple[Path, str, str]]:
             except BROKEN as error:
                 problem = f"{record.name} is refused: {error}"
             else:
-                note = f"\n  proved in {record.name}: {', '.join(proved) or 'nothing'}"
+                is_edited = record.read_bytes() != fresh.files[record.name].encode("utf-8")
+                source = f"{record.name}{' as it was edited' * is_edited}"
+                note = f"\n  proved in {source}: {', '.join(proved) or 'nothing'}"
                 note += f"\n  not proved: {', '.join(reasons) or 'nothing'}"
-            is_edited = record.read_bytes() != fresh.files[record.name].encode("utf-8")
-            note = "" if is_edited else note  # it says nothing of the fresh record
         yield path, problem, note
-    path = record.with_suffix(f".{CERTIFICATE}")
-    if path.name not in fresh.files and path.exists():
-        yield path, f"unknown to {record.name}: derive again with --certificates", ""

@@ -143,7 +143,8 @@ def test_the_files_are_written_and_checked(tmp_path):
     (folder / "other.json").write_text("{}")
     (folder / "odd.json").write_text('{"schema": "rigidsym.derivation", "name": "\\ud800"}')
     edit(folder / RECORD, '"title": "', '"title": "My ')
-    assert "proved" not in call("check", "out", cwd=tmp_path, status=1).stdout
+    edited = call("check", "out", cwd=tmp_path, status=1).stdout
+    assert f"  proved in {RECORD} as it was edited: R is a rotation" in edited
     edit(folder / RECORD, "-sin(phi)*sin(psi)", "sin(phi)*sin(psi)")
     done = subprocess.run(alone, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 1
@@ -274,7 +275,14 @@ COQ, RECORD = f"{NAME}.v", f"{NAME}.json"
         ),
         (COQ, "Qed.", "Admitted.", {COQ: "differs from the derivation"}),
         (COQ, None, "", {COQ: "missing"}),
-        (RECORD, '"title"', "{", {RECORD: "cannot be read as the record"}),
+        (
+            *(RECORD, '"title"', "{"),
+            {
+                RECORD: "cannot be read as the record",
+                COQ: "belongs to no record here",
+                "Rotation.v": "belongs to no record here",
+            },
+        ),
     ],
 )
 def test_a_damaged_or_missing_file_is_named(folder, name, before, after, expected):
@@ -300,8 +308,12 @@ def test_a_certificate_of_other_angles_leaves_unless_it_was_edited(folder, is_ed
         edit(folder / COQ, "Qed.", "Admitted.")
     answered("derive", "ZXZ", "--angles", "a,b,c", "--quiet", "--out", str(folder.parent))
     assert (folder / COQ).exists() == is_edited
-    unknown = {COQ: f"unknown to {RECORD}: derive again with --certificates"}
+    unknown = {COQ: "belongs to no record here; derive with --certificates, or remove it"}
     assert problems(folder.parent) == (unknown if is_edited else {})
+    for name in ("other.v", "theorems/other.v"):  # theorems about something else
+        (folder / name).parent.mkdir(exist_ok=True)
+        (folder / name).write_text("")
+    assert {*problems(folder.parent)} == {"other.v", *(unknown if is_edited else {})}
 
 
 def test_a_theorem_that_was_edited_is_not_overwritten(folder):
