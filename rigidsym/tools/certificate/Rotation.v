@@ -1,7 +1,6 @@
-(* Rotations in Coq's own real numbers. Certificates (NAME.v) need this file. The first half defines
-   the words of their theorems: turns, the operator C, derivatives, and "F turns with the angular
-   velocity w". Read it, or compare this file with the shipped one. The second half proves what they need. *)
-Require Import Reals Lra. Require Export FunctionalExtensionality.
+(* Rotations in Coq's own reals, for certificates (NAME.v). The first half defines the words of their theorems: turns,
+   C, derivatives, and "F turns with the angular velocity w". Read it, or compare this file with the shipped one. *)
+Require Import Reals Lra FunctionalExtensionality.
 Open Scope R_scope.
 
 (* Vectors and matrices *)
@@ -85,11 +84,13 @@ Proof.
 Qed.
 Theorem rate_of_turns F t w : turns F t w -> rate F t (mul (C w) (F t)).
 Proof. intros [f [D [d e]]]. rewrite <- e, associative, (proj1 (proj2 f)), one_right. exact d. Qed.
+Lemma transpose_rate F t D : rate F t D -> rate (fun s => transpose (F s)) t (transpose D).
+Proof. unfold rate, vector_rate; simpl; tauto. Qed.
 Theorem in_body F t w : turns F t (apply (F t) w) -> turns_in_body F t w.
 Proof.
-  intro T; pose proof (rate_of_turns _ _ _ T) as d; destruct T as [[a [a' e]] _].
-  split; [ repeat split; assumption | ]. eexists; split; [ exact d | ].
-  rewrite <- C_turned, !associative, a', one_right, <- associative, a' by assumption. entries; ring.
+  intro T; pose proof (rate_of_turns _ _ _ T) as d; destruct T as [r _]; split; [ exact r | ].
+  destruct r as [_ [a e]]; eexists; split; [ exact d | ].
+  rewrite <- C_turned, !associative, a, one_right, <- associative, a by assumption. entries; ring.
 Qed.
 Lemma squares a : cos a * cos a = 1 - sin a * sin a.
 Proof. generalize (sin2_cos2 a); unfold Rsqr; intro H; rewrite <- H; ring. Qed.

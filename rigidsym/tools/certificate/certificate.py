@@ -115,7 +115,7 @@ def theorems(record: Mapping[str, Any], claims: Sequence[str]) -> Certificate:
         section = _Section(record, claims, stated)
         head = [*section.head()]
         # R and Ω first: what follows is calculated from them as printed, which is shorter
-        for name in sorted(claims, key=lambda name: name not in _FIRST):
+        for name in sorted(claims, key=lambda name: (name not in _FIRST, name == "spin_matrix")):
             with suppress(Unproved):
                 stated[name] = section.theorem(name)
     uncovered = [name for name in printed_in(record) if name not in stated]
@@ -164,11 +164,12 @@ class _Section:
             raise Unproved
         self.names, self.printed = Record(record), printed_in(record)
         self.is_passive = record["presentation"] == "passive"
-        suffixes = "_dot", "_ddot"
-        self.rates, self.seconds = ([q + end for q in self.names.q] for end in suffixes)
+        self.presented = "(fun s => transpose (F s))" if self.is_passive else "F"
+        self.rates, self.seconds = ([q + end for q in self.names.q] for end in ("_dot", "_ddot"))
         self.factors = [*self._factors()]
         self.trees_of_rotation = [tree for factor in self.factors for tree in factor.trees]
-        self.facts, self.known, self.apart = list[str](), list[str](), set[tuple[str, ...]]()
+        self.facts, self.facts_of_rates, self.known = list[str](), list[str](), list[str]()
+        self.apart = set[tuple[str, ...]]()
         body, motion = record.get("body"), record.get("motion")
         self.parts = {
             "M": self.text(body["mass"]) if body else "",
@@ -266,7 +267,7 @@ class _Section:
                 angle = trees[3][1]
                 function, rate = self.real(angle, "s"), self.real(self.rate(angle))
                 velocity = f"(V {' '.join(rate if kind == axis else '0' for axis in 'xyz')})"
-                proof = f"apply (turn_{kind}_turns (fun s => {function})); by_rules t"
+                proof = f"apply (turn_{kind}_turns (fun s => {function})); derived t"
                 yield _Factor(f"turn_{kind} {function}", velocity, proof, [("cos", angle)])
                 continue
             text = f"turn (V {' '.join(axis)}) {cosine} {sine}"
@@ -274,7 +275,7 @@ class _Section:
                 rate = self.real(self.rate(trees[3][1])) if kind == "axis_angle" else "0"
                 functions = f"(fun s => {cosine}) (fun s => {sine})"
                 proof = f"apply (turn_turns (V {' '.join(axis)}) {functions}); cbn; first"
-                proof += " [ calculation t | by_rules t ]"
+                proof += " [ calculation t | derived t ]"
                 yield _Factor(text, f"(scale {rate} (V {' '.join(axis)}))", proof, trees)
             elif len(rotation["turns"]) != 1:
                 raise Unproved
@@ -282,11 +283,9 @@ class _Section:
                 places = [f"({place})" for place in turn.partition("(")[2][:-1].split(",")]
                 w, u = (self.real(_tree(f.format(*places)), "s") for f in _QUATERNIONS[kind])
                 functions = " ".join(f"(fun s => {each})" for each in (w, *axis, u, cosine, sine))
-                proof = "eapply (same (turns _ t)); [ eapply (quaternion_turns "
-                proof += (
-                    f"{functions}); first [ derivative | intro s; calculation s | calculation t ]"
-                )
-                yield self._as_printed(text, trees, f"{proof} | calculation t ]")
+                ways = "first [ derivative | intro s; calculation s | calculation t ]"
+                proof = f"[ eapply (quaternion_turns {functions}); {ways} | calculation t ]"
+                yield self._as_printed(text, trees, f"eapply (same (turns _ t)); {proof}")
             else:
                 yield self._as_printed(text, trees)
 
@@ -316,27 +315,30 @@ class _Section:
         for k, sphere in enumerate(names.spheres):
             yield from self._sphere(k, sphere)
         yield from self._divisors()
-        using = f" [{' '.join(self.facts)}]" if self.facts else ""
+        # those of rates are to be tried before squares; without rates, fewer facts are faster
+        lists = self.facts_of_rates + self.facts, self.facts
+        using, squares = (f" [{' '.join(facts)}]" if facts else "" for facts in lists)
         known = "; ".join(f"pose proof {fact}" for fact in self.known)
         yield f"Ltac known t := {known or 'idtac'}."
         # an angle may be the sum of two others, whose sines and cosines are printed, too
         sums = f"rewrite ?sin_plus, ?cos_plus, ?sin_minus, ?cos_minus; ring{using}"
         yield "Ltac calculation t :="
         yield f"  entries; first [ ring{using} | known t; field{using}; apart | {sums} ]."
-        yield "Ltac by_rules t := known t; eapply (same (derivable_pt_lim _ _));"
-        yield "  [ derivative | calculation t ]."
+        yield f"Ltac still t := known t; entries; field{squares}; apart."
         if "body" in self.record:
             yield f"Definition inertia := {self.text(self.record['body']['inertia'])}."
         texts = [factor.text for factor in self.factors]
         product = reduce(lambda right, left: f"mul ({left}) ({right})", reversed(texts))
         yield f"Definition F s := {product}. (* R *)"
-        yield from self._turning()
         words = "F, inertia" if "body" in self.record else "F"
         yield f"Ltac equal t := unfold {words}; calculation t."
+        way = "still t" if self.apart else "entries; ring"
+        yield f"Ltac plain t := unfold F; first [ {way} | calculation t ]."
         yield "Ltac derived t := known t; eapply (same (derivable_pt_lim _ _));"
         yield "  [ derivative | equal t ]."
         yield "Ltac lagrange t := known t; repeat match goal with |- _ /\\ _ => split end;"
         yield "  (eexists; eexists; split; [ derivative | split; [ derivative | equal t ] ])."
+        yield from self._turning()
 
     def _sphere(self, k: int, sphere: Sequence[str]) -> Iterator[str]:
         """A condition Σ n² = 1, and what follows for the rates."""
@@ -358,7 +360,7 @@ class _Section:
             yield f"Lemma across_{k} t : {dot} * {rest[0]} * {rest[0]} = {dot}{across}."
             yield f"Proof. pose proof (f_equal (Rmult {dot}) (square_{k} t));"
             yield f"  pose proof (f_equal (Rmult {first}) (along_{k} t)); lra. Qed."
-            self.facts += [f"(along_{k} t)", f"(across_{k} t)"]  # to be tried before the square
+            self.facts_of_rates += [f"(along_{k} t)", f"(across_{k} t)"]
         self.facts.append(f"(square_{k} t)")
 
     def _divisors(self) -> Iterator[str]:
@@ -409,17 +411,19 @@ class _Section:
             f"Proof. intros. {statement.proof}. Qed."
         )
 
+    def is_stated(self, name: str) -> bool:
+        """A theorem without premises."""
+        return name in self.stated and not self.divisors(name)
+
     @property
     def total(self) -> str:
         """A theorem that F turns."""
-        is_stated = _FIRST[1] in self.stated and not self.divisors(_FIRST[1])
-        return f"({_FIRST[1] if is_stated else 'total'} t)"
+        return f"({_FIRST[1] if self.is_stated(_FIRST[1]) else 'total'} t)"
 
     @property
     def equal(self) -> str:
         """The tactic for equations in which F may be."""
-        is_stated = _FIRST[0] in self.stated and not self.divisors(_FIRST[0])
-        is_rewritten = is_stated and not self.is_passive
+        is_rewritten = self.is_stated(_FIRST[0]) and not self.is_passive
         return "rewrite ?rotation_matrix; equal t" if is_rewritten else "equal t"
 
     def need(self, *names: str) -> None:
@@ -429,37 +433,36 @@ class _Section:
 
     def of_rotation_matrix(self, name: str) -> _Statement:
         left = "transpose (F t)" if self.is_passive else "F t"
-        return _Statement(f"{self.divisors(name)}{left} = {self.text(self.printed[name])}")
+        claim = f"{self.divisors(name)}{left} = {self.text(self.printed[name])}"
+        return _Statement(claim, "plain t")
 
     def of_rotation_rate(self, name: str) -> _Statement:
-        if self.is_passive:
-            raise Unproved
-        claim = f"{self.divisors(name)}rate F t {self.text(self.printed[name])}"
-        if self.equal != "equal t":  # the printed R, which has no divisors, is differentiated
-            function = f"(fun s => {self.text(self.printed[_FIRST[0]], 's')})"
-            proof = f"rewrite (functional_extensionality _ {function} {_FIRST[0]})"
-            rates = (
-                "(eapply (same (derivable_pt_lim _ _)); [ derivative | first [ ring | equal t ] ])"
-            )
-            return _Statement(claim, f"{proof}; known t; repeat split; expand; {rates}")
+        claim = f"{self.divisors(name)}rate {self.presented} t {self.text(self.printed[name])}"
         rate = f"(rate_of_turns _ _ _ {self.total})"
-        return _Statement(claim, f"apply (same (rate F t) _ _ {rate}); {self.equal}")
+        rate = f"(transpose_rate _ _ _ {rate})" if self.is_passive else rate
+        return _Statement(claim, f"apply (same (rate _ t) _ _ {rate}); {self.equal}")
 
     def of_spin_matrix(self, name: str) -> _Statement:
+        """S = D Fᵀ; of the transpose, S = Dᵀ F, which is (Fᵀ D)ᵀ."""
+        theorem, change = self.total, ""
         if self.is_passive:
-            raise Unproved
-        printed = self.text(self.printed[name])
-        claim = f"exists D, rate F t D /\\ mul D (transpose (F t)) = {printed}"
-        proof = f"destruct {self.total} as [_ [D [d e]]]. exists D; split; [ exact d | ]. "
-        return _Statement(self.divisors(name) + claim, proof + "rewrite e; equal t")
+            if not self.is_stated("angular_velocity_body"):
+                raise Unproved
+            theorem, change = "(angular_velocity_body t)", "apply transpose_rate in d. "
+            change += "apply (f_equal transpose) in e. rewrite transposed in e. "
+        claim = f"exists D, rate {self.presented} t D /\\ mul D (transpose ({self.presented} t))"
+        claim = f"{self.divisors(name)}{claim} = {self.text(self.printed[name])}"
+        proof = f"destruct {theorem} as [_ [D [d e]]]. {change}eexists; split; [ exact d | ]. "
+        return _Statement(claim, proof + "rewrite e; equal t")
 
-    def turning(self, frame: str, velocity: str, *names: str, more: str = "") -> _Statement:
-        """F turns with a vector; `more` are premises about the rates."""
-        total = f"(same (turns F t) _ _ {self.total})"
-        proof = f"apply {'in_body, ' * (frame == 'body')}{total}; "
-        rewrite = "repeat match goal with H : _ = _ |- _ => rewrite H; clear H end; " * bool(more)
-        claim = f"{self.divisors(*names)}{more}{_TURNS[frame]} F t {velocity}"
-        return _Statement(claim, f"{proof}{rewrite}{self.equal}")
+    def turning(self, frame: str, velocity: str, name: str) -> _Statement:
+        """F turns with a vector, by the printed angular velocity if that has a theorem."""
+        claim, known = f"{_TURNS[frame]} F t", f"angular_velocity_{frame}"
+        proof = f"apply (same ({claim}) _ _ ({known} t)); equal t"
+        if not self.is_stated(known):
+            proof = f"apply {'in_body, ' * (frame == 'body')}(same (turns F t) _ _ {self.total}); "
+            proof += self.equal
+        return _Statement(f"{self.divisors(name)}{claim} {velocity}", proof)
 
     def of_angular_velocity(self, name: str, frame: str) -> _Statement:
         return self.turning(frame, self.text(self.printed[name]), name)
@@ -482,15 +485,20 @@ class _Section:
         rates = [f"(dot {self.text(row)} (V a b c))" for row in self.printed[name]]
         # For arbitrary a, b and c this is W W⁻¹ = 1.
         claim = f"{self.combination(self.printed[W], rates)} = V a b c"
-        return _Statement(self.divisors(name, W) + claim, letters=" a b c")
+        return _Statement(self.divisors(name, W) + claim, "still t", " a b c")
 
     def of_rates_from_angular_velocity(self, name: str, frame: str) -> _Statement:
+        W, inverse = f"rate_matrix_{frame}", f"inverse_rate_matrix_{frame}"
+        self.need(W, inverse)
         letters = f" {' '.join(LETTERS[f'omega_{frame}'][0])}"
         rates = [self.name(rate) for rate in self.rates]
         equations = zip(rates, map(self.text, self.printed[name]), strict=True)
         premises = "".join(f"{rate} = {text} -> " for rate, text in equations)
-        statement = self.turning(frame, f"(V{letters})", name, more=premises)
-        return _Statement(statement.claim, statement.proof, letters)
+        claim = f"{self.divisors(name, W, inverse)}{premises}{_TURNS[frame]} F t (V{letters})"
+        proof = f"rewrite <- ({inverse} t{letters}) by assumption; "
+        proof += f"eapply (same ({_TURNS[frame]} F t)); [ apply {W}; assumption | ]; "
+        proof += "repeat match goal with H : _ = _ |- _ => rewrite H; clear H end; plain t"
+        return _Statement(claim, proof, letters)
 
     def of_angular_acceleration(self, name: str, frame: str) -> _Statement:
         velocity = f"angular_velocity_{frame}"

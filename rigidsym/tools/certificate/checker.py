@@ -122,8 +122,7 @@ def whole(number: int) -> Number:
     return Number(0, [Fraction(number)] * POINTS, lambda _: ZERO)
 
 
-ZERO: Number = whole(0)
-MINUS, ONE, TWO = map(whole, (-1, 1, 2))
+ZERO, ONE, TWO, MINUS = map(whole, (0, 1, 2, -1))
 
 
 def drawn(rate: Number = ZERO) -> Number:
@@ -135,14 +134,6 @@ def on_sphere(u: Sequence[Number]) -> list[Number]:
     """(1 - u², 2 u)/(1 + u²), a unit vector by stereographic projection."""
     square = reduce(add, (each * each for each in u), ONE)
     return [(TWO - square) / square, *(TWO * each / square for each in u)]
-
-
-def circle(angle: Number) -> list[Number]:
-    """The cosine and the sine."""
-    cosine, sine = on_circle = on_sphere([drawn()])
-    cosine.rule = lambda by: MINUS * sine * angle.rate(by)
-    sine.rule = lambda by: cosine * angle.rate(by)
-    return on_circle
 
 
 class Matrix:
@@ -208,6 +199,14 @@ def turn(*numbers: Number) -> Matrix:
     return IDENTITY + Matrix([sine]) * operator + Matrix([ONE - cosine]) * (operator * operator)
 
 
+def circle(angle: Number) -> Matrix:
+    """The turn of a plane; its first column is the cosine and the sine."""
+    cosine, sine = on_sphere([drawn()])
+    cosine.rule = lambda by: MINUS * sine * angle.rate(by)
+    sine.rule = lambda by: cosine * angle.rate(by)
+    return Matrix([[cosine, MINUS * sine], [sine, cosine]])
+
+
 @cache
 def read(text: str) -> ast.expr:
     """Python's tree of an expression, whose names end in _ so that none is a keyword."""
@@ -221,8 +220,7 @@ def read(text: str) -> ast.expr:
 
 
 def names_in(*trees: ast.AST) -> set[str]:
-    nodes = chain(*map(ast.walk, trees))
-    return {node.id[:-1] for node in nodes if isinstance(node, ast.Name)}
+    return {node.id[:-1] for node in chain(*map(ast.walk, trees)) if isinstance(node, ast.Name)}
 
 
 def distinct(pairs: Iterable[tuple[str, Any]]) -> dict[str, Any]:
@@ -368,16 +366,14 @@ class Record:
 
     def circle_of_sum(self, angle: Number) -> tuple[Number, Number]:
         """The cosine and the sine of a sum of whole multiples, by the theorems of addition."""
-        cosine, sine, rest = ONE, ZERO, angle
-        for name, (number, (c, s)) in self.circles.items():  # the number 1 comes last
+        total, rest = Matrix([[ONE, ZERO], [ZERO, ONE]]), angle
+        for name, (number, plane) in self.circles.items():  # the number 1 comes last
             count = rest if number is ONE else angle.rate(name)
             rest, turns = rest - count * number, count.values[0]
             is_whole = {*count.values} == {turns} and turns in range(-MOST_TURNS, MOST_TURNS + 1)
             refuse_unless(is_whole, "an angle that is no sum of whole multiples", Unproved)
-            s = s if turns > 0 else MINUS * s
-            for _ in range(abs(int(turns))):
-                cosine, sine = cosine * c - sine * s, cosine * s + sine * c
-        return cosine, sine
+            total = reduce(mul, [plane if turns > 0 else plane.T] * abs(int(turns)), total)
+        return total.rows[0][0], total.rows[1][0]
 
     # What is claimed: the unit of a printed x; its value, or what is zero if x is right; and the
     # groups of names that x may depend on besides parameters; others could hide a false term
@@ -540,7 +536,7 @@ if __name__ == "__main__":
                 proved, reasons = verify(content)
                 refuse_unless(bool(proved), f"nothing is proved: {', '.join({*reasons.values()})}")
                 lines += [f"{path}: R is {content['rotation']}", STRENGTH]
-                lines.append("  proved: " + ", ".join(proved))
+                lines += ["  proved: " + ", ".join(proved)]
                 lines += [f"  not proved: {name}, since {why}" for name, why in reasons.items()]
             except (*BROKEN, OSError) as error:
                 status = 1
