@@ -188,6 +188,7 @@ class Kernel:
     about: str = ""  # words
     remarks: tuple[str, ...] = ()  # paragraphs
     unit: str = ""  # SI; "" for a pure number
+    halves: tuple[Expression, ...] = ()  # of Euler angles: a₀ to a₃ of `conversions`
 
     def __post_init__(self) -> None:
         if len(self.outputs) != prod(self.shape):

@@ -5,8 +5,10 @@ def _longest(block, dtype, shape):
 
 
 def _columns(array):
-    """The components of an array, each a contiguous copy."""
-    return np.array(np.moveaxis(array, -1, 0) if array.ndim > 2 else array.T, order="C")
+    """The components of an array, each contiguous: a copy unless they are."""
+    columns = np.moveaxis(array, -1, 0) if array.ndim > 2 else array.T
+    is_ready = columns.strides[-1] == columns.itemsize
+    return columns if is_ready else np.array(columns, order="C")
 
 
 def _quiet():
@@ -51,7 +53,10 @@ def _fill(result, block, arrays, shape, threads):
     NumPy holds no lock while it works on a block, so that threads share them.
     """
     leading = result.shape[: result.ndim - len(shape)]
-    wide = [np.broadcast_to(a, (*leading, a.shape[-1])) for a in arrays]
+    wide = [
+        a if a.shape[:-1] == leading else np.broadcast_to(a, (*leading, a.shape[-1]))
+        for a in arrays
+    ]
     longest = _longest(block, result.dtype, shape)
     if threads > 1:  # longer blocks, as many for each: they wait less for one another
         rounds = -(-prod(leading) // (4 * longest * threads))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from itertools import permutations
 from types import ModuleType
 
 import jax
@@ -119,15 +120,11 @@ CONVERTED = {"numba": ["zyx"], "jax": ["zyx"]}  # others compile faster
 
 
 @pytest.mark.parametrize("target", OTHERS)
-def test_every_target_is_as_accurate(target):
+def test_every_target_is_as_accurate_and_has_the_quaternion_of_numpy(target):
     for text in CONVERTED.get(target, ["zyx", "rotation_vector"]):
-        assert_accurate(text, target, near_poles(text, 12))
-
-
-@pytest.mark.parametrize("target", OTHERS)
-def test_every_target_has_the_quaternion_of_numpy(target):
-    for text in CONVERTED.get(target, ["zyx", "rotation_vector"]):
-        q = module(text).from_quaternion(near_poles(text, 12))
+        p = near_poles(text, 12)
+        assert_accurate(text, target, p)
+        q = module(text).from_quaternion(p)
         found = module(text, target).quaternion(q)
         assert_allclose(found, module(text).quaternion(q), rtol=1e-13, atol=1e-13)
 
@@ -165,12 +162,12 @@ def test_scalar_twins_and_single_precision_agree_and_no_rotation_is_nan(text):
         one_by_one = np.array([scalar(*value.ravel().tolist()) for value in values])
         assert_allclose(one_by_one, expected, atol=16 * EPS, rtol=16 * EPS)
         single = function(values.astype(np.float32))
-        assert single.dtype == np.float32
+        assert single.dtype == function(values[:0].astype(np.float32)).dtype == np.float32
         assert_allclose(single, expected, atol=1e-4, rtol=1e-3)
     for none in ([0.0] * 4, [np.nan, 0.5, 0.5, 0.5], [1.0, 0.0, 0.0, np.nan]):
-        found = functions.from_quaternion([none, [1.0, 0.0, 0.0, 0.0]])
+        found = functions.from_quaternion([none, *quaternion])
         assert np.isnan(found[0]).any()
-        assert np.isfinite(found[1]).all()
+        assert np.isfinite(found[1:]).all()
         assert np.isnan(functions.from_quaternion_scalar(*none)).any()
     matrix = np.where(np.eye(3)[::-1] > 0, np.nan, np.eye(3))
     assert np.isnan(functions.from_rotation_matrix(matrix)).any()
@@ -210,6 +207,13 @@ def test_at_a_pole_the_last_angle_is_zero(text):
     found = module(text).from_rotation_matrix(exact.as_matrix())
     assert_array_equal(found[:, 2], 0.0)
     assert_allclose(found[:, 1], poles, atol=4 * EPS)
+    usual = quaternions(ANY[:20])
+    sizes = np.outer((1e-310, 1e-160, 1e200, 1e308), usual[0])
+    nearly_minus_pi = permutations((1.0, -1.0, 0.0, 1e-20))
+    for odd in (*quaternions(exact), *sizes, *nearly_minus_pi):  # one row, no short cut for any
+        found = module(text).from_quaternion([*usual, odd])
+        assert_allclose(found[:-1], module(text).from_quaternion(usual), EPS, EPS)
+        assert_allclose(found[-1], module(text).from_quaternion_scalar(*odd), EPS, EPS)
 
 
 LONG = (

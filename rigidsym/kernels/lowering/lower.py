@@ -117,6 +117,8 @@ class _Lowering:
         for symbol, value in function.values:
             graph.hold(symbol, value)
         weighted = list(map(graph.weighted, function.outputs))
+        plain = Graph(function.name, inputs)
+        _, halves = write(plain, list(map(plain.weighted, function.halves)), self._names.copy())
         return _written(
             graph,
             weighted,
@@ -128,6 +130,7 @@ class _Lowering:
             about=function.about,
             remarks=function.remarks,
             unit=function.unit,
+            halves=halves,
         )
 
     def margin(self) -> Iterator[ir.Kernel]:

@@ -14,12 +14,8 @@ from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, Protocol, cast
 
 from rigidsym.errors import KernelError, MissingExtra, offer
-
-if TYPE_CHECKING:
-    from rigidsym.kernels.ir import Program
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -41,14 +37,6 @@ class Target:
 
             return missing()
         return ""
-
-
-class Printer(Protocol):
-    """The contents of LANGUAGE.py."""
-
-    RESERVED: frozenset[str]
-
-    def render(self, program: Program, **options: str | bool) -> Mapping[str, str]: ...
 
 
 TARGETS: dict[str, Target] = {  # the default first
@@ -77,9 +65,9 @@ def check_options(target: str, options: Mapping[str, str | bool]) -> None:
             raise KernelError(f"{name}: expected {' or '.join(known[name])}, got {value!r}")
 
 
-def printer(target: str) -> Printer:
+def printer(target: str) -> ModuleType:
     """The printer of a target."""
-    return cast(Printer, import_module(f"{__name__}.{target}"))
+    return import_module(f"{__name__}.{target}")
 
 
 def load(target: str, name: str, files: Mapping[str, str]) -> ModuleType:

@@ -19,9 +19,7 @@ RESERVED = python.RESERVED | {"np", "tan", "ValueError", "ZeroDivisionError", "e
 
 _NESTING = ("a float", "a tuple", "a tuple of rows", "a tuple of matrices")
 
-_OF_FLOATS = {
-    **{"or_nan": "_or_nan_scalar({})", "entire": "_entire_scalar({})", "eps": f"{2.0**-52}"}
-}
+_OF_FLOATS = {"or_nan": "_or_nan_scalar({})", "entire": "_entire_scalar({})", "eps": f"{2.0**-52}"}
 _OF_ARRAYS = {
     **{"sin": "_sin({})", "cos": "_cos({})", "eps": "_eps({})", "sqrt": "np.sqrt({})"},
     **{"abs": "np.abs({})", "atan2": "np.arctan2({})", "or_nan": "_or_nan({})"},
@@ -161,6 +159,9 @@ def _block(kernel: Kernel) -> Iterator[str]:
             yield line
         else:
             yield from (f"    {name} = {place}" for name, place in places.items())
+    if kernel.halves:
+        yield bracketed(4, "usual = _usual_angles(", [*map(infix, kernel.halves)], ")")
+        yield "    if usual is not None:\n        return usual"
     together = _gathered(kernel)
     for name, value in kernel.statements:
         call = value if isinstance(value, Call) and value.function in ("sin", "cos") else None

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cache
 from math import pi
 from typing import Any, SupportsFloat
@@ -51,23 +51,17 @@ class Precision:
 
     def filled(self, last: int) -> dict[str, Any]:
         """What the templates need; `last` is the highest order of the functions c_k."""
-        series = []
-        for order in range(FIRST_SERIES, last + 1):
-            each = series_of(order)
-            series.append(
-                {
-                    "order": order,
-                    "before": order - 2,
-                    "near": self.falling(reversed(each.coefficients)),
-                    "start": self.literal(taylor(order - 2)[0]),
-                    "switch": self.literal(each.switch),
-                }
-            )
-        return {
-            **{"real": self.real, "word": self.word, "suffix": self.suffix},
-            **{"eps": self.eps[0], "least": self.least, "series": series},
-            **numbers(self),
-        }
+        series = [
+            {
+                "order": order,
+                "before": order - 2,
+                "near": self.falling(reversed(series_of(order).coefficients)),
+                "start": self.literal(taylor(order - 2)[0]),
+                "switch": self.literal(series_of(order).switch),
+            }
+            for order in range(FIRST_SERIES, last + 1)
+        ]
+        return {**asdict(self), "eps": self.eps[0], "series": series, **numbers(self)}
 
 
 DOUBLE = Precision(

@@ -80,22 +80,19 @@ class Rule:
     """
 
     model: RotationModel
-    kind: str  # "euler", or the name of a parametrisation
+    kind: str = "euler"  # or the name of a parametrisation
     order: tuple[int, ...]  # place, among the model's coordinates, of each of them
     back: Way  # from a quaternion whose parts are not too small or large to be squared
     claims: tuple[Claim, ...] = ()  # what the ring of the model has to decide
     quaternion: Vector = ()  # in closed form, of length one
+    halves: Callable[[Vector], Vector] | None = None  # of Euler angles: a₀ to a₃
     forward: Way | None = None  # to the quaternion, if its closed form is none or loses digits
     quarters: int = 0  # of Euler angles: the quarter turns from the middle angle 0 to a pole
 
     @property
-    def is_quaternion(self) -> bool:
-        return self.kind in ("quaternion", "unit_quaternion")
-
-    @property
     def scalar(self) -> str:
         """Whether quaternions are (w, x, y, z) or (x, y, z, w): as the coordinates are."""
-        return "last" if self.is_quaternion and self.order[0] == 3 else "first"
+        return "last" if "quaternion" in self.kind and self.order[0] == 3 else "first"
 
     def listed(self, quaternion: Sequence[Any]) -> tuple[Any, ...]:
         """A quaternion (w, x, y, z) in the order of the model."""
@@ -136,7 +133,7 @@ class Rule:
         if self.kind == "direction_cosines":
             return tuple(matrix[place] for place in self.order)
         parts = shepperd(values, matrix)
-        short = short_way(values, parts) if self.is_quaternion else parts
+        short = short_way(values, parts) if "quaternion" in self.kind else parts
         return self.from_quaternion(values, short)
 
 
@@ -169,6 +166,7 @@ def rule_of(model: RotationModel) -> Rule | None:
 def _of_euler_angles(model: RotationModel, order: tuple[int, ...]) -> Rule:
     first, second, third = (sp.Matrix(turn.direction) for turn in model.turns)
     quarters = -int(first.cross(third).dot(second))
+    other = -1 if order[0] == 2 else 1
     sign = -1 if quarters > 0 else 1  # of the middle angle and of e₂, so that β' is in [0, π]
     second *= sign
     frame = sp.diag(1, sp.Matrix.hstack(first, second, first.cross(second)).T)
@@ -177,10 +175,16 @@ def _of_euler_angles(model: RotationModel, order: tuple[int, ...]) -> Rule:
 
     def in_frame(quaternion: Vector) -> Vector:
         """The components of p (1 + C) in the frame."""
-        return tuple(frame * sp.Matrix(product(quaternion, (along, *(across * second)))))
+        turned = sp.Matrix(product(quaternion, (along, *(across * second))))
+        return tuple(map(sp.expand, frame * turned))
+
+    def halves(quaternion: Vector) -> Vector:
+        """The same in the order of the model: with −δ for δ, the outer angles change places."""
+        *parts, last = in_frame(quaternion)
+        return (*parts, other * last)
 
     def back(values: NamedValues, quaternion: Vector) -> Vector:
-        a = values.each(("a0", "a1", "a2", "a3"), map(sp.expand, in_frame(quaternion)))
+        a = values.each(("a0", "a1", "a2", "a3"), in_frame(quaternion))
         # a = κ (cos β'/2 cos σ, cos β'/2 sin σ, sin β'/2 cos δ, sin β'/2 sin δ), κ > 0. So β' is
         # twice the angle of (far, near), and α = σ + δ and γ = σ − δ are the angles of the complex
         # numbers (a₀ + i a₁)(a₂ ± i a₃), which need no wrapping as sums of angles would.
@@ -188,7 +192,6 @@ def _of_euler_angles(model: RotationModel, order: tuple[int, ...]) -> Rule:
         # Where a half of the quaternion vanishes, its angle is taken to be the other's, or minus
         # it, so that the last coordinate is zero, whether it is the first turn's or the third's.
         is_low, is_high = near <= values.tiny * far, far <= values.tiny * near
-        other = -1 if order[0] == 2 else 1
         c = values.let("a0", Where(is_high, a[2], a[0]))
         s = values.let("a1", Where(is_high, other * a[3], a[1]))
         u = values.let("a2", Where(is_low, a[0], a[2]))
@@ -214,12 +217,12 @@ def _of_euler_angles(model: RotationModel, order: tuple[int, ...]) -> Rule:
         (sine * sp.sin(delta), r"\sin#\,\sin\delta"),
     )
     parts = in_frame(reduce(product, (half_turn(t.direction, t.angle) for t in model.turns)))
-    claims = [
+    claims = tuple(
         ((part - value,), formula(rf"a_{k} = \kappa\," + text.replace("#", r"\frac{\beta'}{2}")))
         for k, (part, (value, text)) in enumerate(zip(parts, expected, strict=True))
-    ]
+    )
     return Rule(
-        model=model, kind="euler", order=order, back=back, claims=tuple(claims), quarters=quarters
+        model=model, order=order, back=back, halves=halves, claims=claims, quarters=quarters
     )
 
 
@@ -486,6 +489,7 @@ def _to_coordinates(rule: Rule, source: str) -> ConversionFunction:
     is_matrix = source == "rotation_matrix"
     inputs: Sequence[sp.Symbol] = tuple(map(sp.Dummy, MATRIX if is_matrix else PARTS))
     values = NamedValues(inputs)
+    halves: Vector = ()
     if is_matrix:
         matrix, kind = sp.Matrix(3, 3, inputs), "R"
         if rule.model.passive:  # The rules are about R; a passive model presents A = Rᵀ.
@@ -495,6 +499,7 @@ def _to_coordinates(rule: Rule, source: str) -> ConversionFunction:
         # The way back holds for every length but zero, so the quaternion is scaled and not
         # normalised: the sum of sizes needs no root, and no square can overflow.
         coordinates = rule.from_quaternion(values, values.scaled(inputs))
+        halves = rule.halves(tuple(inputs)) if rule.halves and rule.order[1] == 1 else ()
         inputs, kind = rule.listed(inputs), f"scalar {rule.scalar}"
     texts, units = WORDS["functions"][source], rule.model.coordinate_units
     remarks = (rule.because, rule.branch, sentence(texts["remark"].format(SHEPPERD)))
@@ -505,6 +510,7 @@ def _to_coordinates(rule: Rule, source: str) -> ConversionFunction:
         is_matrix=is_matrix,
         values=tuple(values.lines),
         outputs=coordinates,
+        halves=halves,
         about=texts["about"].format(kind),
         remarks=tuple(map(text_of, remarks)),
         unit=units[0] if len({*units}) == 1 else f"({', '.join(units)})",

@@ -32,6 +32,7 @@ class ConversionFunction(NamedTuple):
     is_matrix: bool = False
     remarks: tuple[str, ...] = ()  # paragraphs
     unit: str = ""
+    halves: Vector = ()  # of Euler angles, from the argument as it is: a₀ to a₃
 
 
 class Continuity(NamedTuple):
