@@ -39,7 +39,7 @@ from rigidsym.kernels.targets import TARGETS
 
 ARRAYS = [each for each in EVERY if each.values[0] in ("numpy", "c", "numba")]  # alike in manners
 KINEMATICS = ("rotation_matrix", "angular_velocity_space", "angular_velocity_body")
-FOUR = 4  # eps of the largest entry, or of the largest rate, for those
+PROVED = 7  # eps of one, or of the largest rate: `rounding` proves 6.8 for R and 4.6 for Ω and Ω′
 MOST = 80  # eps of the largest entry, where nothing is near a pole; 7 were measured
 
 
@@ -65,7 +65,7 @@ def test_functions_have_the_values_of_their_expressions(rotation, target):
 
 
 @pytest.mark.parametrize("target", EVERY)
-def test_kinematics_keep_four_eps_at_angles_of_every_size(target):
+def test_kinematics_keep_their_bounds_at_angles_of_every_size(target):
     """Special angles, too. Rates that cancel leave a small Ω, whose error is that of a rate."""
     source = np.random.default_rng(3)
     quarters = np.pi / 4 * source.integers(-4, 5, (40, 3))
@@ -75,9 +75,9 @@ def test_kinematics_keep_four_eps_at_angles_of_every_size(target):
         for name in KINEMATICS:
             count = len(motion("ZXZ").step(name).quantity.inputs)
             arrays = [array.astype(dtype) for array in (q, q_dot)[:count]]
-            scales = np.abs(arrays[1]).max(axis=1) if count == 2 else None
+            scales = np.abs(arrays[1]).max(axis=1) if count == 2 else np.ones(len(q))
             found = rows_of("ZXZ", target, name, arrays)
-            assert worst_error(found, exact(motion("ZXZ"), name, arrays), scales) <= FOUR, name
+            assert worst_error(found, exact(motion("ZXZ"), name, arrays), scales) <= PROVED, name
 
 
 @pytest.mark.parametrize("target", EVERY)
