@@ -204,6 +204,15 @@ def _axioms(folder: Path) -> set[str]:
 
 
 @pytest.mark.usefixtures("coq")
+def test_coq_accepts_the_rates_of_a_passive_rotation(tmp_path):
+    rates = ("angular_velocity_space", "angular_velocity_body", "rotation_rate", "spin_matrix")
+    passive = record(rs.derive(rs.EulerAngles("ZXZ", passive=True), rates), {})
+    certificate = certificate_of(plain(passive))
+    assert certificate.uncovered == []
+    assert run_coq(tmp_path, certificate.text) == 0
+
+
+@pytest.mark.usefixtures("coq")
 def test_coq_accepts_a_heavy_symmetric_top_and_nothing_false_about_it(tmp_path):
     """Energies, L, p, M, h, q̈, Hamilton's function, Euler's equations and first integrals."""
     certificate = certificate_of(of_motion("whole top"))
