@@ -12,6 +12,7 @@ from rigidsym.formula.tree import Formula, Symbol, equal, transpose_of
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.quantities.kinematics import BODY, COSINES, RATES, ROTATION, SPACE
 from rigidsym.mechanics.quantities.mass import DIRECTION, OF_BODY_ALONE, POINT
+from rigidsym.mechanics.quantities.table import own_letters
 from rigidsym.models.rotation import AXES, Citation
 from rigidsym.notes.document import Cited, Equation, Text, said
 from rigidsym.notes.letters import VECTOR, length_of
@@ -27,8 +28,11 @@ _OF_BODIES = (
     formula(r"#1^{\mathsf T}\mathbf{I}'\,#1 = 1", _BODY_POSITION),
     POINT,
     DIRECTION,
+    formula(r"\c"),
 )
 
+_BY_LAGRANGE = r"\M\,\ddot\q + \h = \Q"
+_OF_MOTION = tuple(map(formula, (_BY_LAGRANGE, r"\h", r"\Q", r"\N'", r"\I'", *"TVwHNIfa")))
 _OF_TURNS = tuple(
     map(formula, (r"\mathbf{T}_k", r"\mathbf{n}_k", r"\theta_k", r"\mathbf{P}_0 = \mathbf{1}"))
 )
@@ -51,6 +55,9 @@ def symbols_of(derivation: Derivation) -> dict[str, Formula]:
         length = length_of(derivation.model)
         named += (VECTOR, *([length.names[length.symbol]] if length else ()))
     symbols = {symbol.text: symbol for symbol in named}
+    if derivation.body is not None and derivation.forces:
+        own = own_letters(derivation.arguments, derivation.body, derivation.forces)
+        symbols |= {symbol.text: own.get(symbol, symbol) for symbol in _OF_MOTION}
     for argument in derivation.arguments:
         if argument.name == "q":
             symbols |= zip(argument.names, argument.notation, strict=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
 from functools import cache
 
 import numpy as np
@@ -9,18 +10,22 @@ import pytest
 import sympy as sp
 
 import rigidsym as rs
+from rigidsym.formula.scalars import formula_of, matrix_of
+from rigidsym.formula.tree import Formula, Symbol
 from rigidsym.mechanics.quantities.mass import OF_BODY_ALONE
 from rigidsym.mechanics.quantities.table import POINT, own_names
 from rigidsym.models.rotation import TIME
 from rigidsym.motion import Motion
-from rigidsym.notes.document import Equation, Figure
+from rigidsym.notes.document import Equation, Figure, texts_of
 from rigidsym.notes.figure.body_drawing import body_drawing
 from rigidsym.notes.figure.body_mesh import HOLE
 from rigidsym.notes.figure.drawing import Facet
 from rigidsym.notes.formats.terminal import show
 from rigidsym.notes.named_body import in_names
-from rigidsym.pipeline import motion_of, read_spec
+from rigidsym.pipeline import motion_of, read, read_spec
 
+SYSTEMS = ("composite_body", "dual_spin_satellite", "free_body", "free_symmetric_body")
+SYSTEMS += ("heavy_asymmetric_body", "heavy_symmetric_top", "kovalevskaya_top", "solid_cone")
 COEFFICIENTS = {  # of v × x′ and v × (v × x′), for the length n of the vector
     "rotation_vector": lambda n: (np.sin(n) / n, (1 - np.cos(n)) / n**2),
     "gibbs_vector": lambda n: (2 / (1 + n**2), 2 / (1 + n**2)),
@@ -134,6 +139,41 @@ def test_what_is_shown_in_names_has_the_value_that_was_derived(letters):
             rest = rest.xreplace({symbol: numbers[symbol]})
         assert max(map(abs, rest)) < 1e-12
     assert replaced > 8
+
+
+def letters_in(part: object) -> set[Symbol]:
+    """The letters of formulas, without dots, primes and indices; those of components are light."""
+    if isinstance(part, Symbol):
+        return {Symbol(part.letter), Symbol(part.letter, part.face)}
+    if isinstance(part, Formula):
+        part = [getattr(part, field.name) for field in fields(part)]
+    return set().union(*map(letters_in, part)) if isinstance(part, tuple | list) else set()
+
+
+ALIKE = """
+rotation.sequence = "ZXZ"
+body = { principal_moments = ["E", "V", "T"], mass = "M + m" }
+dynamics.potential = "M*g*(L + H)*cos(theta)"
+output.quantities = ["lagrangian", "hamiltonian", "mass_matrix", "inertia_tensor_point"]
+"""
+
+
+@pytest.mark.parametrize(
+    "name", ["alike", *(pytest.param(name, marks=pytest.mark.campaign) for name in SYSTEMS)]
+)
+def test_every_letter_of_a_note_is_explained(name):
+    own = read_spec(ALIKE, source="alike.toml", name="alike")
+    motion = motion_of(read(name) if name in SYSTEMS else own)
+    document = motion.note().document
+    spans = [span for b in document.blocks for text in texts_of(b) for span in text]
+    told = [each.notation for each in motion.arguments if each.name in ("q", "parameters")]
+    told += [[e.sides[:1], e.entries] for e in document.displays]
+    shown, letters = letters_in([e.sides for e in document.displays]), document.letters
+    for e in document.displays:
+        shown |= letters_in(matrix_of(e.matrix, letters)) if e.matrix else set()
+        shown |= letters_in(formula_of(e.scalar, letters)) if e.scalar is not None else set()
+    shown -= {Symbol(letter, face) for letter in "T01i" for face in ("italic", "bold", "sans")}
+    assert shown <= letters_in([spans, told])
 
 
 def test_letters_of_one_meaning_come_with_their_parts():

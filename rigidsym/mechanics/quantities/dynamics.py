@@ -126,7 +126,7 @@ mass_matrix = Quantity(
     **_of_kinetic(
         r"\dot\q^T\M\dot\q = 2{T}",
         lambda k, x: k.q_dot.T @ x @ k.q_dot - k.codec.column([2 * k.kinetic]),
-        definition=formula(r"\sum \J^T\I\J"),
+        definition=formula(r"\frac{\partial^2 T}{\partial\dot\q\,\partial\dot\q^T}"),
         reason="composite_inertia",
     ),
 )

@@ -76,7 +76,8 @@ class MassFacts:
         """
         told = [p for p in self.body.parameters if p.about and p.value is None]
         if self.derivation.forces is not None:
-            expressions = [step.expression for step in self.derivation.steps]
+            integrals = self.derivation.first_integrals
+            expressions = [each.expression for each in (*self.derivation.steps, *integrals)]
             told = [p for p in told if any(entry.has(p.symbol) for entry in expressions)]
         groups = []
         for about, alike in groupby(told, key=lambda p: p.about):
