@@ -76,8 +76,8 @@ class MassFacts:
         """
         told = [p for p in self.body.parameters if p.about and p.value is None]
         if self.derivation.forces is not None:
-            integrals = self.derivation.first_integrals
-            expressions = [each.expression for each in (*self.derivation.steps, *integrals)]
+            expressions = [sp.Tuple(*step.expression) for step in self.derivation.steps]
+            expressions += [integral.expression for integral in self.derivation.first_integrals]
             told = [p for p in told if any(entry.has(p.symbol) for entry in expressions)]
         groups = []
         for about, alike in groupby(told, key=lambda p: p.about):
