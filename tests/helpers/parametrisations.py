@@ -15,7 +15,6 @@ from rigidsym.models.parametrisations import EULER_SEQUENCES
 from rigidsym.motion import Motion, derive
 
 Curve = Callable[[Any], list[Any]]  # coordinates at a time
-
 Build = Callable[[list[Any]], Any]  # R from coordinates
 
 CONSTANTS = {"alpha0": (2, 7), "a": (2, 7), "b": (3, 7), "c": (6, 7)}  # a unit vector

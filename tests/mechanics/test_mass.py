@@ -125,10 +125,9 @@ def test_laws_of_every_shape(shape):
 
 
 def test_a_solid_of_any_density_by_its_bounds():
-    x, y, z = sp.symbols("x y z")
+    x, y, z = corner = sp.symbols("x y z")
     density = rho * (1 + z / h)
     bounds = ((sp.S.Zero, a), (sp.S.Zero, a - x), (sp.S.Zero, h))
-    corner = (x, y, z)
     found = body_of(solid_of(corner, coordinates=corner, bounds=bounds, density=density))
 
     def whole(integrand: sp.Expr) -> sp.Expr:

@@ -235,8 +235,7 @@ def test_the_quadcopter_has_the_equations_that_sympy_finds():
     torque = [l * (thrusts[3] - thrusts[1]), l * (thrusts[0] - thrusts[2])]
     torque.append(k * (thrusts[0] - thrusts[1] + thrusts[2] - thrusts[3]))
     omega = sp.Matrix([body.ang_vel_in(space).dot(axis) for axis in (body.x, body.y, body.z)])
-    q = [PSI, THETA, PHI]
-    forces = omega.jacobian([x.diff(T) for x in q]).T * sp.Matrix(torque)
+    forces = omega.jacobian([x.diff(T) for x in (PSI, THETA, PHI)]).T * sp.Matrix(torque)
     assert solves_lagrange(shipped("quadcopter_attitude"), kinetic(space, body, (A, B, C)), forces)
 
 
