@@ -68,7 +68,7 @@ _BUILT = re.compile(  # of 3, 4, 9 or 16 numbers
 )
 _MAY_BE_MATRIX = re.compile(r"\A[^\[{]*[\[{].*,|(?i:sin|cos|mat|quat|dcm)", re.DOTALL)
 _BY_COLUMNS = re.compile(
-    r"from_?col|^[df]?mat[34](x?[34])?$|float[34]x[34]|column_stack|hstack|^c_$", re.I
+    r"from_?col|^[df]?mat[34](x?[34])?$|float[34]x[34]|column_stack|hstack|horzcat|^c_$", re.I
 )
 _COLUMN_MATRIX = re.compile(r"\b[df]?mat[34](x[34])?$")
 ANGLES_NAME = re.compile(  # of changes of three Euler angles
@@ -341,6 +341,7 @@ class _Run:
         self.unread: dict[str, int] = {}  # lines of names without values
         self.later: dict[tuple[sp.Expr, Any], sp.Dummy] = {}  # parts of names assigned anew
         self.squares: dict[sp.Symbol, sp.Symbol] = {}  # |v|² of names without values
+        self.tensors: set[sp.Symbol] = set()  # names without values that are matrices
         self.untracked: set[Path] = set()
         self.links: list[tuple[Path, Path]] = []  # names that may be the same object
         self.tests: dict[str, Tree] = {}  # a comparison by the name that it is given
@@ -753,7 +754,8 @@ class _Run:
 
     def reached(self, tree: Tree) -> set[Path]:
         """Paths that a call may change: its object, matrices, and &name."""
-        trees = [tree.owner, *tree.parts[1:]]
+        by_value = self.first or (self.program.suffix == ".rs" and "&mut" not in tree.text)
+        trees = [tree.owner, *tree.parts[1 : 1 if by_value else None]]
         paths = {self.written(each): each.is_reference for each in trees if each is not None}
         paths.pop((), None)
         matrices = {p for p in paths if isinstance(self.part(self.values, p), _Record)}
@@ -805,7 +807,7 @@ class _Run:
             # At a pole, an angle is a number: this is no formula, but another case of one.
             are_angles = all(value.has(*_INVERSE) or value.is_number for value in values)
             is_change = bool(ANGLES_NAME.fullmatch(names[0])) and all(map(self.is_step, values))
-            if kind > -2 or are_angles or is_change:
+            if kind > -2 or are_angles or is_change or stem_of(names[0]):
                 stem = _dotted(path) or re.sub(r"\d+$", "", names[0])
                 name = ", ".join(names) if len(names) < 9 else stem
                 places = (record.lines[n] for n in names)
@@ -815,19 +817,21 @@ class _Run:
         """A matrix or a vector is a formula; so is each part of a long vector."""
         if self.inlined or not isinstance(value, sp.MatrixBase) or len(value) < 2:
             return
-        value = _unflattened(sp.ImmutableMatrix(value))
+        value = sp.ImmutableMatrix(value)
         if (name, value) in self.emitted:
             return
         self.emitted.add((name, value))
         self.program.steps["formulas"] += 1
         if self.program.steps["formulas"] > _MOST_FORMULAS:
             return
-        if value.cols == 1 and 3 < value.rows <= _LONGEST_STATE:  # angles and rates in a state
+        is_state = value.cols == 1 and _unflattened(value).shape in (value.shape, (4, 3))
+        if is_state and 3 < value.rows <= _LONGEST_STATE:  # angles and rates
             for k in range(value.rows - 2):
                 part = value[k : k + 3, :]
                 if len(value) > 4 or are_angles(part):
                     self.add(f"{name}[{k}:{k + 3}]", part, min(lines), is_final=is_final)
-        value, whole = map(_unbounded, (value, self.expanded(value)))
+        value = _unbounded(_unflattened(value))
+        whole = _unbounded(self.expanded(value))
         whole = value if _size(whole) > _MOST_PARTS else whole
         symbols = whole.free_symbols | value.free_symbols
         inputs = whole.free_symbols - self.components
@@ -939,8 +943,12 @@ class _Run:
         is_rounded = sign == "/" and self.program.suffix not in _OF_REALS
         if is_rounded and _WHOLE_NUMBERS.fullmatch(tree.text) and not (left / right).is_Integer:
             raise self.unreadable(tree, "is a division of whole numbers, which rounds")
+        if sign == "\\" and _is_scalar(left):  # MATLAB
+            left, sign = 1 / left, "*"
         if sign in ("+", "-"):
             left, right = self.as_vector(left, right), self.as_vector(right, left)
+        elif sign in ("*", "@") and (value := self.of_tensor(left, right)) is not None:
+            return value
         else:
             left, right = (_unflattened(each) for each in (left, right))
         are_columns = all(getattr(side, "cols", 0) == 1 for side in (left, right))
@@ -952,15 +960,56 @@ class _Run:
         """c v, where v has no value, in components if it is added to a vector."""
         if not _is_scalar(value) or getattr(other, "shape", ()) != (3, 1):
             return value
-        names = [s for s in value.free_symbols if s not in self.definitions]
+        if self.is_moment(other):
+            value = self.moment(value)
+            if not _is_scalar(value):
+                return value
+        names = [s for s in value.free_symbols if self.definitions.get(s) is None]
         parts = {s.name.rpartition(".")[0] for s in other.free_symbols}
         factor, vector = value.as_independent(*[s for s in names if s.name in parts] or names)
         return combined("*", factor, self.vector(vector)) if vector.is_Symbol else value
 
+    def is_moment(self, value: Any) -> bool:
+        """Whether a vector is a sum with w × I w in it."""
+        return getattr(value, "shape", ()) == (3, 1) and any(
+            value.has(tensor[0, 0]) for tensor in map(_tensor, self.tensors)
+        )
+
+    def moment(self, value: Any, w: Any = None) -> Any:
+        """I w, in I w + w × I w, for a product of names that would be a scalar otherwise.
+
+        A program may write I*w, I @ w or dot(I, w); only the vector product tells that I is a
+        matrix.
+        """
+        names = {*value.free_symbols}
+        names |= {sp.Symbol(s.name.rpartition(".")[0], real=True) for s in names}
+        for tensor in self.tensors & names if w is None else names:
+            for vector in names - {tensor} if w is None else [w]:
+                parts = as_matrix(self.vector(vector))
+                own = as_matrix(self.vector(tensor))
+                if value == tensor * vector or (parts.shape == own.shape and value == own.dot(parts)):
+                    self.tensors.add(tensor)
+                    return _tensor(tensor) * parts
+        return value
+
+    def of_tensor(self, left: Any, right: Any) -> Any:
+        """I⁻¹ (... + w × I w), or C(w) I w; None for another product."""
+        if getattr(right, "shape", ()) != (3, 1):
+            return None
+        if self.is_moment(right) and _is_scalar(left):
+            inverse = sp.Symbol(f"{1 / left}_inv", real=True) if 1 / left in self.tensors else left
+            if inverse.is_Symbol and "inv" in inverse.name:
+                return _tensor(inverse) * right
+        if getattr(left, "shape", ()) == (3, 3) and (left * right).is_zero_matrix:
+            for tensor in left.free_symbols - right.free_symbols:
+                self.tensors.add(tensor)
+                return left.xreplace({tensor: sp.S.One}) * _tensor(tensor) * right
+        return None
+
     def vector(self, value: Any) -> Any:
         """Three components for a name without a value."""
         keys = [key + self.first for key in range(3)]
-        parts = [_part(value, key) for key in keys] if _is_scalar(value) else [None]
+        parts = [self.component(value, key) for key in keys] if _is_scalar(value) else [None]
         return value if None in parts else rows(parts)
 
     def operation(self, tree: Tree, sign: str, *sides: Any) -> str:
@@ -1051,6 +1100,9 @@ class _Run:
             return _below(owner, match[1].lower()) if match else None
         if CALLS.get(name) == "entry":
             return self.indexed(owner, nodes)
+        if name in ("row", "col") and len(nodes) == 1 and owner:
+            place = self.index(nodes[0])
+            return (*owner, *((place, _ALL) if name == "row" else (_ALL, place)))
         is_entry = len(nodes) == 2 and len(word) == 1  # t(1, 2), but not T(2)
         is_known = word in language.OF_NUMBERS or word in language.OF_MATRICES or word in CALLS
         is_function = is_known and not is_entry and self.part(self.values, (*owner, name)) is None
@@ -1129,6 +1181,8 @@ class _Run:
     def entry(self, tree: Tree, value: Any, keys: Path) -> Any:
         """A part of a value."""
         if isinstance(value, _Record):
+            if self.first and len(keys) == len(value) == 1 and isinstance(value.get(0), _Record):
+                value = value[0]  # M(2) of a row
             key = keys[0] if keys and not isinstance(keys[0], slice) else None
             if key is not None and key in value:
                 return self.entry(tree, value[key], keys[1:])
@@ -1151,14 +1205,20 @@ class _Run:
             numbers = range(key.start or 0, key.stop or (4 if key.start else 3))
             parts = [self.entry(tree, value, (k, *others)) for k in numbers]
             return parts[0] if len(parts) == 1 else rows(parts)
-        part = _part(value, key + self.first if isinstance(key, int) else key)
-        if part is None or value in self.components:  # which are numbers
+        self.components.discard(value)  # which are numbers, if nobody takes parts of them
+        part = self.component(value, key + self.first if isinstance(key, int) else key)
+        if part is None:
             raise self.unreadable(tree, "has no value")
-        if value in self.definitions:  # a part of what is not read, or assigned anew
+        return self.entry(tree, part, tuple(others))
+
+    def component(self, value: sp.Expr, key: int | str) -> Any:
+        """A component of a name without a value, or of c v; None for numbers."""
+        part = _part(value, key) if value not in self.components else None
+        if part is not None and value in self.definitions:  # which is not read, or assigned anew
             part = self.later.setdefault((value, key), sp.Dummy(part.name, real=True))
             self.definitions.setdefault(part, None)
             self.unread.setdefault(part.name, self.unread.get(value.name, 0))
-        return self.entry(tree, part, tuple(others))
+        return part
 
     def block(self, tree: Tree, matrix: sp.ImmutableMatrix, keys: Path) -> Any:
         """An entry, or those of slices as a column or a matrix."""
@@ -1278,6 +1338,12 @@ class _Run:
         if meaning == "dot" and values[0] == values[-1] and isinstance(values[0], sp.Symbol):
             symbol = sp.Dummy(f"{values[0]}²", positive=True)
             return self.squares.setdefault(values[0], symbol)
+        if meaning == "inv" and _is_scalar(values[0]):
+            return 1 / values[0]
+        if meaning == "dot" and (value := self.of_tensor(*values)) is not None:
+            return value
+        if meaning == "cross":
+            values = [values[0], self.moment(values[1], values[0])]
         if meaning in ("cross", "dot", "C", "outer"):
             values = [self.vector(value) for value in values]
         if meaning == "dot" and any(as_matrix(value).cols > 1 for value in values):
@@ -1387,7 +1453,9 @@ def _roles(name: str) -> list[tuple[int, str, str]]:
     if stem_of(name):
         roles.append((-1, "", name))
     change = "Δ" * name.startswith("Δ")
-    word = re.sub(r"^[Δδ]?_*|_?(val|rad|angle)?_*$", "", name.lower())
+    rate = stem_of(name)
+    change = "rate" if rate else change
+    word = re.sub(r"^[Δδ]?_*|_?(val|rad|angle)?_*$", "", (rate or name).lower())
     kinds = [kind for kind, angles in enumerate(_COMPLETE) if word in angles]
     return roles + [(-2 - kind, change, word) for kind in kinds if len(word) > 1 or word in "xyz"]
 
@@ -1429,7 +1497,10 @@ def _short_names(symbols: Iterable[sp.Symbol]) -> dict[sp.Expr, sp.Expr]:
 def _unflattened(value: Any) -> Any:
     """Nine, twelve or sixteen numbers in a row are a matrix."""
     is_flat = isinstance(value, sp.MatrixBase) and 1 in value.shape and len(value) in _FLAT
-    return sp.ImmutableMatrix(value.reshape(*_FLAT[len(value)])) if is_flat else value
+    if not is_flat:
+        return value
+    is_padded = len(value) == 12 and not any(value[3::4])  # rows of four with a zero at the end
+    return sp.ImmutableMatrix(value.reshape(*((3, 4) if is_padded else _FLAT[len(value)])))
 
 
 def _square(vector: sp.Symbol, names: Mapping[sp.Expr, sp.Expr], first: int) -> sp.Expr:
@@ -1450,6 +1521,13 @@ def _part(value: sp.Expr, key: int | str) -> Any:
     ):
         return None
     return value.xreplace({vector: sp.Symbol(f"{vector.name}.{key}", real=True)})
+
+
+def _tensor(name: sp.Symbol) -> sp.ImmutableMatrix:
+    """The nine entries of a matrix without a value."""
+    return sp.ImmutableMatrix(
+        3, 3, lambda i, k: sp.Symbol(f"{name}.{i}.{k}", real=True)
+    )
 
 
 def _is_scalar(value: Any) -> bool:

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property, lru_cache, reduce
 from itertools import chain, combinations, permutations, product
@@ -215,7 +215,7 @@ class KnownQuantity:
         for words in product(*ways):
             changes = (table[word] for table, word in zip(ways, words, strict=True))
             matrix = reduce(lambda m, way: way(m, *inputs), changes, sp.Matrix(self.matrix))
-            arrangement = ", ".join(filter(None, words))
+            arrangement = ", ".join(filter(None, (self.arrangement, *words)))
             goals.append(replace(self, arrangement=arrangement, matrix=sp.ImmutableMatrix(matrix)))
         return goals
 
@@ -339,8 +339,13 @@ def _symmetric(tensor: sp.Matrix) -> sp.Matrix:
     return sp.Matrix(3, 3, [tensor[k] for k in (0, 1, 2, 1, 3, 4, 2, 4, 5)])
 
 
-def _gyroscopic(w: sp.Matrix, moments: sp.Matrix) -> sp.Matrix:
-    return w.cross(sp.diag(*moments) * w)
+def _tensor(entries: sp.Matrix) -> sp.Matrix:
+    """The matrix of nine entries, or of three on its diagonal."""
+    return sp.diag(*entries) if len(entries) == 3 else entries.reshape(3, 3)
+
+
+def _gyroscopic(w: sp.Matrix, i: sp.Matrix) -> sp.Matrix:
+    return w.cross(_tensor(i) * w)
 
 
 def _rate_operator(v: sp.Matrix) -> sp.Matrix:
@@ -349,6 +354,8 @@ def _rate_operator(v: sp.Matrix) -> sp.Matrix:
 
 
 _PRODUCT, _STEINER = "quaternion_product", "parallel_axis_theorem"
+_ACCELERATION, _TORQUE = "euler_equations_acceleration", "euler_equations_torque"
+_WITH_INVERSE = f"{_ACCELERATION}, if one matrix is the inverse of the other"
 _Law = tuple[str, tuple[int, ...], Callable[..., sp.Matrix]]
 _LAWS: tuple[_Law, ...] = (  # entries of each vector, and the value
     (_PRODUCT, (4, 4), quaternion_product),
@@ -356,12 +363,12 @@ _LAWS: tuple[_Law, ...] = (  # entries of each vector, and the value
     (_PRODUCT, (3, 4), lambda v, b: quaternion_product(_pure(v), b)),
     ("quaternion_rate_operator", (3,), _rate_operator),
     ("turned_vector", (4, 3), _turned),
-    (
-        "euler_equations_acceleration",
-        (3, 3, 3),
-        lambda w, i, t: sp.diag(*i).inv() * (t - _gyroscopic(w, i)),
-    ),
-    ("euler_equations_torque", (3, 3, 3), lambda w, i, a: sp.diag(*i) * a + _gyroscopic(w, i)),
+    (_ACCELERATION, (3, 3, 3), lambda w, i, t: _tensor(i).inv() * (t - _gyroscopic(w, i))),
+    (_ACCELERATION, (3, 3), lambda w, i: -_tensor(i).inv() * _gyroscopic(w, i)),
+    (_WITH_INVERSE, (3, 9, 3, 9), lambda w, i, t, k: _tensor(k) * (t - _gyroscopic(w, i))),
+    (_WITH_INVERSE, (3, 9, 9), lambda w, i, k: -_tensor(k) * _gyroscopic(w, i)),
+    (_TORQUE, (3, 3, 3), lambda w, i, a: _tensor(i) * a + _gyroscopic(w, i)),
+    (_TORQUE, (3, 9, 3), lambda w, i, a: _tensor(i) * a + _gyroscopic(w, i)),
     (_STEINER, (1, 3, 6), lambda m, d, i: _symmetric(i) + _steiner(m, d)),
     (_STEINER, (1, 3, 3), lambda m, d, i: i + _steiner(m, d).diagonal().T),
     (_STEINER, (1, 3, 3), lambda m, d, i: i + _steiner(m, d).reshape(9, 1).extract([1, 2, 5], [0])),
@@ -373,11 +380,14 @@ _LAWS: tuple[_Law, ...] = (  # entries of each vector, and the value
 def _laws() -> tuple[Family, ...]:
     motion = target("quaternion", "rotation_matrix").motion  # a ring without conditions
     laws = []
-    for name, sizes, value in _LAWS:
-        letters = zip("abc", sizes, strict=False)
+    for title, sizes, value in _LAWS:
+        name, _, condition = title.partition(", ")
+        letters = zip("abcd", sizes, strict=False)
         vectors = {c: sp.symbols(f"{c}_:{size}", real=True) for c, size in letters}
         matrix = value(*map(sp.Matrix, vectors.values())).as_immutable()
-        law = KnownQuantity(quantity=name, matrix=matrix, motion=motion, inputs=vectors)
+        law = KnownQuantity(
+            quantity=name, arrangement=condition, matrix=matrix, motion=motion, inputs=vectors
+        )
         laws.append(_family([law.written(*_WAYS.get(name, ()))]))
     return tuple(laws)
 
@@ -453,16 +463,19 @@ _ELEMENTS = (  # of R: Matrix3 of ArduPilot, m00 and m_1_1
 _FLAT = ([*range(9)], [0, 1, 2, 4, 5, 6, 8, 9, 10])  # places of entries, m_8
 
 
+def in_order(symbols: Iterable[sp.Symbol]) -> list[sp.Symbol]:
+    """By name, with q2 before q10."""
+    return sorted(
+        symbols, key=lambda s: [int(p) if p.isdecimal() else p for p in re.split(r"(\d+)", s.name)]
+    )
+
+
 def meanings(formula: sp.MatrixBase, goal: KnownQuantity, *, is_asked: bool) -> list[Names]:
     """The possible meanings of the names in a formula.
 
     If the quantity `is_asked` for, and all names are those of its inputs, no other is possible.
     """
-    # q2 comes before q10
-    symbols = sorted(
-        formula.free_symbols,
-        key=lambda s: [int(p) if p.isdecimal() else p for p in re.split(r"(\d+)", s.name)],
-    )
+    symbols = in_order(formula.free_symbols)
     own = {s: goal.names.get(s.name) or goal.names.get(f"{stem_of(s.name)}_dot") for s in symbols}
     if None not in own.values() and is_asked:
         return [own]
@@ -531,7 +544,7 @@ def _of_vectors(
     """
     sizes, squares = [*map(len, wanted)], [sum(x**2 for x in vector) for vector in wanted]
     is_known = False
-    for vectors in _grouped(symbols):
+    for vectors in grouped(symbols):
         for order in permutations(vectors) if 0 <= len(vectors) - len(sizes) <= is_free else ():
             chosen, lone = order[: len(sizes)], order[len(sizes) :]
             if [*map(len, chosen)] != sizes or [*map(len, lone)] not in ([], [1]):
@@ -545,15 +558,21 @@ def _of_vectors(
         yield from (dict(zip(symbols, order, strict=True)) for order in permutations(wanted[0]))
 
 
-def _grouped(names: Mapping[sp.Symbol, str]) -> Iterator[list[tuple[sp.Symbol, ...]]]:
+def grouped(names: Mapping[sp.Symbol, str]) -> Iterator[list[tuple[sp.Symbol, ...]]]:
     """Names in vectors, by each pattern; p, q, r are one, and other names are numbers."""
+    for stem in dict.fromkeys(name.rstrip("0123456789") for name in names.values()):
+        state = [s for s, name in names.items() if re.fullmatch(re.escape(stem) + r"\d+", name)]
+        others = [(symbol,) for symbol in names if symbol not in state]
+        for size in (3, 4):  # of a vector in a state x_7, ..., x_13, beside another one
+            if len(state) - size in (3, 4):
+                yield [(*state[:size],), (*state[size:],), *others]
     for pattern in _VECTOR_NAMES:
         groups: dict[str, list[tuple[str, sp.Symbol]]] = {}
         for symbol, name in names.items():
             match = re.fullmatch(pattern, name)
             stem, part = (match["stem"], match["part"].lower()) if match else (name, "")
-            if name in ("p", "q", "r"):
-                stem, part = "p, q, r", name.replace("r", "s")
+            if rates := re.fullmatch("(?:.*_)?([pqr])(_b(ody)?)?", name):
+                stem, part = "p, q, r", rates[1].replace("r", "s")
             groups.setdefault(stem if part else name, []).append((part, symbol))
         for group in groups.values():  # the scalar comes first
             group.sort(key=lambda each: (each[0] not in ("w", "r"), each[0]))

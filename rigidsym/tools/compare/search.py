@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,7 @@ from rigidsym.errors import ExpressionError, RequestError
 from rigidsym.models.rotation import RotationModel
 from rigidsym.tools.compare.comparison import Comparison, identified
 from rigidsym.tools.compare.program import ANGLES_NAME, STEP, Formula, program_formulas
-from rigidsym.tools.compare.quantities import are_angles, are_body_rates, target
+from rigidsym.tools.compare.quantities import are_angles, are_body_rates, grouped, in_order, target
 from rigidsym.tools.compare.syntax import GRAMMARS
 
 SUFFIXES = tuple(GRAMMARS)
@@ -33,6 +34,7 @@ class FormulaInFile:
     comparison: Comparison | None = None
     reason: str = ""
     is_case: bool = False  # whether other branches have other values
+    others: str = ""  # terms that are not compared
 
     @property
     def line(self) -> int:
@@ -46,6 +48,7 @@ class FormulaInFile:
     def __str__(self) -> str:
         name = f"{self.formula.name}: " if self.formula.name else ""
         text = self.comparison.text() if self.comparison else f"not read, since {self.reason}"
+        text += f", apart from {self.others}" * bool(self.others)
         text += "; in one of several branches" * self.is_case
         if self.formula.unread and self.comparison:
             text += f"; not read: {_in_lines(self.formula.unread)}"
@@ -127,12 +130,16 @@ def _compared(
             asked = target("xyz", "rates_from_angular_velocity_body")
             comparison = Comparison(formula=form, asked=asked, are_body_rates=True)
             return FormulaInFile(path, formula, comparison)
-        try:
-            comparison = _identified(form, expected, is_equal=is_case or not formula.is_final)
-        except (ExpressionError, RecursionError) as error:  # a function without values
-            return FormulaInFile(path, formula, reason=str(error))
-        if comparison.found is not None or comparison.is_reflection:
-            return FormulaInFile(path, formula, comparison, is_case=is_case)
+        is_equal = is_case or not formula.is_final
+        whole = [(form, "", is_equal)] * _may_be_known(form)
+        parts = ((part, others, True) for part, others in _partial(form))
+        for part, others, is_equal in chain(whole, parts):
+            try:
+                comparison = _identified(part, expected, is_equal=is_equal)
+            except (ExpressionError, RecursionError) as error:  # a function without values
+                return FormulaInFile(path, formula, reason=str(error))
+            if comparison.found is not None or comparison.is_reflection:
+                return FormulaInFile(path, formula, comparison, "", is_case, others)
     reason = formula.reason
     if formula.unread:
         reason = f"{_in_lines(formula.unread)} cannot be read"
@@ -147,8 +154,8 @@ def _identified(matrix: sp.ImmutableMatrix, expected: str, *, is_equal: bool) ->
 def formulas(text: str, suffix: str) -> Iterator[Formula]:
     """The matrices and vectors that may be one of kinematics, and those that cannot be read."""
     for formula in program_formulas(text, suffix):
-        forms = tuple(m for m in map(_block, formula.forms) if _may_be_known(m))
-        if forms or formula.reason:
+        forms = tuple(m for m in map(_block, formula.forms) if len(m.free_symbols))
+        if any(map(_may_be_known, forms)) or formula.reason:
             yield replace(formula, forms=forms)
 
 
@@ -186,9 +193,34 @@ def _block(matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
     return matrix[:3, :3] if is_homogeneous else matrix
 
 
+def _partial(matrix: sp.ImmutableMatrix) -> Iterator[tuple[sp.ImmutableMatrix, str]]:
+    """A formula without some of its terms, and the words that say so.
+
+    These are torques in Euler's equations, corrections in rates of a quaternion, and the magnetic
+    declination beside an angle.
+    """
+    if are_angles(matrix):
+        offsets = [sp.Add(*(t for t in sp.Add.make_args(e) if t.is_Symbol)) for e in matrix]
+        others = matrix - sp.Matrix(offsets)
+        if any(offsets) and not others.has(*(s for e in offsets for s in e.free_symbols)):
+            yield sp.ImmutableMatrix(others), ", ".join(str(e) for e in offsets if e)
+    if matrix.shape not in ((3, 1), (4, 1)) or matrix.has(sp.Function):
+        return
+    sign = 1 if matrix.rows == 3 else -1  # of what is quadratic in ω, or linear
+    for vectors in grouped({s: s.name for s in in_order(matrix.free_symbols)}):
+        for w in (each for each in vectors if len(each) == 3):
+            if not all(entry.has(*w) and entry.is_polynomial(*w) for entry in matrix):
+                continue
+            others = matrix.xreplace(dict.fromkeys(w, sp.S.Zero))
+            part = (matrix - others).expand()
+            opposite = part.xreplace({s: -s for s in w})
+            if any(others) and (part - sign * opposite).expand().is_zero_matrix:
+                yield sp.ImmutableMatrix(part), f"terms without {', '.join(map(str, w))}"
+
+
 def _may_be_known(matrix: sp.ImmutableMatrix) -> bool:
     """Whether it is worth comparing: sines and cosines, or products of four or more names."""
-    if not 0 < len(matrix.free_symbols) <= _MOST_SYMBOLS:
+    if not 0 < len(matrix.free_symbols) <= _MOST_SYMBOLS * (1 + (matrix.shape == (3, 1))):
         return False
     if are_angles(matrix) or are_body_rates(matrix):
         return True

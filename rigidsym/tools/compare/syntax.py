@@ -117,7 +117,8 @@ class Tree:
         if self.kind == "member":
             node = _part(self.node, "name") or _children(self.node)[-1]
         if self.kind in ("name", "member"):
-            return spelled(re.split(r"::|\.|\(", _TYPE_ARGUMENTS.sub("", _text(node)))[-1])
+            name = _TYPE_ARGUMENTS.sub("", _text(node)).partition("(")[0]
+            return spelled(re.split(r"::|\.", name)[-1])
         sign = _part(self.node, "operator")
         return _text(sign or next((c for c in self.node.children if not c.is_named), None))
 
