@@ -33,7 +33,7 @@ from rigidsym.tools.compare.comparison import Comparison, identified
 from rigidsym.tools.compare.search import FormulaInFile, search
 
 CORPUS = Path(__file__).with_name("corpus.toml")
-NEAR = 14  # lines between a label and the place of a finding: where a matrix begins, or ends
+NEAR = 14  # lines between a label and an entry of a finding
 
 
 @dataclass(frozen=True)
@@ -73,9 +73,13 @@ def findings(path: str, text: bytes) -> list[FormulaInFile]:
         return [each for each in search(copy) if each.comparison is not None]
 
 
+def distance(label: Label, finding: FormulaInFile) -> int:
+    return min(abs(line - label.line) for line in finding.formula.lines)
+
+
 def fits(label: Label, finding: FormulaInFile) -> bool:
     comparison = finding.comparison
-    if comparison is None or abs(finding.formula.line - label.line) > NEAR:
+    if comparison is None or distance(label, finding) > NEAR:
         return False
     kind = comparison.found.quantity if comparison.found else ""
     return kind.removesuffix("_body").removesuffix("_space") == label.kind
@@ -87,7 +91,7 @@ def matched(
     """Each label with its finding; of several that fit, the nearest pairs first."""
     places = ((i, j) for i in range(len(labels)) for j in range(len(recognised)))
     fitting = [(i, j) for i, j in places if fits(labels[i], recognised[j])]
-    fitting.sort(key=lambda pair: abs(labels[pair[0]].line - recognised[pair[1]].formula.line))
+    fitting.sort(key=lambda pair: distance(labels[pair[0]], recognised[pair[1]]))
     pairs: dict[int, int] = {}
     for i, j in fitting:
         if i not in pairs and j not in pairs.values():

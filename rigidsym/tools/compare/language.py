@@ -160,6 +160,8 @@ def called(name: str, values: list[Any]) -> Any:
         hint = offer(name, [*FUNCTIONS, *OF_MATRICES])
         raise ExpressionError(f"{name!r} is not a function; {hint}")
     is_matrix = any(isinstance(value, sp.MatrixBase) for value in values)
+    if is_matrix and len(values) == 1:  # of each entry
+        return values[0].applyfunc(lambda entry: called(name, [entry]))
     if len(values) != 1 + (name == "atan2") or is_matrix:
         raise ExpressionError(f"{name}: wrong arguments")
     return apply(name, [_sized(value) for value in values], 1).expression

@@ -82,7 +82,9 @@ _HARMLESS = re.compile("print|disp|log|assert|plot|show|append|push|test|check|e
 _MODULE = re.compile(
     r"(?:np|numpy|jnp|torch|tf|math|mx|cs|ca|F|std|self|this)\b|_?[A-Z]+[a-z]|[A-Z]{2,}|f\d\d"
 )
-_GETTER = re.compile(rf"(?:get)?_?([wxyz]|{language.ANGLE.pattern}|xyz|vec|imag)_?", re.IGNORECASE)
+_GETTER = re.compile(
+    rf"(?:get)?_?([wxyz]|{language.ANGLE.pattern}|xyz|vec|imag|radians?)_?", re.IGNORECASE
+)
 _INDEX_NAME = re.compile(r"^(?:#define )?(\w+)(?: *= *| +)(\d\d?);?$", re.MULTILINE)
 _MACRO = re.compile(r"macro_rules!\s*\w+\s*\{\s*\([^{}]*?\)\s*=>\s*\{")
 _OTHER_AXIS = re.compile(r"(?:axis|dim) *=(?! *0\b)|, *-?[1-9] *\)$")
@@ -93,7 +95,7 @@ _INDICES = re.compile(r"(\.(\d|[wxyz]))*$")
 _SIGNS = {".*": "%", "./": "/", ".^": "**", "^": "**"}  # MATLAB
 _FLAT = {9: (3, 3), 12: (4, 3), 16: (4, 4)}
 _OF_VECTORS = ("T", "C", "inv", "dot", "cross", "outer", "norm")
-_OF_OBJECTS = (*_OF_VECTORS, "same", "clamp", "least", "pair")
+_OF_OBJECTS = (*_OF_VECTORS, "same", "clamp", "least", "pair", "fused")
 _VIEWS = ("T", "transpose", "reshape", "view", "ravel", "squeeze", "asarray")  # of one matrix
 _RETURNED, _ARGUMENT = _UNNAMED = ("returned", "argument")  # in place of a name
 _ALL = slice(None)
@@ -211,7 +213,9 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
     """All matrices and vectors of a program, in the order of its lines."""
     if suffix == ".rs":  # the body of a macro is code
         text = _MACRO.sub(lambda m: "mod macros {" + "\n" * m[0].count("\n"), text)
-        text = re.sub(r"\$(?=\w)|\$\($|^[ \t]*\)[+*]$", "", text, flags=re.MULTILINE)
+        text = re.sub(
+            r"\$(?=\w)|\$\((?=//|impl\b|$)|(?<=[ \t}])\)[+*]$", "", text, flags=re.MULTILINE
+        )
     text = re.sub(r"\b\w*LITERAL\(\s*(\w+)\s*\)", r"\1", text)  # a macro for C and C++
     try:
         root = parsed(text, suffix)
@@ -520,6 +524,9 @@ class _Run:
             value = _settled(value)
         if self.by_columns(path) and len(path) > 1 and isinstance(value, sp.MatrixBase):
             raise self.unreadable(left, "may be a column")
+        own = self.part(self.values, path)
+        if _is_scalar(own) and self.expanded(own).has(*_INVERSE):  # an angle, in another unit then
+            self.emit(self.part(self.values, path[:-1]), [], path[:-1], is_final=False)
         # A matrix may be complete only after R = R*S.
         is_own = right is not None and re.search(rf"\b{path[0]}\b", right.text) is not None
         self.emit_at(path, is_final=not is_own)
@@ -589,7 +596,8 @@ class _Run:
     def symbol_for(self, path: Path, value: sp.Expr | None, line: int = 0) -> sp.Symbol:
         """A symbol for a long value, or for one that is not read (None)."""
         symbol = sp.Symbol(_dotted(path), real=True)
-        if symbol in self.definitions or path[0] in self.inputs:
+        # A local name of an inlined function may be that of an argument.
+        if symbol in self.definitions or path[0] in self.inputs or self.inlined:
             symbol = sp.Dummy(symbol.name, real=True)
         self.definitions[symbol] = value
         self.unread.setdefault(symbol.name, line)
@@ -723,6 +731,7 @@ class _Run:
             self.sine_and_cosine(nodes)
             return
         if "::" in tree.parts[0].text:  # of a type, not of an object
+            self.tried(tree)
             return
         if meaning == "set_unit":
             value = sp.eye(4)
@@ -732,6 +741,9 @@ class _Run:
             nodes = nodes[:-1] if len(nodes) in (5, 10, 17) else nodes  # a flag
             values = [self.tried(each) for each in nodes] if len(nodes) in (3, 4, 9, 16) else [None]
             value = rows(values) if None not in values else None
+        if len(nodes) == 1 and tree.owner and re.fullmatch("(?:set_?)?[WXYZ]", name, re.IGNORECASE):
+            self.store(Tree(tree.node, "setter"), self.read(nodes[0]))
+            return
         if value is not None and (target is not None or tree.owner is None):
             self.store(target or Tree(tree.node, "this"), sp.ImmutableMatrix(value))
             return
@@ -924,6 +936,11 @@ class _Run:
         return value if _is_scalar(value) else value.T  # the rows of a name without a value
 
     def read_member(self, tree: Tree) -> Any:
+        if tree.word in ("Sin", "Cos", "Tan") and tree.parts:  # angle.Cos
+            return called(tree.word.lower(), [self.read(tree.parts[0])])
+        owner = tree.parts[0].text if tree.parts else ""
+        if CALLS.get(tree.word) == "unit" and re.search("mat|rot", owner, re.IGNORECASE):
+            return sp.ImmutableMatrix(sp.eye(3 if "3" in owner else 4))
         is_transposed = tree.word == "T" and tree.parts
         return self.read_transposed(tree) if is_transposed else self.named(tree)
 
@@ -947,7 +964,7 @@ class _Run:
             left, sign = 1 / left, "*"
         if sign in ("+", "-"):
             left, right = self.as_vector(left, right), self.as_vector(right, left)
-        elif sign in ("*", "@") and (value := self.of_tensor(left, right)) is not None:
+        elif sign in ("*", "@") and (value := self.of_tensor(sign, left, right)) is not None:
             return value
         else:
             left, right = (_unflattened(each) for each in (left, right))
@@ -987,13 +1004,18 @@ class _Run:
             for vector in names - {tensor} if w is None else [w]:
                 parts = as_matrix(self.vector(vector))
                 own = as_matrix(self.vector(tensor))
-                if value == tensor * vector or (parts.shape == own.shape and value == own.dot(parts)):
+                if value == tensor * vector or (
+                    parts.shape == own.shape and value == own.dot(parts)
+                ):
                     self.tensors.add(tensor)
                     return _tensor(tensor) * parts
         return value
 
-    def of_tensor(self, left: Any, right: Any) -> Any:
-        """I⁻¹ (... + w × I w), or C(w) I w; None for another product."""
+    def of_tensor(self, sign: str, left: Any, right: Any) -> Any:
+        """M q, I⁻¹ (... + w × I w), or C(w) I w; None for another product."""
+        if sign == "@" and getattr(left, "cols", 0) == 4 and _is_scalar(right):
+            parts = [self.component(right, key) for key in range(4)]
+            return None if None in parts else combined("@", left, rows(parts))
         if getattr(right, "shape", ()) != (3, 1):
             return None
         if self.is_moment(right) and _is_scalar(left):
@@ -1071,6 +1093,10 @@ class _Run:
         is_long = tree.node.end_byte - tree.node.start_byte > _LONGEST_PLACE
         if tree.kind == "this":
             return ("this",)
+        if tree.kind == "setter":  # v.X(1)
+            call = tree_of(tree.node)
+            path = self.path(call.owner) if call.owner else None
+            return _below(path, call.called[-1].lower()) if path else None
         if is_long or (tree.is_reference and self.program.is_formula):  # a + * b
             return None
         match tree.kind:
@@ -1148,6 +1174,8 @@ class _Run:
         value: Any = self.part(self.values, path)
         value = self.definitions.get(value, value) if isinstance(value, sp.Symbol) else value
         if value is None and path[0] not in self.inputs and isinstance(path[-1], str):
+            if component := re.fullmatch("k_?([WXYZ])", path[-1]):  # Order::kW
+                return component[1].lower()
             value = self.program.constants.get(path[-1], _AXES.get(path[-1]))
         return int(value) if isinstance(value, int | sp.Integer) else None
 
@@ -1289,6 +1317,9 @@ class _Run:
                 return self.filled(tree)
             case "clamp" | "least" if len(nodes) > 1:
                 return self.bounded(tree, meaning, [self.read(each) for each in nodes])
+            case "fused" if len(nodes) == 3:
+                one, other, term = map(self.read, nodes)
+                return combined("+", combined("*", one, other), term)
             case "where" if len(nodes) == 3:
                 return self.chosen(tree, nodes[0], nodes[1:])
             case _ if meaning in _OF_VECTORS and nodes:
@@ -1340,8 +1371,9 @@ class _Run:
             return self.squares.setdefault(values[0], symbol)
         if meaning == "inv" and _is_scalar(values[0]):
             return 1 / values[0]
-        if meaning == "dot" and (value := self.of_tensor(*values)) is not None:
-            return value
+        product = self.of_tensor("@", *values) if (meaning, len(values)) == ("dot", 2) else None
+        if product is not None:
+            return product
         if meaning == "cross":
             values = [values[0], self.moment(values[1], values[0])]
         if meaning in ("cross", "dot", "C", "outer"):
@@ -1464,6 +1496,8 @@ def _below(path: Path, name: str) -> Path:
     """The path of a member; R[0].x is an entry of a matrix, and q.xyz.x is q.x."""
     if path and str(path[-1]).lower() == "xyz" and name in _AXES:
         path = path[:-1]
+    if element := re.fullmatch("M([1-4])([1-4])", name):  # of a matrix of C#
+        return (*path, int(element[1]) - 1, int(element[2]) - 1)
     return (*path, _AXES.get(name, name) if path and isinstance(path[-1], int) else name)
 
 
@@ -1525,9 +1559,7 @@ def _part(value: sp.Expr, key: int | str) -> Any:
 
 def _tensor(name: sp.Symbol) -> sp.ImmutableMatrix:
     """The nine entries of a matrix without a value."""
-    return sp.ImmutableMatrix(
-        3, 3, lambda i, k: sp.Symbol(f"{name}.{i}.{k}", real=True)
-    )
+    return sp.ImmutableMatrix(3, 3, lambda i, k: sp.Symbol(f"{name}.{i}.{k}", real=True))
 
 
 def _is_scalar(value: Any) -> bool:

@@ -327,6 +327,12 @@ def _turned(q: sp.Matrix, v: sp.Matrix) -> sp.Matrix:
     return v + 2 * q[0] * cross * v + 2 * cross * cross * v
 
 
+def _turned_about(axis: sp.Matrix, angle: sp.Matrix, v: sp.Matrix) -> sp.Matrix:
+    """Rodrigues' formula."""
+    c, s = sp.cos(angle[0]), sp.sin(angle[0])
+    return c * v + s * axis.cross(v) + (1 - c) * axis.dot(v) * axis
+
+
 def _steiner(mass: sp.Matrix, d: sp.Matrix) -> sp.Matrix:
     return mass[0] * (d.dot(d) * sp.eye(3) - d * d.T)
 
@@ -363,6 +369,7 @@ _LAWS: tuple[_Law, ...] = (  # entries of each vector, and the value
     (_PRODUCT, (3, 4), lambda v, b: quaternion_product(_pure(v), b)),
     ("quaternion_rate_operator", (3,), _rate_operator),
     ("turned_vector", (4, 3), _turned),
+    ("turned_vector, by an axis and an angle", (3, 1, 3), _turned_about),
     (_ACCELERATION, (3, 3, 3), lambda w, i, t: _tensor(i).inv() * (t - _gyroscopic(w, i))),
     (_ACCELERATION, (3, 3), lambda w, i: -_tensor(i).inv() * _gyroscopic(w, i)),
     (_WITH_INVERSE, (3, 9, 3, 9), lambda w, i, t, k: _tensor(k) * (t - _gyroscopic(w, i))),
@@ -388,7 +395,8 @@ def _laws() -> tuple[Family, ...]:
         law = KnownQuantity(
             quantity=name, arrangement=condition, matrix=matrix, motion=motion, inputs=vectors
         )
-        laws.append(_family([law.written(*_WAYS.get(name, ()))]))
+        ways = () if condition else _WAYS.get(name, ())
+        laws.append(_family([law.written(*ways)]))
     return tuple(laws)
 
 
@@ -450,6 +458,7 @@ def stem_of(name: str) -> str:
 _VECTOR_NAMES = (  # names with a common stem are a vector
     r"(?P<stem>.*?)_?(?P<part>[xyz]{2}|[0-3]_?[0-3]|[wxyzWXYZ0-4]|)",
     r"(?P<stem>.+)_(?P<part>[wxyzWXYZ0-4])",  # b1_0
+    r"(?P<stem>.+)_(?P<part>[1-4])_1",  # q(3, 1) of MATLAB
     r"(?P<part>[wxyz])_?(?P<stem>\d|[a-z]?)",  # w1, x1, y1, z1
     r"(?P<stem>.*?)_?(?P<part>[a-d])",  # q1a, q1b, q1c, q1d
     r"(?P<part>[a-d])(?P<stem>\d)",
