@@ -14,7 +14,7 @@ import sympy as sp
 
 from rigidsym.errors import ExpressionError, offer
 from rigidsym.text.bounds import FUNCTIONS, Sized, apply, longest_number, operate
-from rigidsym.tools.compare.syntax import SPELLINGS
+from rigidsym.tools.compare.syntax import SPELLINGS, patterns
 
 _LARGEST = 20  # rows or columns
 _LARGEST_INVERSE = 4
@@ -68,20 +68,13 @@ OF_MATRICES: dict[str, Callable[..., Any]] = {
     "inv": lambda matrix: combined("**", matrix, sp.S.NegativeOne),
 }
 OF_NUMBERS = {*FUNCTIONS, "pow", "sq", "sind", "cosd", "tand", "deg2rad", "rad2deg"}
-_SPELLED = re.compile(  # tf2Sin, arm_cos_f32, FusionArcSin, safe_asin, atan2_approx
-    r"_?(?:tf2?|bt|b3|mju_|arm_|simd_|safe_?|fast_?|Fusion)?_?(a|arc)?(sin|cos|tan2?|sqrt)(?:_f32|[fFlL])?",
-    re.IGNORECASE,
-)
-_ANGLE_UNITS = re.compile(
-    r"\w*?(to)?_?(rad|deg)(?:ian|ree)?s?(?:_?(?:to|2)_?(rad|deg)(?:ian|ree)?s?)?", re.IGNORECASE
-)
 
 
 def function_word(name: str) -> str:
     """The function of numbers that a program calls by this name, or the name itself."""
-    if match := _SPELLED.fullmatch(name):
+    if match := patterns.spelled.fullmatch(name):
         return ("a" if match[1] else "") + match[2].lower()
-    match = _ANGLE_UNITS.fullmatch(name)
+    match = patterns.angle_units.fullmatch(name)
     if match and (match[1] or match[3] or name in ("radians", "degrees")):
         unit = (match[3] or match[2]).lower()
         return "deg2rad" if unit == "rad" else "rad2deg"
@@ -187,10 +180,6 @@ def number(text: str) -> sp.Rational:
     return sp.Rational(text)
 
 
-_SHORTENED = re.compile(r"(sin|cos|tan|[sctv])_?([A-Za-z0-9]\w*|)")
-ANGLE = re.compile(
-    r"(phi|theta|psi|alpha|beta|gamma|roll|pitch|yaw|th|ph|ps|[abg]|[xyz])_?\d?", re.IGNORECASE
-)
 _FULL = {"s": sp.sin, "c": sp.cos, "t": sp.tan, "v": lambda angle: 1 - sp.cos(angle)}
 
 
@@ -202,14 +191,14 @@ def spelled_out(matrix: sp.MatrixBase, computed: Collection[sp.Symbol] = ()) -> 
     """
     letters_of: dict[str, dict[str, sp.Symbol]] = {}
     for symbol in sorted(matrix.free_symbols - set(computed), key=str):
-        if match := _SHORTENED.fullmatch(symbol.name):
+        if match := patterns.shortened.fullmatch(symbol.name):
             letters_of.setdefault(match[2], {})[match[1][0]] = symbol
     values: dict[sp.Symbol, sp.Expr] = {}
     for stem, letters in letters_of.items():
         is_pair = {"s", "c"} <= letters.keys()
         if not is_pair:
             letters.pop("v", None)  # a versine has a sine and a cosine beside it
-        if is_pair or (len(stem) > 1 and ANGLE.fullmatch(stem)):
+        if is_pair or (len(stem) > 1 and patterns.angle.fullmatch(stem)):
             angle = sp.Symbol(stem if stem[:1].isalpha() else f"angle{stem}", real=True)
             values |= {symbol: _FULL[letter](angle) for letter, symbol in letters.items()}
     return sp.ImmutableMatrix(matrix.xreplace(values))

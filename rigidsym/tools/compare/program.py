@@ -27,15 +27,22 @@ from rigidsym.tools.compare import language
 from rigidsym.tools.compare.language import as_matrix, called, combined, function_word, rows
 from rigidsym.tools.compare.latex import python_of
 from rigidsym.tools.compare.quantities import are_angles, stem_of
-from rigidsym.tools.compare.syntax import CALLS, ORDERS, Tree, parameters, parsed, tree_of, walk
+from rigidsym.tools.compare.syntax import (
+    CALLS,
+    ORDERS,
+    Tree,
+    parameters,
+    parsed,
+    patterns,
+    tree_of,
+    walk,
+)
 
 if TYPE_CHECKING:
     from tree_sitter import Node
 
 _SHARING = (".py", ".js", ".mjs", ".jsx", ".ts", ".java")  # b = a is the same matrix
 _OF_REALS = (".py", ".m", ".js", ".mjs", ".jsx", ".ts")  # in which 1/2 is a half
-_GLM = re.compile(r"\bglm\b")  # whose matrices are columns: m[column][row]
-_ARRAY = re.compile(r"\b(?:float|double|real\w*|Scalar|T|typedef \w+) +(\w+) *\[")  # by rows
 _WITH_SWIZZLES = (".cs", ".cu", ".cuh")  # whose v * w is entry by entry
 _DEEPEST = 60  # nested nodes of an expression; formulas of real programs have fewer than 30
 _DEEPEST_BLOCK = 40
@@ -53,45 +60,9 @@ _LONGEST_STATE = 20  # entries of a vector whose parts are looked at
 _MOST_RUNS = 40  # of a function, with other branches
 _INLINED = 3  # calls of functions of the same file inside one another
 
-_NUMBERS = re.compile(  # bounded, since backtracking is quadratic in the digits
-    r"(-?)((?:\d[\d_]{0,99}\.?\d{0,99}|\.\d{1,99})(?:[eE][+-]?\d{1,9})?)_?[fFlLuUdDmM]*(?:32|64)?"
-)
-_WHOLE_NUMBERS = re.compile(r"[\d\s()*/+lLuU-]+")
-_NUMPY = re.compile(
-    r"^[ \t]*(?:import|from) (?:numpy|jax|torch|tensorflow|casadi|cupy)\b", re.MULTILINE
-)
-_MATRICES = re.compile(  # whose * is @
-    r"^[ \t]*(?:import|from) sympy\b|(?<!def )\b[mM]atrix\(|\b(?:np|numpy)\.mat\(", re.MULTILINE
-)
-_BUILT = re.compile(  # of 3, 4, 9 or 16 numbers
-    r"mat|rot|dcm|basis|tensor|^set|new|tf|\dx\d|vec|quat|array|xyz|float[34]$", re.IGNORECASE
-)
-_MAY_BE_MATRIX = re.compile(r"\A[^\[{]*[\[{].*,|(?i:sin|cos|mat|quat|dcm)", re.DOTALL)
-_BY_COLUMNS = re.compile(
-    r"from_?col|^[df]?mat[34](x?[34])?$|float[34]x[34]|column_stack|hstack|horzcat|^c_$", re.I
-)
-_COLUMN_MATRIX = re.compile(r"\b[df]?mat[34](x[34])?$")
-ANGLES_NAME = re.compile(  # of changes of three Euler angles
-    r"Δ_*(?:(?:\w+_)?(?:rpy|ypr|euler)(?:_?angles?)?|(?:roll|phi)(?:_?(?:angle|rad))?(?:, .*)?)",
-    re.IGNORECASE,
-)
-STEP = re.compile(r"(?:delta_?|sample_?|half_?)?(?:d_?)?(?:[tT]s?|time|period)|h", re.IGNORECASE)
-_RATES_NAME = re.compile(r"omega|w|gyro|body_?rates?|ang(ular)?_?vel(ocity)?", re.IGNORECASE)
-_TURNS = re.compile(r"(?:sin|cos)(?:es|ines?)?_")  # of several angles
-_HARMLESS = re.compile("print|disp|log|assert|plot|show|append|push|test|check|expect", re.I)
-_MODULE = re.compile(
-    r"(?:np|numpy|jnp|torch|tf|math|mx|cs|ca|F|std|self|this)\b|_?[A-Z]+[a-z]|[A-Z]{2,}|f\d\d"
-)
-_GETTER = re.compile(
-    rf"(?:get)?_?([wxyz]|{language.ANGLE.pattern}|xyz|vec|imag|radians?)_?", re.IGNORECASE
-)
-_INDEX_NAME = re.compile(r"^(?:#define )?(\w+)(?: *= *| +)(\d\d?);?$", re.MULTILINE)
-_MACRO = re.compile(r"macro_rules!\s*\w+\s*\{\s*\([^{}]*?\)\s*=>\s*\{")
-_OTHER_AXIS = re.compile(r"(?:axis|dim) *=(?! *0\b)|, *-?[1-9] *\)$")
 _AXES = {"x": 0, "y": 1, "z": 2, "X": 0, "Y": 1, "Z": 2}
 _INVERSE = (sp.atan2, sp.asin, sp.acos, sp.atan)
 _OPPOSITE = str.maketrans("<>=!", "><!=")
-_INDICES = re.compile(r"(\.(\d|[wxyz]))*$")
 _SIGNS = {".*": "%", "./": "/", ".^": "**", "^": "**"}  # MATLAB
 _FLAT = {9: (3, 3), 12: (4, 3), 16: (4, 4)}
 _OF_VECTORS = ("T", "C", "inv", "dot", "cross", "outer", "norm")
@@ -212,7 +183,7 @@ class _Program:
 def program_formulas(text: str, suffix: str) -> list[Formula]:
     """All matrices and vectors of a program, in the order of its lines."""
     if suffix == ".rs":  # the body of a macro is code
-        text = _MACRO.sub(lambda m: "mod macros {" + "\n" * m[0].count("\n"), text)
+        text = patterns.macro.sub(lambda m: "mod macros {" + "\n" * m[0].count("\n"), text)
         text = re.sub(
             r"\$(?=\w)|\$\((?=//|impl\b|$)|(?<=[ \t}])\)[+*]$", "", text, flags=re.MULTILINE
         )
@@ -227,10 +198,10 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
     program = _Program(
         suffix,
         _overloads(functions, suffix),
-        {match[1]: int(match[2]) for match in _INDEX_NAME.finditer(text)},
+        {match[1]: int(match[2]) for match in patterns.index_name.finditer(text)},
         _product(text, suffix),
-        bool(_GLM.search(text)),
-        set(_ARRAY.findall(text)),
+        bool(patterns.glm.search(text)),
+        set(patterns.array.findall(text)),
     )
     scopes = [_Scope(tree) for tree in (Tree(root), *functions)]
     if root.has_error:
@@ -280,7 +251,7 @@ def _product(text: str, suffix: str) -> str:
     """What * is for matrices: as in `_Program`."""
     if suffix in _WITH_SWIZZLES:
         return "" if re.search(r"\bfloat[34]x[34]\b", text) else "*"
-    by_entries, of_matrices = _NUMPY.search(text), _MATRICES.search(text)
+    by_entries, of_matrices = patterns.numpy.search(text), patterns.matrices.search(text)
     if suffix != ".py" or (of_matrices and not by_entries):
         return "*"
     return "%" if by_entries and not of_matrices else ""
@@ -445,7 +416,7 @@ class _Run:
             self.tests[left.text] = values[0]
             try:
                 value = self.assigned(values[0])
-                if values[0].kind == "list" and _COLUMN_MATRIX.search(tree.declared_type):
+                if values[0].kind == "list" and patterns.column_matrix.search(tree.declared_type):
                     value = self.columns(tree, value)
                 self.store(left, value, right=values[0])
             finally:
@@ -466,7 +437,7 @@ class _Run:
         is_view = right.kind == "index" or right.word in _VIEWS
         if right.kind == "call":
             is_view = right.called in _VIEWS
-            right = right.parts[-1] if _MODULE.match(right.base) else right.owner or right
+            right = right.parts[-1] if patterns.module.match(right.base) else right.owner or right
         if right.kind not in ("name", "member", "index", "unary"):
             return
         names = self.written(left), self.written(right)
@@ -492,13 +463,13 @@ class _Run:
         """w, x, y, z = q; c, s, t = cos(v); {x, y} = q."""
         keys: Sequence[Any] = left.keys if left.kind == "record" else range(len(left.parts))
         if right.kind == "call" and CALLS.get(right.called) == "parts":  # in which no row is read
-            right = right.parts[1] if _MODULE.match(right.base) else right.owner or right
+            right = right.parts[1] if patterns.module.match(right.base) else right.owner or right
         value: Any = self.tried(right)
         parts: list[Any] = [None] * len(keys)
         is_whole = left.kind == "record" and value is not None
         if isinstance(value, sp.MatrixBase) and len(value) == len(keys):
             parts = [*value]
-        elif is_whole or isinstance(value, sp.Function) or _TURNS.match(str(value)):
+        elif is_whole or isinstance(value, sp.Function) or patterns.turns.match(str(value)):
             parts = [_part(value, key) for key in keys]
         for target, part in zip(left.parts, parts, strict=True):
             if part is not None:
@@ -621,8 +592,8 @@ class _Run:
         if path and sign == "+" and _is_scalar(change):  # q0 += (...)*dt
             name = f"Δ{_dotted(path).removeprefix('self.').removeprefix('this.')}"
             self.put((name,), change, left.line)
-            rates = [s for s in change.free_symbols if _RATES_NAME.fullmatch(_last(s.name))]
-            if ANGLES_NAME.fullmatch(name) and len(rates) == 1 and self.is_step(change):
+            rates = [s for s in change.free_symbols if patterns.rates_name.fullmatch(_last(s.name))]
+            if patterns.angles_name.fullmatch(name) and len(rates) == 1 and self.is_step(change):
                 parts = [change.xreplace({rates[0]: _part(rates[0], k)}) for k in "xyz"]
                 self.add(name, sp.Matrix(parts), left.line)
         record = self.values.get(path[0]) if path and len(path) == 1 else None
@@ -635,7 +606,9 @@ class _Run:
     def is_step(self, change: sp.Expr) -> bool:
         """Whether inputs are multiplied by a step of time."""
         symbols = change.free_symbols
-        return any(STEP.fullmatch(s.name) for s in symbols) and not symbols & {*self.definitions}
+        return any(patterns.step.fullmatch(s.name) for s in symbols) and not symbols & {
+            *self.definitions
+        }
 
     def become_unread(self, path: Path, line: int) -> None:
         """A name, and all others for the same object, get new symbols in place of their values."""
@@ -716,7 +689,7 @@ class _Run:
             self.results.append(self.tried(value))
             if self.results[-1] is not None and self.path(value) is None:
                 self.add(_RETURNED, self.results[-1], value.line)
-            if self.results[-1] is None and _MAY_BE_MATRIX.search(value.text):
+            if self.results[-1] is None and patterns.may_be_matrix.search(value.text):
                 fault = Formula(lines=(value.line,), name=_RETURNED, reason=self.reason)
                 self.formulas.append(fault)
         self.emit(self.values)
@@ -747,9 +720,11 @@ class _Run:
         if value is not None and (target is not None or tree.owner is None):
             self.store(target or Tree(tree.node, "this"), sp.ImmutableMatrix(value))
             return
-        if _MAY_BE_MATRIX.search(tree.text):
+        if patterns.may_be_matrix.search(tree.text):
             self.tried(tree)
-        for path in self.reached(tree) if not _HARMLESS.search(f"{tree.base}.{name}") else ():
+        for path in (
+            self.reached(tree) if not patterns.harmless.search(f"{tree.base}.{name}") else ()
+        ):
             if self.part(self.values, path) is not None or path[0] in self.inputs:
                 self.become_unread(path, tree.line)
 
@@ -818,7 +793,9 @@ class _Run:
                 continue
             # At a pole, an angle is a number: this is no formula, but another case of one.
             are_angles = all(value.has(*_INVERSE) or value.is_number for value in values)
-            is_change = bool(ANGLES_NAME.fullmatch(names[0])) and all(map(self.is_step, values))
+            is_change = bool(patterns.angles_name.fullmatch(names[0])) and all(
+                map(self.is_step, values)
+            )
             if kind > -2 or are_angles or is_change or stem_of(names[0]):
                 stem = _dotted(path) or re.sub(r"\d+$", "", names[0])
                 name = ", ".join(names) if len(names) < 9 else stem
@@ -885,7 +862,7 @@ class _Run:
 
     def read_block(self, tree: Tree) -> Any:
         """A number; in Rust, the last of several statements."""
-        digits = _NUMBERS.fullmatch(tree.text) if not tree.parts else None
+        digits = patterns.numbers.fullmatch(tree.text) if not tree.parts else None
         if digits:
             text = digits[2].replace("_", "")
             value = language.number(text if text.isdigit() else repr(float(text)))
@@ -958,7 +935,11 @@ class _Run:
         if is_turn and self.expanded(left).has(*_INVERSE):  # the same angle
             return left
         is_rounded = sign == "/" and self.program.suffix not in _OF_REALS
-        if is_rounded and _WHOLE_NUMBERS.fullmatch(tree.text) and not (left / right).is_Integer:
+        if (
+            is_rounded
+            and patterns.whole_numbers.fullmatch(tree.text)
+            and not (left / right).is_Integer
+        ):
             raise self.unreadable(tree, "is a division of whole numbers, which rounds")
         if sign == "\\" and _is_scalar(left):  # MATLAB
             left, sign = 1 / left, "*"
@@ -1082,7 +1063,9 @@ class _Run:
         """Whether a value, of the same vector or matrix, has a pole where it is replaced."""
         is_near = sign == "=" or sign == (">" if number > 0.5 else "<")
         whole, own = self.expanded(value), self.expanded(own)
-        one, other = ({_INDICES.sub("", s.name) for s in x.free_symbols} for x in (whole, own))
+        one, other = (
+            {patterns.indices.sub("", s.name) for s in x.free_symbols} for x in (whole, own)
+        )
         has_power = any(power.exp.is_negative for power in whole.atoms(sp.Pow))
         return is_near and (has_power or whole.has(*_INVERSE)) and not one.isdisjoint(other)
 
@@ -1122,7 +1105,7 @@ class _Run:
         if owner is None:  # (a*b).sum(-1)
             return None
         if not nodes:
-            match = _GETTER.fullmatch(name)
+            match = patterns.getter.fullmatch(name)
             return _below(owner, match[1].lower()) if match else None
         if CALLS.get(name) == "entry":
             return self.indexed(owner, nodes)
@@ -1282,7 +1265,7 @@ class _Run:
             with suppress(ExpressionError):  # of a constructor
                 return self.inline(tree, tree.called, arguments)
         meaning = "" if is_own else CALLS.get(name, "")
-        nodes, is_method = arguments, not _MODULE.match(base)
+        nodes, is_method = arguments, not patterns.module.match(base)
         is_short = name in language.OF_NUMBERS and len(nodes) < 1 + (name in ("pow", "atan2"))
         if tree.owner is not None and (
             is_short or (is_method and meaning in _OF_OBJECTS) or base == "?"
@@ -1326,12 +1309,16 @@ class _Run:
                 return self.of_vectors(meaning, [self.read(each) for each in nodes])
         is_new = self.program.suffix == ".rs" and name == "new" and len(arguments) in (3, 4)
         is_new = is_new and all(each.kind == "call" for each in arguments)  # of columns
-        if meaning == "stack" or _BY_COLUMNS.search(name) or is_new:
+        if meaning == "stack" or patterns.by_columns.search(name) or is_new:
             return self.stacked(tree, is_new)
         if len(arguments) in (4, 5, 10, 17) and arguments[-1].text in ("true", "false"):  # a flag
             arguments = arguments[:-1]
         values = [self.tried(each) for each in arguments]
-        if None not in values and len(values) > 1 and _BUILT.search(f"{base}.{tree.called}"):
+        if (
+            None not in values
+            and len(values) > 1
+            and patterns.built.search(f"{base}.{tree.called}")
+        ):
             if len(values) in (3, 4, 9, 16):
                 return rows(values)
             if len(values) == 2:  # float4(v, w)
@@ -1401,15 +1388,15 @@ class _Run:
             axis, nodes = f"axis={nodes[1].text}", nodes[:1]
         if axis and not re.fullmatch(r"(axis|dim)=(0|1|-1|-2)", axis):
             raise self.unreadable(tree)
-        by_columns |= bool(_BY_COLUMNS.search(tree.called)) ^ axis.endswith(("=1", "=-1"))
+        by_columns |= bool(patterns.by_columns.search(tree.called)) ^ axis.endswith(("=1", "=-1"))
         if len(nodes) == 1 and nodes[0].kind in ("list", "matrix"):
             nodes = nodes[0].parts
         parts = [as_matrix(self.read(each)) for each in nodes]
         for each in nodes if axis.endswith("=1") else ():  # of a batch, this is the axis of rows
             part = self.tests.get(each.text, each)
-            if part.kind == "call" and _OTHER_AXIS.search(part.text):
+            if part.kind == "call" and patterns.other_axis.search(part.text):
                 raise self.unreadable(tree, "may be of a batch")
-        if _COLUMN_MATRIX.search(tree.called) and len(parts) in _FLAT:
+        if patterns.column_matrix.search(tree.called) and len(parts) in _FLAT:
             return self.columns(tree, rows([*map(sum, parts)]))
         if all(each.cols == 1 for each in parts) and len({each.rows for each in parts}) > 1:
             return sp.ImmutableMatrix(sp.Matrix.vstack(*parts))  # (w, v)

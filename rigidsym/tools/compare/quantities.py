@@ -33,6 +33,7 @@ from rigidsym.algebra.evaluate import Floats, Unknown, evaluate
 from rigidsym.errors import ExpressionError
 from rigidsym.motion import Motion, derive
 from rigidsym.tools.compare.language import cross_matrix
+from rigidsym.tools.compare.syntax import patterns
 
 Array = NDArray[Any]
 Values = dict[sp.Expr, Any]  # of expressions, at all points
@@ -435,23 +436,18 @@ def _angles(axes: str, r: sp.MatrixBase) -> sp.ImmutableMatrix:
 
 # Names in a formula
 
-_RATE = re.compile(
-    r"(?:d_?|dot_?)(?P<behind>\w+)|(?P<before>\w+?)_?(?:(?:dot|rates?|d)(?P<index>_?\d)?|p)"
-)
-_OMEGA = re.compile(
-    r"(?:omega|Omega|w|W|gyro|g|rate|Omega_body|omega_(?:body|space))_?[xyz0-3]|[pqr]|[wW][pqr]"
-)
-
 
 def are_body_rates(formula: sp.MatrixBase) -> bool:
     """Whether three entries are components of an angular velocity, and nothing else."""
-    names = {entry.name for entry in formula if entry.is_Symbol and _OMEGA.fullmatch(entry.name)}
+    names = {
+        entry.name for entry in formula if entry.is_Symbol and patterns.omega.fullmatch(entry.name)
+    }
     return formula.shape == (3, 1) and len(names) == 3
 
 
 def stem_of(name: str) -> str:
     """phi of phi_dot, dphi, phidot, phi_rate, and q_0 of qd_0; "" for other names."""
-    match = _RATE.fullmatch(name)
+    match = patterns.rate.fullmatch(name)
     return match["behind"] or match["before"] + (match["index"] or "") if match else ""
 
 

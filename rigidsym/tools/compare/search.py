@@ -14,9 +14,9 @@ import sympy as sp
 from rigidsym.errors import ExpressionError, RequestError
 from rigidsym.models.rotation import RotationModel
 from rigidsym.tools.compare.comparison import Comparison, identified
-from rigidsym.tools.compare.program import ANGLES_NAME, STEP, Formula, program_formulas
+from rigidsym.tools.compare.program import Formula, program_formulas
 from rigidsym.tools.compare.quantities import are_angles, are_body_rates, grouped, in_order, target
-from rigidsym.tools.compare.syntax import GRAMMARS
+from rigidsym.tools.compare.syntax import GRAMMARS, patterns
 
 SUFFIXES = tuple(GRAMMARS)
 _MOST_BYTES = 300_000  # of a file
@@ -126,7 +126,7 @@ def _compared(
     path: Path, formula: Formula, expected: str, *, is_case: bool
 ) -> FormulaInFile | None:
     for form in formula.forms:  # a long value may be an angle
-        if ANGLES_NAME.fullmatch(formula.name) and are_body_rates(form):
+        if patterns.angles_name.fullmatch(formula.name) and are_body_rates(form):
             asked = target("xyz", "rates_from_angular_velocity_body")
             comparison = Comparison(formula=form, asked=asked, are_body_rates=True)
             return FormulaInFile(path, formula, comparison)
@@ -184,7 +184,7 @@ def _block(matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
         scale = {s: s * 180 / sp.pi for s in matrix.free_symbols}
         in_radians = matrix * sp.pi / 180 if are_angles(matrix) else matrix.xreplace(scale)
         matrix = matrix if in_radians.has(sp.pi) else in_radians
-    step = next((s for s in matrix.free_symbols if STEP.fullmatch(s.name)), None)
+    step = next((s for s in matrix.free_symbols if patterns.step.fullmatch(s.name)), None)
     if step is not None and not (rates := matrix.diff(step)).has(step):  # of q + (...)*dt
         matrix = sp.ImmutableMatrix(rates)
     edges = (tuple(matrix[-1, :]), tuple(matrix[:, -1]))  # by rows, or by columns

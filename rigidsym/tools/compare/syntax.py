@@ -16,6 +16,7 @@ from functools import cache, cached_property
 from importlib import import_module
 from itertools import count
 from pathlib import Path
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 from rigidsym.errors import ExpressionError, MissingExtra
@@ -32,14 +33,10 @@ GRAMMARS, _KINDS, CALLS, SPELLINGS = (  # of a file, a type of node, a word, and
     for title in ("grammars", "kinds", "words", "functions")
 )
 _TYPES = {name: frozenset(types.split()) for name, types in _TABLES["types"].items()}
+patterns = SimpleNamespace(**{k: re.compile(text) for k, text in _TABLES["patterns"].items()})
 ORDERS = [order for orders in _TABLES["orders"].values() for order in orders]
 _CHUNK = 2_048  # bytes that the parser reads at once
 _MOST_STEPS = 50_000  # of the parser: a megabyte without errors takes half as many
-_INTEGER = re.compile(  # a type
-    r"(?:(?:un)?signed )?(?:u?int(?:\d+(?:_t)?)?|u?long(?: long)?(?: int)?|u?short|u?char|s?byte"
-    r"|[ui](?:8|16|32|64|128|size)|s?size_t)|unsigned"
-)
-_TYPE_ARGUMENTS = re.compile(r"(?:::)?<.*>|\[.*\]|\s", re.DOTALL)
 
 
 @cache
@@ -117,8 +114,8 @@ class Tree:
         if self.kind == "member":
             node = _part(self.node, "name") or _children(self.node)[-1]
         if self.kind in ("name", "member"):
-            name = _TYPE_ARGUMENTS.sub("", _text(node)).partition("(")[0]
-            return spelled(re.split(r"::|\.", name)[-1])
+            text = patterns.type_arguments.sub("", _text(node)).partition("(")[0]
+            return spelled(re.split(r"::|\.", text)[-1])
         sign = _part(self.node, "operator")
         return _text(sign or next((c for c in self.node.children if not c.is_named), None))
 
@@ -264,7 +261,7 @@ class Tree:
         outer = self.node.parent and _part(self.node.parent, "type")
         is_call = self.kind == "call"
         text = self.parts[0].text.partition("<")[2].rstrip("> ") if is_call else _text(outer)
-        return _INTEGER.fullmatch(text) is not None
+        return patterns.integer.fullmatch(text) is not None
 
     @property
     def is_alias(self) -> bool:
@@ -305,7 +302,7 @@ def tree_of(node: Node) -> Tree:
     is_reference = False
     while (kind := _KINDS.get(node.type, "block")) == "wrap":
         is_reference |= node.type in _TYPES["reference"]
-        if node.type in _TYPES["cast"] and _INTEGER.fullmatch(
+        if node.type in _TYPES["cast"] and patterns.integer.fullmatch(
             _text(_part(node, "type"))
         ):  # (int)a is another number
             return Tree(node, "cast")
