@@ -27,6 +27,7 @@ from rigidsym.tools.compare import quantities as known
 from rigidsym.tools.compare.language import spelled_out
 from rigidsym.tools.compare.program import formula_matrix, is_length
 from rigidsym.tools.compare.quantities import ANGLES, Array, Family, KnownQuantity, Names, Values
+from rigidsym.tools.compare.syntax import CHANGES
 
 _MOST_REPAIRS = 2  # of a formula that nobody has named
 _NEAR = 0.5  # share of entries that must be right for a formula to be close to another
@@ -280,16 +281,11 @@ def against(formula: sp.ImmutableMatrix, goal: KnownQuantity) -> Comparison:
 
 
 def identified(
-    formula: sp.ImmutableMatrix,
-    *,
-    only_equal: bool = False,
-    is_in_program: bool = False,
-    expected: str = "",
+    formula: sp.ImmutableMatrix, *, only_equal: bool = False, is_in_program: bool = False
 ) -> Comparison:
     """Compare with all quantities of the catalogue; the nearest if none is equal.
 
-    In a program, a transpose, a sign or a factor of the whole formula may be meant. Of several
-    nearest rotations, that about the `expected` axes, as in "z y x", is preferred.
+    In a program, a transpose, a sign or a factor of the whole formula may be meant.
     """
     trials = []
     for family in known.families(formula):
@@ -307,7 +303,7 @@ def identified(
         return unknown
     if decided := _decided(formula, trials, None, is_in_program=is_in_program):
         return decided
-    for reading in _nearest(trials, _NEAR, expected)[:_NEAREST]:
+    for reading in _nearest(trials, _NEAR)[:_NEAREST]:
         repairs = entry_repairs(reading)
         # If all other entries are right, one may be wrong in any way.
         is_whole = len(repairs) == 1 and _is_rich(reading)
@@ -337,29 +333,14 @@ def _other_forms(formula: sp.ImmutableMatrix) -> Iterator[tuple[str, sp.Immutabl
             yield str(symbol), formula.xreplace({symbol: sp.S.One})
 
 
-def _nearest(trials: Sequence[_Trial], least: float, expected: str = "") -> list[Reading]:
+def _nearest(trials: Sequence[_Trial], least: float) -> list[Reading]:
     """The readings of which this share of all entries is right, the best first."""
     readings: list[Reading] = []
     for trial in trials:
         is_near = trial.agreement.all(axis=2).mean(axis=(-2, -1)) >= least
         is_near[[any(known.oddness(x) > 1 for x in each.values()) for each in trial.names]] = False
         readings += trial.readings(is_near)
-    return sorted(
-        readings,
-        key=lambda each: (-each.agreement.all(axis=0).mean(), not _is_customary(each, expected)),
-    )
-
-
-def _is_customary(reading: Reading, expected: str) -> bool:
-    """Whether the rotation is the expected one, or what roll, pitch and yaw usually mean."""
-    goal = reading.goal
-    if not goal.rotation or "q" not in goal.inputs:
-        return False
-    if expected:
-        return " ".join(turn.axis for turn in goal.motion.model.turns) == expected
-    called = {meant: str(symbol) for symbol, meant in reading.names.items()}
-    words = [called.get(symbol, "").lower() for symbol in goal.inputs["q"]]
-    return goal.rotation == "ZYX" and words == ["yaw", "pitch", "roll"]
+    return sorted(readings, key=lambda each: -each.agreement.all(axis=0).mean())
 
 
 def _decided(
@@ -394,13 +375,9 @@ def _decided(
             # No change makes it right for all angles. The first point where the formula is wrong:
             place = int(some.agreement.all(axis=(1, 2)).argmin())
             points = ((name, some.values[name][place]) for name in sorted(some.names, key=str))
-            return Comparison(
-                formula=formula,
-                asked=asked,
-                found=some.goal,
-                names=some.names,
-                counterexample=", ".join(f"{name} = {value:.4g}" for name, value in points),
-            )
+            example = ", ".join(f"{name} = {value:.4g}" for name, value in points)
+            wrong = Comparison(formula=formula, asked=asked, counterexample=example)
+            return replace(wrong, found=some.goal, names=some.names)
     return None
 
 
@@ -447,7 +424,7 @@ def entry_repairs(reading: Reading) -> list[Repair]:
         kind, changed[entry] = _entry(reading, entry)
         where, after = place if formula.cols > 1 else place[0], changed[entry]
         words = f"entry {where}: {formula[entry]} should be {after}"
-        words += f" ({_CHANGES[kind]})" if kind in _CHANGES else ""
+        words += f" ({CHANGES[kind]})" if kind in CHANGES else ""
         fixed = changed.as_immutable()
         repairs.append(Repair(kind=kind, words=words, formula=fixed, place=place, after=after))
     return repairs
@@ -459,7 +436,7 @@ def _entry(reading: Reading, place: tuple[int, int]) -> tuple[str, sp.Expr]:
     wanted = goal.values[:, [place[0]], [place[1]]][:, None]
     is_short = before.count_ops() <= _MOST_OPERATIONS
     changes = set(variants(before, [*reading.names])) if is_short else set()
-    kinds = [*_CHANGES]
+    kinds = [*CHANGES]
     for kind, after in sorted(
         changes, key=lambda v: (kinds.index(v[0]), v[1].count_ops(), str(v[1]))
     ):
@@ -473,18 +450,6 @@ def _entry(reading: Reading, place: tuple[int, int]) -> tuple[str, sp.Expr]:
 
 _SWAPPED = {sp.sin: sp.cos, sp.cos: sp.sin}
 _SCALES = (sp.Rational(1, 2), sp.Integer(2))
-_CHANGES = {  # of a part of an entry, the likeliest first
-    "sign": "a sign",
-    "sine and cosine": "sine and cosine exchanged",
-    "index": "another name",
-    "arguments": "arguments exchanged",
-    "square": "a square",
-    "factor": "a number as factor",
-    "half angle": "half or twice the angle",
-    "product": "a factor missing or too many",
-    "quadrant": "atan2 in place of atan",
-    "term": "a term too many",
-}
 
 
 def _changed(e: sp.Expr, names: Sequence[sp.Symbol], inside: bool) -> dict[str, list[sp.Expr]]:

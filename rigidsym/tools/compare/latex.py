@@ -11,6 +11,7 @@ from rigidsym.errors import ExpressionError
 from rigidsym.text.bounds import FUNCTIONS
 from rigidsym.text.names import GREEK_LETTERS, spelled
 from rigidsym.tools.compare.language import function_word
+from rigidsym.tools.compare.syntax import patterns
 
 _FIRST = 0xE000  # a matrix stands in a formula as a letter of the private use area
 _MARKS = "\ue000-\uf8ff"
@@ -20,18 +21,6 @@ _TEX_TOKEN = re.compile(
     rf"\\[A-Za-z]+|{_QUOTE}\w+{_QUOTE}|\d+(?:\.\d+)?|[A-Za-z{GREEK_LETTERS}{_MARKS}]"
     r"|[-+*/=^_(){}\[\]'|,]|(?P<other>\S)"
 )
-_LAYOUT = re.compile(
-    r"\\(?:left|right|[bB]igg?[lr]?|displaystyle|textstyle|quad|qquad)(?![A-Za-z])"
-    r"|\\[,;:! \[\]]|[~$]|\\(?:begin|end)\{(?:align|aligned|equation|gather|split)\*?\}"
-    r"|\\(?:tag|label)\{[^{}]*\}|\\(?:nonumber|notag)(?![A-Za-z])"
-)
-_FONT = r"\\(?:math(?:rm|it|sf|bf)|operatorname|text|boldsymbol|bm)"
-_STYLED = re.compile(_FONT + r"(?:\s*\{\s*(\\?[A-Za-z][A-Za-z0-9]*)\s*\}|(?=\s*\{)|(?![A-Za-z]))")
-_STYLED_SCRIPT = re.compile(rf"(?<=[_^])\s*{_FONT}\s*(?=\{{)")
-_MATRIX = re.compile(r"\\begin\{([pbB]?matrix|array)\}(?:\{[lcr| ]*\})?(.*?)\\end\{\1\}", re.DOTALL)
-_COMMENT = re.compile(r"(?<!\\)%[^\n]*")
-_END = re.compile(r"(?<!\\),|\\q?quad(?![A-Za-z])|\\\\")  # of a side with a matrix
-_PUNCTUATION = re.compile(r"(?:\\[,;:! ]|[\s.,;])+$")
 _BRACKETS = {"(": ")", "[": "]", "{": "}"}
 _DOTS = {r"\dot": "_dot", r"\ddot": "_ddot"}
 _LETTERS = set(map(spelled, GREEK_LETTERS))
@@ -52,10 +41,12 @@ def python_of(text: str) -> str:
         matrices[_FIRST + len(matrices)] = f"[{', '.join(f'[{row}]' for row in cells)}]"
         return chr(max(matrices))
 
-    sides = _MATRIX.sub(kept, _STYLED_SCRIPT.sub("", _COMMENT.sub("", text))).split("=")
+    sides = patterns.tex_matrix.sub(
+        kept, patterns.styled_script.sub("", patterns.tex_comment.sub("", text))
+    ).split("=")
     side = next((s for s in reversed(sides) if re.search(f"[{_MARKS}]", s)), sides[-1])
-    side = _END.split(side)[0] if matrices else side
-    return _Walk(_PUNCTUATION.sub("", side)).sum().translate(matrices)
+    side = patterns.end_of_side.split(side)[0] if matrices else side
+    return _Walk(patterns.punctuation.sub("", side)).sum().translate(matrices)
 
 
 def _styled(match: re.Match[str]) -> str:
@@ -70,7 +61,9 @@ class _Walk:
     """One entry of a matrix, or a formula in which letters stand for matrices."""
 
     def __init__(self, text: str) -> None:
-        tokens = list(_TEX_TOKEN.finditer(_LAYOUT.sub(" ", _STYLED.sub(_styled, text))))
+        tokens = list(
+            _TEX_TOKEN.finditer(patterns.layout.sub(" ", patterns.styled.sub(_styled, text)))
+        )
         for match in tokens:
             if match["other"]:
                 raise ExpressionError(f"unexpected {match['other']!r} in LaTeX")

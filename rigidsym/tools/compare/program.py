@@ -16,7 +16,7 @@ from contextlib import suppress
 from copy import deepcopy
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
-from itertools import chain, islice
+from itertools import chain, islice, product
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
@@ -27,16 +27,7 @@ from rigidsym.tools.compare import language
 from rigidsym.tools.compare.language import as_matrix, called, combined, function_word, rows
 from rigidsym.tools.compare.latex import python_of
 from rigidsym.tools.compare.quantities import are_angles, stem_of
-from rigidsym.tools.compare.syntax import (
-    CALLS,
-    ORDERS,
-    Tree,
-    parameters,
-    parsed,
-    patterns,
-    tree_of,
-    walk,
-)
+from rigidsym.tools.compare.syntax import CALLS, Tree, parameters, parsed, patterns, tree_of, walk
 
 if TYPE_CHECKING:
     from tree_sitter import Node
@@ -66,20 +57,12 @@ _OPPOSITE = str.maketrans("<>=!", "><!=")
 _SIGNS = {".*": "%", "./": "/", ".^": "**", "^": "**"}  # MATLAB
 _FLAT = {9: (3, 3), 12: (4, 3), 16: (4, 4)}
 _OF_VECTORS = ("T", "C", "inv", "dot", "cross", "outer", "norm")
-_OF_OBJECTS = (*_OF_VECTORS, "same", "clamp", "least", "pair", "fused")
+_OF_OBJECTS = (*_OF_VECTORS, "same", "clamp", "least", "pair")
 _VIEWS = ("T", "transpose", "reshape", "view", "ravel", "squeeze", "asarray")  # of one matrix
 _RETURNED, _ARGUMENT = _UNNAMED = ("returned", "argument")  # in place of a name
 _ALL = slice(None)
 
-# Scalars that are one vector or matrix: patterns of a stem and an index. The name of an angle is
-# the index of its vector, r.phi beside r.theta.
-_GROUPS = (
-    re.compile(r"(?P<stem>.*?)_?(?P<index>[0-3]_?[0-3])"),
-    re.compile(r"(?P<stem>.*m)(?P<index>\d\d?)"),
-    re.compile(r"(?P<stem>.*?)(?P<index>[wxyzWXYZ0-4])"),
-    re.compile(r"(?P<stem>)(?P<index>[pqrPQR])"),
-)
-_COMPLETE = {frozenset(order.split()): order.split() for order in ORDERS}
+_COMPLETE = {frozenset(order.split()): order.split() for order in patterns.orders}
 
 Path = tuple[Any, ...]  # of a name and its members and indices: ("R", 0, 1), ("state", "phi")
 
@@ -109,14 +92,11 @@ class _Record(dict[Any, Any]):
         super().__init__(parts or {})
         self.lines = dict.fromkeys(self, line)  # where each was assigned
 
-    def leaves(self) -> Iterator[tuple[sp.Expr, int]]:
-        """All expressions with their lines, in the order of the indices."""
+    def places(self) -> Iterator[int]:
+        """The lines of all expressions, in the order of the indices."""
         for key in sorted(key for key in self if key is not None):
             part = self[key]
-            if isinstance(part, _Record):
-                yield from part.leaves()
-            else:
-                yield part, self.lines[key]
+            yield from part.places() if isinstance(part, _Record) else [self.lines[key]]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -352,7 +332,11 @@ class _Run:
             body = next(iter(scope.parts), Tree(scope.node, own=[]))
         if body.kind != "block":  # the expression of an arrow
             self.run_return(body)
-        elif self.program.suffix == ".rs" and body.parts and not body.parts[-1].is_statement:
+        elif (
+            self.program.suffix == ".rs"
+            and body.parts
+            and not patterns.statement.search(body.parts[-1].node.type)
+        ):
             self.run(Tree(body.node, own=body.parts[:-1]))
             self.run_return(body.parts[-1])
         else:
@@ -708,8 +692,6 @@ class _Run:
             return
         if meaning == "set_unit":
             value = sp.eye(4)
-        elif meaning == "scale":  # m33Scale(factor, A, B)
-            value = combined("*", *map(self.read, nodes[:2]))
         elif meaning is None and re.match("set|make|init", name, re.IGNORECASE):
             nodes = nodes[:-1] if len(nodes) in (5, 10, 17) else nodes  # a flag
             values = [self.tried(each) for each in nodes] if len(nodes) in (3, 4, 9, 16) else [None]
@@ -783,8 +765,7 @@ class _Run:
                 continue
             matrix = _settled(part)
             if matrix is not None and len(matrix) > 2:
-                lines = [line for _, line in part.leaves()]
-                self.add(_dotted(own), matrix, *lines, is_final=is_final)
+                self.add(_dotted(own), matrix, *part.places(), is_final=is_final)
             else:
                 self.emit(part, None, own, is_final=is_final)
         for kind, names in _groups(record):
@@ -796,7 +777,7 @@ class _Run:
             is_change = bool(patterns.angles_name.fullmatch(names[0])) and all(
                 map(self.is_step, values)
             )
-            if kind > -2 or are_angles or is_change or stem_of(names[0]):
+            if kind > -2 or are_angles or is_change:
                 stem = _dotted(path) or re.sub(r"\d+$", "", names[0])
                 name = ", ".join(names) if len(names) < 9 else stem
                 places = (record.lines[n] for n in names)
@@ -960,8 +941,8 @@ class _Run:
             return value
         if self.is_moment(other):
             value = self.moment(value)
-            if not _is_scalar(value):
-                return value
+        if not _is_scalar(value):
+            return value
         names = [s for s in value.free_symbols if self.definitions.get(s) is None]
         parts = {s.name.rpartition(".")[0] for s in other.free_symbols}
         factor, vector = value.as_independent(*[s for s in names if s.name in parts] or names)
@@ -969,9 +950,8 @@ class _Run:
 
     def is_moment(self, value: Any) -> bool:
         """Whether a vector is a sum with w × I w in it."""
-        return getattr(value, "shape", ()) == (3, 1) and any(
-            value.has(tensor[0, 0]) for tensor in map(_tensor, self.tensors)
-        )
+        entries = [_tensor(name)[0, 0] for name in self.tensors]
+        return getattr(value, "shape", ()) == (3, 1) and bool(value.has(*entries))
 
     def moment(self, value: Any, w: Any = None) -> Any:
         """I w, in I w + w × I w, for a product of names that would be a scalar otherwise.
@@ -981,15 +961,12 @@ class _Run:
         """
         names = {*value.free_symbols}
         names |= {sp.Symbol(s.name.rpartition(".")[0], real=True) for s in names}
-        for tensor in self.tensors & names if w is None else names:
-            for vector in names - {tensor} if w is None else [w]:
-                parts = as_matrix(self.vector(vector))
-                own = as_matrix(self.vector(tensor))
-                if value == tensor * vector or (
-                    parts.shape == own.shape and value == own.dot(parts)
-                ):
-                    self.tensors.add(tensor)
-                    return _tensor(tensor) * parts
+        known, vectors = (self.tensors & names, names) if w is None else (names, [w])
+        for tensor, vector in product(known, vectors):
+            own, parts = (as_matrix(self.vector(each)) for each in (tensor, vector))
+            if len(own) == len(parts) and value in (tensor * vector, own.dot(parts)):
+                self.tensors.add(tensor)
+                return _tensor(tensor) * parts
         return value
 
     def of_tensor(self, sign: str, left: Any, right: Any) -> Any:
@@ -1300,9 +1277,6 @@ class _Run:
                 return self.filled(tree)
             case "clamp" | "least" if len(nodes) > 1:
                 return self.bounded(tree, meaning, [self.read(each) for each in nodes])
-            case "fused" if len(nodes) == 3:
-                one, other, term = map(self.read, nodes)
-                return combined("+", combined("*", one, other), term)
             case "where" if len(nodes) == 3:
                 return self.chosen(tree, nodes[0], nodes[1:])
             case _ if meaning in _OF_VECTORS and nodes:
@@ -1361,7 +1335,7 @@ class _Run:
         product = self.of_tensor("@", *values) if (meaning, len(values)) == ("dot", 2) else None
         if product is not None:
             return product
-        if meaning == "cross":
+        if meaning == "cross" and len(values) > 1:
             values = [values[0], self.moment(values[1], values[0])]
         if meaning in ("cross", "dot", "C", "outer"):
             values = [self.vector(value) for value in values]
@@ -1467,14 +1441,12 @@ def _groups(record: _Record) -> Iterator[tuple[int, list[str]]]:
 @lru_cache(maxsize=4096)
 def _roles(name: str) -> list[tuple[int, str, str]]:
     """The groups to which a scalar may belong by its name, and its index in each."""
-    matches = ((kind, pattern.fullmatch(name)) for kind, pattern in enumerate(_GROUPS))
+    matches = ((kind, pattern.fullmatch(name)) for kind, pattern in enumerate(patterns.scalars))
     roles = [(k, m["stem"], m["index"].replace("_", "").lower()) for k, m in matches if m]
     if stem_of(name):
         roles.append((-1, "", name))
     change = "Δ" * name.startswith("Δ")
-    rate = stem_of(name)
-    change = "rate" if rate else change
-    word = re.sub(r"^[Δδ]?_*|_?(val|rad|angle)?_*$", "", (rate or name).lower())
+    word = re.sub(r"^[Δδ]?_*|_?(val|rad|angle)?_*$", "", name.lower())
     kinds = [kind for kind, angles in enumerate(_COMPLETE) if word in angles]
     return roles + [(-2 - kind, change, word) for kind in kinds if len(word) > 1 or word in "xyz"]
 
@@ -1517,8 +1489,7 @@ def _short_names(symbols: Iterable[sp.Symbol]) -> dict[sp.Expr, sp.Expr]:
 
 def _unflattened(value: Any) -> Any:
     """Nine, twelve or sixteen numbers in a row are a matrix."""
-    is_flat = isinstance(value, sp.MatrixBase) and 1 in value.shape and len(value) in _FLAT
-    if not is_flat:
+    if not (isinstance(value, sp.MatrixBase) and 1 in value.shape and len(value) in _FLAT):
         return value
     is_padded = len(value) == 12 and not any(value[3::4])  # rows of four with a zero at the end
     return sp.ImmutableMatrix(value.reshape(*((3, 4) if is_padded else _FLAT[len(value)])))

@@ -328,12 +328,6 @@ def _turned(q: sp.Matrix, v: sp.Matrix) -> sp.Matrix:
     return v + 2 * q[0] * cross * v + 2 * cross * cross * v
 
 
-def _turned_about(axis: sp.Matrix, angle: sp.Matrix, v: sp.Matrix) -> sp.Matrix:
-    """Rodrigues' formula."""
-    c, s = sp.cos(angle[0]), sp.sin(angle[0])
-    return c * v + s * axis.cross(v) + (1 - c) * axis.dot(v) * axis
-
-
 def _steiner(mass: sp.Matrix, d: sp.Matrix) -> sp.Matrix:
     return mass[0] * (d.dot(d) * sp.eye(3) - d * d.T)
 
@@ -370,7 +364,6 @@ _LAWS: tuple[_Law, ...] = (  # entries of each vector, and the value
     (_PRODUCT, (3, 4), lambda v, b: quaternion_product(_pure(v), b)),
     ("quaternion_rate_operator", (3,), _rate_operator),
     ("turned_vector", (4, 3), _turned),
-    ("turned_vector, by an axis and an angle", (3, 1, 3), _turned_about),
     (_ACCELERATION, (3, 3, 3), lambda w, i, t: _tensor(i).inv() * (t - _gyroscopic(w, i))),
     (_ACCELERATION, (3, 3), lambda w, i: -_tensor(i).inv() * _gyroscopic(w, i)),
     (_WITH_INVERSE, (3, 9, 3, 9), lambda w, i, t, k: _tensor(k) * (t - _gyroscopic(w, i))),
@@ -451,20 +444,7 @@ def stem_of(name: str) -> str:
     return match["behind"] or match["before"] + (match["index"] or "") if match else ""
 
 
-_VECTOR_NAMES = (  # names with a common stem are a vector
-    r"(?P<stem>.*?)_?(?P<part>[xyz]{2}|[0-3]_?[0-3]|[wxyzWXYZ0-4]|)",
-    r"(?P<stem>.+)_(?P<part>[wxyzWXYZ0-4])",  # b1_0
-    r"(?P<stem>.+)_(?P<part>[1-4])_1",  # q(3, 1) of MATLAB
-    r"(?P<part>[wxyz])_?(?P<stem>\d|[a-z]?)",  # w1, x1, y1, z1
-    r"(?P<stem>.*?)_?(?P<part>[a-d])",  # q1a, q1b, q1c, q1d
-    r"(?P<part>[a-d])(?P<stem>\d)",
-    r"(?P<stem>.*?)_?(?P<part>[rijk])",  # other_i, other_j, other_k, other_r
-)
-_ELEMENTS = (  # of R: Matrix3 of ArduPilot, m00 and m_1_1
-    (re.compile(r"(?P<stem>.*?)_?(?P<row>[abc])_(?P<column>[xyz])"), ("abc", "xyz")),
-    (re.compile(r"(?P<stem>.*?)_?(?P<row>[0-2])_?(?P<column>[0-2])"), ("012", "012")),
-    (re.compile(r"(?P<stem>.*?)_?(?P<row>[1-3])_?(?P<column>[1-3])"), ("123", "123")),
-)
+_INDICES = (("abc", "xyz"), ("012", "012"), ("123", "123"))  # of rows and columns
 _FLAT = ([*range(9)], [0, 1, 2, 4, 5, 6, 8, 9, 10])  # places of entries, m_8
 
 
@@ -571,10 +551,10 @@ def grouped(names: Mapping[sp.Symbol, str]) -> Iterator[list[tuple[sp.Symbol, ..
         for size in (3, 4):  # of a vector in a state x_7, ..., x_13, beside another one
             if len(state) - size in (3, 4):
                 yield [(*state[:size],), (*state[size:],), *others]
-    for pattern in _VECTOR_NAMES:
+    for pattern in patterns.vectors:
         groups: dict[str, list[tuple[str, sp.Symbol]]] = {}
         for symbol, name in names.items():
-            match = re.fullmatch(pattern, name)
+            match = pattern.fullmatch(name)
             stem, part = (match["stem"], match["part"].lower()) if match else (name, "")
             if rates := re.fullmatch("(?:.*_)?([pqr])(_b(ody)?)?", name):
                 stem, part = "p, q, r", rates[1].replace("r", "s")
@@ -596,7 +576,7 @@ def _scalar_first(vector: tuple[sp.Symbol, ...]) -> list[tuple[sp.Symbol, ...]]:
 
 def _of_entries(symbols: Sequence[sp.Symbol], rotation: sp.MatrixBase) -> Iterator[Names]:
     """Names as entries of R, also of the entries that are not in the formula."""
-    for pattern, (rows, columns) in _ELEMENTS:
+    for pattern, (rows, columns) in zip(patterns.elements, _INDICES, strict=True):
         matches = [match for s in symbols if (match := pattern.fullmatch(s.name))]
         if len(matches) == len(symbols) and len({match["stem"] for match in matches}) == 1:
             name, (i, _), (j, _) = matches[0][0], matches[0].span("row"), matches[0].span("column")

@@ -81,18 +81,15 @@ def source_files(paths: Sequence[Path]) -> Iterator[Path]:
     for path in paths:
         if not path.is_dir() and not (path.is_file() and path.suffix in SUFFIXES):
             raise RequestError(f"{path}: expected a folder, or a file {', '.join(SUFFIXES)}")
-        if path.is_file() and path.stat().st_size > _MOST_BYTES:
-            raise RequestError(
-                f"{path}: {path.stat().st_size} bytes; expected {_MOST_BYTES} at most"
-            )
+        size = path.stat().st_size
+        if path.is_file() and size > _MOST_BYTES:
+            raise RequestError(f"{path}: {size} bytes; expected {_MOST_BYTES} at most")
     files = [
         file
         for path in paths
         for file in (sorted(path.rglob("*")) if path.is_dir() else [path])
-        if file.suffix in SUFFIXES
-        and not any(part.startswith(".") for part in file.relative_to(path).parts)
-        and file.is_file()
-        and file.stat().st_size <= _MOST_BYTES
+        if not any(part.startswith(".") for part in file.relative_to(path).parts)
+        if file.suffix in SUFFIXES and file.is_file() and file.stat().st_size <= _MOST_BYTES
     ]
     if not files:
         where = ", ".join(map(str, paths))
@@ -100,11 +97,8 @@ def source_files(paths: Sequence[Path]) -> Iterator[Path]:
     yield from dict.fromkeys(files)
 
 
-def search(path: Path, expected: str = "") -> Iterator[FormulaInFile]:
-    """The formulas of a file that are a known quantity or close to one, and unreadable ones.
-
-    Of several rotations close to one, that about the `expected` axes, as in "z y x", is preferred.
-    """
+def search(path: Path) -> Iterator[FormulaInFile]:
+    """The formulas of a file that are a known quantity or close to one, and unreadable ones."""
     text = path.read_text(encoding="utf-8", errors="replace")
     variants: dict[Any, list[Formula]] = {}
     latest: FormulaInFile | None = None
@@ -114,7 +108,7 @@ def search(path: Path, expected: str = "") -> Iterator[FormulaInFile]:
         # A formula with the values of all branches may be no quantity, while one branch is.
         is_case = len({each.forms for each in group if each.forms}) > 1
         is_case |= any(each.is_case for each in group)
-        findings = [_compared(path, each, expected, is_case=is_case) for each in group]
+        findings = [_compared(path, each, is_case=is_case) for each in group]
         readable = [each for each in findings if each and each.comparison]
         for finding in [*readable, *filter(None, findings)][:1]:
             if latest is None or not finding.repeats(latest):  # a fault counts once
@@ -122,9 +116,7 @@ def search(path: Path, expected: str = "") -> Iterator[FormulaInFile]:
             latest = finding if finding.comparison else latest
 
 
-def _compared(
-    path: Path, formula: Formula, expected: str, *, is_case: bool
-) -> FormulaInFile | None:
+def _compared(path: Path, formula: Formula, *, is_case: bool) -> FormulaInFile | None:
     for form in formula.forms:  # a long value may be an angle
         if patterns.angles_name.fullmatch(formula.name) and are_body_rates(form):
             asked = target("xyz", "rates_from_angular_velocity_body")
@@ -135,27 +127,27 @@ def _compared(
         parts = ((part, others, True) for part, others in _partial(form))
         for part, others, is_equal in chain(whole, parts):
             try:
-                comparison = _identified(part, expected, is_equal=is_equal)
+                comparison = _identified(part, is_equal=is_equal)
             except (ExpressionError, RecursionError) as error:  # a function without values
                 return FormulaInFile(path, formula, reason=str(error))
             if comparison.found is not None or comparison.is_reflection:
                 return FormulaInFile(path, formula, comparison, "", is_case, others)
     reason = formula.reason
-    if formula.unread:
+    if formula.unread and any(map(_may_be_known, formula.forms)):
         reason = f"{_in_lines(formula.unread)} cannot be read"
     return FormulaInFile(path, formula, reason=reason) if reason else None
 
 
 @lru_cache(maxsize=1024)  # programs repeat themselves
-def _identified(matrix: sp.ImmutableMatrix, expected: str, *, is_equal: bool) -> Comparison:
-    return identified(matrix, only_equal=is_equal, is_in_program=True, expected=expected)
+def _identified(matrix: sp.ImmutableMatrix, *, is_equal: bool) -> Comparison:
+    return identified(matrix, only_equal=is_equal, is_in_program=True)
 
 
 def formulas(text: str, suffix: str) -> Iterator[Formula]:
     """The matrices and vectors that may be one of kinematics, and those that cannot be read."""
     for formula in program_formulas(text, suffix):
         forms = tuple(m for m in map(_block, formula.forms) if len(m.free_symbols))
-        if any(map(_may_be_known, forms)) or formula.reason:
+        if forms or formula.reason:
             yield replace(formula, forms=forms)
 
 
@@ -196,14 +188,8 @@ def _block(matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
 def _partial(matrix: sp.ImmutableMatrix) -> Iterator[tuple[sp.ImmutableMatrix, str]]:
     """A formula without some of its terms, and the words that say so.
 
-    These are torques in Euler's equations, corrections in rates of a quaternion, and the magnetic
-    declination beside an angle.
+    These are torques in Euler's equations, and corrections in rates of a quaternion.
     """
-    if are_angles(matrix):
-        offsets = [sp.Add(*(t for t in sp.Add.make_args(e) if t.is_Symbol)) for e in matrix]
-        others = matrix - sp.Matrix(offsets)
-        if any(offsets) and not others.has(*(s for e in offsets for s in e.free_symbols)):
-            yield sp.ImmutableMatrix(others), ", ".join(str(e) for e in offsets if e)
     if matrix.shape not in ((3, 1), (4, 1)) or matrix.has(sp.Function):
         return
     sign = 1 if matrix.rows == 3 else -1  # of what is quadratic in ω, or linear

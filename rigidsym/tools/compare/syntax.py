@@ -33,8 +33,14 @@ GRAMMARS, _KINDS, CALLS, SPELLINGS = (  # of a file, a type of node, a word, and
     for title in ("grammars", "kinds", "words", "functions")
 )
 _TYPES = {name: frozenset(types.split()) for name, types in _TABLES["types"].items()}
-patterns = SimpleNamespace(**{k: re.compile(text) for k, text in _TABLES["patterns"].items()})
-ORDERS = [order for orders in _TABLES["orders"].values() for order in orders]
+CHANGES: dict[str, str] = _TABLES["changes"]
+patterns = SimpleNamespace(
+    orders=[order for orders in _TABLES["orders"].values() for order in orders],
+    **{
+        name: re.compile(text) if isinstance(text, str) else [*map(re.compile, text)]
+        for name, text in _TABLES["patterns"].items()
+    },
+)
 _CHUNK = 2_048  # bytes that the parser reads at once
 _MOST_STEPS = 50_000  # of the parser: a megabyte without errors takes half as many
 
@@ -269,10 +275,6 @@ class Tree:
         parts = (_part(self.node, fields) for fields in ("declarator", "right value"))
         types = [part.type for part in parts if part is not None]
         return not _TYPES["alias"].isdisjoint(types) or bool(re.search(r"=\s*&", self.text))
-
-    @property
-    def is_statement(self) -> bool:
-        return re.search("statement|decl|macro|assign", self.node.type) is not None
 
     @property
     def targets(self) -> list[Tree]:
