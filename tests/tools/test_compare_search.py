@@ -520,6 +520,26 @@ WIDER = {
     "j.py": "def f(a):\n    R = np.zeros(a.shape + (3, 3))\n    R[...] = np.eye(3)\n"
     "    R[..., 0, 0] = R[..., 1, 1] = np.cos(a)\n    R[..., 1, 0] = np.sin(a)\n"
     "    R[..., 0, 1] = -np.sin(a)\n    return R\n",
+    "j.m": "function a = f(w, I, t)\n a = inv(I)*(t - cross(w, I*w));\nend",
+    "m.py": "def f(J, w, a):\n    return np.dot(J, a) + np.cross(w, np.dot(J, w))\n",
+    "n.m": "function a = f(p, q, r, J, t, C)\n w = [p; q; r]; M = [t(2)*C.x; C.y; C.z];\n"
+    " a = C.Jinv*(M - [0 -r q; r 0 -p; -q p 0]*J*w);\nend",
+    "o.py": "def f(q1, q2, q3, q4, g, b, s):\n"
+    "    qDot1 = 0.5*(-q2*g.x - q3*g.y - q4*g.z) - b*s[0]\n"
+    "    qDot2 = 0.5*(q1*g.x + q3*g.z - q4*g.y) - b*s[1]\n"
+    "    qDot3 = 0.5*(q1*g.y - q2*g.z + q4*g.x) - b*s[2]\n"
+    "    qDot4 = 0.5*(q1*g.z + q2*g.y - q3*g.x) - b*s[3]\n",
+    "d.cs": "class A { void F(Angle a) { var r = Matrix.Identity; r.M11 = a.Cos; r.M12 = -a.Sin;"
+    " r.M21 = a.Sin; r.M22 = a.Cos; } Q operator *(Q p, Q q) { return new Quaternion("
+    "p.w*q.w - p.x*q.x - p.y*q.y - p.z*q.z, p.w*q.x + p.x*q.w + p.y*q.z - p.z*q.y,"
+    " p.w*q.y + p.y*q.w + p.z*q.x - p.x*q.z, p.w*q.z + p.z*q.w + p.x*q.y - p.y*q.x); } }",
+    "p.m": "function q = f(e)\n e = [e(1) e(2) e(3)]; c = cos(e/2); s = sin(e/2); g(c);\n q = ["
+    "c(1)*c(2)*c(3) + s(1)*s(2)*s(3), s(1)*c(2)*c(3) - c(1)*s(2)*s(3),"
+    " c(1)*s(2)*c(3) + s(1)*c(2)*s(3), c(1)*c(2)*s(3) - s(1)*s(2)*c(3)];\nend",
+    # in public programs, a local name of an inlined function is that of its argument
+    "e.cpp": "struct V mk(float x, float y, float z) { struct V v; v.x = x; v.y = y; v.z = z;"
+    " return v; }\nstruct V f(struct V v, float a, float b) { return mk(v.x + sin(a)*tan(b)*v.y"
+    " + cos(a)*tan(b)*v.z, cos(a)*v.y - sin(a)*v.z, sin(a)/cos(b)*v.y + cos(a)/cos(b)*v.z); }",
 }
 SAID = {
     **dict.fromkeys(
@@ -532,6 +552,12 @@ SAID = {
     **{"e.py": "turned_vector", "g.py": "euler_angles of ZXZ", "b.cs": "quaternion_product"},
     **{"h.py": "rotation_matrix of quaternion", "i.py": "inverse_rate_matrix_body of xyz"},
     **{"b.c": "angular_velocity_body of ZYX", "b.m": "equal to rate_matrix_body of xyz"},
+    **{"j.m": "acceleration, if one matrix is the inverse", "m.py": "euler_equations_torque"},
+    **{
+        "n.m": "(proved), apart from terms without p, q, r",
+        "o.py": "apart from terms without",
+    },
+    **{"d.cs": "rotation_matrix of z", "p.m": "quaternion of ZYX", "e.cpp": "rates_from_"},
     **{"a.js": "quaternion of x", "a.c": "quaternion_product", "a.cpp": "euler_angles of xyz"},
 }
 

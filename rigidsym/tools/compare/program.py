@@ -183,6 +183,7 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
         bool(patterns.glm.search(text)),
         set(patterns.array.findall(text)),
     )
+    program.steps["read"] = -8 * text.count("\n")  # which a long file of plain formulas needs
     scopes = [_Scope(tree) for tree in (Tree(root), *functions)]
     if root.has_error:
         line = next((t.line for t in walk(root) if t.node.is_error or t.node.is_missing), 1)
@@ -696,9 +697,6 @@ class _Run:
             nodes = nodes[:-1] if len(nodes) in (5, 10, 17) else nodes  # a flag
             values = [self.tried(each) for each in nodes] if len(nodes) in (3, 4, 9, 16) else [None]
             value = rows(values) if None not in values else None
-        if len(nodes) == 1 and tree.owner and re.fullmatch("(?:set_?)?[WXYZ]", name, re.IGNORECASE):
-            self.store(Tree(tree.node, "setter"), self.read(nodes[0]))
-            return
         if value is not None and (target is not None or tree.owner is None):
             self.store(target or Tree(tree.node, "this"), sp.ImmutableMatrix(value))
             return
@@ -896,9 +894,8 @@ class _Run:
     def read_member(self, tree: Tree) -> Any:
         if tree.word in ("Sin", "Cos", "Tan") and tree.parts:  # angle.Cos
             return called(tree.word.lower(), [self.read(tree.parts[0])])
-        owner = tree.parts[0].text if tree.parts else ""
-        if CALLS.get(tree.word) == "unit" and re.search("mat|rot", owner, re.IGNORECASE):
-            return sp.ImmutableMatrix(sp.eye(3 if "3" in owner else 4))
+        if CALLS.get(tree.word) == "unit" and re.search("mat|rot", tree.text, re.IGNORECASE):
+            return sp.ImmutableMatrix(sp.eye(3 if "3" in tree.text else 4))
         is_transposed = tree.word == "T" and tree.parts
         return self.read_transposed(tree) if is_transposed else self.named(tree)
 
@@ -922,11 +919,9 @@ class _Run:
             and not (left / right).is_Integer
         ):
             raise self.unreadable(tree, "is a division of whole numbers, which rounds")
-        if sign == "\\" and _is_scalar(left):  # MATLAB
-            left, sign = 1 / left, "*"
         if sign in ("+", "-"):
             left, right = self.as_vector(left, right), self.as_vector(right, left)
-        elif sign in ("*", "@") and (value := self.of_tensor(sign, left, right)) is not None:
+        elif sign in ("*", "@") and (value := self.of_tensor(left, right)) is not None:
             return value
         else:
             left, right = (_unflattened(each) for each in (left, right))
@@ -969,11 +964,8 @@ class _Run:
                 return _tensor(tensor) * parts
         return value
 
-    def of_tensor(self, sign: str, left: Any, right: Any) -> Any:
-        """M q, I⁻¹ (... + w × I w), or C(w) I w; None for another product."""
-        if sign == "@" and getattr(left, "cols", 0) == 4 and _is_scalar(right):
-            parts = [self.component(right, key) for key in range(4)]
-            return None if None in parts else combined("@", left, rows(parts))
+    def of_tensor(self, left: Any, right: Any) -> Any:
+        """I⁻¹ (... + w × I w), or C(w) I w; None for another product."""
         if getattr(right, "shape", ()) != (3, 1):
             return None
         if self.is_moment(right) and _is_scalar(left):
@@ -1053,10 +1045,6 @@ class _Run:
         is_long = tree.node.end_byte - tree.node.start_byte > _LONGEST_PLACE
         if tree.kind == "this":
             return ("this",)
-        if tree.kind == "setter":  # v.X(1)
-            call = tree_of(tree.node)
-            path = self.path(call.owner) if call.owner else None
-            return _below(path, call.called[-1].lower()) if path else None
         if is_long or (tree.is_reference and self.program.is_formula):  # a + * b
             return None
         match tree.kind:
@@ -1332,7 +1320,7 @@ class _Run:
             return self.squares.setdefault(values[0], symbol)
         if meaning == "inv" and _is_scalar(values[0]):
             return 1 / values[0]
-        product = self.of_tensor("@", *values) if (meaning, len(values)) == ("dot", 2) else None
+        product = self.of_tensor(*values) if (meaning, len(values)) == ("dot", 2) else None
         if product is not None:
             return product
         if meaning == "cross" and len(values) > 1:

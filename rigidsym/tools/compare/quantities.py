@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property, lru_cache, reduce
 from itertools import chain, combinations, permutations, product
@@ -448,19 +448,16 @@ _INDICES = (("abc", "xyz"), ("012", "012"), ("123", "123"))  # of rows and colum
 _FLAT = ([*range(9)], [0, 1, 2, 4, 5, 6, 8, 9, 10])  # places of entries, m_8
 
 
-def in_order(symbols: Iterable[sp.Symbol]) -> list[sp.Symbol]:
-    """By name, with q2 before q10."""
-    return sorted(
-        symbols, key=lambda s: [int(p) if p.isdecimal() else p for p in re.split(r"(\d+)", s.name)]
-    )
-
-
 def meanings(formula: sp.MatrixBase, goal: KnownQuantity, *, is_asked: bool) -> list[Names]:
     """The possible meanings of the names in a formula.
 
     If the quantity `is_asked` for, and all names are those of its inputs, no other is possible.
     """
-    symbols = in_order(formula.free_symbols)
+    # q2 comes before q10
+    symbols = sorted(
+        formula.free_symbols,
+        key=lambda s: [int(p) if p.isdecimal() else p for p in re.split(r"(\d+)", s.name)],
+    )
     own = {s: goal.names.get(s.name) or goal.names.get(f"{stem_of(s.name)}_dot") for s in symbols}
     if None not in own.values() and is_asked:
         return [own]
@@ -545,12 +542,6 @@ def _of_vectors(
 
 def grouped(names: Mapping[sp.Symbol, str]) -> Iterator[list[tuple[sp.Symbol, ...]]]:
     """Names in vectors, by each pattern; p, q, r are one, and other names are numbers."""
-    for stem in dict.fromkeys(name.rstrip("0123456789") for name in names.values()):
-        state = [s for s, name in names.items() if re.fullmatch(re.escape(stem) + r"\d+", name)]
-        others = [(symbol,) for symbol in names if symbol not in state]
-        for size in (3, 4):  # of a vector in a state x_7, ..., x_13, beside another one
-            if len(state) - size in (3, 4):
-                yield [(*state[:size],), (*state[size:],), *others]
     for pattern in patterns.vectors:
         groups: dict[str, list[tuple[str, sp.Symbol]]] = {}
         for symbol, name in names.items():

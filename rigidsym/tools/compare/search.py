@@ -15,7 +15,7 @@ from rigidsym.errors import ExpressionError, RequestError
 from rigidsym.models.rotation import RotationModel
 from rigidsym.tools.compare.comparison import Comparison, identified
 from rigidsym.tools.compare.program import Formula, program_formulas
-from rigidsym.tools.compare.quantities import are_angles, are_body_rates, grouped, in_order, target
+from rigidsym.tools.compare.quantities import are_angles, are_body_rates, grouped, target
 from rigidsym.tools.compare.syntax import GRAMMARS, patterns
 
 SUFFIXES = tuple(GRAMMARS)
@@ -81,8 +81,7 @@ def source_files(paths: Sequence[Path]) -> Iterator[Path]:
     for path in paths:
         if not path.is_dir() and not (path.is_file() and path.suffix in SUFFIXES):
             raise RequestError(f"{path}: expected a folder, or a file {', '.join(SUFFIXES)}")
-        size = path.stat().st_size
-        if path.is_file() and size > _MOST_BYTES:
+        if path.is_file() and (size := path.stat().st_size) > _MOST_BYTES:
             raise RequestError(f"{path}: {size} bytes; expected {_MOST_BYTES} at most")
     files = [
         file
@@ -193,9 +192,9 @@ def _partial(matrix: sp.ImmutableMatrix) -> Iterator[tuple[sp.ImmutableMatrix, s
     if matrix.shape not in ((3, 1), (4, 1)) or matrix.has(sp.Function):
         return
     sign = 1 if matrix.rows == 3 else -1  # of what is quadratic in ω, or linear
-    for vectors in grouped({s: s.name for s in in_order(matrix.free_symbols)}):
-        for w in (each for each in vectors if len(each) == 3):
-            if not all(entry.has(*w) and entry.is_polynomial(*w) for entry in matrix):
+    for vectors in grouped({s: s.name for s in matrix.free_symbols}):
+        for w in vectors:
+            if len(w) != 3 or not all(e.has(*w) and e.is_polynomial(*w) for e in matrix):
                 continue
             others = matrix.xreplace(dict.fromkeys(w, sp.S.Zero))
             part = (matrix - others).expand()
