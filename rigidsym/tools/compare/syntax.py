@@ -35,8 +35,8 @@ GRAMMARS, _KINDS, CALLS, SPELLINGS = (  # of a file, a type of node, a word, and
 _TYPES = {name: frozenset(types.split()) for name, types in _TABLES["types"].items()}
 CHANGES: dict[str, str] = _TABLES["changes"]
 patterns = SimpleNamespace(orders=[order for n in _TABLES["orders"].values() for order in n])
-for _name, _text in _TABLES["patterns"].items():
-    _pattern = [*map(re.compile, _text)] if isinstance(_text, list) else re.compile(_text)
+for _name, _form in _TABLES["patterns"].items():
+    _pattern = [*map(re.compile, _form)] if isinstance(_form, list) else re.compile(_form)
     setattr(patterns, _name, _pattern)
 _CHUNK = 2_048  # bytes that the parser reads at once
 _MOST_STEPS = 50_000  # of the parser: a megabyte without errors takes half as many
