@@ -31,7 +31,8 @@ import rigidsym as rs
 from rigidsym.models.library import PARAMETRISATIONS, PRESETS
 from rigidsym.models.solids import SHAPES, shaped
 from rigidsym.notes.formats.pdf import has_tex, typeset
-from rigidsym.pipeline import Output, output_of, read, read_spec
+from rigidsym.pipeline import Output, output_of, read
+from rigidsym.spec.derivation_file import read_spec
 from rigidsym.spec.derivation_spec import DerivationSpec
 
 ROOT = Path(__file__).parents[1]

@@ -31,7 +31,6 @@ def integration_codec(
                 function.xreplace({variable: bound})
                 for expression in expressions
                 for function in expression.atoms(sp.sin, sp.cos)
-                if function.has(variable)
             ]
     return codec_for(contents)
 

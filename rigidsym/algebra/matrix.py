@@ -52,9 +52,7 @@ class RingMatrix:
     @property
     def T(self) -> RingMatrix:
         rows = tuple(zip(*self.rows, strict=True))
-        return RingMatrix(
-            self.ring, rows, (lambda values: list(zip(*values, strict=True)), (self,))
-        )
+        return RingMatrix(self.ring, rows, (_transposed, (self,)))
 
     @property
     def entries(self) -> Row:
@@ -81,12 +79,7 @@ class RingMatrix:
         rows = _entrywise(self.ring.difference, self.rows, other.rows)
         return RingMatrix(self.ring, rows, (partial(_entrywise, sub), (self, other)))
 
-    def map(self, function: Callable[[PolyElement], PolyElement]) -> RingMatrix:
-        return RingMatrix.of(self.ring, [[function(entry) for entry in row] for row in self.rows])
-
     def scale(self, factor: PolyElement) -> RingMatrix:
-        if self.ring.is_one(factor):
-            return self
         return self @ RingMatrix.identity(self.ring, self.shape[1], factor)
 
     def dt(self) -> RingMatrix:
@@ -228,6 +221,10 @@ def _det(ring: Ring, rows: Sequence[Row]) -> PolyElement:
         for j, entry in enumerate(first)
     ]
     return ring.dot(pairs[::2], minus=pairs[1::2])
+
+
+def _transposed(rows: Values) -> Values:
+    return list(zip(*rows, strict=True))
 
 
 def _multiplied(rows: Values, others: Values) -> Values:

@@ -28,7 +28,7 @@ import sympy as sp
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import Codec
-from rigidsym.algebra.matrix import RingMatrix, Row
+from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.ring import NUMBERS, Monomial, Quotient, shortest
 from rigidsym.errors import AlgebraError
 
@@ -68,7 +68,6 @@ class Presenter:
             and expression.base.is_Add
             and sp.sqrt(expression.base) not in self.ring.index  # half powers would divide too
         }
-        self._matrices: dict[tuple[tuple[Row, ...], PolyElement], sp.ImmutableMatrix] = {}
         self._known: dict[tuple[PolyElement, PolyElement], sp.Expr] = {}
 
     def _addition_theorems(self) -> Iterator[Rule]:
@@ -92,11 +91,8 @@ class Presenter:
     ) -> sp.ImmutableMatrix:
         """The matrix, or the matrix divided by `denominator`, entry by entry."""
         below = self.ring.one if denominator is None else denominator
-        key = matrix.rows, below
-        if key not in self._matrices:
-            entries = [self._over(entry, below) for entry in matrix.entries]
-            self._matrices[key] = sp.ImmutableMatrix(*matrix.shape, entries, copy=False)
-        return self._matrices[key]
+        entries = [self._over(entry, below) for entry in matrix.entries]
+        return sp.ImmutableMatrix(*matrix.shape, entries, copy=False)
 
     def element(self, element: PolyElement) -> sp.Expr:
         """The textbook form of one element."""

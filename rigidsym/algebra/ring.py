@@ -133,10 +133,6 @@ class Ring:
         # Both sides of nearly every claim are equal; SymPy would compare their rings first.
         return self.zero if dict.__eq__(first, second) else first - second
 
-    def total(self, elements: Iterable[PolyElement]) -> PolyElement:
-        """The sum of elements, in normal form."""
-        return self.dot((element, self.one) for element in elements)
-
     def _settled(self, terms: Terms) -> PolyElement:
         """The polynomial of these terms, in normal form."""
         # Reduction is linear: the normal form of Σ c m is Σ c NF(m) over the monomials m.
@@ -220,7 +216,7 @@ class Quotient:
         """The sum, over one denominator where the parts share it."""
         terms = list(parts)
         if all(ring.is_one(term.denominator) for term in terms):
-            return cls.whole(ring, ring.total(term.numerator for term in terms))
+            return cls.whole(ring, ring.dot((term.numerator, ring.one) for term in terms))
         return reduce(add, terms)
 
     @classmethod

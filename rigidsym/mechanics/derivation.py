@@ -251,6 +251,18 @@ class Definition(NamedTuple):
     expression: sp.Expr
 
 
+def needed_of(
+    definitions: Sequence[Definition], symbols: Set[sp.Basic], defined: Set[sp.Basic] = frozenset()
+) -> list[Definition]:
+    """The definitions that symbols rest on, in their order, without those `defined`."""
+    needed = {*symbols}
+    # A definition rests only on earlier ones, so one pass from the last to the first finds all.
+    for symbol, value in reversed(definitions):
+        if symbol in needed:
+            needed |= value.free_symbols - defined
+    return [part for part in definitions if part.symbol in needed]
+
+
 @dataclass(frozen=True, kw_only=True)
 class Step:
     """One quantity, derived: its textbook form, how it follows, and what was proved of it."""
@@ -358,13 +370,10 @@ class Derivation:
 
     def step(self, quantity: str) -> Step:
         """The step that defines a quantity; raises QuantityError for one that is not here."""
-        for step in self.steps:
-            if step.quantity.name == quantity:
-                return step
-        if quantity in self.functions:
-            return self.functions[quantity]
-        names = [*(step.quantity.name for step in self.steps), *self.functions]
-        raise QuantityError(f"{self.name} has no quantity {quantity!r}; {offer(quantity, names)}")
+        steps = {**{step.quantity.name: step for step in self.steps}, **self.functions}
+        if quantity in steps:
+            return steps[quantity]
+        raise QuantityError(f"{self.name} has no quantity {quantity!r}; {offer(quantity, steps)}")
 
     def select(self, names: Sequence[str]) -> Self:
         """The derivation with only these quantities, renumbered in the order of the steps.
@@ -388,12 +397,7 @@ class Derivation:
 
     def definitions_in(self, expression: sp.Basic, defined: Set[sp.Basic]) -> list[Definition]:
         """The definitions that an expression rests on, in their order, without those `defined`."""
-        needed = expression.free_symbols - defined
-        # A definition rests only on earlier ones, so one pass from the last to the first finds all.
-        for symbol, value in reversed(self.definitions):
-            if symbol in needed:
-                needed |= value.free_symbols - defined
-        return [part for part in self.definitions if part.symbol in needed]
+        return needed_of(self.definitions, expression.free_symbols - defined, defined)
 
     @property
     def subject(self) -> str:

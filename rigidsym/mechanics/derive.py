@@ -28,19 +28,17 @@ from rigidsym.mechanics.derivation import (
     sentence_of,
 )
 from rigidsym.mechanics.kinematics.chain import Chain, is_shorter
-from rigidsym.mechanics.kinematics.workspace import Values
+from rigidsym.mechanics.kinematics.workspace import values_of
 from rigidsym.mechanics.quantities.catalogue import check_quantity
 from rigidsym.mechanics.quantities.kinematics import KINEMATICS
 from rigidsym.mechanics.quantities.mass import BODY_ALONE, OF_BODY_ALONE
 from rigidsym.mechanics.singularities import singularities_of
-from rigidsym.models.body import BodyDescription, Distribution, RigidBody
-from rigidsym.models.forces import Forces
 from rigidsym.models.rotation import RotationModel, depends_on_time
 
 if TYPE_CHECKING:
     from rigidsym.mechanics.dynamics.flow import Flow
-
-Body = RigidBody | BodyDescription | Distribution
+    from rigidsym.models.body import Body
+    from rigidsym.models.forces import Forces
 
 
 def derive(
@@ -79,7 +77,7 @@ def derive(
             forces = forces.in_symbols_of(body)
             body = forces.with_parameters(body, model)
     taken = [parameter.symbol.name for parameter in body.parameters] if body else []
-    chain, values = Chain(model, taken) if is_shorter(model) else None, Values(model)
+    chain, values = Chain(model, taken) if is_shorter(model) else None, values_of(model)
     turning = [name for name in only if name in KINEMATICS]
     work, wanted = chain or values, turning or only
     rotation, *others = KINEMATICS.values()

@@ -55,7 +55,7 @@ class ParticleSums:
 
     def of_matrix(self, summands: RingMatrix) -> RingMatrix:
         """The sums of the entries."""
-        return summands.map(self.of)
+        return RingMatrix.of(self.ring, [map(self.of, row) for row in summands.rows])
 
 
 @lru_cache(maxsize=32)

@@ -121,10 +121,8 @@ class Prover:
             entries = [
                 f"{text[:_LONGEST]}{' ...' * (len(text) > _LONGEST)}"
                 + f" in row {i + 1}, column {j + 1}" * (len(left) > 1)
-                for i in range(left.rows)
-                for j in range(left.cols)
-                if left[i, j] != 0
-                for text in (str(in_names(left[i, j])),)
+                for (i, j), entry in sorted(left.todok().items())
+                for text in (str(in_names(entry)),)
             ]
             rest = "; ".join(entries[:_MOST])
             more = f"; and {len(entries) - _MOST} more" * (len(entries) > _MOST)

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import operator
-from functools import reduce
+from dataclasses import replace
+from functools import lru_cache, reduce
 
-from rigidsym.algebra.matrix import RingMatrix, primitive
-from rigidsym.algebra.present import presenter_for
+import sympy as sp
+
+from rigidsym.algebra.matrix import RingMatrix, Row, primitive
+from rigidsym.algebra.present import Presenter, presenter_for
 from rigidsym.algebra.stable_forms import at_zero, rewriter_for
 from rigidsym.algebra.zeros import FallingRank, Stratum, matrix_at
 from rigidsym.mechanics.derivation import Measure, Singularities, Singularity
-from rigidsym.mechanics.kinematics.workspace import Values
+from rigidsym.mechanics.kinematics.workspace import Renamed, Values
 
 
 def singularities_of(values: Values) -> Singularities:
@@ -19,6 +22,8 @@ def singularities_of(values: Values) -> Singularities:
     These are the common zeros of the minors of the rate matrix, solved where `Solver` can; else
     the minors are reported and nothing is guessed.
     """
+    if isinstance(values, Renamed):
+        return _renamed(values)
     if values.model.pullback is not None:
         inverse = values.inverse("space")
         if inverse is not None and inverse[1].is_ground:
@@ -32,6 +37,31 @@ def singularities_of(values: Values) -> Singularities:
     if found.is_solved or not missing:
         return found
     return _Study(Values(values.model, also=missing)).singularities()
+
+
+_of_original = lru_cache(maxsize=32)(singularities_of)
+
+
+def _renamed(values: Renamed) -> Singularities:
+    """Those of the original, with the components of the lost axes renamed."""
+    found, codec = _of_original(values.original), values.original.codec
+    points = []
+    for point in found.points:
+        axes = filter(None, (point.lost_axis_space, point.lost_axis_body))
+        entries = codec.column(axis[k] for axis in axes for k in values.moves).entries
+        in_space, in_body = _one_vector(presenter_for(codec), entries)
+        points.append(replace(point, lost_axis_space=in_space, lost_axis_body=in_body))
+    return found._replace(points=tuple(points))
+
+
+def _one_vector(present: Presenter, entries: Row) -> list[sp.ImmutableMatrix]:
+    """A vector in two frames, from its six components.
+
+    One common factor is taken out of all of them, so that it stays the same vector in both.
+    """
+    entries = primitive(present.ring, entries)
+    halves = entries[:3], entries[3:]
+    return [present.matrix(RingMatrix.column(present.ring, half)) for half in halves]
 
 
 class _Study:
@@ -103,14 +133,9 @@ class _Study:
         in_space = in_body = None
         if axis is not None:
             here = RingMatrix.column(there.ring, axis[:3])
-            both = [matrix_at(frame @ here, zero) for frame in (self.to_space, self.to_body)]
-            # One common factor is taken out of both, so that they stay the same vector in two
-            # frames.
-            entries = primitive(there.ring, [entry for vector in both for entry in vector.entries])
-            in_space, in_body = (
-                self.present.matrix(RingMatrix.column(there.ring, part))
-                for part in (entries[:3], entries[3:])
-            )
+            both = (matrix_at(frame @ here, zero) for frame in (self.to_space, self.to_body))
+            entries = tuple(entry for vector in both for entry in vector.entries)
+            in_space, in_body = _one_vector(self.present, entries)
         return Singularity(
             places=tuple(root.place for root in zero),
             rank=rank,

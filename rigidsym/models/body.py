@@ -299,6 +299,9 @@ class BodyDescription:
     request: Mapping[str, Any] = field(default_factory=dict, hash=False)
 
 
+Body = RigidBody | BodyDescription | Distribution  # what `derive` takes
+
+
 def principal_moments(
     A: sp.Expr,
     B: sp.Expr,

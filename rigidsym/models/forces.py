@@ -19,7 +19,14 @@ import sympy as sp
 from rigidsym.errors import ModelError, offer
 from rigidsym.models.body import Parameter, RigidBody
 from rigidsym.models.library import rotation_from
-from rigidsym.models.rotation import TIME, RotationModel, as_typed, depends_on_time, symbolic
+from rigidsym.models.rotation import (
+    OMEGA_BODY,
+    TIME,
+    RotationModel,
+    as_typed,
+    depends_on_time,
+    symbolic,
+)
 from rigidsym.text.expression import names_in, parse_expression
 from rigidsym.text.names import check_name
 
@@ -92,7 +99,6 @@ def no_rotation(model: RotationModel) -> dict[str, float]:
 
 
 METHODS = ("lagrange", "euler")
-OMEGA_BODY = sp.symbols("Omega_body_1:4")
 _LONG, _ALIKE = 4, 0.8  # letters of a name, and the share that two names have in common
 _OF_MOTION = (  # names of quantities, which are no constants
     r"(?i)(angular_(velocity|acceleration|momentum)|(omega|alpha)(?=_[sb]))(_space|_body)?(_?[123])?"

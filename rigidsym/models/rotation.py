@@ -18,6 +18,7 @@ from rigidsym.errors import ModelError
 from rigidsym.text.names import A_MODULE_NAME, MODULE_NAME, lettered
 
 AXES = ("x", "y", "z")
+OMEGA_BODY = sp.symbols("Omega_body_1:4")  # Ω′ as an argument
 _NUMBERS = (sp.NumberSymbol, type(sp.I))
 
 

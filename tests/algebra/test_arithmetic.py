@@ -49,7 +49,7 @@ def test_the_ring_its_quotients_and_its_matrices_are_right():
     derivative = sp.diff(codec.decode(a), TIME).xreplace(AT)
     pairs = [
         (here.dot([(a, b), (x, s)], minus=[(b, b), (s, s)]), A * B + x0 * S - B**2 - S**2),
-        (here.total([a, b, here.reduce(-a)]), B),
+        (here.dot((x, here.one) for x in (a, b, here.reduce(-a))), B),
         (here.dt(a), derivative),
         (here.reduce(s**3 * x), S**3 * x0),
         (first + second, A / x0 + B / C),

@@ -18,6 +18,9 @@ import sympy as sp
 
 from helpers.parametrisations import MOVING, Moving
 from helpers.witness import CONVENTIONS, agree, hat, mp, number
+from rigidsym.mechanics.kinematics.workspace import Values
+from rigidsym.mechanics.quantities.kinematics import KINEMATICS
+from rigidsym.mechanics.singularities import singularities_of
 
 ONE = mp.eye(3)
 every_rotation = pytest.mark.parametrize("m", MOVING, ids=repr)
@@ -150,3 +153,15 @@ def test_the_stated_angles_are_all(m: Moving):
     signs = [mp.sign(number(found.determinant, {middle: angle})) for angle in grid]
     changes = sum(a != b for a, b in pairwise(signs))
     assert changes == len(found.points)
+
+
+@every_convention
+def test_what_conventions_share_is_what_each_derives_alone(m: Moving):
+    """Twelve orders of axes have four originals; each is equal in form, whatever came before."""
+    alone = Values(m.motion.model)
+    for step in m.motion.steps:
+        expected = alone.step(KINEMATICS[step.quantity.name])
+        assert repr(step.expression) == repr(expected.expression)
+        assert step.proofs == expected.proofs
+        assert step.quantity.symbol == expected.quantity.symbol
+    assert m.motion.singularities == singularities_of(alone)

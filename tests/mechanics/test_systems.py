@@ -15,7 +15,7 @@ import rigidsym as rs
 from helpers.motions import solves_lagrange, values_for
 from helpers.witness import agree, evaluate
 from rigidsym.mechanics.quantities.dynamics import ENERGY_SYMBOL, LENGTH_SYMBOL
-from rigidsym.models.forces import OMEGA_BODY
+from rigidsym.models.rotation import OMEGA_BODY
 from rigidsym.pipeline import motion_of, read
 
 PHI, THETA, PSI, SIGMA = (dynamicsymbols(n) for n in ("phi", "theta", "psi", "sigma"))

@@ -17,13 +17,15 @@ from sympy.physics.vector import dynamicsymbols
 import rigidsym as rs
 from helpers.typesetting import numbered_by_tex
 from helpers.witness import evaluate, hat, mp, paths, rotation, unhat, values_along
+from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.errors import DerivationError, ModelError, SpecError
 from rigidsym.mechanics import lecture as theory_of
 from rigidsym.mechanics.derivation import Statement
 from rigidsym.mechanics.lecture import theory
 from rigidsym.notes.formats.pdf import typeset
 from rigidsym.notes.formats.record import record
-from rigidsym.pipeline import output_of, read_file, read_spec
+from rigidsym.pipeline import output_of
+from rigidsym.spec.derivation_file import read_file, read_spec
 
 (PATH,) = paths(1, size=6, seed=7)
 SMALL = mp.mpf(10) ** -38
@@ -146,9 +148,10 @@ def test_energy_and_momentum_of_any_tensor_are_the_sums_over_particles():
 def test_what_is_claimed_can_fail(statement: Statement):
     """The same claims with something left over are refuted: no proof passes by being empty."""
     work = theory_of.Equations()
-    one = work.codec.ring.one
+    ring = work.codec.ring
     for name, claim in statement.claims:
-        work.residuals[name] = work.residuals[name].map(lambda entry: entry + one)
+        rows = [[entry + ring.one for entry in row] for row in work.residuals[name].rows]
+        work.residuals[name] = RingMatrix.of(ring, rows)
         with pytest.raises(DerivationError, match="is false; left over"):
             work.proofs([(name, claim)])
 

@@ -25,8 +25,7 @@ from rigidsym.mechanics.quantities import dynamics as claims
 from rigidsym.mechanics.quantities.dynamics import TORQUE
 from rigidsym.mechanics.quantities.kinematics import BODY
 from rigidsym.mechanics.quantities.table import own_names
-from rigidsym.models.forces import OMEGA_BODY
-from rigidsym.models.rotation import TIME, elementary
+from rigidsym.models.rotation import OMEGA_BODY, TIME, elementary
 
 Written: TypeAlias = str | Formula | sp.Expr  # a formula, as it is typed or read, or an expression
 _LENGTH, _ENERGY = claims.LENGTH_SYMBOL, claims.ENERGY_SYMBOL

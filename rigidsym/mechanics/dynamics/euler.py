@@ -24,8 +24,8 @@ from rigidsym.mechanics.dynamics.flow import Flow, StateBlock, slopes_of, solved
 from rigidsym.mechanics.kinematics.workspace import Values
 from rigidsym.mechanics.quantities import dynamics as claims
 from rigidsym.models.body import RigidBody
-from rigidsym.models.forces import OMEGA_BODY, Forces
-from rigidsym.models.rotation import TIME, RotationModel, hat
+from rigidsym.models.forces import Forces
+from rigidsym.models.rotation import OMEGA_BODY, TIME, RotationModel, hat
 
 
 class EulerEquations(Flow):

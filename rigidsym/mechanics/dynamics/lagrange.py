@@ -31,8 +31,8 @@ from rigidsym.mechanics.dynamics.tree import TreeEquations
 from rigidsym.mechanics.kinematics.chain import Chain
 from rigidsym.mechanics.kinematics.workspace import Values
 from rigidsym.models.body import RigidBody
-from rigidsym.models.forces import OMEGA_BODY, Forces
-from rigidsym.models.rotation import TIME, RotationModel
+from rigidsym.models.forces import Forces
+from rigidsym.models.rotation import OMEGA_BODY, TIME, RotationModel
 
 
 def equations_of_motion(

@@ -39,8 +39,8 @@ from rigidsym.mechanics.prove import Conditions, Prover, consequence
 from rigidsym.mechanics.quantities import dynamics as claims
 from rigidsym.mechanics.quantities.dynamics import TORQUE
 from rigidsym.models.body import RigidBody
-from rigidsym.models.forces import OMEGA_BODY, Forces
-from rigidsym.models.rotation import TIME, RotationModel, Turn, as_typed, hat
+from rigidsym.models.forces import Forces
+from rigidsym.models.rotation import OMEGA_BODY, TIME, RotationModel, Turn, as_typed, hat
 
 _ZERO = sp.ImmutableMatrix(sp.zeros(3, 1))
 

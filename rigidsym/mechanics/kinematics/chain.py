@@ -27,7 +27,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from functools import cache, cached_property
-from itertools import product
+from itertools import product, starmap
 from typing import Any, NamedTuple
 
 import sympy as sp
@@ -39,7 +39,7 @@ from rigidsym.algebra.matrix import RingMatrix, hat as operator
 from rigidsym.algebra.witness import configurations
 from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Formula
-from rigidsym.mechanics.derivation import Definition, Law, Proof, Quantity, argument
+from rigidsym.mechanics.derivation import Definition, Law, Proof, Quantity, argument, needed_of
 from rigidsym.mechanics.kinematics.workspace import Values, Workspace, traits_of
 from rigidsym.mechanics.prove import Conditions, Prover, consequence
 from rigidsym.mechanics.quantities.kinematics import KINEMATICS
@@ -215,12 +215,8 @@ class Names:
 
     def definitions_of(self, expressions: Iterable[sp.Basic]) -> tuple[Definition, ...]:
         """The definitions that expressions rest on, each in inputs and those before it."""
-        needed = set().union(*(e.free_symbols for e in expressions)) & self._meanings.keys()
-        # A definition rests only on earlier ones, so one pass from the last to the first finds all.
-        for symbol in reversed(self._meanings):
-            if symbol in needed:
-                needed |= self._meanings[symbol].free_symbols & self._meanings.keys()
-        return tuple(Definition(s, value) for s, value in self._meanings.items() if s in needed)
+        symbols = set().union(*(expression.free_symbols for expression in expressions))
+        return tuple(needed_of([*starmap(Definition, self._meanings.items())], symbols))
 
     def vanish(self, entries: Sequence[sp.Expr], claim: Formula) -> Proof:
         """The proof that expressions are zero, whatever the names in them stand for."""
@@ -256,15 +252,10 @@ class Chain(Names, Workspace):
         self.arguments = {argument.name: argument for argument in arguments_of(model)}
         self.traits = traits_of(model) | {"chain"}
         self.axes = [sp.ImmutableMatrix(turn.direction) for turn in model.turns]
-        self.turns = [self.named(f"T{k}", turn.matrix) for k, turn in enumerate(model.turns, 1)]
-        self.count = len(self.turns)
-        self.speeds, self.gains = (
-            [
-                self.define(f"{name}{k}", sp.diff(turn.angle, TIME, order))
-                for k, turn in enumerate(model.turns, 1)
-            ]
-            for name, order in (("dtheta", 1), ("ddtheta", 2))
-        )
+        self.count, turns = len(model.turns), [*enumerate(model.turns, 1)]
+        self.turns = [self.named(f"T{k}", turn.matrix) for k, turn in turns]
+        self.speeds = [self.define(f"dtheta{k}", turn.rate) for k, turn in turns]
+        self.gains = [self.define(f"ddtheta{k}", sp.diff(turn.rate, TIME)) for k, turn in turns]
         # (1, 0, 0) and (P₁, w₁, ẇ₁), ..., (Pₙ, wₙ, ẇₙ)
         self.from_body = self._states(range(self.count), "w", "P")
         # (B₁, u₁, u̇₁), ..., (Bₙ, uₙ, u̇ₙ) and (1, 0, 0)

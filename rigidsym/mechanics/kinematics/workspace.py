@@ -7,7 +7,8 @@ Each is worked out when an entry asks for it.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from functools import cache, cached_property
+from dataclasses import replace
+from functools import cache, cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import sympy as sp
@@ -23,7 +24,8 @@ from rigidsym.formula.reader import formula
 from rigidsym.mechanics.derivation import Argument, Proof, Quantity, Step, VectorForm, VectorTerm
 from rigidsym.mechanics.prove import Prover, identity
 from rigidsym.mechanics.quantities.table import arguments_of
-from rigidsym.models.rotation import TIME, RotationModel
+from rigidsym.models.parametrisations import AXIS_SEQUENCES, chain
+from rigidsym.models.rotation import AXES, TIME, RotationModel, Turn
 
 if TYPE_CHECKING:
     from rigidsym.models.body import RigidBody
@@ -56,8 +58,6 @@ class Workspace:
     arguments: dict[str, Argument]
     codec: Any
     traits: Any  # what variants of the entries ask of it
-    rotation: Any
-    rotation_rate: Any
     has_fixed_point = False  # whether a body turns about a fixed point, not its centre of mass
 
     @cached_property
@@ -67,16 +67,6 @@ class Workspace:
     @cached_property
     def present(self) -> Presenter:
         return presenter_for(self.codec)
-
-    # The matrix that is shown: R, or A = Rᵀ
-
-    @property
-    def shown(self) -> Any:
-        return self.rotation.T if "passive" in self.traits else self.rotation
-
-    @property
-    def shown_rate(self) -> Any:
-        return self.rotation_rate.T if "passive" in self.traits else self.rotation_rate
 
     def scalar(self, element: PolyElement) -> RingMatrix:
         return RingMatrix.column(self.codec.ring, [element])
@@ -281,6 +271,63 @@ class Values(Workspace):
 
     def extras(self, quantity: Quantity, value: Any, /) -> dict[str, Any]:
         return {"vector_form": vector_form(self, quantity, value)}
+
+
+# Euler angles: twelve orders of axes need four derivations
+
+
+class Renamed(Values):
+    """Euler angles, derived as those whose first turn is about z.
+
+    To rename the axes z → x → y → z, in space and in the body, is a rotation P, which permutes
+    components. Turns about the renamed axes give P R Pᵀ, hence P Ω, P W and W⁻¹ Pᵀ, and q̇ with
+    the components of Ω renamed. The residuals of their laws have the entries that the ring has
+    reduced to zero, in another order: P R Pᵀ (P R Pᵀ)ᵀ − 1 is P (R Rᵀ − 1) Pᵀ.
+    """
+
+    def __init__(self, model: RotationModel) -> None:
+        super().__init__(model)
+        axes = [AXES.index(turn.axis) for turn in model.turns]
+        self.moves = [(k - axes[0] - 1) % 3 for k in range(3)]  # x, y and z are these before
+        turns = [
+            replace(t, axis=AXES[self.moves[a]]) for t, a in zip(model.turns, axes, strict=True)
+        ]
+        self.original, self._steps = _original(tuple(turns), model.coordinates, model.passive)
+        # All depends on this: R is P R Pᵀ of the original, entry by entry.
+        assert model.matrix == self.original.model.matrix[self.moves, self.moves]
+
+    def step(self, entry: Quantity) -> Step | None:
+        if entry.name not in self._steps:
+            self._steps[entry.name] = self.original.step(entry)
+        step, moves = self._steps[entry.name], self.moves
+        if step is None or moves == [0, 1, 2]:
+            return step
+        expression = step.expression
+        if entry.vectors == "rates":
+            assert entry.frame is not None
+            omega = self.arguments[f"omega_{entry.frame.name}"].symbols
+            expression = expression.xreplace({omega[m]: omega[k] for k, m in enumerate(moves)})
+        elif entry.vectors != "inverse":
+            expression = expression[moves, :]
+        if entry.shape == "matrix" and entry.vectors != "rate_matrix":
+            expression = expression[:, moves]
+        return replace(step, expression=expression)
+
+
+@lru_cache(maxsize=32)
+def _original(
+    turns: tuple[Turn, ...], coordinates: tuple[sp.Expr, ...], passive: bool
+) -> tuple[Values, dict[str, Step | None]]:
+    """The workspace of Euler angles, and the steps that it has derived so far."""
+    # Forms of an extrinsic sequence are not those of the reverse intrinsic one with the angles
+    # renamed: of equally short ones the first is taken, by the order of the coordinates.
+    return Values(replace(chain(turns, passive=passive), coordinates=coordinates)), {}
+
+
+def values_of(model: RotationModel) -> Values:
+    """The workspace of a model; that of Euler angles is shared with those about renamed axes."""
+    is_euler = "".join(turn.axis for turn in model.turns) in AXIS_SEQUENCES
+    return Renamed(model) if is_euler and "by_turns" in traits_of(model) else Values(model)
 
 
 # R, Ω and the rates by the vector v of the coordinates: R = 1 + a C(v) + b C(v)², Ω = f v̇ + ...

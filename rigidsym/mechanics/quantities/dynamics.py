@@ -25,6 +25,8 @@ _TREE, _EULER, _FREE = "tree", "euler", "no_potential"  # traits
 TORQUE = r"\I'\,\dot\Om' + \Om'\times\I'\,\Om'"  # that a motion takes, by Euler's equations
 _LAGRANGE = r"\frac{d}{dt}\frac{\partial {T}}{\partial\dot\q} - \frac{\partial {T}}{\partial\q} = "
 _ENERGY: dict[str, Any] = {"unit": "J", "shape": "scalar", "section": MOTION}
+_VECTOR: dict[str, Any] = {"shape": "vector", "section": MOTION}
+_BY_RATES: dict[str, Any] = {**_VECTOR, "inputs": ("q", "q_dot")}
 
 
 def _of_kinetic(claim: str, residual: Callable[[Any, Any], Any], **tree: Any) -> dict[str, Any]:
@@ -98,15 +100,13 @@ energy = Quantity(
 )
 
 generalised_momenta = Quantity(
+    **_BY_RATES,
     symbol=formula(r"\p"),
     unit="kg m^2/s",
-    inputs=("q", "q_dot"),
-    shape="vector",
     definition=formula(r"\W'^T\I'\Om'"),
     source=SOURCES["Goldstein 8.1"],
     value=lambda k: k.momenta,
     reason="slopes_by_rates",
-    section=MOTION,
     **_of_kinetic(
         r"\p = \frac{\partial {T}}{\partial\dot\q}",
         lambda k, x: k.codec.column([sp.diff(k.kinetic, rate) for rate in k.rates]) - x,
@@ -132,14 +132,12 @@ mass_matrix = Quantity(
 )
 
 bias_vector = Quantity(
+    **_BY_RATES,
     symbol=formula(r"\h"),
     unit="N m",
-    inputs=("q", "q_dot"),
-    shape="vector",
     source=SOURCES["Goldstein 1.4"],
     value=lambda k: k.bias,
     reason="rest_of_lagrange",
-    section=MOTION,
     **_of_kinetic(
         _LAGRANGE + rf"\W'^T\left({TORQUE}\right)",
         lambda k, x: k.of_lagrange + k.bias - x,
@@ -149,16 +147,14 @@ bias_vector = Quantity(
 )
 
 accelerations = Quantity(
+    **_BY_RATES,
     symbol=formula(r"\ddot\q"),
     unit="rad/s^2",
-    inputs=("q", "q_dot"),
-    shape="vector",
     definition=formula(r"\M^{-1}\left(\Q - \h\right)"),
     source=SOURCES["Goldstein 1.4"],
     value=lambda k: k.solved,
     laws=(law(r"\M\ddot\q + \h = \Q", lambda k, x: k.mass_matrix @ x[0] - k.needed.scale(x[1])),),
     reason="solved",
-    section=MOTION,
     is_result=True,
     variants=(when(_TREE, reason="factorised"),),
 )
@@ -186,32 +182,30 @@ effective_potential = Quantity(
 )
 
 angular_acceleration_from_torque = Quantity(
+    **_VECTOR,
     symbol=formula(r"\dot\Om'"),
     unit="rad/s^2",
     inputs=("omega_body", "torque"),
-    shape="vector",
     frame=BODY,
     definition=formula(r"\I'^{-1}\left(\N' - \Om'\times\I'\,\Om'\right)"),
     source=SOURCES["Goldstein 5.5"],
     value=lambda k: k.free_turning,
     laws=(law(rf"{TORQUE} = \N'", lambda k, x: k.excess_torque(x)),),
     reason="euler_equations",
-    section=MOTION,
     is_result=True,
 )
 
 DYNAMICS_QUANTITIES = by_name(globals())
 
 torque_body = Quantity(
+    **_VECTOR,
     symbol=formula(r"\N'"),
     unit="N m",
     inputs=("q", "omega_body"),
-    shape="vector",
     frame=BODY,
     source=SOURCES["Goldstein 5.5"],
     value=lambda k: k.torque,
     reason="torque_of_potential",
-    section=MOTION,
     variants=(when("no_gradient", reason="torque"),),
 )
 
@@ -223,27 +217,21 @@ EULER_QUANTITIES = {
 
 # Functions of the state y, for integrators
 
+
+def _flow(symbol: str, value: Callable[[Any], Any], **fields: Any) -> Quantity:
+    return Quantity(symbol=formula(symbol), value=value, **{"inputs": ("t", "y"), **fields})
+
+
 FLOW_QUANTITIES = by_name(
     {
-        "state_derivative": Quantity(
-            symbol=formula(r"\dot\y"),
-            inputs=("t", "y"),
-            shape="vector",
-            value=lambda k: k.state_derivative,
-        ),
-        "state_jacobian": Quantity(
-            symbol=formula(r"\J"), inputs=("t", "y"), value=lambda k: k.state_jacobian
-        ),
-        "error_state_jacobian": Quantity(
-            symbol=formula(r"\boldsymbol{\Phi}"),
-            inputs=("t", "y"),
-            value=lambda k: k.error_state_jacobian,
-        ),
-        "first_integrals": Quantity(
-            symbol=formula(r"\F"),
+        "state_derivative": _flow(r"\dot\y", lambda k: k.state_derivative, shape="vector"),
+        "state_jacobian": _flow(r"\J", lambda k: k.state_jacobian),
+        "error_state_jacobian": _flow(r"\boldsymbol{\Phi}", lambda k: k.error_state_jacobian),
+        "first_integrals": _flow(
+            r"\F",
+            lambda k: sp.ImmutableMatrix([each.expression for each in k.first_integrals]),
             inputs=("y",),
             shape="vector",
-            value=lambda k: sp.ImmutableMatrix([each.expression for each in k.first_integrals]),
         ),
     }
 )

@@ -29,6 +29,8 @@ def _over_particles(claim: str, summand: Callable[[Any], Any], times: int = 1) -
 _ENERGY: dict[str, Any] = {"unit": "J", "shape": "scalar", "section": ENERGY}
 _ENERGY["source"] = SOURCES["Landau 32"]
 _MOMENTUM: dict[str, Any] = {"unit": "kg m^2/s", "shape": "vector", "section": MOMENTUM}
+_OF_CENTRE = {**_MOMENTUM, "source": SOURCES["Goldstein 1.2"], "of_centre": True}
+_OF_ROTATION = {**_MOMENTUM, "source": SOURCES["Landau 33"], "is_result": True}
 
 translational_energy = Quantity(
     **_ENERGY,
@@ -81,23 +83,20 @@ kinetic_energy = Quantity(
 )
 
 angular_momentum_centre = Quantity(
-    **_MOMENTUM,
+    **_OF_CENTRE,
     symbol=formula(r"\L_C"),
     inputs=("centre", "centre_dot"),
     definition=formula(r"\r_C\times(M\,\dot\r_C)"),
-    source=SOURCES["Goldstein 1.2"],
     value=lambda k: k.present.matrix(k.momentum_of_centre),
     laws=(_over_particles(r"#1\,\r_C\times\dot\r_C = \L_C", lambda k: k.centre.cross(k.velocity)),),
     reason="momentum_of_centre",
-    of_centre=True,
 )
 
 angular_momentum_rotation_body = Quantity(
-    **_MOMENTUM,
+    **_OF_ROTATION,
     symbol=MOMENTUM_BODY,
     inputs=("q", "q_dot"),
     definition=formula(r"\I'\Om'"),
-    source=SOURCES["Landau 33"],
     value=lambda k: k.momentum_form_body,
     laws=(
         law(
@@ -105,15 +104,13 @@ angular_momentum_rotation_body = Quantity(
         ),
     ),
     reason="tensor_times_velocity",
-    is_result=True,
 )
 
 angular_momentum_rotation = Quantity(
-    **_MOMENTUM,
+    **_OF_ROTATION,
     symbol=MOMENTUM_ROTATION,
     inputs=("q", "q_dot"),
     definition=formula(r"\I\Om"),
-    source=SOURCES["Landau 33"],
     value=lambda k: k.momentum_form,
     laws=(
         law(r"\I\,\Om = \R\,\L'_R", lambda k, x: k.rotation @ (k.inertia @ k.back) - k.read(x)),
@@ -121,15 +118,13 @@ angular_momentum_rotation = Quantity(
         _over_particles(r"#1\,\x_i\times\dot\x_i = \L_R", lambda k: k.x.cross(k.x_dot)),
     ),
     reason="momentum_rotated",
-    is_result=True,
 )
 
 angular_momentum = Quantity(
-    **_MOMENTUM,
+    **_OF_CENTRE,
     symbol=formula(r"\L"),
     inputs=("q", "q_dot", "centre", "centre_dot"),
     definition=formula(r"\L_C + \L_R"),
-    source=SOURCES["Goldstein 1.2"],
     value=lambda k: k.present.matrix(k.momentum_of_centre) + k.momentum_form,
     laws=(
         _over_particles(
@@ -139,7 +134,6 @@ angular_momentum = Quantity(
     ),
     reason="momentum_splits",
     is_result=True,
-    of_centre=True,
 )
 
 ENERGY_QUANTITIES = by_name(globals())

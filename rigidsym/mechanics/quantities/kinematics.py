@@ -51,7 +51,7 @@ def _of_spin(symbol: Formula, value: str) -> dict[str, Any]:
 rotation_matrix = Quantity(
     **_of_matrix("R"),
     inputs=("q",),
-    value=lambda k: k.shown,
+    value=lambda k: k.rotation,
     vectors="rotation",
     reason="product_of_turns",
     section="rotation",
@@ -62,6 +62,7 @@ rotation_matrix = Quantity(
         when(
             PASSIVE,
             **_of_matrix("A"),
+            value=lambda k: k.rotation.T,
             definition=formula(r"\R^T"),
             meaning="direction_cosines",
             reason="transposed_product",
@@ -82,10 +83,15 @@ rotation_rate = Quantity(
     **_SPINNING,
     **_of_derivative("R"),
     unit="1/s",
-    value=lambda k: k.shown_rate,
+    value=lambda k: k.rotation_rate,
     reason="chain_rule",
     variants=(
-        when(PASSIVE, **_of_derivative("A"), meaning="rate_of_direction_cosines"),
+        when(
+            PASSIVE,
+            **_of_derivative("A"),
+            value=lambda k: k.rotation_rate.T,
+            meaning="rate_of_direction_cosines",
+        ),
         when(
             CHAIN,
             also=("angular_velocity_space",),
@@ -117,11 +123,8 @@ spin_matrix = Quantity(
     ),
 )
 
-_VELOCITY: dict[str, Any] = {
-    **_SPINNING,
-    **{"unit": "rad/s", "shape": "vector", "vectors": "velocity"},
-    **{"source": SOURCES["Murray 2.4"], "is_result": True},
-}
+_VELOCITY = {**_SPINNING, "unit": "rad/s", "shape": "vector", "vectors": "velocity"}
+_VELOCITY |= {"source": SOURCES["Murray 2.4"], "is_result": True}
 
 angular_velocity_space = Quantity(
     **_VELOCITY,
@@ -263,10 +266,9 @@ rate_matrix_body = _rate_matrix(
 inverse_rate_matrix_body = _inverse_rate_matrix(BODY, wide="right_inverse_body")
 rates_from_angular_velocity_body = _rates(BODY)
 
-_ACCELERATION: dict[str, Any] = {
-    **{"unit": "rad/s^2", "inputs": ("q", "q_dot", "q_ddot"), "shape": "vector"},
-    **{"source": SOURCES["Diebel 5"], "section": "angular_acceleration", "is_result": True},
-}
+_ACCELERATION: dict[str, Any] = {"unit": "rad/s^2", "inputs": ("q", "q_dot", "q_ddot")}
+_ACCELERATION |= {"shape": "vector", "section": "angular_acceleration"}
+_ACCELERATION |= {"source": SOURCES["Diebel 5"], "is_result": True}
 
 angular_acceleration_space = Quantity(
     **_ACCELERATION,

@@ -24,6 +24,8 @@ DIRECTION = formula(r"\n")
 STEINER = r"#1 + #2\,(|#3|^2\,\1 - #4 #4^T)"
 _ONE = sp.eye(3)
 OF_BODY, OF_INERTIA = "body", "inertia"  # sections of the note
+_BODY: dict[str, Any] = {"section": OF_BODY, "is_result": True}
+_INERTIA: dict[str, Any] = {"unit": "kg m^2", "section": OF_INERTIA}
 
 _TENSOR = r"\int \left(|\x'-\c|^2\,\1 - (\x'-\c)(\x'-\c)^T\right)\,dm"
 
@@ -47,6 +49,7 @@ def _integrated(
 
 
 mass = Quantity(
+    **_BODY,
     symbol=MASS,
     unit="kg",
     shape="scalar",
@@ -55,11 +58,10 @@ mass = Quantity(
     rests_on=lambda k: k.moments.proofs,
     without="given_mass",
     reason="sum_of_parts",
-    section=OF_BODY,
-    is_result=True,
 )
 
 centre_of_mass = Quantity(
+    **_BODY,
     symbol=formula(r"\c"),
     unit="m",
     shape="vector",
@@ -72,8 +74,6 @@ centre_of_mass = Quantity(
     rests_on=lambda k: k.moments.proofs if k.body.mass.is_Symbol else (),
     without="unknown_distribution",
     reason="mean_position",
-    section=OF_BODY,
-    is_result=True,
 )
 
 _SYMMETRIC = law(r"\I' = \I'^T", lambda _, x: x - x.T)
@@ -88,14 +88,13 @@ _OF_PARTS = law(
 )
 
 inertia_tensor = Quantity(
+    **_BODY,
     symbol=INERTIA,
     unit="kg m^2",
     source=SOURCES["Landau 32"],
     value=lambda k: k.body.inertia,
     laws=(_SYMMETRIC,),
     reason="given_tensor",
-    section=OF_BODY,
-    is_result=True,
     variants=(
         when(
             "distributed",
@@ -114,8 +113,8 @@ inertia_tensor = Quantity(
 )
 
 inertia_tensor_point = Quantity(
+    **_INERTIA,
     symbol=formula(r"\I'_P"),
-    unit="kg m^2",
     inputs=("point",),
     definition=formula(r"\I' + M\,(|\p-\c|^2\,\1 - (\p-\c)(\p-\c)^T)"),
     source=SOURCES["Landau 32 (32.12)"],
@@ -127,7 +126,6 @@ inertia_tensor_point = Quantity(
         )
     ),
     reason="parallel_axes",
-    section=OF_INERTIA,
     of_centre=True,
 )
 
@@ -139,8 +137,8 @@ def _moment_by_mass(k: Any, x: sp.Expr) -> sp.Matrix:
 
 
 moment_of_inertia = Quantity(
+    **_INERTIA,
     symbol=formula("I_n"),
-    unit="kg m^2",
     inputs=("point", "direction"),
     shape="scalar",
     definition=formula(r"\n^T\,\I'_P\,\n"),
@@ -148,30 +146,26 @@ moment_of_inertia = Quantity(
     value=lambda k: k.moment_about_line(),
     **_integrated((r"I_n = \int |\n\times(\x'-\p)|^2\,dm", _moment_by_mass)),
     reason="form_of_tensor",
-    section=OF_INERTIA,
     of_centre=True,
 )
 
+
+def _characteristic(k: Any, moments: sp.Matrix) -> sp.Matrix | None:
+    """The determinants of I′ − I_k 1; None if there are axes, which prove that they vanish."""
+    if k.principal.axes is not None:
+        return None
+    return sp.Matrix([k.volume(k.body.inertia - moment * _ONE) for moment in moments])
+
+
 principal_moments = Quantity(
+    **_INERTIA,
     symbol=formula(r"\left(I_1, I_2, I_3\right)"),
-    unit="kg m^2",
     shape="vector",
     source=SOURCES["Landau 32"],
     value=lambda k: k.principal and k.principal.moments,
-    laws=(
-        law(
-            r"\det(\I' - I_k\1) = 0",
-            # the axes, if there are any, prove it
-            lambda k, x: (
-                sp.Matrix([k.volume(k.body.inertia - m * _ONE) for m in x])
-                if k.principal.axes is None
-                else None
-            ),
-        ),
-    ),
+    laws=(law(r"\det(\I' - I_k\1) = 0", _characteristic),),
     without="no_closed_moments",
     words=lambda k: k.principal.because,
-    section=OF_INERTIA,
     is_result=True,
 )
 
@@ -195,8 +189,8 @@ principal_axes = Quantity(
 )
 
 inertia_tensor_space = Quantity(
+    **_INERTIA,
     symbol=INERTIA_SPACE,
-    unit="kg m^2",
     inputs=("q",),
     definition=formula(r"\R\,\I'\,\R^T"),
     source=SOURCES["Goldstein 5.2"],
@@ -209,7 +203,6 @@ inertia_tensor_space = Quantity(
         ),
     ),
     reason="tensor_rotated",
-    section=OF_INERTIA,
     is_result=True,
     variants=(when("fixed_point", meaning="inertia_tensor_space_fixed_point"),),
 )

@@ -18,8 +18,7 @@ from rigidsym.errors import ModelError
 from rigidsym.formula.reader import formula, named
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Argument, argument
-from rigidsym.models.forces import OMEGA_BODY
-from rigidsym.models.rotation import TIME, RotationModel, time_function
+from rigidsym.models.rotation import OMEGA_BODY, TIME, RotationModel, time_function
 
 if TYPE_CHECKING:
     from rigidsym.models.body import RigidBody
@@ -49,10 +48,8 @@ def arguments_of(model: RotationModel, body: RigidBody | None = None) -> tuple[A
     name that would then stand for two things.
     """
     arguments = [*_moving("q", model.coordinates, model.coordinate_units, orders=3)]
-    for frame, symbols, prime in (
-        ("space", sp.symbols("Omega_1:4"), ""),
-        ("body", OMEGA_BODY, "'"),
-    ):
+    frames = ("space", sp.symbols("Omega_1:4"), ""), ("body", OMEGA_BODY, "'")
+    for frame, symbols, prime in frames:
         omega = argument(
             f"omega_{frame}",
             symbols,
