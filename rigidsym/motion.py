@@ -16,16 +16,16 @@ from rigidsym.formula.tree import Words
 from rigidsym.kernels.lowering.derivatives import Asked
 from rigidsym.kernels.module import KernelModule as KernelModule, generate
 from rigidsym.mechanics.derivation import Derivation, Proof
-from rigidsym.mechanics.derive import Body, derive as derivation_of
+from rigidsym.mechanics.derive import derive as derivation_of
 from rigidsym.mechanics.prove import identity
 from rigidsym.mechanics.quantities.catalogue import NAMES
-from rigidsym.models.forces import forces_on
 from rigidsym.models.library import rotation_from
 from rigidsym.models.rotation import RotationModel
 from rigidsym.system.processes import rare_collections, time_limit
 
 if TYPE_CHECKING:
     from rigidsym.mechanics.conversions.conversions import Conversions
+    from rigidsym.models.body import Body
     from rigidsym.notes.note import Note
     from rigidsym.simulation.trajectory import Trajectory
 
@@ -206,8 +206,11 @@ def derive(
             "expected a rotation, such as 'ZXZ', rs.EulerAngles('ZXZ'), or rs.given(matrix, "
             f"name='mine') for a matrix R(q); got {model!r}"
         )
-    if not isinstance(body, Body | None):
-        raise TypeError(f"expected a body, such as rs.solid('cone'), got {body!r}")
+    if body is not None:
+        from rigidsym.models.body import Body  # a derivation without a body needs none of its kinds
+
+        if not isinstance(body, Body):
+            raise TypeError(f"expected a body, such as rs.solid('cone'), got {body!r}")
     if not (isinstance(only, Collection) and all(isinstance(name, str) for name in only)):
         raise TypeError(f"only: expected names of quantities, got {only!r}")
     wanted = (only,) if isinstance(only, str) else tuple(only)
@@ -219,6 +222,8 @@ def derive(
         if moving:
             if body is None:
                 raise ModelError("forces act on a body; expected body=rs.principal_moments(...)")
+            from rigidsym.models.forces import forces_on
+
             acting = forces_on(rotation, **moving)
         derivation = derivation_of(rotation, wanted, body=body, forces=acting, theory=theory)
     return Motion(**{f.name: getattr(derivation, f.name) for f in fields(Derivation)})

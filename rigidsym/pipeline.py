@@ -20,15 +20,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rigidsym.errors import BodyError, ModelError, RequestError, SpecError, offer
 from rigidsym.mechanics.derivation import Proof
-from rigidsym.models.body import RigidBody
 from rigidsym.motion import DEFAULT, Motion, derive
 from rigidsym.notes.formats import FORMATS
 from rigidsym.notes.formats.record import record
-from rigidsym.spec.derivation_file import (
-    read_file as read_file,
-    read_record as read_record,
-    read_spec as read_spec,
-)
 from rigidsym.spec.derivation_spec import PAGE as PAGE, PDF as PDF, DerivationSpec, spec_for
 from rigidsym.spec.faults import fault_at
 from rigidsym.system import resources
@@ -96,6 +90,8 @@ def read(source: str, **options: Any) -> DerivationSpec:
             raise RequestError(
                 f"{source} is a derivation file; expected {', '.join(options)} in the file"
             )
+        from rigidsym.spec.derivation_file import read_file  # with all that a file may hold
+
         return read_file(source)
     try:
         return spec_for(source, **options)
@@ -127,7 +123,7 @@ def integrated(spec: DerivationSpec) -> DerivationSpec:
 
     Raises SpecError, with the key, for an impossible body.
     """
-    if spec.body is None or isinstance(spec.body, RigidBody):
+    if spec.body is None:
         return spec
     from rigidsym.mechanics.mass.bodies import rigid_body
 

@@ -12,7 +12,7 @@ from rigidsym.commands.command import command as make
 from rigidsym.commands.output_folder import CERTIFICATE, content_of, printed
 from rigidsym.errors import CheckError, SpecError, printable
 from rigidsym.notes.formats.record import SCHEMA, SCHEMA_VERSION
-from rigidsym.pipeline import read_record
+from rigidsym.spec.derivation_file import read_record
 from rigidsym.tools.certificate.checker import BROKEN, load, verify
 
 

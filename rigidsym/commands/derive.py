@@ -17,7 +17,6 @@ from rigidsym.errors import RigidsymError
 from rigidsym.formula.notation import CHOICES, DEFAULT
 from rigidsym.kernels.lowering.derivatives import read_requests
 from rigidsym.mechanics.derivation import remark
-from rigidsym.notes.formats.pdf import typeset
 from rigidsym.notes.formats.record import record
 from rigidsym.notes.formats.terminal import show
 from rigidsym.pipeline import PDF, Output, integrated, motion_of
@@ -94,6 +93,8 @@ def _made(single: DerivationSpec) -> tuple[Output, bytes | RigidsymError | None]
     output = printed(single)
     if PDF not in output.spec.note:
         return output, None
+    from rigidsym.notes.formats.pdf import typeset
+
     try:
         return output, typeset(output.files[f"{output.name}.tex"]).pdf
     except RigidsymError as error:

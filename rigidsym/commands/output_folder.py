@@ -10,7 +10,7 @@ from typing import Any
 from rigidsym.commands.command import message
 from rigidsym.errors import EditedFiles, SpecError
 from rigidsym.mechanics.derivation import remark
-from rigidsym.pipeline import PDF, Output, digest, output_of, read_record
+from rigidsym.pipeline import PDF, Output, digest, output_of
 from rigidsym.spec.derivation_spec import DerivationSpec
 from rigidsym.system.files import read_bytes, write_text
 
@@ -84,8 +84,12 @@ def write(output: Output, out: Path, *, force: bool) -> list[Path]:
 def _spec_of(content: dict[str, Any], spec: DerivationSpec) -> DerivationSpec:
     """The specification in the content of a record; `spec` if that is the same, or unreadable."""
     request = content.get("request")
-    try:  # the same is not read, which takes 6 ms
-        return spec if request in (None, spec.to_data()) else read_record(request)
+    if request in (None, spec.to_data()):
+        return spec
+    from rigidsym.spec.derivation_file import read_record
+
+    try:
+        return read_record(request)
     except SpecError:
         return spec
 

@@ -8,7 +8,7 @@ from rigidsym.commands.command import command as make, message
 from rigidsym.commands.derive import applied, produce
 from rigidsym.errors import SpecError
 from rigidsym.formula.notation import CHOICES
-from rigidsym.pipeline import read_file
+from rigidsym.spec.derivation_file import read_file
 from rigidsym.spec.derivation_spec import DerivationSpec
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import sympy as sp
 
@@ -18,12 +19,13 @@ from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import NOTHING, Formula, with_names
 from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.derive import derive
-from rigidsym.mechanics.dynamics.flow import free_turning
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
 from rigidsym.mechanics.quantities.mass import INERTIA, INERTIA_QUANTITIES, STEINER
 from rigidsym.mechanics.quantities.table import POINT, own_names
-from rigidsym.models.body import Parameter, RigidBody, given_inertia
-from rigidsym.models.forces import OMEGA_BODY
+from rigidsym.models.rotation import OMEGA_BODY
+
+if TYPE_CHECKING:
+    from rigidsym.models.body import RigidBody
 
 Parts = Sequence[tuple[sp.Symbol, sp.Expr]]  # names with what they stand for
 
@@ -41,6 +43,8 @@ def in_names(derivation: Derivation) -> tuple[Derivation, Parts]:
     body = derivation.body
     if body is None:
         return derivation, ()
+    from rigidsym.mechanics.dynamics.flow import free_turning  # with all that bodies need
+
     is_short = all(entry.is_Atom for entry in body.inertia)
     has_offset = any(body.centre)
     own = own_names(derivation.arguments, body, derivation.forces)
@@ -89,6 +93,8 @@ def _named(body: RigidBody, mass: sp.Symbol, own: Sequence[sp.Symbol]) -> tuple[
     If the body's own axes are principal axes, each letter comes with its value. A short tensor,
     for which there are none of its `own`, stays as it is.
     """
+    from rigidsym.models.body import Parameter, given_inertia
+
     tensor, parts = body.inertia, []
     if tensor.is_diagonal() and own:
         pairs = [*zip(own, tensor.diagonal(), strict=True)]

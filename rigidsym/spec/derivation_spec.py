@@ -7,9 +7,8 @@ import reprlib
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from rigidsym.models.body import BodyDescription, RigidBody
 from rigidsym.models.library import request_of, rotation_from
 from rigidsym.models.rotation import RotationModel
 from rigidsym.motion import DEFAULT, Notation
@@ -17,7 +16,9 @@ from rigidsym.notes.formats import FORMATS
 from rigidsym.spec.faults import Place
 from rigidsym.text.names import A_MODULE_NAME, MODULE_NAME
 
-Body = RigidBody | BodyDescription
+if TYPE_CHECKING:
+    from rigidsym.models.body import BodyDescription, RigidBody
+
 PDF = "pdf"  # typeset from the LaTeX, which is written beside it
 PAGE = "page"  # NAME_page.html: the note with an interactive figure
 NOTES = (*FORMATS, PAGE, PDF)  # all that `note` may list
@@ -35,7 +36,7 @@ class DerivationSpec:
     name: str
     title: str | None = None  # None: the rotation's own
     models: tuple[RotationModel, ...]
-    body: Body | None = None
+    body: RigidBody | BodyDescription | None = None
     dynamics: Mapping[str, Any] | None = None  # as `forces_on` reads it; None: no motion
     theory: bool = False  # whether the theory for every body and rotation comes first
     quantities: tuple[str, ...] = ()  # empty: all

@@ -20,7 +20,7 @@ from hypothesis import HealthCheck, given, settings, strategies as st
 from helpers.command import RIGIDSYM, call
 from rigidsym.errors import LimitReached, RigidsymError
 from rigidsym.models.library import rotation_from
-from rigidsym.pipeline import read_record, read_spec
+from rigidsym.spec.derivation_file import read_record, read_spec
 from rigidsym.system import resources
 from rigidsym.system.processes import time_limit
 

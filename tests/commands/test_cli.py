@@ -22,7 +22,8 @@ from rigidsym.commands.cli import commands
 from rigidsym.commands.list import inventory
 from rigidsym.motion import QUANTITIES
 from rigidsym.notes.formats.record import SCHEMA_VERSION
-from rigidsym.pipeline import output_of, read_spec
+from rigidsym.pipeline import output_of
+from rigidsym.spec.derivation_file import read_spec
 from rigidsym.text.expression import parse_expression
 
 NAME = "euler_zxz_intrinsic"

@@ -17,7 +17,8 @@ from rigidsym.models.library import PARAMETRISATIONS
 from rigidsym.models.rotation import Citation, elementary, time_function
 from rigidsym.motion import derive
 from rigidsym.page.functions import OF_THE_FIGURE
-from rigidsym.pipeline import motion_of as motion_of_spec, read_file, read_spec
+from rigidsym.pipeline import motion_of as motion_of_spec
+from rigidsym.spec.derivation_file import read_file, read_spec
 from rigidsym.system import resources
 
 LONG = "x(a_1) y(a_2) z(a_3) x(a_4) y(a_5) z(a_6)"  # more turns than a figure has arcs for

@@ -21,7 +21,7 @@ from rigidsym.models.library import PRESETS, rotation_from, rotation_given, turn
 from rigidsym.models.parametrisations import EULER_SEQUENCES, axis_turn, chain as chain_of
 from rigidsym.models.rotation import Turn
 from rigidsym.notes.problems import sheets_of
-from rigidsym.pipeline import read_record
+from rigidsym.spec.derivation_file import read_record
 from rigidsym.spec.derivation_spec import spec_for
 
 a, b = sp.symbols("a b")

@@ -22,7 +22,8 @@ from rigidsym.notes.figure.body_mesh import HOLE
 from rigidsym.notes.figure.drawing import Facet
 from rigidsym.notes.formats.terminal import show
 from rigidsym.notes.named_body import in_names
-from rigidsym.pipeline import motion_of, read, read_spec
+from rigidsym.pipeline import motion_of, read
+from rigidsym.spec.derivation_file import read_spec
 
 SYSTEMS = ("composite_body", "dual_spin_satellite", "free_body", "free_symmetric_body")
 SYSTEMS += ("heavy_asymmetric_body", "heavy_symmetric_top", "kovalevskaya_top", "solid_cone")

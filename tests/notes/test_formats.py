@@ -18,7 +18,8 @@ from rigidsym.kernels.targets import TARGETS
 from rigidsym.mechanics.derive import derive
 from rigidsym.notes.formats import FORMATS, escape as latex, html, markdown
 from rigidsym.notes.note import note
-from rigidsym.pipeline import PAGE, output_of, read, read_file
+from rigidsym.pipeline import PAGE, output_of, read
+from rigidsym.spec.derivation_file import read_file
 from rigidsym.version import OWNERSHIP
 
 KINDS = ("axis_angle", "gibbs_vector", "unit_quaternion", "z(phi) x(theta) [0,b,c](psi)", "z(phi)")

@@ -29,7 +29,8 @@ from rigidsym.notes.facts.singular import PointFacts
 from rigidsym.notes.formats.pdf import typeset
 from rigidsym.notes.formats.terminal import show
 from rigidsym.notes.note import note
-from rigidsym.pipeline import output_of, read_spec
+from rigidsym.pipeline import output_of
+from rigidsym.spec.derivation_file import read_spec
 from rigidsym.system.resources import STYLES
 
 ZXZ = "euler_zxz_intrinsic"

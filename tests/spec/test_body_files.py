@@ -16,7 +16,8 @@ from click.testing import CliRunner
 from rigidsym.commands.cli import commands
 from rigidsym.errors import KernelError
 from rigidsym.models.body import RigidBody
-from rigidsym.pipeline import integrated, output_of, read_file, read_record, read_spec
+from rigidsym.pipeline import integrated, output_of
+from rigidsym.spec.derivation_file import read_file, read_record, read_spec
 from rigidsym.spec.derivation_spec import DerivationSpec
 
 A, C, M = sp.symbols("A C M")

@@ -17,7 +17,8 @@ from rigidsym.commands.cli import commands
 from rigidsym.errors import RigidsymError, SpecError
 from rigidsym.models.library import rotation_from, rotation_given
 from rigidsym.models.parametrisations import EulerAngles
-from rigidsym.pipeline import integrated, read_file, read_record, read_spec
+from rigidsym.pipeline import integrated
+from rigidsym.spec.derivation_file import read_file, read_record, read_spec
 from rigidsym.spec.derivation_spec import DerivationSpec
 from rigidsym.system import resources
 

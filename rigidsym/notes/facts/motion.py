@@ -14,8 +14,8 @@ from rigidsym.formula.reader import decimal
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import Formula, equal
 from rigidsym.mechanics.derivation import Consequence, Derivation
-from rigidsym.models.forces import OMEGA_BODY, OMEGA_COMPONENTS, Forces, initial_values
-from rigidsym.models.rotation import TIME
+from rigidsym.models.forces import OMEGA_COMPONENTS, Forces, initial_values
+from rigidsym.models.rotation import OMEGA_BODY, TIME
 from rigidsym.notes.document import Equation, Figure
 from rigidsym.notes.equations import claims_of
 from rigidsym.notes.figure.motion_picture import motion_picture

@@ -17,9 +17,7 @@ import sympy as sp
 
 from rigidsym.formula.reader import text_of
 from rigidsym.formula.tree import Formula
-from rigidsym.mechanics.dynamics.lagrange import is_bound
-from rigidsym.models.forces import OMEGA_BODY
-from rigidsym.models.rotation import Citation
+from rigidsym.models.rotation import OMEGA_BODY, Citation
 from rigidsym.version import OWNERSHIP, __version__
 
 if TYPE_CHECKING:
@@ -176,6 +174,8 @@ def _motion(derivation: Derivation) -> dict[str, Any]:
         return {}
     if acting.depend_on_time or derivation.definitions:
         return {}
+    from rigidsym.mechanics.dynamics.lagrange import is_bound
+
     torque = acting.torque or (sp.S.Zero,) * 3
     if any(component.has(*OMEGA_BODY) for component in torque):
         return {}
