@@ -31,8 +31,8 @@ from rigidsym.mechanics.quantities.table import (
     own_letters,
 )
 from rigidsym.models.body import RigidBody
-from rigidsym.models.forces import OMEGA_BODY, Forces
-from rigidsym.models.rotation import TIME, RotationModel
+from rigidsym.models.forces import Forces
+from rigidsym.models.rotation import OMEGA_BODY, TIME, RotationModel
 
 # A part of the state, and its time derivative as numerators over one divisor.
 StateBlock: TypeAlias = tuple[Sequence[sp.Expr], RingMatrix, PolyElement]
