@@ -1181,7 +1181,6 @@ class _Run:
             numbers = range(key.start or 0, key.stop or (4 if key.start else 3))
             parts = [self.entry(tree, value, (k, *others)) for k in numbers]
             return parts[0] if len(parts) == 1 else rows(parts)
-        self.components.discard(value)  # which are numbers, if nobody takes parts of them
         part = self.component(value, key + self.first if isinstance(key, int) else key)
         if part is None:
             raise self.unreadable(tree, "has no value")
