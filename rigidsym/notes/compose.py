@@ -111,12 +111,26 @@ class Composer:
         byline = [block for section in sections if not section.title for block in section.blocks]
         if not self.is_audit:  # a lecture leaves out that identities were verified
             sections = [s._replace(blocks=tuple(map(_without_proofs, s.blocks))) for s in sections]
+        labels: set[str] = set()
+
+        def labelled_once(block: doc.NoteBlock) -> doc.NoteBlock:
+            """An equation that is printed again has its number, and no label."""
+            if isinstance(block, doc.Equation) and block.label:
+                if block.label in labels:
+                    return replace(block, label="")
+                labels.add(block.label)
+            return block
+
         return doc.Document(
             name=self.derivation.name,
             title=title_of(self.derivation, self.letters),
             subtitle="" if is_body_alone(self.derivation) else self.derivation.subject,
             letters=self.letters,
-            sections=tuple(s for s in sections if s.title and s.blocks),
+            sections=tuple(
+                s._replace(blocks=tuple(map(labelled_once, s.blocks)))
+                for s in sections
+                if s.title and s.blocks
+            ),
             byline=tuple(
                 text_of(block.text) for block in byline if isinstance(block, doc.Paragraph)
             ),

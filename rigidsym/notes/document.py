@@ -135,8 +135,8 @@ class Document:
 
     @cached_property
     def equations(self) -> tuple[Equation, ...]:
-        """The numbered equations, in order."""
-        return tuple(b for b in self.blocks if isinstance(b, Equation) and b.number)
+        """The numbered equations, in order, each once: a label belongs to the first print."""
+        return tuple(b for b in self.blocks if isinstance(b, Equation) and b.number and b.label)
 
     @cached_property
     def displays(self) -> tuple[Equation, ...]:

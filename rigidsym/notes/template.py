@@ -74,7 +74,9 @@ def _printed(_: Context, value: Any) -> Markup:
         value = [*value]  # blocks; other tuples are texts
     marks.things.append(value)
     # The mark of the k-th thing is the k-th letter of the private use area.
-    return Markup(chr(_FIRST + len(marks.things) - 1))
+    mark = chr(_FIRST + len(marks.things) - 1)
+    # No paragraph holds a block, whatever the template has beside it.
+    return Markup(f"\n\n{mark}\n\n" if isinstance(value, _BLOCKS) else mark)
 
 
 def sections_of(name: str, letters: Letters, **facts: Any) -> Iterator[doc.Section]:
@@ -152,17 +154,12 @@ def _blocks(chunk: str, marks: _Marks) -> Iterator[doc.NoteBlock]:
         yield doc.EquationRow(equations) if len(equations) > 1 else equations[0]
     elif chunk.startswith(("|", _TABLE)):
         yield _table(chunk, marks)
-    elif all(isinstance(thing, _BLOCKS) for thing in _marked(chunk, marks)):
-        for thing in _marked(chunk, marks):
-            yield from thing if isinstance(thing, list) else (thing,)
+    elif re.fullmatch(_MARK, chunk) and isinstance(
+        thing := marks.things[ord(chunk) - _FIRST], _BLOCKS
+    ):
+        yield from thing if isinstance(thing, list) else (thing,)
     else:
         yield doc.Paragraph(_text(chunk, marks))
-
-
-def _marked(chunk: str, marks: _Marks) -> Iterator[Any]:
-    """The things of a chunk that has nothing but marks, and None for anything else."""
-    for letter in chunk.replace("\n", ""):
-        yield marks.things[ord(letter) - _FIRST] if re.match(_MARK, letter) else None
 
 
 def _equation(typed: str, marks: _Marks) -> doc.Equation:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -133,6 +134,20 @@ def test_a_handout_is_a_style_with_its_own_heading_sentences_and_sections(tmp_pa
     assert r"Our course writes $\mathbf{R}$ for the rotation; see (1)." in note.markdown()
     assert "E. Noether" in note.html()
     assert "E. Noether" in note.latex()
+
+
+def test_an_equation_is_printed_again_with_its_number(tmp_path: Path):
+    again = '{{ super() }}\n{{ equation("angular_velocity_body") }}\n{{ steps("rotation") }} again'
+    own(tmp_path, "en/twice.md.jinja", HANDOUT.replace("{{ super() }}", again))
+    with resources.overridden_by(tmp_path):
+        note = derived("ZXZ").note(style="twice")
+    assert re.findall(r"\\tag\{(\d+)\}", note.markdown()) == [*"5112345"]
+    assert sorted(e.number for e in note.document.equations) == [1, 2, 3, 4, 5]
+    assert re.findall(r"\\(?:tag|setcounter\{equation\})\{\d+\}", note.latex()) == [
+        *(rf"\setcounter{{equation}}{{{number}}}" for number in (4, 0)),
+        *(rf"\tag{{{number}}}" for number in (1, 5)),
+    ]
+    assert note.html().count(' id="rotation_matrix"') == 1
 
 
 def test_a_second_language_is_a_folder_of_templates(tmp_path: Path):

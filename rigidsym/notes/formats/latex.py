@@ -51,6 +51,7 @@ def metadata(document: doc.Document) -> str:
 
 
 class _LatexPrinter(NotePrinter):
+    counter = 0  # the number of the last equation, as TeX counts them
     words = staticmethod(escape)
     width = _LINE
     beside_number = PAGE
@@ -82,20 +83,24 @@ class _LatexPrinter(NotePrinter):
     def equation(self, equation: doc.Equation) -> str:
         layout, label = self.displays[equation], self.label(equation.label)
         lines = [announced] if (announced := self.announced(equation)) else []
-        numbers = [e.number or 0 for e in self.document.equations]
-        if equation.number and equation.number - 1 not in (0, *numbers):
-            # the numbers of a theory leave some out, and TeX counts the equations
-            lines.append(rf"\setcounter{{equation}}{{{equation.number - 1}}}")
+        is_first = bool(equation.number and equation.label)
+        tag = rf"\tag{{{equation.number}}}" if equation.number else ""
+        if is_first:
+            tag = rf"\numbered{{{label}}}"
+            # a theory leaves numbers out, a style may change the order, and TeX counts
+            if equation.number != self.counter + 1:
+                lines.append(rf"\setcounter{{equation}}{{{equation.number - 1}}}")
+            self.counter = equation.number
         if layout.lines > _TALL:
             # lines between which a page may end, which a box would keep together
             environment = layout.environment.replace("ed", "*")  # align* for aligned
             lines += [rf"{{\freely\begin{{{environment}}}", layout.inside]
-            lines += [rf"\numbered{{{label}}}"] if equation.number else []
+            lines += [tag] if tag else []
             lines.append(rf"\end{{{environment}}}}}")
-        elif equation.number:
+        elif is_first:
             lines += [rf"\begin{{resultof}}{{{label}}}", layout.text, r"\end{resultof}"]
         else:
-            lines.append(f"\\[\n{layout.text}\n\\]")
+            lines.append(f"\\[\n{layout.text}{tag}\n\\]")
         remarks = " ".join(f"{claim}." for claim in self.claims(equation))
         function = _typed(equation.function) if equation.function else ""
         if remarks or function:
