@@ -109,28 +109,24 @@ class Composer:
         """The note, as a template orders its sections."""
         sections = list(sections_of(name, self.letters, **self.facts()))
         byline = [block for section in sections if not section.title for block in section.blocks]
-        if not self.is_audit:  # a lecture leaves out that identities were verified
-            sections = [s._replace(blocks=tuple(map(_without_proofs, s.blocks))) for s in sections]
         labels: set[str] = set()
 
-        def labelled_once(block: doc.NoteBlock) -> doc.NoteBlock:
-            """An equation that is printed again has its number, and no label."""
-            if isinstance(block, doc.Equation) and block.label:
-                if block.label in labels:
-                    return replace(block, label="")
-                labels.add(block.label)
-            return block
+        def finished(block: doc.NoteBlock) -> doc.NoteBlock:
+            """An equation that is printed again keeps its number, and the first has the label."""
+            if not isinstance(block, doc.Equation):
+                return block
+            label = "" if block.label in labels else block.label
+            labels.add(label)
+            # a lecture leaves out that identities were verified
+            return replace(block, label=label, proved=block.proved if self.is_audit else ())
 
+        sections = [s._replace(blocks=tuple(map(finished, s.blocks))) for s in sections]
         return doc.Document(
             name=self.derivation.name,
             title=title_of(self.derivation, self.letters),
             subtitle="" if is_body_alone(self.derivation) else self.derivation.subject,
             letters=self.letters,
-            sections=tuple(
-                s._replace(blocks=tuple(map(labelled_once, s.blocks)))
-                for s in sections
-                if s.title and s.blocks
-            ),
+            sections=tuple(s for s in sections if s.title and s.blocks),
             byline=tuple(
                 text_of(block.text) for block in byline if isinstance(block, doc.Paragraph)
             ),
@@ -358,10 +354,6 @@ class Composer:
             for proof in proofs:
                 once.setdefault((proof.claim, proof.status), (reference, proof))
         return sorted(once.values(), key=lambda pair: numbers[pair[0].label])
-
-
-def _without_proofs(block: doc.NoteBlock) -> doc.NoteBlock:
-    return replace(block, proved=()) if isinstance(block, doc.Equation) else block
 
 
 def _call(step: Step) -> str:

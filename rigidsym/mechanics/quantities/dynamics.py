@@ -21,7 +21,7 @@ from rigidsym.models.rotation import SOURCES
 ENERGY = formula("E")
 MOTION = "motion"  # section of the note
 DRIVING = formula(r"\frac{\partial V}{\partial t}")
-_TREE, _EULER, _FREE = "tree", "euler", "no_potential"  # traits
+_TREE, _EULER, _FREE, _UNFORCED = "tree", "euler", "no_potential", "unforced"  # traits
 TORQUE = r"\I'\,\dot\Om' + \Om'\times\I'\,\Om'"  # that a motion takes, by Euler's equations
 _LAGRANGE = r"\frac{d}{dt}\frac{\partial {T}}{\partial\dot\q} - \frac{\partial {T}}{\partial\q} = "
 _ENERGY: dict[str, Any] = {"unit": "J", "shape": "scalar", "section": MOTION}
@@ -29,12 +29,14 @@ _VECTOR: dict[str, Any] = {"shape": "vector", "section": MOTION}
 _BY_RATES: dict[str, Any] = {**_VECTOR, "inputs": ("q", "q_dot")}
 
 
-def _of_kinetic(claim: str, residual: Callable[[Any, Any], Any], **tree: Any) -> dict[str, Any]:
+def _of_kinetic(
+    claim: str, residual: Callable[[Any, Any], Any], *variants: Any, **tree: Any
+) -> dict[str, Any]:
     """A law about the kinetic energy, T of a tree and E_R of one body, and what a tree changes."""
     of_tree = law(tree.pop("of_tree", claim).replace("{T}", "T"), residual)
     return {
         "laws": (law(claim.replace("{T}", "E_R"), residual),),
-        "variants": (when(_TREE, laws=(of_tree,), **tree),),
+        "variants": (*variants, when(_TREE, laws=(of_tree,), **tree)),
     }
 
 
@@ -94,8 +96,8 @@ energy = Quantity(
             reason="power_of_torques",
         ),
         when(_EULER, "driven", laws=_has_power(r"\Om'^T\,\N' + #1")),
-        when("unforced", laws=_has_power("0"), reason="constant_energy"),
-        when("unforced", "driven", laws=_has_power("#1"), reason="driven_energy"),
+        when(_UNFORCED, laws=_has_power("0"), reason="constant_energy"),
+        when(_UNFORCED, "driven", laws=_has_power("#1"), reason="driven_energy"),
     ),
 )
 
@@ -146,6 +148,12 @@ bias_vector = Quantity(
     ),
 )
 
+
+def _is_solved(forces: str) -> tuple[Law, ...]:
+    claim = rf"\M\ddot\q + \h = {forces}"
+    return (law(claim, lambda k, x: k.mass_matrix @ x[0] - k.needed.scale(x[1])),)
+
+
 accelerations = Quantity(
     **_BY_RATES,
     symbol=formula(r"\ddot\q"),
@@ -153,10 +161,13 @@ accelerations = Quantity(
     definition=formula(r"\M^{-1}\left(\Q - \h\right)"),
     source=SOURCES["Goldstein 1.4"],
     value=lambda k: k.solved,
-    laws=(law(r"\M\ddot\q + \h = \Q", lambda k, x: k.mass_matrix @ x[0] - k.needed.scale(x[1])),),
+    laws=_is_solved(r"\Q"),
     reason="solved",
     is_result=True,
-    variants=(when(_TREE, reason="factorised"),),
+    variants=(
+        when(_UNFORCED, definition=formula(r"-\M^{-1}\h"), laws=_is_solved(r"\mathbf{0}")),
+        when(_TREE, reason="factorised"),
+    ),
 )
 
 hamiltonian = Quantity(

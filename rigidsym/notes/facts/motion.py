@@ -36,6 +36,17 @@ class MotionFacts:
         return any(step.quantity.name == "torque_body" for step in self.derivation.steps)
 
     @property
+    def torque(self) -> sp.Matrix | None:
+        """N′ beside the potential, (3, 1)."""
+        return sp.Matrix(self.forces.torque) if any(self.forces.torque) else None
+
+    @property
+    def generalised(self) -> sp.Matrix | None:
+        """Q beside the potential and the torque, (n, 1)."""
+        forces = [self.forces.generalised.get(q, 0) for q in self.derivation.model.coordinates]
+        return sp.Matrix(forces) if any(forces) else None
+
+    @property
     def are_proved(self) -> bool:
         return all(integral.proof.is_exact for integral in self.derivation.first_integrals)
 
