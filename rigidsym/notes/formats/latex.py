@@ -83,14 +83,15 @@ class _LatexPrinter(NotePrinter):
     def equation(self, equation: doc.Equation) -> str:
         layout, label = self.displays[equation], self.label(equation.label)
         lines = [announced] if (announced := self.announced(equation)) else []
-        is_first = bool(equation.number and equation.label)
-        tag = rf"\tag{{{equation.number}}}" if equation.number else ""
+        number = equation.number or 0
+        is_first = bool(number and equation.label)
+        tag = rf"\tag{{{number}}}" if number else ""
         if is_first:
             tag = rf"\numbered{{{label}}}"
             # a theory leaves numbers out, a style may change the order, and TeX counts
-            if equation.number != self.counter + 1:
-                lines.append(rf"\setcounter{{equation}}{{{equation.number - 1}}}")
-            self.counter = equation.number
+            if number != self.counter + 1:
+                lines.append(rf"\setcounter{{equation}}{{{number - 1}}}")
+            self.counter = number
         if layout.lines > _TALL:
             # lines between which a page may end, which a box would keep together
             environment = layout.environment.replace("ed", "*")  # align* for aligned
