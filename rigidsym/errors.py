@@ -99,7 +99,7 @@ class Defect(RigidsymError):
     """A proved claim that is false at a point: a mistake in rigidsym, not in its use."""
 
 
-class QuantityError(RigidsymError):
+class QuantityError(RigidsymError, AttributeError):
     """An unknown quantity, or one that the derivation does not contain."""
 
     exit_code: ClassVar[int] = 2

@@ -18,7 +18,7 @@ from rigidsym.kernels.module import KernelModule as KernelModule, generate
 from rigidsym.mechanics.derivation import Derivation, Proof
 from rigidsym.mechanics.derive import derive as derivation_of
 from rigidsym.mechanics.prove import identity
-from rigidsym.mechanics.quantities.catalogue import NAMES
+from rigidsym.mechanics.quantities.catalogue import NAMES, check_quantity
 from rigidsym.models.library import rotation_from
 from rigidsym.models.rotation import RotationModel
 from rigidsym.system.processes import rare_collections, time_limit
@@ -46,6 +46,12 @@ class Motion(Derivation):
         count = sum(not proof.is_exact for proof in self.proofs)
         names = ", ".join(step.quantity.name for step in self.steps)
         return f"<Motion {self.name}, {f'{count} unproved' if count else 'proved'}: {names}>"
+
+    def __getattr__(self, name: str) -> Any:
+        """A quantity. Raises QuantityError, which is an AttributeError, with what it needs."""
+        if name in NAMES:
+            check_quantity(name, body=self.body, forces=self.forces)
+        return super().__getattr__(name)
 
     def latex(self, quantity: str) -> str:
         """The equation of one quantity in LaTeX; raises QuantityError for an unknown one."""

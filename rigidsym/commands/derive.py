@@ -23,11 +23,14 @@ from rigidsym.pipeline import PDF, Output, integrated, motion_of
 from rigidsym.spec.derivation_spec import DerivationSpec, spec_for
 from rigidsym.system.files import write_bytes
 from rigidsym.system.processes import in_processes
+from rigidsym.system.resources import names
 
 
 @make("derive", **CHOICES)
 def command(rotation: str, **options: Any) -> None:
     """Derive one rotation, show the result, and write its kernels and note."""
+    if rotation.endswith(".toml") or rotation in names("derivations", ".toml"):
+        raise click.UsageError(f"{rotation} is a derivation file; use `rigidsym run {rotation}`")
     spec = applied(options, spec_for(rotation, **of_rotation(options)))
     if options["format"] is None:
         produce([spec], options)

@@ -152,7 +152,7 @@ class ColumnNames:
             if len(columns) > 1:
                 same = ", ".join(self.names[k] for k in columns)
                 raise DataError(
-                    f"two columns are named {plain(name)}: {same}; --columns renames them"
+                    f"two columns are named {plain(name)}: {same}; `columns` renames them"
                 )
             if columns:
                 return columns[0]
@@ -179,7 +179,7 @@ class ColumnNames:
             return conversion(stated, expected)
         except DataError as error:
             raise DataError(
-                f"column {self.names[column]}: {error}; --columns gives it another name and unit"
+                f"column {self.names[column]}: {error}; `columns` gives it another name and unit"
             ) from None
 
 
@@ -196,7 +196,7 @@ def names_for(
         return None if former is None else tuple(former)
     if len(names) != width:
         raise DataError(
-            f"{counted(width, 'column')}, but {counted(len(names), 'name')} in --columns; "
+            f"{counted(width, 'column')}, but {counted(len(names), 'name')} in `columns`; "
             "expected one name a column, in order, and - for a column to leave out"
         )
     if former is None:

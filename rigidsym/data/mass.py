@@ -239,8 +239,8 @@ def _columns(table: Table, names: Sequence[str] | None) -> tuple[list[int], Arra
     if named is None:
         if table.width not in (3, 4):
             raise BodyError(
-                f"expected 3 columns (x, y, z) or 4 (m, x, y, z), got {table.width}; --columns "
-                "names them"
+                f"expected 3 columns (x, y, z) or 4 (m, x, y, z), got {table.width}; "
+                "`columns` names them"
             )
         named = ("m", *_AXES)[4 - table.width :]
     header = ColumnNames(named)
@@ -248,7 +248,7 @@ def _columns(table: Table, names: Sequence[str] | None) -> tuple[list[int], Arra
     columns = [column for column in (*axes, mass) if column is not None]
     if missing := [name for name, column in zip(_AXES, axes, strict=True) if column is None]:
         lacking = f"no column {', '.join(missing)} among {header.listed}"
-        raise BodyError(f"{lacking}; --columns names the columns in order")
+        raise BodyError(f"{lacking}; `columns` names the columns in order")
     others = [name for k, name in enumerate(header.plain) if k not in columns]
     if mass is None and (near := get_close_matches("mass", others, n=1)):
         raise BodyError(f"no column m or mass among {header.listed}; is {near[0]} the mass?")

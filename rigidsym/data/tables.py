@@ -280,7 +280,7 @@ class TextTable(Table):
         with self._open() as file:
             start = file.read(4096)
             kinds = (kind for begin, kind in _OTHER_KINDS.items() if start.startswith(begin))
-            kind = next(kinds, "no text" if b"\0" in start else None)
+            kind = next(kinds, "not a text file" if b"\0" in start else None)
             if kind is not None:
                 raise DataError(f"{path} is {kind}; expected text in UTF-8, NPY or Parquet")
             file.seek(0)

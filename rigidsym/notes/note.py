@@ -94,6 +94,6 @@ def check_style(style: str) -> str:
     except (FileNotFoundError, ValueError):
         names = ", ".join(resources.STYLES)
         raise ModelError(
-            f"no style {style!r}: expected {names}, or your own template {name} (--templates DIR)"
+            f"no style {style!r}: expected {names}, or a template {name} of your own"
         ) from None
     return style

@@ -28,7 +28,6 @@ _OF_BODIES = (
     formula(r"#1^{\mathsf T}\mathbf{I}'\,#1 = 1", _BODY_POSITION),
     formula(r"\mathbf{M}\,\ddot{\mathbf{q}} + \mathbf{h} = \mathbf{Q}"),
     formula(r"\mathbf{M}\,\ddot{\mathbf{q}} + \mathbf{h} = \mathbf{0}"),
-    formula(r"\mathbf{Q}"),
     formula(r"\mathbf{N}'"),
     POINT,
     DIRECTION,

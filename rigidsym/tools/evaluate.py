@@ -325,7 +325,7 @@ def _matched(
     if named is None and table.width != len(components):
         raise DataError(
             f"{counted(table.width, 'column')} without names: expected {len(components)} "
-            f"({', '.join(name for name, _ in components)}); or name them with --columns"
+            f"({', '.join(name for name, _ in components)}); or name them with `columns`"
         )
     header = ColumnNames(named or [name for name, _ in components])
     used = [*range(table.width)] if named is None else _by_name(inputs, header)
@@ -365,7 +365,7 @@ def _by_name(arguments: Sequence[_Input], header: ColumnNames) -> list[int]:
             f"no column {', '.join(missing)} among {header.listed}; "
             f"{'without rates, --quantity rotation_matrix gives the attitude; ' * lacks_rates}"
             f"{same * (not constants.isdisjoint(missing))}"
-            "if the file names them otherwise, --columns names all its columns, in order, or "
+            "if the file names them otherwise, `columns` names all its columns, in order, or "
             "--angles the coordinates, such as `--angles yaw,pitch,roll`"
         )
     return columns

@@ -118,6 +118,8 @@ def test_quantities_that_there_are_not_are_refused():
         rs.derive("z(phi) x(theta)", only="rates_from_angular_velocity_space")
     with pytest.raises(AttributeError, match="did you mean angular_velocity_body"):
         rs.derive("ZXZ").anglar_velocity_body  # noqa: B018
+    with pytest.raises(AttributeError, match="no quantity rotational_energy; it needs a body"):
+        rs.derive("ZXZ").rotational_energy  # noqa: B018
 
 
 # Conversions beside them

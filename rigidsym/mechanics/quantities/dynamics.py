@@ -29,9 +29,7 @@ _VECTOR: dict[str, Any] = {"shape": "vector", "section": MOTION}
 _BY_RATES: dict[str, Any] = {**_VECTOR, "inputs": ("q", "q_dot")}
 
 
-def _of_kinetic(
-    claim: str, residual: Callable[[Any, Any], Any], *variants: Any, **tree: Any
-) -> dict[str, Any]:
+def _of_kinetic(claim: str, residual: Any, *variants: Any, **tree: Any) -> dict[str, Any]:
     """A law about the kinetic energy, T of a tree and E_R of one body, and what a tree changes."""
     of_tree = law(tree.pop("of_tree", claim).replace("{T}", "T"), residual)
     return {

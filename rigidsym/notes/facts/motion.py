@@ -36,15 +36,10 @@ class MotionFacts:
         return any(step.quantity.name == "torque_body" for step in self.derivation.steps)
 
     @property
-    def torque(self) -> sp.Matrix | None:
-        """N′ beside the potential, (3, 1)."""
-        return sp.Matrix(self.forces.torque) if any(self.forces.torque) else None
-
-    @property
-    def generalised(self) -> sp.Matrix | None:
-        """Q beside the potential and the torque, (n, 1)."""
+    def applied(self) -> list[sp.Matrix | None]:
+        """The torque N′, (3, 1), and Q beside it, (n, 1), as they are given; None for no force."""
         forces = [self.forces.generalised.get(q, 0) for q in self.derivation.model.coordinates]
-        return sp.Matrix(forces) if any(forces) else None
+        return [sp.Matrix(given) if any(given) else None for given in (self.forces.torque, forces)]
 
     @property
     def are_proved(self) -> bool:

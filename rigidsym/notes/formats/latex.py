@@ -83,15 +83,12 @@ class _LatexPrinter(NotePrinter):
     def equation(self, equation: doc.Equation) -> str:
         layout, label = self.displays[equation], self.label(equation.label)
         lines = [announced] if (announced := self.announced(equation)) else []
-        number = equation.number or 0
-        is_first = bool(number and equation.label)
-        tag = rf"\tag{{{number}}}" if number else ""
-        if is_first:
-            tag = rf"\numbered{{{label}}}"
-            # a theory leaves numbers out, a style may change the order, and TeX counts
-            if number != self.counter + 1:
-                lines.append(rf"\setcounter{{equation}}{{{number - 1}}}")
-            self.counter = number
+        number, is_first = equation.number or 0, bool(equation.number and equation.label)
+        tag = rf"\numbered{{{label}}}" if is_first else rf"\tag{{{number}}}" if number else ""
+        # a theory leaves numbers out, a style may change the order, and TeX counts
+        if is_first and number != self.counter + 1:
+            lines.append(rf"\setcounter{{equation}}{{{number - 1}}}")
+        self.counter = number if is_first else self.counter
         if layout.lines > _TALL:
             # lines between which a page may end, which a box would keep together
             environment = layout.environment.replace("ed", "*")  # align* for aligned

@@ -151,7 +151,7 @@ def by_width(width: int) -> Columns:
     if width not in _WITHOUT_HEADER:
         widths = "; ".join(f"{w} ({', '.join(parts)})" for w, parts in _WITHOUT_HEADER.items())
         names = f"{counted(width, 'column')} without names"
-        raise SampleError([f"{names}: expected {widths}; or name them with --columns"])
+        raise SampleError([f"{names}: expected {widths}; or name them with `columns`"])
     columns = iter(range(width))
     parts = _WITHOUT_HEADER[width]
     return Columns({part: [next(columns) for _ in range(SIZES[part])] for part in parts})
@@ -197,7 +197,7 @@ def by_name(names: Sequence[str]) -> Columns:
         lacking = ", ".join(missing)
         lacking = lacking.replace(", ".join(MATRICES[0]), "r11, ..., r33 or qw, qx, qy, qz")
         lacking = f"no column {lacking} among {header.listed}"
-        faults.append(f"{lacking}; --columns names the columns in order")
+        faults.append(f"{lacking}; `columns` names the columns in order")
     if faults:
         raise SampleError(faults)
 
