@@ -148,15 +148,14 @@ def figure_with(name: str, drawing: Drawing, letters: Letters, **facts: Any) -> 
 
 
 def _blocks(chunk: str, marks: _Marks) -> Iterator[doc.NoteBlock]:
+    thing = marks.things[ord(chunk) - _FIRST] if re.fullmatch(_MARK, chunk) else None
     if chunk.startswith("$$"):
         inside = chunk.strip("$").strip()
         equations = tuple(_equation(part, marks) for part in inside.split(r"\qquad"))
         yield doc.EquationRow(equations) if len(equations) > 1 else equations[0]
     elif chunk.startswith(("|", _TABLE)):
         yield _table(chunk, marks)
-    elif re.fullmatch(_MARK, chunk) and isinstance(
-        thing := marks.things[ord(chunk) - _FIRST], _BLOCKS
-    ):
+    elif isinstance(thing, _BLOCKS):
         yield from thing if isinstance(thing, list) else (thing,)
     else:
         yield doc.Paragraph(_text(chunk, marks))

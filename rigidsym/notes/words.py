@@ -26,9 +26,6 @@ _OF_BODIES = (
     _BODY_POSITION,
     formula(r"|#1\times(#2-#3)|", DIRECTION, _BODY_POSITION, POINT),
     formula(r"#1^{\mathsf T}\mathbf{I}'\,#1 = 1", _BODY_POSITION),
-    formula(r"\mathbf{M}\,\ddot{\mathbf{q}} + \mathbf{h} = \mathbf{Q}"),
-    formula(r"\mathbf{M}\,\ddot{\mathbf{q}} + \mathbf{h} = \mathbf{0}"),
-    formula(r"\mathbf{N}'"),
     POINT,
     DIRECTION,
     formula(r"\c"),
@@ -113,6 +110,4 @@ def number(value: float) -> str:
 
 def announcement(equation: Equation, is_listed: bool) -> Text:
     """What a reader has to be told of the way an equation is set, before it; often nothing."""
-    if is_listed:
-        return said("entries", equal(*equation.sides)).text
-    return ()
+    return said("entries", equal(*equation.sides)).text if is_listed else ()

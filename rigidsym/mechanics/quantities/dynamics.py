@@ -29,12 +29,12 @@ _VECTOR: dict[str, Any] = {"shape": "vector", "section": MOTION}
 _BY_RATES: dict[str, Any] = {**_VECTOR, "inputs": ("q", "q_dot")}
 
 
-def _of_kinetic(claim: str, residual: Any, *variants: Any, **tree: Any) -> dict[str, Any]:
+def _of_kinetic(claim: str, residual: Callable[[Any, Any], Any], **tree: Any) -> dict[str, Any]:
     """A law about the kinetic energy, T of a tree and E_R of one body, and what a tree changes."""
     of_tree = law(tree.pop("of_tree", claim).replace("{T}", "T"), residual)
     return {
         "laws": (law(claim.replace("{T}", "E_R"), residual),),
-        "variants": (*variants, when(_TREE, laws=(of_tree,), **tree)),
+        "variants": (when(_TREE, laws=(of_tree,), **tree),),
     }
 
 
@@ -147,11 +147,6 @@ bias_vector = Quantity(
 )
 
 
-def _is_solved(forces: str) -> tuple[Law, ...]:
-    claim = rf"\M\ddot\q + \h = {forces}"
-    return (law(claim, lambda k, x: k.mass_matrix @ x[0] - k.needed.scale(x[1])),)
-
-
 accelerations = Quantity(
     **_BY_RATES,
     symbol=formula(r"\ddot\q"),
@@ -159,12 +154,13 @@ accelerations = Quantity(
     definition=formula(r"\M^{-1}\left(\Q - \h\right)"),
     source=SOURCES["Goldstein 1.4"],
     value=lambda k: k.solved,
-    laws=_is_solved(r"\Q"),
+    laws=(law(r"\M\ddot\q + \h = \Q", lambda k, x: k.mass_matrix @ x[0] - k.needed.scale(x[1])),),
     reason="solved",
     is_result=True,
     variants=(
-        when(_UNFORCED, definition=formula(r"-\M^{-1}\h"), laws=_is_solved(r"\mathbf{0}")),
         when(_TREE, reason="factorised"),
+        when(_UNFORCED, reason="solved_without_forces", definition=formula(r"-\M^{-1}\h")),
+        when(_TREE, _UNFORCED, reason="factorised_without_forces"),
     ),
 )
 
