@@ -2,7 +2,7 @@
 
 import sys
 
-from rigidsym.commands.cli import run
+from rigidsym_command import main
 
 if __name__ == "__main__":
-    sys.exit(run())
+    sys.exit(main("run"))

@@ -125,6 +125,13 @@ def test_a_closed_pipe_is_no_error():
     assert (done.returncode, done.stderr) == (0, b"")
 
 
+@pytest.mark.parametrize("module", ["lazy_loader", "click"])  # of the package, of the command
+def test_an_interrupt_among_the_imports_is_no_traceback(module, tmp_path):
+    (tmp_path / f"{module}.py").write_text("raise KeyboardInterrupt")
+    done = subprocess.run(RIGIDSYM, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (130, "rigidsym: interrupted\n")
+
+
 def test_an_interrupt_leaves_whole_files_and_says_so(tmp_path):
     turned = '["ZXZ", "zyx", "XYZ", "xyz", "YXY", "yxy", "XZX", "xzx"]'
     asked = '[output]\nquantities = ["rotation_matrix"]\nnote = ["md"]\n'

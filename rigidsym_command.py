@@ -1,0 +1,13 @@
+"""The `rigidsym` command starts here, beside the package, whose imports an interrupt may hit."""
+
+import sys
+from importlib import import_module
+
+
+def main(entry: str = "main") -> int:
+    """Call a function of `rigidsym.commands.cli`; returns its exit code."""
+    try:
+        return int(getattr(import_module("rigidsym.commands.cli"), entry)())
+    except KeyboardInterrupt:
+        sys.stderr.write("rigidsym: interrupted\n")
+        return 130  # as of a process that SIGINT ends
