@@ -365,6 +365,14 @@ class TextTable(Table):
         has_points = any(column.str.contains(".", literal=True).any() for column in texts)
         has_commas = self.separator != "," and not has_points
         numbers = [self._numbers(column, has_commas=has_commas) for column in texts]
+        if has_commas:  # kept numbers have points too, since commas separate the columns written
+            others = [
+                column.zip_with(
+                    self._numbers(column, has_commas=True).is_null(),
+                    column.str.replace(",", ".", literal=True),
+                )
+                for column in others
+            ]
         for k, column, values in zip(columns, texts, numbers, strict=True):
             if not values.has_nulls():
                 continue

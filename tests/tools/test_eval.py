@@ -84,6 +84,12 @@ def test_each_kind_of_file_to_each(motion, table, kernel, tmp_path, source, targ
             "angular_velocity_body_1 [deg/s],",
             [10, 0, 0],
         ),
+        (
+            "ZYX --angles a,b,c --quantity quaternion --keep t,state",  # decimal commas
+            "t;a;b;c;state\n0,5;0,0;0;2;1\n",
+            "t,state,qw",
+            [0.5, 1, *ABOUT_X],
+        ),
         (f"{LAST} from_quaternion", f"{WXYZ}\n.5,.1,.7,.5\n", "x,y,z,w\n", [0.1, 0.7, 0.5, 0.5]),
         (f"{LAST} from_quaternion", "z,y,x,w\n.5,.7,.1,.5\n", "x,y,z,w\n", [0.1, 0.7, 0.5, 0.5]),
         (f"{LAST} quaternion", "x,y,z,w\n.1,.7,.5,.5\n", "qx,qy,qz,qw\n", [0.1, 0.7, 0.5, 0.5]),
