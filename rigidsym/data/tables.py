@@ -366,13 +366,7 @@ class TextTable(Table):
         has_commas = self.separator != "," and not has_points
         numbers = [self._numbers(column, has_commas=has_commas) for column in texts]
         if has_commas:  # kept numbers have points too, since commas separate the columns written
-            others = [
-                column.zip_with(
-                    self._numbers(column, has_commas=True).is_null(),
-                    column.str.replace(",", ".", literal=True),
-                )
-                for column in others
-            ]
+            others = [c.str.replace(r"^(-?\d*),(\d+(e-?\d+)?)$", "$1.$2") for c in others]
         for k, column, values in zip(columns, texts, numbers, strict=True):
             if not values.has_nulls():
                 continue

@@ -33,14 +33,11 @@ from rigidsym.system import resources
 
 TEMPLATE = "page/page.html.jinja"
 SCRIPTS = ("figure", "motion", "main")  # each uses those before it
-MOST_BYTES = 400_000
 
 _SHORTEST, _LONGEST = 30.0, 120.0  # seconds of a motion
 _DEGREE = pi / 180
-_UNITS = {
-    "energy": "J",
-    "angular_momentum_squared": "kg² m⁴/s²",
-}  # of first integrals that are no momenta
+# of first integrals that are no momenta
+_UNITS = {"energy": "J", "angular_momentum_squared": "kg² m⁴/s²"}
 _OF_SCRIPT = ("kind", "place", "start", "factor", "period", "high", "step")
 
 
@@ -77,14 +74,13 @@ def print_page(
     ]
     in_degrees = any(control["unit"] == "°" for control in controls)
     printer = HtmlPrinter(document)
-    seconds = examples[0].time if examples else 0.0
     values = [_value(step, in_degrees=in_degrees) for step in functions.live]
     factors = {value["name"]: value["factor"] for value in values}
     factors |= {"first_integrals": 1} if functions.integrals else {}
     data: dict[str, Any] = {
         "scene": stage_of(model, letters),
         **body_of(derivation, functions),
-        "last": min(max(_SHORTEST, seconds), _LONGEST),
+        "last": min(max(_SHORTEST, examples[0].time if examples else 0.0), _LONGEST),
         "controls": [{key: control[key] for key in _OF_SCRIPT} for control in controls],
         "parameters": [constants.get(symbol, 0.0) for symbol in functions.constants],
         "inputs": {k.name: [a.name for a in k.arguments] for k in functions.kernels},
@@ -92,12 +88,11 @@ def print_page(
         "values": factors,
         "passive": model.passive,
     }
-    names = ", ".join(data["inputs"])
     literal = json.dumps(data, ensure_ascii=False, separators=(",", ":"))
     parts = [
         "// --- the functions of the derivation: every number of this page comes from them\n",
         javascript.bare(functions.kernels),
-        f"\nconst kernels = {{ {names} }};\nconst page = {literal};\n",
+        f"\nconst kernels = {{ {', '.join(data['inputs'])} }};\nconst page = {literal};\n",
         *(resources.text("templates", f"page/{name}.js") for name in SCRIPTS),
     ]
     # Nothing in the script can end its element. In a string of JavaScript `<\/` is `</`; HTML would

@@ -47,6 +47,7 @@ FILES = {
 OTHERS = (*PARAMETRISATIONS, *CHAINS, *FILES)
 
 
+MOST_BYTES = 400_000  # of a page
 ODD = "</title></script><script>document.title='owned'</script><img src=x onerror=alert(1)> & \"'"
 
 

@@ -181,6 +181,17 @@ def test_captions_tell_parameters_and_initial_values_in_common_and_apart():
     )
 
 
+def test_polhodes_are_closed_curves_of_constant_momentum_and_energy():
+    moments = np.array([1, 1.4, 2])
+    for start in ([0.01, 1, 0.01], [0.01, -1, -0.01], [1, 0.5, 0], [0, 0.1, -1], [0, 1, 0]):
+        start = np.array(start) / np.linalg.norm(start)
+        curve = motion_picture.polhode(moments, start)
+        assert np.allclose(curve[0], curve[-1], atol=1e-12)
+        assert np.allclose(curve**2 @ moments, moments @ start**2)
+        assert np.allclose(np.linalg.norm(curve, axis=1), 1)
+        assert np.linalg.norm(curve - start, axis=1).min() < 0.02
+
+
 def test_what_is_behind_a_surface_is_dashed():
     """From above, the farther half of a level circle is higher in the picture."""
     level = on_ellipsoid([circle(np.eye(3)[2], 0.3)], [], np.ones(3), [])

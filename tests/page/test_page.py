@@ -18,7 +18,16 @@ from scipy.spatial.transform import Rotation
 
 import rigidsym as rs
 from helpers.command import call
-from helpers.pages import Elements, carried, faults_of, motion_of, note_in, odd_page, page_of
+from helpers.pages import (
+    MOST_BYTES,
+    Elements,
+    carried,
+    faults_of,
+    motion_of,
+    note_in,
+    odd_page,
+    page_of,
+)
 from helpers.witness import newton_euler
 from rigidsym.models.body import Composite, Part
 from rigidsym.models.solids import SHAPES as SOLIDS, shaped
@@ -27,7 +36,6 @@ from rigidsym.notes.figure.body_drawing import body_drawing
 from rigidsym.notes.figure.body_mesh import BLUE, Shape, lengths_of, meshed, own_shape
 from rigidsym.notes.figure.scene import Camera, camera
 from rigidsym.page.functions import OF_THE_FIGURE
-from rigidsym.page.print_page import MOST_BYTES
 from rigidsym.page.stage import as_data, spinning_top
 from rigidsym.system import resources
 

@@ -12,9 +12,8 @@ import sympy as sp
 
 import rigidsym as rs
 from helpers.browser import Page, chromium
-from helpers.pages import ODD, OTHERS, carried, motion_of, note_in, odd_page, page_of
+from helpers.pages import MOST_BYTES, ODD, OTHERS, carried, motion_of, note_in, odd_page, page_of
 from rigidsym.kernels.lowering.lower import MARGIN
-from rigidsym.page.print_page import MOST_BYTES
 
 pytestmark = [pytest.mark.campaign, pytest.mark.usefixtures("chromium")]
 

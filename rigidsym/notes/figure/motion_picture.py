@@ -17,7 +17,7 @@ from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.models.forces import Example
 from rigidsym.notes.figure.body_mesh import Vector, unit
-from rigidsym.notes.figure.drawing import Drawing, Label, Stroke
+from rigidsym.notes.figure.drawing import Drawing, Label, Named, Stroke, beyond, labelled
 from rigidsym.notes.figure.scene import BODY, Kind, Point, camera
 from rigidsym.simulation.solver import simulate
 from rigidsym.simulation.trajectory import Trajectory
@@ -65,8 +65,10 @@ def motion_picture(derivation: Derivation, letters: Letters) -> MotionPicture | 
     most = None if has_polhodes else _IN_A_ROW  # all polhodes are on one ellipsoid
     motions = [first, *(_motion(derivation, e) for e in forces.examples[1:most])]
     if has_polhodes:
-        both = (_polhodes(motions, letters), _trace(first))
-        return MotionPicture(_in_a_row(both), told=1, polhodes=len(motions))
+        # without forces no direction of space is vertical, unless the file measures θ from it
+        trace = _trace(first, has_bounds="effective_potential" in derived)
+        both = _in_a_row((_polhodes(motions, letters), trace))
+        return MotionPicture(both, told=1, polhodes=len(motions))
     return MotionPicture(_in_a_row(map(_trace, motions)), told=len(motions), polhodes=0)
 
 
@@ -101,20 +103,36 @@ def _polhodes(motions: Sequence[Trajectory], letters: Letters) -> Drawing:
     # With 2E = Σ I_k Ω′_k², the vector of √I_k Ω′_k has the length √(2E): its direction is a point
     # of the unit sphere, and the ellipsoid of energy has semi-axes in proportion to 1/√I_k.
     roots = np.sqrt(motions[0].inertia.diagonal())
-    turning = (roots * motion.angular_velocity_body for motion in motions)
-    paths = [
-        path / np.linalg.norm(path, axis=1, keepdims=True) for path in turning if path[0].any()
-    ]
+    turning = (roots * motion.angular_velocity_body[0] for motion in motions)
+    paths = [polhode(roots**2, unit(start)) for start in turning if start.any()]
     names = [letters.notation.applied(name) for name in BODY]
     return on_ellipsoid(paths, [circle(e, 0.0) for e in np.eye(3)], roots.min() / roots, names)
 
 
-def _trace(motion: Trajectory) -> Drawing:
-    """The trace of the third axis of the body, with the circles that bound its height."""
+def polhode(moments: Vector, start: Vector) -> Vector:
+    """The closed curve (n, 3) through a point of the unit sphere on which Σ I_k u_k² is constant.
+
+    A permanent rotation stays at its point.
+    """
+    # The sum h = L²/2E is between the least and the greatest moment. Above the intermediate one,
+    # the curve encircles the axis c of the greatest moment, else that of the least: with
+    # u_c² = 1 − u_a² − u_b², (I_a − I_c) u_a² + (I_b − I_c) u_b² = h − I_c, an ellipse.
+    if np.abs(np.cross(moments * start, start)).max() < 1e-9 * moments.max():
+        return np.array([start, start])
+    c = moments.argmax() if moments @ start**2 > np.median(moments) else moments.argmin()
+    gaps, axis = moments - moments[c], np.eye(3)[c]
+    squares = np.divide(gaps @ start**2, gaps, where=gaps != 0, out=np.zeros(3))
+    flat = np.sqrt(squares) * circle(axis, 0.0, _SAMPLES - 1)
+    rest = np.sqrt(np.maximum(0.0, 1 - (flat**2).sum(axis=1)))
+    return flat + np.outer(np.copysign(rest, start[c]), axis)
+
+
+def _trace(motion: Trajectory, *, has_bounds: bool = True) -> Drawing:
+    """The trace of the third axis of the body, with circles at its least and greatest height."""
     path = motion.rotation_matrix[:, :, 2]
     low, high = path[:, 2].min(), path[:, 2].max()
     bounds = [low] if high - low < _LOW else [low, high]
-    circles = [circle(np.eye(3)[2], height) for height in (0.0, *bounds)]
+    circles = [circle(np.eye(3)[2], height) for height in (0.0, *(bounds if has_bounds else []))]
     return on_ellipsoid([path], circles, np.ones(3), [formula("z")])
 
 
@@ -138,26 +156,25 @@ def on_ellipsoid(
         for start, end in pairwise(cuts):
             points = _thinned(path[start : end + 1] @ to_picture)
             is_hidden = not is_front[start]
-            is_thin = kind == "guide" or is_hidden
-            yield Stroke(kind, points, is_thin=is_thin, is_hidden=is_hidden)
+            yield Stroke(kind, points, is_thin=kind == "guide" or is_hidden, is_hidden=is_hidden)
 
     strokes = [piece for line in (circle(toward, 0.0), *circles) for piece in pieces("guide", line)]
-    labels = []
+    named: list[Named] = []
     for name, axis in zip(reversed(names), np.eye(3)[::-1], strict=False):
-        foot, tip, beyond = (_point(r * axis @ to_picture) for r in (1.0, _REACH, _REACH + 0.16))
-        strokes.append(Stroke("space", (foot, tip), has_arrow=True))
-        labels.append(Label("space", name, beyond))
+        line = tuple(_point(r * axis @ to_picture) for r in (1.0, _REACH))
+        strokes.append(Stroke("space", line, has_arrow=True))
+        named.append(("space", name, beyond(line)))
     strokes += [piece for path in paths for piece in pieces("body", path)]
-    return Drawing(tuple(strokes), tuple(labels))
+    return Drawing(tuple(strokes), labelled(named, strokes))
 
 
-def circle(normal: Vector, height: float) -> Vector:
+def circle(normal: Vector, height: float, sides: int = _SIDES) -> Vector:
     """The circle (n, 3) of the unit sphere at this height along a normal."""
     # The axis with the smallest component of the normal is the farthest from parallel to it.
     across = unit(np.cross(normal, np.eye(3)[np.abs(normal).argmin()]))
     frame = np.array([normal, across, np.cross(normal, across)])
     radius = max(0.0, 1 - height * height) ** 0.5
-    turns = (2 * pi * k / _SIDES for k in range(_SIDES + 1))
+    turns = (2 * pi * k / sides for k in range(sides + 1))
     return np.array([(height, radius * cos(turn), radius * sin(turn)) for turn in turns]) @ frame
 
 
