@@ -313,10 +313,9 @@ class TextTable(Table):
         """The fields of a line; None if quotes end within a field, or in a later line."""
         mark = self.separator or " "
         try:
-            (row,) = csv.reader([line], delimiter=mark, skipinitialspace=True, strict=True)
+            return next(csv.reader([line], delimiter=mark, skipinitialspace=True, strict=True))
         except csv.Error:
             return None
-        return row
 
     def _numbers(self, texts: Any, *, has_commas: bool) -> Any:
         """Texts as numbers, null if they are none."""
@@ -366,7 +365,7 @@ class TextTable(Table):
         has_commas = self.separator != "," and not has_points
         numbers = [self._numbers(column, has_commas=has_commas) for column in texts]
         if has_commas:  # kept numbers have points too, since commas separate the columns written
-            others = [c.str.replace(r"^(-?\d*),(\d+(e-?\d+)?)$", "$1.$2") for c in others]
+            others = [c.str.replace(r"^([+-]?\d*),(\d+(e[+-]?\d+)?)$", "$1.$2") for c in others]
         for k, column, values in zip(columns, texts, numbers, strict=True):
             if not values.has_nulls():
                 continue
