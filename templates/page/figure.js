@@ -355,9 +355,9 @@ function segmentsOf(lines) {
     points.slice(1).map((end, k) => [points[k], [end[0] - points[k][0], end[1] - points[k][1]]]));
 }
 
-function labelsOf(lines) {
+function labelsOf(lines, rings) {
   const taken = [];
-  const segments = segmentsOf(lines);
+  const segments = segmentsOf([...lines, ...rings]);
   for (const line of lines.filter(({ name }) => name)) {
     const { at, direction } = wishOf(line);
     const letters = [...line.name.normalize("NFD")].filter((letter) => !/\p{M}/u.test(letter));
@@ -447,7 +447,7 @@ function draw(group, pose, camera, { shown, body, omega, omegaName, trace, done,
     ...turns,
     ...(omega ? omegaLines(pose, omega, omegaName, shown.has("sum"), camera) : []),
   ];
-  const labels = labelsOf(lines).map(lettering);
+  const labels = labelsOf(lines, rings).map(lettering);
   const faces = body ? seenFaces(body, pose.frames.at(-1), camera) : [];
   group.replaceChildren(
     ...behind.filter(({ hidden }) => hidden).flatMap(pen),
