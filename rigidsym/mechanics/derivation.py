@@ -117,6 +117,8 @@ class Quantity(NamedTuple):
     inputs: tuple[str, ...] = ()  # the arguments it depends on, by name: "q", "q_dot", ...
     shape: Shape = "matrix"  # the expression of a vector is n x 1, that of a scalar 1 x 1
     frame: Frame | None = None  # of its components
+    # which of "rows" and "columns" are components along axes, and turn with them; None: not stated
+    axes: tuple[str, ...] | None = None
     definition: Formula = NOTHING  # how it follows: C⁻¹(dR/dt Rᵀ)
     source: Citation | None = None
     # a matrix, over a ring or as it is printed, or (matrix, divisor); None if a model has none

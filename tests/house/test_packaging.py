@@ -115,6 +115,8 @@ import rigidsym as rs
 
 chain = rs.derive("z(a) y(b) z(c) x(d) z(e)", ["angular_velocity_squared"])
 assert chain.is_proved and chain.definitions
+for axes in ("XYX", "XYZ"):
+    assert rs.derive(axes, ["angular_velocity_squared"]).is_proved
 motion = rs.derive("ZXZ")
 assert motion.is_proved and "The squares of the components are added." in motion.page()
 assert 'id="angular_velocity_squared-value"' in motion.page()

@@ -15,7 +15,8 @@ import xarray as xr
 from numpy.testing import assert_allclose, assert_array_equal
 
 import rigidsym as rs
-from helpers.target_modules import module
+from helpers.motions import derived
+from helpers.target_modules import INVERSES, module
 
 Q = np.zeros((5, 3))
 WRITE_PROTECTED = np.zeros((5, 3))
@@ -53,6 +54,24 @@ def test_the_sign_of_zero_and_the_error_state_of_the_caller_are_kept():
     with np.errstate(all="raise"):
         module().rotation_matrix(np.full((2, 3), np.inf))
         assert set(np.geterr().values()) == {"raise"}
+
+
+def test_columns_of_the_caller_are_read_where_they_are_and_are_not_written():
+    functions = derived("ZXZ").kernels(conversions=True).load()
+    rows = np.random.default_rng(4).normal(size=(5000, 4))
+    columns = np.asfortranarray(rows)
+    q, omega = columns[:, :3], columns[:, 1:]
+    cases = {"rotation_matrix": [q], INVERSES[2]: [q, omega], "from_quaternion": [columns]}
+    for name, arrays in cases.items():
+        function, twin = (getattr(functions, name + end) for end in ("", "_scalar"))
+        found = function(*arrays)
+        out = np.empty_like(found)
+        assert function(*arrays, out=out) is out
+        assert_array_equal(out, found)
+        some = np.hstack(arrays)[::2499].tolist()
+        expected = np.reshape([twin(*point) for point in some], found[::2499].shape)
+        assert_allclose(found[::2499], expected, rtol=0, atol=1e-12)
+    assert_array_equal(columns, rows)
 
 
 ENDS = """

@@ -8,6 +8,7 @@ from __future__ import annotations
 import pickle
 import re
 from contextlib import suppress
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -15,19 +16,23 @@ import pytest
 import sympy as sp
 
 import rigidsym as rs
+from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.errors import DerivationError, NotARotation, QuantityError, TemplateFault
+from rigidsym.formula.reader import formula
 from rigidsym.mechanics.body import BodyValues
 from rigidsym.mechanics.conversions.conversions import Conversions
-from rigidsym.mechanics.derivation import Proof, phrase, phrases
+from rigidsym.mechanics.derivation import Law, Proof, Quantity, phrase, phrases
 from rigidsym.mechanics.dynamics.lagrange import equations_of_motion
+from rigidsym.mechanics.kinematics import workspace
 from rigidsym.mechanics.kinematics.chain import Chain
-from rigidsym.mechanics.kinematics.workspace import Values
+from rigidsym.mechanics.kinematics.workspace import Renamed, Values, values_of
 from rigidsym.mechanics.mass.bodies import rigid_body
 from rigidsym.mechanics.quantities.catalogue import OF_BODY, QUANTITIES
 from rigidsym.mechanics.quantities.dynamics import DYNAMICS_QUANTITIES, EULER_QUANTITIES
 from rigidsym.mechanics.quantities.kinematics import KINEMATICS
 from rigidsym.models.body import Composite, Part
 from rigidsym.models.forces import Forces
+from rigidsym.models.rotation import Pullback, Turn
 from rigidsym.models.solids import shaped
 from rigidsym.notes.formats.record import record
 
@@ -89,6 +94,46 @@ def test_twice_the_value_of_an_entry_is_refuted_by_each_of_its_laws(name):
             with suppress(DerivationError, NotARotation):
                 work.step(wrong._replace(laws=(law,)))
                 assert law.claim.text == BLIND.get(name)
+
+
+# Euler angles about renamed axes
+
+XYX = rs.EulerAngles("XYX")
+PHI, THETA, PSI = XYX.coordinates
+OBLIQUE = tuple(sp.Matrix([3, 4, 0]) / 5)
+MORE = [  # than turns about coordinate axes
+    rs.chain([replace(XYX.turns[0], components=OBLIQUE), *XYX.turns[1:]]),
+    rs.chain([Turn(axis="zx", angle=PHI, components=OBLIQUE), Turn(axis="z", angle=THETA)]),
+    replace(XYX, constraints=(PHI - PSI,), example=tuple((q, sp.S.One) for q in (PHI, PSI))),
+    replace(XYX, pullback=Pullback(XYX.coordinates, ())),
+    replace(XYX, units=("rad", "", "rad")),
+]
+
+
+def test_only_turns_about_coordinate_axes_share_a_derivation_if_matrices_agree(monkeypatch):
+    for model in MORE:
+        assert type(values_of(model)) is Values
+        assert rs.derive(model).is_proved
+    assert type(values_of(XYX)) is Renamed
+    monkeypatch.setattr(workspace, "_original", lambda *_: (Values(XYX), {}))
+    assert type(values_of(XYX)) is Values
+
+
+def test_an_entry_that_states_no_axes_is_derived_about_the_axes_of_each_model():
+    """Three times the last row of R is no tensor; it ends with cos θ for ZXZ, not for XYX."""
+
+    def residual(k, x):
+        return k.scalar(x.rows[2][2]) - k.codec.column([sp.cos(THETA)])
+
+    rows = Quantity(
+        name="last_rows",
+        symbol=formula(r"\P"),
+        value=lambda k: RingMatrix(k.codec.ring, k.rotation.rows[2:] * 3),
+        laws=(Law(formula(r"\P_{33} = \cos\theta"), residual),),
+    )
+    assert values_of(rs.EulerAngles("ZXZ")).step(rows).proofs[0].is_exact
+    with pytest.raises(DerivationError, match="is false"):
+        values_of(XYX).step(rows)
 
 
 # Quantities by name

@@ -34,7 +34,6 @@ if TYPE_CHECKING:
 def traits_of(model: RotationModel) -> frozenset[str]:
     """What variants of the entries ask of a model."""
     q, angles = model.coordinates, [turn.angle for turn in model.turns]
-    binds = any(condition.has(*q) for condition in model.constraints)
     traits = {
         "passive": model.passive,
         "given": not angles,  # as a matrix, not by turns
@@ -45,7 +44,7 @@ def traits_of(model: RotationModel) -> frozenset[str]:
         "in_order": tuple(angles) == q,
         "wide": len(q) != 3,  # W has no inverse, but perhaps a right inverse
         "vector": bool(model.vector),
-        "bound": binds,
+        "bound": any(condition.has(*q) for condition in model.constraints),
     }
     return frozenset(trait for trait, holds in traits.items() if holds)
 
@@ -116,14 +115,13 @@ class Workspace:
         error = NotARotation if quantity.name == "rotation_matrix" else DerivationError
         for law in quantity.laws:
             residual = law.residual(self, value)
-            divisor = value[1] if isinstance(value, tuple) else None
+            divisors = [*value[1:]] if isinstance(value, tuple) else []
             if isinstance(residual, tuple):
-                residual, divisor = residual
+                residual, *divisors = residual
             if isinstance(residual, sp.MatrixBase):  # in the constants of the body
                 assert self.body is not None
                 proofs.append(identity(residual, law.claim, self.body.name))
             elif residual is not None:
-                divisors = () if divisor is None else (divisor,)
                 proofs.append(self.prove.vanishes(residual, law.claim, *divisors, error=error))
         return tuple(proofs)
 
@@ -159,9 +157,8 @@ class Values(Workspace):
         held = [e for turn in model.turns for e in turn.matrix.flat()] or [*model.matrix]
         if body is not None:
             held += [body.mass, *body.inertia]
-        order = 1 if body else 2
         inputs += [*held, *self._also]
-        return codec_for(inputs, constraints=model.constraints, order=order)
+        return codec_for(inputs, constraints=model.constraints, order=1 if body else 2)
 
     @cached_property
     def one(self) -> RingMatrix:
@@ -242,8 +239,7 @@ class Values(Workspace):
                 # the coordinates are the entries of R: columns are dR/dt of unit velocities
                 skew = [hat(RingMatrix.column(ring, e)) for e in self.one.rows]
                 rates = [s @ rotation if frame == "space" else rotation @ s for s in skew]
-                rows = tuple(rate.entries for rate in rates)
-                self._inverses[frame] = RingMatrix(ring, rows).T, ring.one
+                self._inverses[frame] = RingMatrix.of(ring, (r.entries for r in rates)).T, ring.one
             else:
                 self._inverses[frame] = self.rate_matrix(frame).right_inverse(self.bound)
         return self._inverses[frame]
@@ -281,37 +277,31 @@ class Renamed(Values):
 
     To rename the axes z → x → y → z, in space and in the body, is a rotation P, which permutes
     components. Turns about the renamed axes give P R Pᵀ, hence P Ω, P W and W⁻¹ Pᵀ, and q̇ with
-    the components of Ω renamed. The residuals of their laws have the entries that the ring has
-    reduced to zero, in another order: P R Pᵀ (P R Pᵀ)ᵀ − 1 is P (R Rᵀ − 1) Pᵀ.
+    the components of Ω renamed: `axes` of an entry states which. The residuals of their laws have
+    the entries that the ring has reduced to zero, in another order: P R Pᵀ (P R Pᵀ)ᵀ − 1 is
+    P (R Rᵀ − 1) Pᵀ. An entry that states no `axes` is derived for each model by itself.
     """
 
     def __init__(self, model: RotationModel) -> None:
         super().__init__(model)
-        axes = [AXES.index(turn.axis) for turn in model.turns]
-        self.moves = [(k - axes[0] - 1) % 3 for k in range(3)]  # x, y and z are these before
-        turns = [
-            replace(t, axis=AXES[self.moves[a]]) for t, a in zip(model.turns, axes, strict=True)
-        ]
-        self.original, self._steps = _original(tuple(turns), model.coordinates, model.passive)
-        # All depends on this: R is P R Pᵀ of the original, entry by entry.
-        assert model.matrix == self.original.model.matrix[self.moves, self.moves]
+        first = AXES.index(model.turns[0].axis)
+        self.moves = [(k - first - 1) % 3 for k in range(3)]  # x, y and z are these before
+        axes = {AXES[k]: AXES[m] for k, m in enumerate(self.moves)}
+        turns = tuple(replace(turn, axis=axes[turn.axis]) for turn in model.turns)
+        self.original, self._steps = _original(turns, model.coordinates, model.passive)
 
     def step(self, entry: Quantity) -> Step | None:
+        if entry.axes is None:
+            return super().step(entry)
         if entry.name not in self._steps:
             self._steps[entry.name] = self.original.step(entry)
         step, moves = self._steps[entry.name], self.moves
         if step is None or moves == [0, 1, 2]:
             return step
-        expression = step.expression
-        if entry.vectors == "rates":
-            assert entry.frame is not None
-            omega = self.arguments[f"omega_{entry.frame.name}"].symbols
-            expression = expression.xreplace({omega[m]: omega[k] for k, m in enumerate(moves)})
-        elif entry.vectors != "inverse":
-            expression = expression[moves, :]
-        if entry.shape == "matrix" and entry.vectors != "rate_matrix":
-            expression = expression[:, moves]
-        return replace(step, expression=expression)
+        omegas = (self.arguments[f"omega_{frame}"].symbols for frame in ("space", "body"))
+        names = {omega[m]: omega[k] for omega in omegas for k, m in enumerate(moves)}
+        rows, columns = (moves if n in entry.axes else slice(None) for n in ("rows", "columns"))
+        return replace(step, expression=step.expression.xreplace(names)[rows, columns])
 
 
 @lru_cache(maxsize=32)
@@ -326,8 +316,15 @@ def _original(
 
 def values_of(model: RotationModel) -> Values:
     """The workspace of a model; that of Euler angles is shared with those about renamed axes."""
-    is_euler = "".join(turn.axis for turn in model.turns) in AXIS_SEQUENCES
-    return Renamed(model) if is_euler and "by_turns" in traits_of(model) else Values(model)
+    # Only turns are shared: a model with conditions or units of its own is derived by itself.
+    own = model.constraints, model.pullback, model.units, *(t.components for t in model.turns)
+    is_euler = not any(own) and "".join(turn.axis for turn in model.turns) in AXIS_SEQUENCES
+    if is_euler and "by_turns" in traits_of(model):
+        renamed = Renamed(model)
+        # All depends on this: R is P R Pᵀ of the original, entry by entry.
+        if model.matrix == renamed.original.model.matrix[renamed.moves, renamed.moves]:
+            return renamed
+    return Values(model)
 
 
 # R, Ω and the rates by the vector v of the coordinates: R = 1 + a C(v) + b C(v)², Ω = f v̇ + ...

@@ -25,6 +25,7 @@ SPACE, BODY = (
 )
 ROTATION, COSINES, RATES = map(formula, (r"\R", r"\A", r"\dot\q"))
 SPIN, SPIN_OF_COSINES = (formula(rf"\frac{{d\{m}}}{{dt}}\{m}^T") for m in "RA")
+TENSOR, VECTORS = ("rows", "columns"), ("rows",)  # with `axes` that turn: P x Pᵀ and P x
 PASSIVE, CHAIN, WIDE = "passive", "chain", "wide"  # traits: see `traits_of`
 
 # The matrix that is shown, R or A, with its derivative
@@ -33,19 +34,19 @@ PASSIVE, CHAIN, WIDE = "passive", "chain", "wide"  # traits: see `traits_of`
 def _of_matrix(m: str) -> dict[str, Any]:
     is_orthogonal = law(rf"\{m}\{m}^T = \1", lambda k, x: x @ x.T - k.one)
     is_proper = law(rf"\det \{m} = 1", lambda k, x: k.scalar(x.det() - 1))
-    return {"symbol": formula(rf"\{m}"), "laws": (is_orthogonal, is_proper)}
+    return {"symbol": formula(rf"\{m}"), "laws": (is_orthogonal, is_proper), "axes": TENSOR}
 
 
 def _of_derivative(m: str) -> dict[str, Any]:
     """R Rᵀ is constant."""
     claim = r"\frac{d\R}{dt}\R^T + \R\frac{d\R^T}{dt} = \0".replace("R", m)
     keeps_length = law(claim, lambda k, _: k.shown_spin + k.shown_spin.T)
-    return {"symbol": formula(rf"\frac{{d\{m}}}{{dt}}"), "laws": (keeps_length,)}
+    return {"symbol": formula(rf"\frac{{d\{m}}}{{dt}}"), "laws": (keeps_length,), "axes": TENSOR}
 
 
 def _of_spin(symbol: Formula, value: str) -> dict[str, Any]:
     is_skew = law(r"#1 + \left(#1\right)^T = \0", lambda _, x: x + x.T, symbol)
-    return {"symbol": symbol, "definition": formula(value), "laws": (is_skew,)}
+    return {"symbol": symbol, "definition": formula(value), "laws": (is_skew,), "axes": TENSOR}
 
 
 rotation_matrix = Quantity(
@@ -124,7 +125,7 @@ spin_matrix = Quantity(
 )
 
 _VELOCITY = {**_SPINNING, "unit": "rad/s", "shape": "vector", "vectors": "velocity"}
-_VELOCITY |= {"source": SOURCES["Murray 2.4"], "is_result": True}
+_VELOCITY |= {"axes": VECTORS, "source": SOURCES["Murray 2.4"], "is_result": True}
 
 angular_velocity_space = Quantity(
     **_VELOCITY,
@@ -184,6 +185,7 @@ def _rate_matrix(frame: Frame, *, of_chain: str, columns: str) -> Quantity:
         definition=formula(r"\frac{\partial #2}{\partial\dot\q}", *symbols),
         value=lambda k: k.rate_matrix(name),
         laws=(Law(claim, lambda k, x: x @ k.argument("q_dot") - k.omega(name)),),
+        axes=VECTORS,
         vectors="rate_matrix",
         reason=f"coefficients_{name}",
         variants=(
@@ -210,6 +212,7 @@ def _inverse_rate_matrix(frame: Frame, **reasons: str) -> Quantity:
         frame=frame,
         inputs=("q",),
         value=lambda k: k.inverse(name),
+        axes=("columns",),
         vectors="inverse",
         reason=f"inverse_{name}",
         without="no_inverse",
@@ -240,6 +243,7 @@ def _rates(frame: Frame) -> Quantity:
         inputs=("q", f"omega_{name}"),
         shape="vector",
         value=lambda k: k.rates(name),
+        axes=(),  # numbers: only the components of Ω turn, which they are functions of
         vectors="rates",
         reason=f"rates_from_{name}",
         is_result=True,
@@ -267,7 +271,7 @@ inverse_rate_matrix_body = _inverse_rate_matrix(BODY, wide="right_inverse_body")
 rates_from_angular_velocity_body = _rates(BODY)
 
 _ACCELERATION: dict[str, Any] = {"unit": "rad/s^2", "inputs": ("q", "q_dot", "q_ddot")}
-_ACCELERATION |= {"shape": "vector", "section": "angular_acceleration"}
+_ACCELERATION |= {"shape": "vector", "axes": VECTORS, "section": "angular_acceleration"}
 _ACCELERATION |= {"source": SOURCES["Diebel 5"], "is_result": True}
 
 angular_acceleration_space = Quantity(

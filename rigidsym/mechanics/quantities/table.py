@@ -29,8 +29,9 @@ POINT = sp.symbols("p_x:z")
 DIRECTION = sp.symbols("n_x:z")
 # beside the axes x, y, z of space, a quaternion (w, x, y, z) is printed in other letters
 _QUATERNION = {"w": "q_0", "x": "q_1", "y": "q_2", "z": "q_3"}
-# The names of our own, and others for a system that has one of them. Those in one text change
-# together; behind the last text an index 0 goes before their own, or two, as in E_0 and I_01.
+# The names that we choose, a row for those that change together. If a constant of the system has
+# one of them, the next text of the row replaces all of them. After the last text, the names of the
+# first get zeros before their indices, as many as it takes: I_01 for I_1, E_0 and then E_00 for E.
 _OWN_NAMES = (
     ("I_1 I_2 I_3", "J_1 J_2 J_3", "K_1 K_2 K_3"),
     ("V", "U"),
