@@ -1,8 +1,17 @@
-"""`python -m rigidsym` is the command `rigidsym`."""
+"""The command `rigidsym`, also as `python -m rigidsym`: an interrupt among its imports is caught."""
 
 import sys
+from importlib import import_module
 
-from rigidsym_command import main
+
+def main(entry: str = "main") -> int:
+    """Call a function of `rigidsym.commands.cli`; returns its exit code."""
+    try:
+        return int(getattr(import_module("rigidsym.commands.cli"), entry)())
+    except KeyboardInterrupt:
+        sys.stderr.write("rigidsym: interrupted\n")
+        return 130  # as of a process that SIGINT ends
+
 
 if __name__ == "__main__":
     sys.exit(main("run"))

@@ -125,9 +125,8 @@ def test_a_closed_pipe_is_no_error():
     assert (done.returncode, done.stderr) == (0, b"")
 
 
-@pytest.mark.parametrize("module", ["lazy_loader", "click"])  # of the package, of the command
-def test_an_interrupt_among_the_imports_is_no_traceback(module, tmp_path):
-    (tmp_path / f"{module}.py").write_text("raise KeyboardInterrupt")
+def test_an_interrupt_among_the_imports_is_no_traceback(tmp_path):
+    (tmp_path / "click.py").write_text("raise KeyboardInterrupt")
     done = subprocess.run(RIGIDSYM, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (130, "rigidsym: interrupted\n")
 

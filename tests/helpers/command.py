@@ -18,7 +18,7 @@ ROOT = Path(__file__).resolve().parents[2]
 # inherit that: it listens again, as a command typed into a terminal does.
 _PROGRAM = (
     "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"
-    "import sys, rigidsym_command; sys.exit(rigidsym_command.main())"  # as the installed command
+    "import sys; from rigidsym.__main__ import main; sys.exit(main())"  # as the installed command
 )
 RIGIDSYM = (sys.executable, "-c", _PROGRAM)
 

@@ -24,7 +24,7 @@ PROBE = (
     "from rigidsym.system import resources\n"
     "print(resources.folder('templates'))\n"
     "assert 'euler_zxz' in resources.names('derivations', '.toml')\n"
-    "import rigidsym as rs, rigidsym_command\n"
+    "import rigidsym as rs\n"
     "motion = rs.derive(rs.EulerAngles('ZXZ'))\n"
     "assert 'angular_velocity_body' in motion.kernels().source\n"
     "assert r'\\documentclass' in motion.note().latex()\n"
