@@ -1,4 +1,4 @@
-"""The command `rigidsym`, also as `python -m rigidsym`: an interrupt among its imports is caught."""
+"""The command `rigidsym`, also as `python -m rigidsym`; an interrupt among imports is caught."""
 
 import sys
 from importlib import import_module

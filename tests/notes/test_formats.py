@@ -156,6 +156,13 @@ def test_mathml_is_what_browsers_and_validators_know():
     assert html.math("a", is_tall=True) == '<math alttext="a" class="tall"><mi>a</mi></math>'
 
 
+def test_signs_between_the_parts_of_a_cut_formula_stand_apart_from_both():
+    page = page_of(rs.derive("z(q1) y(q2) y(q3) x(q4)", only=["spin_matrix"]))
+    signs = re.findall(r"</math> <math [^>]*><mo([^>]*)>([+−])</mo>", page)
+    assert signs
+    assert {attributes for attributes, _ in signs} == {' form="infix" lspace="0"'}
+
+
 def test_a_note_without_scipy_lacks_the_picture_of_its_examples_and_says_so(monkeypatch):
     monkeypatch.setitem(sys.modules, "scipy.integrate", None)
     (single,) = read_file("heavy_symmetric_top").singles()

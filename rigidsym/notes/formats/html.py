@@ -26,6 +26,8 @@ TEMPLATE = "note.html.jinja"
 BLOCKS = "blocks.html.jinja"
 _PAGE = 39.5  # ems of a display on a page, some less than there are: browsers differ in fonts
 _WITH_POINTS = re.compile(r"\(<math .*?</math>[.,;:)]*|<math (?:(?!</math>).)*</math>[.,;:)]+")
+_PREFIX = '"><mo lspace="0" rspace="0">'  # a formula's first sign, without a term before it
+_INFIX = '"><mo form="infix" lspace="0">'  # and with one
 _INLINE = 13.0  # ems of a formula between words on a phone
 
 
@@ -127,7 +129,9 @@ class HtmlPrinter(NotePrinter):
                 parts[-1] += f" {chunk.text}"
             else:
                 parts.append(chunk.text)
-        return " ".join(math(part, is_tall=piece.height > Height.FLAT) for part in parts)
+        first, *others = (math(part, is_tall=piece.height > Height.FLAT) for part in parts)
+        # a cut part begins with a sign that joins it to the part before
+        return " ".join((first, *(part.replace(_PREFIX, _INFIX, 1) for part in others)))
 
     def code(self, text: str) -> str:
         # a line may end within the long name of a function
