@@ -18,14 +18,14 @@ from jinja2 import TemplateRuntimeError
 
 from rigidsym.errors import offer
 from rigidsym.formula.notation import DEFAULT, Notation
-from rigidsym.formula.reader import formula, text_of
+from rigidsym.formula.reader import formula, named, text_of
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import COMMA, Bracket, Formula, joined, with_names
 from rigidsym.mechanics.conversions.function import SHEPPERD, outer_product
 from rigidsym.mechanics.derivation import OF_RATES, Derivation, Proof, Statement, Step, sentence_of
 from rigidsym.mechanics.quantities.dynamics import LETTERS
 from rigidsym.mechanics.quantities.kinematics import ROTATION
-from rigidsym.mechanics.quantities.table import own_letters
+from rigidsym.mechanics.quantities.table import own_letters, stems_of
 from rigidsym.models.parametrisations import GIVEN
 from rigidsym.models.rotation import SOURCES, Citation, hat, lecture
 from rigidsym.notes import document as doc
@@ -55,6 +55,7 @@ _SECTIONS = (
 # K(R), (4, 4), in the entries of R; each column is a multiple of the quaternion
 _COLUMNS = outer_product(sp.Matrix(3, 3, lambda i, j: sp.Symbol(f"R_{i + 1}{j + 1}")))
 _DIAGONAL = formula("(I'_{11}, I'_{22}, I'_{33})")
+_OF_JOINTS = "wHIfaN"  # letters of abbreviations, in sentences about them
 _MOST_PARTS = 40  # definitions, a page of them; a result that needs more is only defined
 _WHERE_SHOWN = {  # what has no equation of its own in the lecture, and the one that it belongs to
     "rotation_rate": "velocity_by_the_rotation",
@@ -100,7 +101,10 @@ class Composer:
             own = own_letters(derivation.arguments, body, forces)
             names = {symbol: with_names(letter, own) for symbol, letter in LETTERS.items()}
             self.letters = replace(self.letters, names={**self.letters.names, **names}, own=own)
-        self.symbols = symbols_of(derivation)
+        self.symbols = symbols_of(derivation, self.letters.own)
+        if derivation.forces:  # after the coordinates, which no abbreviation is called by
+            stems = stems_of(name for each in derivation.arguments for name in each.names)
+            self.symbols |= {stem: named(stems[stem]) for stem in _OF_JOINTS}
         self.is_audit = is_audit
         self.cited: set[Citation] = set()
         self._defined: set[sp.Basic] = set()  # names of intermediate quantities, once printed

@@ -73,7 +73,8 @@ def in_names(derivation: Derivation) -> tuple[Derivation, Parts]:
             if name == "inertia_tensor_point":
                 quantity = quantity._replace(definition=steiner)
         elif name == "angular_acceleration_from_torque" and moments:
-            expression = free_turning(letters.inertia, derivation.argument("torque").symbols)
+            short = free_turning(letters.inertia, derivation.argument("torque").symbols)
+            expression = min(expression, short, key=sp.count_ops)
         steps.append(replace(step, quantity=quantity, expression=expression))
     if mass != body.mass and "mass" not in present and any(_holds(s, mass) for s in steps):
         parts = (*parts, (mass, body.mass))

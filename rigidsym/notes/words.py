@@ -12,7 +12,6 @@ from rigidsym.formula.tree import Formula, Symbol, equal, transpose_of
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.quantities.kinematics import BODY, COSINES, RATES, ROTATION, SPACE
 from rigidsym.mechanics.quantities.mass import DIRECTION, OF_BODY_ALONE, POINT
-from rigidsym.mechanics.quantities.table import own_letters
 from rigidsym.models.rotation import AXES, Citation
 from rigidsym.notes.document import Cited, Equation, Text, said
 from rigidsym.notes.letters import VECTOR, length_of
@@ -32,17 +31,21 @@ _OF_BODIES = (
 )
 
 _BY_LAGRANGE = r"\M\,\ddot\q + \h = \Q"
-_OF_MOTION = tuple(map(formula, (_BY_LAGRANGE, r"\h", r"\Q", r"\N'", r"\I'", *"TVwHNIfa")))
+_OF_MOTION = [formula(rf"\{letter}") for letter in ("M", "h", "Q", "Q = 0", "N'", "I'")]
+_OF_MOTION += map(formula, (_BY_LAGRANGE, r"\Om' = \W'\,\dot\q", "T", "V"))
 _OF_TURNS = tuple(
     map(formula, (r"\mathbf{T}_k", r"\mathbf{n}_k", r"\theta_k", r"\mathbf{P}_0 = \mathbf{1}"))
 )
 _SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
-# Words of a sentence, unless a sign follows (a + i b) or an axis (a about z).
+# Words of a sentence, unless a sign follows (a + i b), a comma or an axis (a about z).
 _ALSO_WORDS = ("a", "A", "I")
 
 
-def symbols_of(derivation: Derivation) -> dict[str, Formula]:
-    """The symbols that may occur in a sentence about a derivation, by their plain text."""
+def symbols_of(derivation: Derivation, own: Mapping[Formula, Formula]) -> dict[str, Formula]:
+    """The symbols that may occur in a sentence about a derivation, by their plain text.
+
+    Those of motion come in the letters that are our `own`.
+    """
     named = [
         *_OF_ROTATIONS,
         *chain.from_iterable(argument.notation for argument in derivation.arguments),
@@ -55,8 +58,7 @@ def symbols_of(derivation: Derivation) -> dict[str, Formula]:
         length = length_of(derivation.model)
         named += (VECTOR, *([length.names[length.symbol]] if length else ()))
     symbols = {symbol.text: symbol for symbol in named}
-    if derivation.body is not None and derivation.forces:
-        own = own_letters(derivation.arguments, derivation.body, derivation.forces)
+    if derivation.forces:
         symbols |= {symbol.text: own.get(symbol, symbol) for symbol in _OF_MOTION}
     for argument in derivation.arguments:
         if argument.name == "q":
@@ -75,7 +77,7 @@ def _any_of(texts: tuple[str, ...]) -> re.Pattern[str]:
     # A pattern takes the first alternative that matches: Ω′ has to come before Ω.
     longest_first = sorted(texts, key=len, reverse=True)
     patterns = (
-        rf"{t}(?= [+=]| about)" if t in _ALSO_WORDS else re.escape(t) for t in longest_first
+        rf"{t}(?=,| [+=]| about)" if t in _ALSO_WORDS else re.escape(t) for t in longest_first
     )
     return re.compile(r"(?<!\w)(" + "|".join(patterns) + r")(?!\w)")
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import fields
 from functools import cache
+from string import ascii_letters
 
 import numpy as np
 import pytest
@@ -157,14 +158,21 @@ body = { principal_moments = ["E", "V", "T"], mass = "M + m" }
 dynamics.potential = "M*g*(L + H)*cos(theta)"
 output.quantities = ["lagrangian", "hamiltonian", "mass_matrix", "inertia_tensor_point"]
 """
+JOINTS = """
+rotation.sequence = "z(phi) x(theta) z(psi) z(a)"
+body = { principal_moments = ["N", "N", "I"] }
+dynamics.forces = { a = "w - b*a_dot" }
+dynamics.potential = "f*cos(theta)"
+dynamics.parts = [{ rotation = "z(phi) x(theta) z(psi)", principal_moments = ["A", "B", "H"] }]
+output.quantities = ["lagrangian", "generalised_momenta", "mass_matrix", "bias_vector"]
+"""
 
 
 @pytest.mark.parametrize(
-    "name", ["alike", *(pytest.param(name, marks=pytest.mark.campaign) for name in SYSTEMS)]
+    "name", [ALIKE, JOINTS, *(pytest.param(n, marks=pytest.mark.campaign) for n in SYSTEMS)]
 )
 def test_every_letter_of_a_note_is_explained(name):
-    own = read_spec(ALIKE, source="alike.toml", name="alike")
-    motion = motion_of(read(name) if name in SYSTEMS else own)
+    motion = motion_of(read(name) if name in SYSTEMS else read_spec(name, source="", name="alike"))
     document = motion.note().document
     spans = [span for b in document.blocks for text in texts_of(b) for span in text]
     told = [each.notation for each in motion.arguments if each.name in ("q", "parameters")]
@@ -175,6 +183,20 @@ def test_every_letter_of_a_note_is_explained(name):
         shown |= letters_in(formula_of(e.scalar, letters)) if e.scalar is not None else set()
     shown -= {Symbol(letter, face) for letter in "T01i" for face in ("italic", "bold", "sans")}
     assert shown <= letters_in([spans, told])
+    constants = letters_in([a.notation for a in motion.arguments if a.name in ("q", "parameters")])
+    printed = {entry for e in document.displays for entry in e.entries}
+    stems = letters_in([*printed & {letters.name(part.symbol) for part in motion.definitions}])
+    assert constants.isdisjoint(stems)
+    told_of = {*map(Symbol, ascii_letters)} & {*spans}
+    assert told_of <= shown | letters_in(told) | {*map(Symbol, "NTVxyz")}
+
+
+def test_a_potential_energy_beside_a_constant_of_this_letter_has_another_one_everywhere():
+    body, only = rs.principal_moments(1, 1, 2), ["energy", "effective_potential"]
+    top = rs.derive("ZXZ", only, body=body, potential="V*cos(theta)*sin(t)")
+    note = top.note().markdown()
+    assert r"U _{\mathrm{eff}}" in note
+    assert r"\partial V" not in note
 
 
 def test_letters_of_one_meaning_come_with_their_parts():

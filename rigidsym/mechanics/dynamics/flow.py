@@ -124,10 +124,11 @@ class Flow(Workspace):
         """What follows of the motion as a whole."""
         if not self.driving.is_zero():
             rate = claims.energy.presented(self.traits).laws[0].claim
+            rate, driving = with_names((rate, claims.DRIVING), self.letters)
             yield Consequence(
                 name="driven_energy",
-                spans={"rate": with_names(rate, self.letters)},
-                left=claims.DRIVING,
+                spans={"rate": rate},
+                left=driving,
                 value=self.present.matrix(self.driving)[0],
             )
         if self.forces.leave_free(self.model):
@@ -226,10 +227,16 @@ def free_turning(inertia: sp.ImmutableMatrix, torque: Sequence[sp.Expr]) -> sp.I
     above, below = solved_euler(tensor, w, n, codec.ring.one)
     if not inertia.is_diagonal():
         return presenter_for(codec).matrix(above, below)
-    # Each component over its own moment: the ring finds no common factor of fractions.
-    rows = (n - turned(tensor, w)).entries
-    parts = [(RingMatrix.column(codec.ring, [row]), tensor[k, k]) for k, row in enumerate(rows)]
-    return sp.ImmutableMatrix([presenter_for(codec).matrix(*part)[0] for part in parts])
+    # Each component over its own moment: the ring finds no common factor of fractions. Textbooks
+    # keep I₂ − I₃ together, unless factors of the moments cancel.
+    rows, slopes = (n - turned(tensor, w)).entries, []
+    for k, row in enumerate(rows):
+        short = presenter_for(codec).matrix(RingMatrix.column(codec.ring, [row]), tensor[k, k])[0]
+        i, j = (k + 1) % 3, (k + 2) % 3
+        gyroscopic = (inertia[i, i] - inertia[j, j]) * OMEGA_BODY[i] * OMEGA_BODY[j]
+        whole = (torque[k] + gyroscopic) / inertia[k, k]
+        slopes.append(min(whole, short, key=sp.count_ops))
+    return sp.ImmutableMatrix(slopes)
 
 
 def turned(tensor: RingMatrix, omega: RingMatrix) -> RingMatrix:

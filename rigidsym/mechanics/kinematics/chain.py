@@ -43,7 +43,7 @@ from rigidsym.mechanics.derivation import Definition, Law, Proof, Quantity, argu
 from rigidsym.mechanics.kinematics.workspace import Values, Workspace, traits_of
 from rigidsym.mechanics.prove import Conditions, Prover, consequence
 from rigidsym.mechanics.quantities.kinematics import KINEMATICS
-from rigidsym.mechanics.quantities.table import arguments_of
+from rigidsym.mechanics.quantities.table import arguments_of, stems_of
 from rigidsym.models.rotation import TIME, RotationModel, Turn, hat, time_function
 
 _WRITTEN_OUT = 3  # turns that textbooks multiply out
@@ -182,6 +182,7 @@ class Names:
         self._meanings: dict[sp.Symbol, sp.Expr] = {}
         plain = {q.func.__name__ for q in model.coordinates}
         self._taken = {*plain, *taken} | {constant.name for constant in model.constants}
+        self._stems = stems_of(self._taken)
 
     def define(self, name: str, value: sp.Expr) -> sp.Expr:
         """A symbol for the value, the same each time; a number, an input or a sine of one stays."""
@@ -189,6 +190,7 @@ class Names:
         plain = value.as_coeff_Mul()[1]
         if plain.is_Atom or plain.is_Function or plain.is_Derivative:
             return value
+        name = self._stems.get(name[0], name[0]) + name[1:]
         if self._meanings.get(sp.Symbol(name)) == value:
             return sp.Symbol(name)
         while name in self._taken:

@@ -34,12 +34,14 @@ _QUATERNION = {"w": "q_0", "x": "q_1", "y": "q_2", "z": "q_3"}
 # first get zeros before their indices, as many as it takes: I_01 for I_1, E_0 and then E_00 for E.
 _OWN_NAMES = (
     ("I_1 I_2 I_3", "J_1 J_2 J_3", "K_1 K_2 K_3"),
-    ("V", "U"),
+    ("V V_eff", "U U_eff"),
     ("T", "K"),
     ("alpha beta gamma alpha_0 gamma_0", "xi eta zeta xi_0 zeta_0"),
     *((names,) for names in ("a b c", "L_1 L_2 L_3", "M", "E", "E_C", "E_R", "E_K", "H", "I_n")),
     *((name,) for name in ("L", "d", "f", "k", "p", "u", "kappa", "lambda", "tau")),
 )
+# The letters of names of parts that no bold letter explains, and letters with no other meaning.
+_STEMS, _SPARE = "wHIfaNvJbLDy", "sGFSrcekjABC"
 
 
 def arguments_of(model: RotationModel, body: RigidBody | None = None) -> tuple[Argument, ...]:
@@ -136,13 +138,26 @@ def own_names(
     return names | ({"M": body.mass.name} if isinstance(body.mass, sp.Symbol) else {})
 
 
+def stems_of(names: Iterable[str]) -> Mapping[str, str]:
+    """The letters in names of parts, w in w₂₃; others for those of constants and coordinates."""
+    taken = {name.partition("_")[0].rstrip("0123456789") for name in names}
+    spare = (letter for letter in _SPARE if letter not in taken)
+    return {stem: next(spare, 2 * stem) if stem in taken else stem for stem in _STEMS}
+
+
 def own_letters(
     arguments: Iterable[Argument], body: RigidBody, forces: Forces | None = None
 ) -> Mapping[Formula, Formula]:
     """In print, for the names of our own that change; a rate as well, with its dot."""
     names = own_names(arguments, body, forces).items()
     changed = [(name, other) for name, other in names if name != other]
-    return {named(name, n): named(other, n) for name, other in changed for n in (0, 1)}
+    return {_printed(name, n): _printed(other, n) for name, other in changed for n in (0, 1)}
+
+
+def _printed(name: str, order: int) -> Formula:
+    """A name of our own; the index of V_eff is a word, and upright."""
+    stem, _, index = name.partition("_")
+    return formula(rf"{stem}_{{\mathrm{{{index}}}}}") if "eff" in index else named(name, order)
 
 
 def _parameters(model: RotationModel, body: RigidBody | None) -> tuple[Argument, ...]:

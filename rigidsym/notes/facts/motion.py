@@ -13,7 +13,8 @@ from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import decimal
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import Formula, equal
-from rigidsym.mechanics.derivation import Consequence, Derivation
+from rigidsym.mechanics.derivation import Consequence, Derivation, FirstIntegral
+from rigidsym.mechanics.quantities.dynamics import MOTION
 from rigidsym.models.forces import OMEGA_COMPONENTS, Forces, initial_values
 from rigidsym.models.rotation import OMEGA_BODY, TIME
 from rigidsym.notes.document import Equation, Figure
@@ -44,6 +45,13 @@ class MotionFacts:
     @property
     def are_proved(self) -> bool:
         return all(integral.proof.is_exact for integral in self.derivation.first_integrals)
+
+    @property
+    def conserved(self) -> list[tuple[FirstIntegral, str]]:
+        """The first integrals, each with the quantity whose equation prints it, or nothing."""
+        steps = [step for step in self.derivation.steps if step.quantity.section == MOTION]
+        owners = {entry: s.quantity.name for s in reversed(steps) for entry in s.expression}
+        return [(each, owners.get(each.expression, "")) for each in self.derivation.first_integrals]
 
     @property
     def consequences(self) -> Iterator[tuple[Consequence, Equation]]:

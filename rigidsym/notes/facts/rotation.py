@@ -45,7 +45,7 @@ _MOST_WRITTEN = 3  # axes that are written out
 def facts_of_rotation(derivation: Derivation, letters: Letters) -> dict[str, Any]:
     """The facts of the templates on conventions and on the rotation, by their names there."""
     q, model, body = derivation.argument("q"), derivation.model, derivation.body
-    symbols, length = symbols_of(derivation), letters.length
+    symbols, length = symbols_of(derivation, letters.own), letters.length
     symbols |= {turn.angle_text: formula_of(turn.angle, letters) for turn in model.turns}
     inputs = {name for step in derivation.steps for name in step.quantity.inputs}
     quantities = {step.quantity.name for step in derivation.steps}
