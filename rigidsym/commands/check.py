@@ -31,10 +31,12 @@ def command(context: click.Context, paths: tuple[Path, ...]) -> None:
 
 
 def _strangers(paths: Iterable[Path], derived: set[Path]) -> Iterator[tuple[Path, str, str]]:
-    """Theorems beside the records that none of them derives: they may prove something else."""
+    """Theorems in folders of records that no record derives: they may prove something else."""
+    beside = {file.parent for file in derived}  # elsewhere, a .v may be of another language
     folders = (path.rglob if path.is_dir() else path.parent.glob for path in paths)
     for path in sorted({*chain(*(files(f"*.{CERTIFICATE}") for files in folders))} - derived):
-        yield path, "belongs to no record here; derive with --certificates, or remove it", ""
+        if path.parent in beside:
+            yield path, "belongs to no record here", ""
 
 
 def _records(path: Path) -> list[Path]:

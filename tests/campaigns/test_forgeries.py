@@ -200,6 +200,23 @@ def with_a_parameter_defined(content: Content) -> None:
     content["definitions"] = [{"name": "g", "expression": "0"}]
 
 
+def constants_read_as(form: str) -> Change:
+    """Constant angles, beside coordinates whose names would be read as these."""
+
+    def change(content: Content) -> None:
+        constants = at(content, "arguments", "q", "components")
+        q = [{"name": form.format(each["name"]), "unit": ""} for each in constants]
+        groups = {"q": q, "parameters": constants}
+        content["arguments"] = [{"name": n, "components": c} for n, c in groups.items()]
+        content["rotation"]["turns"] = [
+            f"{axis}({each['name']})" for axis, each in zip("zxz", q, strict=True)
+        ]
+        still = at(content, VELOCITY) | {"expression": ["0"] * 3, "inputs": ["q"]}
+        content["quantities"] = [still]
+
+    return change
+
+
 def with_two_units(content: Content) -> None:
     angles = copy.deepcopy(at(content, "arguments", "q"))
     content["arguments"].append(angles | {"name": "again"})
@@ -412,6 +429,14 @@ def with_axis(places: str, condition: str) -> Change:
 OTHERS: Forgeries = {
     "ZXZ": {
         "Ω and Ω' are exchanged": exchanged("angular_velocity_space", "angular_velocity_body"),
+        **{f"coordinates {form!r}": constants_read_as(form) for form in ("({})", " {}", "{} ")},
+        "a coordinate beside the time": together(
+            *(
+                added([{"name": f"by time{end}", "unit": u}], "arguments", f"q{end}", "components")
+                for end, u in (("", ""), ("_dot", "1/s"), ("_ddot", "1/s^2"))
+            ),
+            only("rotation_matrix"),
+        ),
         "a rate in W'": put(W, 2, ["cos(theta) + psi_dot/phi_dot", "0", "0"]),
         **{
             f"the entry {text!r:.20}": put("rotation_matrix", 0, 0, text)
@@ -474,7 +499,7 @@ OTHERS: Forgeries = {
             f"the name {name!r}": write("name", name)
             for name in (
                 *("euler_zxz_\u0435xtrinsic", "euler_xyz_intrinsic_passive", "Euler_xyz_intrinsic"),
-                *("euler_xyz_intrinsic ", "euler_zxz_\ud800"),
+                *("euler_xyz_intrinsic ", "euler_zxz_\ud800", "euler_xyz", "xeuler_xyz_extrinsic"),
             )
         },
         "a passive name of what is active": write("name", "euler_zxz_intrinsic_passive"),

@@ -114,6 +114,11 @@ def test_accelerations_without_the_lagrangian_have_no_theorem():
     assert certificate.claims == [*BASIC[:2]]
 
 
+def test_rates_have_a_theorem_without_their_matrix():
+    only = ("rates_from_angular_velocity_body",)
+    assert certificate_of(record_of("ZXZ", only)).claims == [*only]
+
+
 def test_names_that_proofs_use_get_an_underscore():
     # Coq refused to call a derivative d beside the coordinate d
     text = certificate_of(record_of("z(d) x(e) z(phi)", BASIC)).text
@@ -308,8 +313,8 @@ def test_a_certificate_of_other_angles_leaves_unless_it_was_edited(folder, is_ed
         edit(folder / COQ, "Qed.", "Admitted.")
     answered("derive", "ZXZ", "--angles", "a,b,c", "--quiet", "--out", str(folder.parent))
     assert (folder / COQ).exists() == is_edited
-    (folder / "more").mkdir()
-    (folder / "more/other.v").write_text("")  # theorems about something else
+    (folder / "other.v").write_text("")  # theorems about something else
+    (folder.parent / "cpu.v").write_text("")  # and Verilog
     assert {*problems(folder.parent)} == ({"other.v", COQ} if is_edited else {"other.v"})
 
 

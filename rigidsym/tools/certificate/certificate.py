@@ -330,8 +330,7 @@ class _Section:
         texts = [factor.text for factor in self.factors]
         product = reduce(lambda right, left: f"mul ({left}) ({right})", reversed(texts))
         yield f"Definition F s := {product}. (* R *)"
-        words = "F, inertia" if "body" in self.record else "F"
-        yield f"Ltac equal t := unfold {words}; calculation t."
+        yield f"Ltac equal t := unfold F{', inertia' * ('body' in self.record)}; calculation t."
         way = "still t" if self.apart else "entries; ring"
         yield f"Ltac plain t := unfold F; first [ {way} | calculation t ]."
         yield "Ltac derived t := known t; eapply (same (derivable_pt_lim _ _));"
@@ -488,22 +487,22 @@ class _Section:
         return _Statement(self.divisors(name, W) + claim, "still t", " a b c")
 
     def of_rates_from_angular_velocity(self, name: str, frame: str) -> _Statement:
-        W, inverse = f"rate_matrix_{frame}", f"inverse_rate_matrix_{frame}"
-        self.need(W, inverse)
+        W, inverse = others = [f"rate_matrix_{frame}", f"inverse_rate_matrix_{frame}"]
         letters = f" {' '.join(LETTERS[f'omega_{frame}'][0])}"
         rates = [self.name(rate) for rate in self.rates]
         equations = zip(rates, map(self.text, self.printed[name]), strict=True)
         premises = "".join(f"{rate} = {text} -> " for rate, text in equations)
-        claim = f"{self.divisors(name, W, inverse)}{premises}{_TURNS[frame]} F t (V{letters})"
         proof = f"rewrite <- ({inverse} t{letters}) by assumption; "
-        proof += f"eapply (same ({_TURNS[frame]} F t)); [ apply {W}; assumption | ]; "
-        proof += "repeat match goal with H : _ = _ |- _ => rewrite H; clear H end; plain t"
+        proof += f"eapply (same ({_TURNS[frame]} F t)); [ apply {W}; assumption | ]"
+        if not {*others} <= {*self.stated}:
+            others, proof = [], self.turning(frame, "", name).proof.rpartition(";")[0]
+        claim = f"{self.divisors(name, *others)}{premises}{_TURNS[frame]} F t (V{letters})"
+        proof += "; repeat match goal with H : _ = _ |- _ => rewrite H; clear H end; plain t"
         return _Statement(claim, proof, letters)
 
     def of_angular_acceleration(self, name: str, frame: str) -> _Statement:
         velocity = f"angular_velocity_{frame}"
-        self.need(velocity)
-        if self.divisors(velocity):
+        if not self.is_stated(velocity):
             raise Unproved
         letters, premises = self.accelerated
         claim = (
@@ -588,9 +587,8 @@ class _Section:
         square = " + ".join(f"{entry[j][k]} * {rates[j]} * {rates[k]}" for j in n for k in n)
         symmetry = (f"{entry[j][k]} = {entry[k][j]}" for j in n for k in range(j))
         # 2 T = Ω′·I′ Ω′
-        twice = f"dot w (apply inertia w) = {square}"
-        claim = self.without_rates(name) + " /\\ ".join((twice, *symmetry))
-        return self.for_velocity(claim, name)
+        claims = (f"dot w (apply inertia w) = {square}", *symmetry)
+        return self.for_velocity(self.without_rates(name) + " /\\ ".join(claims), name)
 
     def of_hamiltonian(self, name: str) -> _Statement:
         """T + V, if p has the values of the printed momenta."""
@@ -644,8 +642,7 @@ class _Section:
         """A printed expression whose derivative along every motion is 0."""
         self.need("accelerations")
         letters, premises = self.along_the_motion
-        function = f"(fun s => {self.text(self.printed[name], 's')})"
-        claim = f"{premises}derivable_pt_lim {function} t 0"
+        claim = f"{premises}derivable_pt_lim (fun s => {self.text(self.printed[name], 's')}) t 0"
         return _Statement(claim, "subst; derived t", letters)
 
 

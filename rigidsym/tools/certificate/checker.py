@@ -301,10 +301,14 @@ class Record:
         }
         taken = {name for name, _ in chain(*groups.values())} | {*RESERVED}
         distinct((name, "") for name in (*self.q, *self.constants, *self.definitions, *taken))
+        refuse_unless(len(self.turns) <= 100, "more than 100 turns", Unproved)
         body = self.content.get("body", {"parameters": []})["parameters"]
         constants = [p for p in printed["parameters"] if p["name"] in in_turns] + body
         groups["parameters"] = [(p["name"], unit.get(p["name"], p["unit"])) for p in constants]
         groups["q"] = [(q, unit[q]) for q in self.q]
+        # "(phi)" and " phi" would be read as phi
+        for name in (*self.definitions, *dict(chain(*groups.values()))):
+            refuse_unless(name.isascii() and name.isidentifier(), f"the name {name!r}")
         states = [groups["q"] + groups[rates] for rates in ("q_dot", "omega_body")]
         for group, components in printed.items():
             pairs = [(each["name"], each["unit"]) for each in components]
@@ -322,7 +326,7 @@ class Record:
         angles = [turn.partition("(")[2][:-1] for turn in turns]
         right = [f"euler_{axes}_intrinsic{end}"] if angles == self.q else []
         right += [f"euler_{axes[::-1]}_extrinsic{end}"] if angles[::-1] == self.q else []
-        is_plain = re.fullmatch("(?!euler_.*trinsic)[a-z][a-z0-9_]*", name)
+        is_plain = re.fullmatch("(?!.*euler_[xyz]{2})[a-z][a-z0-9_]*", name)
         refuse_unless(bool(is_plain) or name in right, f"the name {name!r} of other turns")
 
     def column(self, group: str) -> Matrix:
