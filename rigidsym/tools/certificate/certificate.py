@@ -166,6 +166,7 @@ class _Section:
         self.is_passive = record["presentation"] == "passive"
         self.presented = "(fun s => transpose (F s))" if self.is_passive else "F"
         self.rates, self.seconds = ([q + end for q in self.names.q] for end in ("_dot", "_ddot"))
+        self.speeds = [self.name(rate) for rate in self.rates]
         self.factors = [*self._factors()]
         self.trees_of_rotation = [tree for factor in self.factors for tree in factor.trees]
         self.facts, self.facts_of_rates, self.known = list[str](), list[str](), list[str]()
@@ -300,19 +301,18 @@ class _Section:
 
     def head(self) -> Iterator[str]:
         """Coordinates as functions of time, facts, F, and its angular velocity."""
-        names = self.names
-        q, rates = ([*map(self.letter, group)] for group in (names.q, self.rates))
+        q, rates = ([*map(self.letter, group)] for group in (self.names.q, self.rates))
         yield "Require Import Reals Lra Rotation."
         yield "Open Scope R_scope."
         yield "Section Claims."
-        if names.constants:
-            yield f"Variables {' '.join(map(self.letter, names.constants))} : R."
+        if self.names.constants:
+            yield f"Variables {' '.join(map(self.letter, self.names.constants))} : R."
         yield f"Variables {' '.join(q)} : R -> R. (* coordinates, functions of time *)"
         yield f"Variables {' '.join(rates)} : R -> R. (* their derivatives *)"
         for one, two in zip(q, rates, strict=True):
             slope = f"derivable_pt_lim {one} t ({two} t)"
             yield f"Hypothesis {one}_is_differentiable : forall t, {slope}."
-        for k, sphere in enumerate(names.spheres):
+        for k, sphere in enumerate(self.names.spheres):
             yield from self._sphere(k, sphere)
         yield from self._divisors()
         # those of rates are to be tried before squares; without rates, fewer facts are faster
@@ -473,8 +473,7 @@ class _Section:
         return f"(* no rate is in the printed {name} *) "
 
     def of_rate_matrix(self, name: str, frame: str) -> _Statement:
-        rates = [self.name(rate) for rate in self.rates]
-        statement = self.turning(frame, self.combination(self.printed[name], rates), name)
+        statement = self.turning(frame, self.combination(self.printed[name], self.speeds), name)
         return _Statement(self.without_rates(name) + statement.claim, statement.proof)
 
     def of_inverse_rate_matrix(self, name: str, frame: str) -> _Statement:
@@ -489,8 +488,7 @@ class _Section:
     def of_rates_from_angular_velocity(self, name: str, frame: str) -> _Statement:
         W, inverse = others = [f"rate_matrix_{frame}", f"inverse_rate_matrix_{frame}"]
         letters = f" {' '.join(LETTERS[f'omega_{frame}'][0])}"
-        rates = [self.name(rate) for rate in self.rates]
-        equations = zip(rates, map(self.text, self.printed[name]), strict=True)
+        equations = zip(self.speeds, map(self.text, self.printed[name]), strict=True)
         premises = "".join(f"{rate} = {text} -> " for rate, text in equations)
         proof = f"rewrite <- ({inverse} t{letters}) by assumption; "
         proof += f"eapply (same ({_TURNS[frame]} F t)); [ apply {W}; assumption | ]"
@@ -579,7 +577,7 @@ class _Section:
 
     def of_mass_matrix(self, name: str) -> _Statement:
         """A symmetric M with 2 T = q̇ · M q̇, for all rates."""
-        masses, rates = self.printed[name], [self.name(rate) for rate in self.rates]
+        masses, rates = self.printed[name], self.speeds
         n = range(len(rates))
         entry = [[self.text(each) for each in row] for row in masses]
         # A symmetric M is determined by its quadratic form, so that 2 T = q̇ᵀ M q̇ for all q̇ says
