@@ -196,6 +196,17 @@ def test_coq_accepts_kinematics_and_refuses_a_wrong_one(tmp_path, text, quantiti
         }
 
 
+@pytest.mark.usefixtures("coq")
+def test_coq_accepts_a_chain_of_ten_turns_and_refuses_a_wrong_one(tmp_path):
+    of_chain = copy.deepcopy(record_of(CHAIN))
+    certificate = certificate_of(of_chain)
+    assert certificate.uncovered == ["rate_matrix_body"]
+    assert run_coq(tmp_path, certificate.text) == 0
+    omega = printed(of_chain, "angular_velocity_body")["expression"]
+    omega[:2] = omega[1::-1]
+    assert run_coq(tmp_path, theorems(of_chain, certificate.claims).text) != 0
+
+
 def _axioms(folder: Path) -> set[str]:
     """What the theorem about Ω' rests on; the real numbers only."""
     question = "Require Import claims. Print Assumptions angular_velocity_body."

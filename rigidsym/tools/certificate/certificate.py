@@ -15,10 +15,12 @@ import ast
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, reduce
-from itertools import chain
+from itertools import accumulate, chain, pairwise
+from operator import mul
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from rigidsym.errors import CheckError
@@ -29,10 +31,14 @@ from rigidsym.tools.certificate.checker import (
     MOST_POWER,
     PRINCIPAL,
     SUM,
+    ZERO,
+    Matrix,
+    Number,
     Record,
     Unproved,
     claims_in,
     read,
+    turn,
     turn_of,
     verify,
 )
@@ -63,6 +69,12 @@ _ABOUT_POINT = (
 )
 _CENTRE = "(scale {M} (cross (V X Y Z) (V X_dot Y_dot Z_dot)))"
 _TRANSLATION = "{M} * dot (V X_dot Y_dot Z_dot) (V X_dot Y_dot Z_dot) / 2"
+_OF_PRODUCTS = """
+Lemma apply_mul A B v : apply (mul A B) v = apply A (apply B v). Proof. entries; ring. Qed.
+Lemma apply_plus A v w : apply A (plus v w) = plus (apply A v) (apply A w).
+Proof. entries; ring. Qed.
+Lemma zero A v : plus v (apply A (V 0 0 0)) = v. Proof. entries; ring. Qed.
+""".strip()
 _KINETIC = "dot w (apply inertia w) / 2"
 # What a quantity of a body is equal to; w is the angular velocity, with components in the body
 _OF_BODY = {
@@ -112,7 +124,7 @@ def theorems(record: Mapping[str, Any], claims: Sequence[str]) -> Certificate:
     """The theorems of those claims that can be stated, whether they are true or not."""
     head, stated = list[str](), dict[str, str]()
     with suppress(Unproved):
-        section = _Section(record, claims, stated)
+        section = (_Chain if record["definitions"] else _Section)(record, claims, stated)
         head = [*section.head()]
         # R and Ω first: what follows is calculated from them as printed, which is shorter
         for name in sorted(claims, key=lambda name: (name not in _FIRST, name == "spin_matrix")):
@@ -156,16 +168,20 @@ class _Statement:
 class _Section:
     """The theorems of one record; later ones may use those in `stated`."""
 
+    definitions: Mapping[str, Tree] = MappingProxyType({})
+
     def __init__(
         self, record: Mapping[str, Any], claims: Sequence[str], stated: Mapping[str, Any]
     ) -> None:
         self.record, self.claims, self.stated = record, claims, stated
-        if not claims or record["definitions"]:  # Coq unfolds them, which doubles expressions
+        self.lemmas = dict[str, str]()
+        if not claims:
             raise Unproved
         self.names, self.printed = Record(record), printed_in(record)
         self.is_passive = record["presentation"] == "passive"
         self.presented = "(fun s => transpose (F s))" if self.is_passive else "F"
         self.rates, self.seconds = ([q + end for q in self.names.q] for end in ("_dot", "_ddot"))
+        self.of_time = {*self.names.q, *self.rates}
         self.speeds = [self.name(rate) for rate in self.rates]
         self.factors = [*self._factors()]
         self.trees_of_rotation = [tree for factor in self.factors for tree in factor.trees]
@@ -203,9 +219,8 @@ class _Section:
         return f"{name}_" if name in _TAKEN else name
 
     def name(self, name: str, at: str = "t") -> str:
-        of_time = {*self.names.q, *self.rates}
         letter = "PI" if name == "pi" else self.letter(name)
-        return f"({letter} {at})" if name in of_time else letter
+        return f"({letter} {at})" if name in self.of_time else letter
 
     def text(self, printed: Any, at: str = "t", other: Mapping[str, str] | None = None) -> str:
         """A printed number, vector or matrix."""
@@ -217,8 +232,8 @@ class _Section:
     def combination(self, rows: Sequence[Sequence[str]], factors: Sequence[str]) -> str:
         """A matrix times a vector, as the sum over its columns."""
         columns = (self.text([row[k] for row in rows]) for k in range(len(rows[0])))
-        terms = [f"(scale {f} {column})" for f, column in zip(factors, columns, strict=True)]
-        return reduce(lambda right, left: f"(plus {left} {right})", reversed(terms))
+        terms = (f"(scale {f} {column})" for f, column in zip(factors, columns, strict=True))
+        return _nested("plus", [*terms])
 
     def trees(self, *names: str) -> list[Tree]:
         """All that is printed of some quantities."""
@@ -259,8 +274,8 @@ class _Section:
             trees = [_tree(text) for row in rotation["matrix"] for text in row]
             yield self._as_printed(self.text(rotation["matrix"], "s"), trees)
             return
-        for turn in rotation["turns"]:
-            kind, forms = turn_of(turn)
+        for words in rotation["turns"]:
+            kind, forms = turn_of(words)
             trees = [*map(_tree, forms)]
             *axis, cosine, sine = (self.real(tree, "s") for tree in trees)
             is_fixed = not _names(("", *trees[:3])) - {*self.names.constants, "pi"}
@@ -281,7 +296,7 @@ class _Section:
             elif len(rotation["turns"]) != 1:
                 raise Unproved
             elif kind in _QUATERNIONS:
-                places = [f"({place})" for place in turn.partition("(")[2][:-1].split(",")]
+                places = [f"({place})" for place in words.partition("(")[2][:-1].split(",")]
                 w, u = (self.real(_tree(f.format(*places)), "s") for f in _QUATERNIONS[kind])
                 functions = " ".join(f"(fun s => {each})" for each in (w, *axis, u, cosine, sine))
                 ways = "first [ derivative | intro s; calculation s | calculation t ]"
@@ -301,18 +316,24 @@ class _Section:
 
     def head(self) -> Iterator[str]:
         """Coordinates as functions of time, facts, F, and its angular velocity."""
-        q, rates = ([*map(self.letter, group)] for group in (self.names.q, self.rates))
+        names = self.names
+        groups = [names.q, self.rates, *([self.seconds] if self.definitions else [])]
+        functions = [[*map(self.letter, group)] for group in groups]
         yield "Require Import Reals Lra Rotation."
         yield "Open Scope R_scope."
         yield "Section Claims."
-        if self.names.constants:
-            yield f"Variables {' '.join(map(self.letter, self.names.constants))} : R."
-        yield f"Variables {' '.join(q)} : R -> R. (* coordinates, functions of time *)"
-        yield f"Variables {' '.join(rates)} : R -> R. (* their derivatives *)"
-        for one, two in zip(q, rates, strict=True):
-            slope = f"derivable_pt_lim {one} t ({two} t)"
-            yield f"Hypothesis {one}_is_differentiable : forall t, {slope}."
-        for k, sphere in enumerate(self.names.spheres):
+        if names.constants:
+            yield f"Variables {' '.join(map(self.letter, names.constants))} : R."
+        yield f"Variables {' '.join(functions[0])} : R -> R. (* coordinates, functions of time *)"
+        for one, two in pairwise(functions):
+            yield f"Variables {' '.join(two)} : R -> R. (* derivatives of {' '.join(one)} *)"
+        for pair in pairwise(functions):
+            for function, rate in zip(*pair, strict=True):
+                slope = f"derivable_pt_lim {function} t ({rate} t)"
+                yield f"Hypothesis {function}_is_differentiable : forall t, {slope}."
+        for name, tree in self.definitions.items():
+            yield f"Definition {name} t := {self.real(tree)}."
+        for k, sphere in enumerate(names.spheres):
             yield from self._sphere(k, sphere)
         yield from self._divisors()
         # those of rates are to be tried before squares; without rates, fewer facts are faster
@@ -427,7 +448,7 @@ class _Section:
 
     def need(self, *names: str) -> None:
         """Raise Unproved if there are no theorems about some other quantities."""
-        if not {*names} <= {*self.stated}:
+        if not {*names} <= {*self.stated, *self.lemmas}:
             raise Unproved
 
     def of_rotation_matrix(self, name: str) -> _Statement:
@@ -642,6 +663,178 @@ class _Section:
         letters, premises = self.along_the_motion
         claim = f"{premises}derivable_pt_lim (fun s => {self.text(self.printed[name], 's')}) t 0"
         return _Statement(claim, "subst; derived t", letters)
+
+
+class _Chain(_Section):
+    """Turns T with angular velocities v, whose product is printed in names for its parts.
+
+    By the law of composition (`mechanics/kinematics/chain.py`), each partial product is a short
+    expression in the names of the one before, so that all equations are small. What a name stands
+    for is seen from its values at random points; Coq proves it.
+    """
+
+    def __init__(self, *arguments: Any) -> None:
+        super().__init__(*arguments)
+        record = self.names
+        groups = ("parameters", "q", "q_dot", "q_ddot")
+        if not {kind for kind, _ in record.turns} <= {*"xyz"} or "body" in self.record:
+            raise Unproved
+        self.definitions = {name: _tree(text) for name, text in record.definitions.items()}
+        self.of_time |= {*self.definitions, *self.seconds}
+        angles = [form for _, forms in record.turns for form in forms[3:]]
+        texts = [*self.definitions, *angles, *(f"-{angle}" for angle in angles)]
+        texts += [*self.rates, *self.seconds, "0", "1", "-1"]
+        self.texts = dict[tuple[Any, ...], list[str]]()
+        for text, number in zip(texts, record.read(texts, groups).entries, strict=True):
+            self.texts.setdefault(tuple(number.values), []).append(text)
+        self.T = [f"({factor.text})".replace(" s)", " t)") for factor in self.factors]
+        self.v = [factor.velocity for factor in self.factors]
+        turns = [turn(*record.read(forms, groups).entries) for _, forms in record.turns]
+        spins = ((T.rate() * T.T).rows for T in turns)
+        pairs = [
+            (T, Matrix([S[2][1], S[0][2], S[1][0]])) for T, S in zip(turns, spins, strict=True)
+        ]
+        # their values: P₁ ... Pₙ, w₁ ... wₙ and uₙ ... u₁ of kinematics/chain.py
+        self.P = [*accumulate(turns, mul)]
+        rest = Matrix([ZERO] * 3)
+        self.w = [*accumulate(pairs, lambda w, one: one[1] + one[0].T * w, initial=rest)][1:]
+        self.u = [*accumulate(pairs[::-1], lambda u, one: one[1] + one[0] * u, initial=rest)][1:]
+
+    @property
+    def total(self) -> str:
+        self.need("space")
+        return "(space t)"
+
+    @property
+    def equal(self) -> str:
+        self.need("matrix")
+        return "rewrite ?matrix; equal t"
+
+    def defined(self, *texts: str) -> set[str]:
+        """The names in some texts that have a definition."""
+        return {*re.findall(r"\w+", " ".join(texts))} & {*self.definitions}
+
+    def named(self, matrix: Matrix, *old: str) -> str:
+        """The names of the entries, if they are defined by those in old texts."""
+        known, definitions = self.defined(*old), self.names.definitions
+
+        def name_of(entry: Number) -> str:
+            for text in self.texts.get(tuple(entry.values), ()):
+                if text in known or self.defined(definitions.get(text, "")) <= known:
+                    return text
+            raise Unproved
+
+        rows = [[*map(name_of, row)] for row in matrix.rows]
+        return self.text(rows if len(rows[0]) > 1 else [*chain(*rows)])
+
+    def levels(self, first: str, parts: Iterable[Matrix]) -> list[str]:
+        """Names of parts, each defined by those of the one before."""
+        return [*accumulate(parts, lambda old, part: self.named(part, old), initial=first)]
+
+    def equation(self, name: str, k: int, claim: str, old: str = "") -> Iterator[str]:
+        """About turn k; names are unfolded if they are not in what is old."""
+        names = " ".join(sorted(self.defined(claim) - self.defined(old)))
+        square = f"(squares {self.real(self.factors[k - 1].trees[0][1])})"
+        yield f"Lemma {name}_{k} t{' y' * (name == 'body')} : {claim}."
+        yield f"Proof. entries; cbv [Rsqr {names}]; ring [{square}]. Qed."
+
+    def _turning(self) -> Iterator[str]:
+        yield from super()._turning()
+        yield _OF_PRODUCTS
+        families = self.matrix, self.space, self.body, self.space_rate, self.body_rate
+        for family in (*families, self.space_axes):
+            with suppress(Unproved):
+                lemmas = [*family()]
+                yield from lemmas
+                self.lemmas[family.__name__] = "".join(lemmas)
+
+    def matrix(self) -> Iterator[str]:
+        """F = Pₙ, by Pₖ = Pₖ₋₁ Tₖ."""
+        products = self.levels(self.T[0], self.P[1:])
+        pairs = zip(self.T[1:], pairwise(products), strict=True)
+        for k, (T, (old, new)) in enumerate(pairs, start=2):
+            yield from self.equation("prefix", k, f"mul {old} {T} = {new}", old)
+        steps = ", ".join(f"prefix_{k}" for k in range(2, len(products) + 1))
+        yield f"Lemma matrix t : F t = {products[-1]}."
+        yield f"Proof. unfold F; rewrite <- !associative, {steps}. reflexivity. Qed."
+
+    def space(self) -> Iterator[str]:
+        """F turns with u₁, by uₖ = vₖ + Tₖ uₖ₊₁."""
+        u = self.levels(self.v[-1], self.u[1:])[::-1]
+        for k, (T, v, new, old) in enumerate(zip(self.T, self.v, u, u[1:], strict=False), start=1):
+            yield from self.equation("space", k, f"plus {v} (apply {T} {old}) = {new}", old)
+        steps = ", ".join(f"<- space_{k}" for k in range(1, len(u)))
+        yield f"Lemma space t : turns F t {u[0]}."
+        yield f"Proof. rewrite {steps}. exact (total t). Qed."
+
+    def body(self) -> Iterator[str]:
+        """F turns with wₙ in the body, by Tₖ wₖ = wₖ₋₁ + vₖ."""
+        w = self.levels(self.v[0], self.w[1:])
+        for k, (T, v, old, new) in enumerate(zip(self.T, self.v, ["", *w], w, strict=False), 1):
+            right = f"(plus {v} (apply {T} y))"
+            right = f"plus {old} {right}" if old else right
+            yield from self.equation("body", k, f"apply {T} (plus {new} y) = {right}", old)
+        steps = ", ".join(f"body_{k}" for k in range(len(w), 0, -1))
+        yield f"Lemma body t : turns_in_body F t {w[-1]}."
+        yield "Proof. apply in_body, (same (turns F t) _ _ (total t)). unfold F."
+        yield f"  rewrite !apply_mul, <- (zero one {w[-1]}), {steps}, <- apply_mul, zero."
+        yield "  reflexivity. Qed."
+
+    def space_rate(self) -> Iterator[str]:
+        return self.slopes("space_rate", range(len(self.u), 0, -1), self.u)
+
+    def body_rate(self) -> Iterator[str]:
+        return self.slopes("body_rate", range(1, len(self.w) + 1), self.w)
+
+    def slopes(self, name: str, places: Iterable[int], parts: Iterable[Matrix]) -> Iterator[str]:
+        """The derivatives of angular velocities, from those of the one before."""
+        start = new = slope = ""
+        for k, part in zip(places, parts, strict=True):
+            old, new = new, self.named(part, new)
+            known, slope = old + slope, self.named(part.rate(), old, new, slope)
+            one = " ".join(sorted(self.defined(new) - self.defined(old)))
+            both = " ".join(sorted(self.defined(new, slope) - self.defined(known)))
+            function = new.replace(" t)", " s)")
+            yield f"Lemma {name}_{k} t : vector_rate (fun s => {function}) t {slope}."
+            yield f"Proof. {start}repeat split; cbv [v1 v2 v3] in *; cbv [Rsqr {one}];"
+            yield "  (eapply (same (derivable_pt_lim _ _));"
+            yield f"  [ derivative | cbv [Rsqr {both}]; ring ]). Qed."
+            start = f"destruct ({name}_{k} t) as [? [? ?]]; "
+
+    def space_axes(self) -> Iterator[str]:
+        """F turns with the sum of Pₖ₋₁ vₖ."""
+        self.need("matrix")
+        products = self.levels(self.T[0], self.P[1:-1])
+        axes = (f"(apply {P} {v})" for P, v in zip(products, self.v[1:], strict=True))
+        terms = [self.v[0], *axes]
+        steps = ", ".join(
+            f"(apply_plus {P}), <- (apply_mul {P} {T}), prefix_{k}"
+            for k, (P, T) in enumerate(zip(products, self.T[1:-1], strict=False), start=2)
+        )
+        yield f"Lemma space_axes t : turns F t {_nested('plus', terms)}."
+        yield f"Proof. apply (same (turns F t) _ _ (total t)). rewrite {steps}. reflexivity. Qed."
+
+    def of_rotation_matrix(self, name: str) -> _Statement:
+        return replace(super().of_rotation_matrix(name), proof=self.equal)
+
+    def turning(self, frame: str, velocity: str, name: str) -> _Statement:
+        lemma = f"{frame}_axes" if name.startswith("rate_matrix") else frame
+        self.need(lemma)
+        names = " ".join(sorted(self.defined(velocity) - self.defined(self.lemmas[lemma])))
+        claim = f"{_TURNS[frame]} F t"
+        proof = f"apply (same ({claim}) _ _ ({lemma} t)); entries; cbv [Rsqr {names}]; ring"
+        return _Statement(f"{claim} {velocity}", proof)
+
+    def of_angular_acceleration(self, name: str, frame: str) -> _Statement:
+        self.need(frame, f"{frame}_rate")
+        claim = f"exists w, (forall s, {_TURNS[frame]} F s (w s)) /\\ vector_rate w t"
+        last = 1 if frame == "space" else len(self.w)
+        proof = f"eexists; split; [ exact {frame} | apply {frame}_rate_{last} ]"
+        return _Statement(f"{claim} {self.text(self.printed[name])}", proof)
+
+
+def _nested(word: str, parts: Sequence[str]) -> str:
+    return reduce(lambda right, left: f"({word} {left} {right})", reversed(parts))
 
 
 @cache
