@@ -204,7 +204,7 @@ CHANGED = {  # statements of a function of phi and psi: what its matrix is
     f"phi = -phi; {SINES}; return {TURN}": "transposed",
     f"phi *= -1; {SINES}; return {TURN}": "transposed",
     f"phi = -phi; phi = -phi; {SINES}; return {TURN}": "equal to",
-    f"phi = np.pi/2 - phi; {SINES}; return {TURN}": "",
+    f"phi = np.pi/2 - phi; {SINES}; return {TURN}": "from another axis",
     f"phi, psi = psi, phi; {SINES}; return {TURN}": "in (psi)",
     f"{SINES}; M = {TURN}; M[0, 1] = s; return M": "entry (1, 2): sin(phi) should be -sin(phi)",
     f"{SINES}; M = {TURN}; change(M); return M": "equal to",  # before it is changed
@@ -358,6 +358,16 @@ CERTAIN = {  # a program: the end of the verdict
     ("g.py", "def f(w, x, y, z):\n    s = helper()\n    return [" + OF_Q.format("1-s*", "1-s*")
      + "w*y), s*(y*z+w*x), 1-s*(x*x+y*y)]]\n"): "if s = 2/(w**2 + x**2 + y**2 + z**2) (proved); "
     "not read: s in line 2",
+    ("h.py", "def f(R):\n    M, n = R.T, R[:, 0]\n    return np.arctan2(M[1, 2], R[2, 2]), "
+     "np.arcsin(-n[2]), np.arctan2(n[1], R[0, 0])\n"): "euler_angles of xyz (to nine digits at 20 "
+    "points, not proved)",
+    ("i.py", "def f(w, x, y, z):\n    s = np.clip(2*(w*y - z*x), -0.99, 0.99)\n    return atan2("
+     "2*(w*x + y*z), 1 - 2*(x*x + y*y)), np.arcsin(s), np.arctan2(2*(w*z + x*y), 1 - 2*(y*y + "
+     "z*z))\n"): None,
+    ("h.c", "void f(int a, double q[4]) { q[0] = cos(a/2); q[1] = 0; q[2] = 0; q[3] = sin(a/2); }"):
+    None,
+    ("h.cpp", "void f(const double *a, double s) { Vec q; q[1] = a[1]*sin(s); q[2] = a[2]; "
+     "q[3] = a[3]; q *= s; g(q); }"): None,
 }  # fmt: skip
 
 

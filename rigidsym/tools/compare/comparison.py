@@ -140,7 +140,7 @@ class Comparison:
         words = (
             self.found.arrangement if self.found else "",
             opposite and f"with the opposite sense of {opposite} (a convention, or wrong signs)",
-            turned and f"with {turned} from another axis, a quarter turn away",
+            turned and f"with {turned} from another axis, a quarter or half turn away",
             "".join(f"if {own.pop(x)} = {x.xreplace(own)}" for x in lengths),
             self.scale and f"up to the factor {self.scale}",
         )

@@ -27,7 +27,7 @@ from rigidsym.tools.compare import language
 from rigidsym.tools.compare.language import as_matrix, called, combined, function_word, rows
 from rigidsym.tools.compare.latex import python_of
 from rigidsym.tools.compare.quantities import are_angles, stem_of
-from rigidsym.tools.compare.syntax import CALLS, Tree, parameters, parsed, patterns, tree_of, walk
+from rigidsym.tools.compare.syntax import CALLS, Tree, parameters, parsed, patterns, walk
 
 if TYPE_CHECKING:
     from tree_sitter import Node
@@ -41,6 +41,7 @@ _LONGEST_LIST = 64
 _MOST_FORMULAS = 1_000  # of a file
 _MOST_STEPS = 12_000  # expressions of a file: what takes some seconds
 _NAMES_A_STEP = 4  # of which a branch looks for new matrices
+_FEWEST_FACTORS = 5  # and signs, of a formula without a sine: C(w) I w has three signs
 _MOST_NODES = 400_000  # of a file: a generated megabyte is not worth reading
 _MOST_CHARACTERS = 20_000  # of a formula
 _LONGEST_PLACE = 120  # characters
@@ -48,6 +49,8 @@ _LONGEST = 40  # parts of a value without a symbol of its own
 _LONG_IN_LONG = 3  # symbols for long values that use other such symbols
 _MOST_PARTS = 2_000  # of a matrix
 _LONGEST_STATE = 20  # entries of a vector whose parts are looked at
+_SHORT_ARGUMENT = 12  # parts
+_NEAR_LIMIT = 1e-2  # of a value next to a pole
 _MOST_RUNS = 40  # of a function, with other branches
 _INLINED = 3  # calls of functions of the same file inside one another
 
@@ -168,6 +171,8 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
             r"\$(?=\w)|\$\((?=//|impl\b|$)|(?<=[ \t}])\)[+*]$", "", text, flags=re.MULTILINE
         )
     text = re.sub(r"\b\w*LITERAL\(\s*(\w+)\s*\)", r"\1", text)  # a macro for C and C++
+    if not _has_material(text, suffix):
+        return []
     try:
         root = parsed(text, suffix)
     except ExpressionError as error:
@@ -184,7 +189,7 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
         set(patterns.array.findall(text)),
     )
     program.steps["read"] = -8 * text.count("\n")  # which a long file of plain formulas needs
-    scopes = [_Scope(tree) for tree in (Tree(root), *functions)]
+    scopes = [_Scope(tree) for tree in (Tree(root), *_worth_reading(functions, suffix))]
     if root.has_error:
         line = next((t.line for t in walk(root) if t.node.is_error or t.node.is_missing), 1)
         scopes[0].formulas.append(Formula(lines=(line,), name="", reason="there is a syntax error"))
@@ -212,6 +217,42 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
     cases = {place for place, number in Counter(varied).items() if number > 1}
     marked = (replace(f, is_case=(f.lines, f.name) in cases) for f in formulas.values())
     return sorted(marked, key=lambda each: each.line)
+
+
+def _has_material(text: str, suffix: str) -> bool:
+    """Whether there are words, products or signs enough for a formula, a cheap test."""
+    fewest = 1 if suffix in (".py", ".m") else _FEWEST_FACTORS  # which may be matrices
+    factors = islice(patterns.factors.finditer(text), fewest)
+    return bool(patterns.material.search(text)) or len([*factors]) == fewest
+
+
+def _worth_reading(functions: Sequence[Tree], suffix: str) -> list[Tree]:
+    """Functions that may hold a formula, in themselves or in functions that they call."""
+    worth, others, names = [], [*functions], set[str]()
+    while chosen := [
+        tree
+        for tree in others
+        if (names & tree.called_names if names else _has_material(tree.text, suffix))
+    ]:
+        worth += chosen
+        names = {tree.word for tree in chosen}
+        others = [tree for tree in others if tree not in chosen]
+    return sorted(worth, key=lambda tree: tree.node.start_byte)
+
+
+@lru_cache(maxsize=256)  # functions are run several times
+def _late(scope: Tree, is_python: bool) -> list[Tree]:
+    """Changes of names at a time that the order of the text does not tell."""
+    if is_python:
+        return [t for t in walk(scope.node, "assign", "outer") if t.is_one_of("late")]
+    late: list[Tree] = []
+    end = 0  # of the inner function that contains a node, if any does
+    for each in walk(scope.node, "function", "assign", "call"):
+        if each.kind == "function":
+            end = max(end, each.node.end_byte)
+        elif each.node.start_byte < end and not each.is_one_of("declaration"):
+            late.append(each)
+    return late
 
 
 def _overloads(functions: Iterable[Tree], suffix: str) -> dict[str, dict[int, list[Tree]]]:
@@ -297,6 +338,8 @@ class _Run:
         self.unread: dict[str, int] = {}  # lines of names without values
         self.later: dict[tuple[sp.Expr, Any], sp.Dummy] = {}  # parts of names assigned anew
         self.squares: dict[sp.Symbol, sp.Symbol] = {}  # |v|² of names without values
+        self.columns_of: dict[tuple[sp.Symbol, Any], sp.Dummy] = {}  # of names without values
+        self.transposes: dict[sp.Symbol, sp.Symbol] = {}  # of them, and back
         self.tensors: set[sp.Symbol] = set()  # names without values that are matrices
         self.untracked: set[Path] = set()
         self.links: list[tuple[Path, Path]] = []  # names that may be the same object
@@ -318,15 +361,7 @@ class _Run:
     def run_scope(self) -> None:
         """Run a function, or the whole file, and collect the formulas in it."""
         scope = self.scope.tree
-        late = [t for t in walk(scope.node, "assign", "outer") if t.is_one_of("late")]
-        if self.program.suffix != ".py":
-            end = 0  # of the inner function that contains a node, if any does
-            for each in walk(scope.node, "function", "assign", "call"):
-                if each.kind == "function":
-                    end = max(end, each.node.end_byte)
-                elif each.node.start_byte < end and not each.is_one_of("declaration"):
-                    late.append(each)
-        self.untracked = self.written_in(late)
+        self.untracked = self.written_in(_late(scope, self.program.suffix == ".py"))
         body = scope
         if scope.kind == "function":
             self.inputs |= set(parameters(scope.node))
@@ -481,7 +516,8 @@ class _Run:
         if self.by_columns(path) and len(path) > 1 and isinstance(value, sp.MatrixBase):
             raise self.unreadable(left, "may be a column")
         own = self.part(self.values, path)
-        if _is_scalar(own) and self.expanded(own).has(*_INVERSE):  # an angle, in another unit then
+        meant = (own, *map(self.definitions.get, own.free_symbols)) if _is_scalar(own) else ()
+        if any(v is not None and v.has(*_INVERSE) for v in meant):  # an angle, in another unit then
             self.emit(self.part(self.values, path[:-1]), [], path[:-1], is_final=False)
         # A matrix may be complete only after R = R*S.
         is_own = right is not None and re.search(rf"\b{path[0]}\b", right.text) is not None
@@ -584,7 +620,8 @@ class _Run:
         record = self.values.get(path[0]) if path and len(path) == 1 else None
         if isinstance(record, _Record) and isinstance(value, sp.MatrixBase):
             record.clear()  # also of other names for this matrix
-            record.update(_record(value, left.line))
+            record.update(entries := _record(value, left.line))
+            record.lines = entries.lines
         else:
             self.store(left, value, right=left)
 
@@ -610,7 +647,7 @@ class _Run:
     def forget(self, tree: Tree) -> None:
         """All names that are written to in a statement become unread, if they have been used."""
         own = self.written_in([tree] if tree.kind == "assign" else [])
-        for path in own | self.written_in([tree, *walk(tree.node, "assign", "call", "binary")]):
+        for path in own | self.written_in([tree, *tree.changing]):
             if path in own or self.part(self.values, path) is not None or path[0] in self.inputs:
                 self.become_unread(path, tree.line)
 
@@ -888,8 +925,17 @@ class _Run:
 
     def read_transposed(self, tree: Tree) -> Any:
         value = self.read(tree.parts[0])
-        value = value if self.first else _unflattened(value)
-        return value if _is_scalar(value) else value.T  # the rows of a name without a value
+        return self.transposed(value if self.first else _unflattened(value))
+
+    def transposed(self, value: Any) -> Any:
+        """The transpose; for a name without a value another name, since it may be a matrix."""
+        is_number = value in self.components or self.definitions.get(value) is not None
+        if not _is_scalar(value) or not value.is_Symbol or is_number:
+            return value if _is_scalar(value) else value.T
+        if value not in self.transposes:
+            part = self.unread_part(value, sp.Dummy(f"{value}.T", real=True))
+            self.transposes |= {value: part, part: value}
+        return self.transposes[value]
 
     def read_member(self, tree: Tree) -> Any:
         if tree.word in ("Sin", "Cos", "Tan") and tree.parts:  # angle.Cos
@@ -917,6 +963,14 @@ class _Run:
             is_rounded
             and patterns.whole_numbers.fullmatch(tree.text)
             and not (left / right).is_Integer
+        ):
+            raise self.unreadable(tree, "is a division of whole numbers, which rounds")
+        name, below = tree.parts
+        if (
+            is_rounded
+            and name.kind == "name"
+            and patterns.whole_numbers.fullmatch(below.text)
+            and re.search(rf"\bint\s+{name.word}\b", self.scope.tree.text)
         ):
             raise self.unreadable(tree, "is a division of whole numbers, which rounds")
         if sign in ("+", "-"):
@@ -1013,7 +1067,10 @@ class _Run:
                 if limit == {">": 1, "<": -1}[sign] and abs(number - limit) < 0.01:
                     return _Bounded(own)
             elif sign and self.is_pole(own, sign, number, other):
-                return other
+                if not own.is_Symbol or other.free_symbols != {own} or other.has(*_INVERSE):
+                    return other
+                if abs(other.xreplace({own: sp.Float(1e-3)}) - limit) < _NEAR_LIMIT:
+                    return other
         return self.read(trees[self.scope.choice(tree.node, trees)])
 
     def sides(self, condition: Tree) -> tuple[Any, str, Any]:
@@ -1030,7 +1087,8 @@ class _Run:
 
     def is_pole(self, own: sp.Expr, sign: str, number: sp.Expr, value: sp.Expr) -> bool:
         """Whether a value, of the same vector or matrix, has a pole where it is replaced."""
-        is_near = sign == "=" or sign == (">" if number > 0.5 else "<")
+        is_near = sign == "=" or (sign == ">" and number > 0.4)
+        is_near |= sign == "<" and number < 0.1
         whole, own = self.expanded(value), self.expanded(own)
         one, other = (
             {patterns.indices.sub("", s.name) for s in x.free_symbols} for x in (whole, own)
@@ -1175,7 +1233,10 @@ class _Run:
             return rows([self.entry(tree, value, (letter,)) for letter in letters])
         if isinstance(value, sp.MatrixBase):
             return self.block(tree, value, keys)
-        if key == _ALL and others:  # of a batch: q[:, 0]
+        if key == _ALL and others and isinstance(others[0], int) and value.is_Symbol:
+            part = self.column(value, others[0] + self.first)  # or of a batch: q[:, 0]
+            return self.entry(tree, part, tuple(others[1:]))
+        if key == _ALL and others:  # of a batch
             return self.entry(tree, value, tuple(others))
         if isinstance(key, slice):
             numbers = range(key.start or 0, key.stop or (4 if key.start else 3))
@@ -1188,11 +1249,28 @@ class _Run:
 
     def component(self, value: sp.Expr, key: int | str) -> Any:
         """A component of a name without a value, or of c v; None for numbers."""
+        if value in self.transposes and value.is_Dummy:
+            return self.column(self.transposes[value], key)
+        for (matrix, column), part in self.columns_of.items():
+            if part == value:
+                return self.component(self.component(matrix, key), column)
         part = _part(value, key) if value not in self.components else None
         if part is not None and value in self.definitions:  # which is not read, or assigned anew
             part = self.later.setdefault((value, key), sp.Dummy(part.name, real=True))
             self.definitions.setdefault(part, None)
             self.unread.setdefault(part.name, self.unread.get(value.name, 0))
+        return part
+
+    def column(self, matrix: sp.Symbol, key: int | str) -> sp.Symbol:
+        """A column of a name without a value, or a number if that is a batch of vectors."""
+        part = sp.Dummy(f"{matrix}.{key}", real=True)
+        return self.unread_part(matrix, self.columns_of.setdefault((matrix, key), part))
+
+    def unread_part(self, whole: sp.Expr, part: sp.Symbol) -> sp.Symbol:
+        """A part of a name; it is not read if the name is not."""
+        if whole in self.definitions:
+            self.definitions.setdefault(part, None)
+            self.unread.setdefault(part.name, self.unread.get(str(whole), 0))
         return part
 
     def block(self, tree: Tree, matrix: sp.ImmutableMatrix, keys: Path) -> Any:
@@ -1240,7 +1318,8 @@ class _Run:
         if (name in language.OF_NUMBERS or in_formula) and nodes and not is_own:
             values = [self.read(each) for each in nodes]
             # SymPy takes a long argument apart, which costs as much as several expressions.
-            self.program.steps["read"] += sum(map(_size, values)) // 5
+            sizes = map(_size, values)
+            self.program.steps["read"] += sum(size for size in sizes if size > _SHORT_ARGUMENT)
             return called(name, values)
         is_listed = bool(nodes) and (len(nodes) == 1 or nodes[0].kind in ("list", "matrix"))
         match meaning:
@@ -1301,7 +1380,7 @@ class _Run:
         """x of clamp(x, -1, 1), of min(1, x) or of max(-1, x), for arc sines and cosines."""
         parts = [value.as_coeff_Add() for value in values]  # a bound may be -1 + epsilon
         signs = [
-            round(c) if 0.99 < abs(c) < 1.01 and rest.as_coeff_Mul()[1].is_Atom else 0
+            round(c) if 0.995 < abs(c) < 1.005 and rest.as_coeff_Mul()[1].is_Atom else 0
             for c, rest in parts
         ]
         least = 1 if re.search("min", tree.called, re.IGNORECASE) else -1
@@ -1328,7 +1407,9 @@ class _Run:
             values = [self.vector(value) for value in values]
         if meaning == "dot" and any(as_matrix(value).cols > 1 for value in values):
             return combined("@", *map(_unflattened, values))
-        if meaning in ("T", "inv"):
+        if meaning == "T":
+            return self.transposed(_unflattened(values[0]))
+        if meaning == "inv":
             values = [_unflattened(value) for value in values]
         return called(meaning, [as_matrix(value) for value in values])
 
@@ -1362,19 +1443,21 @@ class _Run:
         if all(each.cols == 1 for each in parts) and len({each.rows for each in parts}) > 1:
             return sp.ImmutableMatrix(sp.Matrix.vstack(*parts))  # (w, v)
         matrix = rows(parts)
+        if re.search("from_?col", tree.called, re.IGNORECASE):
+            matrix = _unflattened(matrix)
         return matrix.T if by_columns and 1 not in matrix.shape else matrix
 
     def inline(self, tree: Tree, name: str, nodes: Sequence[Tree]) -> Any:
         """The value of a function of the same file."""
         fitting = self.program.functions[name].get(len(nodes), ())
         own = [each for each in fitting if each.node != self.scope.tree.node]
-        if len(own) != 1 or self.inlined >= _INLINED:
+        if len(own) != 1 or self.inlined >= _INLINED or not own[0].has_result:
             raise self.unreadable(tree)
         around = own[0].around
         is_known = around.start_byte <= tree.node.start_byte < around.end_byte
         if not tree.base and (not is_known or name in self.inputs):  # of another file
             raise self.unreadable(tree)
-        scope = replace(self.scope, tree=tree_of(own[0].node))
+        scope = replace(self.scope, tree=own[0])
         inner, names = _Run(self.program, scope, self.inlined + 1), parameters(own[0].node)
         names = [name for name in names if name not in ("self", "this")]
         for each, node in zip(names, nodes, strict=True):
@@ -1405,7 +1488,7 @@ def _settled(record: _Record) -> sp.ImmutableMatrix | None:
         order = [letters[name] for name in names]
     parts: list[Any] = [record.get(key) for key in order]
     parts = [_settled(part) if isinstance(part, _Record) else part for part in parts]
-    if not parts or None in parts:
+    if not parts or None in parts or {*keys} == {1, 2, 3}:  # of a quaternion without its scalar
         return None
     matrices = [*map(as_matrix, parts)]
     is_regular = len({each.shape for each in matrices}) == 1 and matrices[0].cols == 1

@@ -268,7 +268,7 @@ def families(formula: sp.MatrixBase) -> Iterator[Family]:
     if are_angles(formula):
         yield _of_angles()
         return
-    shape, count = formula.shape, len(formula.free_symbols)
+    shape, count = formula.shape, min(len(formula.free_symbols), len(_SEQUENCES) + 1)
     yield from (law for law in _laws() if law[0].matrix.shape == shape)
     for quantity in SHAPES.get(shape, ()):
         yield from _of_quantity(quantity, shape, formula.has(sp.sin, sp.cos, sp.tan), count)
@@ -453,11 +453,7 @@ def meanings(formula: sp.MatrixBase, goal: KnownQuantity, *, is_asked: bool) -> 
 
     If the quantity `is_asked` for, and all names are those of its inputs, no other is possible.
     """
-    # q2 comes before q10
-    symbols = sorted(
-        formula.free_symbols,
-        key=lambda s: [int(p) if p.isdecimal() else p for p in re.split(r"(\d+)", s.name)],
-    )
+    symbols, inside = _symbols(formula)
     own = {s: goal.names.get(s.name) or goal.names.get(f"{stem_of(s.name)}_dot") for s in symbols}
     if None not in own.values() and is_asked:
         return [own]
@@ -470,20 +466,33 @@ def meanings(formula: sp.MatrixBase, goal: KnownQuantity, *, is_asked: bool) -> 
         words |= {s: f"rate of {stem_of(s.name)}" for s in symbols if stem_of(s.name)}
     # On a unit vector, the length is no name: any factor would fit.
     is_free = bool(goal.rotation) and not goal.motion.model.constraints
-    of_names = _of_turns(formula, goal, symbols) if turns else _of_vectors(words, vectors, is_free)
+    of_names = _of_turns(inside, goal, symbols) if turns else _of_vectors(words, vectors, is_free)
     names: list[Names] = [own] * (None not in own.values()) + [*of_names]
     if goal.quantity == ANGLES:
         names += _of_entries(symbols, goal.motion.rotation_matrix)
-    if is_asked or len(turns) < 2 or goal.quantity not in (QUATERNION, "rotation_matrix"):
+    if is_asked or not turns or goal.quantity not in (QUATERNION, "rotation_matrix"):
         return names
-    # Angles may count in the other sense, and from another axis.
-    quarters = range(4) if len(turns) == 2 and goal.quantity != QUATERNION else (0,)
-    senses = product(product((1, -1), quarters), repeat=len(symbols))
+    # Angles may count in the other sense, which for one turn is the transpose, and from another
+    # axis.
+    quarters = range(4) if len(turns) < 3 and goal.quantity != QUATERNION else (0,)
+    signs = (1, -1) if len(turns) > 1 else (1,)
+    senses = product(product(signs, quarters), repeat=len(symbols))
     return [
         {s: sign * each[s] + k * sp.pi / 2 for s, (sign, k) in zip(each, sense, strict=True)}
         for sense in senses
         for each in names
     ]
+
+
+@lru_cache(maxsize=256)  # one formula is compared with many quantities
+def _symbols(formula: sp.MatrixBase) -> tuple[list[sp.Symbol], set[sp.Symbol]]:
+    """The names of a formula in order, q2 before q10, and those inside sines and cosines."""
+    inside = {a for f in formula.atoms(sp.sin, sp.cos, sp.tan) for a in f.free_symbols}
+
+    def key(symbol: sp.Symbol) -> list[int | str]:
+        return [int(p) if p.isdecimal() else p for p in re.split(r"(\d+)", symbol.name)]
+
+    return sorted(formula.free_symbols, key=key), inside
 
 
 def oddness(meant: sp.Expr) -> int:
@@ -494,10 +503,9 @@ def oddness(meant: sp.Expr) -> int:
 
 
 def _of_turns(
-    formula: sp.MatrixBase, goal: KnownQuantity, symbols: Sequence[sp.Symbol]
+    inside: set[sp.Symbol], goal: KnownQuantity, symbols: Sequence[sp.Symbol]
 ) -> Iterator[Names]:
-    """Angles stand in sines and cosines; angular velocities and rates stand outside."""
-    inside = {a for f in formula.atoms(sp.sin, sp.cos, sp.tan) for a in f.free_symbols}
+    """Angles stand `inside` sines and cosines; angular velocities and rates stand outside."""
     angles = [s.name for s in symbols if s in inside]
     others = [s for s in symbols if s not in inside]
     q, of_others = [*goal.inputs.values(), ()][:2]
@@ -540,11 +548,17 @@ def _of_vectors(
         yield from (dict(zip(symbols, order, strict=True)) for order in permutations(wanted[0]))
 
 
-def grouped(names: Mapping[sp.Symbol, str]) -> Iterator[list[tuple[sp.Symbol, ...]]]:
+def grouped(names: Mapping[sp.Symbol, str]) -> list[list[tuple[sp.Symbol, ...]]]:
     """Names in vectors, by each pattern; p, q, r are one, and other names are numbers."""
+    return _grouped(tuple(names.items()))
+
+
+@lru_cache(maxsize=256)
+def _grouped(names: tuple[tuple[sp.Symbol, str], ...]) -> list[list[tuple[sp.Symbol, ...]]]:
+    groupings: list[list[tuple[sp.Symbol, ...]]] = []
     for pattern in patterns.vectors:
         groups: dict[str, list[tuple[str, sp.Symbol]]] = {}
-        for symbol, name in names.items():
+        for symbol, name in names:
             match = pattern.fullmatch(name)
             stem, part = (match["stem"], match["part"].lower()) if match else (name, "")
             if rates := re.fullmatch("(?:.*_)?([pqr])(_b(ody)?)?", name):
@@ -553,10 +567,12 @@ def grouped(names: Mapping[sp.Symbol, str]) -> Iterator[list[tuple[sp.Symbol, ..
         for group in groups.values():  # the scalar comes first
             group.sort(key=lambda each: (each[0] not in ("w", "r"), each[0]))
         vectors = [tuple(symbol for _, symbol in group) for group in groups.values()]
-        yield vectors
+        groupings.append(vectors)
         for scalar, vector in permutations(vectors, 2):
             if (len(scalar), len(vector)) == (1, 3):  # w beside this.x
-                yield [*(v for v in vectors if v not in (scalar, vector)), scalar + vector]
+                others = (v for v in vectors if v not in (scalar, vector))
+                groupings.append([*others, scalar + vector])
+    return [groups for k, groups in enumerate(groupings) if groups not in groupings[:k]]
 
 
 def _scalar_first(vector: tuple[sp.Symbol, ...]) -> list[tuple[sp.Symbol, ...]]:

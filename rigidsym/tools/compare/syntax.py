@@ -196,6 +196,23 @@ class Tree:
                 return
         yield Tree(self.node, own=[])
 
+    @cached_property
+    def changing(self) -> list[Tree]:
+        """All trees below that may change a name."""
+        return [*walk(self.node, "assign", "call", "binary")]
+
+    @property
+    def called_names(self) -> set[str]:
+        """The names of the functions that a text calls."""
+        return {*re.findall(r"\w+(?=\s*\()", self.text)}
+
+    @cached_property
+    def has_result(self) -> bool:
+        """Whether a function may have a value: one in C++ may be run for its effects only."""
+        body = _part(self.node, "body")
+        has_body = body is not None and body.type == "compound_statement"
+        return not has_body or re.search(r"\breturn\b\s*[^\s;]", self.text) is not None
+
     @property
     def constant(self) -> bool | None:
         """The value of a condition, if it is constant."""
