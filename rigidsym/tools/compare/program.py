@@ -189,7 +189,7 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
         set(patterns.array.findall(text)),
     )
     program.steps["read"] = -8 * text.count("\n")  # which a long file of plain formulas needs
-    scopes = [_Scope(tree) for tree in (Tree(root), *_worth_reading(functions, suffix))]
+    scopes = [_Scope(tree) for tree in (Tree(root), *functions)]
     if root.has_error:
         line = next((t.line for t in walk(root) if t.node.is_error or t.node.is_missing), 1)
         scopes[0].formulas.append(Formula(lines=(line,), name="", reason="there is a syntax error"))
@@ -224,20 +224,6 @@ def _has_material(text: str, suffix: str) -> bool:
     fewest = 1 if suffix in (".py", ".m") else _FEWEST_FACTORS  # which may be matrices
     factors = islice(patterns.factors.finditer(text), fewest)
     return bool(patterns.material.search(text)) or len([*factors]) == fewest
-
-
-def _worth_reading(functions: Sequence[Tree], suffix: str) -> list[Tree]:
-    """Functions that may hold a formula, in themselves or in functions that they call."""
-    worth, others, names = [], [*functions], set[str]()
-    while chosen := [
-        tree
-        for tree in others
-        if (names & tree.called_names if names else _has_material(tree.text, suffix))
-    ]:
-        worth += chosen
-        names = {tree.word for tree in chosen}
-        others = [tree for tree in others if tree not in chosen]
-    return sorted(worth, key=lambda tree: tree.node.start_byte)
 
 
 @lru_cache(maxsize=256)  # functions are run several times
@@ -959,19 +945,12 @@ class _Run:
         if is_turn and self.expanded(left).has(*_INVERSE):  # the same angle
             return left
         is_rounded = sign == "/" and self.program.suffix not in _OF_REALS
-        if (
-            is_rounded
-            and patterns.whole_numbers.fullmatch(tree.text)
-            and not (left / right).is_Integer
-        ):
-            raise self.unreadable(tree, "is a division of whole numbers, which rounds")
-        name, below = tree.parts
-        if (
-            is_rounded
-            and name.kind == "name"
-            and patterns.whole_numbers.fullmatch(below.text)
-            and re.search(rf"\bint\s+{name.word}\b", self.scope.tree.text)
-        ):
+        above, below = tree.parts
+        whole = patterns.whole_numbers.fullmatch(below.text) if is_rounded else None
+        is_int = re.search(rf"\bint\s+{re.escape(above.text)}\b", self.scope.tree.text)
+        if (whole and (is_int or patterns.whole_numbers.fullmatch(above.text))) and not (
+            left / right
+        ).is_Integer:
             raise self.unreadable(tree, "is a division of whole numbers, which rounds")
         if sign in ("+", "-"):
             left, right = self.as_vector(left, right), self.as_vector(right, left)
@@ -1256,9 +1235,8 @@ class _Run:
                 return self.component(self.component(matrix, key), column)
         part = _part(value, key) if value not in self.components else None
         if part is not None and value in self.definitions:  # which is not read, or assigned anew
-            part = self.later.setdefault((value, key), sp.Dummy(part.name, real=True))
-            self.definitions.setdefault(part, None)
-            self.unread.setdefault(part.name, self.unread.get(value.name, 0))
+            dummy = sp.Dummy(part.name, real=True)
+            part = self.unread_part(value, self.later.setdefault((value, key), dummy))
         return part
 
     def column(self, matrix: sp.Symbol, key: int | str) -> sp.Symbol:

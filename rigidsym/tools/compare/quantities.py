@@ -489,10 +489,9 @@ def _symbols(formula: sp.MatrixBase) -> tuple[list[sp.Symbol], set[sp.Symbol]]:
     """The names of a formula in order, q2 before q10, and those inside sines and cosines."""
     inside = {a for f in formula.atoms(sp.sin, sp.cos, sp.tan) for a in f.free_symbols}
 
-    def key(symbol: sp.Symbol) -> list[int | str]:
-        return [int(p) if p.isdecimal() else p for p in re.split(r"(\d+)", symbol.name)]
-
-    return sorted(formula.free_symbols, key=key), inside
+    parts = {s: re.split(r"(\d+)", s.name) for s in formula.free_symbols}
+    ordered = sorted(parts, key=lambda s: [int(p) if p.isdecimal() else p for p in parts[s]])
+    return ordered, inside
 
 
 def oddness(meant: sp.Expr) -> int:
@@ -534,7 +533,7 @@ def _of_vectors(
     """
     sizes, squares = [*map(len, wanted)], [sum(x**2 for x in vector) for vector in wanted]
     is_known = False
-    for vectors in grouped(symbols):
+    for vectors in grouped(tuple(symbols.items())):
         for order in permutations(vectors) if 0 <= len(vectors) - len(sizes) <= is_free else ():
             chosen, lone = order[: len(sizes)], order[len(sizes) :]
             if [*map(len, chosen)] != sizes or [*map(len, lone)] not in ([], [1]):
@@ -548,13 +547,9 @@ def _of_vectors(
         yield from (dict(zip(symbols, order, strict=True)) for order in permutations(wanted[0]))
 
 
-def grouped(names: Mapping[sp.Symbol, str]) -> list[list[tuple[sp.Symbol, ...]]]:
-    """Names in vectors, by each pattern; p, q, r are one, and other names are numbers."""
-    return _grouped(tuple(names.items()))
-
-
 @lru_cache(maxsize=256)
-def _grouped(names: tuple[tuple[sp.Symbol, str], ...]) -> list[list[tuple[sp.Symbol, ...]]]:
+def grouped(names: tuple[tuple[sp.Symbol, str], ...]) -> list[list[tuple[sp.Symbol, ...]]]:
+    """Names in vectors, by each pattern; p, q, r are one, and other names are numbers."""
     groupings: list[list[tuple[sp.Symbol, ...]]] = []
     for pattern in patterns.vectors:
         groups: dict[str, list[tuple[str, sp.Symbol]]] = {}

@@ -192,7 +192,7 @@ def _partial(matrix: sp.ImmutableMatrix) -> Iterator[tuple[sp.ImmutableMatrix, s
     if matrix.shape not in ((3, 1), (4, 1)) or matrix.has(sp.Function):
         return
     sign = 1 if matrix.rows == 3 else -1  # of what is quadratic in ω, or linear
-    for vectors in grouped({s: s.name for s in matrix.free_symbols}):
+    for vectors in grouped(tuple((s, s.name) for s in sorted(matrix.free_symbols, key=str))):
         for w in vectors:
             if len(w) != 3 or not all(e.has(*w) and e.is_polynomial(*w) for e in matrix):
                 continue
