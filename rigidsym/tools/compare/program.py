@@ -189,7 +189,7 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
         set(patterns.array.findall(text)),
     )
     program.steps["read"] = -8 * text.count("\n")  # which a long file of plain formulas needs
-    scopes = [_Scope(tree) for tree in (Tree(root), *functions)]
+    scopes = [_Scope(tree) for tree in (Tree(root), *_worth_reading(functions, suffix))]
     if root.has_error:
         line = next((t.line for t in walk(root) if t.node.is_error or t.node.is_missing), 1)
         scopes[0].formulas.append(Formula(lines=(line,), name="", reason="there is a syntax error"))
@@ -224,6 +224,16 @@ def _has_material(text: str, suffix: str) -> bool:
     fewest = 1 if suffix in (".py", ".m") else _FEWEST_FACTORS  # which may be matrices
     factors = islice(patterns.factors.finditer(text), fewest)
     return bool(patterns.material.search(text)) or len([*factors]) == fewest
+
+
+def _worth_reading(functions: Sequence[Tree], suffix: str) -> list[Tree]:
+    """Functions that may hold a formula, in themselves or in functions that they call."""
+    names = {tree.word for tree in functions if _has_material(tree.text, suffix)}
+    size = 0
+    while size < len(names):
+        size = len(names)
+        names |= {tree.word for tree in functions if names & tree.called_names}
+    return [tree for tree in functions if tree.word in names]
 
 
 @lru_cache(maxsize=256)  # functions are run several times

@@ -202,6 +202,11 @@ class Tree:
         return [*walk(self.node, "assign", "call", "binary")]
 
     @cached_property
+    def called_names(self) -> set[str]:
+        """The names of the functions that a text calls."""
+        return {*re.findall(r"\w+(?=\s*\()", self.text)}
+
+    @cached_property
     def has_result(self) -> bool:
         """Whether a function may have a value: one in C++ may be run for its effects only."""
         body = _part(self.node, "body")
