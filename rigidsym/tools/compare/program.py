@@ -1254,11 +1254,11 @@ class _Run:
         part = sp.Dummy(f"{matrix}.{key}", real=True)
         return self.unread_part(matrix, self.columns_of.setdefault((matrix, key), part))
 
-    def unread_part(self, whole: sp.Expr, part: sp.Symbol) -> sp.Symbol:
+    def unread_part(self, whole: Any, part: sp.Symbol) -> sp.Symbol:
         """A part of a name; it is not read if the name is not."""
         if whole in self.definitions:
             self.definitions.setdefault(part, None)
-            self.unread.setdefault(part.name, self.unread.get(str(whole), 0))
+            self.unread.setdefault(part.name, self.unread.get(whole.name, 0))
         return part
 
     def block(self, tree: Tree, matrix: sp.ImmutableMatrix, keys: Path) -> Any:
@@ -1307,7 +1307,7 @@ class _Run:
             values = [self.read(each) for each in nodes]
             # SymPy takes a long argument apart, which costs as much as several expressions.
             sizes = map(_size, values)
-            self.program.steps["read"] += sum(size for size in sizes if size > _SHORT_ARGUMENT)
+            self.program.steps["read"] += 3 * sum(n for n in sizes if n > _SHORT_ARGUMENT)
             return called(name, values)
         is_listed = bool(nodes) and (len(nodes) == 1 or nodes[0].kind in ("list", "matrix"))
         match meaning:
