@@ -188,7 +188,7 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
         bool(patterns.glm.search(text)),
         set(patterns.array.findall(text)),
     )
-    program.steps["read"] = -8 * text.count("\n")  # which a long file of plain formulas needs
+    program.steps["read"] = -6 * text.count("\n")  # which a long file of plain formulas needs
     scopes = [_Scope(tree) for tree in (Tree(root), *_worth_reading(functions, suffix))]
     if root.has_error:
         line = next((t.line for t in walk(root) if t.node.is_error or t.node.is_missing), 1)
