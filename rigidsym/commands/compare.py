@@ -94,7 +94,7 @@ def _records(expected: str | None, is_active: bool, file: Path) -> list[dict[str
     """The formulas of a file: where they are, what they are, and whether that is a fault."""
     axes = derive(expected, "rotation_matrix").model if expected else None
     records = []
-    for formula in search(file):
+    for formula in search(file, " ".join(turn.axis for turn in axes.turns) if axes else ""):
         record, comparison = formula.record(), formula.comparison
         other = disappointment(comparison, axes, is_active=is_active) if comparison else ""
         is_right = comparison is None or comparison.is_equal or comparison.is_reflection

@@ -590,6 +590,17 @@ def matrix(q):
     assert all("close to" not in str(each) for each in found_in(tmp_path, "a.py", text))
 
 
+def test_of_equally_near_rotations_that_of_yaw_pitch_and_roll_is_named(tmp_path):
+    text = """def quaternion(roll, pitch, yaw):
+    cr, cp, cy = cos(roll/2), cos(pitch/2), cos(yaw/2)
+    sr, sp, sy = sin(roll/2), sin(pitch/2), sin(yaw/2)
+    x, y = sr*cp*cy - cr*sp*sy, cr*sp*cy + sr*cp*sy
+    return [cr*cp*cy + sr*sp*sy, x, y, cr*cp*sy + sr*sp*cy]
+"""
+    (found,) = found_in(tmp_path, "q.py", text)
+    assert "close to quaternion of ZYX in (yaw, pitch, roll): entry 4: " in str(found)
+
+
 def test_another_convention_than_the_expected_one_is_a_fault(tmp_path):
     rows = "[[cos(a), sin(a), 0], [-sin(a), cos(a), 0], [0, 0, 1]]"
     chain = "Rz(y) @ Ry(p) @ Rx(r)"

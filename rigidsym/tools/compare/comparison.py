@@ -281,11 +281,16 @@ def against(formula: sp.ImmutableMatrix, goal: KnownQuantity) -> Comparison:
 
 
 def identified(
-    formula: sp.ImmutableMatrix, *, only_equal: bool = False, is_in_program: bool = False
+    formula: sp.ImmutableMatrix,
+    *,
+    only_equal: bool = False,
+    is_in_program: bool = False,
+    expected: str = "",
 ) -> Comparison:
     """Compare with all quantities of the catalogue; the nearest if none is equal.
 
-    In a program, a transpose, a sign or a factor of the whole formula may be meant.
+    In a program, a transpose, a sign or a factor of the whole formula may be meant. Of several
+    nearest rotations, that about the `expected` axes, as in "z y x", is preferred.
     """
     trials = []
     for family in known.families(formula):
@@ -303,7 +308,7 @@ def identified(
         return unknown
     if decided := _decided(formula, trials, None, is_in_program=is_in_program):
         return decided
-    for reading in _nearest(trials, _NEAR)[:_NEAREST]:
+    for reading in _nearest(trials, _NEAR, expected)[:_NEAREST]:
         repairs = entry_repairs(reading)
         # If all other entries are right, one may be wrong in any way.
         is_whole = len(repairs) == 1 and _is_rich(reading)
@@ -333,14 +338,29 @@ def _other_forms(formula: sp.ImmutableMatrix) -> Iterator[tuple[str, sp.Immutabl
             yield str(symbol), formula.xreplace({symbol: sp.S.One})
 
 
-def _nearest(trials: Sequence[_Trial], least: float) -> list[Reading]:
+def _nearest(trials: Sequence[_Trial], least: float, expected: str = "") -> list[Reading]:
     """The readings of which this share of all entries is right, the best first."""
     readings: list[Reading] = []
     for trial in trials:
         is_near = trial.agreement.all(axis=2).mean(axis=(-2, -1)) >= least
         is_near[[any(known.oddness(x) > 1 for x in each.values()) for each in trial.names]] = False
         readings += trial.readings(is_near)
-    return sorted(readings, key=lambda each: -each.agreement.all(axis=0).mean())
+    return sorted(
+        readings,
+        key=lambda each: (-each.agreement.all(axis=0).mean(), not _is_customary(each, expected)),
+    )
+
+
+def _is_customary(reading: Reading, expected: str) -> bool:
+    """Whether the rotation is the expected one, or what roll, pitch and yaw usually mean."""
+    goal = reading.goal
+    if not goal.rotation or "q" not in goal.inputs:
+        return False
+    if expected:
+        return " ".join(turn.axis for turn in goal.motion.model.turns) == expected
+    called = {meant: str(symbol) for symbol, meant in reading.names.items()}
+    words = [called.get(symbol, "").lower() for symbol in goal.inputs["q"]]
+    return goal.rotation == "ZYX" and words == ["yaw", "pitch", "roll"]
 
 
 def _decided(

@@ -96,8 +96,11 @@ def source_files(paths: Sequence[Path]) -> Iterator[Path]:
     yield from dict.fromkeys(files)
 
 
-def search(path: Path) -> Iterator[FormulaInFile]:
-    """The formulas of a file that are a known quantity or close to one, and unreadable ones."""
+def search(path: Path, expected: str = "") -> Iterator[FormulaInFile]:
+    """The formulas of a file that are a known quantity or close to one, and unreadable ones.
+
+    Of several rotations close to one, that about the `expected` axes, as in "z y x", is preferred.
+    """
     text = path.read_text(encoding="utf-8", errors="replace")
     variants: dict[Any, list[Formula]] = {}
     latest: FormulaInFile | None = None
@@ -107,7 +110,7 @@ def search(path: Path) -> Iterator[FormulaInFile]:
         # A formula with the values of all branches may be no quantity, while one branch is.
         is_case = len({each.forms for each in group if each.forms}) > 1
         is_case |= any(each.is_case for each in group)
-        findings = [_compared(path, each, is_case=is_case) for each in group]
+        findings = [_compared(path, each, expected, is_case=is_case) for each in group]
         readable = [each for each in findings if each and each.comparison]
         for finding in [*readable, *filter(None, findings)][:1]:
             if latest is None or not finding.repeats(latest):  # a fault counts once
@@ -115,7 +118,9 @@ def search(path: Path) -> Iterator[FormulaInFile]:
             latest = finding if finding.comparison else latest
 
 
-def _compared(path: Path, formula: Formula, *, is_case: bool) -> FormulaInFile | None:
+def _compared(
+    path: Path, formula: Formula, expected: str, *, is_case: bool
+) -> FormulaInFile | None:
     for form in formula.forms:  # a long value may be an angle
         if patterns.angles_name.fullmatch(formula.name) and are_body_rates(form):
             asked = target("xyz", "rates_from_angular_velocity_body")
@@ -126,7 +131,7 @@ def _compared(path: Path, formula: Formula, *, is_case: bool) -> FormulaInFile |
         parts = ((part, others, True) for part, others in _partial(form))
         for part, others, is_equal in chain(whole, parts):
             try:
-                comparison = _identified(part, is_equal=is_equal)
+                comparison = _identified(part, expected, is_equal=is_equal)
             except (ExpressionError, RecursionError) as error:  # a function without values
                 return FormulaInFile(path, formula, reason=str(error))
             if comparison.found is not None or comparison.is_reflection:
@@ -138,8 +143,8 @@ def _compared(path: Path, formula: Formula, *, is_case: bool) -> FormulaInFile |
 
 
 @lru_cache(maxsize=1024)  # programs repeat themselves
-def _identified(matrix: sp.ImmutableMatrix, *, is_equal: bool) -> Comparison:
-    return identified(matrix, only_equal=is_equal, is_in_program=True)
+def _identified(matrix: sp.ImmutableMatrix, expected: str, *, is_equal: bool) -> Comparison:
+    return identified(matrix, only_equal=is_equal, is_in_program=True, expected=expected)
 
 
 def formulas(text: str, suffix: str) -> Iterator[Formula]:
