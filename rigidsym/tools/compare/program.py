@@ -188,7 +188,8 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
         bool(patterns.glm.search(text)),
         set(patterns.array.findall(text)),
     )
-    program.steps["read"] = -6 * text.count("\n")  # which a long file of plain formulas needs
+    # A long file of short functions is read to its end; a long function may let a value grow.
+    program.steps["read"] = -min(8 * text.count("\n"), 200 * len(functions))
     scopes = [_Scope(tree) for tree in (Tree(root), *_worth_reading(functions, suffix))]
     if root.has_error:
         line = next((t.line for t in walk(root) if t.node.is_error or t.node.is_missing), 1)
@@ -957,11 +958,10 @@ class _Run:
         is_rounded = sign == "/" and self.program.suffix not in _OF_REALS
         above, below = tree.parts
         whole = patterns.whole_numbers.fullmatch(below.text) if is_rounded else None
-        is_int = re.search(rf"\bint\s+{re.escape(above.text)}\b", self.scope.tree.text)
-        if (whole and (is_int or patterns.whole_numbers.fullmatch(above.text))) and not (
-            left / right
-        ).is_Integer:
-            raise self.unreadable(tree, "is a division of whole numbers, which rounds")
+        if whole and not (left / right).is_Integer:
+            is_int = re.search(rf"\bint\s+{re.escape(above.text)}\b", self.scope.tree.text)
+            if is_int or patterns.whole_numbers.fullmatch(above.text):
+                raise self.unreadable(tree, "is a division of whole numbers, which rounds")
         if sign in ("+", "-"):
             left, right = self.as_vector(left, right), self.as_vector(right, left)
         elif sign in ("*", "@") and (value := self.of_tensor(left, right)) is not None:
