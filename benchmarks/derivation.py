@@ -30,7 +30,7 @@ from rigidsym.motion import derive
 
 ALL_12, ALL_24 = len(AXIS_SEQUENCES), len(EULER_SEQUENCES)
 MOST_SECONDS = 2.0
-LEAST_RATIO = 100.0
+LEAST_RATIO = 110.0
 REPEATS = 3
 
 Totals = list[float]  # seconds after the first, the second, ... convention
