@@ -44,14 +44,14 @@ _of_original = lru_cache(maxsize=32)(singularities_of)
 
 def _renamed(values: Renamed) -> Singularities:
     """Those of the original, with the components of the lost axes renamed."""
-    found, codec = _of_original(values.original), values.original.codec
+    original, codec = _of_original(values.original), values.original.codec
     points = []
-    for point in found.points:
+    for point in original.points:
         axes = filter(None, (point.lost_axis_space, point.lost_axis_body))
         entries = codec.column(axis[k] for axis in axes for k in values.moves).entries
         in_space, in_body = _one_vector(presenter_for(codec), entries)
         points.append(replace(point, lost_axis_space=in_space, lost_axis_body=in_body))
-    return found._replace(points=tuple(points))
+    return original._replace(points=tuple(points))
 
 
 def _one_vector(present: Presenter, entries: Row) -> list[sp.ImmutableMatrix]:

@@ -194,7 +194,7 @@ THIN_ROD = together(write("body", "inertia", 2, 2, "0"), write("first_integrals"
 
 
 def with_a_parameter_defined(content: Content) -> None:
-    """Gravity is said to act, and all is worked out without it."""
+    """The potential contains g, but a definition makes g zero."""
     parameters = at(content, "arguments", "parameters")
     parameters["components"] = [c for c in parameters["components"] if c["name"] != "g"]
     content["definitions"] = [{"name": "g", "expression": "0"}]

@@ -315,7 +315,7 @@ def _original(
 
 
 def values_of(model: RotationModel) -> Values:
-    """The workspace of a model; that of Euler angles is shared with those about renamed axes."""
+    """The workspace of a model. Euler angles that differ only in the names of axes share one."""
     # Only turns are shared: a model with conditions or units of its own is derived by itself.
     own = model.constraints, model.pullback, model.units, *(t.components for t in model.turns)
     is_euler = not any(own) and "".join(turn.axis for turn in model.turns) in AXIS_SEQUENCES

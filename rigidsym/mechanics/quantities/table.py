@@ -29,9 +29,9 @@ POINT = sp.symbols("p_x:z")
 DIRECTION = sp.symbols("n_x:z")
 # beside the axes x, y, z of space, a quaternion (w, x, y, z) is printed in other letters
 _QUATERNION = {"w": "q_0", "x": "q_1", "y": "q_2", "z": "q_3"}
-# The names that we choose, a row for those that change together. If a constant of the system has
-# one of them, the next text of the row replaces all of them. After the last text, the names of the
-# first get zeros before their indices, as many as it takes: I_01 for I_1, E_0 and then E_00 for E.
+# The names that we choose. Those of one text change together: if a constant of the system has one
+# of them, the next text of the row is tried. After the last text, zeros are put before the indices
+# of the first, as many as are needed: I_01 for I_1; E_0, then E_00 for E.
 _OWN_NAMES = (
     ("I_1 I_2 I_3", "J_1 J_2 J_3", "K_1 K_2 K_3"),
     ("V V_eff", "U U_eff"),

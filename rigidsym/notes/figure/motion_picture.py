@@ -114,9 +114,9 @@ def polhode(moments: Vector, start: Vector) -> Vector:
 
     A permanent rotation stays at its point.
     """
-    # The sum h = L²/2E is between the least and the greatest moment. Above the intermediate one,
-    # the curve encircles the axis c of the greatest moment, else that of the least: with
-    # u_c² = 1 − u_a² − u_b², (I_a − I_c) u_a² + (I_b − I_c) u_b² = h − I_c, an ellipse.
+    # The sum h = L²/2E is between the least and the greatest moment. If it exceeds the intermediate
+    # one, the curve encircles the axis c of the greatest moment, and otherwise that of the least.
+    # Since u_c² = 1 − u_a² − u_b², (I_a − I_c) u_a² + (I_b − I_c) u_b² = h − I_c: an ellipse.
     if np.abs(np.cross(moments * start, start)).max() < 1e-9 * moments.max():
         return np.array([start, start])
     c = moments.argmax() if moments @ start**2 > np.median(moments) else moments.argmin()

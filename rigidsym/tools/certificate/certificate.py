@@ -477,9 +477,9 @@ class _Section:
 
     def turning(self, frame: str, velocity: str, name: str) -> _Statement:
         """F turns with a vector, by the printed angular velocity if that has a theorem."""
-        claim, known = f"{_TURNS[frame]} F t", f"angular_velocity_{frame}"
-        proof = f"apply (same ({claim}) _ _ ({known} t)); equal t"
-        if not self.is_stated(known):
+        claim, theorem = f"{_TURNS[frame]} F t", f"angular_velocity_{frame}"
+        proof = f"apply (same ({claim}) _ _ ({theorem} t)); equal t"
+        if not self.is_stated(theorem):
             proof = f"apply {'in_body, ' * (frame == 'body')}(same (turns F t) _ _ {self.total}); "
             proof += self.equal
         return _Statement(f"{self.divisors(name)}{claim} {velocity}", proof)
@@ -669,8 +669,8 @@ class _Chain(_Section):
     """Turns T with angular velocities v, whose product is printed in names for its parts.
 
     By the law of composition (`mechanics/kinematics/chain.py`), each partial product is a short
-    expression in the names of the one before, so that all equations are small. What a name stands
-    for is seen from its values at random points; Coq proves it.
+    expression in the names of the one before, so that all equations are small. A name is recognised
+    by its values at random points; Coq proves what it is.
     """
 
     def __init__(self, *arguments: Any) -> None:
@@ -716,11 +716,11 @@ class _Chain(_Section):
 
     def named(self, matrix: Matrix, *old: str) -> str:
         """The names of the entries, if they are defined by those in old texts."""
-        known, definitions = self.defined(*old), self.names.definitions
+        old_names, definitions = self.defined(*old), self.names.definitions
 
         def name_of(entry: Number) -> str:
             for text in self.texts.get(tuple(entry.values), ()):
-                if text in known or self.defined(definitions.get(text, "")) <= known:
+                if text in old_names or self.defined(definitions.get(text, "")) <= old_names:
                     return text
             raise Unproved
 
@@ -791,9 +791,9 @@ class _Chain(_Section):
         start = new = slope = ""
         for k, part in zip(places, parts, strict=True):
             old, new = new, self.named(part, new)
-            known, slope = old + slope, self.named(part.rate(), old, new, slope)
+            before, slope = old + slope, self.named(part.rate(), old, new, slope)
             one = " ".join(sorted(self.defined(new) - self.defined(old)))
-            both = " ".join(sorted(self.defined(new, slope) - self.defined(known)))
+            both = " ".join(sorted(self.defined(new, slope) - self.defined(before)))
             function = new.replace(" t)", " s)")
             yield f"Lemma {name}_{k} t : vector_rate (fun s => {function}) t {slope}."
             yield f"Proof. {start}repeat split; cbv [v1 v2 v3] in *; cbv [Rsqr {one}];"

@@ -585,7 +585,7 @@ class _Run:
     def symbol_for(self, path: Path, value: sp.Expr | None, line: int = 0) -> sp.Symbol:
         """A symbol for a long value, or for one that is not read (None)."""
         symbol = sp.Symbol(_dotted(path), real=True)
-        # A local name of an inlined function may be that of an argument.
+        # A function that is inlined may use a name of its caller for something else.
         if symbol in self.definitions or path[0] in self.inputs or self.inlined:
             symbol = sp.Dummy(symbol.name, real=True)
         self.definitions[symbol] = value

@@ -504,7 +504,7 @@ def oddness(meant: sp.Expr) -> int:
 def _of_turns(
     inside: set[sp.Symbol], goal: KnownQuantity, symbols: Sequence[sp.Symbol]
 ) -> Iterator[Names]:
-    """Angles stand `inside` sines and cosines; angular velocities and rates stand outside."""
+    """Readings in which angles are the names `inside` sines and cosines; rates are the others."""
     angles = [s.name for s in symbols if s in inside]
     others = [s for s in symbols if s not in inside]
     q, of_others = [*goal.inputs.values(), ()][:2]
