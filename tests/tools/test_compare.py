@@ -277,7 +277,7 @@ PRODUCT = (
     "[a0*b0 - a1*b1 - a2*b2 - a3*b3, a0*b1 + a1*b0 + a2*b3 - a3*b2, "
     "a0*b2 - a1*b3 + a2*b0 + a3*b1, a0*b3 + a1*b2 - a2*b1 + a3*b0]"
 )
-TURNED = (
+ROTATED = (
     "[v.x + 2*(q.w*(q.y*v.z - q.z*v.y) + q.y*(q.x*v.y - q.y*v.x) - q.z*(q.z*v.x - q.x*v.z)), "
     "v.y + 2*(q.w*(q.z*v.x - q.x*v.z) + q.z*(q.y*v.z - q.z*v.y) - q.x*(q.x*v.y - q.y*v.x)), "
     "v.z + 2*(q.w*(q.x*v.y - q.y*v.x) + q.x*(q.z*v.x - q.x*v.z) - q.y*(q.y*v.z - q.z*v.y))]"
@@ -296,7 +296,7 @@ HALF = (
 )
 RIGHT = {  # formula: its law, a change that makes one entry wrong, and the kind of the repair
     PRODUCT: ("quaternion_product", ("- a1*b3", "+ a1*b3"), "sign"),
-    TURNED: ("turned_vector", ("(q.y*v.z - q.z*v.y) +", "(q.y*v.z + q.z*v.y) +"), "sign"),
+    ROTATED: ("rotated_vector", ("(q.y*v.z - q.z*v.y) +", "(q.y*v.z + q.z*v.y) +"), "sign"),
     EULER: ("euler_equations_acceleration", ("(Ixx - Izz)", "(Izz - Ixx)"), "sign"),
     TORQUE: ("euler_equations_torque", ("w3*w1", "w3*w2"), "index"),
     TENSOR: ("parallel_axis_theorem", ("m*(dx^2 + dy^2)", "m*(dx^2 - dy^2)"), "sign"),
@@ -351,7 +351,7 @@ def test_quaternions_of_angles_are_those_of_scipy(axes):
 
 
 def test_laws_hold_in_numbers():
-    """The product, the turned vector and Steiner's theorem by SciPy and by the sum over a body."""
+    """The product, the rotated vector and Steiner's theorem by SciPy and by the sum over a body."""
     rng = np.random.default_rng(3)
     a, b, v = Rotation.random(random_state=1), Rotation.random(random_state=2), rng.normal(size=3)
     by_name = {law[0].quantity: law[0] for law in _laws()[::-1]}
@@ -364,7 +364,7 @@ def test_laws_hold_in_numbers():
     first = lambda turn: np.roll(turn.as_quat(), 1)  # noqa: E731
     products = value("quaternion_product", first(a), first(b))
     assert np.abs(products @ first(a * b)) == pytest.approx(1)
-    assert value("turned_vector", first(a), v) == pytest.approx(a.apply(v))
+    assert value("rotated_vector", first(a), v) == pytest.approx(a.apply(v))
     term = value("parallel_axis_theorem", [2.5], v, np.zeros(6))
     assert term == pytest.approx(2.5 * (v @ v * np.eye(3) - np.outer(v, v)))
     w, moments, torque = rng.normal(size=(3, 3))

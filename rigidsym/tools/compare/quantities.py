@@ -4,7 +4,7 @@ Most are quantities of a derivation. The others, with quaternions as a = a₀ + 
 e = ±1 for a cyclic or anticyclic order of the axes i, j, k (l is the third axis if k = i):
 
     a b = a₀b₀ − **a**·**b** + a₀**b** + b₀**a** + **a** × **b**     product of quaternions
-    q v q* = v + 2 w (u × v) + 2 u × (u × v)                         vector turned by q = w + u
+    q v q* = v + 2 w (u × v) + 2 u × (u × v)                         vector rotated by q = w + u
     I dω/dt + ω × I ω = τ                                            Euler's equations
     I + m (d² 1 − d dᵀ)                                              parallel-axis theorem
     atan2(−e Rⱼₖ, Rₖₖ),  asin(e Rᵢₖ),  atan2(−e Rᵢⱼ, Rᵢᵢ)            angles about three axes
@@ -141,7 +141,7 @@ _WAYS: dict[str, tuple[Ways, ...]] = {
         _ways(transposed=lambda matrix, *_: matrix.T),
         _ways(on_the_other_side=lambda m, _: _CONJUGATE * m.T * _CONJUGATE),
     ),
-    "turned_vector": (
+    "rotated_vector": (
         _ways(by_the_inverse=lambda m, q, _: _opposite(m, q[1:])),
         {
             words: lambda m, q, v, k=k: m + k * (sum(x**2 for x in q) - 1) * sp.Matrix(v)
@@ -323,7 +323,7 @@ def _quaternion_of(angle: sp.Expr, direction: Any) -> sp.Matrix:
     return sp.Matrix([sp.cos(angle / 2), *(sp.sin(angle / 2) * d for d in direction)])
 
 
-def _turned(q: sp.Matrix, v: sp.Matrix) -> sp.Matrix:
+def _rotated(q: sp.Matrix, v: sp.Matrix) -> sp.Matrix:
     cross = cross_matrix(q[1:, :])
     return v + 2 * q[0] * cross * v + 2 * cross * cross * v
 
@@ -363,7 +363,7 @@ _LAWS: tuple[_Law, ...] = (  # entries of each vector, and the value
     (_PRODUCT, (4, 3), lambda a, v: quaternion_product(a, _pure(v))),
     (_PRODUCT, (3, 4), lambda v, b: quaternion_product(_pure(v), b)),
     ("quaternion_rate_operator", (3,), _rate_operator),
-    ("turned_vector", (4, 3), _turned),
+    ("rotated_vector", (4, 3), _rotated),
     (_ACCELERATION, (3, 3, 3), lambda w, i, t: _tensor(i).inv() * (t - _gyroscopic(w, i))),
     (_ACCELERATION, (3, 3), lambda w, i: -_tensor(i).inv() * _gyroscopic(w, i)),
     (_WITH_INVERSE, (3, 9, 3, 9), lambda w, i, t, k: _tensor(k) * (t - _gyroscopic(w, i))),
