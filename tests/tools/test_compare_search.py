@@ -368,6 +368,17 @@ CERTAIN = {  # a program: the end of the verdict
     None,
     ("h.cpp", "void f(const double *a, double s) { Vec q; q[1] = a[1]*sin(s); q[2] = a[2]; "
      "q[3] = a[3]; q *= s; g(q); }"): None,
+    ("j.py", "from numpy import cos as sin, sin as cos\ndef f(a):\n    return [[cos(a), -sin(a), 0], "
+     "[sin(a), cos(a), 0], [0, 0, 1]]\n"): "a quarter or half turn away (proved)",
+    ("i.cpp", "void f() { gx -= (q0*s1 - q1*s0 - q2*s3 + q3*s2)*dt*k + bx; gy -= (q0*s2 + q1*s3 - q2*s0"
+     " - q3*s1)*dt*k + by; gz -= (q0*s3 - q1*s2 + q2*s1 - q3*s0)*dt*k + bz; }"): None,
+    ("j.cpp", "template <typename T> void f(const T& a, T q[4]) { T h = T(a)/T(2); q[0] = cos(h); "
+     "q[1] = sin(h); q[2] = T(0); q[3] = T(0)*a; }"): "(proved)",
+    ("a.cs", "class A { double S(double d) => Math.Sin(d); double[] F(double a) { return new[] {"
+     "Math.Cos(a/2), S(a/2), 0, 0}; } }"): "(proved)",
+    ("k.py", "def f(p, q):\n    a, u, b, v = p[0], p[1:4], q[0], q[1:4]\n    return np.r_[a*b - "
+     "np.dot(u, v), a*v + b*u + np.cross(u, v)]\n"): "quaternion_product (proved)",
+    ("a.m", "e = [atan2d(R(3,2), R(3,3)); asind(-R(3,1)); atan2d(R(2,1), R(1,1))];"): "not proved)",
 }  # fmt: skip
 
 
@@ -651,9 +662,10 @@ def test_what_cannot_be_read_is_listed_with_its_reason(tmp_path):
     done = run(str(file), "--why")
     assert "a.py:4: returned: not read, since s in line 3 cannot be read" in done.stderr
     file.write_text(f"{text}def g(:\n")
-    done = run(str(file), "--why")
+    (tmp_path / "a.rs").write_text("pub fn f(a: f32) -> f32 {\n    a\n}\nfn g() {}\n// sin")
+    done = run(str(tmp_path), "--why")
     assert "not read, since there is a syntax error" in done.stderr
-    assert "no known formula in 1 file, 2 not readable" in done.stderr
+    assert "no known formula in 2 files, 2 not readable" in done.stderr
 
 
 @pytest.mark.parametrize(
@@ -779,6 +791,14 @@ def test_a_vector_is_found_once_beside_its_components_and_up_to_a_factor(tmp_pat
 """
     (found,) = found_in(tmp_path, "a.py", text)
     assert "quaternion_product, up to the factor f (proved)" in str(found)
+    steps = """def f(self, p, q, r, dt):
+    phi, theta = self.phi, self.theta
+    self.phi += (p + tan(theta)*(q*sin(phi) + r*cos(phi)))*dt
+    self.theta += (q*cos(phi) + r*sin(phi))*dt
+    self.psi += ((q*sin(phi) + r*cos(phi))/cos(theta))*dt
+"""
+    (found,) = found_in(tmp_path, "a.py", steps)
+    assert "a.py:4: self: close to rates_from_angular_velocity_body of xyz" in str(found)
 
 
 def test_a_name_that_gets_another_value_is_another_input(tmp_path):

@@ -97,9 +97,19 @@ class _Record(dict[Any, Any]):
 
     def places(self) -> Iterator[int]:
         """The lines of all expressions, in the order of the indices."""
-        for key in sorted(key for key in self if key is not None):
+        for key in self.order():
             part = self[key]
             yield from part.places() if isinstance(part, _Record) else [self.lines[key]]
+
+    def order(self) -> list[Any]:
+        """The indices of all entries of a vector or rows of a matrix; none if one is missing."""
+        keys = self.keys() - {None}
+        if keys == {*range(len(keys))}:
+            return [*range(len(keys))]
+        letters = {str(key).lower(): key for key in keys}
+        names = [*"abc"] if letters.keys() == {*"abc"} else _COMPLETE.get(frozenset(letters), [])
+        order = [letters[name] for name in names]
+        return order if order != [1, 2, 3] else []  # of a quaternion without its scalar
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -156,6 +166,7 @@ class _Program:
     suffix: str
     functions: Mapping[str, Mapping[int, Sequence[Tree]]] = field(default_factory=dict)
     constants: Mapping[str, int] = field(default_factory=dict)  # q_i = 0 of the whole file
+    imported: Mapping[str, str] = field(default_factory=dict)  # from numpy import sin as s
     product: str = "*"  # what * is for matrices: "%" entry by entry, "" if nobody knows
     is_glm: bool = False
     arrays: Collection[str] = ()  # names of arrays of C
@@ -184,6 +195,7 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
         suffix,
         _overloads(functions, suffix),
         {match[1]: int(match[2]) for match in patterns.index_name.finditer(text)},
+        {match[2]: match[1] for match in patterns.imported_name.finditer(text)},
         _product(text, suffix),
         bool(patterns.glm.search(text)),
         set(patterns.array.findall(text)),
@@ -367,7 +379,9 @@ class _Run:
             self.run_return(body)
         elif (
             self.program.suffix == ".rs"
+            and scope.kind == "function"
             and body.parts
+            and body.parts[-1].kind != "function"
             and not patterns.statement.search(body.parts[-1].node.type)
         ):
             self.run(Tree(body.node, own=body.parts[:-1]))
@@ -481,10 +495,13 @@ class _Run:
         keys: Sequence[Any] = left.keys if left.kind == "record" else range(len(left.parts))
         if right.kind == "call" and CALLS.get(right.called) == "parts":  # in which no row is read
             right = right.parts[1] if patterns.module.match(right.base) else right.owner or right
-        value: Any = self.tried(right)
+        is_listed = right.kind == left.kind == "list" and len(right.parts) == len(keys)
+        value: Any = None if is_listed else self.tried(right)
         parts: list[Any] = [None] * len(keys)
         is_whole = left.kind == "record" and value is not None
-        if isinstance(value, sp.MatrixBase) and len(value) == len(keys):
+        if is_listed:  # vectors too, as in a, v = q[0], q[1:]
+            parts = [*map(self.tried, right.parts)]
+        elif isinstance(value, sp.MatrixBase) and len(value) == len(keys):
             parts = [*value]
         elif is_whole or isinstance(value, sp.Function) or patterns.turns.match(str(value)):
             parts = [_part(value, key) for key in keys]
@@ -888,6 +905,10 @@ class _Run:
         finally:
             self.end_block(outside)
 
+    def read_index(self, tree: Tree) -> Any:
+        is_joined = tree.parts[0].word in ("r_", "c_")  # np.r_[w, v]
+        return self.stacked(tree, by_columns=False) if is_joined else self.named(tree)
+
     def read_if(self, tree: Tree) -> Any:
         return self.read(tree.parts[self.scope.choice(tree.node, tree.parts)])
 
@@ -1287,16 +1308,23 @@ class _Run:
         """A function of numbers, a method of a matrix, a constructor, or a function of the file."""
         if self.path(tree) is not None:  # R(0, 1), q.w()
             return self.named(tree)
-        alias = _last(str(self.values.get(tree.called, "")))  # s, c = np.sin, np.cos
-        name = function_word(alias if function_word(alias) in FUNCTIONS else tree.called)
-        base, arguments = tree.base, tree.parts[1:]
+        base, arguments, word = tree.base, tree.parts[1:], tree.called
+        if tree.owner is None:
+            word = self.program.imported.get(word, word)
+            alias = _last(str(self.values.get(word, "")))  # s, c = np.sin, np.cos
+            word = alias if function_word(alias) in FUNCTIONS else word
+        name = function_word(word)
         is_own = base in ("", "self", "this", "Self") and tree.called in self.program.functions
         if is_own:  # also if a library has a function of this name
             with suppress(ExpressionError):  # of a constructor
                 return self.inline(tree, tree.called, arguments)
         meaning = "" if is_own else CALLS.get(name, "")
+        if name == "T" and tree.owner is None:  # of a template
+            meaning = "cast"
         nodes, is_method = arguments, not patterns.module.match(base)
-        is_short = name in language.OF_NUMBERS and len(nodes) < 1 + (name in ("pow", "atan2"))
+        is_short = name in language.OF_NUMBERS and len(nodes) < 1 + name.startswith(
+            ("pow", "atan2")
+        )
         if tree.owner is not None and (
             is_short or (is_method and meaning in _OF_OBJECTS) or base == "?"
         ):
@@ -1468,15 +1496,9 @@ def _record(matrix: sp.MatrixBase, line: int) -> _Record:
 
 def _settled(record: _Record) -> sp.ImmutableMatrix | None:
     """The matrix or vector in a record, if all its entries are there."""
-    keys = [key for key in record if key is not None]
-    order: list[Any] = [*range(len(keys))]
-    if set(keys) != set(order):
-        letters = {str(key).lower(): key for key in keys}
-        names = [*"abc"] if letters.keys() == {*"abc"} else _COMPLETE.get(frozenset(letters), [])
-        order = [letters[name] for name in names]
-    parts: list[Any] = [record.get(key) for key in order]
+    parts: list[Any] = [record[key] for key in record.order()]
     parts = [_settled(part) if isinstance(part, _Record) else part for part in parts]
-    if not parts or None in parts or {*keys} == {1, 2, 3}:  # of a quaternion without its scalar
+    if not parts or None in parts:
         return None
     matrices = [*map(as_matrix, parts)]
     is_regular = len({each.shape for each in matrices}) == 1 and matrices[0].cols == 1

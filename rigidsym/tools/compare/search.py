@@ -55,11 +55,14 @@ class FormulaInFile:
         return f"{self.path}:{self.line}: {name}{text}"
 
     def repeats(self, other: FormulaInFile) -> bool:
-        """Whether this is a vector whose components have been found just before."""
-        if not (self.comparison and other.comparison and ", " in other.formula.name):
+        """Whether this vector, or its components, have been found just before."""
+        if not (self.comparison and other.comparison):
             return False
+        own, others = self.comparison.formula, other.comparison.formula
+        if sorted(self.formula.lines) == sorted(other.formula.lines):
+            return bool(own == others)
         is_near = self.formula.line - other.formula.line <= _NEAR_LINES
-        return is_near and {*self.comparison.formula} == {*other.comparison.formula}
+        return ", " in other.formula.name and is_near and {*own} == {*others}
 
     def record(self) -> dict[str, Any]:
         """For JSON."""
@@ -181,8 +184,9 @@ def _block(matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
         in_radians = matrix * sp.pi / 180 if are_angles(matrix) else matrix.xreplace(scale)
         matrix = matrix if in_radians.has(sp.pi) else in_radians
     step = next((s for s in matrix.free_symbols if patterns.step.fullmatch(s.name)), None)
-    if step is not None and not (rates := matrix.diff(step)).has(step):  # of q + (...)*dt
-        matrix = sp.ImmutableMatrix(rates)
+    if step is not None and not (rates := matrix.diff(step)).has(step):
+        before = matrix.xreplace({step: sp.S.Zero})  # of q + (...)*dt, but not g - w - (...)*dt
+        matrix = sp.ImmutableMatrix(rates) if all(entry.is_Atom for entry in before) else matrix
     edges = (tuple(matrix[-1, :]), tuple(matrix[:, -1]))  # by rows, or by columns
     is_homogeneous = matrix.shape == (4, 4) and (0, 0, 0, 1) in edges
     is_homogeneous |= matrix.shape == (3, 4) and matrix[:, 3].is_zero_matrix is True
