@@ -58,17 +58,22 @@ def _motion(options: Options) -> Motion | str | None:
     return str(rotation) if is_name else motion_of(replace(spec, quantities=(quantity,)))
 
 
-def _searched(paths: Sequence[Path], options: Options) -> bool:
-    """Print the formulas in source files; whether one is wrong, or too few were recognised."""
+def _searched(paths: Sequence[Path], options: Options) -> int:
+    """Print the formulas in source files, and return the exit code.
+
+    It is 1 if a formula is wrong or too few were recognised, or else 3 if reading a file failed.
+    """
     accepted = _accepted(Path(options["baseline"])) if options["baseline"] else ()
     files = list(source_files(paths))
     records: list[dict[str, Any]] = []
-    unreadable = 0
+    unreadable, has_failed = 0, False
     work = partial(_records, options["expect"], options["expect_active"])
     for record in chain.from_iterable(in_processes(work, files)):
+        is_failure = record.pop("is_failure")
+        has_failed |= is_failure
         if record.pop("is_unreadable"):
             unreadable += 1
-            if options["why"]:
+            if options["why"] or is_failure:
                 message(record["text"])
             continue
         record["fault"] &= _key(record) not in accepted
@@ -87,7 +92,7 @@ def _searched(paths: Sequence[Path], options: Options) -> bool:
     message(f"{count} in {counted(len(files), 'file')}{rest}{hint}")
     if len(records) < options["require"]:
         message(f"expected at least {options['require']} (--require)")
-    return bool(faults) or len(records) < options["require"]
+    return 1 if faults or len(records) < options["require"] else 3 * has_failed
 
 
 def _records(expected: str | None, is_active: bool, file: Path) -> list[dict[str, Any]]:
@@ -99,6 +104,7 @@ def _records(expected: str | None, is_active: bool, file: Path) -> list[dict[str
         other = disappointment(comparison, axes, is_active=is_active) if comparison else ""
         is_right = comparison is None or comparison.is_equal or comparison.is_reflection
         record |= {"unexpected": other or None, "is_unreadable": comparison is None}
+        record["is_failure"] = formula.is_failure
         record["text"] = f"{formula}; {other}" if other else str(formula)
         records.append(record | {"fault": bool(other) or not is_right})
     return records

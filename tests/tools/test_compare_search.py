@@ -16,10 +16,11 @@ from click.testing import CliRunner
 from scipy.spatial.transform import Rotation
 
 import rigidsym as rs
+import rigidsym.tools.compare.search
 from helpers.command import ROOT, call
 from rigidsym.commands.cli import commands
 from rigidsym.errors import ExpressionError
-from rigidsym.tools.compare.program import formula_matrix
+from rigidsym.tools.compare.program import formula_matrix, program_formulas
 from rigidsym.tools.compare.quantities import _angles
 from rigidsym.tools.compare.search import formulas, search, source_files
 
@@ -340,6 +341,7 @@ BATCH = (
     "    return torch.stack([r, torch.stack([s, c, 0*c], {}), torch.stack([0*c, 0*c, 1], {})], 1)\n"
 )
 OF_Q = "[{}(y*y+z*z), s*(x*y-w*z), s*(x*z+w*y)], [s*(x*y+w*z), {}(x*x+z*z), s*(y*z-w*x)], [s*(x*z-"
+BY_COLUMNS = "{ let (s, c) = a.sin_cos(); Matrix3::new(c, s, 0, -s, c, 0, 0, 0, 1) }"
 CERTAIN = {  # a program: the end of the verdict
     ("a.cpp", f"void f(double a) {{{ABOUT}"): "(proved)",
     ("b.cpp", f"void f(double a) {{{ABOUT} double h(double a, int k) {{ return a; }}"): "(proved)",
@@ -368,10 +370,10 @@ CERTAIN = {  # a program: the end of the verdict
     None,
     ("h.cpp", "void f(const double *a, double s) { Vec q; q[1] = a[1]*sin(s); q[2] = a[2]; "
      "q[3] = a[3]; q *= s; g(q); }"): None,
-    ("j.py", "from numpy import cos as sin, sin as cos\ndef f(a):\n    return [[cos(a), -sin(a), 0], "
+    ("j.py", "from numpy import cos as sin, sin as cos\nR = lambda a: [[cos(a), -sin(a), 0], "
      "[sin(a), cos(a), 0], [0, 0, 1]]\n"): "a quarter or half turn away (proved)",
-    ("i.cpp", "void f() { gx -= (q0*s1 - q1*s0 - q2*s3 + q3*s2)*dt*k + bx; gy -= (q0*s2 + q1*s3 - q2*s0"
-     " - q3*s1)*dt*k + by; gz -= (q0*s3 - q1*s2 + q2*s1 - q3*s0)*dt*k + bz; }"): None,
+    ("i.cpp", "void f() { gx -= (q0*s1 - q1*s0 - q2*s3 + q3*s2)*dt*k + bx; gy -= (q0*s2 + q1*s3 -"
+     " q2*s0 - q3*s1)*dt*k + by; gz -= (q0*s3 - q1*s2 + q2*s1 - q3*s0)*dt*k + bz; }"): None,
     ("j.cpp", "template <typename T> void f(const T& a, T q[4]) { T h = T(a)/T(2); q[0] = cos(h); "
      "q[1] = sin(h); q[2] = T(0); q[3] = T(0)*a; }"): "(proved)",
     ("a.cs", "class A { double S(double d) => Math.Sin(d); double[] F(double a) { return new[] {"
@@ -379,6 +381,12 @@ CERTAIN = {  # a program: the end of the verdict
     ("k.py", "def f(p, q):\n    a, u, b, v = p[0], p[1:4], q[0], q[1:4]\n    return np.r_[a*b - "
      "np.dot(u, v), a*v + b*u + np.cross(u, v)]\n"): "quaternion_product (proved)",
     ("a.m", "e = [atan2d(R(3,2), R(3,3)); asind(-R(3,1)); atan2d(R(2,1), R(1,1))];"): "not proved)",
+    ("a.rs", f"use cgmath; fn f(a: f32) {BY_COLUMNS}"): "(a) (proved)",
+    ("b.rs", f"use mine; fn f(a: f32) {BY_COLUMNS}"):
+    "transposed (passive, or stored by columns) (proved)",
+    ("c.js", "function f(a) { let c = Math.cos(a), s = Math.sin(a); m[0] = c; m[3] = -s; m[6] = 0;"
+     " m[1] = s; m[4] = c; m[7] = 0; m[2] = 0; m[5] = 0; m[8] = 1; }"):
+    "transposed (passive, or stored by columns) (proved)",
 }  # fmt: skip
 
 
@@ -630,6 +638,8 @@ def test_another_convention_than_the_expected_one_is_a_fault(tmp_path):
     assert other.exit_code == 1
     assert "expected the axes z x z in the product of rotations, not z y x" in other.stdout
     assert run(b, "--expect-active").exit_code == 1
+    (tmp_path / "c.py").write_text(f"def f(a):\n    R = {FLAT}\n")
+    assert run(str(tmp_path / "c.py"), "--expect-active").exit_code == 0  # or by columns
     annotation = run(b, "--expect-active", "--format", "github").stdout
     assert annotation.startswith(f"::error file={b},line=2::{b}:2: returned: equal to")
     log = json.loads(run(b, "--expect-active", "--format", "sarif").stdout)
@@ -666,6 +676,19 @@ def test_what_cannot_be_read_is_listed_with_its_reason(tmp_path):
     done = run(str(tmp_path), "--why")
     assert "not read, since there is a syntax error" in done.stderr
     assert "no known formula in 2 files, 2 not readable" in done.stderr
+
+
+def test_a_failure_in_one_file_does_not_end_the_search(tmp_path, monkeypatch):
+    for name in ("a.py", "b.py", "c.py"):
+        (tmp_path / name).write_text(f"# {name}\nR = lambda s, c: {TURN}\n")
+
+    def failing(text, suffix):
+        return {}[0] if "b.py" in text else program_formulas(text, suffix)
+
+    monkeypatch.setattr(rigidsym.tools.compare.search, "program_formulas", failing)
+    done = run(str(tmp_path))
+    assert "b.py:1: not read, since there was an error in reading it: KeyError: 0" in done.stderr
+    assert (done.exit_code, done.stdout.count("(proved)")) == (3, 2)
 
 
 @pytest.mark.parametrize(

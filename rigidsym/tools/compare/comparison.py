@@ -215,19 +215,21 @@ def compare(
         raise ExpressionError(
             "expected a formula, not a function; `rigidsym compare FILE` reads functions in a file"
         )
-    matrix = spelled_out(as_matrix(formula))
-    if matrix.rows == 1:
-        matrix = matrix.T
+    matrix = as_matrix(formula)
+    matrix = matrix.T if matrix.rows == 1 else matrix
     if rotation is None and quantity is None:
-        return identified(_checked(matrix))
+        return identified(_checked(spelled_out(matrix)))
     if rotation is None or quantity is None:
         expected = "expected a rotation and a quantity, such as 'ZYX', 'rotation_matrix'"
         raise ExpressionError(expected)
     if quantity == "coriolis_matrix":
         raise ExpressionError("a Coriolis matrix is not unique; compare the bias vector C(q, q̇) q̇")
     if isinstance(rotation, Motion):
-        return against(matrix, known.of_motion(rotation, quantity, rotation.name))
-    return against(matrix, known.target(rotation, quantity))
+        goal = known.of_motion(rotation, quantity, rotation.name)
+    else:
+        goal = known.target(rotation, quantity)
+    angles = [n for n, symbol in goal.names.items() if symbol in goal.inputs.get("q", ())]
+    return against(spelled_out(matrix, only=angles[0] if len(angles) == 1 else "angle"), goal)
 
 
 def _checked(formula: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
@@ -392,10 +394,12 @@ def _decided(
     for trial in trials if not of_angles else ():
         is_right: Any = trial.agreement.all(axis=(3, 4))
         for some in trial.readings(is_right[..., : known.NEAR_POINTS].all(axis=2)):
-            # No change makes it right for all angles. The first point where the formula is wrong:
-            place = int(some.agreement.all(axis=(1, 2)).argmin())
-            points = ((name, some.values[name][place]) for name in sorted(some.names, key=str))
-            example = ", ".join(f"{name} = {value:.4g}" for name, value in points)
+            # No change makes it right for all angles. The point of the smallest angles where the
+            # formula is wrong:
+            points = {name: some.values[name] for name in sorted(some.names, key=str)}
+            sizes = np.abs([*points.values()]).max(axis=0)
+            place = int(np.where(some.agreement.all(axis=(1, 2)), np.inf, sizes).argmin())
+            example = ", ".join(f"{name} = {value[place]:.4g}" for name, value in points.items())
             wrong = Comparison(formula=formula, asked=asked, counterexample=example)
             return replace(wrong, found=some.goal, names=some.names)
     return None

@@ -187,11 +187,14 @@ def number(text: str) -> sp.Rational:
 _FULL = {"s": sp.sin, "c": sp.cos, "t": sp.tan, "v": lambda angle: 1 - sp.cos(angle)}
 
 
-def spelled_out(matrix: sp.MatrixBase, computed: Collection[sp.Symbol] = ()) -> sp.ImmutableMatrix:
+def spelled_out(
+    matrix: sp.MatrixBase, computed: Collection[sp.Symbol] = (), only: str = "angle"
+) -> sp.ImmutableMatrix:
     """The matrix with sines and cosines for names such as sphi, cos_roll, c1, ct and s, c.
 
     A name is short for a sine if its cosine is there too, or if it ends as angles are called.
-    Names of what a program has `computed` are no abbreviations.
+    Names of what a program has `computed` are no abbreviations. The angle of s and c is the `only`
+    one.
     """
     letters_of: dict[str, dict[str, sp.Symbol]] = {}
     for symbol in sorted(matrix.free_symbols - set(computed), key=str):
@@ -203,6 +206,7 @@ def spelled_out(matrix: sp.MatrixBase, computed: Collection[sp.Symbol] = ()) -> 
         if not is_pair:
             letters.pop("v", None)  # a versine has a sine and a cosine beside it
         if is_pair or (len(stem) > 1 and patterns.angle.fullmatch(stem)):
-            angle = sp.Symbol(stem if stem[:1].isalpha() else f"angle{stem}", real=True)
+            name = stem if stem[:1].isalpha() else f"angle{stem}" if stem else only
+            angle = sp.Symbol(name, real=True)
             values |= {symbol: _FULL[letter](angle) for letter, symbol in letters.items()}
     return sp.ImmutableMatrix(matrix.xreplace(values))

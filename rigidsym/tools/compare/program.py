@@ -121,6 +121,7 @@ class Formula:
     forms: tuple[sp.ImmutableMatrix, ...] = ()  # in terms of the inputs, and of long values
     reason: str = ""
     is_case: bool = False  # whether another branch has another value
+    is_flat: bool = False  # nine or sixteen numbers in a row, by rows or by columns
     unread: tuple[tuple[str, int], ...] = ()  # names in it whose values are not read, and lines
     is_final: bool = True  # not if what is not understood changes it: it may not be complete
 
@@ -849,6 +850,7 @@ class _Run:
                 part = value[k : k + 3, :]
                 if len(value) > 4 or are_angles(part):
                     self.add(f"{name}[{k}:{k + 3}]", part, min(lines), is_final=is_final)
+        is_flat = _unflattened(value).shape != value.shape
         value = _unbounded(_unflattened(value))
         whole = _unbounded(self.expanded(value))
         whole = value if _size(whole) > _MOST_PARTS else whole
@@ -861,7 +863,7 @@ class _Run:
         forms = [language.spelled_out(m.xreplace(names), computed) for m in (whole, value)]
         places = tuple((_last(n), self.unread.get(n) or min(lines)) for n in sorted(unread))
         formula = Formula(lines=lines, name=_last(name), forms=tuple(dict.fromkeys(forms)))
-        self.formulas.append(replace(formula, unread=places, is_final=is_final))
+        self.formulas.append(replace(formula, unread=places, is_final=is_final, is_flat=is_flat))
 
     # Expressions
 
@@ -1376,7 +1378,8 @@ class _Run:
             and patterns.built.search(f"{base}.{tree.called}")
         ):
             if len(values) in (3, 4, 9, 16):
-                return rows(values)
+                is_by_columns = len(values) > 4 and self.program.is_glm and name == "new"
+                return self.columns(tree, rows(values)) if is_by_columns else rows(values)
             if len(values) == 2:  # float4(v, w)
                 return rows([entry for value in values for entry in as_matrix(value)])
         if self.program.is_formula and tree.owner is None:

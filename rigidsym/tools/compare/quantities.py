@@ -121,9 +121,10 @@ _LAST = _ways(scalar_last=_scalar_last)
 _NEGATIVE = _ways(negative=_times(-1))
 _SCALED = _ways(twice=_times(2), half=_times(0.5), four_times=_times(4), a_quarter=_times(0.25))
 _OF_QUATERNION_RATES = (_LAST, _SCALED, {**_ways(), "of the conjugate (passive)": _of_conjugate})
-_PASSIVE = "transposed (passive, the direction cosine matrix)"
+PASSIVE = "transposed (passive, the direction cosine matrix)"
+PASSIVE_OR_BY_COLUMNS = "transposed (passive, or stored by columns)"  # of numbers in a row
 _WAYS: dict[str, tuple[Ways, ...]] = {
-    "rotation_matrix": ({**_ways(), _PASSIVE: lambda matrix, *_: matrix.T},),
+    "rotation_matrix": ({**_ways(), PASSIVE: lambda matrix, *_: matrix.T},),
     QUATERNION: (
         _LAST,
         {**_ways(), "conjugated (passive)": _times(1, -1, -1, -1)},

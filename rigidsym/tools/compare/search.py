@@ -15,7 +15,14 @@ from rigidsym.errors import ExpressionError, RequestError
 from rigidsym.models.rotation import RotationModel
 from rigidsym.tools.compare.comparison import Comparison, identified
 from rigidsym.tools.compare.program import Formula, program_formulas
-from rigidsym.tools.compare.quantities import are_angles, are_body_rates, grouped, target
+from rigidsym.tools.compare.quantities import (
+    PASSIVE,
+    PASSIVE_OR_BY_COLUMNS,
+    are_angles,
+    are_body_rates,
+    grouped,
+    target,
+)
 from rigidsym.tools.compare.syntax import GRAMMARS, patterns
 
 SUFFIXES = tuple(GRAMMARS)
@@ -23,6 +30,10 @@ _MOST_BYTES = 300_000  # of a file
 _MOST_SYMBOLS = 12
 _NEAR_LINES = 12  # between the components of a vector and the vector
 _TRIGONOMETRIC = (sp.sin, sp.cos, sp.tan)
+_FAILURES = (  # of SymPy or the file system, or by a defect of ours: other files are still read
+    *(ArithmeticError, AssertionError, AttributeError, LookupError, MemoryError),
+    *(OSError, RuntimeError, TypeError, ValueError),
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +46,7 @@ class FormulaInFile:
     reason: str = ""
     is_case: bool = False  # whether other branches have other values
     others: str = ""  # terms that are not compared
+    is_failure: bool = False  # the rest of the file is not read
 
     @property
     def line(self) -> int:
@@ -103,7 +115,16 @@ def search(path: Path, expected: str = "") -> Iterator[FormulaInFile]:
     """The formulas of a file that are a known quantity or close to one, and unreadable ones.
 
     Of several rotations close to one, that about the `expected` axes, as in "z y x", is preferred.
+    If reading fails, the last one says so.
     """
+    try:
+        yield from _findings(path, expected)
+    except _FAILURES as error:
+        reason = f"there was an error in reading it: {type(error).__name__}: {error}"
+        yield FormulaInFile(path, Formula(lines=(1,), name=""), reason=reason, is_failure=True)
+
+
+def _findings(path: Path, expected: str) -> Iterator[FormulaInFile]:
     text = path.read_text(encoding="utf-8", errors="replace")
     variants: dict[Any, list[Formula]] = {}
     latest: FormulaInFile | None = None
@@ -137,7 +158,11 @@ def _compared(
                 comparison = _identified(part, expected, is_equal=is_equal)
             except (ExpressionError, RecursionError) as error:  # a function without values
                 return FormulaInFile(path, formula, reason=str(error))
-            if comparison.found is not None or comparison.is_reflection:
+            known = comparison.found
+            if known is not None and formula.is_flat and known.arrangement == PASSIVE:
+                known = replace(known, arrangement=PASSIVE_OR_BY_COLUMNS)
+                comparison = replace(comparison, found=known)
+            if known is not None or comparison.is_reflection:
                 return FormulaInFile(path, formula, comparison, "", is_case, others)
     reason = formula.reason
     if formula.unread and any(map(_may_be_known, formula.forms)):
@@ -165,7 +190,7 @@ def disappointment(
     known = comparison.found
     if known is None or comparison.repairs:
         return ""
-    if is_active and "transposed" in comparison.arrangement:
+    if is_active and PASSIVE in comparison.arrangement:
         return "expected an active rotation matrix, which takes body to space components"
     model = known.motion.model
     if expected is None or len(model.turns) != len(expected.turns):
