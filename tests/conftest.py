@@ -11,13 +11,13 @@ from difflib import unified_diff
 from functools import _lru_cache_wrapper
 from pathlib import Path
 from types import ModuleType
+from typing import TYPE_CHECKING
 
 import pytest
 from hypothesis import settings
-from sympy.core.cache import clear_cache
 
-import rigidsym as rs
-from helpers.motions import derived
+if TYPE_CHECKING:
+    from rigidsym import Motion
 
 # The same examples in every run: a suite that is red today was red yesterday.
 settings.register_profile("same", derandomize=True, deadline=None)
@@ -69,11 +69,13 @@ def resident() -> float:
 def memory(request: pytest.FixtureRequest) -> Iterator[None]:
     """Two processes need less than 2 GB, although derivations and compiled functions are kept."""
     yield
+    from sympy.core.cache import clear_cache  # not where tests are only given to other processes
+
     forget([request.module])  # no other file asks for these
     if resident() > KEPT["most"]:
         every = [*sys.modules.items()]
         forget(m for name, m in every if name.partition(".")[0] in ("rigidsym", "helpers"))
-        clear_cache()  # SymPy's
+        clear_cache()
         if "jax" in sys.modules:
             sys.modules["jax"].clear_caches()
         gc.collect()
@@ -141,5 +143,7 @@ def sequence(request: pytest.FixtureRequest) -> str:
 
 
 @pytest.fixture
-def motion(sequence: str) -> rs.Motion:
+def motion(sequence: str) -> Motion:
+    from helpers.motions import derived
+
     return derived(sequence)

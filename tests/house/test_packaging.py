@@ -8,9 +8,7 @@ import re
 import shutil
 import subprocess
 import sys
-import sysconfig
 import tarfile
-import venv
 import zipfile
 from pathlib import Path
 
@@ -65,20 +63,6 @@ def test_the_sdist_runs_in_place(distributions, tmp_path):
     found = call(sys.executable, "-c", PROBE, cwd=folder)
     assert Path(found.strip()) == folder / "templates"
     assert (folder / "tests").is_dir()
-
-
-def test_the_editable_install_finds_the_checkout(tmp_path):
-    home = tmp_path / "venv"
-    venv.create(home)
-    python = home / "bin" / "python"
-    libraries = sysconfig.get_path("purelib", vars={"base": str(home), "platbase": str(home)})
-    # The dependencies are those of the running interpreter; only rigidsym itself is installed.
-    inherited = "\n".join(path for path in sys.path if path.endswith("-packages"))
-    (Path(libraries) / "inherited.pth").write_text(inherited + "\n")
-    pip = (sys.executable, "-m", "pip", "--python", python, "install", "--quiet")
-    call(*pip, "--no-deps", "--no-build-isolation", "-e", ROOT, cwd=tmp_path)
-    found = call(python, "-c", PROBE, cwd=tmp_path)
-    assert Path(found.strip()) == ROOT / "templates"
 
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")

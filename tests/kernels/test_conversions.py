@@ -6,7 +6,6 @@ from functools import cache
 from itertools import permutations
 from types import ModuleType
 
-import jax
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
@@ -135,6 +134,8 @@ def test_every_target_is_as_accurate_and_has_the_quaternion_of_numpy(text, targe
 
 def test_jax_derives_conversions_at_no_turn_too():
     """There and back is the identity, and so is its derivative."""
+    import jax
+
     functions = module("rotation_vector", "jax")
     back = jax.jit(jax.jacobian(lambda v: functions.from_quaternion(functions.quaternion(v))))
     assert_allclose(back(np.zeros(3)), np.eye(3), atol=1e-14)

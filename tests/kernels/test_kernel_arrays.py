@@ -6,12 +6,10 @@ import re
 import subprocess
 import sys
 from collections import namedtuple
+from importlib import import_module
 
 import numpy as np
-import pandas as pd
-import polars as pl
 import pytest
-import xarray as xr
 from numpy.testing import assert_allclose, assert_array_equal
 
 import rigidsym as rs
@@ -120,14 +118,18 @@ ORDER = ("roll", "pitch", "yaw")
 ANGLES = np.array([[0.1, 0.2, 0.3], [-2.0, 0.5, 1.5]])  # in this order, which is not that of q
 Attitude = namedtuple("Attitude", ORDER)
 
-NAMED = {
-    "pandas": lambda a: pd.DataFrame(a, columns=ORDER).assign(time=0.0),
-    "row": lambda a: pd.DataFrame(a, columns=ORDER).iloc[1],
-    "polars": lambda a: pl.DataFrame(a, schema=ORDER),
+NAMED = {  # of packages of which each takes a second to import, in the process that needs it
+    "pandas": lambda a: import_module("pandas").DataFrame(a, columns=ORDER).assign(time=0.0),
+    "row": lambda a: import_module("pandas").DataFrame(a, columns=ORDER).iloc[1],
+    "polars": lambda a: import_module("polars").DataFrame(a, schema=ORDER),
     "arrow": lambda a: pytest.importorskip("pyarrow").table(dict(zip(ORDER, a.T, strict=True))),
     "structured": lambda a: np.rec.fromarrays(a.T, names=ORDER),
-    "xarray": lambda a: xr.DataArray(a, dims=("time", "angle"), coords={"angle": list(ORDER)}),
-    "data set": lambda a: xr.Dataset(dict(zip(ORDER, [("t", c) for c in a.T], strict=True))),
+    "xarray": lambda a: import_module("xarray").DataArray(
+        a, {"angle": list(ORDER)}, ("time", "angle")
+    ),
+    "data set": lambda a: import_module("xarray").Dataset(
+        {n: ("t", a[:, k]) for k, n in enumerate(ORDER)}
+    ),
     "mapping": lambda a: {"yaw": a[:, 2], "roll": a[:, 0], "pitch": a[:, 1]},
     "tuples": lambda a: [Attitude(*row) for row in a.tolist()],
 }

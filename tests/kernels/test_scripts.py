@@ -8,7 +8,6 @@ import subprocess
 from functools import cache
 from pathlib import Path
 
-import jax
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -110,6 +109,8 @@ def functions(name: str = "ZXZ"):
 @pytest.mark.parametrize("size", [1e-3, 0.0])
 def test_the_tangent_of_the_matrix_is_its_rate(size):
     """At a rotation vector of zero, too, where its formulas are 0/0."""
+    import jax
+
     kernels = functions("rotation_vector")
     q, q_dot = np.random.default_rng(2).normal(size=(2, 3)) * [[size], [1.0]]
     _, tangent = jax.jvp(kernels.rotation_matrix, (q,), (q_dot,))
@@ -119,6 +120,8 @@ def test_the_tangent_of_the_matrix_is_its_rate(size):
 
 
 def test_types_are_those_of_jax():
+    import jax
+
     q = inputs("ZXZ", "rotation_matrix")[0].astype(np.float32)
     matrix = functions().rotation_matrix
     assert matrix(q).dtype == np.float32
