@@ -1,4 +1,4 @@
-"""What the notes say of rotations and bodies is true of the models."""
+"""What the notes say of bodies and their motions is true of the models, and explained."""
 
 from __future__ import annotations
 
@@ -15,7 +15,6 @@ from rigidsym.formula.scalars import formula_of, matrix_of
 from rigidsym.formula.tree import Formula, Symbol
 from rigidsym.mechanics.quantities.mass import OF_BODY_ALONE
 from rigidsym.mechanics.quantities.table import POINT, own_names
-from rigidsym.models.rotation import TIME
 from rigidsym.motion import Motion
 from rigidsym.notes.document import Equation, Figure, texts_of
 from rigidsym.notes.figure.body_drawing import body_drawing
@@ -28,69 +27,6 @@ from rigidsym.spec.derivation_file import read_spec
 
 SYSTEMS = ("composite_body", "dual_spin_satellite", "free_body", "free_symmetric_body")
 SYSTEMS += ("heavy_asymmetric_body", "heavy_symmetric_top", "kovalevskaya_top", "solid_cone")
-COEFFICIENTS = {  # of v × x′ and v × (v × x′), for the length n of the vector
-    "rotation_vector": lambda n: (np.sin(n) / n, (1 - np.cos(n)) / n**2),
-    "gibbs_vector": lambda n: (2 / (1 + n**2), 2 / (1 + n**2)),
-    "modified_rodrigues": lambda n: (4 * (1 - n**2) / (1 + n**2) ** 2, 8 / (1 + n**2) ** 2),
-}
-
-
-def numbers(matrix: sp.MatrixBase, point: dict[sp.Expr, float]) -> np.ndarray:
-    """Rates before coordinates, of which they are derivatives."""
-    order = sorted(point, key=lambda symbol: not isinstance(symbol, sp.Derivative))
-    for symbol in order:
-        matrix = matrix.xreplace({symbol: sp.Float(point[symbol])})
-    return np.array(matrix, dtype=float)
-
-
-@pytest.mark.parametrize("name", COEFFICIENTS)
-def test_rodrigues_formula_with_these_coefficients_is_the_matrix(name):
-    model = rs.derive(name, "rotation_matrix").model
-    v, x = np.array([0.3, -0.5, 0.4]), np.array([1.0, 2.0, -0.7])
-    matrix = numbers(model.matrix, dict(zip(model.coordinates, v, strict=True)))
-    first, second = COEFFICIENTS[name](np.linalg.norm(v))
-    expected = x + first * np.cross(v, x) + second * np.cross(v, np.cross(v, x))
-    np.testing.assert_allclose(matrix @ x, expected, rtol=1e-12)
-
-
-def product(p, q):
-    (a, u), (b, v) = (p[0], p[1:]), (q[0], q[1:])
-    return np.array([a * b - u @ v, *(a * v + b * u + np.cross(u, v))])
-
-
-def test_the_angular_velocity_is_twice_the_rate_times_the_conjugate():
-    motion = rs.derive("quaternion")
-    q, rate = np.array([0.8, -0.3, 0.5, 0.2]), np.array([0.1, 0.4, -0.2, 0.3])
-    rate -= q * (q @ rate) / (q @ q)  # the length is constant
-    coordinates = motion.model.coordinates
-    point = dict(zip(coordinates, q, strict=True))
-    point |= {c.diff(TIME): r for c, r in zip(coordinates, rate, strict=True)}
-    conjugate = q * [1, -1, -1, -1] / (q @ q)
-    for name, expected in (
-        ("angular_velocity_space", 2 * product(rate, conjugate)),
-        ("angular_velocity_body", 2 * product(conjugate, rate)),
-    ):
-        omega = numbers(getattr(motion, name), point)
-        np.testing.assert_allclose([0, *omega.ravel()], expected, atol=1e-14)
-
-
-def test_a_turn_whose_axis_moves_has_the_angular_velocity_and_the_rates_of_the_note():
-    motion = rs.derive("axis_angle")
-    e, e_dot, angle, rate = np.array([1, 2, 2]) / 3, np.array([0.2, -0.3, 0.2]), 0.7, 0.4
-    coordinates = motion.model.coordinates
-    point = dict(zip(coordinates, (*e, angle), strict=True))
-    across = np.cross(e, e_dot)
-    moved = (1 - np.cos(angle)) * across + np.sin(angle) * e_dot
-    rotated = numbers(motion.model.matrix, point) @ across
-    np.testing.assert_allclose(across - rotated, moved, atol=1e-14)
-    rates = {q.diff(TIME): r for q, r in zip(coordinates, (*e_dot, rate), strict=True)}
-    omega = numbers(motion.angular_velocity_space, point | rates).ravel()
-    np.testing.assert_allclose(omega, rate * e + moved, atol=1e-14)
-    across = np.cross(e, omega)
-    expected = -(across + np.cross(e, across) / np.tan(angle / 2)) / 2
-    given = dict(zip(motion.argument("omega_space").symbols, omega, strict=True))
-    found = numbers(motion.rates_from_angular_velocity_space, given | point)
-    np.testing.assert_allclose(found.ravel(), [*expected, e @ omega], atol=1e-14)
 
 
 DRILLED = """

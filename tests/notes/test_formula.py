@@ -32,20 +32,11 @@ CONSTANTS = sp.symbols("A m_1 h alpha0")
 FUNCTIONS = (sp.sin, sp.cos, sp.tan, sp.cot)
 LETTERS = letters_of(arguments_of(EulerAngles("ZXZ")))
 PEN = LatexPen()
-NAMES = {  # as the reader calls them
-    **dict(zip(ANGLES, ("phi", "theta", "psi"), strict=True)),
-    **{
-        r: f"{d} {a}"
-        for r, (d, a) in zip(
-            RATES, [(d, a) for d in ("dot", "ddot") for a in ("phi", "theta", "psi")], strict=True
-        )
-    },
-    **{
-        w: f"Omega{p}_{k}"
-        for w, (p, k) in zip(OMEGA, [(p, k) for p in ("", "'") for k in "123"], strict=True)
-    },
-    **dict(zip(CONSTANTS, ("A", "m_1", "h", "alpha_0"), strict=True)),
-}
+READ = [f"{dots}{angle}" for dots in ("", "dot ", "ddot ") for angle in ("phi", "theta", "psi")]
+READ += [f"Omega{prime}_{k}" for prime in ("", "'") for k in "123"]
+NAMES = dict(  # as the reader calls them
+    zip((*ANGLES, *RATES, *OMEGA, *CONSTANTS), (*READ, "A", "m_1", "h", "alpha_0"), strict=True)
+)
 VALUES = {symbol: mp.mpf(7 * k % 19 + 3) / 13 for k, symbol in enumerate(NAMES)}
 KNOWN = {NAMES[symbol]: value for symbol, value in VALUES.items()} | {"pi": +mp.pi}
 

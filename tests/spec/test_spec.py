@@ -215,7 +215,7 @@ REQUESTED = ("title", "quantities", "note", "theory", "notation", "body", "style
 rotations = st.fixed_dictionaries({"sequence": st.just("ZXZ") | json_values}) | json_values
 
 
-@settings(max_examples=50, deadline=timedelta(seconds=10))
+@settings(max_examples=20, deadline=timedelta(seconds=10))
 @given(
     st.fixed_dictionaries(
         {"name": st.just("top"), "rotations": st.lists(rotations)},

@@ -13,9 +13,6 @@ from helpers.conventions import EVERY, GENERIC, RATES, attitude, holds, rotation
 from rigidsym.tools.identify.fit import calls
 from rigidsym.tools.identify.readings import VELOCITIES, Reading, distinct
 
-BOTH = pytest.mark.parametrize("passive", [False, True], ids=["active", "passive"])
-UNITS = pytest.mark.parametrize("degrees", [False, True], ids=["radians", "degrees"])
-
 
 def found_alone(reading: Reading, **given) -> rs.Identification:
     """The data leave one answer, and it is this reading."""
@@ -23,14 +20,6 @@ def found_alone(reading: Reading, **given) -> rs.Identification:
     assert len(found.answers) == 1, found.text()
     assert holds(found.answers[0], reading), found.text()
     return found
-
-
-@UNITS
-@BOTH
-def test_scipy_in_all_24_conventions(sequence, passive, degrees):
-    reading = Reading(sequence=sequence, passive=passive, degrees=degrees)
-    found = found_alone(reading, **sample(reading, GENERIC[degrees]))
-    assert found.answers[0].residual < 1e-13
 
 
 def test_each_of_the_4608_readings_stands_once_among_the_answers_and_their_aliases():

@@ -45,7 +45,7 @@ class MassFacts:
     body: RigidBody
     letters: Letters
 
-    @property
+    @cached_property
     def figure(self) -> Figure | None:
         """The body with its principal axes; None where its shape is not known."""
         drawn = body_drawing(self.derivation)
