@@ -7,6 +7,7 @@ stand in; only the formula is theirs.
 from __future__ import annotations
 
 import json
+import re
 from time import process_time
 
 import numpy as np
@@ -23,6 +24,7 @@ from rigidsym.errors import ExpressionError
 from rigidsym.tools.compare.program import formula_matrix, program_formulas
 from rigidsym.tools.compare.quantities import _angles
 from rigidsym.tools.compare.search import formulas, search, source_files
+from rigidsym.tools.compare.syntax import patterns
 
 W_BODY = "[[1, 0, -sin(b)], [0, cos(a), sin(a)*cos(b)], [0, -sin(a), cos(a)*cos(b)]]"
 
@@ -206,7 +208,7 @@ CHANGED = {  # statements of a function of phi and psi: what its matrix is
     f"phi *= -1; {SINES}; return {TURN}": "transposed",
     f"phi = -phi; phi = -phi; {SINES}; return {TURN}": "equal to",
     f"phi = np.pi/2 - phi; {SINES}; return {TURN}": "from another axis",
-    f"phi, psi = psi, phi; {SINES}; return {TURN}": "in (psi)",
+    f"phi, psi = psi, phi; {SINES}; return {TURN}": "with angle = psi",
     f"{SINES}; M = {TURN}; M[0, 1] = s; return M": "entry (1, 2): sin(phi) should be -sin(phi)",
     f"{SINES}; M = {TURN}; change(M); return M": "equal to",  # before it is changed
     f"{SINES}; M = {TURN}; N = M; N[0, 1] = s; return M": "entry (1, 2)",
@@ -295,11 +297,11 @@ EXACT = {  # bodies of void f(int k, double a, x, y, z, R[9]) in C++: the words 
     f"double c = cos(std::min(a, 1.0)), s = sin(std::min(a, 1.0)); {TURNED}": "",
     f"double s = k ? sin(a) : 0, c = cos(a); {TURNED}": "in one of several branches",
     f"double s = sin(a), c = cos(a); switch (k) {{ case 0: s = -s; case 1: s = 2*s; }} {TURNED}": (
-        "(a) (proved); in one of several branches"
+        "angle = a (proved); in one of several branches"
     ),
     f"double s = cosine(a), c = cos(a); {TURNED}": "",
     f"double s = sinus(a), c = cos(a); {TURNED}": "(proved)",
-    f"glm::dmat3 m{COLUMNS}; R = m;": "(a) (proved)",
+    f"glm::dmat3 m{COLUMNS}; R = m;": "angle = a (proved)",
     f"x = x/sqrt({SQUARES}); y = y/sqrt({SQUARES}); {AXIS}": "",
     f"double n = sqrt({SQUARES}); x /= n; y /= n; {AXIS}": "",
     f"double n = sqrt({SQUARES} + z*z); x /= n; y /= n; z /= n; {AXIS}": "(proved)",
@@ -381,7 +383,7 @@ CERTAIN = {  # a program: the end of the verdict
     ("k.py", "def f(p, q):\n    a, u, b, v = p[0], p[1:4], q[0], q[1:4]\n    return np.r_[a*b - "
      "np.dot(u, v), a*v + b*u + np.cross(u, v)]\n"): "quaternion_product (proved)",
     ("a.m", "e = [atan2d(R(3,2), R(3,3)); asind(-R(3,1)); atan2d(R(2,1), R(1,1))];"): "not proved)",
-    ("a.rs", f"use cgmath; fn f(a: f32) {BY_COLUMNS}"): "(a) (proved)",
+    ("a.rs", f"use cgmath; fn f(a: f32) {BY_COLUMNS}"): "angle = a (proved)",
     ("b.rs", f"use mine; fn f(a: f32) {BY_COLUMNS}"):
     "transposed (passive, or stored by columns) (proved)",
     ("c.js", "function f(a) { let c = Math.cos(a), s = Math.sin(a); m[0] = c; m[3] = -s; m[6] = 0;"
@@ -399,7 +401,9 @@ def test_only_what_is_certain_is_said(tmp_path, program):
 
 def test_columns_and_degrees_are_not_taken_for_rows_and_radians(tmp_path):
     texts = [str(each) for name in OTHERS for each in found_in(tmp_path, name, OTHERS[name])]
-    assert [each.partition("returned: ")[0].endswith("(a) (proved)") for each in texts] == [True]
+    assert [each.partition("returned: ")[0].endswith("angle = a (proved)") for each in texts] == [
+        True
+    ]
 
 
 LARGE = {  # programs that took minutes
@@ -421,6 +425,11 @@ def test_the_time_for_a_file_is_bounded(tmp_path, name):
     start = process_time()
     assert found_in(tmp_path, name, LARGE[name]) == []
     assert process_time() - start < 10
+
+
+def test_every_pattern_that_is_used_is_in_the_table_and_the_other_way_round():
+    sources = "".join(each.read_text() for each in (ROOT / "rigidsym/tools/compare").glob("*.py"))
+    assert {*re.findall(r"\bpatterns\.(\w+)", sources)} == vars(patterns).keys()
 
 
 def test_an_inner_function_may_change_a_name_at_any_time(tmp_path):
@@ -470,7 +479,9 @@ LANGUAGES = {
 @pytest.mark.parametrize("name", LANGUAGES)
 def test_a_rotation_about_z_is_read_in_every_language(tmp_path, name):
     said = {str(each).partition(": ")[2] for each in found_in(tmp_path, name, LANGUAGES[name])}
-    assert any("equal to rotation_matrix of z(angle) in (a) (proved)" in each for each in said)
+    assert any(
+        "equal to rotation_matrix of z(angle) with angle = a (proved)" in each for each in said
+    )
 
 
 WIDER = {
@@ -583,8 +594,8 @@ SAID = {
     **{"b.c": "angular_velocity_body of ZYX", "b.m": "equal to rate_matrix_body of xyz"},
     **{"j.m": "acceleration, if one matrix is the inverse", "m.py": "euler_equations_torque"},
     **{
-        "n.m": "(proved), apart from terms without p, q, r",
-        "o.py": "apart from terms without",
+        "n.m": "(proved); terms without p, q, r were not compared",
+        "o.py": "; terms without",
     },
     **{"d.cs": "rotation_matrix of z", "p.m": "quaternion of ZYX", "e.cpp": "rates_from_"},
     **{"a.js": "quaternion of x", "a.c": "quaternion_product", "a.cpp": "euler_angles of xyz"},
@@ -617,7 +628,9 @@ def test_of_equally_near_rotations_that_of_yaw_pitch_and_roll_is_named(tmp_path)
     return [cr*cp*cy + sr*sp*sy, x, y, cr*cp*sy + sr*sp*cy]
 """
     (found,) = found_in(tmp_path, "q.py", text)
-    assert "close to quaternion of ZYX in (yaw, pitch, roll): entry 4: " in str(found)
+    assert "close to quaternion of ZYX with phi = yaw, theta = pitch, psi = roll: entry 4: " in str(
+        found
+    )
 
 
 def test_another_convention_than_the_expected_one_is_a_fault(tmp_path):

@@ -180,8 +180,7 @@ class Comparison:
         facts: dict[str, Any] = {each.name: getattr(self, each.name) for each in fields(self)}
         facts |= {
             "arrangement": self.arrangement,
-            "calls": [*zip(own, theirs, strict=True)] if own != theirs and any(theirs) else [],
-            "are_all_called": all(theirs),
+            "calls": [(a, b) for a, b in zip(own, theirs, strict=True) if b and a != b],
             "points": known.POINTS,
             "is_as_asked": found and asked and str(asked) == str(found),
             "shape": in_words(self.formula.shape),

@@ -60,7 +60,7 @@ class FormulaInFile:
     def __str__(self) -> str:
         name = f"{self.formula.name}: " if self.formula.name else ""
         text = self.comparison.text() if self.comparison else f"not read, since {self.reason}"
-        text += f", apart from {self.others}" * bool(self.others)
+        text += f"; {self.others} were not compared" * bool(self.others)
         text += "; in one of several branches" * self.is_case
         if self.formula.unread and self.comparison:
             text += f"; not read: {_in_lines(self.formula.unread)}"
