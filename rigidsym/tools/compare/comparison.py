@@ -334,8 +334,9 @@ def _other_forms(formula: sp.ImmutableMatrix) -> Iterator[tuple[str, sp.Immutabl
         angles = [f.args[0] for f in formula.atoms(sp.sin, sp.cos, sp.tan) if f.has(symbol)]
         scaled = angles or ([*formula] if formula.cols == 1 else [])
         # A factor of a whole matrix may be a vector that is not read.
-        is_linear = not any(part.diff(symbol).has(symbol) for part in scaled)
-        if scaled and is_linear and not any(part.xreplace({symbol: sp.S.Zero}) for part in scaled):
+        if not scaled or any(part.xreplace({symbol: sp.S.Zero}) for part in scaled):
+            continue
+        if not any(part.diff(symbol).has(symbol) for part in scaled):
             yield str(symbol), formula.xreplace({symbol: sp.S.One})
 
 

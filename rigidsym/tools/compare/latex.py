@@ -100,11 +100,14 @@ class _Walk:
 
     def _argument(self) -> str:
         """A group in braces, or one token."""
-        if not self.next().isdigit():  # \frac12
-            return self._atom()
-        digits = self.tokens.pop()
-        self.tokens += [digits[1:]] * (len(digits) > 1)
-        return digits[0]
+        return self._token() if self.next().isdigit() else self._atom()
+
+    def _token(self) -> str:
+        """A word, or the first digit of several: \frac12, x_12."""
+        token = self.tokens.pop() if self.tokens else ""
+        if token.isdigit() and len(token) > 1:
+            self.tokens.append(token[1:])
+        return token[0] if token.isdigit() else token.strip(_QUOTE).lstrip("\\")
 
     def _atom(self) -> str:
         token = self.next()
@@ -146,15 +149,12 @@ class _Walk:
         """The index of a name, as part of it."""
         if not self.take("_"):
             return ""
-        index = ""
-        if self.take("{"):
-            while self.next() not in ("", "}"):
-                index += spelled(self.tokens.pop().strip(_QUOTE).lstrip("\\"))
-            self.take("}")
-        elif self.tokens:
-            digits = self.tokens.pop().strip(_QUOTE).lstrip("\\")
-            index, rest = (digits[0], digits[1:]) if digits.isdigit() else (digits, "")
-            self.tokens += [rest] * bool(rest)
+        is_group = self.take("{")
+        index = "" if is_group else self._token()
+        while is_group and self.next() not in ("", "}"):
+            index += self._token()
+        self.take("}" if is_group else "")
+        index = spelled(index)
         if not index.isalnum():
             raise ExpressionError(f"unexpected index {index!r} in LaTeX")
         return f"_{index}"

@@ -27,7 +27,7 @@ from rigidsym.tools.compare import language
 from rigidsym.tools.compare.language import as_matrix, called, combined, function_word, rows
 from rigidsym.tools.compare.latex import python_of
 from rigidsym.tools.compare.quantities import are_angles, stem_of
-from rigidsym.tools.compare.syntax import CALLS, Tree, parameters, parsed, patterns, walk
+from rigidsym.tools.compare.syntax import CALLS, Tree, below, parameters, parsed, patterns, walk
 
 if TYPE_CHECKING:
     from tree_sitter import Node
@@ -58,9 +58,11 @@ _AXES = {"x": 0, "y": 1, "z": 2, "X": 0, "Y": 1, "Z": 2}
 _INVERSE = (sp.atan2, sp.asin, sp.acos, sp.atan)
 _OPPOSITE = str.maketrans("<>=!", "><!=")
 _SIGNS = {".*": "%", "./": "/", ".^": "**", "^": "**"}  # MATLAB
+_SIZES = (3, 4, 9, 16)  # of vectors and matrices that are built of numbers
 _FLAT = {9: (3, 3), 12: (4, 3), 16: (4, 4)}
 _OF_VECTORS = ("T", "C", "inv", "dot", "cross", "outer", "norm")
 _OF_OBJECTS = (*_OF_VECTORS, "same", "clamp", "least", "pair")
+_WORDS = {*language.OF_NUMBERS, *language.OF_MATRICES, *CALLS}  # functions, if nothing else
 _VIEWS = ("T", "transpose", "reshape", "view", "ravel", "squeeze", "asarray")  # of one matrix
 _RETURNED, _ARGUMENT = _UNNAMED = ("returned", "argument")  # in place of a name
 _ALL = slice(None)
@@ -72,9 +74,6 @@ Path = tuple[Any, ...]  # of a name and its members and indices: ("R", 0, 1), ("
 
 class _Bounded(sp.Function):
     """x of clamp(x, -1, 1): no other number has an arc sine."""
-
-    def _sympystr(self, printer: Any) -> str:
-        return f"clamp({printer.doprint(self.args[0])}, -1, 1)"
 
 
 def _unbounded(matrix: Any) -> Any:
@@ -120,7 +119,6 @@ class Formula:
     name: str
     forms: tuple[sp.ImmutableMatrix, ...] = ()  # in terms of the inputs, and of long values
     reason: str = ""
-    is_case: bool = False  # whether another branch has another value
     is_flat: bool = False  # nine or sixteen numbers in a row, by rows or by columns
     unread: tuple[tuple[str, int], ...] = ()  # names in it whose values are not read, and lines
     is_final: bool = True  # not if what is not understood changes it: it may not be complete
@@ -173,15 +171,14 @@ class _Program:
     arrays: Collection[str] = ()  # names of arrays of C
     is_formula: bool = False  # a formula on its own, with the functions of `language`
     steps: Counter[str] = field(default_factory=Counter)  # expressions that were read
+    written: dict[int, Path] = field(default_factory=dict)  # by nodes, which are asked for often
 
 
 def program_formulas(text: str, suffix: str) -> list[Formula]:
     """All matrices and vectors of a program, in the order of its lines."""
     if suffix == ".rs":  # the body of a macro is code
         text = patterns.macro.sub(lambda m: "mod macros {" + "\n" * m[0].count("\n"), text)
-        text = re.sub(
-            r"\$(?=\w)|\$\((?=//|impl\b|$)|(?<=[ \t}])\)[+*]$", "", text, flags=re.MULTILINE
-        )
+        text = patterns.macro_mark.sub("", text)
     text = re.sub(r"\b\w*LITERAL\(\s*(\w+)\s*\)", r"\1", text)  # a macro for C and C++
     if not _has_material(text, suffix):
         return []
@@ -205,7 +202,9 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
     program.steps["read"] = -min(8 * text.count("\n"), 200 * len(functions))
     scopes = [_Scope(tree) for tree in (Tree(root), *_worth_reading(functions, suffix))]
     if root.has_error:
-        line = next((t.line for t in walk(root) if t.node.is_error or t.node.is_missing), 1)
+        line = next(
+            (Tree(n).line for n in below(root.named_children) if n.is_error or n.is_missing), 1
+        )
         scopes[0].formulas.append(Formula(lines=(line,), name="", reason="there is a syntax error"))
     for count in range(_MOST_RUNS):  # first runs first, since a long file is not read to its end
         for scope in scopes:
@@ -227,10 +226,7 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
         key = (formula.lines, formula.forms or formula.name)
         if key not in formulas or not formula.is_final:
             formulas[key] = formula
-    varied = [(f.lines, f.name) for f in formulas.values() if any(m.free_symbols for m in f.forms)]
-    cases = {place for place, number in Counter(varied).items() if number > 1}
-    marked = (replace(f, is_case=(f.lines, f.name) in cases) for f in formulas.values())
-    return sorted(marked, key=lambda each: each.line)
+    return sorted(formulas.values(), key=lambda each: each.line)
 
 
 def _has_material(text: str, suffix: str) -> bool:
@@ -348,8 +344,8 @@ class _Run:
         self.unread: dict[str, int] = {}  # lines of names without values
         self.later: dict[tuple[sp.Expr, Any], sp.Dummy] = {}  # parts of names assigned anew
         self.squares: dict[sp.Symbol, sp.Symbol] = {}  # |v|² of names without values
-        self.columns_of: dict[tuple[sp.Symbol, Any], sp.Dummy] = {}  # of names without values
-        self.transposes: dict[sp.Symbol, sp.Symbol] = {}  # of them, and back
+        # A name without a value may be a matrix: (its transpose, None), and (its column, k).
+        self.views: dict[sp.Symbol, tuple[sp.Symbol, Any]] = {}
         self.tensors: set[sp.Symbol] = set()  # names without values that are matrices
         self.untracked: set[Path] = set()
         self.links: list[tuple[Path, Path]] = []  # names that may be the same object
@@ -394,8 +390,9 @@ class _Run:
 
     def run(self, tree: Tree) -> None:
         """One statement, or all statements in a block."""
-        if self.program.steps["read"] > _MOST_STEPS:  # later values are unknown
-            self.end = "return"
+        steps = self.program.steps
+        if steps["read"] > _MOST_STEPS or steps["formulas"] > _MOST_FORMULAS:
+            self.end = "return"  # later values are unknown
         if self.end or tree.kind == "function":
             return
         self.depth += 1
@@ -411,26 +408,26 @@ class _Run:
         self.depth -= 1
 
     def run_parts(self, tree: Tree) -> None:
-        self.end_block(self.run_all(tree, tree.parts))
+        if tree.parts:
+            self.end_block(self.run_all(tree, tree.parts))
 
-    def run_all(self, block: Tree, statements: Iterable[Tree]) -> _Record:
+    def run_all(self, block: Tree, statements: Iterable[Tree]) -> dict[str, tuple[Any, int]]:
         """Run statements; the values that names have outside, if a block declares them anew."""
-        outside = _Record()
+        outside: dict[str, tuple[Any, int]] = {}
         is_scope = self.depth > 1 and block.is_one_of("scope")
         for each in statements:
             for name in each.declared - outside.keys() if is_scope else ():
-                outside[name] = self.values.get(name)
-                outside.lines[name] = self.values.lines.get(name, 0)
+                outside[name] = self.values.get(name), self.values.lines.get(name, 0)
             self.run(each)
         return outside
 
-    def end_block(self, outside: _Record) -> None:
-        inside = _Record({name: self.values.pop(name) for name in outside if name in self.values})
-        inside.lines = {name: self.values.lines[name] for name in inside}
-        self.emit(inside)
-        for name in outside:
-            if outside[name] is not None:
-                self.values[name], self.values.lines[name] = outside[name], outside.lines[name]
+    def end_block(self, outside: Mapping[str, tuple[Any, int]]) -> None:
+        if outside:
+            self.emit(self.values, outside)
+        for name, (value, line) in outside.items():
+            self.values.pop(name, None)
+            if value is not None:
+                self.values[name], self.values.lines[name] = value, line
 
     def run_assign(self, tree: Tree) -> None:
         """a = b, a += b, and a, b = c."""
@@ -496,15 +493,14 @@ class _Run:
         keys: Sequence[Any] = left.keys if left.kind == "record" else range(len(left.parts))
         if right.kind == "call" and CALLS.get(right.called) == "parts":  # in which no row is read
             right = right.parts[1] if patterns.module.match(right.base) else right.owner or right
-        is_listed = right.kind == left.kind == "list" and len(right.parts) == len(keys)
-        value: Any = None if is_listed else self.tried(right)
         parts: list[Any] = [None] * len(keys)
-        is_whole = left.kind == "record" and value is not None
-        if is_listed:  # vectors too, as in a, v = q[0], q[1:]
-            parts = [*map(self.tried, right.parts)]
-        elif isinstance(value, sp.MatrixBase) and len(value) == len(keys):
+        if right.kind == left.kind == "list" and len(right.parts) == len(keys):
+            parts = [*map(self.tried, right.parts)]  # vectors too, as in a, v = q[0], q[1:]
+        elif isinstance(value := self.tried(right), sp.MatrixBase) and len(value) == len(keys):
             parts = [*value]
-        elif is_whole or isinstance(value, sp.Function) or patterns.turns.match(str(value)):
+        elif value is not None and (
+            left.kind == "record" or value.is_Function or patterns.turns.match(str(value))
+        ):
             parts = [_part(value, key) for key in keys]
         for target, part in zip(left.parts, parts, strict=True):
             if part is not None:
@@ -647,10 +643,15 @@ class _Run:
             *self.definitions
         }
 
-    def become_unread(self, path: Path, line: int) -> None:
-        """A name, and all others for the same object, get new symbols in place of their values."""
-        for each in (path, *self.linked(path)):
-            self.lose(each, line)
+    def become_unread(self, paths: Iterable[Path], line: int, *, is_new: bool = False) -> None:
+        """Names, and others for the same objects, get new symbols in place of their values.
+
+        Names that have not been used keep theirs, unless they are new.
+        """
+        for path in paths:
+            if is_new or self.part(self.values, path) is not None or path[0] in self.inputs:
+                for each in (path, *self.linked(path)):
+                    self.lose(each, line)
 
     def lose(self, path: Path, line: int) -> None:
         self.emit_at(path, is_final=False)
@@ -662,9 +663,8 @@ class _Run:
     def forget(self, tree: Tree) -> None:
         """All names that are written to in a statement become unread, if they have been used."""
         own = self.written_in([tree] if tree.kind == "assign" else [])
-        for path in own | self.written_in([tree, *tree.changing]):
-            if path in own or self.part(self.values, path) is not None or path[0] in self.inputs:
-                self.become_unread(path, tree.line)
+        self.become_unread(self.written_in([tree, *tree.changing]) - own, tree.line)
+        self.become_unread(own, tree.line, is_new=True)
 
     run_error = forget
 
@@ -683,12 +683,13 @@ class _Run:
     def written(self, left: Tree) -> Path:
         """The name that an assignment writes to, also through parts that are not understood."""
         tree: Tree | None = left
-        while tree is not None:
+        paths, path = self.program.written, None
+        while tree is not None and left.node.id not in paths:
             if path := self.path(tree):
                 places = (n for n, key in enumerate(path) if not isinstance(key, str))
-                return path[: next(places, len(path))]
+                paths[left.node.id] = path[: next(places, len(path))]
             tree = next(iter(tree.parts), None)
-        return ()
+        return paths.setdefault(left.node.id, ())
 
     def run_if(self, tree: Tree) -> None:
         """if, #if, switch, and handlers of exceptions: each run takes one branch, or none."""
@@ -707,9 +708,9 @@ class _Run:
     def run_loop(self, tree: Tree) -> None:
         """A loop may run many times or never: what changes in it is not read before and after."""
         self.forget(tree)
-        for each in tree.parts[0].targets if tree.parts else ():
-            if each.kind == "name":  # for x, y in ...
-                self.become_unread((each.word,), tree.line)
+        targets = tree.parts[0].targets if tree.parts else ()
+        names = [(each.word,) for each in targets if each.kind == "name"]  # for x, y in ...
+        self.become_unread(names, tree.line, is_new=True)
         for each in tree.parts:
             self.run(each)
         self.end = ""
@@ -746,19 +747,15 @@ class _Run:
         if meaning == "set_unit":
             value = sp.eye(4)
         elif meaning is None and re.match("set|make|init", name, re.IGNORECASE):
-            nodes = nodes[:-1] if len(nodes) in (5, 10, 17) else nodes  # a flag
-            values = [self.tried(each) for each in nodes] if len(nodes) in (3, 4, 9, 16) else [None]
-            value = rows(values) if None not in values else None
+            values = self.entries(nodes)
+            value = rows(values) if len(values) in _SIZES and None not in values else None
         if value is not None and (target is not None or tree.owner is None):
             self.store(target or Tree(tree.node, "this"), sp.ImmutableMatrix(value))
             return
         if patterns.may_be_matrix.search(tree.text):
             self.tried(tree)
-        for path in (
-            self.reached(tree) if not patterns.harmless.search(f"{tree.base}.{name}") else ()
-        ):
-            if self.part(self.values, path) is not None or path[0] in self.inputs:
-                self.become_unread(path, tree.line)
+        if not patterns.harmless.search(f"{tree.base}.{name}"):
+            self.become_unread(self.reached(tree), tree.line)
 
     def sine_and_cosine(self, nodes: Sequence[Tree]) -> None:
         """sincos(a, &s, &c), sincos(a, out s, out c), or SinCos(&s, &c, a)."""
@@ -767,7 +764,7 @@ class _Run:
         (angle,) = (self.tried(each) for each in nodes if each not in results)
         for left, word in zip(results, ("sin", "cos"), strict=True):
             if angle is None:
-                self.become_unread(self.written(left), left.line)
+                self.become_unread([self.written(left)], left.line, is_new=True)
             else:
                 self.store(left, called(word, [angle]))
 
@@ -801,12 +798,7 @@ class _Run:
             self.emit(self.values, path, is_final=is_final)
 
     def emit(
-        self,
-        record: _Record,
-        keys: Iterable[Any] | None = None,
-        path: Path = (),
-        *,
-        is_final: bool = True,
+        self, record: _Record, keys: Any = None, path: Path = (), *, is_final: bool = True
     ) -> None:
         """All matrices and vectors among the parts of a record have their values."""
         for key in [*record] if keys is None else keys:
@@ -817,7 +809,7 @@ class _Run:
             if matrix is not None and len(matrix) > 2:
                 self.add(_dotted(own), matrix, *part.places(), is_final=is_final)
             else:
-                self.emit(part, None, own, is_final=is_final)
+                self.emit(part, path=own, is_final=is_final)
         for kind, names in _groups(record):
             values: list[Any] = [self.definitions.get(record[n], record[n]) for n in names]
             if None in values:
@@ -850,7 +842,7 @@ class _Run:
                 part = value[k : k + 3, :]
                 if len(value) > 4 or are_angles(part):
                     self.add(f"{name}[{k}:{k + 3}]", part, min(lines), is_final=is_final)
-        is_flat = _unflattened(value).shape != value.shape
+        is_flat = value.shape != _unflattened(value).shape
         value = _unbounded(_unflattened(value))
         whole = _unbounded(self.expanded(value))
         whole = value if _size(whole) > _MOST_PARTS else whole
@@ -952,10 +944,7 @@ class _Run:
         is_number = value in self.components or self.definitions.get(value) is not None
         if not _is_scalar(value) or not value.is_Symbol or is_number:
             return value if _is_scalar(value) else value.T
-        if value not in self.transposes:
-            part = self.unread_part(value, sp.Dummy(f"{value}.T", real=True))
-            self.transposes |= {value: part, part: value}
-        return self.transposes[value]
+        return self.view(value)
 
     def read_member(self, tree: Tree) -> Any:
         if tree.word in ("Sin", "Cos", "Tan") and tree.parts:  # angle.Cos
@@ -1148,8 +1137,9 @@ class _Run:
             place = self.index(nodes[0])
             return (*owner, *((place, _ALL) if name == "row" else (_ALL, place)))
         is_entry = len(nodes) == 2 and len(word) == 1  # t(1, 2), but not T(2)
-        is_known = word in language.OF_NUMBERS or word in language.OF_MATRICES or word in CALLS
-        is_function = is_known and not is_entry and self.part(self.values, (*owner, name)) is None
+        is_function = (
+            word in _WORDS and not is_entry and self.part(self.values, (*owner, name)) is None
+        )
         is_function |= word in self.program.functions and not self.first
         if is_function or len(nodes) > 2 + self.first:
             return None
@@ -1173,8 +1163,8 @@ class _Run:
     def index(self, tree: Tree) -> Any:
         """An index as it is written, or the key of a table."""
         text = tree.text
-        if text in (":", "..."):
-            return _ALL if text == ":" else ...
+        if text == "...":
+            return ...
         if match := re.fullmatch(r"(\d?):(\d?)", text):
             ends = [int(end) if end else None for end in match.groups()]
             return slice(ends[0] - self.first if ends[0] else None, ends[1])
@@ -1209,7 +1199,8 @@ class _Run:
         """A name, an entry, a component, or several: q.xyz."""
         path = self.path(tree)
         if path is None:
-            self.add_parts(tree.parts if tree.kind != "function" else ())
+            for each in tree.parts if tree.kind != "function" else ():
+                self.add(_ARGUMENT, self.tried(each), each.line)
             raise self.unreadable(tree)
         if isinstance(path[-1], str) and path[-1] in language.CONSTANTS:
             return language.CONSTANTS[path[-1]]
@@ -1246,7 +1237,7 @@ class _Run:
         if isinstance(value, sp.MatrixBase):
             return self.block(tree, value, keys)
         if key == _ALL and others and isinstance(others[0], int) and value.is_Symbol:
-            part = self.column(value, others[0] + self.first)  # or of a batch: q[:, 0]
+            part = self.view(value, others[0] + self.first)  # or of a batch: q[:, 0]
             return self.entry(tree, part, tuple(others[1:]))
         if key == _ALL and others:  # of a batch
             return self.entry(tree, value, tuple(others))
@@ -1261,21 +1252,26 @@ class _Run:
 
     def component(self, value: sp.Expr, key: int | str) -> Any:
         """A component of a name without a value, or of c v; None for numbers."""
-        if value in self.transposes and value.is_Dummy:
-            return self.column(self.transposes[value], key)
-        for (matrix, column), part in self.columns_of.items():
-            if part == value:
-                return self.component(self.component(matrix, key), column)
+        if value in self.views:
+            matrix, column = self.views[value]
+            if column is None:
+                return self.view(matrix, key)
+            return self.component(self.component(matrix, key), column)
         part = _part(value, key) if value not in self.components else None
         if part is not None and value in self.definitions:  # which is not read, or assigned anew
             dummy = sp.Dummy(part.name, real=True)
             part = self.unread_part(value, self.later.setdefault((value, key), dummy))
         return part
 
-    def column(self, matrix: sp.Symbol, key: int | str) -> sp.Symbol:
-        """A column of a name without a value, or a number if that is a batch of vectors."""
-        part = sp.Dummy(f"{matrix}.{key}", real=True)
-        return self.unread_part(matrix, self.columns_of.setdefault((matrix, key), part))
+    def view(self, matrix: sp.Symbol, key: int | str | None = None) -> sp.Symbol:
+        """The transpose or a column of a name, or a number if that is a batch of vectors."""
+        whole, column = self.views.get(matrix, (None, 0))
+        if whole is not None and column is None:
+            return whole if key is None else self.component(whole, key)
+        views = (view for view, place in self.views.items() if place == (matrix, key))
+        view = next(views, None) or sp.Dummy(f"{matrix}.{'T' if key is None else key}", real=True)
+        self.views[view] = matrix, key
+        return self.unread_part(matrix, view)
 
     def unread_part(self, whole: Any, part: sp.Symbol) -> sp.Symbol:
         """A part of a name; it is not read if the name is not."""
@@ -1287,22 +1283,18 @@ class _Run:
     def block(self, tree: Tree, matrix: sp.ImmutableMatrix, keys: Path) -> Any:
         """An entry, or those of slices as a column or a matrix."""
         places = ["xyzw".find(key.lower()) if isinstance(key, str) else key for key in keys]
-        if matrix.cols == 1 and len(places) == 2 and len(matrix) in _FLAT:
+        if len(places) == 2:
             matrix = _unflattened(matrix)
-        elif matrix.cols == 1 and len(places) == 2:
+        if len(places) == 2 and matrix.cols == 1:
             places = [next((p for p in places if p not in (0, _ALL)), places[0])]
-        if matrix.rows == 1 and len(places) == 1:
-            places = [0, *places]
-        if matrix.cols > 1 and len(places) == 1:  # a row
-            places.append(_ALL)
+        if len(places) == 1:
+            places = [0, *places] if matrix.rows == 1 else [*places, _ALL]
         try:
-            part = matrix[places[0], 0] if len(places) == 1 else matrix[tuple(places)]
+            part = as_matrix(matrix[tuple(places)])
         except (IndexError, TypeError, ValueError):
             raise self.unreadable(tree, "has no value") from None
-        part = matrix[places[0], :] if len(places) == 1 and isinstance(places[0], slice) else part
-        if not isinstance(part, sp.MatrixBase):
-            return part
-        return sp.ImmutableMatrix(part.T if part.rows == 1 else part)
+        part = part.T if part.rows == 1 else part
+        return part[0] if len(part) == 1 else part
 
     # Calls
 
@@ -1369,31 +1361,31 @@ class _Run:
         is_new = is_new and all(each.kind == "call" for each in arguments)  # of columns
         if meaning == "stack" or patterns.by_columns.search(name) or is_new:
             return self.stacked(tree, is_new)
-        if len(arguments) in (4, 5, 10, 17) and arguments[-1].text in ("true", "false"):  # a flag
-            arguments = arguments[:-1]
-        values = [self.tried(each) for each in arguments]
-        if (
-            None not in values
-            and len(values) > 1
-            and patterns.built.search(f"{base}.{tree.called}")
-        ):
-            if len(values) in (3, 4, 9, 16):
-                is_by_columns = len(values) > 4 and self.program.is_glm and name == "new"
-                return self.columns(tree, rows(values)) if is_by_columns else rows(values)
-            if len(values) == 2:  # float4(v, w)
+        values = self.entries(arguments)
+        whole: Any = None
+        with suppress(ExpressionError):  # of matrices that do not fit
+            whole = rows(values) if len(values) in _SIZES and None not in values else None
+        if patterns.built.search(f"{base}.{tree.called}"):
+            if whole is not None and len(values) > 4 and self.program.is_glm and name == "new":
+                return self.columns(tree, whole)
+            if whole is not None:
+                return whole
+            if len(values) == 2 and None not in values:  # float4(v, w)
                 return rows([entry for value in values for entry in as_matrix(value)])
         if self.program.is_formula and tree.owner is None:
             hint = offer(name, [*FUNCTIONS, *language.OF_MATRICES])
             raise ExpressionError(f"{name!r} is not a function; {hint}")
-        self.add_parts(arguments)
-        if len(values) in (3, 4, 9, 16) and None not in values:  # a constructor of another library
-            self.add(_ARGUMENT, rows(values), arguments[0].line)
+        # The arguments of what is not understood, or all together, may be formulas of their own.
+        for value, each in zip([*values, whole], [*arguments, tree.parts[-1]], strict=False):
+            self.add(_ARGUMENT, value, each.line)
         raise self.unreadable(tree)
 
-    def add_parts(self, trees: Sequence[Tree]) -> None:
-        """The parts of what is not understood may be formulas of their own."""
-        for each in trees:
-            self.add(_ARGUMENT, self.tried(each), each.line)
+    def entries(self, nodes: Sequence[Tree]) -> list[Any]:
+        """The arguments of a constructor, without a flag at the end."""
+        has_flag = len(nodes) - 1 in _SIZES and (
+            len(nodes) > 4 or nodes[-1].text in ("true", "false")
+        )
+        return [*map(self.tried, nodes[:-1] if has_flag else nodes)]
 
     def bounded(self, tree: Tree, meaning: str, values: Sequence[Any]) -> Any:
         """x of clamp(x, -1, 1), of min(1, x) or of max(-1, x), for arc sines and cosines."""
@@ -1503,9 +1495,10 @@ def _settled(record: _Record) -> sp.ImmutableMatrix | None:
     parts = [_settled(part) if isinstance(part, _Record) else part for part in parts]
     if not parts or None in parts:
         return None
-    matrices = [*map(as_matrix, parts)]
-    is_regular = len({each.shape for each in matrices}) == 1 and matrices[0].cols == 1
-    return sp.ImmutableMatrix([[*each] for each in matrices]) if is_regular else None
+    if all(map(_is_scalar, parts)):
+        return sp.ImmutableMatrix(parts)
+    is_regular = len({getattr(each, "shape", ()) for each in parts}) == 1 and parts[0].cols == 1
+    return sp.ImmutableMatrix([[*each] for each in parts]) if is_regular else None
 
 
 def _groups(record: _Record) -> Iterator[tuple[int, list[str]]]:

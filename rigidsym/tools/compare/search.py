@@ -13,16 +13,10 @@ import sympy as sp
 
 from rigidsym.errors import ExpressionError, RequestError
 from rigidsym.models.rotation import RotationModel
+from rigidsym.tools.compare import quantities
 from rigidsym.tools.compare.comparison import Comparison, identified
 from rigidsym.tools.compare.program import Formula, program_formulas
-from rigidsym.tools.compare.quantities import (
-    PASSIVE,
-    PASSIVE_OR_BY_COLUMNS,
-    are_angles,
-    are_body_rates,
-    grouped,
-    target,
-)
+from rigidsym.tools.compare.quantities import are_angles, are_body_rates
 from rigidsym.tools.compare.syntax import GRAMMARS, patterns
 
 SUFFIXES = tuple(GRAMMARS)
@@ -133,7 +127,6 @@ def _findings(path: Path, expected: str) -> Iterator[FormulaInFile]:
     for group in variants.values():
         # A formula with the values of all branches may be no quantity, while one branch is.
         is_case = len({each.forms for each in group if each.forms}) > 1
-        is_case |= any(each.is_case for each in group)
         findings = [_compared(path, each, expected, is_case=is_case) for each in group]
         readable = [each for each in findings if each and each.comparison]
         for finding in [*readable, *filter(None, findings)][:1]:
@@ -147,7 +140,7 @@ def _compared(
 ) -> FormulaInFile | None:
     for form in formula.forms:  # a long value may be an angle
         if patterns.angles_name.fullmatch(formula.name) and are_body_rates(form):
-            asked = target("xyz", "rates_from_angular_velocity_body")
+            asked = quantities.target("xyz", "rates_from_angular_velocity_body")
             comparison = Comparison(formula=form, asked=asked, are_body_rates=True)
             return FormulaInFile(path, formula, comparison)
         is_equal = is_case or not formula.is_final
@@ -159,8 +152,8 @@ def _compared(
             except (ExpressionError, RecursionError) as error:  # a function without values
                 return FormulaInFile(path, formula, reason=str(error))
             known = comparison.found
-            if known is not None and formula.is_flat and known.arrangement == PASSIVE:
-                known = replace(known, arrangement=PASSIVE_OR_BY_COLUMNS)
+            if known is not None and formula.is_flat and known.arrangement == quantities.PASSIVE:
+                known = replace(known, arrangement=quantities.PASSIVE_OR_BY_COLUMNS)
                 comparison = replace(comparison, found=known)
             if known is not None or comparison.is_reflection:
                 return FormulaInFile(path, formula, comparison, "", is_case, others)
@@ -190,7 +183,7 @@ def disappointment(
     known = comparison.found
     if known is None or comparison.repairs:
         return ""
-    if is_active and PASSIVE in comparison.arrangement:
+    if is_active and quantities.PASSIVE in comparison.arrangement:
         return "expected an active rotation matrix, which takes body to space components"
     model = known.motion.model
     if expected is None or len(model.turns) != len(expected.turns):
@@ -209,9 +202,10 @@ def _block(matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
         in_radians = matrix * sp.pi / 180 if are_angles(matrix) else matrix.xreplace(scale)
         matrix = matrix if in_radians.has(sp.pi) else in_radians
     step = next((s for s in matrix.free_symbols if patterns.step.fullmatch(s.name)), None)
-    if step is not None and not (rates := matrix.diff(step)).has(step):
-        before = matrix.xreplace({step: sp.S.Zero})  # of q + (...)*dt, but not g - w - (...)*dt
-        matrix = sp.ImmutableMatrix(rates) if all(entry.is_Atom for entry in before) else matrix
+    before = matrix.xreplace({step: sp.S.Zero})  # q of q + (...)*dt
+    if step is not None and not any(e.is_Add for e in before):  # but not g - w - (...)*dt
+        rates = matrix.applyfunc(lambda entry: entry.diff(step))
+        matrix = matrix if rates.has(step) else rates
     edges = (tuple(matrix[-1, :]), tuple(matrix[:, -1]))  # by rows, or by columns
     is_homogeneous = matrix.shape == (4, 4) and (0, 0, 0, 1) in edges
     is_homogeneous |= matrix.shape == (3, 4) and matrix[:, 3].is_zero_matrix is True
@@ -226,7 +220,9 @@ def _partial(matrix: sp.ImmutableMatrix) -> Iterator[tuple[sp.ImmutableMatrix, s
     if matrix.shape not in ((3, 1), (4, 1)) or matrix.has(sp.Function):
         return
     sign = 1 if matrix.rows == 3 else -1  # of what is quadratic in ω, or linear
-    for vectors in grouped(tuple((s, s.name) for s in sorted(matrix.free_symbols, key=str))):
+    for vectors in quantities.grouped(
+        tuple((s, s.name) for s in sorted(matrix.free_symbols, key=str))
+    ):
         for w in vectors:
             if len(w) != 3 or not all(e.has(*w) and e.is_polynomial(*w) for e in matrix):
                 continue
