@@ -534,6 +534,7 @@ class _Run:
         is_own = right is not None and re.search(rf"\b{path[0]}\b", right.text) is not None
         self.emit_at(path, is_final=not is_own)
         for other in self.linked(path):
+            self.emit_at(other, is_final=False)
             self.lose(other, left.line)
         self.put(path, value, left.line)
 
@@ -648,13 +649,18 @@ class _Run:
 
         Names that have not been used keep theirs, unless they are new.
         """
-        for path in paths:
-            if is_new or self.part(self.values, path) is not None or path[0] in self.inputs:
-                for each in (path, *self.linked(path)):
-                    self.lose(each, line)
+        used = (
+            path
+            for path in sorted(paths)
+            if is_new or self.part(self.values, path) is not None or path[0] in self.inputs
+        )
+        objects = [each for path in used for each in (path, *self.linked(path))]
+        for each in objects:  # while all names have their values
+            self.emit_at(each, is_final=False)
+        for each in objects:
+            self.lose(each, line)
 
     def lose(self, path: Path, line: int) -> None:
-        self.emit_at(path, is_final=False)
         value = self.part(self.values, path)
         same = [(name,) for name, part in self.values.items() if part is value]
         for each in same if isinstance(value, _Record) and same else [path]:
@@ -1376,7 +1382,7 @@ class _Run:
             hint = offer(name, [*FUNCTIONS, *language.OF_MATRICES])
             raise ExpressionError(f"{name!r} is not a function; {hint}")
         # The arguments of what is not understood, or all together, may be formulas of their own.
-        for value, each in zip([*values, whole], [*arguments, tree.parts[-1]], strict=False):
+        for value, each in zip([*values, whole], [*arguments, *arguments[:1]], strict=False):
             self.add(_ARGUMENT, value, each.line)
         raise self.unreadable(tree)
 
@@ -1445,6 +1451,8 @@ class _Run:
         if len(nodes) == 1 and nodes[0].kind in ("list", "matrix"):
             nodes = nodes[0].parts
         parts = [as_matrix(self.read(each)) for each in nodes]
+        if tree.kind == "index" and all(len(each) == 1 for each in parts):
+            raise self.unreadable(tree, "may be of numbers or of vectors")
         for each in nodes if axis.endswith("=1") else ():  # of a batch, this is the axis of rows
             part = self.tests.get(each.text, each)
             if part.kind == "call" and patterns.other_axis.search(part.text):
