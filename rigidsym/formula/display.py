@@ -6,7 +6,7 @@ The choice is by estimated width, in this order. Where entries are listed, the n
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import lru_cache
 from typing import Literal, NamedTuple
 
@@ -17,6 +17,7 @@ from rigidsym.formula.letters import Letters
 from rigidsym.formula.pen import Segment, break_lines
 from rigidsym.formula.scalars import factored, formula_of, listed_entries, matrix_of
 from rigidsym.formula.tree import NOTHING, Formula, equal, indexed, row
+from rigidsym.system.records import Record
 
 PAGE = 39.2  # ems of a display on a page, beside a number such as (13)
 BOX = 0.96  # ems that the box around a result takes
@@ -25,8 +26,7 @@ INDENT = r"\quad"  # of a line that goes on; the next bracket adds another
 _MOST_INDENTS = 5
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Equation:
+class Equation(Record, kw_only=True):
     """One display: sides that are equal, the last of them a matrix or a scalar that is given.
 
     Equations are equal if they look alike.

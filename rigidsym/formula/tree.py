@@ -7,16 +7,17 @@ the terms; the pens (LaTeX and Unicode) choose spaces and the sizes of brackets.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 from itertools import product
 from typing import Any, Literal
+
+from rigidsym.system.records import Record
 
 Face = Literal["italic", "bold", "arrow", "upright", "sans"]
 Prime = Literal["", "′"]
 
 
-@dataclass(frozen=True, slots=True, repr=False)
-class Formula:
+class Formula(Record):
     """Any node of the tree."""
 
     @property
@@ -42,7 +43,6 @@ class Formula:
         return self != NOTHING
 
 
-@dataclass(frozen=True, slots=True, repr=False)
 class Symbol(Formula):
     """A letter or a word, with dots above it, a prime and an index: Ω̇′₁, yaw₂."""
 
@@ -53,46 +53,39 @@ class Symbol(Formula):
     index: Formula | None = None
 
 
-@dataclass(frozen=True, slots=True, repr=False)
 class Numeral(Formula):
     digits: str
 
 
-@dataclass(frozen=True, slots=True, repr=False)
 class Sign(Formula):
     """An operation or a relation between two parts of a row, or a comma: + − = × · / , ≤."""
 
     character: str
 
 
-@dataclass(frozen=True, slots=True, repr=False)
 class Words(Formula):
     """Text within a formula, with its blanks."""
 
     words: str
 
 
-@dataclass(frozen=True, slots=True, repr=False)
 class Differential(Formula):
     """The d or ∂ before what is differentiated, or integrated over."""
 
     letter: Literal["d", "∂"] = "d"
 
 
-@dataclass(frozen=True, slots=True, repr=False)
 class Row(Formula):
     """Parts side by side: factors of a product, or terms and sides with signs between them."""
 
     parts: tuple[Formula, ...]
 
 
-@dataclass(frozen=True, slots=True, repr=False)
 class Fraction(Formula):
     above: Formula
     below: Formula
 
 
-@dataclass(frozen=True, slots=True, repr=False)
 class Rate(Formula):
     """The derivative with respect to time as a quotient of differentials: dR/dt."""
 
@@ -100,7 +93,6 @@ class Rate(Formula):
     order: int = 1
 
 
-@dataclass(frozen=True, slots=True, repr=False)
 class Power(Formula):
     """A base with an exponent: a number, Symbol("T") for the transpose, Sign("+")."""
 
@@ -108,7 +100,6 @@ class Power(Formula):
     exponent: Formula
 
 
-@dataclass(frozen=True, slots=True, repr=False)
 class Indexed(Formula):
     """An entry of something compound: (W⁻¹)₁₂."""
 
@@ -116,18 +107,15 @@ class Indexed(Formula):
     index: Formula
 
 
-@dataclass(frozen=True, slots=True, repr=False)
 class Radical(Formula):
     inside: Formula
 
 
-@dataclass(frozen=True, slots=True, repr=False)
 class Bracket(Formula):
     inside: Formula
     kind: Literal["()", "[]", "||"] = "()"
 
 
-@dataclass(frozen=True, slots=True, repr=False)
 class FunctionCall(Formula):
     """A named function of an argument, which has its own brackets where it needs any: sin² θ."""
 
@@ -136,7 +124,6 @@ class FunctionCall(Formula):
     exponent: int = 1
 
 
-@dataclass(frozen=True, slots=True, repr=False)
 class Apply(Formula):
     """A symbol with an argument: C(u), R(q)."""
 
@@ -144,7 +131,6 @@ class Apply(Formula):
     inside: Formula
 
 
-@dataclass(frozen=True, slots=True, repr=False)
 class Big(Formula):
     """The sign of a sum or an integral, with what stands below and above it."""
 
@@ -153,7 +139,6 @@ class Big(Formula):
     above: Formula | None = None
 
 
-@dataclass(frozen=True, slots=True, repr=False)
 class Matrix(Formula):
     rows: tuple[tuple[Formula, ...], ...]
 

@@ -17,6 +17,7 @@ from typing import NamedTuple
 from rigidsym.errors import KernelError
 from rigidsym.mechanics.conversions.function import Continuity
 from rigidsym.models.rotation import RotationModel
+from rigidsym.system.records import Record
 
 # What every target must be able to call; and c0, c1, c2, ..., the functions c_k of n² that
 # `algebra.stable_forms` derives.
@@ -24,36 +25,31 @@ from rigidsym.models.rotation import RotationModel
 FUNCTIONS = ("sin", "cos", "sqrt", "abs", "atan2", "eps")
 
 
-@dataclass(frozen=True, slots=True)
-class Name:
+class Name(Record):
     """The value of an input or of an assignment."""
 
     text: str
 
 
-@dataclass(frozen=True, slots=True)
-class Number:
+class Number(Record):
     """An exact number, or the nearest double of an irrational one."""
 
     value: Fraction | float
 
 
-@dataclass(frozen=True, slots=True)
-class Negative:
+class Negative(Record):
     """Minus the operand; as a term of a sum after the first, a subtraction."""
 
     operand: Expression
 
 
-@dataclass(frozen=True, slots=True)
-class Sum:
+class Sum(Record):
     """The terms, added from left to right."""
 
     terms: tuple[Expression, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Product:
+class Product(Record):
     """The factors, multiplied from left to right, over the product of the divisors."""
 
     factors: tuple[Expression, ...]
@@ -64,8 +60,7 @@ class Product:
             raise KernelError("a product needs at least one factor")
 
 
-@dataclass(frozen=True, slots=True)
-class Call:
+class Call(Record):
     """A function of one name, or of two."""
 
     function: str  # one of FUNCTIONS, or c0, c1, c2, ...
@@ -82,8 +77,7 @@ class Call:
         return int(self.function[1:]) if self.function not in FUNCTIONS else None
 
 
-@dataclass(frozen=True, slots=True)
-class Guarded:
+class Guarded(Record):
     """A value that divides, or NaN where rounding leaves no digit of it.
 
     That is where its size is at most eps^power times the size of `scale`, with the eps of its
@@ -95,8 +89,7 @@ class Guarded:
     power: int = 1
 
 
-@dataclass(frozen=True, slots=True)
-class Compare:
+class Compare(Record):
     """Whether a comparison holds; it does not where an operand is NaN."""
 
     relation: str  # "<", "<=", ">", ">=" or "=="
@@ -104,8 +97,7 @@ class Compare:
     right: Expression
 
 
-@dataclass(frozen=True, slots=True)
-class Choice:
+class Choice(Record):
     """`then` where the condition holds, else `otherwise`. A target may compute both."""
 
     condition: Expression  # a comparison, or the name of one

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -14,10 +13,10 @@ from rigidsym.kernels.lowering.lower import NO_CONVERSIONS, lower
 from rigidsym.kernels.targets import TARGETS, check_options, load, printer
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.system.files import write_text
+from rigidsym.system.records import Record
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class KernelModule:
+class KernelModule(Record, kw_only=True):
     """The functions of one derivation, as the text of one or more files."""
 
     name: str  # of the derivation

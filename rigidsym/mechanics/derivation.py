@@ -15,6 +15,7 @@ from rigidsym.errors import QuantityError, TemplateFault, offer
 from rigidsym.formula.reader import Sentence, formula, named
 from rigidsym.formula.tree import NOTHING, Formula, with_names
 from rigidsym.models.rotation import Citation, RotationModel
+from rigidsym.system.records import Record
 
 if TYPE_CHECKING:
     from rigidsym.models.body import RigidBody
@@ -50,8 +51,7 @@ def remark(key: str, **values: Any) -> str:
     return phrase("remarks", key).format(**values)
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Proof:
+class Proof(Record, kw_only=True):
     """One claim and the result of its proof.
 
     *exact*: the residual reduces to zero in the ring. *unproved*: the residual does not reduce to
@@ -265,8 +265,7 @@ def needed_of(
     return [part for part in definitions if part.symbol in needed]
 
 
-@dataclass(frozen=True, kw_only=True)
-class Step:
+class Step(Record, kw_only=True):
     """One quantity, derived: its textbook form, how it follows, and what was proved of it."""
 
     quantity: Quantity
@@ -311,8 +310,7 @@ class Statement(NamedTuple):
     )
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Singularity:
+class Singularity(Record, kw_only=True):
     """An orientation at which the rate matrix loses rank, and what is lost there.
 
     Only rates that satisfy the conditions on the coordinates count.

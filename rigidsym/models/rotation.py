@@ -15,6 +15,7 @@ from sympy.core.function import AppliedUndef
 
 from rigidsym.algebra.generators import TIME as TIME, in_names, rate_of
 from rigidsym.errors import ModelError
+from rigidsym.system.records import Record
 from rigidsym.text.names import A_MODULE_NAME, MODULE_NAME, lettered
 
 AXES = ("x", "y", "z")
@@ -60,8 +61,7 @@ def lecture(equation: str = "", section: str = "") -> Citation:
 _ALONG = dict(zip(AXES, map(tuple, sp.eye(3).tolist()), strict=True))
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Turn:
+class Turn(Record, kw_only=True):
     """One turn of a product of turns: right-handed, by `angle` about a constant axis.
 
     The axis is a coordinate axis (x, y, z), or anything with `components` of its own.

@@ -7,7 +7,6 @@ hold SymPy matrices, so that each printer can break and abbreviate them for its 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import chain
 from typing import TYPE_CHECKING, NamedTuple
@@ -19,6 +18,7 @@ from rigidsym.formula.reader import sentence
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import phrases
 from rigidsym.models.rotation import Citation
+from rigidsym.system.records import Record
 
 if TYPE_CHECKING:
     from rigidsym.notes.figure.drawing import Drawing
@@ -115,8 +115,7 @@ class Section(NamedTuple):
     blocks: tuple[NoteBlock, ...]
 
 
-@dataclass(frozen=True, kw_only=True)
-class Document:
+class Document(Record, kw_only=True):
     """A note. Equation labels are unique in it; sources are numbered in order of appearance."""
 
     name: str  # of the derivation: lower case, digits, underscores

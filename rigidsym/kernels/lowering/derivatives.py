@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
@@ -63,8 +62,7 @@ def read_requests(asked: Asked) -> tuple[DerivativeRequest, ...]:
     return tuple(dict.fromkeys(map(read_request, asked)))
 
 
-@dataclass(frozen=True, kw_only=True)
-class Jacobian(Step):
+class Jacobian(Step, kw_only=True):
     """The derivative of a quantity: an entry a row, and a component of the vector a column."""
 
     of: tuple[int, ...]  # the shape of the quantity

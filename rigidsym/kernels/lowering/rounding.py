@@ -19,7 +19,7 @@ than the rounding errors of their angles.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from functools import lru_cache, reduce
 from math import ceil, factorial, frexp
@@ -41,6 +41,7 @@ from rigidsym.kernels.ir import (
     parts,
 )
 from rigidsym.kernels.lowering.naming import Names
+from rigidsym.system.records import Record
 
 SINE = 1.1  # eps: of a sine or a cosine, what every target keeps; tests measure it
 _ENTIRE = 3.0  # eps of its size: of c0, c1 and c2
@@ -48,8 +49,7 @@ _HALF = 0.5  # the mantissa of a power of two
 _SLACK = 1 + 2.0**-15  # for terms in eps², of single precision too, and for rounding here
 
 
-@dataclass(frozen=True, slots=True)
-class Bounded:
+class Bounded(Record):
     """Bounds on a value."""
 
     size: float

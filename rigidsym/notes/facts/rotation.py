@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -33,6 +32,7 @@ from rigidsym.notes.figure.drawing import drawn
 from rigidsym.notes.figure.scene import free_angle, scene_of
 from rigidsym.notes.template import figure_with
 from rigidsym.notes.words import symbols_of, unit_in_words, with_symbols
+from rigidsym.system.records import Record
 
 PROPER = ("precession", "nutation", "spin")
 TAIT_BRYAN = ("yaw", "pitch", "roll")
@@ -111,8 +111,7 @@ def angle_facts(model: RotationModel) -> AngleFacts | None:
     )
 
 
-@dataclass(frozen=True)
-class RotationFacts:
+class RotationFacts(Record):
     """How the rotation is made, and where its angular velocity comes from."""
 
     model: RotationModel

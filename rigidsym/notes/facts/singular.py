@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal, NamedTuple
 
@@ -14,6 +13,7 @@ from rigidsym.formula.letters import TIME
 from rigidsym.mechanics.derivation import Derivation, Singularities, Singularity
 from rigidsym.models.rotation import RotationModel
 from rigidsym.notes.facts.rotation import angle_facts
+from rigidsym.system.records import Record
 
 _MOST_POINTS = 8  # that are told of one by one
 _MOST_PLACES = 2  # of one point that are repeated
@@ -29,8 +29,7 @@ class Multiples(NamedTuple):
     are_odd: bool
 
 
-@dataclass(frozen=True)
-class PointFacts:
+class PointFacts(Record):
     """What is lost at a singular point, and what remains determined."""
 
     at: Singularity
@@ -107,8 +106,7 @@ class PointFacts:
         return tuple(q for q, row in zip(self.coordinates, rates, strict=True) if any(row))
 
 
-@dataclass(frozen=True)
-class SingularFacts:
+class SingularFacts(Record):
     """Where the rate matrices lose rank."""
 
     model: RotationModel

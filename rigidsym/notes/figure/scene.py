@@ -10,7 +10,6 @@ longer than deriving the rotation.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from itertools import combinations, pairwise
 from math import cos, hypot, radians, sin
@@ -24,6 +23,7 @@ from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import Formula, Numeral, Symbol
 from rigidsym.models.rotation import AXES, RotationModel, Turn
 from rigidsym.notes.letters import VECTOR, length_of
+from rigidsym.system.records import Record
 
 Vector = tuple[float, float, float]
 Point = tuple[float, float]
@@ -187,8 +187,7 @@ class Posed(NamedTuple):
         return next((ray for ray in self.rays if is_same(ray.direction, direction)), None)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Scene:
+class Scene(Record, kw_only=True):
     """The axes of space and of the body, the axes of the turns between them, and the turns."""
 
     rays: tuple[Ray, ...]
