@@ -18,7 +18,7 @@ from rigidsym.kernels.module import KernelModule as KernelModule, generate
 from rigidsym.mechanics.derivation import Derivation, Proof
 from rigidsym.mechanics.derive import derive as derivation_of
 from rigidsym.mechanics.prove import identity
-from rigidsym.mechanics.quantities.catalogue import NAMES, check_quantity
+from rigidsym.mechanics.quantities import NAMES, check_quantity
 from rigidsym.models.library import rotation_from
 from rigidsym.models.rotation import RotationModel
 from rigidsym.system.processes import rare_collections, time_limit

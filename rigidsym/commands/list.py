@@ -10,7 +10,7 @@ import click
 from rigidsym.commands.command import command as make
 from rigidsym.formula.unicode_pen import columns
 from rigidsym.kernels.targets import TARGETS
-from rigidsym.mechanics.quantities.catalogue import QUANTITIES
+from rigidsym.mechanics.quantities import QUANTITIES
 from rigidsym.mechanics.quantities.mass import BODY_ALONE
 from rigidsym.models.library import ALIASES, PARAMETRISATIONS, PRESETS, rotation_from
 from rigidsym.models.parametrisations import EULER_SEQUENCES, EulerAngles

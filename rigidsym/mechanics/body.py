@@ -27,7 +27,7 @@ from rigidsym.mechanics.kinematics.workspace import Values
 from rigidsym.mechanics.mass.moments import Moments, about_centre, moments_of
 from rigidsym.mechanics.mass.principal import Principal, principal_of
 from rigidsym.mechanics.prove import Prover
-from rigidsym.mechanics.quantities.catalogue import OF_BODY
+from rigidsym.mechanics.quantities import OF_BODY
 from rigidsym.mechanics.quantities.kinematics import KINEMATICS
 from rigidsym.mechanics.quantities.mass import BODY_ALONE, INERTIA_QUANTITIES
 from rigidsym.mechanics.quantities.table import DIRECTION, POINT, own_letters

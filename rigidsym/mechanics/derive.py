@@ -29,7 +29,7 @@ from rigidsym.mechanics.derivation import (
 )
 from rigidsym.mechanics.kinematics.chain import Chain, is_shorter
 from rigidsym.mechanics.kinematics.workspace import values_of
-from rigidsym.mechanics.quantities.catalogue import check_quantity
+from rigidsym.mechanics.quantities import check_quantity
 from rigidsym.mechanics.quantities.kinematics import KINEMATICS
 from rigidsym.mechanics.quantities.mass import BODY_ALONE, OF_BODY_ALONE
 from rigidsym.mechanics.singularities import singularities_of

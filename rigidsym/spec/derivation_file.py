@@ -13,7 +13,7 @@ from typing import Any
 from rigidsym.errors import Fault, SpecError, offer
 from rigidsym.kernels.lowering.derivatives import read_request, read_requests
 from rigidsym.kernels.targets import TARGETS
-from rigidsym.mechanics.quantities.catalogue import check_quantity
+from rigidsym.mechanics.quantities import check_quantity
 from rigidsym.mechanics.quantities.mass import BODY_ALONE, OF_BODY_ALONE
 from rigidsym.models.forces import forces_on
 from rigidsym.models.library import rotation_from, rotation_given

@@ -22,7 +22,7 @@ from rigidsym.algebra.evaluate import is_never_negative
 from rigidsym.errors import offer
 from rigidsym.kernels.lowering.derivatives import read_request
 from rigidsym.kernels.targets import TARGETS
-from rigidsym.mechanics.quantities.catalogue import check_quantity
+from rigidsym.mechanics.quantities import check_quantity
 from rigidsym.models.library import read_part, turned_by
 from rigidsym.models.solids import SHAPES
 from rigidsym.motion import CHOICES, QUANTITIES

@@ -29,7 +29,7 @@ from rigidsym.data.tables import (
 )
 from rigidsym.errors import DataError, QuantityError, RequestError, offer
 from rigidsym.mechanics.derivation import remark
-from rigidsym.mechanics.quantities.catalogue import CONVERSIONS
+from rigidsym.mechanics.quantities import CONVERSIONS
 from rigidsym.motion import Motion
 from rigidsym.system.processes import Progress
 from rigidsym.tools.identify.samples import SLACK, Columns, samples_of

@@ -27,7 +27,7 @@ from rigidsym.mechanics.kinematics import workspace
 from rigidsym.mechanics.kinematics.chain import Chain
 from rigidsym.mechanics.kinematics.workspace import Renamed, Values, values_of
 from rigidsym.mechanics.mass.bodies import rigid_body
-from rigidsym.mechanics.quantities.catalogue import OF_BODY, QUANTITIES
+from rigidsym.mechanics.quantities import OF_BODY, QUANTITIES
 from rigidsym.mechanics.quantities.dynamics import DYNAMICS_QUANTITIES, EULER_QUANTITIES
 from rigidsym.mechanics.quantities.kinematics import KINEMATICS
 from rigidsym.models.body import Composite, Part
