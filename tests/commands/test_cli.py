@@ -12,7 +12,6 @@ import sys
 from contextlib import chdir
 
 import pytest
-import sympy as sp
 from click.testing import CliRunner
 
 import rigidsym as rs
@@ -24,7 +23,6 @@ from rigidsym.motion import QUANTITIES
 from rigidsym.notes.formats.record import SCHEMA_VERSION
 from rigidsym.pipeline import output_of
 from rigidsym.spec.derivation_file import read_spec
-from rigidsym.text.expression import parse_expression
 
 NAME = "euler_zxz_intrinsic"
 
@@ -41,27 +39,13 @@ def test_derive_shows_the_lecture_and_writes_its_files(tmp_path):
     }
 
 
-def test_json_is_one_object_whose_expressions_the_safe_parser_reads_back(tmp_path):
+def test_json_is_the_record(tmp_path):
     data = json.loads(call("derive", "ZXZ", "--json", cwd=tmp_path).stdout)
     assert data["schema"] == "rigidsym.derivation"
     assert data["schema_version"] == SCHEMA_VERSION
     assert data["is_proved"] is True
     assert data["singularities"]["determinant"] == "-sin(theta)"
     assert json.loads((tmp_path / "out" / NAME / f"{NAME}.json").read_text()) == data
-    names = {c["name"]: sp.Symbol(c["name"]) for a in data["arguments"] for c in a["components"]}
-    motion = derived("ZXZ")
-    symbols = {
-        symbol: names[name]
-        for argument in reversed(motion.arguments)
-        for symbol, name in zip(argument.symbols, argument.names, strict=True)
-    }
-    for quantity in data["quantities"]:
-        step = motion.step(quantity["name"])
-        assert tuple(quantity["shape"]) == step.shape
-        assert all(proof["status"] == "exact" for proof in quantity["proofs"])
-        texts = sp.flatten(quantity["expression"])
-        for text, entry in zip(texts, step.expression, strict=True):
-            assert sp.expand(parse_expression(text, names) - entry.xreplace(symbols)) == 0
 
 
 def test_a_wrong_file_tells_all_faults_and_writes_nothing(tmp_path):

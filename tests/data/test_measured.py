@@ -302,30 +302,11 @@ def test_a_file_that_is_no_mesh_is_described(tmp_path):
         read_mesh_file(Path("/etc/passwd"))
 
 
-PLY = """ply
-format ascii 1.0
-element vertex 4
-property float x
-property float y
-property float z
-element face 4
-property list uchar int vertex_indices
-end_header
-0 0 0
-1 0 0
-0 1 0
-0 0 1
-3 0 2 1
-3 0 1 3
-3 0 3 2
-3 1 2 {}
-"""
-
-
-@pytest.mark.parametrize("corner", [-1, 4])
+@pytest.mark.parametrize("corner", [-1, 8])
 def test_a_corner_that_is_no_vertex_is_refused(tmp_path, corner):
     """NumPy would count a negative number from the last vertex"""
     path = tmp_path / "a.ply"
-    path.write_text(PLY.format(corner))
-    with pytest.raises(BodyError, match="a corner that is none of 4 vertices"):
+    *lines, _ = MESHES["box"].export(file_type="ply", encoding="ascii").decode().splitlines()
+    path.write_text("\n".join([*lines, f"3 0 1 {corner}", ""]))
+    with pytest.raises(BodyError, match="a corner that is none of 8 vertices"):
         read_mesh_file(path)

@@ -234,4 +234,5 @@ MOVING = tuple(
     Moving(text, passive)
     for text in (*EULER_SEQUENCES, *PARAMETRISATIONS, *PRESETS, *CHAINS)
     for passive in (False, True)
+    if not (passive and text.startswith("z(phi) [a"))  # whose proofs take longest
 )

@@ -55,24 +55,14 @@ QUATERNION = (w**2 - SQUARE) * ONE + 2 * VECTOR * VECTOR.T + 2 * w * SKEW
 HYPERBOLA = cosh(u) ** 2 - sinh(u) ** 2 - 1
 
 ROTATIONS = {
-    "rotation vector": model(
-        ONE + sin(NORM) / NORM * SKEW + (1 - cos(NORM)) / SQUARE * SKEW * SKEW, x, y, z
-    ),
-    "unit quaternion": model(QUATERNION, w, x, y, z, constraints=(w**2 + SQUARE - 1,)),
     "quaternion of a constant norm": model(
         QUATERNION / m,
         *(w, x, y, z),
         constraints=(w**2 + SQUARE - m,),
         example=values(m=15, w=1, x=1, y=2, z=3),
     ),
-    "five turns": model(
-        chain(*zip("zxyzx", (phi, theta, psi, u, w), strict=True)), phi, theta, psi, u, w
-    ),
     "sums and multiples": model(
         chain(("z", 2 * phi), ("x", theta), ("z", phi / 3 + psi)), phi, theta, psi
-    ),
-    "angle with an offset": model(
-        chain(("z", phi), ("x", theta + alpha), ("z", psi)), phi, theta, psi
     ),
     "product of coordinates": model(
         chain(("z", phi), ("x", theta), ("z", theta * psi)), phi, theta, psi

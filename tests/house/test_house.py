@@ -29,24 +29,8 @@ ROOT = Path(__file__).resolve().parents[2]
 
 # A room imports only from the rooms above it.
 ORDER = (
-    "version",
-    "errors",
-    "system",
-    "text",
-    "formula",
-    "algebra",
-    "data",
-    "models",
-    "mechanics",
-    "kernels",
-    "simulation",
-    "notes",
-    "page",
-    "motion",
-    "spec",
-    "pipeline",
-    "tools",
-    "commands",
+    *("version", "errors", "system", "text", "formula", "algebra", "data", "models", "mechanics"),
+    *("kernels", "simulation", "notes", "page", "motion", "spec", "pipeline", "tools", "commands"),
     "__main__",
 )
 

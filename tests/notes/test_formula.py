@@ -158,31 +158,17 @@ def forms() -> Iterator[tuple[str, Formula]]:
     yield "a sine of the time", formula_of(sp.sin(sp.Symbol("t")) ** 2, LETTERS)
     by_fraction = Notation(rates="fraction", vectors="arrow")
     letters = letters_of(arguments_of(EulerAngles("ZXZ")), by_fraction)
-    for scalar in (
-        CONSTANTS[0] / 2,
-        ANGLES[1] / 2,
-        RATES[0] / 2,
-        3 * RATES[0] ** 2 * RATES[3],
-        (RATES[1] + OMEGA[4]) ** 2 / 2,
-    ):
+    scalars = [A / 2, theta / 2, phi_dot / 2, 3 * phi_dot**2 * phi_ddot]
+    for scalar in (*scalars, (theta_dot + omega_body[1]) ** 2 / 2):
         yield f"{scalar} by fractions", formula_of(scalar, letters)
     x, y, z = components = tuple(map(sp.Function, "xyz"))
     components = tuple(part(sp.Symbol("t")) for part in (x, y, z))
     length = VectorLength(components, *sp.symbols("n n_dot"), "n")
     square = sum(part**2 for part in components)
-    for scalar in (
-        square,
-        1 - 2 * square,
-        sp.sin(sp.sqrt(square)),
-        sum(components),
-        sp.diff(square, "t"),
-        square + components[0] ** 2,
-        components[0] ** 2 + 2 * components[1] ** 2 + components[2] ** 2,
-    ):
-        yield (
-            f"{scalar} with a length",
-            formula_of(scalar, Letters(names=length.names, length=length)),
-        )
+    letters = Letters(names=length.names, length=length)
+    scalars = [square, 1 - 2 * square, sin(sp.sqrt(square)), sum(components), sp.diff(square, "t")]
+    for scalar in (*scalars, square + components[0] ** 2, square + components[1] ** 2):
+        yield f"{scalar} with a length", formula_of(scalar, letters)
 
 
 def test_the_forms_of_the_pens_are_as_they_were(golden):

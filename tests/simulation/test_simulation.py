@@ -29,7 +29,7 @@ REST = dict.fromkeys(("phi", "theta", "psi", "phi_dot", "theta_dot", "psi_dot"),
 def top() -> rs.Motion:
     model = rs.EulerAngles("ZXZ", angles=("phi", "theta", "psi"))
     body = rs.principal_moments(A, A, C)
-    return rs.derive(model, body=body, potential="m*g*l*cos(theta)")
+    return rs.derive(model, NEEDED, body=body, potential="m*g*l*cos(theta)")
 
 
 # --- the free body
@@ -42,7 +42,7 @@ TUMBLING = np.radians((10, 20, 30))
 @cache
 def free_in_space() -> rs.Motion:
     body = rs.principal_moments(*sp.symbols("I1 I2 I3"))
-    return rs.derive("quaternion", body=body, potential=0)
+    return rs.derive("quaternion", NEEDED, body=body, potential=0)
 
 
 def turning(omega) -> dict:
@@ -92,7 +92,7 @@ def test_the_drift_of_a_momentum_that_begins_at_rounding_is_relative_to_the_whol
 
 
 def test_coordinates_that_are_no_rotation_are_refused():
-    motion = rs.derive("unit_quaternion", (), body=rs.principal_moments(*sp.symbols("I1:4")))
+    motion = rs.derive("unit_quaternion", NEEDED[0], body=rs.principal_moments(*sp.symbols("I1:4")))
     with pytest.raises(rs.RigidsymError, match=r"no rotation has the coordinates w = 1, x = 0.5"):
         motion.simulate(turning((1, 0, 0)) | {"x": 0.5}, BRICK, 1.0)
 
@@ -127,7 +127,7 @@ def test_a_motion_that_starts_at_a_pole_is_that_of_the_quaternion():
 def test_rotation_matrices_take_body_to_space_components_in_a_passive_convention_too():
     body, start = rs.principal_moments(1, 1, 2), {"theta": 0.5, "psi": 0.3}
     one, other = (
-        rs.derive(rotation_from("ZXZ", passive=passive), body=body).simulate(
+        rs.derive(rotation_from("ZXZ", passive=passive), NEEDED[0], body=body).simulate(
             start, {}, 1.0, samples=2
         )
         for passive in (False, True)
@@ -176,7 +176,7 @@ def test_moments_about_the_tip_leave_a_body_about_the_centre_of_mass(moment, sta
 def test_a_potential_that_is_not_real_everywhere_is_no_weight():
     g = Parameter(symbol=sp.Symbol("g"), unit="m/s^2")
     body = rs.principal_moments(A, A, C, mass=sp.Symbol("m"), parameters=[g])
-    motion = rs.derive("ZXZ", body=body, potential="m*g*l*sqrt(theta)")
+    motion = rs.derive("ZXZ", NEEDED, body=body, potential="m*g*l*sqrt(theta)")
     assert len(motion.simulate(REST | {"theta": 1}, TOP, 0.01, samples=2).t) == 2
 
 
@@ -234,12 +234,8 @@ def test_a_heavy_body_is_carried_through_the_poles_of_its_coordinates(rotation):
     """V = k R₃₃, about the fixed point: N′ = −k e₃′ × Rᵀ e₃"""
     model = rs.derive(rotation, "rotation_matrix").model
     k, values, omega = sp.Symbol("k"), {"A": 1, "C": 0.6, "k": 3.9}, (0.5, -0.3, 9.0)
-    motion = rs.derive(
-        model,
-        ("rotation_matrix", "angular_velocity_body", "state_derivative", "first_integrals"),
-        body=rs.principal_moments(A, A, C),
-        potential=k * model.matrix[2, 2],
-    )
+    acting = {"body": rs.principal_moments(A, A, C), "potential": k * model.matrix[2, 2]}
+    motion = rs.derive(model, NEEDED, **acting)
     tilt = {"theta": 1e-7} if rotation == "ZXZ" else {}  # next to its pole
     initial = tilt | {f"angular_velocity_body_{n + 1}": w for n, w in enumerate(omega)}
     found = motion.simulate(initial, values, 4.0, samples=101)
@@ -339,7 +335,7 @@ def test_two_links_are_solved_for_their_accelerations_in_numbers():
     """The double pendulum, with its textbook equations"""
     links = rs.derive(
         "x(a) x(b)",
-        ("rotation_matrix", "angular_velocity_body", "state_derivative", "first_integrals"),
+        NEEDED,
         body=rs.principal_moments(*sp.symbols("J J J")),
         potential="-m*g*l*(2*cos(a) + cos(a + b))",
         parts=[
@@ -392,7 +388,8 @@ def test_a_motion_without_end_is_written_as_far_as_it_goes(tmp_path):
 
 
 def test_what_was_computed_before_an_integrator_fails_is_kept():
-    pushed = rs.derive("z(phi)", body=rs.principal_moments(A, A, C), forces={"phi": "k*phi_dot**2"})
+    body, forces = rs.principal_moments(A, A, C), {"phi": "k*phi_dot**2"}
+    pushed = rs.derive("z(phi)", NEEDED, body=body, forces=forces)
     found = pushed.simulate({"phi": 0, "phi_dot": 1}, {"A": 1, "C": 1, "k": 1}, 3.0, samples=301)
     assert "stopped at t = 1 s: the accelerations change faster than" in found.ended
     assert 95 < len(found.t) < 102
@@ -404,11 +401,8 @@ def test_what_was_computed_before_an_integrator_fails_is_kept():
 
 def test_dry_friction_ends_the_motion_where_the_body_stops():
     """C dω/dt = −k sign ω: at rest its direction changes at once, and no step is short enough"""
-    dry = rs.derive(
-        "z(phi)",
-        body=rs.principal_moments(*sp.symbols("A A C")),
-        forces={"phi": "-k*phi_dot/abs(phi_dot)"},
-    )
+    forces = {"phi": "-k*phi_dot/abs(phi_dot)"}
+    dry = rs.derive("z(phi)", NEEDED, body=rs.principal_moments(A, A, C), forces=forces)
     found = dry.simulate({"phi_dot": 1}, {"A": 1, "C": 1, "k": 1}, 3.0, samples=31)
     assert "t = 1 s: the accelerations change faster than steps can follow" in found.ended
     assert found.q[:10, 0] == pytest.approx(found.t[:10] - found.t[:10] ** 2 / 2, abs=1e-8)

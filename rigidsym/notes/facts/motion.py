@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import sympy as sp
 
@@ -64,7 +65,7 @@ class MotionFacts:
             )
             yield each, Equation(sides=tuple(sides), proved=proved, unproved=unproved)
 
-    @property
+    @cached_property
     def picture(self) -> Figure | None:
         """The examples, with their numbers, in common and apart, in the caption."""
         try:
