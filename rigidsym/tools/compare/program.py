@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
-from rigidsym.errors import ExpressionError, offer
+from rigidsym.errors import ExpressionError
 from rigidsym.text.bounds import FUNCTIONS
 from rigidsym.tools.compare import language
 from rigidsym.tools.compare.language import as_matrix, called, combined, function_word, rows
@@ -264,14 +264,13 @@ def _late(scope: Tree, is_python: bool) -> list[Tree]:
 def _overloads(functions: Iterable[Tree], suffix: str) -> dict[str, dict[int, list[Tree]]]:
     """Functions by name and number of parameters, if these tell which one is called."""
     overloads: dict[str, dict[int, list[Tree]]] = {}
-    places: dict[str, list[Node]] = {}
     for each in (function for function in functions if function.word):
         count = len({*parameters(each.node)} - {"self", "this"})
         overloads.setdefault(each.word, {}).setdefault(count, []).append(each)
-        places.setdefault(each.word, []).append(each.around)
-    for name, own in places.items():
-        if len(own) > 1 and (suffix in (*_OF_REALS, ".rs") or len({*own}) > 1):
-            overloads[name] = {}
+    for by_count in overloads.values():
+        places = [each.around for each in chain.from_iterable(by_count.values())]
+        if len(places) > 1 and (suffix in (*_OF_REALS, ".rs") or len({*places}) > 1):
+            by_count.clear()
     return overloads
 
 
@@ -726,14 +725,13 @@ class _Run:
         self.end = "break"
 
     def run_return(self, tree: Tree) -> None:
-        value: Tree | None = tree
-        if tree.kind == "return":
-            value = next(iter(tree.parts), None) if tree.node.type.startswith("return") else None
-        if value is not None:
-            self.results.append(self.tried(value))
-            if self.results[-1] is not None and self.path(value) is None:
-                self.add(_RETURNED, self.results[-1], value.line)
-            if self.results[-1] is None and patterns.may_be_matrix.search(value.text):
+        is_raised = tree.kind == "return" and not tree.node.type.startswith("return")
+        values = [tree] if tree.kind != "return" else tree.parts[: not is_raised]
+        for value in values:
+            self.results.append(result := self.tried(value))
+            if result is not None and self.path(value) is None:
+                self.add(_RETURNED, result, value.line)
+            elif result is None and patterns.may_be_matrix.search(value.text):
                 fault = Formula(lines=(value.line,), name=_RETURNED, reason=self.reason)
                 self.formulas.append(fault)
         self.emit(self.values)
@@ -1143,13 +1141,11 @@ class _Run:
             place = self.index(nodes[0])
             return (*owner, *((place, _ALL) if name == "row" else (_ALL, place)))
         is_entry = len(nodes) == 2 and len(word) == 1  # t(1, 2), but not T(2)
-        is_function = (
-            word in _WORDS and not is_entry and self.part(self.values, (*owner, name)) is None
-        )
-        is_function |= word in self.program.functions and not self.first
-        if is_function or len(nodes) > 2 + self.first:
+        is_known = word in _WORDS and not is_entry
+        is_own = word in self.program.functions and not self.first
+        if is_own or (is_known and self.part(self.values, (*owner, name)) is None):
             return None
-        return self.indexed((*owner, name), nodes)
+        return self.indexed((*owner, name), nodes) if len(nodes) <= 2 + self.first else None
 
     def indexed(self, path: Path | None, trees: Sequence[Tree]) -> Path | None:
         indices: list[Any] = [self.index(tree) for tree in trees]
@@ -1242,10 +1238,9 @@ class _Run:
             return rows([self.entry(tree, value, (letter,)) for letter in letters])
         if isinstance(value, sp.MatrixBase):
             return self.block(tree, value, keys)
-        if key == _ALL and others and isinstance(others[0], int) and value.is_Symbol:
-            part = self.view(value, others[0] + self.first)  # or of a batch: q[:, 0]
-            return self.entry(tree, part, tuple(others[1:]))
-        if key == _ALL and others:  # of a batch
+        if key == _ALL and others:  # a column, or of a batch: q[:, 0]
+            if isinstance(others[0], int) and value.is_Symbol:
+                value = self.view(value, others.pop(0) + self.first)
             return self.entry(tree, value, tuple(others))
         if isinstance(key, slice):
             numbers = range(key.start or 0, key.stop or (4 if key.start else 3))
@@ -1379,8 +1374,7 @@ class _Run:
             if len(values) == 2 and None not in values:  # float4(v, w)
                 return rows([entry for value in values for entry in as_matrix(value)])
         if self.program.is_formula and tree.owner is None:
-            hint = offer(name, [*FUNCTIONS, *language.OF_MATRICES])
-            raise ExpressionError(f"{name!r} is not a function; {hint}")
+            return called(name, values)  # with an error that offers other names
         # The arguments of what is not understood, or all together, may be formulas of their own.
         for value, each in zip([*values, whole], [*arguments, *arguments[:1]], strict=False):
             self.add(_ARGUMENT, value, each.line)

@@ -141,11 +141,8 @@ class Tree:
             case "index":  # the array, and its indices
                 return [tree_of(nodes[0]), *_indices(nodes[1:])]
             case "comma":
-                for end in (0, -1):  # as deep as there are parts
-                    while _KINDS.get(nodes[end].type) == "comma":
-                        inner = _children(nodes.pop(end))
-                        nodes = [*inner, *nodes] if end == 0 else [*nodes, *inner]
-                return [*map(tree_of, nodes)]
+                while _KINDS.get(nodes[-1].type) == "comma":  # as deep as there are parts
+                    nodes += _children(nodes.pop())
             case "choose" if not parts:  # of Python: a if test else b
                 nodes = [nodes[k] for k in (1, 0, 2)]
             case "member" if not parts:  # no object, if there is only a name
@@ -278,9 +275,9 @@ class Tree:
     @property
     def is_integer(self) -> bool:
         """Whether a declaration, or a call such as static_cast<int>, rounds to an integer."""
-        outer = self.node.parent and _part(self.node.parent, "type")
-        is_call = self.kind == "call"
-        text = self.parts[0].text.partition("<")[2].rstrip("> ") if is_call else _text(outer)
+        text = self.declared_type
+        if self.kind == "call":
+            text = self.parts[0].text.partition("<")[2].rstrip("> ")
         return patterns.integer.fullmatch(text) is not None
 
     @property
