@@ -27,9 +27,11 @@ from itertools import product
 from pathlib import Path
 from random import Random
 
+import numpy as np
 import sympy as sp
 
 from rigidsym.tools.compare.comparison import Comparison, identified
+from rigidsym.tools.compare.quantities import evaluated, sample
 from rigidsym.tools.compare.search import FormulaInFile, search
 
 CORPUS = Path(__file__).with_name("corpus.toml")
@@ -99,7 +101,17 @@ def matched(
     return [(label, recognised[pairs[i]] if i in pairs else None) for i, label in enumerate(labels)]
 
 
-def mutant(formula: sp.ImmutableMatrix, random: Random) -> tuple[str, sp.MatrixBase]:
+def renamed(entry: sp.Expr, names: dict[sp.Expr, sp.Expr], random: Random) -> sp.Expr:
+    """An entry with one of its names replaced in one place."""
+    if entry in names:
+        return names[entry]
+    places = [k for k, part in enumerate(entry.args) if part.free_symbols & names.keys()]
+    place = random.choice(places)
+    part = renamed(entry.args[place], names, random)
+    return entry.func(*entry.args[:place], part, *entry.args[place + 1 :])
+
+
+def mutant(formula: sp.ImmutableMatrix, random: Random) -> tuple[str, sp.ImmutableMatrix]:
     """(kind, formula with one change) of an entry with a name in it, or of two entries."""
     places = list(product(*map(range, formula.shape)))
     place, other = random.sample([p for p in places if formula[p].free_symbols], 2)
@@ -107,7 +119,8 @@ def mutant(formula: sp.ImmutableMatrix, random: Random) -> tuple[str, sp.MatrixB
     term = random.choice(sp.Add.make_args(entry))
     names = sorted(entry.free_symbols, key=str), sorted(formula.free_symbols, key=str)
     exchanged = dict([list(map(random.choice, names))])
-    kinds = {"sign": entry - 2 * term, "factor": entry + term, "index": entry.xreplace(exchanged)}
+    kinds = {"sign": entry - 2 * term, "factor": entry + term}
+    kinds["index"] = renamed(entry, exchanged, random)
     for turn in random.sample(
         sorted(entry.atoms(*turned), key=str), 1 if entry.has(*turned) else 0
     ):
@@ -119,27 +132,39 @@ def mutant(formula: sp.ImmutableMatrix, random: Random) -> tuple[str, sp.MatrixB
         changed[place], changed[other] = changed[other], changed[place]
     elif kind in kinds:
         changed[place] = kinds[kind]
-    return kind, changed
+    return kind, changed.as_immutable()
 
 
-def mutations(right: list[Comparison], count: int) -> None:
-    """Print how many of so many changes are found, and of how many the repair is named."""
+def are_same(one: sp.MatrixBase, other: sp.MatrixBase) -> bool:
+    """Whether two formulas have the same values: first by symbols, else at 20 points."""
+    if (one - other).expand().is_zero_matrix:
+        return True
+    values = [evaluated(each, dict(sample(sp.Matrix([*one, *other])))) for each in (one, other)]
+    return bool(np.isclose(*values, rtol=1e-9, equal_nan=True).all())
+
+
+def mutations(right: list[tuple[str, Comparison]], count: int) -> None:
+    """Print how many of so many changes are found, and of how many the repair is named.
+
+    A change that makes a formula equal to another quantity, such as a transpose, needs no repair.
+    """
     random, numbers = Random(1775), Counter[str]()
+    repositories: dict[str, list[Comparison]] = {}
+    for name, comparison in right:
+        repositories.setdefault(name, []).append(comparison)
     while numbers["changes"] < count:
-        original = random.choice(right)
+        original = random.choice(repositories[random.choice(sorted(repositories))])
         kind, changed = mutant(original.formula, random)
-        if (changed - original.formula).expand().is_zero_matrix:
+        if are_same(changed, original.formula):
             continue
-        comparison = identified(sp.ImmutableMatrix(changed), is_in_program=True)
-        repaired = comparison.repairs[-1].formula if comparison.repairs else None
-        is_named = comparison.is_equal or (
-            repaired is not None and identified(repaired, only_equal=True).is_equal
+        comparison = identified(changed, is_in_program=True)
+        each = [comparison, *comparison.others]
+        is_named = comparison.is_equal or any(
+            are_same(one.repairs[-1].formula, original.formula) for one in each if one.repairs
         )
-        texts = {original.text(), comparison.text()}
-        is_other = comparison.is_reflection or (comparison.found is not None and len(texts) == 2)
-        is_other |= bool(comparison.repairs or comparison.counterexample)
+        is_other = comparison.is_reflection or comparison.found is not None
         numbers.update({"changes": 1, "named": is_named, "found": is_other})
-        if not is_named or not is_other:
+        if not is_named:
             print(f"{kind}: {changed.tolist()}: {comparison.text()}", flush=True)
     print(dict(numbers))
 
@@ -152,7 +177,7 @@ def main() -> int:
     options = parser.parse_args()
     known, all_labels = Counter[str](), Counter[str]()
     faults: list[str] = []
-    right: list[Comparison] = []
+    right: list[tuple[str, Comparison]] = []
     for name, path, text, labels in files(options.clones):
         if options.only not in name:
             continue
@@ -167,7 +192,7 @@ def main() -> int:
             open_findings.remove(finding)
             is_equal = finding.comparison is not None and finding.comparison.is_equal
             if is_equal and finding.comparison:
-                right.append(finding.comparison)
+                right.append((name, finding.comparison))
             if is_equal == label.is_wrong:
                 faults.append(f"{name} {path}: {finding}")
         for finding in open_findings:

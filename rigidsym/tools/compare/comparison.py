@@ -30,6 +30,7 @@ from rigidsym.tools.compare.quantities import ANGLES, Array, Family, KnownQuanti
 from rigidsym.tools.compare.syntax import CHANGES
 
 _MOST_REPAIRS = 2  # of a formula that nobody has named
+_MOST_OTHERS = 2  # quantities that are as near as the first
 _NEAR = 0.5  # share of entries that must be right for a formula to be close to another
 _NEAREST = 16  # readings of which the wrong entries are repaired
 _MOST_OPERATIONS = 200  # of an entry in which each part is changed
@@ -126,8 +127,9 @@ class Comparison:
     is_proved: bool = False  # that the repaired formula is what was found
     counterexample: str = ""  # where the formula is wrong, if it is right for some angles only
     is_reflection: bool = False
-    scale: str = ""  # a factor of the formula or of its angles that was left out
+    form: str = ""  # how a program writes it: transposed, or with a factor that is left out
     are_body_rates: bool = False  # taken for the rates of Euler angles
+    others: tuple[Comparison, ...] = ()  # with other quantities, which are as near
 
     @property
     def arrangement(self) -> str:
@@ -142,7 +144,7 @@ class Comparison:
             opposite and f"with the opposite sense of {opposite} (a convention, or wrong signs)",
             turned and f"with {turned} from another axis, a quarter or half turn away",
             "".join(f"if {own.pop(x)} = {x.xreplace(own)}" for x in lengths),
-            self.scale and f"up to the factor {self.scale}",
+            self.form,
         )
         return ", ".join(filter(None, words))
 
@@ -163,6 +165,7 @@ class Comparison:
             "quantity": found and found.quantity,
             "arrangement": self.arrangement,
             "names": self._called(),
+            "others": [other.record() for other in self.others],
             "repairs": [
                 {"kind": each.kind, "words": each.words, "entry": each.place and [*each.place]}
                 | {"after": each.after and str(each.after)}
@@ -181,6 +184,7 @@ class Comparison:
         facts |= {
             "arrangement": self.arrangement,
             "calls": [(a, b) for a, b in zip(own, theirs, strict=True) if b and a != b],
+            "others": [other.text() for other in self.others],
             "points": known.POINTS,
             "is_as_asked": found and asked and str(asked) == str(found),
             "shape": in_words(self.formula.shape),
@@ -301,23 +305,40 @@ def identified(
         trials.append(trial)
     unknown = Comparison(formula=formula, asked=None)
     if is_in_program and formula.free_symbols:
-        for scale, form in _other_forms(formula):
+        for words, form in _other_forms(formula):
             comparison = identified(form, only_equal=True)
             if comparison.found:
-                return replace(comparison, scale=scale)
+                return replace(comparison, form=words)
     if only_equal:
         return unknown
     if decided := _decided(formula, trials, None, is_in_program=is_in_program):
         return decided
-    for reading in _nearest(trials, _NEAR, expected)[:_NEAREST]:
+    return _repaired(_nearest(trials, _NEAR, expected)[:_NEAREST]) or unknown
+
+
+def _repaired(nearest: Sequence[Reading]) -> Comparison | None:
+    """The comparison with the nearest quantity, beside others that are as near.
+
+    The mistake in a formula between two conventions may be in one entry or in another.
+    """
+    candidates: list[tuple[float, list[Repair], Reading]] = []
+    for reading in nearest:
+        share = reading.agreement.all(axis=0).mean()
+        if candidates and share < candidates[0][0]:
+            break
         repairs = entry_repairs(reading)
         # If all other entries are right, one may be wrong in any way.
         is_whole = len(repairs) == 1 and _is_rich(reading)
         if len(repairs) in range(1, _MOST_REPAIRS + 1) and (
             is_whole or all(repair.kind != "entry" for repair in repairs)
         ):
-            return _proved(reading, None, repairs)
-    return unknown
+            candidates.append((share, repairs, reading))
+    small = [each for each in candidates if all(repair.kind != "entry" for repair in each[1])]
+    comparisons: dict[sp.ImmutableMatrix, Comparison] = {}
+    for _, repairs, reading in small or candidates[:1]:
+        comparisons.setdefault(repairs[-1].formula, _proved(reading, None, repairs))
+    proved = [each for each in comparisons.values() if each.found]
+    return replace(proved[0], others=tuple(proved[1 : 1 + _MOST_OTHERS])) if proved else None
 
 
 def _is_rich(reading: Reading) -> bool:
@@ -329,24 +350,34 @@ def _is_rich(reading: Reading) -> bool:
 
 
 def _other_forms(formula: sp.ImmutableMatrix) -> Iterator[tuple[str, sp.ImmutableMatrix]]:
-    """Other forms of a formula of a program: (a factor that is left out, form)."""
-    for symbol in sorted(formula.free_symbols, key=str):
+    """Other forms of a formula of a program, with the words for them."""
+    if formula.shape == (3, 3):  # by columns, or for rows of rates
+        yield "transposed", formula.T
+    values = known.sample(formula)
+    for symbol in values:
         angles = [f.args[0] for f in formula.atoms(sp.sin, sp.cos, sp.tan) if f.has(symbol)]
-        scaled = angles or ([*formula] if formula.cols == 1 else [])
         # A factor of a whole matrix may be a vector that is not read.
         if not scaled or any(part.xreplace({symbol: sp.S.Zero}) for part in scaled):
             continue
         if not any(part.diff(symbol).has(symbol) for part in scaled):
             yield str(symbol), formula.xreplace({symbol: sp.S.One})
+            "others": [other.text() for other in self.others],
 
 
 def _nearest(trials: Sequence[_Trial], least: float, expected: str = "") -> list[Reading]:
     """The readings of which this share of all entries is right, the best first."""
     readings: list[Reading] = []
     for trial in trials:
-        is_near = trial.agreement.all(axis=2).mean(axis=(-2, -1)) >= least
-        is_near[[any(known.oddness(x) > 1 for x in each.values()) for each in trial.names]] = False
-        readings += trial.readings(is_near)
+        # With one angle, a mirror is as near as the rotation.
+        least_odd = 1 - 1 / len(trial.formula) if len(trial.formula.free_symbols) > 1 else 2
+        odd = [any(known.oddness(x) > 1 for x in each.values()) for each in trial.names]
+        share = trial.agreement.all(axis=2).mean(axis=(-2, -1))
+        # Angles from other axes are so many conventions that one of them is near by chance.
+        readings += trial.readings(share >= np.where(odd, least_odd, least)[:, None])
+        if trial.formula.shape == (3, 1):  # two of three entries exchanged: one is right
+            for order in ([1, 0, 2], [2, 1, 0], [0, 2, 1]):
+                exchanged = trial.compared(trial.numbers[..., order, :])
+                readings += trial.readings(exchanged.all(axis=(2, 3, 4)))
     return sorted(
         readings,
         key=lambda each: (-each.agreement.all(axis=0).mean(), not _is_customary(each, expected)),
@@ -433,20 +464,21 @@ def entry_repairs(reading: Reading) -> list[Repair]:
         return []
     wrong = [(int(i), int(j)) for i, j in np.argwhere(~reading.agreement.all(axis=0))]
     places = [(i + 1, j + 1) for i, j in wrong]  # counted from 1, as people do
+    called = places if formula.cols > 1 else [row for row, _ in places]
     # Two exchanged entries are one mistake, not two.
     if len(wrong) == 2:
         one, two = wrong
         changed[one], changed[two] = formula[two], formula[one]
         if reading.agrees(changed, goal.values):
-            words, fixed = "entries {} and {} are exchanged".format(*places), changed.as_immutable()
+            words, fixed = "entries {} and {} are exchanged".format(*called), changed.as_immutable()
             return [Repair(kind="exchange", words=words, formula=fixed, place=places[0])]
     if len(wrong) > min(_MOST_ENTRIES, max(1, len(formula) // 3)):
         return []
     repairs: list[Repair] = []
     changed = formula.as_mutable()
-    for entry, place in zip(wrong, places, strict=True):
+    for entry, place, where in zip(wrong, places, called, strict=True):
         kind, changed[entry] = _entry(reading, entry)
-        where, after = place if formula.cols > 1 else place[0], changed[entry]
+        after = changed[entry]
         words = f"entry {where}: {formula[entry]} should be {after}"
         words += f" ({CHANGES[kind]})" if kind in CHANGES else ""
         fixed = changed.as_immutable()
@@ -459,7 +491,8 @@ def _entry(reading: Reading, place: tuple[int, int]) -> tuple[str, sp.Expr]:
     goal, before = reading.goal, reading.formula[place]
     wanted = goal.values[:, [place[0]], [place[1]]][:, None]
     is_short = before.count_ops() <= _MOST_OPERATIONS
-    changes = set(variants(before, [*reading.names])) if is_short else set()
+    turns = sorted(reading.formula.atoms(*_SWAPPED), key=str)
+    changes = set(variants(before, [*reading.names], turns)) if is_short else set()
     kinds = [*CHANGES]
     for kind, after in sorted(
         changes, key=lambda v: (kinds.index(v[0]), v[1].count_ops(), str(v[1]))
@@ -476,12 +509,31 @@ _SWAPPED = {sp.sin: sp.cos, sp.cos: sp.sin}
 _SCALES = (sp.Rational(1, 2), sp.Integer(2))
 
 
-def _changed(e: sp.Expr, names: Sequence[sp.Symbol], inside: bool) -> dict[str, list[sp.Expr]]:
-    """The changes of one part, by their kinds; `inside` an angle there are fewer."""
+def variants(
+    e: sp.Expr,
+    names: Sequence[sp.Symbol],
+    turns: Sequence[sp.Expr] = (),
+    *,
+    inside: bool = False,
+) -> Iterator[tuple[str, sp.Expr]]:
+    """(kind, changed expression) for each single change of an expression, or `inside` an angle.
+
+    A factor that is missing is one of the sines and cosines `turns`.
+    """
+    for place, part in enumerate(e.args[: 1 if e.is_Pow else None]):
+        for kind, changed in variants(part, names, turns, inside=inside or e.func in _SWAPPED):
+            yield kind, e.func(*e.args[:place], changed, *e.args[place + 1 :])
+            if e.is_Pow and e.exp == 2:  # x y, mistyped as x x: one of two equal factors
+                yield kind, part * changed
+    if e.is_Mul and e.args[0].is_even:  # two equal terms that have become one
+        half = e / 2
+        for kind, changed in variants(half, names, turns, inside=inside):
+            if kind == "index":
+                yield kind, half + changed
     factors = e.args if e.is_Mul else ()
     numbers = [1 / factor for factor in factors if factor.is_number]
     is_square = e.is_Pow and e.exp == 2
-    changes = {
+    changes: dict[str, list[sp.Expr]] = {
         "sign": [-e],
         "index": [s for s in names if e.is_Symbol and s != e],
         "half angle" if inside else "factor": [factor * e for factor in (*_SCALES, *numbers)],
@@ -497,23 +549,5 @@ def _changed(e: sp.Expr, names: Sequence[sp.Symbol], inside: bool) -> dict[str, 
         above, below = e.args[0].as_numer_denom()
         changes["quadrant"] = [sp.atan2(sign * above, sign * below) for sign in (1, -1)]
     if not (inside or e.is_Add):
-        changes["product"] += [e * f(s) for s in names for f in _SWAPPED]
-    return changes
-
-
-def variants(
-    e: sp.Expr, names: Sequence[sp.Symbol], *, inside: bool = False
-) -> Iterator[tuple[str, sp.Expr]]:
-    """(kind, changed expression) for each single change of an expression, or `inside` an angle."""
-    for place, part in enumerate(e.args[: 1 if e.is_Pow else None]):
-        for kind, changed in variants(part, names, inside=inside or e.func in _SWAPPED):
-            yield kind, e.func(*e.args[:place], changed, *e.args[place + 1 :])
-            if e.is_Pow and e.exp == 2:  # x y, mistyped as x x: one of two equal factors
-                yield kind, part * changed
-    if e.is_Mul and e.args[0].is_even:  # two equal terms that have become one
-        half = e / 2
-        for kind, changed in variants(half, names, inside=inside):
-            if kind == "index":
-                yield kind, half + changed
-    for kind, changes in _changed(e, names, inside).items():
-        yield from ((kind, changed) for changed in changes)
+        changes["product"] += [e * turn for turn in turns]
+    yield from ((kind, changed) for kind in changes for changed in changes[kind])

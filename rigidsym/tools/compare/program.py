@@ -1521,8 +1521,9 @@ def _roles(name: str) -> list[tuple[int, str, str]]:
     """The groups to which a scalar may belong by its name, and its index in each."""
     matches = ((kind, pattern.fullmatch(name)) for kind, pattern in enumerate(patterns.scalars))
     roles = [(k, m["stem"], m["index"].replace("_", "").lower()) for k, m in matches if m]
-    if stem_of(name):
-        roles.append((-1, "", name))
+    if stem := stem_of(name):  # a rate, and of which set: p, q, r are not beside phi, theta, psi
+        sets = (str(kind) for kind, components in enumerate(_COMPLETE) if stem in components)
+        roles += [(-1, of, name) for of in ("", *sets)]
     change = "Δ" * name.startswith("Δ")
     word = re.sub(r"^[Δδ]?_*|_?(val|rad|angle)?_*$", "", name.lower())
     kinds = [kind for kind, angles in enumerate(_COMPLETE) if word in angles]

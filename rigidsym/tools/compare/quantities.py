@@ -123,6 +123,10 @@ _SCALED = _ways(twice=_times(2), half=_times(0.5), four_times=_times(4), a_quart
 _OF_QUATERNION_RATES = (_LAST, _SCALED, {**_ways(), "of the conjugate (passive)": _of_conjugate})
 PASSIVE = "transposed (passive, the direction cosine matrix)"
 PASSIVE_OR_BY_COLUMNS = "transposed (passive, or stored by columns)"  # of numbers in a row
+_ORDERS = _ways(  # of the angles; the opposite ones are those of axes of space
+    the_angles_in_the_order_1_3_2=lambda m, *_: m.extract([0, 2, 1], [0]),
+    the_angles_in_the_order_2_1_3=lambda m, *_: m.extract([1, 0, 2], [0]),
+)
 _WAYS: dict[str, tuple[Ways, ...]] = {
     "rotation_matrix": ({**_ways(), PASSIVE: lambda matrix, *_: matrix.T},),
     QUATERNION: (
@@ -159,10 +163,7 @@ _WAYS: dict[str, tuple[Ways, ...]] = {
             for angles in combinations("123", count)
         },
         {**_ways(), "transposed (passive)": lambda m, q: _opposite(m, q[1:])},
-        _ways(  # other orders are those of axes of space
-            the_angles_in_the_order_1_3_2=lambda m, _: m.extract([0, 2, 1], [0]),
-            the_angles_in_the_order_2_1_3=lambda m, _: m.extract([1, 0, 2], [0]),
-        ),
+        _ORDERS,
     ),
 }
 
@@ -280,6 +281,7 @@ def _of_quantity(
     quantity: str, shape: tuple[int, int], has_turns: bool, count: int
 ) -> tuple[Family, ...]:
     of_rates = _OF_QUATERNION_RATES if 4 in shape else (_SCALED,) * (not has_turns)
+    of_rates += (_ORDERS,) * quantity.startswith("rates_from") * (shape == (3, 1))
     ways = _WAYS.get(quantity, of_rates)
     same_inputs: dict[Any, list[list[KnownQuantity]]] = {}
     for rotation in _rotations(quantity, shape, has_turns, count):
@@ -560,14 +562,28 @@ def grouped(names: tuple[tuple[sp.Symbol, str], ...]) -> list[list[tuple[sp.Symb
             if rates := re.fullmatch("(?:.*_)?([pqr])(_b(ody)?)?", name):
                 stem, part = "p, q, r", rates[1].replace("r", "s")
             groups.setdefault(stem if part else name, []).append((part, symbol))
-        for group in groups.values():  # the scalar comes first
-            group.sort(key=lambda each: (each[0] not in ("w", "r"), each[0]))
+        for group in groups.values():
+            parts = dict(group)
+            digits = {*"".join(parts)} & {*"0123"}
+            if len(digits) == 3 and len(group) > len(digits) and {*map(len, parts)} <= {2, 3}:
+                part, symbol = group[0]  # entries of a matrix that are not in the formula
+                for i, j in product(sorted(digits), repeat=2):
+                    if (other := i + part[1:-1] + j) not in parts:
+                        name = symbol.name.removesuffix(part) + other
+                        group.append((other, sp.Symbol(name, real=True)))
+            # The scalar comes first.
+            group.sort(key=lambda each: (each[0] not in ("w", "r"), each[0].rjust(3)))
         vectors = [tuple(symbol for _, symbol in group) for group in groups.values()]
         groupings.append(vectors)
         for scalar, vector in permutations(vectors, 2):
             if (len(scalar), len(vector)) == (1, 3):  # w beside this.x
                 others = (v for v in vectors if v not in (scalar, vector))
                 groupings.append([*others, scalar + vector])
+        for state in vectors:  # angular velocity and quaternion in one array
+            if len(state) == 7:
+                groupings += [
+                    [*(v for v in vectors if v != state), state[:k], state[k:]] for k in (3, 4)
+                ]
     return [groups for k, groups in enumerate(groupings) if groups not in groupings[:k]]
 
 
@@ -637,6 +653,11 @@ def evaluated(matrix: sp.MatrixBase, values: Values) -> Array:
     return np.stack(entries, axis=-1).reshape(*entries[0].shape, *matrix.shape)
 
 
+def sample(formula: sp.MatrixBase) -> Values:
+    """Values of the names in a formula, whatever they mean."""
+    return dict(zip(sorted(formula.free_symbols, key=str), chain(*TABLE), strict=False))
+
+
 def near(one: Array, other: Array) -> NDArray[np.bool_]:
     """Whether numbers are equal within rounding errors."""
     with np.errstate(all="ignore"):
@@ -649,8 +670,7 @@ def is_mirror(matrix: sp.MatrixBase) -> bool:
     """Whether a 3x3 matrix is a reflection at all points: orthogonal, with det = −1."""
     if matrix.shape != (3, 3):
         return False
-    symbols = sorted(matrix.free_symbols, key=str)
-    values = evaluated(matrix, dict(zip(symbols, TABLE[0], strict=False)))
+    values = evaluated(matrix, sample(matrix))
     with np.errstate(all="ignore"):
         is_orthogonal = near(values @ values.transpose(0, 2, 1), np.eye(3)).all()
         return bool(is_orthogonal and (np.linalg.det(values) < 0).all())

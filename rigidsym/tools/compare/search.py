@@ -196,11 +196,11 @@ def _block(matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
     """The rotation in a homogeneous transformation; a row as a column; angles in radians."""
     matrix = matrix.T if matrix.rows == 1 else matrix
     # π mostly converts degrees. With names, or angles, in the other unit it cancels; if it does
-    # not, the formula is left as it is.
+    # not in most entries, the formula is left as it is.
     if matrix.has(sp.pi):
         scale = {s: s * 180 / sp.pi for s in matrix.free_symbols}
         in_radians = matrix * sp.pi / 180 if are_angles(matrix) else matrix.xreplace(scale)
-        matrix = matrix if in_radians.has(sp.pi) else in_radians
+        matrix = in_radians if in_radians.count(sp.pi) < matrix.count(sp.pi) else matrix
     step = next((s for s in matrix.free_symbols if patterns.step.fullmatch(s.name)), None)
     before = matrix.xreplace({step: sp.S.Zero})  # q of q + (...)*dt
     if step is not None and not any(e.is_Add for e in before):  # but not g - w - (...)*dt
