@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import product
 from typing import Any
@@ -62,6 +62,11 @@ class Reading:
     goal: KnownQuantity
     names: Names
     agreement: NDArray[np.bool_]  # where the formula is right: (points, rows, columns)
+
+    @property
+    def share(self) -> float:
+        """Of the entries that are right."""
+        return float(self.agreement.all(axis=0).mean())
 
     @cached_property
     def values(self) -> Values:
@@ -180,8 +185,7 @@ class Comparison:
         q = found.inputs["q"] if found and is_of_angles else ()
         own = [name for name, symbol in (found.names if found else {}).items() if symbol in q]
         theirs = [called.get(name) or known.stem_of(called.get(f"{name}_dot", "")) for name in own]
-        facts: dict[str, Any] = {each.name: getattr(self, each.name) for each in fields(self)}
-        facts |= {
+        facts: dict[str, Any] = vars(self) | {
             "arrangement": self.arrangement,
             "calls": [(a, b) for a, b in zip(own, theirs, strict=True) if b and a != b],
             "others": [other.text() for other in self.others],
@@ -232,7 +236,7 @@ def compare(
     else:
         goal = known.target(rotation, quantity)
     angles = [n for n, symbol in goal.names.items() if symbol in goal.inputs.get("q", ())]
-    return against(spelled_out(matrix, only=angles[0] if len(angles) == 1 else "angle"), goal)
+    return identified(spelled_out(matrix, only=angles[0] if len(angles) == 1 else "angle"), goal)
 
 
 def _checked(formula: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
@@ -267,53 +271,44 @@ def in_words(shape: tuple[int, int]) -> str:
     return f"a vector of {shape[0]} entries" if shape[1] == 1 else "a {}x{} matrix".format(*shape)
 
 
-def against(formula: sp.ImmutableMatrix, goal: KnownQuantity) -> Comparison:
-    """Compare with one quantity, under all meanings of its names."""
-    trial = _Trial(formula, (goal,), is_asked=True)
-    for equal in trial.readings(trial.agreement.all(axis=(2, 3, 4))):
-        return _proved(equal, goal)
-    if decided := _decided(formula, [trial], goal, is_in_program=False):
-        return decided
-    own = identified(formula, only_equal=True)
-    if own.found:
-        words = f"this is {own.found.described}"
-        repair = Repair(kind="convention", words=words, formula=formula)
-        return replace(own, asked=goal, repairs=(repair,))
-    for nearest in _nearest([trial], 0)[:1]:
-        if repairs := entry_repairs(nearest):
-            return _proved(nearest, goal, repairs)
-    return Comparison(formula=formula, asked=goal)
-
-
 def identified(
     formula: sp.ImmutableMatrix,
+    asked: KnownQuantity | None = None,
     *,
     only_equal: bool = False,
     is_in_program: bool = False,
     expected: str = "",
 ) -> Comparison:
-    """Compare with all quantities of the catalogue; the nearest if none is equal.
+    """Compare with the quantity that is asked for, or with all; the nearest if none is equal.
 
     In a program, a transpose, a sign or a factor of the whole formula may be meant. Of several
     nearest rotations, that about the `expected` axes, as in "z y x", is preferred.
     """
     trials = []
-    for family in known.families(formula):
-        trial = _Trial(formula, family, is_asked=False)
+    for family in known.families(formula) if asked is None else [(asked,)]:
+        trial = _Trial(formula, family, is_asked=asked is not None)
         for equal in trial.readings(trial.agreement.all(axis=(2, 3, 4))):
-            return _proved(equal)
+            return _proved(equal, asked)
         trials.append(trial)
-    unknown = Comparison(formula=formula, asked=None)
-    if is_in_program and formula.free_symbols:
-        for words, form in _other_forms(formula):
-            comparison = identified(form, only_equal=True)
-            if comparison.found:
-                return replace(comparison, form=words)
+    unknown = Comparison(formula=formula, asked=asked)
+    for words, form in _other_forms(formula) if is_in_program else ():
+        if (comparison := identified(form, only_equal=True)).found:
+            return replace(comparison, form=words)
     if only_equal:
         return unknown
-    if decided := _decided(formula, trials, None, is_in_program=is_in_program):
+    if decided := _decided(formula, trials, asked, is_in_program=is_in_program):
         return decided
-    return _repaired(_nearest(trials, _NEAR, expected)[:_NEAREST]) or unknown
+    if asked is None:
+        return _repaired(_nearest(trials, _NEAR, expected)[:_NEAREST]) or unknown
+    own = identified(formula, only_equal=True)
+    if own.found:
+        words = f"this is {own.found.described}"
+        repair = Repair(kind="convention", words=words, formula=formula)
+        return replace(own, asked=asked, repairs=(repair,))
+    for nearest in _nearest(trials, 0)[:1]:
+        if repairs := entry_repairs(nearest):
+            return _proved(nearest, asked, repairs)
+    return unknown
 
 
 def _repaired(nearest: Sequence[Reading]) -> Comparison | None:
@@ -321,32 +316,25 @@ def _repaired(nearest: Sequence[Reading]) -> Comparison | None:
 
     The mistake in a formula between two conventions may be in one entry or in another.
     """
-    candidates: list[tuple[float, list[Repair], Reading]] = []
+    candidates: list[tuple[bool, list[Repair], Reading]] = []
     for reading in nearest:
-        share = reading.agreement.all(axis=0).mean()
-        if candidates and share < candidates[0][0]:
+        if candidates and reading.share < candidates[0][-1].share:
             break
         repairs = entry_repairs(reading)
-        # If all other entries are right, one may be wrong in any way.
-        is_whole = len(repairs) == 1 and _is_rich(reading)
-        if len(repairs) in range(1, _MOST_REPAIRS + 1) and (
-            is_whole or all(repair.kind != "entry" for repair in repairs)
-        ):
-            candidates.append((share, repairs, reading))
-    small = [each for each in candidates if all(repair.kind != "entry" for repair in each[1])]
+        is_small = all(repair.kind != "entry" for repair in repairs)
+        # If all other entries are right, and these are many, one may be wrong in any way.
+        names = np.array([bool(entry.free_symbols) for entry in reading.formula])
+        is_right = reading.agreement.all(axis=0).ravel()
+        least = _MOST_ENTRIES if reading.formula.cols == 1 else 2 * _MOST_ENTRIES
+        is_rich = names[~is_right].all() and (names & is_right).sum() >= least
+        if repairs and len(repairs) <= (_MOST_REPAIRS if is_small else is_rich):
+            candidates.append((is_small, repairs, reading))
+    small = [each for each in candidates if each[0]]
     comparisons: dict[sp.ImmutableMatrix, Comparison] = {}
     for _, repairs, reading in small or candidates[:1]:
         comparisons.setdefault(repairs[-1].formula, _proved(reading, None, repairs))
     proved = [each for each in comparisons.values() if each.found]
     return replace(proved[0], others=tuple(proved[1 : 1 + _MOST_OTHERS])) if proved else None
-
-
-def _is_rich(reading: Reading) -> bool:
-    """Whether all entries with names but one are right, and these are many."""
-    varied = np.array([bool(entry.free_symbols) for entry in reading.formula])
-    is_right = reading.agreement.all(axis=0).ravel()
-    least = _MOST_ENTRIES if reading.formula.cols == 1 else 2 * _MOST_ENTRIES
-    return bool(varied[~is_right].all() and (varied & is_right).sum() >= least)
 
 
 def _other_forms(formula: sp.ImmutableMatrix) -> Iterator[tuple[str, sp.ImmutableMatrix]]:
@@ -357,11 +345,12 @@ def _other_forms(formula: sp.ImmutableMatrix) -> Iterator[tuple[str, sp.Immutabl
     for symbol in values:
         angles = [f.args[0] for f in formula.atoms(sp.sin, sp.cos, sp.tan) if f.has(symbol)]
         # A factor of a whole matrix may be a vector that is not read.
-        if not scaled or any(part.xreplace({symbol: sp.S.Zero}) for part in scaled):
-            continue
-        if not any(part.diff(symbol).has(symbol) for part in scaled):
-            yield str(symbol), formula.xreplace({symbol: sp.S.One})
-            "others": [other.text() for other in self.others],
+        if scaled := sp.Matrix(angles or ([*formula] if formula.cols == 1 else [])):
+            once, twice = (
+                known.evaluated(scaled, {**values, symbol: k * values[symbol]}) for k in (1, 2)
+            )
+            if known.near(twice, 2 * once).all():
+                yield f"up to the factor {symbol}", formula.xreplace({symbol: sp.S.One})
 
 
 def _nearest(trials: Sequence[_Trial], least: float, expected: str = "") -> list[Reading]:
@@ -380,20 +369,8 @@ def _nearest(trials: Sequence[_Trial], least: float, expected: str = "") -> list
                 readings += trial.readings(exchanged.all(axis=(2, 3, 4)))
     return sorted(
         readings,
-        key=lambda each: (-each.agreement.all(axis=0).mean(), not _is_customary(each, expected)),
+        key=lambda each: (-each.share, each.goal.axes != (expected or "z y x")),
     )
-
-
-def _is_customary(reading: Reading, expected: str) -> bool:
-    """Whether the rotation is the expected one, or what roll, pitch and yaw usually mean."""
-    goal = reading.goal
-    if not goal.rotation or "q" not in goal.inputs:
-        return False
-    if expected:
-        return " ".join(turn.axis for turn in goal.motion.model.turns) == expected
-    called = {meant: str(symbol) for symbol, meant in reading.names.items()}
-    words = [called.get(symbol, "").lower() for symbol in goal.inputs["q"]]
-    return goal.rotation == "ZYX" and words == ["yaw", "pitch", "roll"]
 
 
 def _decided(
@@ -404,23 +381,21 @@ def _decided(
     is_in_program: bool,
 ) -> Comparison | None:
     """What is known without a look at single entries."""
-    is_mirror, of_angles = known.is_mirror(formula), known.are_angles(formula)
+    of_angles = known.are_angles(formula)
     # Inverse functions are not changed as a whole: transposes, orders and senses of the angles are
     # already among their conventions.
-    if is_mirror or not (is_in_program or of_angles):
+    if not (is_in_program or of_angles):
         for trial, (kind, (words, change)) in product(trials, _WHOLE.items()):
             numbers = trial.numbers
             numbers = numbers.swapaxes(-1, -2) if kind == "transpose" else change(numbers)
             for reading in trial.readings(trial.compared(numbers).all(axis=(2, 3, 4))):
-                if is_in_program:  # the negative of a rotation may be meant
-                    return None
                 goal = reading.goal
                 words += " (passive)" * (goal.quantity == "rotation_matrix" and kind == "transpose")
                 repair = Repair(kind=kind.split()[0], words=words, formula=change(formula))
                 return _proved(reading, asked, [repair])
     # The negative of a reflection may be the wanted rotation. If it is not, det = −1 is the
     # finding, and no repair of entries is looked for.
-    if is_mirror:
+    if known.is_mirror(formula):
         return Comparison(formula=formula, asked=asked, is_reflection=True)
     for trial in trials if not of_angles else ():
         is_right: Any = trial.agreement.all(axis=(3, 4))

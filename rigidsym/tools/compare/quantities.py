@@ -17,7 +17,6 @@ convention that no formula can get wrong.
 from __future__ import annotations
 
 import re
-from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property, lru_cache, reduce
@@ -31,8 +30,9 @@ from sympy.core.function import AppliedUndef
 
 from rigidsym.algebra.evaluate import Floats, Unknown, evaluate
 from rigidsym.errors import ExpressionError
+from rigidsym.mechanics.body import BodyValues
+from rigidsym.models.rotation import rotation_of
 from rigidsym.motion import Motion, derive
-from rigidsym.tools.compare.language import cross_matrix
 from rigidsym.tools.compare.syntax import patterns
 
 Array = NDArray[Any]
@@ -58,9 +58,6 @@ def _points() -> Array:
 
 
 TABLE = _points()
-_ROWS = {"q": 0, "q_dot": 1, "q_ddot": 2, "omega_space": 3, "omega_body": 3}
-_ROWS |= {"a": 0, "b": 1, "c": 2, "d": 3}  # vectors of laws
-
 AXES = [a + b + c for a, b, c in product("XYZ", repeat=3) if a != b != c]
 _THREE = (*AXES, *(axes.lower() for axes in AXES))
 _SEQUENCES = {
@@ -85,6 +82,7 @@ SHAPES: dict[tuple[int, int], tuple[str, ...]] = {  # of formulas, and what each
 
 Way = Callable[..., sp.Matrix]
 Ways = dict[str, Way]  # by the words for them
+_NONE = sp.zeros(3, 1)
 _CONJUGATE = sp.diag(1, -1, -1, -1)
 
 
@@ -92,12 +90,9 @@ def _opposite(matrix: sp.Matrix, inputs: Sequence[sp.Expr]) -> sp.Matrix:
     return matrix.xreplace({symbol: -symbol for symbol in inputs})
 
 
-def _times(*factors: float) -> Way:
+def _times(*factors: sp.Expr | int) -> Way:
     """The way with entries times one factor, or each row times its own."""
-    numbers = [*map(sp.Rational, factors)]
-    return lambda matrix, *_: (
-        sp.diag(*numbers) * matrix if len(numbers) == matrix.rows else numbers[0] * matrix
-    )
+    return lambda m, *_: sp.diag(*factors) * m if len(factors) > 1 else factors[0] * m
 
 
 def _scalar_last(matrix: sp.Matrix, *_: Sequence[sp.Expr]) -> sp.Matrix:
@@ -119,7 +114,12 @@ def _ways(**ways: Way) -> Ways:
 
 _LAST = _ways(scalar_last=_scalar_last)
 _NEGATIVE = _ways(negative=_times(-1))
-_SCALED = _ways(twice=_times(2), half=_times(0.5), four_times=_times(4), a_quarter=_times(0.25))
+_SCALED = _ways(
+    twice=_times(2),
+    half=_times(sp.Rational(1, 2)),
+    four_times=_times(4),
+    a_quarter=_times(sp.Rational(1, 4)),
+)
 _OF_QUATERNION_RATES = (_LAST, _SCALED, {**_ways(), "of the conjugate (passive)": _of_conjugate})
 PASSIVE = "transposed (passive, the direction cosine matrix)"
 PASSIVE_OR_BY_COLUMNS = "transposed (passive, or stored by columns)"  # of numbers in a row
@@ -150,7 +150,7 @@ _WAYS: dict[str, tuple[Ways, ...]] = {
         _ways(by_the_inverse=lambda m, q, _: _opposite(m, q[1:])),
         {
             words: lambda m, q, v, k=k: m + k * (sum(x**2 for x in q) - 1) * sp.Matrix(v)
-            for k, words in enumerate(("", "times |q|²", "of a unit quaternion"))
+            for k, words in enumerate(("", "times |q|²", "of a unit quaternion"), -1)
         },
     ),
     "parallel_axis_theorem": (_ways(to_the_centre_of_mass=lambda m, *v: _opposite(m, v[0])),),
@@ -198,11 +198,15 @@ class KnownQuantity:
     @cached_property
     def names(self) -> dict[str, sp.Expr]:
         """The inputs by plain name."""
-        arguments = self.motion.arguments if self.rotation else ()
-        used = [a for a in arguments if a.name in self.inputs]
+        used = (a for a in self.motion.arguments if self.rotation and a.name in self.inputs)
         names = {name: s for a in used for name, s in zip(a.names, a.symbols, strict=True)}
         plain = (s for symbols in self.inputs.values() for s in symbols if s.is_Symbol)
         return names | {s.name: s for s in plain}
+
+    @property
+    def axes(self) -> str:
+        """Those of the turns, as in "z y x"."""
+        return " ".join(turn.axis for turn in self.motion.model.turns)
 
     @property
     def described(self) -> str:
@@ -235,7 +239,10 @@ def values_of(family: Family) -> Array:
 def of_motion(motion: Motion, quantity: str, rotation: str) -> KnownQuantity:
     """A quantity of a derivation."""
     if quantity == QUATERNION:
-        turns = (_quaternion_of(turn.angle, turn.direction) for turn in motion.model.turns)
+        turns = (
+            sp.Matrix([sp.cos(t.angle / 2), *(sp.sin(t.angle / 2) * d for d in t.direction)])
+            for t in motion.model.turns
+        )
         matrix, uses = reduce(quaternion_product, turns), tuple("q")
     else:
         step = motion.step(quantity)
@@ -317,44 +324,34 @@ def _rotations(
 
 
 def quaternion_product(a: sp.MatrixBase, b: sp.MatrixBase) -> sp.Matrix:
-    """a b, each a column with the scalar first."""
-    scalar = a[0] * b[0] - a[1:, :].dot(b[1:, :])
-    return sp.Matrix([scalar, *(a[0] * b[1:, :] + b[0] * a[1:, :] + a[1:, :].cross(b[1:, :]))])
-
-
-def _quaternion_of(angle: sp.Expr, direction: Any) -> sp.Matrix:
-    return sp.Matrix([sp.cos(angle / 2), *(sp.sin(angle / 2) * d for d in direction)])
-
-
-def _rotated(q: sp.Matrix, v: sp.Matrix) -> sp.Matrix:
-    cross = cross_matrix(q[1:, :])
-    return v + 2 * q[0] * cross * v + 2 * cross * cross * v
-
-
-def _steiner(mass: sp.Matrix, d: sp.Matrix) -> sp.Matrix:
-    return mass[0] * (d.dot(d) * sp.eye(3) - d * d.T)
-
-
-def _pure(v: sp.Matrix) -> sp.Matrix:
-    return sp.Matrix([0, *v])
-
-
-def _symmetric(tensor: sp.Matrix) -> sp.Matrix:
-    return sp.Matrix(3, 3, [tensor[k] for k in (0, 1, 2, 1, 3, 4, 2, 4, 5)])
-
-
-def _tensor(entries: sp.Matrix) -> sp.Matrix:
-    """The matrix of nine entries, or of three on its diagonal."""
-    return sp.diag(*entries) if len(entries) == 3 else entries.reshape(3, 3)
-
-
-def _gyroscopic(w: sp.Matrix, i: sp.Matrix) -> sp.Matrix:
-    return w.cross(_tensor(i) * w)
+    """a b, each a column with the scalar first, or a vector."""
+    (s, *u), (t, *v) = (each if len(each) == 4 else [0, *each] for each in (a, b))
+    u, v = sp.Matrix(u), sp.Matrix(v)
+    return sp.Matrix([s * t - u.dot(v), *(s * v + t * u + u.cross(v))])
 
 
 def _rate_operator(v: sp.Matrix) -> sp.Matrix:
     """The matrix of q v as a function of q."""
-    return sp.Matrix.hstack(*(quaternion_product(sp.eye(4)[:, k], _pure(v)) for k in range(4)))
+    return sp.Matrix.hstack(*(quaternion_product(sp.eye(4)[:, k], v) for k in range(4)))
+
+
+def _tensor(entries: sp.Matrix) -> sp.Matrix:
+    """The matrix of nine entries, of six in its upper half, or of three on its diagonal."""
+    if len(entries) == 6:
+        entries = entries.extract([0, 1, 2, 1, 3, 4, 2, 4, 5], [0])
+    return sp.diag(*entries) if len(entries) == 3 else entries.reshape(3, 3)
+
+
+def _torque(w: sp.Matrix, i: sp.Matrix, acceleration: sp.Matrix = _NONE) -> sp.Matrix:
+    return _tensor(i) * acceleration + w.cross(_tensor(i) * w)
+
+
+def _acceleration(w: sp.Matrix, i: sp.Matrix, torque: sp.Matrix = _NONE) -> sp.Matrix:
+    return _tensor(i).inv() * (torque - _torque(w, i))
+
+
+def _steiner(mass: sp.Matrix, d: sp.Matrix, i: sp.Matrix) -> sp.Matrix:
+    return _tensor(i) + BodyValues.steiner(mass[0], d)
 
 
 _PRODUCT, _STEINER = "quaternion_product", "parallel_axis_theorem"
@@ -362,21 +359,25 @@ _ACCELERATION, _TORQUE = "euler_equations_acceleration", "euler_equations_torque
 _WITH_INVERSE = f"{_ACCELERATION}, if one matrix is the inverse of the other"
 _Law = tuple[str, tuple[int, ...], Callable[..., sp.Matrix]]
 _LAWS: tuple[_Law, ...] = (  # entries of each vector, and the value
-    (_PRODUCT, (4, 4), quaternion_product),
-    (_PRODUCT, (4, 3), lambda a, v: quaternion_product(a, _pure(v))),
-    (_PRODUCT, (3, 4), lambda v, b: quaternion_product(_pure(v), b)),
+    *((_PRODUCT, sizes, quaternion_product) for sizes in ((4, 4), (4, 3), (3, 4))),
     ("quaternion_rate_operator", (3,), _rate_operator),
-    ("rotated_vector", (4, 3), _rotated),
-    (_ACCELERATION, (3, 3, 3), lambda w, i, t: _tensor(i).inv() * (t - _gyroscopic(w, i))),
-    (_ACCELERATION, (3, 3), lambda w, i: -_tensor(i).inv() * _gyroscopic(w, i)),
-    (_WITH_INVERSE, (3, 9, 3, 9), lambda w, i, t, k: _tensor(k) * (t - _gyroscopic(w, i))),
-    (_WITH_INVERSE, (3, 9, 9), lambda w, i, k: -_tensor(k) * _gyroscopic(w, i)),
-    (_TORQUE, (3, 3, 3), lambda w, i, a: _tensor(i) * a + _gyroscopic(w, i)),
-    (_TORQUE, (3, 9, 3), lambda w, i, a: _tensor(i) * a + _gyroscopic(w, i)),
-    (_STEINER, (1, 3, 6), lambda m, d, i: _symmetric(i) + _steiner(m, d)),
-    (_STEINER, (1, 3, 3), lambda m, d, i: i + _steiner(m, d).diagonal().T),
-    (_STEINER, (1, 3, 3), lambda m, d, i: i + _steiner(m, d).reshape(9, 1).extract([1, 2, 5], [0])),
-    (_STEINER, (1, 3, 3), lambda m, d, e: _steiner(m, d) - _steiner(m, e)),
+    ("rotated_vector", (4, 3), lambda q, v: rotation_of([*q]) * v),
+    *((_ACCELERATION, sizes, _acceleration) for sizes in ((3, 3, 3), (3, 3))),
+    (_WITH_INVERSE, (3, 9, 3, 9), lambda w, i, t, k: _tensor(k) * (t - _torque(w, i))),
+    (_WITH_INVERSE, (3, 9, 9), lambda w, i, k: -_tensor(k) * _torque(w, i)),
+    *((_TORQUE, (3, size, 3), _torque) for size in (3, 9)),
+    (_STEINER, (1, 3, 6), _steiner),
+    (_STEINER, (1, 3, 3), lambda m, d, i: _steiner(m, d, i).diagonal().T),
+    (
+        _STEINER,
+        (1, 3, 3),
+        lambda m, d, i: i + sp.Matrix([_steiner(m, d, 0 * i)[k] for k in (1, 2, 5)]),
+    ),
+    (
+        _STEINER,
+        (1, 3, 3),
+        lambda m, d, e: BodyValues.steiner(m[0], d) - BodyValues.steiner(m[0], e),
+    ),
 )
 
 
@@ -448,7 +449,6 @@ def stem_of(name: str) -> str:
 
 
 _INDICES = (("abc", "xyz"), ("012", "012"), ("123", "123"))  # of rows and columns
-_FLAT = ([*range(9)], [0, 1, 2, 4, 5, 6, 8, 9, 10])  # places of entries, m_8
 
 
 def meanings(formula: sp.MatrixBase, goal: KnownQuantity, *, is_asked: bool) -> list[Names]:
@@ -460,7 +460,7 @@ def meanings(formula: sp.MatrixBase, goal: KnownQuantity, *, is_asked: bool) -> 
     own = {s: goal.names.get(s.name) or goal.names.get(f"{stem_of(s.name)}_dot") for s in symbols}
     if None not in own.values() and is_asked:
         return [own]
-    turns = goal.motion.model.turns if goal.rotation else ()
+    turns = goal.motion.model.turns
     vectors = [*goal.inputs.values()]
     if goal.rotation == "axis_angle":
         vectors[:1] = vectors[0][:3], vectors[0][3:]
@@ -606,12 +606,11 @@ def _of_entries(symbols: Sequence[sp.Symbol], rotation: sp.MatrixBase) -> Iterat
             }
     flat = [match for s in symbols if (match := re.fullmatch(r"(.*?)_(\d+)", s.name))]
     if len(flat) == len(symbols) and len({match[1] for match in flat}) == 1:
-        for places, entries in product(_FLAT, (rotation, rotation.T)):
-            if {int(match[2]) for match in flat} <= {*places}:
-                yield {
-                    sp.Symbol(f"{flat[0][1]}_{place}", real=True): entry
-                    for place, entry in zip(places, entries, strict=True)
-                }
+        for width in (3, 4):  # of rows, m_8 or m_10
+            names = (f"{flat[0][1]}_{width * k + n}" for k in range(3) for n in range(3))
+            entries = {sp.Symbol(n, real=True): r for n, r in zip(names, rotation, strict=True)}
+            if {*symbols} <= {*entries}:
+                yield entries
 
 
 # Numbers
@@ -623,12 +622,8 @@ def _values_of(
 ) -> Values:
     """Values of the inputs; coordinates with a condition |v|² = 1, and their rates, satisfy it."""
     values: Values = {}
-    count = Counter[int]()
-    for name, symbols in inputs:
-        row = _ROWS.get(name, len(TABLE) - 1)
-        for symbol in symbols:
-            values[symbol] = TABLE[row, count[row]]
-            count[row] += 1
+    for row, (name, symbols) in enumerate(inputs):
+        values |= dict(zip(symbols, TABLE[-1 if name == "constants" else row], strict=False))
     for condition in conditions:
         q = [s for s in dict(inputs)["q"] if condition.has(s)]
         # q is scaled to unit length, and q̇ loses its part along q, since q·q̇ = 0 follows from
