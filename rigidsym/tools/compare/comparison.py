@@ -54,7 +54,7 @@ class Repair:
     after: sp.Expr | None = None
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Reading:
     """A formula under one meaning of its names, beside a known quantity."""
 
@@ -78,9 +78,8 @@ class Reading:
         }
 
     def agrees(self, changed: sp.MatrixBase, wanted: Array) -> bool:
-        return bool(
-            known.near(self.goal.on_circle(known.evaluated(changed, self.values)), wanted).all()
-        )
+        numbers = self.goal.on_circle(known.evaluated(changed, self.values))
+        return bool(known.near(numbers, wanted).all())
 
 
 class _Trial:
@@ -112,12 +111,8 @@ class _Trial:
         odd = [sum(map(known.oddness, each.values())) for each in self.names]
         places = [(int(meaning), int(goal)) for meaning, goal in np.argwhere(where)]
         for meaning, goal in sorted(places, key=lambda place: (odd[place[0]], *place[::-1])):
-            yield Reading(
-                formula=self.formula,
-                goal=self.family[goal],
-                names=self.names[meaning],
-                agreement=self.agreement[meaning, goal],
-            )
+            agreement = self.agreement[meaning, goal]
+            yield Reading(self.formula, self.family[goal], self.names[meaning], agreement)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -302,7 +297,7 @@ def identified(
         return _repaired(_nearest(trials, _NEAR, expected)[:_NEAREST]) or unknown
     own = identified(formula, only_equal=True)
     if own.found:
-        words = f"this is {own.found.described}"
+        words = ", ".join(filter(None, (f"this is {own.found}", own.arrangement)))
         repair = Repair(kind="convention", words=words, formula=formula)
         return replace(own, asked=asked, repairs=(repair,))
     for nearest in _nearest(trials, 0)[:1]:
@@ -346,10 +341,8 @@ def _other_forms(formula: sp.ImmutableMatrix) -> Iterator[tuple[str, sp.Immutabl
         angles = [f.args[0] for f in formula.atoms(sp.sin, sp.cos, sp.tan) if f.has(symbol)]
         # A factor of a whole matrix may be a vector that is not read.
         if scaled := sp.Matrix(angles or ([*formula] if formula.cols == 1 else [])):
-            once, twice = (
-                known.evaluated(scaled, {**values, symbol: k * values[symbol]}) for k in (1, 2)
-            )
-            if known.near(twice, 2 * once).all():
+            twice = known.evaluated(scaled, {**values, symbol: 2 * values[symbol]})
+            if known.near(twice, 2 * known.evaluated(scaled, dict(values))).all():
                 yield f"up to the factor {symbol}", formula.xreplace({symbol: sp.S.One})
 
 
@@ -367,10 +360,7 @@ def _nearest(trials: Sequence[_Trial], least: float, expected: str = "") -> list
             for order in ([1, 0, 2], [2, 1, 0], [0, 2, 1]):
                 exchanged = trial.compared(trial.numbers[..., order, :])
                 readings += trial.readings(exchanged.all(axis=(2, 3, 4)))
-    return sorted(
-        readings,
-        key=lambda each: (-each.share, each.goal.axes != (expected or "z y x")),
-    )
+    return sorted(readings, key=lambda r: (-r.share, r.goal.axes != (expected or "z y x")))
 
 
 def _decided(
@@ -485,11 +475,7 @@ _SCALES = (sp.Rational(1, 2), sp.Integer(2))
 
 
 def variants(
-    e: sp.Expr,
-    names: Sequence[sp.Symbol],
-    turns: Sequence[sp.Expr] = (),
-    *,
-    inside: bool = False,
+    e: sp.Expr, names: Sequence[sp.Symbol], turns: Sequence[sp.Expr] = (), *, inside: bool = False
 ) -> Iterator[tuple[str, sp.Expr]]:
     """(kind, changed expression) for each single change of an expression, or `inside` an angle.
 
@@ -514,12 +500,10 @@ def variants(
         "half angle" if inside else "factor": [factor * e for factor in (*_SCALES, *numbers)],
         "term": [e - term for term in e.args if e.is_Add],
         "product": [e / factor for factor in factors if not factor.is_number],
+        "sine and cosine": [_SWAPPED[e.func](*e.args)] if e.func in _SWAPPED else [],
+        "arguments": [sp.atan2(*e.args[::-1])] if e.func == sp.atan2 else [],
         "square": [e.base] if is_square else [e**2] * bool(e.is_Function or e.is_Symbol),
     }
-    if e.func in _SWAPPED:
-        changes["sine and cosine"] = [_SWAPPED[e.func](*e.args)]
-    if e.func == sp.atan2:
-        changes["arguments"] = [sp.atan2(*e.args[::-1])]
     if e.func == sp.atan:
         above, below = e.args[0].as_numer_denom()
         changes["quadrant"] = [sp.atan2(sign * above, sign * below) for sign in (1, -1)]

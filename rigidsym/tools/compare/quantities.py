@@ -208,11 +208,6 @@ class KnownQuantity:
         """Those of the turns, as in "z y x"."""
         return " ".join(turn.axis for turn in self.motion.model.turns)
 
-    @property
-    def described(self) -> str:
-        """The name, and how it is written."""
-        return ", ".join(filter(None, (str(self), self.arrangement)))
-
     def __str__(self) -> str:
         return f"{self.quantity} of {self.rotation}" if self.rotation else self.quantity
 
@@ -394,7 +389,7 @@ def _laws() -> tuple[Family, ...]:
             quantity=name, arrangement=condition, matrix=matrix, motion=motion, inputs=vectors
         )
         ways = () if condition else _WAYS.get(name, ())
-        laws.append(_family([law.written(*ways)]))
+        laws.append(tuple(law.written(*ways)))
     return tuple(laws)
 
 
@@ -581,9 +576,8 @@ def grouped(names: tuple[tuple[sp.Symbol, str], ...]) -> list[list[tuple[sp.Symb
                 groupings.append([*others, scalar + vector])
         for state in vectors:  # angular velocity and quaternion in one array
             if len(state) == 7:
-                groupings += [
-                    [*(v for v in vectors if v != state), state[:k], state[k:]] for k in (3, 4)
-                ]
+                others = [v for v in vectors if v != state]
+                groupings += [[*others, state[:k], state[k:]] for k in (3, 4)]
     return [groups for k, groups in enumerate(groupings) if groups not in groupings[:k]]
 
 
@@ -606,9 +600,10 @@ def _of_entries(symbols: Sequence[sp.Symbol], rotation: sp.MatrixBase) -> Iterat
             }
     flat = [match for s in symbols if (match := re.fullmatch(r"(.*?)_(\d+)", s.name))]
     if len(flat) == len(symbols) and len({match[1] for match in flat}) == 1:
-        for width in (3, 4):  # of rows, m_8 or m_10
+        # Rows of 3 or 4 numbers, m_8 or m_10, or columns.
+        for width, parts in product((3, 4), (rotation, rotation.T)):
             names = (f"{flat[0][1]}_{width * k + n}" for k in range(3) for n in range(3))
-            entries = {sp.Symbol(n, real=True): r for n, r in zip(names, rotation, strict=True)}
+            entries = {sp.Symbol(n, real=True): r for n, r in zip(names, parts, strict=True)}
             if {*symbols} <= {*entries}:
                 yield entries
 
