@@ -572,7 +572,7 @@ def grouped(names: tuple[tuple[sp.Symbol, str], ...]) -> list[list[tuple[sp.Symb
         groupings.append(vectors)
         for scalar, vector in permutations(vectors, 2):
             if (len(scalar), len(vector)) == (1, 3):  # w beside this.x
-                others = (v for v in vectors if v not in (scalar, vector))
+                others = [v for v in vectors if v not in (scalar, vector)]
                 groupings.append([*others, scalar + vector])
         for state in vectors:  # angular velocity and quaternion in one array
             if len(state) == 7:
