@@ -75,6 +75,9 @@ Path = tuple[Any, ...]  # of a name and its members and indices: ("R", 0, 1), ("
 class _Bounded(sp.Function):
     """x of clamp(x, -1, 1): no other number has an arc sine."""
 
+    def _sympystr(self, printer: Any) -> str:
+        return f"clamp({printer.doprint(self.args[0])}, -1, 1)"
+
 
 def _unbounded(matrix: Any) -> Any:
     """The matrix without bounds of what has an arc sine or cosine."""
