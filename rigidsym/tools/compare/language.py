@@ -67,9 +67,8 @@ OF_MATRICES: dict[str, Callable[..., Any]] = {
     "trace": lambda matrix: matrix.trace(),
     "inv": lambda matrix: combined("**", matrix, sp.S.NegativeOne),
 }
-_OF_ANGLES = {f"{name}d": name for name in ("sin", "cos", "tan")}  # in degrees
-_OF_DEGREES = {f"{name}d": name for name in ("asin", "acos", "atan", "atan2")}
-OF_NUMBERS = {*FUNCTIONS, *_OF_ANGLES, *_OF_DEGREES, "pow", "sq", "deg2rad", "rad2deg"}
+_IN_DEGREES = {f"{name}d": name for name in FUNCTIONS if re.fullmatch("a?(sin|cos|tan2?)", name)}
+OF_NUMBERS = {*FUNCTIONS, *_IN_DEGREES, "pow", "sq", "deg2rad", "rad2deg"}
 
 
 def function_word(name: str) -> str:
@@ -143,10 +142,10 @@ def called(name: str, values: list[Any]) -> Any:
     """A function of expressions and matrices."""
     if len(values) == 1 and not isinstance(values[0], sp.MatrixBase):
         name = _SHORT.get(name, name)
-    if name in _OF_ANGLES:
-        return called(_OF_ANGLES[name], [called("deg2rad", values)])
-    if name in _OF_DEGREES:
-        return called("rad2deg", [called(_OF_DEGREES[name], values)])
+    if own := _IN_DEGREES.get(name):
+        is_inverse = own.startswith("a")
+        value = called(own, values if is_inverse else [called("deg2rad", values)])
+        return called("rad2deg", [value]) if is_inverse else value
     if name in ("deg2rad", "rad2deg"):
         return combined("*", sp.pi / 180 if name == "deg2rad" else 180 / sp.pi, *values)
     if name in ("pow", "sq"):

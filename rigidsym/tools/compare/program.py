@@ -306,8 +306,7 @@ def formula_matrix(text: str) -> sp.ImmutableMatrix:
             matrix = as_matrix(_Run(program, _Scope(value)).read(value))
             matrix = matrix.xreplace(_short_names(matrix.free_symbols))
             return _unflattened(matrix) if "{" in text else matrix  # float R[9] = {...}
-    missing = re.search(r"[)\]]\s*(\w+)", text)
-    if missing:
+    if missing := re.search(r"[)\]]\s*(\w+)", text):
         expected = f"expected an operator such as * between {text[: missing.start(1)].strip()!r}"
         raise ExpressionError(f"{expected} and {missing[1]!r}", column=missing.start(1) + 1)
     text = text if len(text) < 200 else f"{text[:200]}..."
@@ -401,10 +400,8 @@ class _Run:
         try:
             if self.depth > _DEEPEST_BLOCK:
                 self.forget(tree)
-            elif method := getattr(self, f"run_{tree.kind}", None):
-                method(tree)
             else:
-                self.run_parts(tree)
+                getattr(self, f"run_{tree.kind}", self.run_parts)(tree)
         except ExpressionError:  # what the statement does is unknown
             self.forget(tree)
         self.depth -= 1
@@ -642,9 +639,8 @@ class _Run:
     def is_step(self, change: sp.Expr) -> bool:
         """Whether inputs are multiplied by a step of time."""
         symbols = change.free_symbols
-        return any(patterns.step.fullmatch(s.name) for s in symbols) and not symbols & {
-            *self.definitions
-        }
+        has_step = any(patterns.step.fullmatch(s.name) for s in symbols)
+        return has_step and symbols.isdisjoint(self.definitions)
 
     def become_unread(self, paths: Iterable[Path], line: int, *, is_new: bool = False) -> None:
         """Names, and others for the same objects, get new symbols in place of their values.
@@ -994,11 +990,9 @@ class _Run:
 
     def as_vector(self, value: Any, other: Any) -> Any:
         """c v, where v has no value, in components if it is added to a vector."""
-        if not _is_scalar(value) or getattr(other, "shape", ()) != (3, 1):
-            return value
-        if self.is_moment(other):
+        if _is_scalar(value) and self.is_moment(other):
             value = self.moment(value)
-        if not _is_scalar(value):
+        if not _is_scalar(value) or getattr(other, "shape", ()) != (3, 1):
             return value
         names = [s for s in value.free_symbols if self.definitions.get(s) is None]
         parts = {s.name.rpartition(".")[0] for s in other.free_symbols}
@@ -1560,7 +1554,7 @@ def _last(name: str) -> str:
 def _short_names(symbols: Iterable[sp.Symbol]) -> dict[sp.Expr, sp.Expr]:
     """Short names for symbols of paths, and for the symbols of later values of a name."""
     names: dict[str, sp.Symbol] = {}
-    for symbol in sorted(symbols, key=lambda s: (s.is_Dummy, s.name.count("."), s.name)):
+    for symbol in sorted(symbols, key=lambda s: (s.is_Dummy, s.name.count("."), s.sort_key())):
         name = _last(symbol.name)
         name = symbol.name.replace(".", "_") if name in names else name
         while name in names:
