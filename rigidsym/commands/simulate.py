@@ -48,7 +48,7 @@ def command(source: str, **options: Any) -> None:
     if out is not None:
         columns = result.columns()
         rows = np.column_stack([*columns.values()])
-        write_table(out, tuple(columns), rows.dtype, [(rows, ())])
+        write_table(out, tuple(columns), [(rows, ())])
         click.echo(out)
     if animate is not None:
         start = dict(constants)

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rigidsym.data.columns import ColumnNames, names_for
-from rigidsym.data.tables import ArrayTable, Table, TextTable, open_table
+from rigidsym.data.tables import ArrayTable, Table, open_table
 from rigidsym.errors import BodyError, DataError, MissingExtra
 
 Array = NDArray[np.float64]
@@ -181,8 +181,6 @@ def inertia_of(
     path = Path(particles) if isinstance(particles, str | Path) else None
     try:
         table = ArrayTable(particles) if path is None else open_table(path)
-        if isinstance(table, TextTable):
-            table.quotes = False  # it may be another kind of text
         used, factors = _columns(table, columns)
         return _properties(table.read(used).table * factors, table, allow=allow)
     except (BodyError, DataError) as error:

@@ -25,9 +25,8 @@ from numpy.typing import NDArray
 from rigidsym.data.columns import is_unit
 from rigidsym.errors import DataError, MissingExtra, RequestError
 from rigidsym.system.files import whole_file
-from rigidsym.system.processes import Progress
 
-Numbers = NDArray[Any]  # float32 or float64, (rows, columns)
+Numbers = NDArray[Any]  # (rows, columns)
 Missing = Literal["error", "nan", "drop"]
 # Columns of numbers, columns that are kept as they are, and the share of the table read so far
 Block: TypeAlias = tuple[Sequence[NDArray[Any]], Sequence[NDArray[Any]], float]
@@ -57,7 +56,6 @@ class Table:
     source = ""  # what messages call the table: the path of its file, or empty for an array
     names: tuple[str, ...] | None = None  # of the columns, if there are any
     width: int
-    dtype: np.dtype[Any] = np.dtype(np.float64)  # float32 if the table holds nothing finer
     eps = 0.0  # relative precision of the numbers if it is below double
 
     def _blocks(self, columns: Sequence[int], kept: Sequence[int], rows: int) -> Iterator[Block]:
@@ -73,18 +71,16 @@ class Table:
         """
         first = 0
         for numbers, others, share in self._blocks(columns, kept, rows):
-            table = np.stack([column.astype(self.dtype) for column in numbers], axis=1)
+            table = np.stack([column.astype(float) for column in numbers], axis=1)
             places = np.arange(first, first := first + len(table))
             yield Batch(table, places, share, tuple(others))
 
-    def read(self, columns: Sequence[int], progress: Progress | None = None) -> Batch:
+    def read(self, columns: Sequence[int]) -> Batch:
         """The whole table."""
         tables, rows = [np.empty((0, len(columns)))], [np.empty(0, np.intp)]
         for batch in self.batches(columns):
             tables.append(batch.table)
             rows.append(batch.rows)
-            if progress is not None:
-                progress(batch.share)
         return Batch(np.concatenate(tables), np.concatenate(rows), 1.0)
 
     def place(self, row: int) -> str:
@@ -156,8 +152,6 @@ class ArrayTable(Table):
         self._columns = [column for array in arrays for column in array.T]
         self.width, self._length = len(self._columns), len(arrays[0])
         floats = [a.dtype for a in arrays if a.dtype.kind == "f"]
-        is_single = len(floats) == len(arrays) and all(kind.itemsize == 4 for kind in floats)
-        self.dtype = np.dtype(np.float32 if is_single else np.float64)
         self.eps = max((float(np.finfo(k).eps) for k in floats if k.itemsize < 8), default=0.0)
 
     def _blocks(self, columns: Sequence[int], kept: Sequence[int], rows: int) -> Iterator[Block]:
@@ -224,8 +218,6 @@ class ParquetTable(Table):
             self._schema = self._scan.collect_schema()
             self._length = self._scan.select(self._polars.len()).collect().item()
         self.names, self.width = tuple(self._schema), len(self._schema)
-        if all(kind == self._polars.Float32 for kind in self._schema.values()):
-            self.dtype = np.dtype(np.float32)
 
     def _blocks(self, columns: Sequence[int], kept: Sequence[int], rows: int) -> Iterator[Block]:
         used, others = ([[*self._schema][k] for k in which] for which in (columns, kept))
@@ -270,8 +262,6 @@ class TextTable(Table):
     read. `content` is what to read instead of the file. Raises DataError, with the lines, for what
     is not such a table.
     """
-
-    quotes = True  # whether messages show fields that are not numbers
 
     def __init__(self, path: Path, content: bytes | None = None) -> None:
         self._polars, self.source = _polars(), str(path)
@@ -372,7 +362,7 @@ class TextTable(Table):
             is_gap = column.str.to_lowercase().is_in(_MISSING)
             for row in (values.is_null() & ~is_gap & ~is_wrong).arg_true():
                 text = column[row][:40]
-                fault = f"field {k + 1}{f': {text!r}' if self.quotes else ''} is not a number"
+                fault = f"field {k + 1}: {text!r} is not a number"
                 unit = text[1:-1] if text.startswith(("[", "(")) else text
                 if is_unit(unit):
                     name = self.names[k] if self.names else "angle"
@@ -418,7 +408,6 @@ def check_ending(path: Path) -> None:
 def write_table(
     path: Path,
     names: Sequence[str],
-    dtype: np.dtype[Any],
     rows: Iterable[Rows],
     stream: BinaryIO | None = None,
 ) -> int:
@@ -435,56 +424,50 @@ def write_table(
             yield table, kept
 
     if stream is not None:
-        _write_text(stream, names, dtype, tallied())
+        _write_text(stream, names, tallied())
         return count
     with whole_file(path) as file:
-        _WRITERS[path.suffix.lower()](file, names, dtype, tallied())
+        _WRITERS[path.suffix.lower()](file, names, tallied())
     return count
 
 
-def _write_npy(
-    file: BinaryIO, names: Sequence[str], dtype: np.dtype[Any], rows: Iterable[Rows]
-) -> None:
+def _write_npy(file: BinaryIO, names: Sequence[str], rows: Iterable[Rows]) -> None:
     """The header is written again at the end; NumPy leaves room in it for the number of rows."""
-    header = {"descr": npy.dtype_to_descr(dtype), "fortran_order": False, "shape": (0, len(names))}
+    header = {"descr": "<f8", "fortran_order": False, "shape": (0, len(names))}
     npy.write_array_header_1_0(file, header)
     count = 0
     for table, kept in rows:
         if kept:
             raise DataError("an NPY file has no names of columns, so --keep needs .csv or .parquet")
-        file.write(np.ascontiguousarray(table, dtype).tobytes())
+        file.write(np.ascontiguousarray(table, float).tobytes())
         count += len(table)
     file.seek(0)
     npy.write_array_header_1_0(file, header | {"shape": (count, len(names))})
 
 
-def _frames(names: Sequence[str], dtype: np.dtype[Any], rows: Iterable[Rows]) -> Iterator[Any]:
+def _frames(names: Sequence[str], rows: Iterable[Rows]) -> Iterator[Any]:
     """Data frames; at least one, so that an empty table has its columns."""
     pl = _polars()
-    empty: Rows = (np.empty((0, len(names)), dtype), ())
+    empty: Rows = (np.empty((0, len(names))), ())
     rows = iter(rows)
     for table, kept in chain([next(rows, empty)], rows):
-        columns = [*kept, *np.asarray(table, dtype).T]
+        columns = [*kept, *table.T]
         yield pl.DataFrame([pl.Series(n, c) for n, c in zip(names, columns, strict=True)])
 
 
-def _write_text(
-    file: BinaryIO, names: Sequence[str], dtype: np.dtype[Any], rows: Iterable[Rows]
-) -> None:
+def _write_text(file: BinaryIO, names: Sequence[str], rows: Iterable[Rows]) -> None:
     """Text with commas and a first line of names; every number reads back as it was."""
-    for number, frame in enumerate(_frames(names, dtype, rows)):
+    for number, frame in enumerate(_frames(names, rows)):
         file.write(frame.write_csv(include_header=number == 0).encode())
         file.flush()
 
 
-def _write_parquet(
-    file: BinaryIO, names: Sequence[str], dtype: np.dtype[Any], rows: Iterable[Rows]
-) -> None:
+def _write_parquet(file: BinaryIO, names: Sequence[str], rows: Iterable[Rows]) -> None:
     """polars asks for the next frame when it has written one."""
     pl = _polars()
     from polars.io.plugins import register_io_source
 
-    frames = _frames(names, dtype, rows)
+    frames = _frames(names, rows)
     first = next(frames)
     source = register_io_source(lambda *_: chain([first], frames), schema=first.schema)
     try:

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
-from rigidsym.algebra.generators import TIME as TIME, in_names, rate_of
+from rigidsym.algebra.generators import TIME as TIME, in_names, is_identically_zero, rate_of
 from rigidsym.errors import ModelError
 from rigidsym.system.records import Record
 from rigidsym.text.names import A_MODULE_NAME, MODULE_NAME, lettered
@@ -64,7 +64,7 @@ _ALONG = dict(zip(AXES, map(tuple, sp.eye(3).tolist()), strict=True))
 class Turn(Record, kw_only=True):
     """One turn of a product of turns: right-handed, by `angle` about a constant axis.
 
-    The axis is a coordinate axis (x, y, z), or anything with `components` of its own.
+    The axis is a coordinate axis (x, y, z), or any unit vector, by its `components`.
     """
 
     axis: str  # x, y, z, or how the axis is printed
@@ -73,10 +73,15 @@ class Turn(Record, kw_only=True):
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "angle", symbolic(self.angle, "the angle of a turn"))
+        axis = tuple(symbolic(part, "the axis of a turn") for part in self.components)
+        object.__setattr__(self, "components", axis)
         if not self.components and self.axis not in AXES:
             raise ModelError(f"{self.axis!r} is not an axis: expected x, y, z or components")
         if self.components and len(self.components) != 3:
             raise ModelError(f"an axis has three components, got {len(self.components)}")
+        square = sum(part**2 for part in self.components) or sp.S.One
+        if square.is_number and square != 1 and not is_identically_zero(square - 1):
+            raise ModelError(f"the axis {self.axis} has the length {sp.sqrt(square)}; expected 1")
 
     @property
     def rate(self) -> sp.Expr:

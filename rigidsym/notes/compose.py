@@ -7,7 +7,7 @@ recalled has none.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from itertools import groupby
@@ -176,7 +176,7 @@ class Composer:
             "first_figure": doc.FigureReference(1),
             "cross_matrix": hat(sp.Matrix(sp.symbols("u_1:4"))),
             "columns": [_COLUMNS[:, k] for k in range(4)],
-            "moments": self._moments,
+            "moments": [*self.moments] and [doc.said("here"), in_parts(self.moments, self.letters)],
             "abbreviations": lambda value: self._abbreviations(
                 derivation.definitions_in(value, self._defined)
             ),
@@ -266,7 +266,8 @@ class Composer:
             names = {moment: name for name, moment in self.moments}
             moments = [names.get(moment, moment) for moment in step.expression]
             # (I₁, I₁, I₃), or the entries of I′ if they differ
-            end = _DIAGONAL if len({*moments}) == 3 else self._in_a_row(moments)
+            written = [formula_of(moment, self.letters) for moment in moments]
+            end = _DIAGONAL if len({*moments}) == 3 else Bracket(joined(written, COMMA))
             equation = replace(equation, sides=(*equation.sides, end), matrix=None, entries=())
         return replace(
             equation, sides=(*equation.sides, *textbook_form(name, self.derivation, self.letters))
@@ -290,15 +291,6 @@ class Composer:
         elif source:
             self.cited.add(source)
         return with_source(with_symbols(because, self.symbols), source)
-
-    # The body
-
-    def _in_a_row(self, entries: Iterable[sp.Expr]) -> Formula:
-        return Bracket(joined([formula_of(entry, self.letters) for entry in entries], COMMA))
-
-    def _moments(self) -> list[doc.NoteBlock]:
-        """The moments behind the names I₁, I₂, I₃."""
-        return [doc.said("here"), in_parts(self.moments, self.letters)] if self.moments else []
 
     # The lecture
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from rigidsym.errors import AlgebraError, ModelError, TemplateFault
 from rigidsym.formula.display import Equation as Equation
 from rigidsym.formula.letters import Letters
-from rigidsym.formula.reader import sentence
+from rigidsym.formula.reader import sentence, text_of
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import phrases
 from rigidsym.models.rotation import Citation
@@ -30,10 +30,16 @@ class Code(NamedTuple):
     text: str
 
 
-class Strong(NamedTuple):
-    """Words that must not be overlooked."""
+class Styled(NamedTuple):
+    """Words in another style, or with a link to an address."""
 
-    text: str
+    style: str  # "emphasis", "strong" or "link"
+    inside: Text
+    address: str = ""  # without blanks, brackets and quotes
+
+    @property
+    def text(self) -> str:
+        return text_of(self.inside) + f" ({self.address})" * bool(self.address)
 
 
 class EquationReference(NamedTuple):
@@ -72,7 +78,7 @@ class Cited(NamedTuple):
         return f"eq.\u00a0{equation}" if equation else section.replace(" ", "\u00a0")
 
 
-Span = str | Formula | Code | Strong | EquationReference | FigureReference | Cited
+Span = str | Formula | Code | Styled | EquationReference | FigureReference | Cited
 Text = tuple[Span, ...]
 
 
@@ -86,6 +92,13 @@ def said(key: str, *spans: Span) -> Paragraph:
         return Paragraph(sentence(phrases("equations")[key], *spans))
     except AlgebraError as error:
         raise TemplateFault(f"en/equations.toml, {key}: {error}") from error
+
+
+class Listing(NamedTuple):
+    """A list, of which each item is a line."""
+
+    items: tuple[Text, ...]
+    marks: tuple[str, ...]  # before each item: "-" for bullets, or "1.", "2.", ...
 
 
 class EquationRow(NamedTuple):
@@ -107,7 +120,7 @@ class Figure(NamedTuple):
     description: Text  # what the figure says, in words that do without it
 
 
-NoteBlock = Paragraph | Equation | EquationRow | NoteTable | Figure
+NoteBlock = Paragraph | Listing | Equation | EquationRow | NoteTable | Figure
 
 
 class Section(NamedTuple):
@@ -151,7 +164,9 @@ class Document(Record, kw_only=True):
     @cached_property
     def sources(self) -> tuple[str, ...]:
         """The sources that the text cites, each once, in order of appearance."""
-        spans = chain.from_iterable(text for block in self.blocks for text in texts_of(block))
+        spans = [
+            span for block in self.blocks for text in texts_of(block) for span in spans_of(text)
+        ]
         return tuple(dict.fromkeys(s.citation.text for s in spans if isinstance(s, Cited)))
 
     def source_number(self, cited: Cited) -> int:
@@ -171,7 +186,17 @@ def texts_of(block: NoteBlock) -> Iterator[Text]:
     match block:
         case Paragraph(text):
             yield text
+        case Listing(items):
+            yield from items
         case Figure():
             yield from (block.caption, block.description)
         case NoteTable():
             yield from chain(block.head, *block.rows)
+
+
+def spans_of(text: Text) -> Iterator[Span]:
+    """The spans of a text, and those inside its styled words."""
+    for span in text:
+        yield span
+        if isinstance(span, Styled):
+            yield from spans_of(span.inside)

@@ -4,17 +4,21 @@ A template prints facts by `{{ }}`: formulas, expressions of SymPy, the user's o
 tables and figures. Each leaves a mark in the Markdown, a letter of the private use area, so that
 nothing in it is read as Markdown. Formulas are also typed between dollar signs, as in LaTeX, where
 they may hold facts; `$$` begins and ends a display, and `\qquad` parts equations that may share a
-line. `\$` is a dollar sign. Paragraphs, headings, **strong words**, `code` and tables are those of
-Markdown.
+line. Paragraphs, headings, *emphasis*, **strong words**, `code`, [links](https://...), lists,
+tables and escapes such as `\$` are those of Markdown. To import markdown-it-py would take longer
+than to read a whole note here.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from contextvars import ContextVar
-from itertools import groupby
-from typing import TYPE_CHECKING, Any, NamedTuple
+from html import unescape
+from itertools import count, groupby
+from textwrap import dedent
+from typing import TYPE_CHECKING, Any
+from urllib.parse import quote
 
 import sympy as sp
 from jinja2 import TemplateRuntimeError, Undefined, pass_context
@@ -36,23 +40,159 @@ if TYPE_CHECKING:
 # Of a private use area, whose letters no font has; `re` compiles ranges up to U+FFFF slowly.
 _FIRST = 0xF0000
 _MARK = "[\U000f0000-\U000ffffd]"
-_INLINE = re.compile(
-    r"\\(?P<dollar>\$)|\$(?P<math>[^$]+)\$|\*\*(?P<strong>.+?)\*\*|`(?P<code>[^`]+)`"
-    rf"|(?P<mark>{_MARK})"
+# In `code` and in a formula nothing else is read, so that marks take their places first.
+_TYPED = re.compile(
+    r"\\(?P<escaped>[!-/:-@\[-`{-~])|\$(?P<math>[^$]+)\$|`(?P<code>[^`]+)`"
+    r"|(?<!!)\[(?P<words>[^]]+)\]\((?P<address>(?:\([^()\s]*\)|[^()\s])+)\)"
 )
-_MARKUP = re.compile(rf"[$*`|#&\n]|{_MARK}")  # what would be read as Markdown, or as a mark
+_STYLED = re.compile(
+    r"\*\*(?=\S)(?P<strong>(?:\*[^*]+\*|[^*])+)(?<=\S)\*\*"
+    rf"|\*(?=\S)(?P<emphasis>(?:\*\*[^*]+\*\*|[^*])+)(?<=\S)\*|(?P<mark>{_MARK})"
+)
+# Years, of four digits, begin no item.
+_ITEM = re.compile(r"(?:[-*+]|(?P<number>\d{1,2})[.)])\s+(?P<words>.+)", re.DOTALL)
+# images, other links, HTML, fenced code, line breaks, quotations, rules, _words_, lists in lists
+_UNREAD = re.compile(
+    r"!\[|\][(\[]|<[A-Za-z/!?]|``|\\$|^(?:>|~~~|\||[-*_=\s]+$)|(?<!\w)_+\w[^_\n]*_+(?!\w)"
+    r"|^\s+(?:[-*+]|\d{1,2}[.)])\s",
+    re.MULTILINE,
+)
+# what is read as Markdown in a text, which may be TeX
+_MARKUP = re.compile(rf"[$*`|#&<>\[\]!\n]|^\s*[-+\d]|{_MARK}")
+_IN_ADDRESS = "!#%&'*+,/:;=?@[]~"
 _TABLE = "Table:"
 _BLOCKS = (doc.Paragraph, doc.Equation, doc.EquationRow, doc.NoteTable, doc.Figure, list)
 
 
-class _Marks(NamedTuple):
-    """What the marks of one text stand for, in the order in which they were printed."""
+class _Reader:
+    """Reads the Markdown of one text, with the things that its marks stand for."""
 
-    letters: Letters
-    things: list[Any]
+    def __init__(self, letters: Letters) -> None:
+        self.letters = letters
+        self.things: list[Any] = []
+
+    def mark(self, thing: Any) -> str:
+        """The mark of the k-th thing is the k-th letter of the private use area."""
+        self.things.append(thing)
+        return chr(_FIRST + len(self.things) - 1)
+
+    def thing(self, text: str) -> Any:
+        """What a text that is one mark stands for, and None for others."""
+        return self.things[ord(text) - _FIRST] if re.fullmatch(_MARK, text) else None
+
+    def blocks(self, chunk: str) -> Iterator[doc.NoteBlock]:
+        """The blocks between two blank lines."""
+        if chunk.startswith("$$"):
+            yield self._display(chunk)
+            return
+        whole = self.marked(chunk)
+        thing = self.thing(whole)
+        if isinstance(thing, _BLOCKS):
+            yield from thing if isinstance(thing, list) else (thing,)
+        elif whole.startswith(("|", _TABLE)):
+            yield self._table(whole)
+        elif unread := _UNREAD.search(whole):
+            line = whole[unread.start() :].lstrip().partition("\n")[0]
+            expected = (
+                "expected words, *emphasis*, **strong words**, `code`, [links](address), lists"
+            )
+            raise _fault(line, f"{expected} or a table, not '{unread[0].strip()}'")
+        else:
+            yield from self._paragraphs(whole)
+
+    def marked(self, chunk: str) -> str:
+        """Words with a mark for each formula, code, link and escaped character."""
+        whole = _TYPED.sub(self._typed, chunk)
+        if "$" in whole:
+            lines = (line for line in chunk.splitlines() if "$" in _TYPED.sub("", line))
+            raise _fault(next(lines, chunk), "expected $ at the end of a formula")
+        return whole
+
+    def _typed(self, match: re.Match[str]) -> str:
+        if match["math"]:
+            return self.mark(self._formula(match["math"]))
+        if match["code"]:
+            return self.mark(doc.Code(self._plain(match["code"])))
+        if match["words"]:
+            words = self.text(self.marked(match["words"]))
+            address = quote(self._plain(match["address"]), safe=_IN_ADDRESS)
+            return self.mark(doc.Styled("link", words, address))
+        return self.mark(match["escaped"])
+
+    def _plain(self, words: str) -> str:
+        """Words in which only facts are read."""
+        return re.sub(_MARK, lambda mark: text_of(self._fact(mark[0])), words)
+
+    def _fact(self, mark: str) -> doc.Text:
+        thing = self.thing(mark)
+        return thing if type(thing) is tuple else (thing,)
+
+    def _paragraphs(self, words: str) -> Iterator[doc.Paragraph | doc.Listing]:
+        """A paragraph, a list, or a list on the line below a paragraph."""
+        parts = re.split(r"\n(?=[-*+]\s|\d{1,2}[.)]\s)", words)
+        if not _ITEM.match(parts[0]):
+            yield doc.Paragraph(self.text(parts.pop(0)))
+        if items := [match for match in map(_ITEM.match, parts) if match]:
+            first = items[0]["number"]
+            marks = (f"{k}." if first else "-" for k, _ in enumerate(items, int(first or 0)))
+            yield doc.Listing(tuple(self.text(item["words"]) for item in items), tuple(marks))
+
+    def _display(self, chunk: str) -> doc.Equation | doc.EquationRow:
+        if not re.fullmatch(r"\$\$[^$]+\$\$", chunk):
+            lines = (line for line in chunk.splitlines() if line.strip("$ "))
+            raise _fault(next(lines, chunk), "expected $$ at the end of a formula")
+        equations = tuple(map(self._equation, chunk.strip("$").split(r"\qquad")))
+        return doc.EquationRow(equations) if len(equations) > 1 else equations[0]
+
+    def _equation(self, typed: str) -> doc.Equation:
+        """Sides that are equal; a matrix as the last of them may be listed where it is too wide."""
+        *sides, last = re.split(r"\s=\s", typed.strip())
+        matrix = self.thing(last)
+        if not isinstance(matrix, sp.MatrixBase):
+            return doc.Equation(sides=tuple(map(self._formula, (*sides, last))))
+        return doc.Equation(sides=tuple(map(self._formula, sides)), matrix=matrix.as_immutable())
+
+    def _formula(self, typed: str) -> Formula:
+        """A typed formula, with the facts in it."""
+        parts = map(self.thing, re.findall(_MARK, typed))
+        places = count(1)
+        tex = re.sub(_MARK, lambda _: f"#{next(places)}", typed.strip())
+        try:
+            read = formula(tex, *parts)
+        except AlgebraError as error:
+            raise _fault(typed, str(error)) from error
+        # facts may hold letters of the user's, which stay
+        return with_names(read, self.letters.own) if tex == typed.strip() else read
+
+    def _table(self, chunk: str) -> doc.NoteTable:
+        """The rows of a table, below "Table:" and its caption; `:---` begins a column of words."""
+        lines = chunk.splitlines()
+        caption = lines.pop(0).removeprefix(_TABLE) if chunk.startswith(_TABLE) else ""
+        rows = [[cell.strip() for cell in line.strip().strip("|").split("|")] for line in lines]
+        if not rows[1:] or any(len(row) != len(rows[0]) for row in rows):
+            raise _fault(chunk.splitlines()[0], "expected rows of a table, each with as many cells")
+        of_words = next((k for k, cell in enumerate(rows[1]) if cell.startswith(":")), None)
+        head, *others = (tuple(map(self.text, row)) for row in (rows[0], *rows[2:]))
+        return doc.NoteTable(text_of(self.text(caption.strip())), head, tuple(others), of_words)
+
+    def text(self, words: str) -> doc.Text:
+        """The spans of a line, in which neighbouring words are one span."""
+        line = " ".join(part.strip() for part in words.splitlines())
+        words, *parts = _STYLED.split(line)
+        spans: list[doc.Span] = [unescape(words)]
+        for strong, emphasis, mark, words in zip(*[iter(parts)] * 4, strict=True):
+            style = "strong" if strong else "emphasis"
+            inside = self.text(strong or emphasis or "")
+            spans += self._fact(mark) if mark else (doc.Styled(style, inside),)
+            spans.append(unescape(words))
+        text: list[doc.Span] = []
+        for are_words, group in groupby(spans, lambda span: isinstance(span, str)):
+            neighbours = list(group)
+            text += ["".join(map(str, neighbours))] if are_words else neighbours
+        return tuple(span for span in text if span != "")
 
 
-_MARKS: ContextVar[_Marks] = ContextVar("marks")
+_READER: ContextVar[_Reader] = ContextVar("reader")
 
 
 @pass_context  # or Jinja would print constants once, when it compiles the template
@@ -63,18 +203,16 @@ def _printed(_: Context, value: Any) -> Markup:
         return Markup(str(value))  # raises
     if value is None:
         raise TemplateRuntimeError("this fact is None here; ask for it first, {% if ... %}")
-    if isinstance(value, int | str) and not _MARKUP.search(str(value)):
+    if isinstance(value, int) or (isinstance(value, str) and not _MARKUP.search(value)):
         return Markup(str(value))
-    marks = _MARKS.get()
+    reader = _READER.get()
     if isinstance(value, sp.Basic) and not isinstance(value, sp.MatrixBase):
-        value = formula_of(value, marks.letters)
+        value = formula_of(value, reader.letters)
     elif isinstance(value, Citation):
         value = doc.Cited(value)
     elif type(value) is tuple and value and isinstance(value[0], _BLOCKS):
         value = [*value]  # blocks; other tuples are texts
-    marks.things.append(value)
-    # The mark of the k-th thing is the k-th letter of the private use area.
-    mark = chr(_FIRST + len(marks.things) - 1)
+    mark = reader.mark(value)
     # No paragraph holds a block, whatever the template has beside it.
     return Markup(f"\n\n{mark}\n\n" if isinstance(value, _BLOCKS) else mark)
 
@@ -82,51 +220,32 @@ def _printed(_: Context, value: Any) -> Markup:
 def sections_of(name: str, letters: Letters, **facts: Any) -> Iterator[doc.Section]:
     """The sections of a template: first what comes before any heading, with an empty title.
 
-    Raises TemplateFault, with the template and its line, for a fact that there is not, and for a
-    formula that cannot be read.
+    Raises TemplateFault, with the template and its line, for a fact that there is not, for a
+    formula that cannot be read, and for Markdown that notes do not print.
     """
-    marks = _Marks(letters, [])
-    token = _MARKS.set(marks)
+    reader = _Reader(letters)
+    token = _READER.set(reader)
     try:
         environment = resources.environment(autoescape=True, finalize=_printed)
         markdown = environment.get_template(f"{name}.md.jinja").render(facts)
     finally:
-        _MARKS.reset(token)
-    section = doc.Section("", ())
+        _READER.reset(token)
+    title = ""
     blocks: list[doc.NoteBlock] = []
-    for chunk in map(str.strip, re.split(r"\n\s*\n", markdown)):
+    for chunk in (dedent(chunk).strip() for chunk in re.split(r"\n\s*\n", markdown)):
         heading, _, rest = chunk.partition("\n") if chunk.startswith("#") else ("", "", chunk)
-        _check_ends(heading)
-        _check_ends(rest)
         if heading:
-            yield section._replace(blocks=tuple(blocks))
-            title = text_of(_text(heading.strip("# "), marks))
-            section, blocks = doc.Section(title, ()), []
+            yield doc.Section(title, tuple(blocks))
+            title, blocks = text_of(reader.text(reader.marked(heading.strip("# ")))), []
         if rest.strip():
-            blocks += _blocks(rest.strip(), marks)
-    yield section._replace(blocks=tuple(blocks))
+            blocks += reader.blocks(rest.strip())
+    yield doc.Section(title, tuple(blocks))
 
 
-def _check_ends(chunk: str) -> None:
-    """Raises TemplateFault, with the line, if a formula of a paragraph has no end."""
-    is_display = chunk.startswith("$$")
-
-    def is_whole(typed: str) -> bool:
-        if is_display:
-            return re.fullmatch(r"\$\$[^$]+\$\$", typed) is not None
-        return "$" not in _INLINE.sub("", typed.replace("**", ""))
-
-    if not is_whole(chunk):
-        lines = (line for line in chunk.splitlines() if line.strip("$ ") and not is_whole(line))
-        raise TemplateFault(
-            f"{_place_of(next(lines, chunk))}: "
-            f"expected {'$$' if is_display else '$'} at the end of a formula"
-        )
-
-
-def _place_of(line: str) -> str:
-    """File and line of the template, by the longest part of a line of Markdown without facts."""
-    return resources.place_of(max(re.split(_MARK, line), key=len))
+def _fault(line: str, expected: str) -> TemplateFault:
+    """With file and line of the template, by the longest part of a line without facts."""
+    place = resources.place_of(max(re.split(_MARK, line), key=len))
+    return TemplateFault(f"{place}: {expected}")
 
 
 def blocks_of(name: str, letters: Letters, **facts: Any) -> tuple[doc.NoteBlock, ...]:
@@ -135,95 +254,8 @@ def blocks_of(name: str, letters: Letters, **facts: Any) -> tuple[doc.NoteBlock,
     return section.blocks
 
 
-def texts_of(name: str, letters: Letters, **facts: Any) -> tuple[doc.Text, ...]:
-    """The paragraphs of a template of sentences only."""
-    blocks = blocks_of(name, letters, **facts)
-    return tuple(block.text for block in blocks if isinstance(block, doc.Paragraph))
-
-
 def figure_with(name: str, drawing: Drawing, letters: Letters, **facts: Any) -> doc.Figure:
     """A drawing with its caption, the first paragraph of a template; the others describe it."""
-    caption, *others = texts_of(name, letters, **facts)
+    blocks = blocks_of(name, letters, **facts)
+    caption, *others = (block.text for block in blocks if isinstance(block, doc.Paragraph))
     return doc.Figure(drawing, caption, others[0] if others else ())
-
-
-def _blocks(chunk: str, marks: _Marks) -> Iterator[doc.NoteBlock]:
-    thing = marks.things[ord(chunk) - _FIRST] if re.fullmatch(_MARK, chunk) else None
-    if chunk.startswith("$$"):
-        inside = chunk.strip("$").strip()
-        equations = tuple(_equation(part, marks) for part in inside.split(r"\qquad"))
-        yield doc.EquationRow(equations) if len(equations) > 1 else equations[0]
-    elif chunk.startswith(("|", _TABLE)):
-        yield _table(chunk, marks)
-    elif isinstance(thing, _BLOCKS):
-        yield from thing if isinstance(thing, list) else (thing,)
-    else:
-        yield doc.Paragraph(_text(chunk, marks))
-
-
-def _equation(typed: str, marks: _Marks) -> doc.Equation:
-    """Sides that are equal; a matrix as the last of them may be listed where it is too wide."""
-    *sides, last = re.split(r"\s=\s", typed.strip())
-    thing = marks.things[ord(last) - _FIRST] if re.fullmatch(_MARK, last) else None
-    if isinstance(thing, sp.MatrixBase):
-        return doc.Equation(
-            sides=tuple(_formula(s, marks) for s in sides), matrix=thing.as_immutable()
-        )
-    return doc.Equation(sides=tuple(_formula(side, marks) for side in (*sides, last)))
-
-
-def _formula(typed: str, marks: _Marks) -> Formula:
-    """A typed formula, with the facts in it."""
-    parts = [marks.things[ord(mark) - _FIRST] for mark in re.findall(_MARK, typed)]
-    places = iter(range(1, 1 + len(parts)))
-    try:
-        read = formula(re.sub(_MARK, lambda _: f"#{next(places)}", typed.strip()), *parts)
-        # facts may hold letters of the user's, which stay
-        return read if parts else with_names(read, marks.letters.own)
-    except AlgebraError as error:
-        raise TemplateFault(f"{_place_of(typed)}: {error}") from error
-
-
-def _table(chunk: str, marks: _Marks) -> doc.NoteTable:
-    """The rows of a table, below "Table:" and its caption; `:---` begins a column of words."""
-    lines = chunk.splitlines()
-    caption = lines.pop(0).removeprefix(_TABLE).strip() if chunk.startswith(_TABLE) else ""
-    rows = [[cell.strip() for cell in line.strip().strip("|").split("|")] for line in lines]
-    of_words = next((k for k, cell in enumerate(rows[1]) if cell.startswith(":")), None)
-    head, *others = (tuple(_text(cell, marks) for cell in row) for row in (rows[0], *rows[2:]))
-    return doc.NoteTable(text_of(_text(caption, marks)), head, tuple(others), of_words)
-
-
-def _text(words: str, marks: _Marks) -> doc.Text:
-    """The spans of a line, in which neighbouring words are one span."""
-    line = " ".join(part.strip() for part in words.splitlines()).replace("&nbsp;", "\u00a0")
-    spans: list[doc.Span] = []
-    end = 0
-    for match in _INLINE.finditer(line):
-        spans.append(line[end : match.start()])
-        spans += _spans(match, marks)
-        end = match.end()
-    spans.append(line[end:])
-    text: list[doc.Span] = []
-    for are_words, group in groupby(spans, lambda span: isinstance(span, str)):
-        neighbours = list(group)
-        text += ["".join(map(str, neighbours))] if are_words else neighbours
-    return tuple(span for span in text if span != "")
-
-
-def _spans(match: re.Match[str], marks: _Marks) -> Iterable[doc.Span]:
-    if match["math"]:
-        return (_formula(match["math"], marks),)
-    if match["strong"]:
-        return (doc.Strong(text_of(_text(match["strong"], marks))),)
-    if match["dollar"]:
-        return ("$",)
-    if match["code"]:  # in which only facts are read
-        code = re.sub(_MARK, lambda mark: text_of(_fact(mark[0], marks)), match["code"])
-        return (doc.Code(code),)
-    return _fact(match["mark"], marks)
-
-
-def _fact(mark: str, marks: _Marks) -> doc.Text:
-    thing = marks.things[ord(mark) - _FIRST]
-    return thing if type(thing) is tuple else (thing,)

@@ -11,6 +11,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from rigidsym.data.mass import principal_axes_of
+
 Array = NDArray[np.float64]
 _ROUNDING = 1e-15  # relative: by which L and Ω may differ in direction and count as parallel
 
@@ -20,11 +22,8 @@ def free_motion(inertia: Array, omega: Array, rotation: Array, t: Array) -> tupl
 
     `inertia` is the tensor about the fixed point in the axes of the body, (3, 3).
     """
-    moments, axes = np.linalg.eigh(inertia)
-    if np.count_nonzero(inertia - np.diag(np.diag(inertia))) == 0:  # keep its digits
-        order = np.argsort(np.diag(inertia))
-        moments, axes = np.diag(inertia)[order], np.eye(3)[:, order]
-    axes = axes * [np.linalg.det(axes), 1, 1]  # right-handed
+    principal = principal_axes_of(inertia)
+    moments, axes = principal.moments, principal.axes
     start = axes.T @ omega
     momentum = moments * start
     square, twice = momentum @ momentum, momentum @ start  # L², 2E
@@ -39,15 +38,15 @@ def free_motion(inertia: Array, omega: Array, rotation: Array, t: Array) -> tupl
     if np.linalg.norm(np.cross(momentum, start)) <= _ROUNDING * twice:  # a principal axis
         return np.repeat(omega[None], len(t), axis=0), rotation @ _turned(t, omega)
     (in_a, in_b, in_c), precession = _in_principal_axes(moments, start, (a, b, c), t)
-    principal = np.empty((len(t), 3))
-    principal[:, a], principal[:, b], principal[:, c] = in_a, in_b, in_c
+    along = np.empty((len(t), 3))
+    along[:, a], along[:, b], along[:, c] = in_a, in_b, in_c
     # R(t) = R(0) P F(0)ᵀ R_z(ψ) F(t) Pᵀ. The columns of P are the principal axes. F(t) takes
     # principal components to a frame with z along L and c in the half-plane x > 0; it precesses by
     # ψ about L.
-    frames = _frames(moments * principal / np.sqrt(square), c)
+    frames = _frames(moments * along / np.sqrt(square), c)
     turned = _turned(precession, np.array([0.0, 0.0, 1.0])) @ frames
     whole = rotation @ axes @ _frames(momentum[None] / np.sqrt(square), c)[0].T @ turned @ axes.T
-    return principal @ axes.T, whole
+    return along @ axes.T, whole
 
 
 def _in_principal_axes(

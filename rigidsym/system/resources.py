@@ -262,17 +262,13 @@ class SandboxedTemplates(ImmutableSandboxedEnvironment):
         except TemplateSyntaxError as error:
             place = f"{error.filename or error.name}, line {error.lineno}"
             raise TemplateFault(f"{place}: {error.message}") from error
-        except TemplateNotFound as error:
-            raise TemplateFault(f"{_place(error)}: no template {error.name}") from error
-        except TemplateError as error:
-            raise TemplateFault(f"{_place(error)}: {error}") from error
-        except RecursionError as error:
-            raise TemplateFault(f"{_place(error)}: it includes itself") from error
-        except (ArithmeticError, TypeError, ValueError) as error:
+        except (TemplateError, RecursionError, ArithmeticError, TypeError, ValueError) as error:
             is_of_jinja = frame.f_globals.get("__name__", "").startswith("jinja2.")
-            if not is_of_jinja and "__jinja_template__" not in frame.f_globals:
+            is_of_template = is_of_jinja or "__jinja_template__" in frame.f_globals
+            if not (is_of_template or isinstance(error, TemplateError | RecursionError)):
                 raise  # from a function that the template calls
-            raise TemplateFault(f"{_place(error)}: {error}") from error
+            known = {TemplateNotFound: f"no template {error}", RecursionError: "it includes itself"}
+            raise TemplateFault(f"{_place(error)}: {known.get(type(error), error)}") from error
 
 
 def _place(error: BaseException) -> str:

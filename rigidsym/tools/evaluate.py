@@ -9,7 +9,7 @@ from itertools import compress, product
 from math import pi
 from pathlib import Path
 from types import ModuleType
-from typing import Any, BinaryIO, NamedTuple
+from typing import BinaryIO, NamedTuple
 
 import numpy as np
 
@@ -86,7 +86,7 @@ def evaluate(
         if isinstance(source, Path) and where.resolve() == source.resolve():
             raise RequestError(f"{where}: the result would replace the file that is read")
     calls = _calls_of(motion, quantities)
-    constants = _constants(calls.inputs, given or {}, table.dtype)
+    constants = _constants(calls.inputs, given or {})
     free = [each for each in calls.inputs if each.name not in constants]
     if not free:
         raise RequestError(f"{table.source}: no column is used; every row has the same result")
@@ -111,12 +111,12 @@ def evaluate(
                 first = table.place(int(batch.rows[is_lost.argmax()]))
             lost += int(is_lost.sum())
             np.fmax(largest, np.fmax.reduce(np.abs(batch.table), initial=0), out=largest)
-            yield _scaled(result, factors), batch.kept
+            yield result * factors, batch.kept
             if progress is not None:
                 progress(batch.share)
 
     titles = (*match.kept.values(), *(_title(*each, degrees=degrees) for each in calls.results))
-    total = write_table(where, titles, table.dtype, computed(), stream)
+    total = write_table(where, titles, computed(), stream)
     read_as = ", ".join(_title(*match.components[k], degrees=degrees) for k in match.unstated)
     remarks = [remark("unit_assumed", columns=read_as)] if read_as else []
     remarks += [
@@ -142,7 +142,7 @@ def _values(
     count = len(batch.table)
     ends = np.cumsum([len(each.names) for each in free])[:-1]
     vectors = dict(constants)
-    parts = np.split(_scaled(batch.table, scales), ends, axis=1)
+    parts = np.split(batch.table * np.array(scales), ends, axis=1)
     for each, part in zip(free, parts, strict=True):
         vectors[each.name] = each.rows(part)
         if each is _MATRIX:
@@ -156,13 +156,6 @@ def _values(
         value = np.asarray(value).reshape(1 if is_constant else count, -1)
         values.append(np.broadcast_to(value, (count, value.shape[1])))
     return np.concatenate(values, axis=1)
-
-
-def _scaled(table: Numbers, factors: Sequence[float]) -> Numbers:
-    """The columns times their factors, in the precision of the table."""
-    if all(factor == 1 for factor in factors):
-        return table
-    return table * np.array(factors).astype(table.dtype)
 
 
 # The functions, their arguments and results
@@ -277,9 +270,7 @@ def _title(name: str, unit: str, *, degrees: bool) -> str:
 # Which column is which argument
 
 
-def _constants(
-    inputs: Sequence[_Input], given: Mapping[str, float], dtype: np.dtype[Any]
-) -> dict[str, Numbers]:
+def _constants(inputs: Sequence[_Input], given: Mapping[str, float]) -> dict[str, Numbers]:
     """The arguments whose components all have given numbers.
 
     Raises RequestError for numbers that belong to no input, and for some of a vector only.
@@ -290,7 +281,7 @@ def _constants(
     constants = {}
     for each in inputs:
         if given.keys() >= {*each.names}:
-            numbers = np.array([[given[name] for name in each.names]], dtype)
+            numbers = np.array([[given[name] for name in each.names]])
             constants[each.name] = each.rows(numbers)[0]
         elif not given.keys().isdisjoint(each.names):
             names = ", ".join(each.names)

@@ -58,6 +58,8 @@ def own(**options: object) -> rs.RotationModel:
     [
         (lambda: rs.solid("sphere", radius="r"), "expected a SymPy expression, got 'r'"),
         (lambda: rs.Turn(axis="u", angle=a), "'u' is not an axis: expected x, y, z"),
+        (lambda: rs.Turn(axis="u", angle=a, components="abc"), "axis of a turn: expected a SymPy"),
+        (lambda: rs.Turn(axis="u", angle=a, components=(1, 1, 0)), "has the length sqrt(2)"),
         (lambda: rs.EulerAngles(3), "expected a sequence such as 'ZXZ', got 3"),
         (lambda: rs.chain("z(a) x(b)"), "expected a list of rs.Turn, got 'z(a) x(b)'"),
         (lambda: rs.derive("ZXZ", timeout="1"), "expected a positive number of seconds, got '1'"),

@@ -12,12 +12,11 @@ from typing import TYPE_CHECKING
 import sympy as sp
 
 from rigidsym.errors import BodyError
-from rigidsym.mechanics.mass.moments import about_centre, moments_of
+from rigidsym.mechanics.mass.moments import moments_of
 from rigidsym.models.body import (
     KEYS,
     PHRASES,
     BodyDescription,
-    Composite,
     Distribution,
     Parameter,
     RigidBody,
@@ -159,14 +158,6 @@ def in_numbers(body: RigidBody) -> MassProperties | None:
         centre=np.array(list(centre), dtype=float),
         inertia=np.array(inertia.tolist(), dtype=float),
     )
-
-
-def parts_of(body: RigidBody) -> list[tuple[sp.Expr, sp.Matrix, sp.Matrix, sp.Matrix]]:
-    """Mass, centre, tensor about it and turn of each part of a composite body; else none."""
-    whole = body.distribution
-    if not isinstance(whole, Composite):
-        return []
-    return [(*about_centre(part), part.turned) for part in whole.parts]
 
 
 def is_measured(body: RigidBody) -> bool:

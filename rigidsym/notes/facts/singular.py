@@ -124,10 +124,6 @@ class SingularFacts(Record):
             for factor in sp.Mul.make_args(self.result.determinant)
         )
 
-    @property
-    def has_full_rank(self) -> bool:
-        return self.result.rank == 3
-
     @cached_property
     def zeros(self) -> list[PointFacts]:
         return [

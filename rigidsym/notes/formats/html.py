@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 from html import escape as escape_markup
-from itertools import pairwise
 
 from math_core import LatexToMathML
 
@@ -82,6 +81,8 @@ class HtmlPrinter(NotePrinter):
     width = _PAGE
     words = staticmethod(escape)
     strong = "<strong>{}</strong>"
+    emphasis = "<em>{}</em>"
+    link = '<a href="{address}">{}</a>'
     reference = '<a href="#{label}">({number})</a>'
     figure_title = "<strong>Figure {number}.</strong>"
     citation = '[<a href="#{label}">{number}</a>{place}]'
@@ -93,16 +94,6 @@ class HtmlPrinter(NotePrinter):
             for equation, layout in self.displays.items()
         }
         self._blocks = resources.environment().get_template(BLOCKS).module
-
-    def body(self, section: doc.Section) -> str:
-        blocks = list(map(self.block, section.blocks))
-        for place, (block, after) in enumerate(pairwise(section.blocks)):
-            if isinstance(block, doc.Paragraph) and isinstance(
-                after, doc.Equation | doc.EquationRow
-            ):
-                # no page ends between the words and the formula
-                blocks[place] = blocks[place].replace("<p>", '<p class="lead">', 1)
-        return "\n".join(blocks)
 
     def block(self, block: doc.NoteBlock) -> str:
         return str(getattr(self._blocks, type(block).__name__.lower())(self, block)).strip()

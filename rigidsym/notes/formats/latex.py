@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from rigidsym.formula.display import PAGE, pack
 from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.reader import text_of
@@ -56,6 +58,8 @@ class _LatexPrinter(NotePrinter):
     width = _LINE
     beside_number = PAGE
     strong = r"\textbf{{{}}}"
+    emphasis = r"\emph{{{}}}"
+    link = r"\href{{{address}}}{{{}}}"
     reference = r"\eqref{{{label}}}"
     # as TeX counts them, which is the place of the figure in a larger document
     figure_number = r"\ref{{{label}}}"
@@ -75,6 +79,15 @@ class _LatexPrinter(NotePrinter):
     def paragraph(self, block: doc.Paragraph) -> str:
         # no empty line: a display that follows belongs to the paragraph
         return "\n" + self.text(block.text)
+
+    def address(self, address: str) -> str:
+        return re.sub("[#%&_]", r"\\\g<0>", address)
+
+    def listing(self, block: doc.Listing) -> str:
+        marks = ("{}" if mark == "-" else f"[{mark}]" for mark in block.marks)
+        pairs = zip(marks, map(self.text, block.items), strict=True)
+        items = "\n".join(rf"\item{mark} {text}" for mark, text in pairs)
+        return f"\\begin{{itemize}}\\setlength{{\\itemsep}}{{0pt}}\n{items}\n\\end{{itemize}}"
 
     def equationrow(self, block: doc.EquationRow) -> str:
         row = pack(block.equations, self.document.letters, _LINE, self.pen)

@@ -62,6 +62,8 @@ class _MarkdownPrinter(NotePrinter):
     words = staticmethod(_inside)
     code = "`{}`".format
     strong = "**{}**"
+    emphasis = "*{}*"
+    link = "[{}]({address})"
     reference = "({number})"
     figure_title = "**Figure {number}.**"
     citation = "[{number}{place}]"
@@ -75,7 +77,14 @@ class _MarkdownPrinter(NotePrinter):
         return "\n".join(["## Sources", "", *lines])
 
     def paragraph(self, block: doc.Paragraph) -> str:
-        return _LINE_START.sub(_unlisted, self.text(block.text).lstrip())
+        return self._line(block.text)
+
+    def listing(self, block: doc.Listing) -> str:
+        lines = zip(block.marks, map(self._line, block.items), strict=True)
+        return "\n".join(f"{mark} {line}" for mark, line in lines)
+
+    def _line(self, text: doc.Text) -> str:
+        return _LINE_START.sub(_unlisted, self.text(text).lstrip())
 
     def equation(self, equation: doc.Equation) -> str:
         layout = self.displays[equation]

@@ -25,6 +25,8 @@ class NotePrinter:
     code: Callable[[str], str]
     # forms of spans; {label} is unique in the document
     strong: ClassVar[str]
+    emphasis: ClassVar[str]
+    link: ClassVar[str]
     reference: ClassVar[str]
     figure_number: ClassVar[str] = "{number}"
     figure_title: ClassVar[str]
@@ -65,6 +67,9 @@ class NotePrinter:
     def label(self, label: str) -> str:
         return self.words(label)
 
+    def address(self, address: str) -> str:
+        return self.words(address)
+
     def text(self, text: doc.Text) -> str:
         return "".join(map(self.span, text))
 
@@ -76,8 +81,9 @@ class NotePrinter:
                 return self.formula(span)
             case doc.Code(text):
                 return self.code(text)
-            case doc.Strong(text):
-                return self.strong.format(self.words(text))
+            case doc.Styled(style, inside, address):
+                form = getattr(self, style)
+                return str(form.format(self.text(inside), address=self.address(address)))
             case doc.EquationReference(label):
                 number = self.document.number(label)
                 return self.reference.format(label=self.label(label), number=number)

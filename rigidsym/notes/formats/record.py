@@ -149,19 +149,14 @@ def _turn(turn: Turn, names: Names) -> Iterator[str]:
 
 def _body(body: RigidBody) -> dict[str, Any]:
     """The body itself; its principal axes in numbers, where all its parameters have values."""
-    from rigidsym.mechanics.mass.bodies import in_numbers, parts_of
+    from rigidsym.mechanics.mass.bodies import in_numbers
 
     numbers = in_numbers(body)
-    parts = [  # about their centres of mass; `turn` takes the axes of a part to those of the whole
-        {"mass": mass, "centre": _vector(centre), "inertia": inertia, "turn": turn}
-        for mass, centre, inertia, turn in parts_of(body)
-    ]
     return {
         "title": body.title,
         "mass": body.mass,
         "centre": _vector(body.centre),
         "inertia": body.inertia,
-        **({"parts": parts} if parts else {}),
         "parameters": body.parameters,
         "in_numbers": None if numbers is None else numbers.record(),
     }

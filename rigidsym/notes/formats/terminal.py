@@ -19,13 +19,13 @@ from rigidsym.formula.tree import Formula, equal
 from rigidsym.formula.unicode_pen import UnicodePen, columns
 from rigidsym.mechanics.derivation import Argument, Derivation, Step, phrases
 from rigidsym.mechanics.quantities.kinematics import BODY, ROTATION, SPACE
-from rigidsym.notes.document import Equation, Paragraph
+from rigidsym.notes.document import Equation, Listing, NoteBlock, Paragraph
 from rigidsym.notes.equations import equation_of, in_parts, sum_of_vectors
 from rigidsym.notes.facts.rotation import facts_of_rotation, product_of, title_of
 from rigidsym.notes.facts.singular import singular_facts
 from rigidsym.notes.fitting import as_vectors
 from rigidsym.notes.letters import RESIDUAL, letters_of
-from rigidsym.notes.template import blocks_of, texts_of
+from rigidsym.notes.template import blocks_of
 from rigidsym.notes.words import is_body_alone, unit_in_words, with_symbols
 
 if TYPE_CHECKING:
@@ -126,6 +126,17 @@ class _Screen:
             break_on_hyphens=False,
         )
 
+    def block(self, block: NoteBlock) -> None:
+        """A block of a template; only notes have tables and figures."""
+        match block:
+            case Paragraph(text):
+                self.sentence(text)
+            case Listing(items, marks):
+                for mark, item in zip(marks, items, strict=True):
+                    self.sentence((f"{mark} ", *item))
+            case Equation():
+                self.equation(block)
+
     def equation(self, equation: Equation) -> None:
         """The sides with their value: beside them, or below, or else a line an entry."""
         matrix, sides = equation.matrix, list(equation.sides)
@@ -186,11 +197,14 @@ class _Screen:
         model, steps, letters = derivation.model, derivation.steps, self.letters
         facts = facts_of_rotation(derivation, letters)
         facts |= {"angles": None, "has_dots": letters.notation.rates == "dot"}
+        # templates of the user's own may refer to equations and sources
+        facts["reference"] = lambda name: f"({derivation.step(name).number})"
+        facts["cite"] = lambda source: f"[{source}]"
         self.heading(*title_of(derivation, letters))
         if not is_body_alone(derivation):
             self.line()
-            for text in texts_of("en/convention", letters, **facts):
-                self.sentence(text)
+            for block in blocks_of("en/convention", letters, **facts):
+                self.block(block)
             if model.turns:
                 self.line(_INDENT, equal(ROTATION, product_of(model.turns, letters)))
         for step in steps:
@@ -215,8 +229,8 @@ class _Screen:
                         self.equation(block)
                     elif isinstance(block, Paragraph) and singular.result.measure == "minors":
                         self.sentence(block.text)  # or Σ₁ would have no meaning
-            for text in texts_of("en/singular", letters, **facts):
-                self.sentence(text)
+            for block in blocks_of("en/singular", letters, **facts):
+                self.block(block)
 
         if derivation.body is not None:
             from rigidsym.notes.facts.mass import MassFacts
