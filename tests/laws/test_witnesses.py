@@ -13,17 +13,7 @@ import sympy as sp
 from scipy.spatial.transform import Rotation
 from sympy.physics.vector import ReferenceFrame, dynamicsymbols
 
-from helpers.witness import (
-    CONVENTIONS,
-    Path,
-    agree,
-    evaluate,
-    mp,
-    paths,
-    rotation,
-    unhat,
-    values_along,
-)
+from helpers.witness import CONVENTIONS, agree, evaluate, mp, paths, rotation, unhat, values_along
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.derive import derive
 from rigidsym.models.parametrisations import EulerAngles
@@ -42,7 +32,7 @@ def motion(convention: str) -> Derivation:
     return derive(EulerAngles(convention))
 
 
-def printed(convention: str, quantity: str, path: Path):
+def printed(convention: str, quantity: str, path):
     return evaluate(getattr(motion(convention), quantity), values_along(ANGLES, path))
 
 

@@ -17,15 +17,7 @@ from rigidsym.mechanics.mass.bodies import body_of, solid
 from rigidsym.mechanics.mass.moments import moments_of
 from rigidsym.mechanics.mass.principal import principal_of
 from rigidsym.mechanics.quantities.mass import INERTIA_QUANTITIES
-from rigidsym.models.body import (
-    BodyDescription,
-    Composite,
-    Part,
-    Particle,
-    Particles,
-    Solid,
-    given_inertia,
-)
+from rigidsym.models.body import BodyDescription, Solid, given_inertia
 from rigidsym.models.solids import SHAPES, shaped
 
 A, C, M, a, b, c, d, h, m, rho = sp.symbols("A C M a b c d h m rho")
@@ -39,9 +31,9 @@ def column(*entries: object) -> sp.ImmutableMatrix:
     return sp.ImmutableMatrix([sp.sympify(entry) for entry in entries])
 
 
-def particles(*rows: tuple[object, ...]) -> Particles:
-    found = [Particle(mass=sp.sympify(mass), position=column(*at)) for mass, *at in rows]
-    return Particles(particles=tuple(found))
+def particles(*rows: tuple[object, ...]) -> rs.Particles:
+    found = [rs.Particle(mass=sp.sympify(mass), position=column(*at)) for mass, *at in rows]
+    return rs.Particles(particles=tuple(found))
 
 
 def made(shape: str, **given: object) -> rs.RigidBody:
@@ -144,15 +136,15 @@ def test_a_solid_of_any_density_by_its_bounds():
 
 
 def test_parts_move_turn_and_add_up_and_a_hole_takes_away():
-    outer = Part(what=shaped("cylinder", [b, h], density=rho))
-    hole = Part(what=shaped("cylinder", [a, h], density=rho), hole=True)
-    ring = body_of(Composite(parts=(outer, hole)))
+    outer = rs.Part(what=shaped("cylinder", [b, h], density=rho))
+    hole = rs.Part(what=shaped("cylinder", [a, h], density=rho), hole=True)
+    ring = body_of(rs.Composite(parts=(outer, hole)))
     hollow = solid("hollow_cylinder", density=rho)
     assert (ring.inertia - hollow.inertia).applyfunc(sp.cancel) == sp.zeros(3)
     turn = sp.ImmutableMatrix(sp.Matrix([[3, -4, 0], [0, 0, 5], [-4, -3, 0]]) / 5)
     at, cone = column(1, h, -2), body("cone")  # whose centre is not its origin
-    part = Part(what=shaped("cone", [a, h], mass=M), at=at, turned=turn)
-    moved = body_of(Composite(parts=(part,)))
+    part = rs.Part(what=shaped("cone", [a, h], mass=M), at=at, turned=turn)
+    moved = body_of(rs.Composite(parts=(part,)))
     assert (moved.inertia - turn * cone.inertia * turn.T).applyfunc(sp.expand) == sp.zeros(3)
     assert (moved.centre - turn * cone.centre - at).applyfunc(sp.expand) == sp.zeros(3, 1)
 
@@ -245,7 +237,7 @@ def solid_of(place: tuple[object, ...], **given: object) -> Solid:
 FLAT = solid_of((U, V, 0))
 ARC = {"coordinates": (U,), "bounds": ((sp.S.Zero, sp.pi),), "mass": M, "density": None}
 ON_ARC = (a * sp.cos(U), a * sp.sin(U), 0)
-NESTED = Composite(parts=(Part(what=Composite(parts=(Part(what=FLAT),))),))
+NESTED = rs.Composite(parts=(rs.Part(what=rs.Composite(parts=(rs.Part(what=FLAT),))),))
 REFUSED = [
     (lambda: solid_of((U, V, W), element=sp.S.One), "lines and surfaces have an element"),
     (lambda: solid_of((U, V, W), bounds=((sp.S.Zero, V), UNIT, UNIT)), "the bounds of u contain v"),

@@ -82,6 +82,14 @@ def test_a_tree_that_branches_has_the_equations_that_sympy_finds():
     assert solves_lagrange(motion, lagrangian, sp.Matrix(forces) + sp.Matrix([0, sp.Symbol("u")]))
 
 
+def test_of_two_links_without_weight_only_the_whole_momentum_is_constant():
+    across, along = (f"{f}(a)*a_dot + {f}(a + b)*(a_dot + b_dot)" for f in ("cos", "sin"))
+    point = {"velocity": ["0", across, along], "mass": "m"}
+    body = rs.principal_moments(A, A, A)
+    links = rs.derive("x(a) x(b)", ["first_integrals"], body=body, parts=[point])
+    assert [each.name for each in links.first_integrals] == ["energy", "momentum_a"]
+
+
 def test_kovalevskayas_integral_is_proved_and_a_wrong_one_refuted():
     motion = shipped("kovalevskaya_top")
     proofs = {integral.name: integral.proof for integral in motion.first_integrals}

@@ -13,31 +13,15 @@ import sympy as sp
 from sympy import pi, sech, sin, sqrt, tanh
 from sympy.printing.pretty.pretty_symbology import pretty_use_unicode
 
-from helpers.samples import (
-    NORM,
-    ROTATIONS,
-    TIME,
-    WRONG,
-    about_z,
-    alpha,
-    chain,
-    length,
-    m,
-    model,
-    phi,
-    psi,
-    theta,
-    u,
-    w,
-    x,
-    y,
-    z,
-)
+from helpers.samples import NORM, ROTATIONS, TIME, WRONG, about_z, alpha, chain, length, m, model
 from helpers.witness import agree, evaluate, mp, paths, unhat, values_along
 from rigidsym.errors import AlgebraError, DerivationError, ModelError, NotARotation
 from rigidsym.mechanics.derive import derive
 from rigidsym.models.parametrisations import EulerAngles
-from rigidsym.models.rotation import elementary
+from rigidsym.models.rotation import elementary, time_function
+
+phi, theta, psi, u = map(time_function, ("phi", "theta", "psi", "u"))
+w, x, y, z = map(time_function, "wxyz")
 
 
 @pytest.mark.parametrize("name", ROTATIONS)

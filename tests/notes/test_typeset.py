@@ -16,12 +16,7 @@ from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.scalars import matrix_of
 from rigidsym.mechanics.derive import derive
 from rigidsym.models.library import rotation_from
-from rigidsym.models.parametrisations import (
-    EULER_SEQUENCES,
-    EulerAngles,
-    axis_turn,
-    chain as chain_of,
-)
+from rigidsym.models.parametrisations import axis_turn
 from rigidsym.models.rotation import Turn, time_function
 from rigidsym.notes.formats import pdf as typesetting
 from rigidsym.notes.formats.pdf import typeset
@@ -42,18 +37,18 @@ def _page(body: str) -> str:
 @pytest.mark.usefixtures("tex")
 def test_notes_of_all_conventions_and_of_chains_compile_without_a_warning():
     motions = [
-        derive(EulerAngles(sequence, angles, passive=passive))
+        derive(rs.EulerAngles(sequence, angles, passive=passive))
         for angles, passive, sequences in (
-            (GREEK, False, EULER_SEQUENCES),
-            (WORDS, True, EULER_SEQUENCES[::4]),  # the widest
-            (INDEXED, False, EULER_SEQUENCES[3::9]),
+            (GREEK, False, rs.EULER_SEQUENCES),
+            (WORDS, True, rs.EULER_SEQUENCES[::4]),  # the widest
+            (INDEXED, False, rs.EULER_SEQUENCES[3::9]),
         )
         for sequence in sequences
     ]
     a, b = time_function("a"), time_function("b")
     for axis in ((Rational(3, 5), 0, Rational(4, 5)), symbols("e_1 e_2 e_3"), ()):
         oblique = axis_turn(axis, b) if axis else Turn(axis="y", angle=pi / 6)
-        motions.append(derive(chain_of([oblique, Turn(axis="z", angle=a)])))
+        motions.append(derive(rs.chain([oblique, Turn(axis="z", angle=a)])))
     documents = [note(motion, module=f"{motion.name}.py").document for motion in motions]
     assert warnings_of(documents) == ()
 
@@ -105,7 +100,7 @@ def test_no_formula_is_wider_than_it_was_measured(angles):
 def _formulas_with_widths(angles: tuple[str, ...]) -> list[tuple[str, float]]:
     widths: dict[str, float] = {}
     for sequence in ("ZXZ", "ZYX", "yxz"):
-        motion = derive(EulerAngles(sequence, angles))
+        motion = derive(rs.EulerAngles(sequence, angles))
         letters = letters_of(motion.arguments)
         for step in motion.steps:
             formulas = [step.quantity.symbol, *(proof.claim for proof in step.proofs)]

@@ -275,6 +275,12 @@ def test_what_is_nearer_is_drawn_later_also_where_parts_pierce_each_other():
         (np.array(f.points), f.color[2] > f.color[0]) for f in drawing.body if hasattr(f, "color")
     ]
     check_order(shape, facets, view)
+    away = sp.ImmutableMatrix([round(5 * x) for x in view.toward])
+    cube = shaped("box", (1, 1, 1), density=sp.S.One)
+    apart = Composite(parts=(Part(what=cube, at=away), Part(what=cube, at=-away)))
+    drawing, _ = body_drawing(rs.derive("ZXZ", ("body",), body=rs.body_of(apart)))
+    is_nearer = [f.color[2] > f.color[0] for f in drawing.body if hasattr(f, "color")]
+    assert is_nearer == sorted(is_nearer)
 
 
 @pytest.mark.usefixtures("node")

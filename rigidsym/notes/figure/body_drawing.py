@@ -112,10 +112,10 @@ def _from_the_back(parts: Sequence[_Part]) -> Iterator[_Part]:
                 continue
             if max(-low, high) <= _FLAT:
                 here.append(part)
-            elif min(-low, high) <= _FLAT:
-                (front if high > _FLAT else back).append(part)
-            else:
-                for side, place in ((1, front), (-1, back)):
+            for side, place, top, bottom in ((1, front, high, low), (-1, back, -low, -high)):
+                if top > _FLAT and bottom >= -_FLAT:
+                    place.append(part)
+                elif top > _FLAT:
                     own = side * heights[start : start + len(part.corners)]
                     place.append(part._replace(corners=np.array([*_cut(part.corners, own)])))
         near, far = (front, back) if _TOWARD @ plane.normal > 0 else (back, front)
