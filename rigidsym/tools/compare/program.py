@@ -1442,7 +1442,8 @@ class _Run:
         if len(nodes) == 1 and nodes[0].kind in ("list", "matrix"):
             nodes = nodes[0].parts
         parts = [as_matrix(self.read(each)) for each in nodes]
-        if tree.kind == "index" and all(len(each) == 1 for each in parts):
+        are_numbers = all(len(each) == 1 for each in parts)
+        if tree.kind == "index" and are_numbers and any(each[0].is_Symbol for each in parts):
             raise self.unreadable(tree, "may be of numbers or of vectors")
         for each in nodes if axis.endswith("=1") else ():  # of a batch, this is the axis of rows
             part = self.tests.get(each.text, each)
