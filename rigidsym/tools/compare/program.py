@@ -687,13 +687,13 @@ class _Run:
     def written(self, left: Tree) -> Path:
         """The name that an assignment writes to, also through parts that are not understood."""
         tree: Tree | None = left
-        paths, path = self.program.written, None
-        while tree is not None and left.node.id not in paths:
+        paths, place = self.program.written, left.node.id
+        while tree is not None and place not in paths:
             if path := self.path(tree):
-                places = (n for n, key in enumerate(path) if not isinstance(key, str))
-                paths[left.node.id] = path[: next(places, len(path))]
+                ends = (n for n, key in enumerate(path) if not isinstance(key, str))
+                paths[place] = path[: next(ends, len(path))]
             tree = next(iter(tree.parts), None)
-        return paths.setdefault(left.node.id, ())
+        return paths.setdefault(place, ())
 
     def run_if(self, tree: Tree) -> None:
         """if, #if, switch, and handlers of exceptions: each run takes one branch, or none."""

@@ -202,9 +202,10 @@ def _block(matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
         in_radians = matrix * sp.pi / 180 if are_angles(matrix) else matrix.xreplace(scale)
         matrix = in_radians if in_radians.count(sp.pi) < matrix.count(sp.pi) else matrix
     step = next((s for s in matrix.free_symbols if patterns.step.fullmatch(s.name)), None)
-    before = matrix.xreplace({step: sp.S.Zero})  # q of q + (...)*dt
-    if step is not None and not any(e.is_Add for e in before):  # but not g - w - (...)*dt
-        rates = matrix.applyfunc(lambda entry: entry.diff(step))
+    # Of q + (...)*dt, but not of g - w - (...)*dt. Derivatives of long expressions are expensive.
+    if step is not None and not any(f.has(step) for f in matrix.atoms(sp.Function, sp.Pow)):
+        is_sum = any(entry.is_Add for entry in matrix.xreplace({step: sp.S.Zero}))
+        rates = matrix if is_sum else matrix.applyfunc(lambda entry: entry.diff(step))
         matrix = matrix if rates.has(step) else rates
     edges = (tuple(matrix[-1, :]), tuple(matrix[:, -1]))  # by rows, or by columns
     is_homogeneous = matrix.shape == (4, 4) and (0, 0, 0, 1) in edges
