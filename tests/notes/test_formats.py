@@ -194,3 +194,8 @@ def test_notes_of_every_kind_fit_a_phone_and_a_screen(tmp_path: Path):
                 assert tab.run("document.documentElement.scrollWidth") <= width
                 assert width == 360 or tab.run(WIDE) == []
                 assert tab.complaints == []
+
+
+def test_a_page_may_end_within_twelve_lines():
+    latex = rs.derive("z(a) y(b) y(c) x(d)", ["inverse_rate_matrix_body"]).note().latex()
+    assert r"{\freely\begin{align*}" in latex

@@ -25,7 +25,7 @@ _DELIMITERS = {
     "comment_end_string": "=))",
 }
 _LINE = 41.5  # ems: 160 mm at 11 points
-_TALL = 14  # lines of a display, of about 25 high ones on a page: more than these may part
+_TALL = 11  # lines of a display, of about 25 high ones on a page: more than these may part
 
 
 def render(document: doc.Document) -> str:
