@@ -47,6 +47,7 @@ def render(program: Program) -> dict[str, str]:
         of_math=of_math,
         series=remarks.series(program, python.SERIES, WIDTH),
         has_choices=any(isinstance(v, Choice) for k in kernels for v in k.values),
+        has_halves=any(k.halves for k in kernels),
     )
     return {f"{program.name}.py": text}
 
