@@ -9,8 +9,9 @@ A table of recall by kind and by language is printed, every formula that was mis
 finding without a label, which a person should look at. The exit code is 1 if a formula is called
 wrong that is not labelled so, or if one labelled wrong is called right.
 
-With `--mutations N`, recognised formulas are changed N times, each in one place, and compared
-again: all changes should be found, and the repair of most named.
+With `--mutations N`, only one file of each repository is read. Its formulas that are recognised as
+right are changed N times, each in one place, and compared again: all changes should be found, and
+the repair of most named.
 """
 
 from __future__ import annotations
@@ -178,9 +179,11 @@ def main() -> int:
     known, all_labels = Counter[str](), Counter[str]()
     faults: list[str] = []
     right: list[tuple[str, Comparison]] = []
+    names: list[str] = []
     for name, path, text, labels in files(options.clones):
-        if options.only not in name:
+        if options.only not in name or (options.mutations and name in names):
             continue
+        names.append(name)
         open_findings = findings(path, text)
         for label, finding in matched(labels, open_findings):
             keys = (label.kind, Path(path).suffix)

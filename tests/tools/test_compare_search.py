@@ -693,6 +693,27 @@ def test_a_transposed_rate_matrix_of_a_program_may_be_meant(tmp_path):
     assert str(own).endswith("with phi = a, theta = b, transposed (proved)")
 
 
+OF_STATES = {  # statements of MATLAB, and parts of the findings
+    "p_dot = q*r*(b - c)/a; q_dot = p*r*(c - a)/b; r_dot = p*q*(a - b)/c; s = sin(phi); "
+    "phi_dot = p + (q*s + r*cos(phi))*tan(theta); theta_dot = q*cos(phi) - r*s; psi_dot = (q*s + "
+    "r*cos(phi))/cos(theta);": ["to euler_equations_acceleration", "rates_from_angular_velocity"],
+    "d = [-s(1)*s(5) - s(2)*s(6) - s(3)*s(7); s(1)*s(4) + s(3)*s(6) - s(2)*s(7); s(2)*s(4) - "
+    "s(3)*s(5) + s(1)*s(7); s(3)*s(4) + s(2)*s(5) - s(1)*s(6)]/2;": ["body of unit_quaternion"],
+    "u = [qx; qy; qz]; v = [vx; vy; vz]; t = 2*cross(u, v); r = v + qw*t + cross(u, t); "
+    "m = [r(2); r(1); r(3)];": ["to rotated_vector", "entries 1 and 2 are exchanged"],
+    "a = x/2; b = y/2; c = z/2; m = [cos(a)*cos(b)*cos(c) + sin(a)*sin(b)*sin(c); sin(a)*cos(b)*"
+    "cos(c) + cos(a)*sin(b)*sin(c); cos(a)*sin(b)*cos(c) - sin(a)*cos(b)*sin(c); cos(a)*cos(b)*"
+    "sin(c) + sin(a)*sin(b)*cos(c)];": ["proved with this change; or close to quaternion of"],
+}
+
+
+@pytest.mark.parametrize("text", OF_STATES, ids=range(len(OF_STATES)))
+def test_parts_of_a_state_and_repairs_in_other_entries_are_named(tmp_path, text):
+    found = [str(each) for each in found_in(tmp_path, "a.m", text)]
+    assert len(found) == len(OF_STATES[text]), found
+    assert all(part in own for part, own in zip(OF_STATES[text], found, strict=True)), found
+
+
 # Euler angles from a matrix or a quaternion
 
 AXES = ["XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX", "XYX", "XZX", "YXY", "YZY", "ZXZ", "ZYZ"]
