@@ -360,7 +360,12 @@ def _nearest(trials: Sequence[_Trial], least: float, expected: str = "") -> list
             for order in ([1, 0, 2], [2, 1, 0], [0, 2, 1]):
                 exchanged = trial.compared(trial.numbers[..., order, :])
                 readings += trial.readings(exchanged.all(axis=(2, 3, 4)))
-    return sorted(readings, key=lambda r: (-r.share, r.goal.axes != (expected or "z y x")))
+
+    def rank(each: Reading) -> tuple[float, int, bool]:
+        odd = sum(map(known.oddness, each.names.values()))
+        return -each.share, odd, each.goal.axes != (expected or "z y x")
+
+    return sorted(readings, key=rank)
 
 
 def _decided(
