@@ -29,14 +29,16 @@ from rigidsym.mechanics.derive import derive
 from rigidsym.mechanics.dynamics.euler import EulerEquations
 from rigidsym.mechanics.dynamics.lagrange import is_bound
 from rigidsym.mechanics.quantities.dynamics import EULER_QUANTITIES, FLOW_QUANTITIES
-from rigidsym.models.body import RigidBody
+from rigidsym.models.body import RigidBody, check_moments
 from rigidsym.models.forces import OMEGA, OMEGA_COMPONENTS, Forces, initial_values
-from rigidsym.models.rotation import as_typed
+from rigidsym.models.rotation import as_typed, depends_on_time
 from rigidsym.simulation.trajectory import Array, Trajectory
 
 NEEDED = ("rotation_matrix", "angular_velocity_body", "state_derivative", "first_integrals")
 _RATES = "rates_from_angular_velocity_body"
 _MASS = "mass_matrix"
+_GRAVITY = "m/s^2"  # the unit by which the acceleration in a weight is known
+_ORIENTATIONS = 12  # at which a weight is told from other potentials; c has three components
 _NO_DIVISOR = (0, sp.zoo, sp.nan)
 _UNIT = 1e-9  # by which the entries of R Rᵀ − 1 may be off at the start
 
@@ -84,6 +86,8 @@ class Problem:
         self.is_quaternion = bool(self.model.vector) and self.is_alone and not is_bound(self.model)
         self.body, self.parameters = self._with_values(parameters)
         self.inertia = np.array(self.body.in_numbers(self.body.inertia).tolist(), float)  # I′
+        if not self.body.allow and self.body.distribution is None and self.is_alone:
+            self._check_about_centre()
         names = ["rotation_matrix", "angular_velocity_body", *([] if self.is_alone else [_MASS])]
         of_state = [] if self.is_quaternion else ["state_derivative"]
         of_state += ["first_integrals"] if derivation.first_integrals else []
@@ -108,6 +112,33 @@ class Problem:
         values = {name: float(parameters.get(name, 1.0)) for name in constants}
         described = (replace(p, value=values[p.symbol.name]) for p in body.parameters)
         return replace(body, parameters=tuple(described)), [*values.values()]
+
+    def _check_about_centre(self) -> None:
+        """Raises BodyError for moments about the fixed point that leave no body about its centre.
+
+        A weight, V = m g c·e with the third axis e of space in the axes of the body, tells the
+        centre of mass c; about it the tensor is less by m (|c|² 1 − c cᵀ). The potential is
+        evaluated at some orientations: it is a weight if one c serves for all.
+        """
+        body, potential = self.body, self.body.in_numbers(self.forces.potential)
+        gravity = [body.values[p.symbol] for p in body.parameters if p.unit == _GRAVITY]
+        mass = body.in_numbers(body.mass)
+        if len(gravity) != 1 or not gravity[0] or not mass.is_number or depends_on_time(potential):
+            return
+        some = np.random.default_rng(1).uniform(-1, 1, (self.count, _ORIENTATIONS))
+        values = dict(zip(self.model.coordinates, some, strict=True))
+        rows = (body.in_numbers(e) for e in (potential, *self.model.matrix.row(2)))
+        with np.errstate(invalid="ignore"):  # the root of a negative number is NaN
+            height, *axes = (evaluate(e, Floats(np), values) + 0 * some[0] for e in rows)
+        height = height / float(mass * gravity[0])  # c·e
+        if not np.isfinite([height, *axes]).all():
+            return
+        centre = np.linalg.lstsq(np.transpose(axes), height)[0].round(12) + 0.0  # m, no -0
+        if np.abs(centre @ axes - height).max() <= _UNIT * np.abs(height).max():
+            moved = centre @ centre * np.eye(3) - np.outer(centre, centre)
+            at = ", ".join(f"{part:.6g}" for part in centre)
+            where = f"{body.name}, about its centre of mass at ({at}) m"
+            check_moments(where, self.inertia - float(mass) * moved)
 
     def _check_rotation(self) -> None:
         """Raises ModelError if R of the start is no rotation."""

@@ -15,6 +15,7 @@ import rigidsym as rs
 from helpers.command import call
 from helpers.witness import newton_euler
 from rigidsym.errors import LimitReached, ModelError
+from rigidsym.models.body import Parameter
 from rigidsym.models.library import rotation_from
 from rigidsym.simulation.free_body import free_motion
 from rigidsym.simulation.problem import NEEDED
@@ -159,6 +160,24 @@ def test_a_sleeping_top_keeps_its_angular_velocity_and_its_integrals():
 def test_what_a_simulation_cannot_begin_with_is_said(initial, values, t_end, message):
     with pytest.raises(rs.RigidsymError, match=message):
         top().simulate(initial, values, t_end)
+
+
+@pytest.mark.parametrize(("moment", "status"), [("0.49", 3), ("0.51", 0)])
+def test_moments_about_the_tip_leave_a_body_about_the_centre_of_mass(moment, status, tmp_path):
+    """A is at least m l² + C/2 = 0.5 kg m²"""
+    words = ["simulate", "heavy_symmetric_top", "--set=C=0.5", "--set=m=1", "--set=l=0.5"]
+    done = call(
+        *words, f"--set=A={moment}", "--time=0.1", "--samples=2", cwd=tmp_path, status=status
+    )
+    refusal = "about its centre of mass at (0, 0, 0.5) m: no body has the principal moments 0.24"
+    assert (refusal in done.stderr) == bool(status)
+
+
+def test_a_potential_that_is_not_real_everywhere_is_no_weight():
+    g = Parameter(symbol=sp.Symbol("g"), unit="m/s^2")
+    body = rs.principal_moments(A, A, C, mass=sp.Symbol("m"), parameters=[g])
+    motion = rs.derive("ZXZ", NEEDED, body=body, potential="m*g*l*sqrt(theta)")
+    assert len(motion.simulate(REST | {"theta": 1}, TOP, 0.01, samples=2).t) == 2
 
 
 def test_what_cannot_be_simulated_is_said():
