@@ -87,5 +87,5 @@ def _findings(record: Path) -> Iterator[tuple[Path, str, str]]:
                 is_edited = record.read_bytes() != fresh.files[record.name].encode("utf-8")
                 source = f"{record.name}{' as it was edited' * is_edited}"
                 note = f"\n  proved in {source}: {', '.join(proved) or 'nothing'}"
-                note += f"\n  not proved: {', '.join(reasons) or 'nothing'}"
+                note += "\n  not proved: " + ", ".join([str(len(reasons)), *reasons])
         yield path, problem, note

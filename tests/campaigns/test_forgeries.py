@@ -285,8 +285,10 @@ OF_ZXZ: dict[str, Change] = {
     "a condition twice": conditions(SPHERE, SPHERE, then=FALSE),
     "two conditions": conditions(SPHERE, "theta**2 + psi**2 - 1", then=FALSE),
     "a name of two lines": write(W, "name", "a\n  proved: everything"),
-    "a quantity named angular_velocity_moon": write(W, "name", "angular_velocity_moon"),
-    "a quantity named truth": write(W, "name", "truth"),
+    **{
+        f"a quantity named {name}": write(W, "name", name)
+        for name in ("angular_velocity_moon", "truth", "nothing")
+    },
     "a quantity printed twice": lambda c: c["quantities"].append(c["quantities"][0]),
     "degrees a second": write(VELOCITY, "unit", "deg/s"),
     "a component of Ω in degrees": component("omega_space", 2, "unit", "deg/s"),
@@ -449,6 +451,7 @@ OTHERS: Forgeries = {
             "rotation_matrix", lambda rows: [text for row in rows for text in row], [3, 3]
         ),
         "Ω as a row": cells(VELOCITY, lambda rows: [rows], [3]),
+        "Ω as a column": cells(VELOCITY, lambda rows: [[row] for row in rows]),
         "degrees in a constant turn": together(
             write("rotation", "turns", 0, "constant_turn(0, 0, 1, cos(phi), sin(phi))"),
             *(write("name", "chain"), measured(0, "deg", "deg/s", "deg/s^2")),
@@ -550,6 +553,8 @@ OTHERS: Forgeries = {
         ),
     },
     "box": {
+        "an energy in brackets": cells("kinetic_energy", lambda energy: [energy]),
+        "an energy in two brackets": cells("kinetic_energy", lambda energy: [[energy]]),
         "a tensor that is not symmetric": with_a_skew_part,
         "a body that moves": write("body", "centre", ["X", "0", "0"]),
         "a mass that turns": write("body", "mass", "M*phi"),
@@ -634,8 +639,8 @@ def flat(forgeries: Forgeries) -> dict[str, tuple[str, Change]]:
 EVERY = flat(BESIDE) | flat(OTHERS)
 EVERY |= {f"{text[1]} of {text[0]} is {text[2]}": (of, once(*text)) for of, *text in SPOILED}
 # True about the rest, so that only these are not accepted
-PARTLY = {"a quantity named angular_velocity_moon": "angular_velocity_moon"}
-PARTLY |= {"a quantity named truth": "truth", "momenta that are themselves": P}
+PARTLY = {f"a quantity named {name}": name for name in ("angular_velocity_moon", "truth", "nothing")}
+PARTLY |= {"momenta that are themselves": P}
 PARTLY |= {"integrals that hold a definition": "constant energy"}
 PARTLY |= {"a divisor that is zero": "rotation_matrix", "nine coordinates": "mass_matrix"}
 PARTLY |= {"a parameter of the body that is defined": "accelerations"}

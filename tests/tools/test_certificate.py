@@ -42,6 +42,11 @@ def test_all_conventions_are_proved_by_the_checker():
         assert checker.verify(of_rotation) == (["R is a rotation", *names], {})
 
 
+@pytest.mark.parametrize("name", ["euler_zxz", "my_euler_zxz_2"])
+def test_a_name_may_say_the_axes(name):
+    assert checker.verify(record_of("ZXZ", BASIC) | {"name": name})[1] == {}
+
+
 @pytest.mark.parametrize("text", [*OTHERS, CHAIN])
 def test_other_rotations_are_proved_by_the_checker(text):
     proved, reasons = checker.verify(record_of(text))

@@ -55,6 +55,7 @@ turns_in_body product squares same F t s u w a b c d e D H inertia derivative en
 total
 """
 _TAKEN = frozenset(_WORDS.split())
+_EXTENSIONALITY = "FunctionalExtensionality.functional_extensionality"
 _FIRST = "rotation_matrix", "angular_velocity_space"
 # w and u of quaternions w + x i + y j + z k, in the places of a turn: u (w² + x² + y² + z²) = 1
 _QUATERNIONS = {
@@ -344,7 +345,8 @@ class _Section:
         # an angle may be the sum of two others, whose sines and cosines are printed, too
         sums = f"rewrite ?sin_plus, ?cos_plus, ?sin_minus, ?cos_minus; ring{using}"
         yield "Ltac calculation t :="
-        yield f"  entries; first [ ring{using} | known t; field{using}; apart | {sums} ]."
+        ways = [f"ring{using}", f"known t; field{using}; apart"]  # that is likely comes first
+        yield f"  entries; first [ {' | '.join([*ways[:: -1 if self.apart else 1], sums])} ]."
         yield f"Ltac still t := known t; entries; field{squares}; apart."
         if "body" in self.record:
             yield f"Definition inertia := {self.text(self.record['body']['inertia'])}."
@@ -355,7 +357,7 @@ class _Section:
         way = "still t" if self.apart else "entries; ring"
         yield f"Ltac plain t := unfold F; first [ {way} | calculation t ]."
         yield "Ltac derived t := known t; eapply (same (derivable_pt_lim _ _));"
-        yield "  [ derivative | equal t ]."
+        yield "  [ derivative | plain t ]."
         yield "Ltac lagrange t := known t; repeat match goal with |- _ /\\ _ => split end;"
         yield "  (eexists; eexists; split; [ derivative | split; [ derivative | equal t ] ])."
         yield from self._turning()
@@ -458,6 +460,9 @@ class _Section:
 
     def of_rotation_rate(self, name: str) -> _Statement:
         claim = f"{self.divisors(name)}rate {self.presented} t {self.text(self.printed[name])}"
+        if self.is_stated(_FIRST[0]) and not self.definitions:  # its entries have short derivatives
+            printed = f"({_EXTENSIONALITY} {self.presented} _ rotation_matrix)"
+            return _Statement(claim, f"rewrite {printed}; repeat split; expand; derived t")
         rate = f"(rate_of_turns _ _ _ {self.total})"
         rate = f"(transpose_rate _ _ _ {rate})" if self.is_passive else rate
         return _Statement(claim, f"apply (same (rate _ t) _ _ {rate}); {self.equal}")
@@ -512,11 +517,12 @@ class _Section:
         equations = zip(self.speeds, map(self.text, self.printed[name]), strict=True)
         premises = "".join(f"{rate} = {text} -> " for rate, text in equations)
         proof = f"rewrite <- ({inverse} t{letters}) by assumption; "
-        proof += f"eapply (same ({_TURNS[frame]} F t)); [ apply {W}; assumption | ]"
+        proof += f"apply (same ({_TURNS[frame]} F t) _ _ ({W} t)); repeat f_equal;"
+        proof += " (etransitivity; [ eassumption | plain t ])"
         if not {*others} <= {*self.stated}:
             others, proof = [], self.turning(frame, "", name).proof.rpartition(";")[0]
+            proof += "; repeat match goal with H : _ = _ |- _ => rewrite H; clear H end; plain t"
         claim = f"{self.divisors(name, *others)}{premises}{_TURNS[frame]} F t (V{letters})"
-        proof += "; repeat match goal with H : _ = _ |- _ => rewrite H; clear H end; plain t"
         return _Statement(claim, proof, letters)
 
     def of_angular_acceleration(self, name: str, frame: str) -> _Statement:
@@ -690,14 +696,14 @@ class _Chain(_Section):
         self.T = [f"({factor.text})".replace(" s)", " t)") for factor in self.factors]
         self.v = [factor.velocity for factor in self.factors]
         turns = [turn(*record.read(forms, groups).entries) for _, forms in record.turns]
-        spins = ((T.rate() * T.T).rows for T in turns)
+        spins = ((T.rate() * T.T()).rows for T in turns)
         pairs = [
             (T, Matrix([S[2][1], S[0][2], S[1][0]])) for T, S in zip(turns, spins, strict=True)
         ]
         # their values: P₁ ... Pₙ, w₁ ... wₙ and uₙ ... u₁ of kinematics/chain.py
         self.P = [*accumulate(turns, mul)]
         rest = Matrix([ZERO] * 3)
-        self.w = [*accumulate(pairs, lambda w, one: one[1] + one[0].T * w, initial=rest)][1:]
+        self.w = [*accumulate(pairs, lambda w, one: one[1] + one[0].T() * w, initial=rest)][1:]
         self.u = [*accumulate(pairs[::-1], lambda u, one: one[1] + one[0] * u, initial=rest)][1:]
 
     @property

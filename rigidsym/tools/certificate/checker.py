@@ -29,7 +29,6 @@ STRENGTH = "decided at five exact points: a false entry passes with a probabilit
 POINTS, BITS, MOST_DEGREE, MOST_BITS = 5, 52, 2**30, 10**5
 MOST_POWER, MOST_NUMBER, MOST_TURNS = 60, 10**40, 12
 OPERATIONS = {ast.Add: add, ast.Sub: sub, ast.Mult: mul, ast.Div: truediv}
-TIME = "by time"  # which is no name
 LETTERS = {  # arguments besides coordinates and what belongs to them, with their units
     "omega_space": (["omega_space_1", "omega_space_2", "omega_space_3"], "rad/s"),
     "omega_body": (["omega_body_1", "omega_body_2", "omega_body_3"], "rad/s"),
@@ -67,11 +66,11 @@ class Unproved(ValueError):
 
 
 BROKEN = (LookupError, ArithmeticError, AttributeError, TypeError, ValueError, RecursionError)
-Rate = Callable[[str], "Number"]
+Rate = Callable[[str | None], "Number"]  # the derivative by a name, or by the time
 Laws = dict[str, tuple[Any, ...]]
 
 
-def refuse_unless(is_so: bool, why: str, error: type[ValueError] = Refused) -> None:
+def refuse_unless(is_so: object, why: str, error: type[ValueError] = Refused) -> None:
     if not is_so:
         raise error(why)
 
@@ -81,12 +80,12 @@ class Number:
 
     def __init__(self, degree: int, values: Iterable[Fraction], rule: Rate) -> None:
         self.degree, self.values, self.rule = degree, [*values], rule
-        self.rates = dict[str, Number]()  # by TIME or a name
+        self.rates = dict[str | None, Number]()
         size = sum(map(int.bit_length, self.values[0].as_integer_ratio()))
         is_small = degree <= MOST_DEGREE and size <= MOST_BITS
         refuse_unless(is_small, "too large an expression", Unproved)
 
-    def rate(self, by: str) -> Number:
+    def rate(self, by: str | None = None) -> Number:
         if by not in self.rates:
             self.rates[by] = self.rule(by)
         return self.rates[by]
@@ -96,7 +95,7 @@ class Number:
         return Number(self.degree + other.degree, values, rule)
 
     def __add__(self, other: Number) -> Number:
-        if self is ZERO or other is ZERO:
+        if ZERO in (self, other):
             return other if self is ZERO else self
         return self.combined(add, other, lambda by: self.rate(by) + other.rate(by))
 
@@ -104,9 +103,9 @@ class Number:
         return self.combined(sub, other, lambda by: self.rate(by) - other.rate(by))
 
     def __mul__(self, other: Number) -> Number:
-        if self is ZERO or other is ZERO:
+        if ZERO in (self, other):
             return ZERO
-        if self is ONE or other is ONE:
+        if ONE in (self, other):
             return other if self is ONE else self
         return self.combined(mul, other, lambda by: self.rate(by) * other + self * other.rate(by))
 
@@ -127,7 +126,7 @@ ZERO, ONE, TWO, MINUS = map(whole, (0, 1, 2, -1))
 
 def drawn(rate: Number = ZERO) -> Number:
     values = (Fraction(SystemRandom().randrange(1, 2**BITS + 1)) for _ in range(POINTS))
-    return Number(1, values, lambda by: rate if by == TIME else ZERO)
+    return Number(1, values, lambda by: ZERO if by else rate)
 
 
 def on_sphere(u: Sequence[Number]) -> list[Number]:
@@ -146,7 +145,6 @@ class Matrix:
         is_whole = len(self.shape) < 3 and 0 not in self.shape[1:]
         refuse_unless(is_whole, "rows of different lengths, or without entries")
 
-    @property
     def T(self) -> Matrix:
         return Matrix(zip(*self.rows, strict=True))
 
@@ -161,10 +159,10 @@ class Matrix:
         if len(self.entries) == 1 and len(other.rows) > 1:  # a scalar
             return Matrix([self.entries[0] * entry for entry in row] for row in other.rows)
         refuse_unless(self.shape[1:] == other.shape[:1], "a wrong shape")
-        columns = other.T.rows
+        columns = other.T().rows
         return Matrix([reduce(add, map(mul, row, c)) for c in columns] for row in self.rows)
 
-    def rate(self, by: str = TIME) -> Matrix:
+    def rate(self, by: str | None = None) -> Matrix:
         return Matrix([entry.rate(by) for entry in row] for row in self.rows)
 
     def hat(self) -> Matrix:
@@ -186,7 +184,7 @@ class Matrix:
 
     def refuse_unless_rotation(self, name: str) -> None:
         refuse_unless(self.shape == IDENTITY.shape, f"{name} has a wrong shape")
-        (self * self.T - IDENTITY).refuse_unless_zero(name)
+        (self * self.T() - IDENTITY).refuse_unless_zero(name)
         Matrix([self.determinant() - ONE]).refuse_unless_zero(name)
 
 
@@ -227,7 +225,7 @@ def distinct(pairs: Iterable[tuple[str, Any]]) -> dict[str, Any]:
     pairs = [*pairs]
     names = [name for name, _ in pairs]
     is_distinct = len({*names}) == len(names) and re.fullmatch(r"[ -~]*", "".join(names))
-    refuse_unless(bool(is_distinct), f"a name is there twice, or not plain ASCII: {names}"[:200])
+    refuse_unless(is_distinct, f"a name is there twice, or not plain ASCII: {names}"[:200])
     return dict(pairs)
 
 
@@ -258,18 +256,18 @@ class Record:
         self.turns = [*map(turn_of, rotation.get("turns", []))]
         self.texts = [texts for _, texts in self.turns] or rotation.get("matrix", [])
         self.definitions = distinct((d["name"], d["expression"]) for d in content["definitions"])
-        self.listed = distinct((g["name"], g["components"]) for g in content["arguments"])
-        groups = {"q": [], "parameters": []} | self.listed
-        self.q, self.constants = ([c["name"] for c in groups[g]] for g in ("q", "parameters"))
+        groups = distinct((g["name"], g["components"]) for g in content["arguments"])
+        self.listed = {g: [(c["name"], c["unit"]) for c in names] for g, names in groups.items()}
+        self.q, self.constants = ([n for n, _ in self.listed.get(g, [])] for g in PLACES)
         # x² + y² + ... - 1 has real roots; it gives an axis or a quaternion the length 1
         parts = (texts if "quaternion" in kind else texts[:3] for kind, texts in self.turns)
         vectors = (sorted(names_in(*map(read, part))) for part in parts)
         spheres = {" + ".join(f"{name}**2" for name in v) + " - 1": v for v in vectors if v[1:]}
         self.spheres = [spheres.get(condition, []) for condition in rotation["conditions"]]
         for names in self.spheres:
-            is_length = bool(names) and any({*names} <= {*of} for of in (self.q, self.constants))
+            is_length = names and any({*names} <= {*of} for of in (self.q, self.constants))
             refuse_unless(is_length, "a condition, which gives no vector the length 1", Unproved)
-        self.arguments = self.all_arguments(groups)
+        self.arguments = self.all_arguments()
         self.refuse_other_name(rotation.get("turns", []))
         self.names = {g: {n: drawn() for n, _ in pairs} for g, pairs in self.arguments.items()}
         numbers = self.names["parameters"] | {q: drawn(drawn(drawn())) for q in self.q}
@@ -279,14 +277,15 @@ class Record:
             number.rates[name] = ONE
             self.names["q" if name in self.q else "parameters"][name] = number
         for q in self.q:
-            rate = self.names["q_dot"][f"{q}_dot"] = numbers[q].rate(TIME)
+            rate = self.names["q_dot"][f"{q}_dot"] = numbers[q].rate()
             rate.rates[f"{q}_dot"] = ONE
-            self.names["q_ddot"][f"{q}_ddot"] = rate.rate(TIME)
+            self.names["q_ddot"][f"{q}_ddot"] = rate.rate()
         self.pi = drawn()  # no polynomial has the root pi
         self.circles = {name: (x, circle(x)) for name, x in (numbers | {"1": ONE}).items()}
         self.circle = cache(self.circle_of_sum)
+        self.columns = {group: Matrix(numbers.values()) for group, numbers in self.names.items()}
 
-    def all_arguments(self, printed: Mapping[str, Any]) -> dict[str, list[tuple[str, str]]]:
+    def all_arguments(self) -> dict[str, list[tuple[str, str]]]:
         """All that a record may list, with the units that follow from its turns."""
         trees = [*map(read, chain(*self.texts))]
         in_turns, nodes = names_in(*trees), chain(*map(ast.walk, trees))
@@ -300,18 +299,18 @@ class Record:
             "momenta": [(f"p_{q}", "kg m^2/s") for q in self.q],
         }
         taken = {name for name, _ in chain(*groups.values())} | {*RESERVED}
-        distinct((name, "") for name in (*self.q, *self.constants, *self.definitions, *taken))
+        names = *self.q, *self.constants, *self.definitions, *taken
+        for name in distinct((name, "") for name in names):
+            # "(phi)" and " phi" would be read as phi
+            refuse_unless(name.isidentifier(), f"the name {name!r}")
         refuse_unless(len(self.turns) <= 100, "more than 100 turns", Unproved)
+        constants = [pair for pair in self.listed.get("parameters", []) if pair[0] in in_turns]
         body = self.content.get("body", {"parameters": []})["parameters"]
-        constants = [p for p in printed["parameters"] if p["name"] in in_turns] + body
-        groups["parameters"] = [(p["name"], unit.get(p["name"], p["unit"])) for p in constants]
+        constants += [(each["name"], each["unit"]) for each in body]
+        groups["parameters"] = [(name, unit.get(name, u)) for name, u in constants]
         groups["q"] = [(q, unit[q]) for q in self.q]
-        # "(phi)" and " phi" would be read as phi
-        for name in (*self.definitions, *dict(chain(*groups.values()))):
-            refuse_unless(name.isascii() and name.isidentifier(), f"the name {name!r}")
         states = [groups["q"] + groups[rates] for rates in ("q_dot", "omega_body")]
-        for group, components in printed.items():
-            pairs = [(each["name"], each["unit"]) for each in components]
+        for group, pairs in self.listed.items():
             is_right = pairs in states if group == "y" else pairs == groups.get(group)
             refuse_unless(is_right, f"{group} are {pairs}")
         refuse_unless(in_turns.isdisjoint(self.definitions), "a turn holds a definition")
@@ -321,21 +320,14 @@ class Record:
         """A name that does not give R another meaning."""
         name, presentation = self.content["name"], self.content["presentation"]
         refuse_unless(presentation in ("active", "passive"), f"the presentation {presentation!r}")
-        end = "_passive" * (presentation == "passive")
-        axes = "".join(kind for kind, _ in self.turns)
+        end, right = "_passive" * (presentation == "passive"), set[str]()
         angles = [turn.partition("(")[2][:-1] for turn in turns]
-        right = [f"euler_{axes}_intrinsic{end}"] if angles == self.q else []
-        right += [f"euler_{axes[::-1]}_extrinsic{end}"] if angles[::-1] == self.q else []
-        is_plain = re.fullmatch("(?!.*euler_[xyz]{2})[a-z][a-z0-9_]*", name)
-        refuse_unless(bool(is_plain) or name in right, f"the name {name!r} of other turns")
-
-    def column(self, group: str) -> Matrix:
-        return Matrix(self.names[group].values())
-
-    def unit_of(self, group: str) -> str:
-        """The unit that all names of a group have, or "" if they differ."""
-        units = {unit for _, unit in self.arguments[group]}
-        return units.pop() if len(units) == 1 else ""
+        for order, step in (("intrinsic", 1), ("extrinsic", -1)):
+            axes = "".join(kind for kind, _ in self.turns[::step])
+            right |= {axes, f"{axes}_{order}{end}"} if angles[::step] == self.q else set()
+        said = re.findall("euler_([xyz]{2,}(?:_(?:in|ex)trinsic(?:_passive)?)?)", name)
+        is_right = re.fullmatch("[a-z][a-z0-9_]*", name) and {*said} <= right
+        refuse_unless(is_right, f"the name {name!r} of other turns")
 
     def read(self, printed: Any, groups: Iterable[str] = ("parameters",)) -> Matrix:
         """A scalar, the column of a vector, or a matrix, of some groups of names."""
@@ -376,11 +368,12 @@ class Record:
             rest, turns = rest - count * number, count.values[0]
             is_whole = {*count.values} == {turns} and turns in range(-MOST_TURNS, MOST_TURNS + 1)
             refuse_unless(is_whole, "an angle that is no sum of whole multiples", Unproved)
-            total = reduce(mul, [plane if turns > 0 else plane.T] * abs(int(turns)), total)
+            total = reduce(mul, [plane if turns > 0 else plane.T()] * abs(int(turns)), total)
         return total.rows[0][0], total.rows[1][0]
 
-    # What is claimed: the unit of a printed x; its value, or what is zero if x is right; and the
-    # groups of names that x may depend on besides parameters; others could hide a false term
+    # What is claimed: the unit of a printed x, or the group of names that has it; 0, 1 or 2 for a
+    # number, a vector or a matrix; its value, or what is zero if x is right; and the groups of
+    # names that x may depend on besides parameters; others could hide a false term
 
     def of_rotation(self) -> Laws:
         turns = (self.read(texts, PLACES).entries for _, texts in self.turns)
@@ -388,64 +381,64 @@ class Record:
         for factor in factors:
             factor.refuse_unless_rotation("R")
         R = self.R = reduce(mul, factors)
-        presented = R.T if self.content["presentation"] == "passive" else R
+        presented = R.T() if self.content["presentation"] == "passive" else R
         laws: Laws = {
-            "rotation_matrix": ("", presented),
-            "rotation_rate": ("1/s", presented.rate()),
-            "spin_matrix": ("rad/s", presented.rate() * presented.T),
+            "rotation_matrix": ("", 2, presented),
+            "rotation_rate": ("1/s", 2, presented.rate()),
+            "spin_matrix": ("rad/s", 2, presented.rate() * presented.T()),
         }
-        for frame, spin in (("space", R.rate() * R.T), ("body", R.T * R.rate())):
+        for frame, spin in (("space", R.rate() * R.T()), ("body", R.T() * R.rate())):
             laws |= self.of_frame(frame, spin)
         return laws
 
     def of_frame(self, frame: str, spin: Matrix) -> Laws:
         """Ω with components in space or in the body: C(Ω) is the spin, and Ω = W q̇."""
         omega = Matrix([spin.rows[2][1], spin.rows[0][2], spin.rows[1][0]])
-        W = Matrix(omega.rate(f"{q}_dot").entries for q in self.q).T
+        W = Matrix(omega.rate(f"{q}_dot").entries for q in self.q).T()
         # rates along a radius would leave the sphere of a condition
         spheres = [sphere for sphere in self.spheres if sphere[0] in self.q]
         radii = [[self.names["q"][q] if q in s else ZERO for q in self.q] for s in spheres]
         A, one = Matrix([*W.rows, *radii]), Matrix([*IDENTITY.rows, *([ZERO] * 3 for _ in radii)])
-        rates, letters = self.column("q_dot"), self.column(f"omega_{frame}")
+        rates, letters = self.columns["q_dot"], self.columns[f"omega_{frame}"]
         self.W, self.omega, self.is_free = W, omega, not radii  # in the body, which comes last
-        from_omega = (self.unit_of("q_dot"), lambda x: A * x - one * letters, "q", f"omega_{frame}")
+        rates_of = "q_dot", 1, lambda x: A * x - one * letters, "q", f"omega_{frame}"
         return {
-            f"angular_velocity_{frame}": ("rad/s", lambda x: x.hat() - spin, "q", "q_dot"),
-            f"angular_acceleration_{frame}": ("rad/s^2", omega.rate()),
-            f"rate_matrix_{frame}": ("", lambda x: x * rates - omega, "q"),
-            f"inverse_rate_matrix_{frame}": ("", lambda x: A * x - one, "q"),
-            f"rates_from_angular_velocity_{frame}": from_omega,
+            f"angular_velocity_{frame}": ("rad/s", 1, lambda x: x.hat() - spin, "q", "q_dot"),
+            f"angular_acceleration_{frame}": ("rad/s^2", 1, omega.rate()),
+            f"rate_matrix_{frame}": ("", 2, lambda x: x * rates - omega, "q"),
+            f"inverse_rate_matrix_{frame}": ("", 2, lambda x: A * x - one, "q"),
+            f"rates_from_angular_velocity_{frame}": rates_of,
         }
 
     def of_body(self) -> Laws:
         body, omega, R = self.content["body"], self.omega, self.R
         mass, centre, inertia = (self.read(body[part]) for part in ("mass", "centre", "inertia"))
-        (inertia - inertia.T).refuse_unless_zero("the inertia tensor")
-        velocity, arm = self.column("centre_dot"), (self.column("point") - centre).hat()
-        about_point = inertia + mass * (arm.T * arm)  # the parallel-axis theorem
-        momentum, of_centre = inertia * omega, mass * (self.column("centre").hat() * velocity)
+        (inertia - inertia.T()).refuse_unless_zero("the inertia tensor")
+        velocity, arm = self.columns["centre_dot"], (self.columns["point"] - centre).hat()
+        about_point = inertia + mass * (arm.T() * arm)  # the parallel-axis theorem
+        momentum, of_centre = inertia * omega, mass * (self.columns["centre"].hat() * velocity)
         half = Matrix([ONE / TWO])
-        energy, translation = half * (omega.T * momentum), half * mass * (velocity.T * velocity)
-        direction, w = self.column("direction"), self.column("omega_body")
-        euler = w.hat() * inertia * w - self.column("torque")
+        energy, translation = half * (omega.T() * momentum), half * mass * (velocity.T() * velocity)
+        direction, w = self.columns["direction"], self.columns["omega_body"]
+        euler = w.hat() * inertia * w - self.columns["torque"]
         self.centre, self.inertia, self.momentum, self.energy = centre, inertia, momentum, energy
         return {
-            "mass": ("kg", mass),
-            "centre_of_mass": ("m", centre),
-            "inertia_tensor": ("kg m^2", inertia),
-            "inertia_tensor_space": ("kg m^2", R * inertia * R.T),
-            "inertia_tensor_point": ("kg m^2", about_point),
-            "moment_of_inertia": ("kg m^2", direction.T * about_point * direction),
-            "principal_axes": ("", self.principal, "parameters"),
-            "principal_moments": ("kg m^2", self.principal, "parameters"),
-            "translational_energy": ("J", translation),
-            "rotational_energy": ("J", energy),
-            "kinetic_energy": ("J", translation + energy),
-            "angular_momentum_centre": ("kg m^2/s", of_centre),
-            "angular_momentum_rotation_body": ("kg m^2/s", momentum),
-            "angular_momentum_rotation": ("kg m^2/s", R * momentum),
-            "angular_momentum": ("kg m^2/s", of_centre + R * momentum),
-            "angular_acceleration_from_torque": ("rad/s^2", lambda x: inertia * x + euler),
+            "mass": ("kg", 0, mass),
+            "centre_of_mass": ("m", 1, centre),
+            "inertia_tensor": ("kg m^2", 2, inertia),
+            "inertia_tensor_space": ("kg m^2", 2, R * inertia * R.T()),
+            "inertia_tensor_point": ("kg m^2", 2, about_point),
+            "moment_of_inertia": ("kg m^2", 0, direction.T() * about_point * direction),
+            "principal_axes": ("", 2, self.principal, "parameters"),
+            "principal_moments": ("kg m^2", 1, self.principal, "parameters"),
+            "translational_energy": ("J", 0, translation),
+            "rotational_energy": ("J", 0, energy),
+            "kinetic_energy": ("J", 0, translation + energy),
+            "angular_momentum_centre": ("kg m^2/s", 1, of_centre),
+            "angular_momentum_rotation_body": ("kg m^2/s", 1, momentum),
+            "angular_momentum_rotation": ("kg m^2/s", 1, R * momentum),
+            "angular_momentum": ("kg m^2/s", 1, of_centre + R * momentum),
+            "angular_acceleration_from_torque": ("rad/s^2", 1, lambda x: inertia * x + euler),
         }
 
     def principal(self, _: Matrix) -> Matrix:
@@ -465,28 +458,28 @@ class Record:
         # the body turns about a fixed point, from which places are counted
         self.centre.refuse_unless_zero("the centre of mass")
         motion, W, energy, moving = self.content["motion"], self.W, self.energy, (*PLACES, "q_dot")
-        rates, seconds, second = self.column("q_dot"), self.column("q_ddot"), self.unit_of("q_ddot")
+        rates, seconds = self.columns["q_dot"], self.columns["q_ddot"]
         potential = self.read(motion["potential"], PLACES)
         forces, torque = (self.read(motion[part], moving) for part in ("forces", "torque"))
         turning = self.momentum.rate() + self.omega.hat() * self.momentum
-        inertial = W.T * turning + Matrix(potential.rate(q).entries for q in self.q)
-        balance = inertial - forces - W.T * torque  # zero along a motion
-        masses, momenta = W.T * self.inertia * W, W.T * self.momentum
+        inertial = W.T() * turning + Matrix(potential.rate(q).entries for q in self.q)
+        balance = inertial - forces - W.T() * torque  # zero along a motion
+        masses, momenta = W.T() * self.inertia * W, W.T() * self.momentum
         refuse_unless(0 not in masses.determinant().values, "the mass matrix is singular")
         self.names["momenta"] = dict(zip(self.names["momenta"], momenta.entries, strict=True))
         laws: Laws = {
-            "potential_energy": ("J", potential),
-            "lagrangian": ("J", energy - potential),
-            "energy": ("J", energy + potential),
-            "generalised_momenta": ("kg m^2/s", momenta),
-            "mass_matrix": ("kg m^2", masses),
-            "bias_vector": ("N m", inertial - masses * seconds),
-            "accelerations": (second, lambda x: masses * (x - seconds) + balance, *moving),
-            "hamiltonian": ("J", lambda x: x - energy - potential, "q", "momenta"),
-            "constant energy": (None, lambda x: x.rate() - rates.T * balance, *moving),
+            "potential_energy": ("J", 0, potential),
+            "lagrangian": ("J", 0, energy - potential),
+            "energy": ("J", 0, energy + potential),
+            "generalised_momenta": ("kg m^2/s", 1, momenta),
+            "mass_matrix": ("kg m^2", 2, masses),
+            "bias_vector": ("N m", 1, inertial - masses * seconds),
+            "accelerations": ("q_ddot", 1, lambda x: masses * (x - seconds) + balance, *moving),
+            "hamiltonian": ("J", 0, lambda x: x - energy - potential, "q", "momenta"),
+            "constant energy": (None, 0, lambda x: x.rate() - rates.T() * balance, *moving),
         }
         for q, row in zip(self.q, map(Matrix, balance.rows), strict=True):
-            laws[f"constant momentum_{q}"] = (None, lambda x, row=row: x.rate() - row, *moving)
+            laws[f"constant momentum_{q}"] = (None, 0, lambda x, row=row: x.rate() - row, *moving)
         return laws
 
 
@@ -504,16 +497,19 @@ def verify(content: Mapping[str, Any]) -> tuple[list[str], dict[str, str]]:
     for name, claim in claims_in(content).items():
         try:
             refuse_unless(name in laws, lack, Unproved)
-            unit, law, *groups = laws[name]
+            unit, depth, law, *groups = laws[name]
             allowed = {"parameters", *(groups or {*record.names} - {"momenta", "t"})}
             allowed &= {*record.listed}
             inputs, printed = claim.get("inputs", [*allowed]), claim["expression"]
             are_so = inputs == [*dict.fromkeys(group for group in inputs if group in allowed)]
             refuse_unless(are_so, f"{name} does not depend on {inputs}")
             x = record.read(printed, inputs)
-            depth = isinstance(printed, list) + isinstance(printed[0], list)
-            is_so = repr(claim.get("shape", [])) == repr(x.shape[:depth])
-            refuse_unless(is_so and claim.get("unit") == unit, f"{name} has another unit or shape")
+            units = {u for _, u in record.arguments.get(unit, [("", unit)])}
+            unit = units.pop() if len(units) == 1 else ""
+            nesting = isinstance(printed, list) + isinstance(printed[0], list)
+            form = nesting, claim.get("shape", []), claim.get("unit")
+            is_so = repr(form) == repr((depth, x.shape[:depth], unit))
+            refuse_unless(is_so, f"{name} has another unit or shape")
             (law(x) if callable(law) else x - law).refuse_unless_zero(name)
             proved.append(name)
         except (Unproved, RecursionError) as error:
@@ -528,23 +524,24 @@ def load(path: Path) -> Any:
 
 
 if __name__ == "__main__":
-    status, records, lines = 0, 0, list[str]()
-    for place in map(Path, sys.argv[1:]):
-        for path in sorted(place.rglob("*.json")) if place.is_dir() else [place]:
-            try:
-                content = load(path)
-                if place.is_dir() and content.get("schema") != "rigidsym.derivation":
-                    lines.append(f"{path}: skipped, since it is no record of a derivation")
-                    continue
-                records += 1
-                proved, reasons = verify(content)
-                refuse_unless(bool(proved), f"nothing is proved: {', '.join({*reasons.values()})}")
-                lines += [f"{path}: R is {content['rotation']}", STRENGTH]
-                lines += ["  proved: " + ", ".join(proved)]
-                lines += [f"  not proved: {name}, since {why}" for name, why in reasons.items()]
-            except (*BROKEN, OSError) as error:
-                status = 1
-                lines.append(f"{path}: REFUSED: {error}")
-    lines += [] if records or status else ["REFUSED: there is no record of a derivation here"]
+    places = [*map(Path, sys.argv[1:])]
+    paths = chain(*(sorted(place.rglob("*.json")) or [place] for place in places))
+    is_accepted = is_refused = False
+    lines = list[str]()
+    for path in paths:
+        try:
+            content = load(path)
+            if content.get("schema") != "rigidsym.derivation":
+                lines.append(f"{path}: skipped, since it is no record of a derivation")
+                continue
+            proved, reasons = verify(content)
+            refuse_unless(proved, f"nothing is proved: {', '.join({*reasons.values()})}")
+            is_accepted = True
+            lines += [f"{path}: R is {content['rotation']}", STRENGTH]
+            lines += ["  proved: " + ", ".join(proved)]
+            lines += [f"  not proved, since {why}: {name}" for name, why in reasons.items()]
+        except (*BROKEN, OSError) as error:
+            is_refused = True
+            lines.append(f"{path}: REFUSED: {error}")
     print(*(line.encode("unicode_escape").decode() for line in lines), sep="\n")
-    sys.exit(status or not records)
+    sys.exit(is_refused or not is_accepted)
