@@ -257,6 +257,7 @@ OF_ZXZ: dict[str, Change] = {
     "a divisor that is zero": put("rotation_matrix", 2, 2, f"cos(theta) + 0/{ZERO}"),
     "R about other axes": turned("z(phi)", "x(theta)", "x(psi)"),
     "R by an angle of the other sense": turned("z(-phi)", "x(theta)", "z(psi)"),
+    "half an angle": together(turned("z(phi/2)", *ZXZ[1:]), write("name", "any")),
     "two turns": turned("z(phi)", "x(theta)"),
     "a turn with more places": turned("z(phi, theta)", "x(theta)", "z(psi)"),
     "a turn in more pieces": turned("axis_angle(0, 0, 1); cos(phi), phi)", "x(theta)", "z(psi)"),
@@ -639,7 +640,9 @@ def flat(forgeries: Forgeries) -> dict[str, tuple[str, Change]]:
 EVERY = flat(BESIDE) | flat(OTHERS)
 EVERY |= {f"{text[1]} of {text[0]} is {text[2]}": (of, once(*text)) for of, *text in SPOILED}
 # True about the rest, so that only these are not accepted
-PARTLY = {f"a quantity named {name}": name for name in ("angular_velocity_moon", "truth", "nothing")}
+PARTLY = {
+    f"a quantity named {name}": name for name in ("angular_velocity_moon", "truth", "nothing")
+}
 PARTLY |= {"momenta that are themselves": P}
 PARTLY |= {"integrals that hold a definition": "constant energy"}
 PARTLY |= {"a divisor that is zero": "rotation_matrix", "nine coordinates": "mass_matrix"}

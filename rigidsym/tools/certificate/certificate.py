@@ -265,6 +265,8 @@ class _Section:
                 return (sign, self.rate(one), self.rate(two))
             case ("*", ("number", _) as number, part):
                 return ("*", number, self.rate(part))
+            case ("/", part, ("number", _) as number):
+                return ("/", self.rate(part), number)
         raise Unproved
 
     # The rotation and its angular velocity

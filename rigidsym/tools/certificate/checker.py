@@ -95,7 +95,7 @@ class Number:
         return Number(self.degree + other.degree, values, rule)
 
     def __add__(self, other: Number) -> Number:
-        if ZERO in (self, other):
+        if self is ZERO or other is ZERO:
             return other if self is ZERO else self
         return self.combined(add, other, lambda by: self.rate(by) + other.rate(by))
 
@@ -103,9 +103,9 @@ class Number:
         return self.combined(sub, other, lambda by: self.rate(by) - other.rate(by))
 
     def __mul__(self, other: Number) -> Number:
-        if ZERO in (self, other):
+        if self is ZERO or other is ZERO:
             return ZERO
-        if ONE in (self, other):
+        if self is ONE or other is ONE:
             return other if self is ONE else self
         return self.combined(mul, other, lambda by: self.rate(by) * other + self * other.rate(by))
 
@@ -281,7 +281,10 @@ class Record:
             rate.rates[f"{q}_dot"] = ONE
             self.names["q_ddot"][f"{q}_ddot"] = rate.rate()
         self.pi = drawn()  # no polynomial has the root pi
-        self.circles = {name: (x, circle(x)) for name, x in (numbers | {"1": ONE}).items()}
+        parts = numbers | {"1": ONE}
+        if "/2" in str(self.texts):  # turns by half an angle
+            parts = {name: x / TWO for name, x in parts.items()}
+        self.circles = {name: (part, circle(part)) for name, part in parts.items()}
         self.circle = cache(self.circle_of_sum)
         self.columns = {group: Matrix(numbers.values()) for group, numbers in self.names.items()}
 
@@ -363,9 +366,9 @@ class Record:
     def circle_of_sum(self, angle: Number) -> tuple[Number, Number]:
         """The cosine and the sine of a sum of whole multiples, by the theorems of addition."""
         total, rest = Matrix([[ONE, ZERO], [ZERO, ONE]]), angle
-        for name, (number, plane) in self.circles.items():  # the number 1 comes last
-            count = rest if number is ONE else angle.rate(name)
-            rest, turns = rest - count * number, count.values[0]
+        for name, (part, plane) in self.circles.items():  # the number 1 comes last
+            count = rest / part if name == "1" else angle.rate(name) / part.rate(name)
+            rest, turns = rest - count * part, count.values[0]
             is_whole = {*count.values} == {turns} and turns in range(-MOST_TURNS, MOST_TURNS + 1)
             refuse_unless(is_whole, "an angle that is no sum of whole multiples", Unproved)
             total = reduce(mul, [plane if turns > 0 else plane.T()] * abs(int(turns)), total)
