@@ -281,10 +281,10 @@ class Record:
             rate.rates[f"{q}_dot"] = ONE
             self.names["q_ddot"][f"{q}_ddot"] = rate.rate()
         self.pi = drawn()  # no polynomial has the root pi
-        parts = numbers | {"1": ONE}
+        angles = numbers | {"1": ONE}
         if "/2" in str(self.texts):  # turns by half an angle
-            parts = {name: x / TWO for name, x in parts.items()}
-        self.circles = {name: (part, circle(part)) for name, part in parts.items()}
+            angles = {name: x / TWO for name, x in angles.items()}
+        self.circles = {name: (angle, circle(angle)) for name, angle in angles.items()}
         self.circle = cache(self.circle_of_sum)
         self.columns = {group: Matrix(numbers.values()) for group, numbers in self.names.items()}
 
