@@ -527,11 +527,9 @@ def load(path: Path) -> Any:
 
 
 if __name__ == "__main__":
-    places = [*map(Path, sys.argv[1:])]
-    paths = chain(*(sorted(place.rglob("*.json")) or [place] for place in places))
-    is_accepted = is_refused = False
-    lines = list[str]()
-    for path in paths:
+    places = map(Path, sys.argv[1:])
+    is_accepted, is_refused, lines = False, False, list[str]()
+    for path in chain(*(sorted(place.rglob("*.json")) or [place] for place in places)):
         try:
             content = load(path)
             if content.get("schema") != "rigidsym.derivation":
@@ -540,8 +538,11 @@ if __name__ == "__main__":
             proved, reasons = verify(content)
             refuse_unless(proved, f"nothing is proved: {', '.join({*reasons.values()})}")
             is_accepted = True
-            lines += [f"{path}: R is {content['rotation']}", STRENGTH]
-            lines += ["  proved: " + ", ".join(proved)]
+            lines += [
+                f"{path}: R is {content['rotation']}",
+                STRENGTH,
+                f"  proved: {', '.join(proved)}",
+            ]
             lines += [f"  not proved, since {why}: {name}" for name, why in reasons.items()]
         except (*BROKEN, OSError) as error:
             is_refused = True
