@@ -622,8 +622,8 @@ class _Section:
         self.need("generalised_momenta")
         momenta = map(self.text, self.printed["generalised_momenta"])
         values = dict(zip([f"p_{q}" for q in self.names.q], momenta, strict=True))
-        claim = f"{self.text(self.printed[name], 't', values)} = {_KINETIC} + {{potential}}"
-        claim = self.without_rates(name) + claim.format(**self.parts)
+        energy = f"{_KINETIC} + {self.parts['potential']}"
+        claim = f"{self.without_rates(name)}{self.text(self.printed[name], 't', values)} = {energy}"
         return self.for_velocity(claim, name, "generalised_momenta")
 
     def equations(self, right: Sequence[str]) -> str:
@@ -861,10 +861,9 @@ def _tree(text: str) -> Tree:
                 return (_SIGNS[type(operator)], tree(one), tree(two))
             case ast.Call(ast.Name("cos_" | "sin_" as function), [angle], []):
                 return (function[:-1], tree(angle))
-            case ast.Call(ast.Name("tan_"), [angle], []):
-                return ("/", ("sin", tree(angle)), ("cos", tree(angle)))
-            case ast.Call(ast.Name("cot_"), [angle], []):
-                return ("/", ("cos", tree(angle)), ("sin", tree(angle)))
+            case ast.Call(ast.Name("tan_" | "cot_" as function), [angle], []):
+                parts = ("sin", tree(angle)), ("cos", tree(angle))
+                return ("/", *(parts if function == "tan_" else parts[::-1]))
         raise Unproved
 
     return tree(read(text))

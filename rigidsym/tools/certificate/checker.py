@@ -40,7 +40,6 @@ LETTERS = {  # arguments besides coordinates and what belongs to them, with thei
     "t": (["t"], "s"),
 }
 RESERVED = "cos", "sin", "tan", "cot", "sqrt", "pi"
-ROTATIONS = {"turns", "conditions"}, {"matrix", "conditions"}
 PLACES = "q", "parameters"
 PRINCIPAL = "principal_axes", "principal_moments"
 SUM = "({0}**2 + {1}**2 + {2}**2 + {3}**2)"
@@ -251,7 +250,7 @@ class Record:
 
     def __init__(self, content: Mapping[str, Any]) -> None:
         self.content, rotation = content, content["rotation"]
-        are_lists = {*rotation} in ROTATIONS and {*map(type, rotation.values())} == {list}
+        are_lists = [*map(type, rotation.values())] == [list, list]
         refuse_unless(are_lists, "a rotation has lists of turns (or a matrix) and of conditions")
         self.turns = [*map(turn_of, rotation.get("turns", []))]
         self.texts = [texts for _, texts in self.turns] or rotation.get("matrix", [])
