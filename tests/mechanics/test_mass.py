@@ -284,6 +284,17 @@ def test_an_antiderivative_is_one_and_agrees_with_numerical_quadrature(integrand
         assert abs(mpmath.quad(plain, [0, mpmath.pi / 2]) - mpmath.mpf(exact.evalf(30))) < 1e-25
 
 
+def test_kernels_evaluate_the_body():
+    motion = rs.derive("ZXZ", body=rs.solid("cylinder"))
+    module, values = motion.kernels().load(), {"M": 2.0, "a": 3.0, "h": 5.0}
+    parameters = [values[s.name] for s in motion.argument("parameters").symbols]
+    tensor = module.inertia_tensor(parameters)
+    assert np.allclose(tensor, np.diag([2 * (27 + 25) / 12] * 2 + [9]))
+    assert np.isclose(module.moment_of_inertia([3, 0, 0], [0, 0, 1], parameters), 27)
+    space = module.inertia_tensor_space([0.3, 1.3, 2.3], parameters)
+    assert np.allclose(np.linalg.eigvalsh(space), np.linalg.eigvalsh(tensor))
+
+
 def test_a_constant_keeps_its_letter_and_ours_is_another():
     dense, light = (rs.solid("box", density=sp.Symbol("M")), rs.solid("disc", mass=sp.Symbol("m")))
     for body, letter in ((dense, "M_0"), (light, "m")):

@@ -225,12 +225,15 @@ def _axioms(folder: Path) -> set[str]:
 
 
 @pytest.mark.usefixtures("coq")
-def test_coq_accepts_the_rates_of_a_passive_rotation(tmp_path):
+def test_coq_accepts_the_rates_of_a_passive_rotation_and_refuses_a_wrong_one(tmp_path):
     rates = ("angular_velocity_space", "angular_velocity_body", "rotation_rate", "spin_matrix")
     passive = record(rs.derive(rs.EulerAngles("ZXZ", passive=True), rates), {})
     certificate = certificate_of(plain(passive))
     assert certificate.uncovered == []
     assert run_coq(tmp_path, certificate.text) == 0
+    wrong = certificate.text.replace("(cos (theta t))", "(sin (theta t))")
+    assert wrong != certificate.text
+    assert run_coq(tmp_path, wrong) != 0
 
 
 @pytest.mark.usefixtures("coq")
