@@ -389,6 +389,30 @@ CERTAIN |= {  # a program: the end of the verdict, and nothing if there is none
     ("c.js", "function f(a) { let c = Math.cos(a), s = Math.sin(a); m[0] = c; m[3] = -s; m[6] = 0;"
      " m[1] = s; m[4] = c; m[7] = 0; m[2] = 0; m[5] = 0; m[8] = 1; }"):
     "transposed (passive, or stored by columns) (proved)",
+    ("d.cpp", "void f(double a) { m(1,1) = cos(a); m(1,2) = -sin(a); m(1,3) = 0; m(2,1) = sin(a); "
+     "m(2,2) = cos(a); m(2,3) = 0; m(3,1) = 0; m(3,2) = 0; m(3,3) = 1; }"): "angle = a (proved)",
+    ("e.cpp", "M f() { M H; H(0,0) = -x(); H(0,1) = w(); H(0,2) = -z(); H(0,3) = y(); H(1,0) = "
+     "-y(); H(1,1) = z(); H(1,2) = w(); H(1,3) = -x(); H(2,0) = -z(); H(2,1) = -y(); H(2,2) = x(); "
+     "H(2,3) = w(); return H; }"): "rate_matrix_space of unit_quaternion, half (proved)",
+    ("f.cpp", "P f(Q q) { P a; a.p.X(cos(q.W())*p.X() - sin(q.W())*p.Y()); "
+     "a.p.Y(sin(q.W())*a.p.X() + cos(q.W())*p.Y()); a.p.Z(p.Z()); return a; }"): None,
+    ("g.cpp", "void f(double a) { q.W(cos(a/2)); q.X(sin(a/2)); q.Y(0); q.Z(0); }"):
+    "angle = a (proved)",
+    ("k.cpp", "void f(float yaw, float pitch) { a = yaw/2; b = pitch/2; v.x = -sin(a)*sin(b); v.y "
+     "= cos(a)*sin(b); v.z = sin(a)*cos(b); w = cos(a)*cos(b); }"): "second = pitch (proved)",
+    ("p.py", "def f(self):\n    v, a = self.turn()\n    R = np.cos(a)*np.eye(3) + np.sin(a)*np.arr"
+     "ay([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]]) + (1 - np.cos(a))*np.outer(v, "
+     "v)\n"):
+    "v_0 in line 2, v_1 in line 2, v_2 in line 2",
+    ("c.m", "function a = f(obj, t, w, U)\n  a = obj.I\\(t - cross(w, obj.I*w));\nend\n"):
+    "if one matrix is the inverse of the other (proved)",
+    ("q.py", "def f(x, y, z, q):\n    return np.dot(np.array([[0, -x, -y, -z], [x, 0, z, -y], [y, "
+     "-z, 0, x], [z, y, -x, 0]]), q)/2\n"): "z = q_3 (proved)",
+    ("c.rs", "fn f(yaw: Angle<f64>) -> Q { let h = 0.5 * yaw.get(); let (s, c) = h.sin_cos(); "
+     "Q::quaternion(0.0, 0.0, s, c) }"): "z(angle) with angle = yaw, scalar last (proved)",
+    ("d.js", "const k = 180 / PI; function f(a, b, c, d) { return [atan2(2*(a*b + c*d), 1 - 2*(b*b"
+     " + c*c))*k, asin(2*(a*c - d*b))*k, atan2(2*(a*d + b*c), 1 - 2*(c*c + d*d))*k]; }"):
+    "up to the factor k (to nine digits at 20 points, not proved)",
 }  # fmt: skip
 
 
@@ -808,6 +832,8 @@ def test_a_vector_is_found_once_beside_its_components_and_up_to_a_factor(tmp_pat
     z = f*(q0*gz + q1*gy - q2*gx)
     return w, x, y, z
 """
+    twice = found_in(tmp_path, "a.py", text.replace("    return", "    print") + text)
+    assert [each.formula.line for each in twice] == [2, 8]  # in two functions
     (found,) = found_in(tmp_path, "a.py", text)
     assert "quaternion_product, up to the factor f (proved)" in str(found)
     steps = """def f(self, p, q, r, dt):

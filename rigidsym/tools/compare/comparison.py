@@ -341,8 +341,9 @@ def _other_forms(formula: sp.ImmutableMatrix) -> Iterator[tuple[str, sp.Immutabl
         angles = [f.args[0] for f in formula.atoms(sp.sin, sp.cos, sp.tan) if f.has(symbol)]
         # A factor of a whole matrix may be a vector that is not read.
         if scaled := sp.Matrix(angles or ([*formula] if formula.cols == 1 else [])):
+            is_factor = not any((part / symbol).has(symbol) for part in scaled)
             twice = known.evaluated(scaled, {**values, symbol: 2 * values[symbol]})
-            if known.near(twice, 2 * known.evaluated(scaled, dict(values))).all():
+            if is_factor or known.near(twice, 2 * known.evaluated(scaled, dict(values))).all():
                 yield f"up to the factor {symbol}", formula.xreplace({symbol: sp.S.One})
 
 

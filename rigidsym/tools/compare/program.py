@@ -66,6 +66,7 @@ _WORDS = {*language.OF_NUMBERS, *language.OF_MATRICES, *CALLS}  # functions, if 
 _VIEWS = ("T", "transpose", "reshape", "view", "ravel", "squeeze", "asarray")  # of one matrix
 _RETURNED, _ARGUMENT = _UNNAMED = ("returned", "argument")  # in place of a name
 _ALL = slice(None)
+_FROM_ONE = [1, 2, 3]
 
 _COMPLETE = {frozenset(order.split()): order.split() for order in patterns.orders}
 
@@ -97,21 +98,26 @@ class _Record(dict[Any, Any]):
         super().__init__(parts or {})
         self.lines = dict.fromkeys(self, line)  # where each was assigned
 
-    def places(self) -> Iterator[int]:
+    def places(self, is_row: bool = False) -> Iterator[int]:
         """The lines of all expressions, in the order of the indices."""
-        for key in self.order():
-            part = self[key]
-            yield from part.places() if isinstance(part, _Record) else [self.lines[key]]
+        order = self.order(is_row=is_row)
+        for key in order:
+            part, is_first = self[key], order == _FROM_ONE
+            yield from part.places(is_first) if isinstance(part, _Record) else [self.lines[key]]
 
-    def order(self) -> list[Any]:
-        """The indices of all entries of a vector or rows of a matrix; none if one is missing."""
+    def order(self, *, is_row: bool) -> list[Any]:
+        """The indices of all entries of a vector or rows of a matrix; none if one is missing.
+
+        Entries 1, 2, 3 are a row of a matrix whose rows are 1, 2, 3, or of a quaternion.
+        """
         keys = self.keys() - {None}
         if keys == {*range(len(keys))}:
             return [*range(len(keys))]
         letters = {str(key).lower(): key for key in keys}
         names = [*"abc"] if letters.keys() == {*"abc"} else _COMPLETE.get(frozenset(letters), [])
         order = [letters[name] for name in names]
-        return order if order != [1, 2, 3] else []  # of a quaternion without its scalar
+        is_whole = is_row or all(isinstance(self[key], _Record) for key in order)
+        return order if order != _FROM_ONE or is_whole else []
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -507,7 +513,8 @@ class _Run:
             elif path := self.written(target):  # w, x, y, z = q.as_quat() are inputs
                 symbol = self.symbol_for(path, None, target.line)
                 self.put(path, symbol, target.line)
-                self.components.add(symbol)
+                # Of three, each may be a row or a column of a matrix: it has no parts.
+                self.components |= {symbol} if len(keys) > 2 else set()
 
     def store(self, left: Tree, value: Any, right: Tree | None = None) -> None:
         """An assignment to a name, a member, or an entry."""
@@ -755,6 +762,9 @@ class _Run:
         if value is not None and (target is not None or tree.owner is None):
             self.store(target or Tree(tree.node, "this"), sp.ImmutableMatrix(value))
             return
+        if tree.owner is not None and name in [*"WXYZ"] and len(nodes) == 1:  # v.X(a) sets v.X()
+            self.store(tree.parts[0], self.read(nodes[0]))
+            return
         if patterns.may_be_matrix.search(tree.text):
             self.tried(tree)
         if not patterns.harmless.search(f"{tree.base}.{name}"):
@@ -813,6 +823,10 @@ class _Run:
                 self.add(_dotted(own), matrix, *part.places(), is_final=is_final)
             else:
                 self.emit(part, path=own, is_final=is_final)
+            if matrix is not None and matrix.shape == (3, 1) and _is_scalar(record.get("w")):
+                places = record.lines["w"], *part.places()
+                whole = sp.Matrix([record["w"], *matrix])  # it may be a quaternion
+                self.add(f"w, {_dotted(own)}", whole, *places, is_final=False)
         for kind, names in _groups(record):
             values: list[Any] = [self.definitions.get(record[n], record[n]) for n in names]
             if None in values:
@@ -967,6 +981,8 @@ class _Run:
             raise self.unreadable(tree)
         left, right = map(self.read, tree.parts)
         sign = tree.word
+        if sign == "\\" and self.first:  # I \ v
+            left, sign = self.of_vectors("inv", [left]), "*"
         is_turn = sign == "%" and _is_scalar(right) and (right / sp.pi).is_number
         if is_turn and self.expanded(left).has(*_INVERSE):  # the same angle
             return left
@@ -1034,9 +1050,9 @@ class _Run:
                 return left.xreplace({tensor: sp.S.One}) * _tensor(tensor) * right
         return None
 
-    def vector(self, value: Any) -> Any:
-        """Three components for a name without a value."""
-        keys = [key + self.first for key in range(3)]
+    def vector(self, value: Any, count: int = 3) -> Any:
+        """Components for a name without a value."""
+        keys = [key + self.first for key in range(count)]
         parts = [self.component(value, key) for key in keys] if _is_scalar(value) else [None]
         return value if None in parts else rows(parts)
 
@@ -1131,7 +1147,10 @@ class _Run:
             return None
         if not nodes:
             match = patterns.getter.fullmatch(name)
-            return _below(owner, match[1].lower()) if match else None
+            if name == "get" and owner and patterns.angle.fullmatch(str(owner[-1])):  # yaw.get()
+                return owner
+            own = name if name in [*"WXYZ"] else match and match[1].lower()
+            return _below(owner, own) if own else None
         if CALLS.get(name) == "entry":
             return self.indexed(owner, nodes)
         if name in ("row", "col") and len(nodes) == 1 and owner:
@@ -1412,7 +1431,8 @@ class _Run:
         if meaning == "cross" and len(values) > 1:
             values = [values[0], self.moment(values[1], values[0])]
         if meaning in ("cross", "dot", "C", "outer"):
-            values = [self.vector(value) for value in values]
+            count = 4 if any(getattr(v, "shape", ()) == (4, 4) for v in values) else 3
+            values = [self.vector(value, count) for value in values]
         if meaning == "dot" and any(as_matrix(value).cols > 1 for value in values):
             return combined("@", *map(_unflattened, values))
         if meaning == "T":
@@ -1489,10 +1509,12 @@ def _record(matrix: sp.MatrixBase, line: int) -> _Record:
     return _Record({k: _record(each, line) for k, each in enumerate(lines)}, line)
 
 
-def _settled(record: _Record) -> sp.ImmutableMatrix | None:
+def _settled(record: _Record, *, is_row: bool = False) -> sp.ImmutableMatrix | None:
     """The matrix or vector in a record, if all its entries are there."""
-    parts: list[Any] = [record[key] for key in record.order()]
-    parts = [_settled(part) if isinstance(part, _Record) else part for part in parts]
+    order = record.order(is_row=is_row)
+    parts: list[Any] = [record[key] for key in order]
+    is_row = order == _FROM_ONE
+    parts = [_settled(p, is_row=is_row) if isinstance(p, _Record) else p for p in parts]
     if not parts or None in parts:
         return None
     if all(map(_is_scalar, parts)):

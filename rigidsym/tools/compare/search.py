@@ -68,6 +68,7 @@ class FormulaInFile:
         if sorted(self.formula.lines) == sorted(other.formula.lines):
             return bool(own == others)
         is_near = self.formula.line - other.formula.line <= _NEAR_LINES
+        is_near &= self.formula.name != other.formula.name  # as in a function after another
         return ", " in other.formula.name and is_near and {*own} == {*others}
 
     def record(self) -> dict[str, Any]:
