@@ -824,9 +824,9 @@ class _Run:
             else:
                 self.emit(part, path=own, is_final=is_final)
             if matrix is not None and matrix.shape == (3, 1) and _is_scalar(record.get("w")):
-                places = record.lines["w"], *part.places()
+                lines = record.lines["w"], *part.places()
                 whole = sp.Matrix([record["w"], *matrix])  # it may be a quaternion
-                self.add(f"w, {_dotted(own)}", whole, *places, is_final=False)
+                self.add(f"w, {_dotted(own)}", whole, *lines, is_final=False)
         for kind, names in _groups(record):
             values: list[Any] = [self.definitions.get(record[n], record[n]) for n in names]
             if None in values:
