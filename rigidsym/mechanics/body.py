@@ -288,7 +288,6 @@ def steps_of_body(
     """
     is_fixed = (
         forces is not None
-        and all(part.rotation for part in forces.parts)  # no particle moves
         and whole.distribution is None
         and not any(OF_BODY[name].of_centre for name in only if name in OF_BODY)
     )

@@ -372,6 +372,7 @@ def given_inertia(
 
 _UNITS = {
     "mass": "kg",
+    "mass of a particle": "kg",
     "principal moment of inertia": "kg m^2",
     "moment of inertia": "kg m^2",
     PRODUCT: "kg m^2",

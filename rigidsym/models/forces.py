@@ -208,7 +208,11 @@ class Forces:
             raise ModelError(
                 f"an example: unknown parameter {name}; {offer(name, sorted(constants))}"
             )
-        about = dict.fromkeys((m for part in self.parts for m in part.inertia), _MOMENT)
+        about = {
+            m: _MOMENT if part.rotation else "mass of a particle"
+            for part in self.parts
+            for m in part.inertia
+        }
         declared = {p.symbol: p for p in body.declared}
         more = (
             (declared.get(s) or Parameter(symbol=s, positive=False)).described_by(about.get(s, ""))

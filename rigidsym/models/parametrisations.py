@@ -214,7 +214,14 @@ def _axes_example(conditions: Sequence[sp.Expr]) -> Example:
         *others, last = sorted(condition.xreplace(values).free_symbols, key=str) or [None]
         values |= {symbol: sp.Rational(1, sp.prime(k)) for k, symbol in enumerate(others, 3)}
         if last is not None:
-            values[last] = sp.solve(condition.xreplace(values), last)[-1]
+            equation = condition.xreplace(values)
+            roots = [root for root in sp.solve(equation, last) if root.is_real]
+            if not roots:
+                chosen = "".join(f", {symbol} = {value}" for symbol, value in values.items())
+                raise ModelError(
+                    f"the axis cannot have the length 1: no real {last} solves {equation} = 0{chosen}"
+                )
+            values[last] = roots[-1]
     return tuple(values.items())
 
 

@@ -114,7 +114,12 @@ class SingularFacts(Record):
 
     @property
     def is_gimbal_lock(self) -> bool:
-        return len(self.model.turns) > 1 and bool(self.result.points)
+        return len(self.model.turns) > 1 and bool(self.zeros)
+
+    @property
+    def binds_rates(self) -> bool:
+        """Whether a condition holds for coordinates, not for constants only."""
+        return any(condition.atoms(AppliedUndef) for condition in self.model.constraints)
 
     @property
     def has_constants(self) -> bool:
