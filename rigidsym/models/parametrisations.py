@@ -218,9 +218,8 @@ def _axes_example(conditions: Sequence[sp.Expr]) -> Example:
             roots = [root for root in sp.solve(equation, last) if root.is_real]
             if not roots:
                 chosen = "".join(f", {symbol} = {value}" for symbol, value in values.items())
-                raise ModelError(
-                    f"the axis cannot have the length 1: no real {last} solves {equation} = 0{chosen}"
-                )
+                unsolved = f"no real {last} solves {equation} = 0{chosen}"
+                raise ModelError(f"the axis cannot have the length 1: {unsolved}")
             values[last] = roots[-1]
     return tuple(values.items())
 
