@@ -410,6 +410,14 @@ CERTAIN |= {  # a program: the end of the verdict, and nothing if there is none
      "-z, 0, x], [z, y, -x, 0]]), q)/2\n"): "z = q_3 (proved)",
     ("c.rs", "fn f(yaw: Angle<f64>) -> Q { let h = 0.5 * yaw.get(); let (s, c) = h.sin_cos(); "
      "Q::quaternion(0.0, 0.0, s, c) }"): "z(angle) with angle = yaw, scalar last (proved)",
+    ("h.cc", "void f(double *q, double B[3][3]) { B[0][0] = 1; B[0][1] = q[2]; B[0][2] = -q[1]; B"
+     "[1][0] = -q[2]; B[1][1] = 1; B[1][2] = q[0]; B[2][0] = q[1]; B[2][1] = -q[0]; B[2][2] = 1;"
+     "\nm33Scale(1. / (1 + v3Dot(q, q)), B, B); }"): "g3 = q_2, half (proved)",
+    ("r.py", "def f(q):\n    B = np.zeros((3, 4)); B[0, 0] = -q[1]; B[0, 1] = q[0]; B[0, 2] = q[3];"
+     " B[0, 3] = -q[2]; B[1, 0] = -q[2]; B[1, 1] = -q[3]; B[1, 2] = q[0]; B[1, 3] = q[1]; B[2, 0] ="
+     " -q[3]; B[2, 1] = q[2]; B[2, 2] = -q[1]; B[2, 3] = q[0]\n"): "z = q_3, half (proved)",
+    ("d.rs", "fn f(a: f64) -> M { let c = a.cos(); let s = a.sin(); let k = s.mul_add(-1.0, 0.0); "
+     "M::from([[c, k, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]) }"): "angle = a (proved)",
     ("d.js", "const k = 180 / PI; function f(a, b, c, d) { return [atan2(2*(a*b + c*d), 1 - 2*(b*b"
      " + c*c))*k, asin(2*(a*c - d*b))*k, atan2(2*(a*d + b*c), 1 - 2*(c*c + d*d))*k]; }"):
     "up to the factor k (to nine digits at 20 points, not proved)",

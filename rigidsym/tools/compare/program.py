@@ -61,7 +61,7 @@ _SIGNS = {".*": "%", "./": "/", ".^": "**", "^": "**"}  # MATLAB
 _SIZES = (3, 4, 9, 16)  # of vectors and matrices that are built of numbers
 _FLAT = {9: (3, 3), 12: (4, 3), 16: (4, 4)}
 _OF_VECTORS = ("T", "C", "inv", "dot", "cross", "outer", "norm")
-_OF_OBJECTS = (*_OF_VECTORS, "same", "clamp", "least", "pair")
+_OF_OBJECTS = (*_OF_VECTORS, "fused", "same", "clamp", "least", "pair")
 _WORDS = {*language.OF_NUMBERS, *language.OF_MATRICES, *CALLS}  # functions, if nothing else
 _VIEWS = ("T", "transpose", "reshape", "view", "ravel", "squeeze", "asarray")  # of one matrix
 _RETURNED, _ARGUMENT = _UNNAMED = ("returned", "argument")  # in place of a name
@@ -161,9 +161,8 @@ class _Scope:
             self.now[node.id] = (free[::-1] or within or [len(blocks) - 1])[0]
             self.is_new |= bool(free)
             self.taken.add((node.id, self.now[node.id]))
-            self.places[node.id] = node.start_byte
-            if len(free) < 2:
-                del self.places[node.id]
+            self.places.pop(node.id, None)
+            self.places |= {node.id: node.start_byte} if len(free) > 1 else {}
         return self.now[node.id]
 
 
@@ -475,7 +474,8 @@ class _Run:
         if right.kind not in ("name", "member", "index", "unary"):
             return
         names = self.written(left), self.written(right)
-        one, other = (isinstance(self.part(self.values, path), _Record) for path in names)
+        places = self.path(left) or names[0], names[1]  # B[0, 1] = v[2] is a number
+        one, other = (isinstance(self.part(self.values, path), _Record) for path in places)
         is_alias = {".cs": other, ".py": one and is_view}.get(self.program.suffix, False)
         if all(names) and names[0] != names[1] and (is_alias or tree.is_alias):
             self.links += [names, names[::-1]]
@@ -755,15 +755,18 @@ class _Run:
             self.tried(tree)
             return
         if meaning == "set_unit":
-            value = sp.eye(4)
+            value = sp.ImmutableMatrix(sp.eye(4))
+        elif tree.owner is not None and name in [*"WXYZ"] and len(nodes) == 1:  # v.X(a)
+            target, value = tree.parts[0], self.read(nodes[0])
+        elif re.search("scale$", name, re.IGNORECASE) and len(nodes) == 3:  # m33Scale(k, A, B)
+            factor, matrix = map(self.tried, nodes[:2])
+            if _is_scalar(factor) and isinstance(matrix, sp.MatrixBase):
+                target, value = nodes[2], factor * matrix
         elif meaning is None and re.match("set|make|init", name, re.IGNORECASE):
             values = self.entries(nodes)
             value = rows(values) if len(values) in _SIZES and None not in values else None
         if value is not None and (target is not None or tree.owner is None):
-            self.store(target or Tree(tree.node, "this"), sp.ImmutableMatrix(value))
-            return
-        if tree.owner is not None and name in [*"WXYZ"] and len(nodes) == 1:  # v.X(a) sets v.X()
-            self.store(tree.parts[0], self.read(nodes[0]))
+            self.store(target or Tree(tree.node, "this"), value)
             return
         if patterns.may_be_matrix.search(tree.text):
             self.tried(tree)
@@ -1105,8 +1108,7 @@ class _Run:
 
     def is_pole(self, own: sp.Expr, sign: str, number: sp.Expr, value: sp.Expr) -> bool:
         """Whether a value, of the same vector or matrix, has a pole where it is replaced."""
-        is_near = sign == "=" or (sign == ">" and number > 0.4)
-        is_near |= sign == "<" and number < 0.1
+        is_near = sign == "=" or (sign == ">" and number > 0.4) or (sign == "<" and number < 0.1)
         whole, own = self.expanded(value), self.expanded(own)
         one, other = (
             {patterns.indices.sub("", s.name) for s in x.free_symbols} for x in (whole, own)
@@ -1370,6 +1372,8 @@ class _Run:
                 return self.filled(tree)
             case "clamp" | "least" if len(nodes) > 1:
                 return self.bounded(tree, meaning, [self.read(each) for each in nodes])
+            case "fused" if len(arguments) == 2 and is_method:
+                return combined("+", combined("*", *map(self.read, nodes[:2])), self.read(nodes[2]))
             case "where" if len(nodes) == 3:
                 return self.chosen(tree, nodes[0], nodes[1:])
             case _ if meaning in _OF_VECTORS and nodes:
