@@ -33,9 +33,10 @@ def command(context: click.Context, paths: tuple[Path, ...]) -> None:
 def _strangers(paths: Iterable[Path], derived: set[Path]) -> Iterator[tuple[Path, str, str]]:
     """Theorems in folders of records that no record derives: they may prove something else."""
     beside = {file.parent for file in derived}  # elsewhere, a .v may be of another language
-    folders = (path.rglob if path.is_dir() else path.parent.glob for path in paths)
-    for path in sorted({*chain(*(files(f"*.{CERTIFICATE}") for files in folders))} - derived):
-        if path.parent in beside:
+    folders = [path.rglob if path.is_dir() else path.parent.glob for path in paths]
+    endings = CERTIFICATE, f"{CERTIFICATE}o"  # a Reals.vo would stand for the one of Coq
+    for path in sorted({*chain(*(files(f"*.{end}") for files in folders for end in endings))}):
+        if path.parent in beside and path.with_suffix(f".{CERTIFICATE}") not in derived:
             yield path, "belongs to no record here", ""
 
 

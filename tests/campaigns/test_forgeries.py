@@ -183,6 +183,7 @@ def with_turns(turn: str, units: dict[str, str], *conditions: str, **definitions
     return lambda content: content.update(whole)
 
 
+WORDS = "From Coq Require Import Reals Lra. Require Import Rotation."
 ZERO = "(sqrt(3 + 2*sqrt(2)) - 1 - sqrt(2))"
 FALSE = put(VELOCITY, 2, "phi_dot")  # without ψ̇ cos θ
 TRUE = "phi_dot + psi_dot*cos(theta)"
@@ -191,6 +192,18 @@ IDENTITY = [["1", "0", "0"], ["0", "1", "0"], ["0", "0", "1"]]
 ZXZ = ("z(phi)", "x(theta)", "z(psi)")
 HALVES = ("constant_turn(0, 0, 1, 2, 0)", "constant_turn(0, 0, 1, 1/2, 0)")
 THIN_ROD = together(write("body", "inertia", 2, 2, "0"), write("first_integrals", []))
+
+
+def with_a_body(*parameters: str) -> Change:
+    """A ball, whose parameters have names of something else and are in no group of arguments."""
+
+    def change(content: Content) -> None:
+        named = [{"name": name, "unit": ""} for name in parameters]
+        tensor = {"mass": "1", "centre": ["0"] * 3, "inertia": IDENTITY, "parameters": named}
+        content["body"] = tensor
+        content["arguments"] = [g for g in content["arguments"] if g["name"] != "parameters"]
+
+    return change
 
 
 def with_a_parameter_defined(content: Content) -> None:
@@ -288,7 +301,7 @@ OF_ZXZ: dict[str, Change] = {
     "a name of two lines": write(W, "name", "a\n  proved: everything"),
     **{
         f"a quantity named {name}": write(W, "name", name)
-        for name in ("angular_velocity_moon", "truth", "nothing")
+        for name in ("angular_velocity_moon", "truth", "nothing", "R is a rotation")
     },
     "a quantity printed twice": lambda c: c["quantities"].append(c["quantities"][0]),
     "degrees a second": write(VELOCITY, "unit", "deg/s"),
@@ -506,7 +519,13 @@ OTHERS: Forgeries = {
                 *("euler_xyz_intrinsic ", "euler_zxz_\ud800", "euler_xyz", "xeuler_xyz_extrinsic"),
             )
         },
-        "a passive name of what is active": write("name", "euler_zxz_intrinsic_passive"),
+        **{
+            f"the name euler{end} of what is active and intrinsic": write("name", f"euler{end}")
+            for end in (
+                *("_zxz_intrinsic_passive", "_zxz_passive", "_zxz_intrinsic_extrinsic", "_321"),
+                *("_zxz__passive", "xyz", "_x_y_z", "_angles_zyx", "_zxz_inverse", "_zxza"),
+            )
+        },
         "turns in an object": write("rotation", "turns", dict(zip(ZXZ, (1, 2, 3), strict=True))),
         "conditions in an object": write("rotation", "conditions", {}),
         "a rotation with a sequence": write("rotation", "sequence", ["XYZ"]),
@@ -544,6 +563,11 @@ OTHERS: Forgeries = {
     },
     "unit_quaternion": {"the inverse turn": turned("unit_quaternion(w, -x, -y, -z)")},
     "quaternion": {
+        "constants that are called as coordinates": together(
+            *(with_a_body(*"wxyz"), only("spin_matrix")),
+            write("spin_matrix", "expression", [["0"] * 3] * 3),
+        ),
+        "a constant that is called as a rate": together(with_a_body("w_dot"), only(VELOCITY)),
         **{
             f"rates that hold {name}": beside_the_rates(name)
             for name in ("w_ddot", "x_dot", "omega_space_2", "anything")
@@ -815,7 +839,7 @@ def forged_theorems() -> Iterator[tuple[str, str]]:
 def test_coq_refuses_every_false_claim_that_can_be_stated(tmp_path):
     modules = []
     for k, (about, text) in enumerate(forged_theorems()):
-        lines = text.replace("Require Import Reals Lra Rotation.\n", "")
+        lines = text.replace(f"{WORDS}\n", "")
         modules.append(f"Module Forgery_{k}. (* {about} *)\n{lines}\nEnd Forgery_{k}.")
     assert len(modules) >= 45
-    assert run_coq(tmp_path, "\n".join(("Require Import Reals Lra Rotation.", *modules))) == 0
+    assert run_coq(tmp_path, "\n".join((WORDS, *modules))) == 0

@@ -147,7 +147,7 @@ def test_the_files_are_written_and_checked(tmp_path):
     done = subprocess.run(alone, cwd=tmp_path, capture_output=True, text=True, check=True)
     assert "R is {'turns': ['z(phi)', 'x(theta)', 'z(psi)']" in done.stdout
     assert "  proved: R is a rotation, rotation_matrix" in done.stdout
-    (folder / "other.json").write_text("{}")
+    (folder / "other.JSON").write_text("{}")
     (folder / "odd.json").write_text('{"schema": "rigidsym.derivation", "name": "\\ud800"}')
     edit(folder / RECORD, '"title": "', '"title": "My ')
     edited = call("check", "out", cwd=tmp_path, status=1).stdout
@@ -156,9 +156,12 @@ def test_the_files_are_written_and_checked(tmp_path):
     done = subprocess.run(alone, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 1
     assert "REFUSED: rotation_matrix: entry 1 is false" in done.stdout
-    assert "other.json: skipped" in done.stdout
-    nothing = [*alone[:-1], "none"]
-    assert subprocess.run(nothing, cwd=tmp_path, check=False).returncode == 1
+    assert "other.JSON: skipped" in done.stdout
+    (tmp_path / "empty").mkdir()
+    for words, status in ((["none"], 1), (["out", "empty"], 2), ([], 2)):
+        command = [*alone[:-1], *words]
+        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+        assert (done.returncode, done.stderr[:6]) == (status, "usage:" * (status == 2))
 
 
 def test_a_record_of_which_nothing_is_proved_is_refused_and_its_path_is_one_line(folder, tmp_path):
@@ -322,6 +325,7 @@ def test_a_damaged_or_missing_file_is_named(folder, name, before, after, expecte
 def test_a_certificate_joins_what_is_derived_again(folder):
     only = WRITTEN[:2]
     answered("derive", "ZXZ", *only, "--target", "c", "--out", str(folder.parent))
+    (folder / "Rotation.vo").write_text("")  # compiled
     assert problems(folder.parent) == {}
     assert json.loads((folder / RECORD).read_text())["files"].keys() >= {COQ, "Rotation.v"}
 
@@ -333,8 +337,9 @@ def test_a_certificate_of_other_angles_leaves_unless_it_was_edited(folder, is_ed
     answered("derive", "ZXZ", "--angles", "a,b,c", "--quiet", "--out", str(folder.parent))
     assert (folder / COQ).exists() == is_edited
     (folder / "other.v").write_text("")  # theorems about something else
+    (folder / "Reals.vo").write_text("")  # and other real numbers
     (folder.parent / "cpu.v").write_text("")  # and Verilog
-    assert {*problems(folder.parent)} == ({"other.v", COQ} if is_edited else {"other.v"})
+    assert {*problems(folder.parent)} == {"other.v", "Reals.vo"} | ({COQ} if is_edited else set())
 
 
 def test_a_theorem_that_was_edited_is_not_overwritten(folder):

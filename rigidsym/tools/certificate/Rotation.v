@@ -1,6 +1,6 @@
 (* Rotations in Coq's own reals, for certificates (NAME.v). The first half defines the words of their theorems: turns,
    C, derivatives, and "F turns with the angular velocity w". Read it, or compare this file with the shipped one. *)
-Require Import Reals Lra FunctionalExtensionality.
+From Coq Require Import Reals Lra FunctionalExtensionality.
 Open Scope R_scope.
 
 (* Vectors and matrices *)

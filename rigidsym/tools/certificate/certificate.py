@@ -322,7 +322,7 @@ class _Section:
         names = self.names
         groups = [names.q, self.rates, *([self.seconds] if self.definitions else [])]
         functions = [[*map(self.letter, group)] for group in groups]
-        yield "Require Import Reals Lra Rotation."
+        yield "From Coq Require Import Reals Lra. Require Import Rotation."
         yield "Open Scope R_scope."
         yield "Section Claims."
         if names.constants:

@@ -1,4 +1,4 @@
-"""Checks records of rigidsym without rigidsym: `python checker.py FOLDER|RECORD...`
+"""Checks records of rigidsym without rigidsym: `python -I checker.py FOLDER|RECORD...`
 
 A record NAME.json describes a rotation, perhaps with a body and a potential, and prints
 expressions. This program works out the same quantities from their definitions at five random real
@@ -39,8 +39,9 @@ LETTERS = {  # arguments besides coordinates and what belongs to them, with thei
     "torque": (["torque_1", "torque_2", "torque_3"], "N m"),
     "t": (["t"], "s"),
 }
-RESERVED = "cos", "sin", "tan", "cot", "sqrt", "pi"
+RESERVED = dict.fromkeys(("cos", "sin", "tan", "cot", "sqrt", "pi"), "")
 PLACES = "q", "parameters"
+NAME = "[A-Za-z][A-Za-z0-9_]*"  # "(phi)" and " phi" would be read as phi
 PRINCIPAL = "principal_axes", "principal_moments"
 SUM = "({0}**2 + {1}**2 + {2}**2 + {3}**2)"
 TURNS = {  # a vector v and numbers c and s: R = 1 + s C(v) + (1 - c) C(v)²
@@ -220,19 +221,19 @@ def names_in(*trees: ast.AST) -> set[str]:
     return {node.id[:-1] for node in chain(*map(ast.walk, trees)) if isinstance(node, ast.Name)}
 
 
-def distinct(pairs: Iterable[tuple[str, Any]]) -> dict[str, Any]:
+def distinct(pairs: Iterable[tuple[str, Any]], plain: str = "[ -~]*") -> dict[str, Any]:
     pairs = [*pairs]
     names = [name for name, _ in pairs]
-    is_distinct = len({*names}) == len(names) and re.fullmatch(r"[ -~]*", "".join(names))
-    refuse_unless(is_distinct, f"a name is there twice, or not plain ASCII: {names}"[:200])
+    wrong = [n for k, n in enumerate(names) if n in names[:k] or not re.fullmatch(plain, n)]
+    refuse_unless(not wrong, f"a name is there twice, or not plain ASCII: {wrong}"[:200])
     return dict(pairs)
 
 
 def claims_in(content: Mapping[str, Any]) -> dict[str, Any]:
     """The quantities and first integrals by their names."""
-    claims = [(claim["name"], claim) for claim in content["quantities"]]
-    claims += [("constant " + claim["name"], claim) for claim in content["first_integrals"]]
-    return distinct(claims)
+    groups = content["quantities"], content["first_integrals"]
+    claims, constants = (distinct(((c["name"], c) for c in group), NAME) for group in groups)
+    return claims | {"constant " + name: claim for name, claim in constants.items()}
 
 
 def turn_of(text: str) -> tuple[str, list[str]]:
@@ -299,17 +300,16 @@ class Record:
             "q_ddot": [(f"{q}_ddot", f"{unit[q] or 1}/s^2") for q in self.q],
             "momenta": [(f"p_{q}", "kg m^2/s") for q in self.q],
         }
-        taken = {name for name, _ in chain(*groups.values())} | {*RESERVED}
-        names = *self.q, *self.constants, *self.definitions, *taken
-        for name in distinct((name, "") for name in names):
-            # "(phi)" and " phi" would be read as phi
-            refuse_unless(name.isidentifier(), f"the name {name!r}")
         refuse_unless(len(self.turns) <= 100, "more than 100 turns", Unproved)
         constants = [pair for pair in self.listed.get("parameters", []) if pair[0] in in_turns]
         body = self.content.get("body", {"parameters": []})["parameters"]
         constants += [(each["name"], each["unit"]) for each in body]
         groups["parameters"] = [(name, unit.get(name, u)) for name, u in constants]
         groups["q"] = [(q, unit[q]) for q in self.q]
+        # listed or not, no name has two meanings, but p_x: `read` never has a momentum and a point
+        both = {"point": [*dict(groups["momenta"] + groups["point"]).items()], "momenta": []}
+        words = chain(RESERVED.items(), self.definitions.items())
+        distinct(chain(words, *(groups | both).values()), NAME)
         states = [groups["q"] + groups[rates] for rates in ("q_dot", "omega_body")]
         for group, pairs in self.listed.items():
             is_right = pairs in states if group == "y" else pairs == groups.get(group)
@@ -321,18 +321,18 @@ class Record:
         """A name that does not give R another meaning."""
         name, presentation = self.content["name"], self.content["presentation"]
         refuse_unless(presentation in ("active", "passive"), f"the presentation {presentation!r}")
-        end, right = "_passive" * (presentation == "passive"), set[str]()
+        end, right = "_passive" * (presentation == "passive"), {""}
         angles = [turn.partition("(")[2][:-1] for turn in turns]
         for order, step in (("intrinsic", 1), ("extrinsic", -1)):
             axes = "".join(kind for kind, _ in self.turns[::step])
-            right |= {axes, f"{axes}_{order}{end}"} if angles[::step] == self.q else set()
-        said = re.findall("euler_([xyz]{2,}(?:_(?:in|ex)trinsic(?:_passive)?)?)", name)
-        is_right = re.fullmatch("[a-z][a-z0-9_]*", name) and {*said} <= right
-        refuse_unless(is_right, f"the name {name!r} of other turns")
+            right |= {f"_{axes}", f"_{axes}_{order}{end}"} if angles[::step] == self.q else set()
+        after = re.findall("euler(.*?)(?:_[0-9])?$", name)
+        is_right = re.fullmatch("[a-z][a-z0-9_]*", name) and {*after} <= right
+        refuse_unless(is_right, f"the name {name!r}; after euler only {sorted(right)} is right")
 
     def read(self, printed: Any, groups: Iterable[str] = ("parameters",)) -> Matrix:
         """A scalar, the column of a vector, or a matrix, of some groups of names."""
-        names = dict(chain([("pi", self.pi)], *(self.names[group].items() for group in groups)))
+        names = distinct(chain([("pi", self.pi)], *(self.names[g].items() for g in groups)))
         rows = printed if isinstance(printed, list) else [printed]
         rows = [row if isinstance(row, list) else [row] for row in rows]
         return Matrix([self.value(read(text), names) for text in row] for row in rows)
@@ -525,9 +525,12 @@ def load(path: Path) -> Any:
 
 
 if __name__ == "__main__":
-    places = map(Path, sys.argv[1:])
-    is_refused, lines = False, list[str]()
-    for path in chain(*(sorted(place.rglob("*.json")) or [place] for place in places)):
+    is_refused, lines, ending = False, list[str](), "*.[jJ][sS][oO][nN]"
+    files = [sorted(p.rglob(ending)) if p.is_dir() else [p] for p in map(Path, sys.argv[1:])]
+    if not all(files) or not files:
+        print("usage: python -I checker.py FOLDER|RECORD... (with NAME.json)", file=sys.stderr)
+        sys.exit(2)
+    for path in chain(*files):
         try:
             content = load(path)
             if content.get("schema") != "rigidsym.derivation":
