@@ -209,7 +209,11 @@ def _printed(_: Context, value: Any) -> Markup:
     if isinstance(value, sp.Basic) and not isinstance(value, sp.MatrixBase):
         value = formula_of(value, reader.letters)
     elif isinstance(value, Citation):
+        if not isinstance(value.text, str):
+            raise TemplateRuntimeError(f"cite({value.text!r}): expected a text in quotes")
         value = doc.Cited(value)
+    elif callable(value):
+        raise TemplateRuntimeError("expected parentheses after its name, as in {{ super() }}")
     elif type(value) is tuple and value and isinstance(value[0], _BLOCKS):
         value = [*value]  # blocks; other tuples are texts
     mark = reader.mark(value)

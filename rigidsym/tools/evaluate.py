@@ -348,15 +348,17 @@ def _by_name(arguments: Sequence[_Input], header: ColumnNames) -> list[int]:
             else:
                 columns.append(column)
     if missing:
-        rates = {name for each in arguments if each.name == "q_dot" for name in each.names}
+        names = {each.name: {*each.names} for each in arguments}
+        rates, coordinates = names.get("q_dot"), names.get("q", {*missing})
         constants = {name for each in arguments if each.every for name in each.names}
         lacks_rates = {*missing} == rates
+        names_angles = not coordinates.isdisjoint(missing)
         same = f"--given {min(constants, default='')}=NUMBER gives a constant; "
         raise DataError(
             f"no column {', '.join(missing)} among {header.listed}; "
             f"{'without rates, --quantity rotation_matrix gives the attitude; ' * lacks_rates}"
             f"{same * (not constants.isdisjoint(missing))}"
-            "if the file names them otherwise, `columns` names all its columns, in order, or "
-            "--angles the coordinates, such as `--angles yaw,pitch,roll`"
+            "if the file names them otherwise, `columns` names all its columns, in order"
+            f"{', or --angles the coordinates, such as `--angles yaw,pitch,roll`' * names_angles}"
         )
     return columns

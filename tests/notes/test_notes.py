@@ -52,13 +52,23 @@ KINDS = {
     "passive_vector": rs.rotation_from("rotation_vector", passive=True),
     "own_matrix": given(elementary("z", time_function("a") + time_function("b")), name="own"),
 }
+ARM = {  # of two links that turn in a plane, the second one a particle
+    "body": rs.principal_moments(*sp.symbols("A A C")),
+    "potential": "-m*g*l*(cos(a) - cos(b))",
+    "parts": [{"velocity": ["-l*sin(a)*a_dot", "l*cos(a)*a_dot", "0"], "mass": "m"}],
+    "examples": [
+        {"parameters": {"A": 1, "C": 1, "m": 1, "g": 9.81, "l": 1}, "initial": {"a": 1}, "time": 1}
+    ],
+}
 NAMES = ("heavy_symmetric_top", "lecture", "quaternion", "unit_quaternion", "axis_angle")
 
 
-@pytest.mark.parametrize("kind", [*KINDS, *NAMES, "cone"])
+@pytest.mark.parametrize("kind", [*KINDS, *NAMES, "cone", "arm"])
 def test_notes_of_every_kind(golden, kind):
     if kind == "cone":
         motion = rs.derive("ZXZ", body=rs.solid("cone"))
+    elif kind == "arm":
+        motion = rs.derive("z(a) z(b)", **ARM)
     else:
         motion = rs.derive(KINDS[kind]) if kind in KINDS else motion_of(kind)
     golden(f"notes/kinds/{kind}.md", note(motion, style="audit").markdown())

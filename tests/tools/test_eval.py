@@ -115,6 +115,7 @@ def test_columns_are_found_and_named(words, log, head, row):
             "no column phi_dot, theta_dot, psi_dot among phi, theta, psi; "
             "without rates, --quantity rotation_matrix gives the attitude",
         ),
+        ("phi_dot,theta_dot,psi_dot\n1,2,3\n", "--angles the coordinates"),
         ("1,2,3\n", "3 columns without names: expected 6"),
         ("\n\n", "no rows"),
         (f"{HEAD}\n-,deg,-,-,-,-\n", r"line 2.* as in theta \[deg\]"),

@@ -101,6 +101,7 @@ class MotionFacts:
             initial=equations(item for item in common if item[0] in starts[0]),
             differing=[each for each in own if each],
             polhodes=picture.polhodes,
+            is_still=picture.is_still,
             # whether θ goes to and fro between the roots of the effective potential
             is_bounded=any(s.quantity.name == "effective_potential" for s in self.derivation.steps),
         )

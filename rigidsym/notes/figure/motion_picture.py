@@ -44,6 +44,7 @@ class MotionPicture(NamedTuple):
     drawing: Drawing
     told: int  # of how many examples the caption needs the numbers
     polhodes: int
+    is_still: bool  # whether the third body axis keeps its direction in each of them
 
 
 def motion_picture(derivation: Derivation, letters: Letters) -> MotionPicture | None:
@@ -64,12 +65,15 @@ def motion_picture(derivation: Derivation, letters: Letters) -> MotionPicture | 
     )
     most = None if has_polhodes else _IN_A_ROW  # all polhodes are on one ellipsoid
     motions = [first, *(_motion(derivation, e) for e in forces.examples[1:most])]
+    traced = motions[:1] if has_polhodes else motions
+    is_still = all(np.ptp(m.rotation_matrix[:, :, 2], axis=0).max() < _RTOL for m in traced)
     if has_polhodes:
         # without forces no direction of space is vertical, unless the file measures θ from it
         trace = _trace(first, has_bounds="effective_potential" in derived)
         both = _in_a_row((_polhodes(motions, letters), trace))
-        return MotionPicture(both, told=1, polhodes=len(motions))
-    return MotionPicture(_in_a_row(map(_trace, motions)), told=len(motions), polhodes=0)
+        return MotionPicture(both, told=1, polhodes=len(motions), is_still=is_still)
+    drawing = _in_a_row(map(_trace, motions))
+    return MotionPicture(drawing, told=len(motions), polhodes=0, is_still=is_still)
 
 
 def _motion(derivation: Derivation, example: Example) -> Trajectory:

@@ -216,8 +216,8 @@ class Scene(Record, kw_only=True):
             views.append(View(angles, azimuth, elevation, seen))
         return max(views, key=self._clarity)
 
-    def _clarity(self, view: View) -> float:
-        """How far apart the ends of all axes appear, and how open the arcs: the worst case."""
+    def _clarity(self, view: View) -> tuple[int, float]:
+        """How many axes do not coincide, how far apart they end, and how open the arcs are."""
         posed, seen = self.posed(view.angles), view.camera
         ends = [seen.project(ray.direction) for ray in posed.rays]
         if posed.line_of_nodes:
@@ -226,7 +226,8 @@ class Scene(Record, kw_only=True):
         # An arc looks closed if its angle is near 0 or 180°, and if its plane is seen edge on.
         openings = [1.5 * abs(sin(arc.angle) * seen.depth(arc.axis)) for arc in posed.arcs]
         lengths = [hypot(*end) for end in ends]
-        return min(*openings, *lengths, *(_separation(*pair) for pair in combinations(ends, 2)))
+        apart = min(*openings, *lengths, *(_separation(*pair) for pair in combinations(ends, 2)))
+        return len(posed.rays), apart
 
 
 def _separation(one: Point, other: Point) -> float:
