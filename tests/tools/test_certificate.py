@@ -42,7 +42,7 @@ def test_all_conventions_are_proved_by_the_checker():
         assert checker.verify(of_rotation) == (["R is a rotation", *names], {})
 
 
-@pytest.mark.parametrize("name", ["euler_zxz", "my_euler_zxz_2"])
+@pytest.mark.parametrize("name", ["euler_zxz", "my_euler_zxz_2", "euler_top"])
 def test_a_name_may_say_the_axes(name):
     assert checker.verify(record_of("ZXZ", BASIC) | {"name": name})[1] == {}
 

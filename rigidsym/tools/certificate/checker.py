@@ -326,8 +326,9 @@ class Record:
         for order, step in (("intrinsic", 1), ("extrinsic", -1)):
             axes = "".join(kind for kind, _ in self.turns[::step])
             right |= {f"_{axes}", f"_{axes}_{order}{end}"} if angles[::step] == self.q else set()
-        after = re.findall("euler(.*?)(?:_[0-9])?$", name)
-        is_right = re.fullmatch("[a-z][a-z0-9_]*", name) and {*after} <= right
+        after = "".join(re.findall("euler(.*?)(?:_[0-9])?$", name))
+        is_plain = not re.search("[xyz0-9]|trinsic|passive|active", after)  # euler_top
+        is_right = re.fullmatch("[a-z][a-z0-9_]*", name) and (is_plain or after in right)
         refuse_unless(is_right, f"the name {name!r}; after euler only {sorted(right)} is right")
 
     def read(self, printed: Any, groups: Iterable[str] = ("parameters",)) -> Matrix:
