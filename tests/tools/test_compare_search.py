@@ -331,6 +331,32 @@ BREAK = "switch (n) { case 1: if (n > 0) { s = -s; break; } f(); }"
 BY_COLUMNS = "{ let (s, c) = a.sin_cos(); Matrix3::new(c, s, 0, -s, c, 0, 0, 0, 1) }"
 OWN = "double sinus(double x) { return sin(x); } double cosine(double x) { return x; }"
 OWN += " void f(int k, double a, double x, double y, double z, double R[9]) {"
+HALF = "q[0] = cos(deg/2); q[1] = sin(deg/2); q[2] = 0; q[3] = 0;"
+OF_JAVA = "class A {{ double[] f({} a) {{ return new double[]{{cos(a/2), sin(a/2), 0, 0}}; }} }}"
+OF_ENTRIES = TURNED.replace("s", "sin(a)").replace("c", "cos(a)")
+OF_MEMBER = HALF.replace("deg", "p.deg")
+TYPES = ("long", "int32_t", "unsigned", "const short", "const int&")
+WHOLE = [  # divisions and matrices of whole numbers, which are rounded
+    *(("c", f"void f({kind} deg, float q[4]) {{ {HALF} }}") for kind in TYPES),
+    ("c", f"void f(int n, float q[4]) {{ int x, deg; deg = n; {HALF} }}"),
+    ("cpp", f"struct P {{ int deg; }}; void f(P& p, float q[4]) {{ {OF_MEMBER} }}"),
+    *(("java", OF_JAVA.format(kind)) for kind in ("long", "Integer")),
+    ("rs", "fn f(a: i32) -> [f64; 4] { [((a / 2) as f64).cos(), ((a / 2) as f64).sin(), 0., 0.] }"),
+    ("cpp", f"void f(double a, int R[9]) {{ {OF_ENTRIES} }}"),
+    (
+        "cpp",
+        "Eigen::Matrix3i f(double a) { Eigen::Matrix3i m; m << cos(a), -sin(a), 0, sin(a), "
+        "cos(a), 0, 0, 0, 1; return m; }",
+    ),
+    ("py", f"def f(a):\n    return np.array({FLAT}).astype(int)\n"),
+    ("py", f"def f(a):\n    return np.array({FLAT}, dtype=np.int32)\n"),
+    (
+        "py",
+        "def f(a):\n    R = np.eye(3, dtype=int)\n    R[0, 0] = cos(a); R[0, 1] = -sin(a)\n    "
+        "R[1, 0] = sin(a); R[1, 1] = cos(a); R[2, 2] = 1\n    R[0, 2] = R[1, 2] = R[2, 0] = R[2, "
+        "1] = 0\n    return R\n",
+    ),
+]
 CERTAIN = {("z.cpp", f"{OWN} {body} }}"): words for body, words in EXACT.items()}
 CERTAIN |= {  # a program: the end of the verdict, and nothing if there is none
     ("a.cpp", f"void f(double a) {{{ABOUT}"): "(proved)",
@@ -358,6 +384,7 @@ CERTAIN |= {  # a program: the end of the verdict, and nothing if there is none
      "z*z))\n"): None,
     ("h.c", "void f(int a, double q[4]) { q[0] = cos(a/2); q[1] = 0; q[2] = 0; q[3] = sin(a/2); }"):
     None,
+    **{(f"w{k}.{suffix}", text): None for k, (suffix, text) in enumerate(WHOLE)},
     ("h.cpp", "void f(const double *a, double s) { Vec q; q[1] = a[1]*sin(s); q[2] = a[2]; "
      "q[3] = a[3]; q *= s; g(q); }"): None,
     ("j.py", "from numpy import cos as sin, sin as cos\nR = lambda a: [[cos(a), -sin(a), 0], "

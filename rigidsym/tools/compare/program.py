@@ -27,7 +27,16 @@ from rigidsym.tools.compare import language
 from rigidsym.tools.compare.language import as_matrix, called, combined, function_word, rows
 from rigidsym.tools.compare.latex import python_of
 from rigidsym.tools.compare.quantities import are_angles, stem_of
-from rigidsym.tools.compare.syntax import CALLS, Tree, below, parameters, parsed, patterns, walk
+from rigidsym.tools.compare.syntax import (
+    CALLS,
+    Tree,
+    below,
+    parameters,
+    parsed,
+    patterns,
+    walk,
+    whole_numbers,
+)
 
 if TYPE_CHECKING:
     from tree_sitter import Node
@@ -180,6 +189,7 @@ class _Program:
     is_formula: bool = False  # a formula on its own, with the functions of `language`
     steps: Counter[str] = field(default_factory=Counter)  # expressions that were read
     written: dict[int, Path] = field(default_factory=dict)  # by nodes, which are asked for often
+    whole: dict[tuple[int, str], bool] = field(default_factory=dict)  # as `whole_numbers`
 
 
 def program_formulas(text: str, suffix: str) -> list[Formula]:
@@ -205,6 +215,7 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
         _product(text, suffix),
         bool(patterns.glm.search(text)),
         set(patterns.array.findall(text)),
+        whole={} if suffix in _OF_REALS else whole_numbers(root),
     )
     # A long file of short functions is read to its end; a long function may let a value grow.
     program.steps["read"] = -min(8 * text.count("\n"), 200 * len(functions))
@@ -444,9 +455,9 @@ class _Run:
         elif values and left.targets != [left]:
             self.unpack(left, values[0])
         elif values:
-            if tree.is_integer and not re.fullmatch(r"\w*", values[0].text):
-                raise self.unreadable(tree, "is rounded")
             self.tests[left.text] = values[0]
+            if values[0].is_integer:
+                self.program.whole[self.scope.tree.node.id, left.text] = True
             try:
                 value = self.assigned(values[0])
                 if values[0].kind == "list" and patterns.column_matrix.search(tree.declared_type):
@@ -523,6 +534,13 @@ class _Run:
             raise self.unreadable(left)
         if isinstance(value, sp.MatrixBase):
             value = value[0] if len(value) == 1 else value
+        if self.holds_integers(path) and not getattr(value, "is_Integer", False):
+            reason = f"{path[0]} holds whole numbers"
+            if getattr(value, "free_symbols", ()) and value.has(sp.Function):
+                fault = Formula(lines=(left.line,), name=path[0], reason=reason)
+                self.formulas += [fault] * (reason not in self.emitted)
+                self.emitted.add(reason)
+            raise self.unreadable(left, "is rounded")
         if _is_scalar(value):
             path = tuple(key for key in path if key != _ALL)  # of a batch
             value = self.renamed(path, value)
@@ -989,13 +1007,9 @@ class _Run:
         is_turn = sign == "%" and _is_scalar(right) and (right / sp.pi).is_number
         if is_turn and self.expanded(left).has(*_INVERSE):  # the same angle
             return left
-        is_rounded = sign == "/" and self.program.suffix not in _OF_REALS
-        above, below = tree.parts
-        whole = patterns.whole_numbers.fullmatch(below.text) if is_rounded else None
-        if whole and not (left / right).is_Integer:
-            is_int = re.search(rf"\bint\s+{re.escape(above.text)}\b", self.scope.tree.text)
-            if is_int or patterns.whole_numbers.fullmatch(above.text):
-                raise self.unreadable(tree, "is a division of whole numbers, which rounds")
+        is_rounded = sign == "/" and self.program.suffix not in _OF_REALS and _is_scalar(right)
+        if is_rounded and not (left / right).is_Integer and all(map(self.is_whole, tree.parts)):
+            raise self.unreadable(tree, "is a division of whole numbers, which rounds")
         if sign in ("+", "-"):
             left, right = self.as_vector(left, right), self.as_vector(right, left)
         elif sign in ("*", "@") and (value := self.of_tensor(left, right)) is not None:
@@ -1006,6 +1020,25 @@ class _Run:
         if sign == "*" and are_columns and self.program.suffix in _WITH_SWIZZLES:
             return combined("%", left, right)
         return combined(self.operation(tree, sign, left, right), left, right)
+
+    def is_whole(self, tree: Tree) -> bool:
+        """Whether an expression is a whole number by its digits and the types of its names."""
+        if tree.kind in ("binary", "unary"):
+            return all(map(self.is_whole, tree.parts))
+        if patterns.whole_numbers.fullmatch(tree.text):
+            return True
+        path = self.path(tree)
+        return path is not None and self.holds_integers(path)
+
+    def holds_integers(self, path: Path) -> bool:
+        """Whether a name or a member is declared as a whole number, or as an array of them."""
+        names = [key for key in path if isinstance(key, str)]
+        node = self.scope.tree.node
+        while len(names) == 1 and node.parent:
+            if (node.id, names[0]) in self.program.whole:
+                return self.program.whole[node.id, names[0]]
+            node = Tree(node).around
+        return self.program.whole.get((0, names[-1]), False)
 
     def as_vector(self, value: Any, other: Any) -> Any:
         """c v, where v has no value, in components if it is added to a vector."""
@@ -1321,6 +1354,8 @@ class _Run:
         """A function of numbers, a method of a matrix, a constructor, or a function of the file."""
         if self.path(tree) is not None:  # R(0, 1), q.w()
             return self.named(tree)
+        if tree.is_integer:
+            raise self.unreadable(tree, "has whole numbers")
         base, arguments, word = tree.base, tree.parts[1:], tree.called
         if tree.owner is None:
             word = self.program.imported.get(word, word)
@@ -1356,7 +1391,7 @@ class _Run:
                 return rows([called(each, [self.read(nodes[0])]) for each in ("sin", "cos")])
             case "number" if not arguments and self.program.suffix == ".rs":  # T::zero()
                 return sp.Integer("one" in name.lower())
-            case "cast" if len(nodes) == 1 and not tree.is_integer:
+            case "cast" if len(nodes) == 1:
                 return self.read(nodes[0])
             case "wrapper" if is_listed:
                 return self.read(nodes[0])

@@ -254,15 +254,7 @@ class Tree:
         """The names that a statement declares for its block alone."""
         if not self.is_one_of("local"):
             return set()
-        inner = [c for c in self.node.named_children if c.type == "variable_declaration"]  # C#
-        node = next(iter(inner), self.node)
-        parts = [c for c in node.named_children if c.type == "variable_declarator"]
-        names: set[str] = set()
-        for own in [*node.children_by_field_name("declarator"), *parts] or [node]:
-            while part := _part(own, "declarator name pattern"):
-                own = part
-            names |= {spelled(_text(n)) for n in below([own]) if _KINDS.get(n.type) == "name"}
-        return names
+        return _declared(self.node)
 
     @property
     def around(self) -> Node:
@@ -274,11 +266,12 @@ class Tree:
 
     @property
     def is_integer(self) -> bool:
-        """Whether a declaration, or a call such as static_cast<int>, rounds to an integer."""
-        text = self.declared_type
-        if self.kind == "call":
-            text = self.parts[0].text.partition("<")[2].rstrip("> ")
-        return patterns.integer.fullmatch(text) is not None
+        """Whether a call has whole numbers: static_cast<int>(a), a.astype(int), dtype=int."""
+        if self.kind != "call":
+            return False
+        text = self.parts[0].text.partition("<")[2].rstrip("> ")
+        end = f"{self.options} {self.text[-30:]}"
+        return bool(patterns.integer.fullmatch(text) or patterns.integer_entries.search(end))
 
     @property
     def is_alias(self) -> bool:
@@ -298,6 +291,35 @@ class Tree:
     def covers(self, byte: int) -> bool:
         """Whether a block contains this place of the text."""
         return any(p.node.start_byte <= byte < p.node.end_byte for p in self.parts or [self])
+
+
+def _declared(node: Node) -> set[str]:
+    """The names that a declaration, or a parameter, declares."""
+    inner = [c for c in node.named_children if c.type == "variable_declaration"]  # C#
+    node = next(iter(inner), node)
+    parts = [c for c in node.named_children if c.type == "variable_declarator"]
+    names: set[str] = set()
+    for own in [*node.children_by_field_name("declarator"), *parts] or [node]:
+        while part := _part(own, "declarator name pattern"):
+            own = part
+        names |= {spelled(_text(n)) for n in below([own]) if _KINDS.get(n.type) == "name"}
+    return names
+
+
+def whole_numbers(root: Node) -> dict[tuple[int, str], bool]:
+    """Whether names are declared as whole numbers, or as arrays of them.
+
+    The key has the function that declares the name, or 0 for a member or a name of the file.
+    """
+    names: dict[tuple[int, str], bool] = {}
+    for node in below([root]):
+        if patterns.declaration.search(node.type) and (outer := _part(node, "type")):
+            is_whole = patterns.integer.fullmatch(patterns.qualifier.sub("", _text(outer)))
+            around = Tree(node).around
+            place = around.id * (_KINDS.get(around.type) == "function")
+            for name in _declared(node):
+                names[place, name] = names.get((place, name), False) or is_whole is not None
+    return names
 
 
 def _flat(nodes: list[Node], kind: str) -> list[Tree]:
