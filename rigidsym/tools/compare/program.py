@@ -27,16 +27,7 @@ from rigidsym.tools.compare import language
 from rigidsym.tools.compare.language import as_matrix, called, combined, function_word, rows
 from rigidsym.tools.compare.latex import python_of
 from rigidsym.tools.compare.quantities import are_angles, stem_of
-from rigidsym.tools.compare.syntax import (
-    CALLS,
-    Tree,
-    below,
-    parameters,
-    parsed,
-    patterns,
-    walk,
-    whole_numbers,
-)
+from rigidsym.tools.compare.syntax import CALLS, Tree, below, parameters, parsed, patterns, walk
 
 if TYPE_CHECKING:
     from tree_sitter import Node
@@ -189,7 +180,7 @@ class _Program:
     is_formula: bool = False  # a formula on its own, with the functions of `language`
     steps: Counter[str] = field(default_factory=Counter)  # expressions that were read
     written: dict[int, Path] = field(default_factory=dict)  # by nodes, which are asked for often
-    whole: dict[tuple[int, str], bool] = field(default_factory=dict)  # as `whole_numbers`
+    whole: dict[tuple[int, str], bool] = field(default_factory=dict)  # of `Tree`
 
 
 def program_formulas(text: str, suffix: str) -> list[Formula]:
@@ -215,7 +206,7 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
         _product(text, suffix),
         bool(patterns.glm.search(text)),
         set(patterns.array.findall(text)),
-        whole={} if suffix in _OF_REALS else whole_numbers(root),
+        whole={} if suffix in _OF_REALS else Tree(root).whole_numbers(),
     )
     # A long file of short functions is read to its end; a long function may let a value grow.
     program.steps["read"] = -min(8 * text.count("\n"), 200 * len(functions))
@@ -1025,10 +1016,8 @@ class _Run:
         """Whether an expression is a whole number by its digits and the types of its names."""
         if tree.kind in ("binary", "unary"):
             return all(map(self.is_whole, tree.parts))
-        if patterns.whole_numbers.fullmatch(tree.text):
-            return True
-        path = self.path(tree)
-        return path is not None and self.holds_integers(path)
+        is_number = patterns.whole_numbers.fullmatch(tree.text) is not None
+        return is_number or self.holds_integers(self.path(tree) or ())
 
     def holds_integers(self, path: Path) -> bool:
         """Whether a name or a member is declared as a whole number, or as an array of them."""
@@ -1038,7 +1027,7 @@ class _Run:
             if (node.id, names[0]) in self.program.whole:
                 return self.program.whole[node.id, names[0]]
             node = Tree(node).around
-        return self.program.whole.get((0, names[-1]), False)
+        return self.program.whole.get((0, *names[-1:]), False)
 
     def as_vector(self, value: Any, other: Any) -> Any:
         """c v, where v has no value, in components if it is added to a vector."""

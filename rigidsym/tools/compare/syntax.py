@@ -273,6 +273,17 @@ class Tree:
         end = f"{self.options} {self.text[-30:]}"
         return bool(patterns.integer.fullmatch(text) or patterns.integer_entries.search(end))
 
+    def whole_numbers(self) -> dict[tuple[int, str], bool]:
+        """Whether names are declared as whole numbers, by the functions that declare them, or 0."""
+        names: dict[tuple[int, str], bool] = {}
+        for node in below([self.node]):
+            if patterns.declaration.search(node.type) and (outer := _part(node, "type")):
+                is_whole = patterns.integer.fullmatch(patterns.qualifier.sub("", _text(outer)))
+                place = Tree(node).around.id * (_KINDS.get(Tree(node).around.type) == "function")
+                for key in ((place, name) for name in _declared(node)):
+                    names[key] = names.get(key, False) or is_whole is not None
+        return names
+
     @property
     def is_alias(self) -> bool:
         """Whether an assignment gives an object another name: auto& b = a, b = &a."""
@@ -303,22 +314,6 @@ def _declared(node: Node) -> set[str]:
         while part := _part(own, "declarator name pattern"):
             own = part
         names |= {spelled(_text(n)) for n in below([own]) if _KINDS.get(n.type) == "name"}
-    return names
-
-
-def whole_numbers(root: Node) -> dict[tuple[int, str], bool]:
-    """Whether names are declared as whole numbers, or as arrays of them.
-
-    The key has the function that declares the name, or 0 for a member or a name of the file.
-    """
-    names: dict[tuple[int, str], bool] = {}
-    for node in below([root]):
-        if patterns.declaration.search(node.type) and (outer := _part(node, "type")):
-            is_whole = patterns.integer.fullmatch(patterns.qualifier.sub("", _text(outer)))
-            around = Tree(node).around
-            place = around.id * (_KINDS.get(around.type) == "function")
-            for name in _declared(node):
-                names[place, name] = names.get((place, name), False) or is_whole is not None
     return names
 
 
