@@ -385,6 +385,9 @@ CERTAIN |= {  # a program: the end of the verdict, and nothing if there is none
     ("h.c", "void f(int a, double q[4]) { q[0] = cos(a/2); q[1] = 0; q[2] = 0; q[3] = sin(a/2); }"):
     None,
     **{(f"w{k}.{suffix}", text): None for k, (suffix, text) in enumerate(WHOLE)},
+    ("p.py", "def f(w, x, y, z):\n    s = LIMIT(2*(w*y - z*x), -1, 1)\n    return atan2(2*(w*x + y*"
+     "z), 1 - 2*(x*x + y*y)), asin(s), atan2(2*(w*z + x*y), 1 - 2*(y*y + z*z))\n"):
+    "points, not proved)",
     ("h.cpp", "void f(const double *a, double s) { Vec q; q[1] = a[1]*sin(s); q[2] = a[2]; "
      "q[3] = a[3]; q *= s; g(q); }"): None,
     ("j.py", "from numpy import cos as sin, sin as cos\nR = lambda a: [[cos(a), -sin(a), 0], "
