@@ -1027,7 +1027,7 @@ class _Run:
             if (node.id, names[0]) in self.program.whole:
                 return self.program.whole[node.id, names[0]]
             node = Tree(node).around
-        return self.program.whole.get((0, *names[-1:]), False)
+        return bool(names) and self.program.whole.get((0, names[-1]), False)
 
     def as_vector(self, value: Any, other: Any) -> Any:
         """c v, where v has no value, in components if it is added to a vector."""
