@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache, reduce
 from pathlib import Path
@@ -73,13 +73,17 @@ class Turn(Record, kw_only=True):
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "angle", symbolic(self.angle, "the angle of a turn"))
+        if not isinstance(self.components, (Iterable, sp.MatrixBase)):
+            raise ModelError(f"an axis has three components, got {self.components!r}")
         axis = tuple(symbolic(part, "the axis of a turn") for part in self.components)
         object.__setattr__(self, "components", axis)
-        if not self.components and self.axis not in AXES:
+        if not axis and self.axis not in AXES:
             raise ModelError(f"{self.axis!r} is not an axis: expected x, y, z or components")
-        if self.components and len(self.components) != 3:
-            raise ModelError(f"an axis has three components, got {len(self.components)}")
-        square = sum(part**2 for part in self.components) or sp.S.One
+        if axis and len(axis) != 3:
+            raise ModelError(f"an axis has three components, got {len(axis)}")
+        if sp.Tuple(*axis).has(sp.Float):
+            raise ModelError(f"the axis {axis} has decimals; expected exact numbers, such as 3/5")
+        square = sum(part**2 for part in axis) if axis else sp.S.One
         if square.is_number and square != 1 and not is_identically_zero(square - 1):
             raise ModelError(f"the axis {self.axis} has the length {sp.sqrt(square)}; expected 1")
 

@@ -42,8 +42,8 @@ _FIRST = 0xF0000
 _MARK = "[\U000f0000-\U000ffffd]"
 # In `code` and in a formula nothing else is read, so that marks take their places first.
 _TYPED = re.compile(
-    r"\\(?P<escaped>[!-/:-@\[-`{-~])|\$(?P<math>[^$]+)\$|`(?P<code>[^`]+)`"
-    r"|(?<!!)\[(?P<words>[^]]+)\]\((?P<address>(?:\([^()\s]*\)|[^()\s])+)\)"
+    r"\\(?P<escaped>[!-/:-@\[-`{-~])|\$(?P<math>[^$]+)\$|(?<!`)`(?P<code>[^`]+)`(?!`)"
+    r"|(?P<entity>&#?\w+;)|(?<!!)\[(?P<words>[^]]+)\]\((?P<address>(?:\([^()\s<>]*\)|[^()\s<>])+)\)"
 )
 _STYLED = re.compile(
     r"\*\*(?=\S)(?P<strong>(?:\*[^*]+\*|[^*])+)(?<=\S)\*\*"
@@ -51,14 +51,15 @@ _STYLED = re.compile(
 )
 # Years, of four digits, begin no item.
 _ITEM = re.compile(r"(?:[-*+]|(?P<number>\d{1,2})[.)])\s+(?P<words>.+)", re.DOTALL)
+_BULLET = r" *(?:[-*+]|\d{1,2}[.)])\s"
+# an item with blank lines before the next one
+_LOOSE = re.compile(rf"^({_BULLET}.*(?:\n.*\S.*)*)\n\s*\n(?={_BULLET})", re.MULTILINE)
 # images, other links, HTML, fenced code, line breaks, quotations, rules, _words_, lists in lists
 _UNREAD = re.compile(
-    r"!\[|\][(\[]|<[A-Za-z/!?]|``|\\$|^(?:>|~~~|\||[-*_=\s]+$)|(?<!\w)_+\w[^_\n]*_+(?!\w)"
+    r"!\[|\][(\[]|<[A-Za-z/!?]|``|\\$|^(?:>|~~~|[-*_=\s]+$)|(?<!\w)_+\w[^_\n]*_+(?!\w)"
     r"|^\s+(?:[-*+]|\d{1,2}[.)])\s",
     re.MULTILINE,
 )
-# what is read as Markdown in a text, which may be TeX
-_MARKUP = re.compile(rf"[$*`|#&<>\[\]!\n]|^\s*[-+\d]|{_MARK}")
 _IN_ADDRESS = "!#%&'*+,/:;=?@[]~"
 _TABLE = "Table:"
 _BLOCKS = (doc.Paragraph, doc.Equation, doc.EquationRow, doc.NoteTable, doc.Figure, list)
@@ -91,12 +92,8 @@ class _Reader:
             yield from thing if isinstance(thing, list) else (thing,)
         elif whole.startswith(("|", _TABLE)):
             yield self._table(whole)
-        elif unread := _UNREAD.search(whole):
-            line = whole[unread.start() :].lstrip().partition("\n")[0]
-            expected = (
-                "expected words, *emphasis*, **strong words**, `code`, [links](address), lists"
-            )
-            raise _fault(line, f"{expected} or a table, not '{unread[0].strip()}'")
+        elif row := re.search(r"^\|.*", whole, re.MULTILINE):
+            raise _unread(row[0], "|")
         else:
             yield from self._paragraphs(whole)
 
@@ -106,6 +103,9 @@ class _Reader:
         if "$" in whole:
             lines = (line for line in chunk.splitlines() if "$" in _TYPED.sub("", line))
             raise _fault(next(lines, chunk), "expected $ at the end of a formula")
+        if unread := _UNREAD.search(whole):
+            start = whole.rfind("\n", 0, unread.start()) + 1
+            raise _unread(whole[start:].partition("\n")[0], unread[0])
         return whole
 
     def _typed(self, match: re.Match[str]) -> str:
@@ -117,7 +117,7 @@ class _Reader:
             words = self.text(self.marked(match["words"]))
             address = quote(self._plain(match["address"]), safe=_IN_ADDRESS)
             return self.mark(doc.Styled("link", words, address))
-        return self.mark(match["escaped"])
+        return self.mark(match["escaped"] or unescape(match["entity"]))
 
     def _plain(self, words: str) -> str:
         """Words in which only facts are read."""
@@ -132,9 +132,11 @@ class _Reader:
         parts = re.split(r"\n(?=[-*+]\s|\d{1,2}[.)]\s)", words)
         if not _ITEM.match(parts[0]):
             yield doc.Paragraph(self.text(parts.pop(0)))
-        if items := [match for match in map(_ITEM.match, parts) if match]:
-            first = items[0]["number"]
-            marks = (f"{k}." if first else "-" for k, _ in enumerate(items, int(first or 0)))
+        matches = (match for match in map(_ITEM.match, parts) if match)
+        for has_numbers, run in groupby(matches, lambda match: match["number"] is not None):
+            items = list(run)
+            first = int(items[0]["number"] or 0)
+            marks = (f"{k}." if has_numbers else "-" for k, _ in enumerate(items, first))
             yield doc.Listing(tuple(self.text(item["words"]) for item in items), tuple(marks))
 
     def _display(self, chunk: str) -> doc.Equation | doc.EquationRow:
@@ -158,7 +160,7 @@ class _Reader:
         places = count(1)
         tex = re.sub(_MARK, lambda _: f"#{next(places)}", typed.strip())
         try:
-            read = formula(tex, *parts)
+            read = formula(tex, *(formula(p) if isinstance(p, str) else p for p in parts))
         except AlgebraError as error:
             raise _fault(typed, str(error)) from error
         # facts may hold letters of the user's, which stay
@@ -169,8 +171,9 @@ class _Reader:
         lines = chunk.splitlines()
         caption = lines.pop(0).removeprefix(_TABLE) if chunk.startswith(_TABLE) else ""
         rows = [[cell.strip() for cell in line.strip().strip("|").split("|")] for line in lines]
-        if not rows[1:] or any(len(row) != len(rows[0]) for row in rows):
-            raise _fault(chunk.splitlines()[0], "expected rows of a table, each with as many cells")
+        are_rows = rows[1:] and all(re.fullmatch(":?-+:?", cell) for cell in rows[1])
+        if not are_rows or any(len(row) != len(rows[0]) for row in rows):
+            raise _fault(chunk.splitlines()[0], "expected rows of as many cells, the second |---|")
         of_words = next((k for k, cell in enumerate(rows[1]) if cell.startswith(":")), None)
         head, *others = (tuple(map(self.text, row)) for row in (rows[0], *rows[2:]))
         return doc.NoteTable(text_of(self.text(caption.strip())), head, tuple(others), of_words)
@@ -179,12 +182,12 @@ class _Reader:
         """The spans of a line, in which neighbouring words are one span."""
         line = " ".join(part.strip() for part in words.splitlines())
         words, *parts = _STYLED.split(line)
-        spans: list[doc.Span] = [unescape(words)]
+        spans: list[doc.Span] = [words]
         for strong, emphasis, mark, words in zip(*[iter(parts)] * 4, strict=True):
             style = "strong" if strong else "emphasis"
             inside = self.text(strong or emphasis or "")
             spans += self._fact(mark) if mark else (doc.Styled(style, inside),)
-            spans.append(unescape(words))
+            spans.append(words)
         text: list[doc.Span] = []
         for are_words, group in groupby(spans, lambda span: isinstance(span, str)):
             neighbours = list(group)
@@ -197,16 +200,16 @@ _READER: ContextVar[_Reader] = ContextVar("reader")
 
 @pass_context  # or Jinja would print constants once, when it compiles the template
 def _printed(_: Context, value: Any) -> Markup:
-    if isinstance(value, Markup):  # of a macro
-        return value
+    if isinstance(value, Markup) or value == "":  # of a macro, or nothing
+        return Markup(value)
     if isinstance(value, Undefined):
         return Markup(str(value))  # raises
     if value is None:
         raise TemplateRuntimeError("this fact is None here; ask for it first, {% if ... %}")
-    if isinstance(value, int) or (isinstance(value, str) and not _MARKUP.search(value)):
-        return Markup(str(value))
     reader = _READER.get()
-    if isinstance(value, sp.Basic) and not isinstance(value, sp.MatrixBase):
+    if isinstance(value, int):
+        value = str(value)
+    elif isinstance(value, sp.Basic) and not isinstance(value, sp.MatrixBase):
         value = formula_of(value, reader.letters)
     elif isinstance(value, Citation):
         if not isinstance(value.text, str):
@@ -236,14 +239,20 @@ def sections_of(name: str, letters: Letters, **facts: Any) -> Iterator[doc.Secti
         _READER.reset(token)
     title = ""
     blocks: list[doc.NoteBlock] = []
-    for chunk in (dedent(chunk).strip() for chunk in re.split(r"\n\s*\n", markdown)):
-        heading, _, rest = chunk.partition("\n") if chunk.startswith("#") else ("", "", chunk)
+    chunks = re.split(r"\n\s*\n|\n(?=#+ )", _LOOSE.sub(r"\1\n", markdown))
+    for chunk in (dedent(chunk).strip() for chunk in chunks):
+        heading, _, rest = chunk.partition("\n") if re.match("#+ ", chunk) else ("", "", chunk)
         if heading:
             yield doc.Section(title, tuple(blocks))
             title, blocks = text_of(reader.text(reader.marked(heading.strip("# ")))), []
         if rest.strip():
             blocks += reader.blocks(rest.strip())
     yield doc.Section(title, tuple(blocks))
+
+
+def _unread(line: str, what: str) -> TemplateFault:
+    expected = "expected words, *emphasis*, **strong words**, `code`, [links](address), lists"
+    return _fault(line, f"{expected} or a table, not '{what.strip()}'")
 
 
 def _fault(line: str, expected: str) -> TemplateFault:
@@ -254,7 +263,9 @@ def _fault(line: str, expected: str) -> TemplateFault:
 
 def blocks_of(name: str, letters: Letters, **facts: Any) -> tuple[doc.NoteBlock, ...]:
     """The blocks of a template without headings."""
-    (section,) = sections_of(name, letters, **facts)
+    section, *others = sections_of(name, letters, **facts)
+    if others:
+        raise _fault(others[0].title, "expected no heading in this template")
     return section.blocks
 
 

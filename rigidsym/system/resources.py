@@ -159,10 +159,11 @@ def _sentences(text: str, file: str) -> Mapping[str, Any]:
 def place_of(words: str) -> str:
     """The file and line among the user's own templates where words stand, or their folder."""
     own = _OWN.get() or folder(NOTES)
-    for name, text in _texts_of(own).items():
-        for number, line in enumerate(text.splitlines(), start=1):
-            if words in line:
-                return f"{own / name}, line {number}"
+    for is_there in (str.__eq__, str.__contains__):  # another line may hold the words as well
+        for name, text in _texts_of(own).items():
+            for number, line in enumerate(text.splitlines(), start=1):
+                if is_there(line.strip(), words.strip()):
+                    return f"{own / name}, line {number}"
     return str(own)
 
 

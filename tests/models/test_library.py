@@ -5,7 +5,8 @@ What the command line refuses stands in golden/commands/refused.txt.
 
 from __future__ import annotations
 
-from dataclasses import replace
+import inspect
+from dataclasses import FrozenInstanceError, replace
 
 import pytest
 import sympy as sp
@@ -60,6 +61,9 @@ def own(**options: object) -> rs.RotationModel:
         (lambda: rs.Turn(axis="u", angle=a), "'u' is not an axis: expected x, y, z"),
         (lambda: rs.Turn(axis="u", angle=a, components="abc"), "axis of a turn: expected a SymPy"),
         (lambda: rs.Turn(axis="u", angle=a, components=(1, 1, 0)), "has the length sqrt(2)"),
+        (lambda: rs.Turn(axis="u", angle=a, components=(0, 0, 0)), "has the length 0"),
+        (lambda: rs.Turn(axis="u", angle=a, components=(0.6, 0.8, 0)), "expected exact numbers"),
+        (lambda: rs.Turn(axis="u", angle=a, components=5), "three components, got 5"),
         (lambda: rs.EulerAngles(3), "expected a sequence such as 'ZXZ', got 3"),
         (lambda: rs.chain("z(a) x(b)"), "expected a list of rs.Turn, got 'z(a) x(b)'"),
         (lambda: rs.derive("ZXZ", timeout="1"), "expected a positive number of seconds, got '1'"),
@@ -104,6 +108,16 @@ def test_a_wrong_argument_is_named(make, said):
 def test_an_argument_of_the_wrong_type_is_a_type_error_that_says_what_was_expected(arguments):
     with pytest.raises(TypeError, match="expected"):
         rs.derive(**{"model": "ZXZ", **arguments})
+
+
+def test_records_are_set_once_by_name_and_show_their_fields():
+    turn = rs.Turn(axis="x", angle=sp.nan)
+    assert turn == replace(turn)
+    assert [*inspect.signature(rs.Turn).parameters] == ["axis", "angle", "components"]
+    with pytest.raises(TypeError, match="Turn has the fields"):
+        rs.Turn("x", a)
+    with pytest.raises(FrozenInstanceError):
+        del turn.angle
 
 
 def test_without_coordinates_of_no_rotation_all_are_zero():

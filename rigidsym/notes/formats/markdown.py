@@ -103,7 +103,8 @@ class _MarkdownPrinter(NotePrinter):
 
     def notetable(self, table: doc.NoteTable) -> str:
         rows = [self._row(table.head), "|---" * len(table.head) + "|", *map(self._row, table.rows)]
-        return f"*{escape(table.caption)}*\n\n" + "\n".join(rows)
+        caption = f"*{escape(table.caption)}*\n\n" if table.caption else ""
+        return caption + "\n".join(rows)
 
     def _row(self, cells: Sequence[doc.Text]) -> str:
         return f"| {' | '.join(map(self.text, cells))} |"

@@ -19,13 +19,13 @@ from rigidsym.formula.tree import Formula, equal
 from rigidsym.formula.unicode_pen import UnicodePen, columns
 from rigidsym.mechanics.derivation import Argument, Derivation, Step, phrases
 from rigidsym.mechanics.quantities.kinematics import BODY, ROTATION, SPACE
-from rigidsym.notes.document import Equation, Listing, NoteBlock, Paragraph
+from rigidsym.notes.document import Equation, EquationRow, Listing, NoteBlock, NoteTable, Paragraph
 from rigidsym.notes.equations import equation_of, in_parts, sum_of_vectors
 from rigidsym.notes.facts.rotation import facts_of_rotation, product_of, title_of
 from rigidsym.notes.facts.singular import singular_facts
 from rigidsym.notes.fitting import as_vectors
 from rigidsym.notes.letters import RESIDUAL, letters_of
-from rigidsym.notes.template import blocks_of
+from rigidsym.notes.template import blocks_of, sections_of
 from rigidsym.notes.words import is_body_alone, unit_in_words, with_symbols
 
 if TYPE_CHECKING:
@@ -127,7 +127,7 @@ class _Screen:
         )
 
     def block(self, block: NoteBlock) -> None:
-        """A block of a template; only notes have tables and figures."""
+        """A block of a template; only notes have figures."""
         match block:
             case Paragraph(text):
                 self.sentence(text)
@@ -136,6 +136,19 @@ class _Screen:
                     self.sentence((f"{mark} ", *item))
             case Equation():
                 self.equation(block)
+            case EquationRow(equations):
+                for equation in equations:
+                    self.equation(equation)
+            case NoteTable(_, head, rows):
+                for row in (head, *rows):
+                    self.line(_INDENT, " | ".join(map(self.text, row)))
+
+    def template(self, name: str, facts: dict[str, Any]) -> None:
+        for section in sections_of(name, self.letters, **facts):
+            if section.title:
+                self.section(section.title)
+            for block in section.blocks:
+                self.block(block)
 
     def equation(self, equation: Equation) -> None:
         """The sides with their value: beside them, or below, or else a line an entry."""
@@ -199,12 +212,12 @@ class _Screen:
         facts |= {"angles": None, "has_dots": letters.notation.rates == "dot"}
         # templates of the user's own may refer to equations and sources
         facts["reference"] = lambda name: f"({derivation.step(name).number})"
+        facts["equation"] = lambda name: equation_of(derivation.step(name), derivation.arguments)
         facts["cite"] = lambda source: f"[{source}]"
         self.heading(*title_of(derivation, letters))
         if not is_body_alone(derivation):
             self.line()
-            for block in blocks_of("en/convention", letters, **facts):
-                self.block(block)
+            self.template("en/convention", facts)
             if model.turns:
                 self.line(_INDENT, equal(ROTATION, product_of(model.turns, letters)))
         for step in steps:
@@ -225,12 +238,10 @@ class _Screen:
             self.section(f"Singular orientations{gimbal_lock}")
             if singular.result.determinant is not None:
                 for block in blocks_of("en/singular_measure", letters, **facts):
-                    if isinstance(block, Equation):
-                        self.equation(block)
-                    elif isinstance(block, Paragraph) and singular.result.measure == "minors":
-                        self.sentence(block.text)  # or Σ₁ would have no meaning
-            for block in blocks_of("en/singular", letters, **facts):
-                self.block(block)
+                    # or Σ₁ would have no meaning
+                    if not isinstance(block, Paragraph) or singular.result.measure == "minors":
+                        self.block(block)
+            self.template("en/singular", facts)
 
         if derivation.body is not None:
             from rigidsym.notes.facts.mass import MassFacts
