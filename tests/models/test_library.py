@@ -168,6 +168,9 @@ def test_roots_of_roots_are_a_unit_axis_where_they_are_one():
     other = sp.sqrt(2 - sp.sqrt(2)) / 2
     nested = sp.sqrt(5 + 2 * sp.sqrt(6)) - sp.sqrt(2) - sp.sqrt(3)  # zero, not when expanded
     assert chain_of([axis_turn((root, other, nested), phi)]).constraints == ()
+    b, c = sp.symbols("b c", real=True)
+    divided = tuple(e / sp.sqrt(b**2 + c**2) for e in (b, c, 0))
+    assert chain_of([axis_turn(divided, phi)]).constraints == ()
     near = (root, other + sp.Rational(1, 10**40), 0)
     assert axis_turn(near, phi).components != near  # made one
     assert axis_turn((1, 1, 0), phi).components == (sp.sqrt(2) / 2, sp.sqrt(2) / 2, 0)
