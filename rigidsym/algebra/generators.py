@@ -104,7 +104,10 @@ def _is_quotient(term: sp.Expr) -> bool:
 
 def is_identically_zero(expression: sp.Expr) -> bool:
     """Whether an expression vanishes by expansion or, of algebraic numbers, by its polynomial."""
-    if sp.expand(expression) == 0 or sp.expand(sp.numer(sp.together(expression))) == 0:
+    expanded = sp.expand(expression)
+    if any(map(_is_quotient, sp.Add.make_args(expanded))):
+        expanded = sp.expand(sp.numer(sp.together(expanded)))
+    if expanded == 0:
         return True
     # By Euler's formula, identities of sines and cosines become identities of polynomials in
     # exp(ix).

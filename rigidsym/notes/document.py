@@ -164,9 +164,8 @@ class Document(Record, kw_only=True):
     @cached_property
     def sources(self) -> tuple[str, ...]:
         """The sources that the text cites, each once, in order of appearance."""
-        spans = [
-            span for block in self.blocks for text in texts_of(block) for span in spans_of(text)
-        ]
+        texts = chain.from_iterable(map(texts_of, self.blocks))
+        spans = chain.from_iterable(map(spans_of, texts))
         return tuple(dict.fromkeys(s.citation.text for s in spans if isinstance(s, Cited)))
 
     def source_number(self, cited: Cited) -> int:

@@ -49,15 +49,15 @@ _STYLED = re.compile(
     r"\*\*(?=\S)(?P<strong>(?:\*[^*]+\*|[^*])+)(?<=\S)\*\*"
     rf"|\*(?=\S)(?P<emphasis>(?:\*\*[^*]+\*\*|[^*])+)(?<=\S)\*|(?P<mark>{_MARK})"
 )
-# Years, of four digits, begin no item.
-_ITEM = re.compile(r"(?:[-*+]|(?P<number>\d{1,2})[.)])\s+(?P<words>.+)", re.DOTALL)
-_BULLET = r" *(?:[-*+]|\d{1,2}[.)])\s"
+# Before an item; years, of four digits, begin none.
+_BULLET = r"(?:[-*+]|\d{1,2}[.)])\s"
+_ITEM = re.compile(rf"(?={_BULLET})(?P<number>\d*)\S\s+(?P<words>.+)", re.DOTALL)
 # an item with blank lines before the next one
-_LOOSE = re.compile(rf"^({_BULLET}.*(?:\n.*\S.*)*)\n\s*\n(?={_BULLET})", re.MULTILINE)
+_LOOSE = re.compile(rf"^( *{_BULLET}.*(?:\n.*\S.*)*)\n\s*\n(?= *{_BULLET})", re.MULTILINE)
 # images, other links, HTML, fenced code, line breaks, quotations, rules, _words_, lists in lists
 _UNREAD = re.compile(
     r"!\[|\][(\[]|<[A-Za-z/!?]|``|\\$|^(?:>|~~~|[-*_=\s]+$)|(?<!\w)_+\w[^_\n]*_+(?!\w)"
-    r"|^\s+(?:[-*+]|\d{1,2}[.)])\s",
+    rf"|^\s+{_BULLET}",
     re.MULTILINE,
 )
 _IN_ADDRESS = "!#%&'*+,/:;=?@[]~"
@@ -129,11 +129,11 @@ class _Reader:
 
     def _paragraphs(self, words: str) -> Iterator[doc.Paragraph | doc.Listing]:
         """A paragraph, a list, or a list on the line below a paragraph."""
-        parts = re.split(r"\n(?=[-*+]\s|\d{1,2}[.)]\s)", words)
+        parts = re.split(rf"\n(?={_BULLET})", words)
         if not _ITEM.match(parts[0]):
             yield doc.Paragraph(self.text(parts.pop(0)))
         matches = (match for match in map(_ITEM.match, parts) if match)
-        for has_numbers, run in groupby(matches, lambda match: match["number"] is not None):
+        for has_numbers, run in groupby(matches, lambda match: bool(match["number"])):
             items = list(run)
             first = int(items[0]["number"] or 0)
             marks = (f"{k}." if has_numbers else "-" for k, _ in enumerate(items, first))

@@ -268,8 +268,8 @@ class SandboxedTemplates(ImmutableSandboxedEnvironment):
             is_of_template = is_of_jinja or "__jinja_template__" in frame.f_globals
             if not (is_of_template or isinstance(error, TemplateError | RecursionError)):
                 raise  # from a function that the template calls
-            known = {TemplateNotFound: f"no template {error}", RecursionError: "it includes itself"}
-            raise TemplateFault(f"{_place(error)}: {known.get(type(error), error)}") from error
+            texts = {TemplateNotFound: f"no template {error}", RecursionError: "it includes itself"}
+            raise TemplateFault(f"{_place(error)}: {texts.get(type(error), error)}") from error
 
 
 def _place(error: BaseException) -> str:

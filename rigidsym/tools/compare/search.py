@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from itertools import chain
 from pathlib import Path
 from typing import Any
@@ -28,6 +28,9 @@ _FAILURES = (  # of SymPy or the file system, or by a defect of ours: other file
     *(ArithmeticError, AssertionError, AttributeError, LookupError, MemoryError),
     *(OSError, RuntimeError, TypeError, ValueError),
 )
+
+# programs repeat themselves
+_identified = lru_cache(maxsize=1024)(partial(identified, is_in_program=True))
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,24 +152,19 @@ def _compared(
         parts = ((part, others, True) for part, others in _partial(form))
         for part, others, is_equal in chain(whole, parts):
             try:
-                comparison = _identified(part, expected, is_equal=is_equal)
+                comparison = _identified(part, only_equal=is_equal, expected=expected)
             except (ExpressionError, RecursionError) as error:  # a function without values
                 return FormulaInFile(path, formula, reason=str(error))
-            known = comparison.found
-            if known is not None and formula.is_flat and known.arrangement == quantities.PASSIVE:
-                known = replace(known, arrangement=quantities.PASSIVE_OR_BY_COLUMNS)
-                comparison = replace(comparison, found=known)
-            if known is not None or comparison.is_reflection:
+            goal = comparison.found
+            if goal is not None and formula.is_flat and goal.arrangement == quantities.PASSIVE:
+                goal = replace(goal, arrangement=quantities.PASSIVE_OR_BY_COLUMNS)
+                comparison = replace(comparison, found=goal)
+            if goal is not None or comparison.is_reflection:
                 return FormulaInFile(path, formula, comparison, "", is_case, others)
     reason = formula.reason
     if formula.unread and any(map(_may_be_known, formula.forms)):
         reason = f"{_in_lines(formula.unread)} cannot be read"
     return FormulaInFile(path, formula, reason=reason) if reason else None
-
-
-@lru_cache(maxsize=1024)  # programs repeat themselves
-def _identified(matrix: sp.ImmutableMatrix, expected: str, *, is_equal: bool) -> Comparison:
-    return identified(matrix, only_equal=is_equal, is_in_program=True, expected=expected)
 
 
 def formulas(text: str, suffix: str) -> Iterator[Formula]:
