@@ -9,6 +9,7 @@ from functools import partial
 from itertools import chain
 from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
 import click
 
@@ -22,6 +23,7 @@ from rigidsym.system.processes import in_processes
 from rigidsym.system.resources import environment
 from rigidsym.tools.compare.comparison import compare
 from rigidsym.tools.compare.search import disappointment, search, source_files
+from rigidsym.version import __version__
 
 
 @make("compare")
@@ -63,7 +65,8 @@ def _searched(paths: Sequence[Path], options: Options) -> int:
 
     It is 1 if a formula is wrong or too few were recognised, or else 3 if reading a file failed.
     """
-    accepted = _accepted(Path(options["baseline"])) if options["baseline"] else ()
+    baseline = options["baseline"] and Path(options["baseline"])
+    accepted = _faults(baseline) if baseline else []
     files = list(source_files(paths))
     records: list[dict[str, Any]] = []
     unreadable, has_failed = 0, False
@@ -76,16 +79,30 @@ def _searched(paths: Sequence[Path], options: Options) -> int:
             if options["why"] or is_failure:
                 message(record["text"])
             continue
-        record["fault"] &= _key(record) not in accepted
+        same = [each for each in accepted if record["fault"] and _key(each) == _key(record)]
+        record["accepted"] = bool(same)
+        for old in same[:1]:  # a copy of an accepted fault is another fault
+            accepted.remove(old)
         records.append(record)
-        if options["format"] == "text":
+        if options["format"] == "text" and not record["accepted"]:
             click.echo(record["text"])
-    faults = [record for record in records if record["fault"]]
+    faults = [record for record in records if record["fault"] and not record["accepted"]]
     if options["format"] == "json":
         click.echo(_json(records))
     elif options["format"] != "text":
+        here = Path.cwd()
+        for record in faults:  # GitHub expects paths below this folder, if they are
+            path = Path(record["path"])
+            record["path"] = path.relative_to(here) if path.is_relative_to(here) else path
+            record["uri"] = quote(record["path"].as_posix())
         template = environment().get_template(f"compare/{options['format']}.jinja")
-        click.echo(template.render(faults=faults), nl=False)
+        click.echo(template.render(faults=faults, version=__version__), nl=False)
+    if baseline:
+        count = sum(record["accepted"] for record in records)
+        message(f"{counted(count, 'fault')} accepted by {baseline}")
+        for old in accepted:
+            if (path := Path(old["path"])) in files or not path.exists():
+                message(f"{baseline}: no longer found: {old['text']}")
     count = counted(len(records), "formula") if records else "no known formula"
     rest = f", {unreadable} not readable" if unreadable else ""
     hint = "; --why lists them" if unreadable and not options["why"] else ""
@@ -110,18 +127,21 @@ def _records(expected: str | None, is_active: bool, file: Path) -> list[dict[str
     return records
 
 
-def _key(record: dict[str, Any]) -> str:
+def _key(record: dict[str, Any]) -> list[Any]:
     """What a fault keeps if lines are added above it."""
-    return str(record["path"] + record["text"].partition(f":{record['line']}:")[2])
+    return [record[key] for key in ("path", "name", "formula", "unexpected")]
 
 
-def _accepted(baseline: Path) -> set[str]:
+def _faults(baseline: Path) -> list[dict[str, Any]]:
     """The faults in an earlier result; raises DataError for another file."""
     try:
-        return {_key(record) for record in json.loads(read_bytes(baseline)) if record["fault"]}
+        faults = [record for record in json.loads(read_bytes(baseline)) if record["fault"]]
+        for record in faults:
+            _key(record), str(record["text"])
     except (ValueError, KeyError, TypeError) as error:
         expected = "expected a result of `rigidsym compare --format json`"
         raise DataError(f"{baseline}: {expected}") from error
+    return faults
 
 
 def _json(data: Any) -> str:

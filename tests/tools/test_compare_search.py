@@ -678,9 +678,29 @@ def test_another_convention_than_the_expected_one_is_a_fault(tmp_path):
     assert run(str(tmp_path / "c.py"), "--expect-active").exit_code == 0  # or by columns
     annotation = run(b, "--expect-active", "--format", "github").stdout
     assert annotation.startswith(f"::error file={b},line=2::{b}:2: returned: equal to")
-    log = json.loads(run(b, "--expect-active", "--format", "sarif").stdout)
-    (place,) = log["runs"][0]["results"][0]["locations"]
-    assert place["physicalLocation"]["region"] == {"startLine": 2}
+
+
+def test_a_log_in_sarif_has_what_github_shows(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    file = tmp_path / "my file.py"
+    file.write_text(f"def f(a):\n    return np.array({TURN.replace('-s', 's')[9:-1]})\n")
+    file.write_text(file.read_text().replace("    return", "    c, s = cos(a), sin(a)\n    return"))
+    wrong = tmp_path / "b.py"
+    wrong.write_text("def step(rpy, omega, dt):\n    rpy += dt*omega\n")
+    text = run(str(file), str(wrong), "--expect-active", "--format", "sarif").stdout
+    (log,) = json.loads(text)["runs"]
+    driver = log["tool"]["driver"]
+    assert driver["version"] == rs.__version__
+    rules = {rule["id"]: rule for rule in driver["rules"]}
+    assert all({"shortDescription", "help", "helpUri"} <= rule.keys() for rule in rules.values())
+    assert [result["ruleId"] for result in log["results"]] == ["wrong_formula", "body_rates"]
+    for result, uri, line in zip(log["results"], ("my%20file.py", "b.py"), (3, 2), strict=True):
+        (place,) = result["locations"]
+        own = place["physicalLocation"]
+        assert result["ruleId"] in rules
+        assert result["message"]["text"]
+        assert own["artifactLocation"] == {"uri": uri}
+        assert own["region"] == {"startLine": line}
 
 
 def test_a_fault_of_the_baseline_is_accepted_wherever_its_lines_move(tmp_path):
@@ -691,9 +711,18 @@ def test_a_fault_of_the_baseline_is_accepted_wherever_its_lines_move(tmp_path):
     accepted = (str(file), "--baseline", str(baseline))
     assert (run(str(file)).exit_code, run(*accepted).exit_code) == (1, 0)
     file.write_text("\n" + file.read_text())
-    assert run(*accepted).exit_code == 0
-    file.write_text(file.read_text().replace("sin(a)], [0, sin", "-sin(a)], [0, -sin"))
-    assert run(*accepted).exit_code == 1
+    done = run(*accepted)
+    assert (done.exit_code, done.stdout) == (0, "")  # it is counted, not listed
+    assert f"1 fault accepted by {baseline}" in done.stderr
+    assert "no longer" not in done.stderr
+    assert json.loads(run(*accepted, "--format", "json").stdout)[0]["fault"]  # for the next one
+    own = file.read_text()
+    file.write_text(own + own.replace("def f", "def g"))
+    assert run(*accepted).exit_code == 1  # a copy is another fault
+    file.write_text(own.replace("sin(a)], [0, sin", "-sin(a)], [0, -sin"))
+    done = run(*accepted)
+    assert done.exit_code == 1
+    assert f"{baseline}: no longer found: {file}:2: returned: " in done.stderr
     for text in ("{", "[{}]"):
         baseline.write_text(text)
         refused = call("compare", *accepted, cwd=tmp_path, status=3).stderr
@@ -707,11 +736,14 @@ def test_what_cannot_be_read_is_listed_with_its_reason(tmp_path):
     file.write_text(text)
     done = run(str(file), "--why")
     assert "a.py:4: returned: not read, since s in line 3 cannot be read" in done.stderr
-    (tmp_path / "a.cpp").write_text("int f() {\n sin(a);\n}\nint g( { ;\n}\n")
+    # An unknown macro is an error of syntax too, but no formula is lost.
+    macro = "API_EXPORT int h(int k) {\n return 2 ** k;\n}\n"
+    (tmp_path / "a.cpp").write_text(f"int f() {{\n sin(a);\n}}\n{macro}x = [3*sin(a) 4 +;\n")
+    (tmp_path / "b.cpp").write_text(f"int f() {{\n sin(a);\n}}\n{macro}")
     (tmp_path / "a.rs").write_text("pub fn f(a: f32) -> f32 {\n    a\n}\nfn g() {}\n// sin")
     done = run(str(tmp_path), "--why")
-    assert "a.cpp:4: not read, since there is a syntax error" in done.stderr
-    assert "no known formula in 3 files, 2 not readable" in done.stderr
+    assert "a.cpp:7: not read, since there is a syntax error" in done.stderr
+    assert "no known formula in 4 files, 2 not readable" in done.stderr
 
 
 def test_a_failure_in_one_file_does_not_end_the_search(tmp_path, monkeypatch):

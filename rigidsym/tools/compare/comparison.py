@@ -157,6 +157,7 @@ class Comparison:
         """The comparison as plain data for JSON."""
         found = self.found
         return {
+            "formula": [[str(entry) for entry in row] for row in self.formula.tolist()],
             "equal": self.is_equal,
             "proved": self.is_proved,
             "counterexample": self.counterexample or None,

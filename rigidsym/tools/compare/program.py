@@ -27,7 +27,16 @@ from rigidsym.tools.compare import language
 from rigidsym.tools.compare.language import as_matrix, called, combined, function_word, rows
 from rigidsym.tools.compare.latex import python_of
 from rigidsym.tools.compare.quantities import are_angles, stem_of
-from rigidsym.tools.compare.syntax import CALLS, Tree, below, parameters, parsed, patterns, walk
+from rigidsym.tools.compare.syntax import (
+    CALLS,
+    Tree,
+    below,
+    damaged,
+    parameters,
+    parsed,
+    patterns,
+    walk,
+)
 
 if TYPE_CHECKING:
     from tree_sitter import Node
@@ -211,11 +220,13 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
     # A long file of short functions is read to its end; a long function may let a value grow.
     program.steps["read"] = -min(8 * text.count("\n"), 200 * len(functions))
     scopes = [_Scope(tree) for tree in (Tree(root), *_worth_reading(functions, suffix))]
-    if root.has_error:
-        line = next(
-            (Tree(n).line for n in below(root.named_children) if n.is_error or n.is_missing), 1
-        )
-        scopes[0].formulas.append(Formula(lines=(line,), name="", reason="there is a syntax error"))
+    for each in below(root.named_children) if root.has_error else ():
+        # Beside most errors, such as an unknown macro, no formula is lost.
+        lost = damaged(each)
+        if each.is_error and "(" in lost.text and _has_material(lost.text, ""):
+            reason = "there is a syntax error"
+            scopes[0].formulas.append(Formula(lines=(lost.line,), name="", reason=reason))
+            break
     for count in range(_MOST_RUNS):  # first runs first, since a long file is not read to its end
         for scope in scopes:
             if count and not (scope.places and scope.is_new):

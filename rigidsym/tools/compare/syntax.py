@@ -367,6 +367,14 @@ def walk(node: Node, *kinds: str) -> Iterator[Tree]:
     )
 
 
+def damaged(error: Node) -> Tree:
+    """The expression or assignment that is not read because of an error in it."""
+    node, around = error, ("block", "function", "if", "switch", "loop")
+    while node.parent and _KINDS.get(node.parent.type, "block") not in around:
+        node = node.parent
+    return Tree(node)
+
+
 def parameters(function: Node) -> list[str]:
     """The names of the parameters of a function."""
     types = _TYPES["parameters"]
