@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from contextlib import nullcontext
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
@@ -32,8 +32,7 @@ if TYPE_CHECKING:
 QUANTITIES = NAMES
 
 
-@dataclass(frozen=True, kw_only=True)
-class Motion(Derivation):
+class Motion(Derivation, kw_only=True):
     """A derivation and the notation in which it is printed; every quantity is an attribute.
 
     It prints kernels, notes and pages, and simulates motions.

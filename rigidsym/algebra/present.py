@@ -28,6 +28,7 @@ import sympy as sp
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import Codec
+from rigidsym.algebra.generators import added
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.ring import NUMBERS, Monomial, Quotient, shortest
 from rigidsym.errors import AlgebraError
@@ -58,7 +59,7 @@ class Presenter:
         # the expression at a place of a monomial and the operations that one use of it costs; SymPy
         # takes long to make the function of a sum, and few are ever needed
         self._named = cache(self._expression)
-        self._weight = cache(lambda place: int(sp.count_ops(self._named(place))))
+        self._weight = cache(lambda place: _operations(self._named(place)))
         self._sum = cache(self._collected)  # many forms have sums in common
         self._sums_below = {
             place: codec.encode(1 / expression)
@@ -166,7 +167,7 @@ class Presenter:
             rest = [(tuple(map(sub, m, common)), NUMBERS.quo(c, number)) for m, c in inside.items()]
             products.append(self._product(number, common, self._sum(*rest)))
         products += [self._product(number, powers) for powers, number in terms.items()]
-        return sp.Add(*products) if len(products) != 1 else products[0]
+        return added(*products)
 
     def _best_factor(self, terms: Terms) -> tuple[int, int] | None:
         """The place and the sign of the power that save most when taken out of several terms.
@@ -209,6 +210,13 @@ class Presenter:
 
 
 presenter_for = lru_cache(maxsize=32)(Presenter)  # shared like the ring itself
+
+
+def _operations(expression: sp.Expr) -> int:
+    """As many as `sp.count_ops` counts, which adds names of functions up for it."""
+    if expression.is_Function or isinstance(expression, sp.Derivative):
+        return 1 + _operations(expression.args[0])
+    return 0 if expression.is_Symbol else int(sp.count_ops(expression))
 
 
 def _leading_number(element: PolyElement) -> Any:

@@ -22,7 +22,7 @@ from sympy.core.function import AppliedUndef
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import Codec
-from rigidsym.algebra.generators import TIME, angle_of, combination, is_identically_zero
+from rigidsym.algebra.generators import TIME, added, angle_of, combination, is_identically_zero
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.ring import shortest, split
 from rigidsym.errors import AlgebraError
@@ -336,8 +336,10 @@ class Solver:
             coordinate = (value - angle.offset + 2 * sp.pi * k) / angle.fraction
             # A length is made positive; any other number lies in (−period/2, period/2].
             size, rest = coordinate.as_independent(sp.Symbol, as_Add=True)
-            lowest = 0 if angle.is_length else -period / 2
-            size -= period * (sp.ceiling((size - lowest) / period) - 1)
+            number, unit = size.as_coeff_Mul()
+            share = number / (2 * turns) if unit is sp.pi else size / period
+            lowest = 0 if angle.is_length else -sp.S.Half
+            size -= period * (sp.ceiling(share - lowest) - 1)
             place = Place(angle.coordinate, size + rest, period, is_length=angle.is_length)
             yield Root(place, becomes, (self._angles.index(angle), float(size), str(place.value)))
 
@@ -346,4 +348,4 @@ solver_for = lru_cache(maxsize=32)(Solver)  # shared like the ring itself
 
 
 def length_of(coordinates: Sequence[sp.Expr]) -> sp.Expr:
-    return sp.sqrt(sp.Add(*(coordinate**2 for coordinate in coordinates)))
+    return sp.sqrt(added(*(coordinate**2 for coordinate in coordinates)))

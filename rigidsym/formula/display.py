@@ -70,15 +70,12 @@ class Display(NamedTuple):
 
 
 @lru_cache(maxsize=512)  # what was fitted is printed, often in several formats
-def display(
-    equation: Equation, letters: Letters, width: float, pen: LatexPen | None = None
-) -> Display:
+def display(equation: Equation, letters: Letters, width: float, pen: LatexPen) -> Display:
     """The equation in the first form that fits into `width` ems; a listing where none does.
 
-    A result is in a box, which is part of its width. `pen` is that of LaTeX by default, in the
-    notation of the letters.
+    A result is in a box, which is part of its width.
     """
-    pen, box = pen or LatexPen(letters.notation), BOX if equation.is_result else 0.0
+    box = BOX if equation.is_result else 0.0
     forms = _matrix_forms if equation.matrix is not None and equation.sides else _forms
     for layout in forms(equation, letters, width - box, pen):
         if layout.width <= width - box:

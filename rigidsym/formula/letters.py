@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import IntEnum
 from functools import lru_cache
 from typing import NamedTuple
@@ -16,6 +16,7 @@ from rigidsym.errors import AlgebraError
 from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.formula.reader import named
 from rigidsym.formula.tree import Formula, Symbol
+from rigidsym.system.records import Record
 
 Place = tuple[int, int]  # order of the time derivative, index of the component
 
@@ -64,8 +65,7 @@ def _shortened(node: sp.Expr, length: VectorLength) -> sp.Expr:
     return whole
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Letters:
+class Letters(Record, kw_only=True):
     """How symbols are printed, and which of them are coordinates, rates and accelerations.
 
     A symbol that is in neither table is a constant, printed by its name. Letters equal only
@@ -77,6 +77,7 @@ class Letters:
     notation: Notation = DEFAULT
     length: VectorLength | None = None  # written in place of the components that make it up
     own: Mapping[Formula, Formula] = field(default_factory=dict)  # in place of those of the notes
+    __eq__, __hash__ = object.__eq__, object.__hash__
 
     def shortened(self, expression: sp.Expr) -> sp.Expr:
         """What is printed in place of an expression: the same, with the length where it has one."""
@@ -140,6 +141,7 @@ def is_negative(term: sp.Expr) -> bool:
     return bool(term.as_coeff_Mul()[0].is_negative)
 
 
+@lru_cache(maxsize=1 << 12)
 def _factor_key(factor: sp.Expr, letters: Letters) -> Key:
     base, exponent = power_of(factor)
     if base.is_Add:

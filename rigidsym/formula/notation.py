@@ -6,12 +6,13 @@ Formulas are composed in one notation: a dot for a rate, bold vectors, a prime f
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 from functools import lru_cache
 from typing import Any, Protocol
 
 from rigidsym.errors import ModelError
 from rigidsym.formula import tree
+from rigidsym.system.records import Record
 
 CHOICES: Mapping[str, tuple[str, ...]] = {
     "rates": ("dot", "fraction"),
@@ -29,8 +30,7 @@ class HasNames(Protocol):
     def names(self) -> set[str]: ...
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Notation:
+class Notation(Record, kw_only=True):
     """One choice each, the first of `CHOICES` by default."""
 
     rates: str = "dot"

@@ -7,7 +7,6 @@ sign between two terms, in how many brackets. Nobody has to read it again to fin
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from enum import IntEnum
 from functools import lru_cache
 from itertools import pairwise
@@ -15,6 +14,7 @@ from typing import ClassVar, NamedTuple
 
 from rigidsym.formula import tree
 from rigidsym.formula.notation import DEFAULT, Notation
+from rigidsym.system.records import Record
 
 DIVISOR = 50  # a divisor's brackets are as deep as so many others: 1/(1 + n²) is broken last
 BREAKS = "+−±=≤<⇔"  # signs that may begin a line
@@ -79,8 +79,7 @@ def atom(
     return Piece((Segment(text, width),), width, binding, height)
 
 
-@dataclass(frozen=True)
-class Pen:
+class Pen(Record):
     """Writes formulas in one language; a subclass has a method named after each kind of node.
 
     Pens are equal if they are of one language with the same choices, so that what one has written

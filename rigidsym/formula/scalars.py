@@ -48,6 +48,8 @@ def factored(matrix: sp.ImmutableMatrix) -> tuple[sp.Expr, sp.ImmutableMatrix]:
     if len(entries) < 2 or len(below) > 1:
         return sp.S.One, matrix
     (divisor,) = below
+    if divisor == 1 and all(map(_is_whole, entries)) and _constants_in_all(entries) == 1:
+        return sp.S.One, matrix
     contents = [_over(entry, divisor).as_content_primitive() for entry in matrix]
     # Zeros divide by anything, and are left out of the common divisor.
     number = sp.gcd_list([content for content, rest in contents if rest != 0])
@@ -59,6 +61,12 @@ def factored(matrix: sp.ImmutableMatrix) -> tuple[sp.Expr, sp.ImmutableMatrix]:
         for content, primitive in contents
     ]
     return number * constants / divisor, sp.ImmutableMatrix(*matrix.shape, rest)
+
+
+@lru_cache(maxsize=8192)
+def _is_whole(node: sp.Basic) -> bool:
+    """Whether all numbers in it are whole, so that no fraction is in front of all of it."""
+    return node.is_Integer if node.is_Number else all(map(_is_whole, node.args))
 
 
 @lru_cache(maxsize=8192)
@@ -104,7 +112,8 @@ def listed_entries(
     ]
 
 
-def matrix_of(matrix: sp.MatrixBase, letters: Letters) -> tree.Matrix:
+@lru_cache(maxsize=1024)
+def matrix_of(matrix: sp.ImmutableMatrix, letters: Letters) -> tree.Matrix:
     return tree.Matrix(
         tuple(tuple(formula_of(entry, letters) for entry in line) for line in matrix.tolist())
     )

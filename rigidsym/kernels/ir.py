@@ -8,7 +8,6 @@ and a guarded divisor.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from math import prod
@@ -159,8 +158,7 @@ class Assignment(NamedTuple):
     value: Expression
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Kernel:
+class Kernel(Record, kw_only=True):
     """One quantity as a function of vectors: assignments in order, then the outputs by rows.
 
     A kernel equals only itself, so that what is printed of it can be kept.
@@ -181,6 +179,7 @@ class Kernel:
     remarks: tuple[str, ...] = ()  # paragraphs
     unit: str = ""  # SI; "" for a pure number
     halves: tuple[Expression, ...] = ()  # of Euler angles: a₀ to a₃ of `conversions`
+    __eq__, __hash__ = object.__eq__, object.__hash__
 
     def __post_init__(self) -> None:
         if len(self.outputs) != prod(self.shape):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence, Set
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Self
@@ -349,8 +349,7 @@ class Singularities(NamedTuple):
         return next((place.coordinate for place in places if place.is_length), None)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Derivation:
+class Derivation(Record, kw_only=True):
     """An ordered tuple of steps from one rotation model; every quantity is an attribute too."""
 
     name: str

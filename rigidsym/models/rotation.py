@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import lru_cache, reduce
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
-from rigidsym.algebra.generators import TIME as TIME, in_names, is_identically_zero, rate_of
+from rigidsym.algebra.generators import TIME as TIME, added, in_names, is_identically_zero, rate_of
 from rigidsym.errors import ModelError
 from rigidsym.system.records import Record
 from rigidsym.text.names import A_MODULE_NAME, MODULE_NAME, lettered
@@ -131,10 +131,10 @@ def by_axis(turns: tuple[Turn, ...], angle: sp.Expr) -> list[tuple[Turn, sp.Immu
 def carried_axes(turns: tuple[Turn, ...]) -> list[sp.ImmutableMatrix]:
     """The axis of each turn in space components (3, 1), carried along by the turns before it."""
     # Turn k is about nₖ in axes that the turns before it have moved: R₁ ⋯ Rₖ₋₁ nₖ in space.
-    before, axes = sp.eye(3), []
+    before, axes = sp.ImmutableMatrix(sp.eye(3)), []
     for turn in turns:
-        axes.append(sp.ImmutableMatrix(before * sp.Matrix(turn.direction)))
-        before = before * turn.matrix
+        axes.append(_times(before, sp.ImmutableMatrix(turn.direction)))
+        before = _times(before, turn.matrix)
     return axes
 
 
@@ -146,7 +146,7 @@ def _times(first: sp.ImmutableMatrix, second: sp.ImmutableMatrix) -> sp.Immutabl
     """
     rows, columns = first.tolist(), second.T.tolist()
     pairs = (zip(row, column, strict=True) for row in rows for column in columns)
-    entries = [sp.Add(*(a * b for a, b in each if a and b)) for each in pairs]
+    entries = [added(*(a * b for a, b in each if a and b)) for each in pairs]
     return sp.ImmutableMatrix(len(rows), len(columns), entries, copy=False)
 
 
@@ -161,8 +161,7 @@ class Pullback(NamedTuple):
     constraints: tuple[sp.Expr, ...]  # on the others
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class RotationModel:
+class RotationModel(Record, kw_only=True):
     """Coordinates q(t) and the rotation R(q) they stand for.
 
     R takes body components to space components: x = R x' (lecture, eq. 15). With `passive` the

@@ -52,8 +52,6 @@ _SECTIONS = (
     *("rotation", "angular_velocity", "rates", "angular_acceleration"),
     *("body", "inertia", "energy", "momentum", "motion"),
 )
-# K(R), (4, 4), in the entries of R; each column is a multiple of the quaternion
-_COLUMNS = outer_product(sp.Matrix(3, 3, lambda i, j: sp.Symbol(f"R_{i + 1}{j + 1}")))
 _DIAGONAL = formula("(I'_{11}, I'_{22}, I'_{33})")
 _OF_JOINTS = "wHIfaN"  # letters of abbreviations, in sentences about them
 _MOST_PARTS = 40  # definitions, a page of them; a result that needs more is only defined
@@ -175,7 +173,7 @@ class Composer:
             "shepperd": SHEPPERD,
             "first_figure": doc.FigureReference(1),
             "cross_matrix": hat(sp.Matrix(sp.symbols("u_1:4"))),
-            "columns": [_COLUMNS[:, k] for k in range(4)],
+            "columns": self._columns() if self.conversions else [],
             "moments": [*self.moments] and [doc.said("here"), in_parts(self.moments, self.letters)],
             "abbreviations": lambda value: self._abbreviations(
                 derivation.definitions_in(value, self._defined)
@@ -192,6 +190,12 @@ class Composer:
             "is_body_alone": is_body_alone(derivation),
             "has_dots": self.letters.notation.rates == "dot",
         }
+
+    @staticmethod
+    def _columns() -> list[sp.Matrix]:
+        """Of K(R), (4, 4), in the entries of R; each is a multiple of the quaternion."""
+        outer = outer_product(sp.Matrix(3, 3, lambda i, j: sp.Symbol(f"R_{i + 1}{j + 1}")))
+        return [outer[:, k] for k in range(4)]
 
     def steps(self, section: str) -> list[doc.NoteBlock]:
         """The equations of a section, each behind how it follows.

@@ -12,6 +12,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from rigidsym.formula.display import PAGE, display
+from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.letters import TIME, Letters
 from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import (
@@ -56,7 +57,8 @@ def fitted(
 ) -> Iterator[NoteBlock]:
     """An equation; where it would be long, in short."""
     name, model = step.quantity.name, derivation.model
-    layout, side = display(equation, letters, PAGE), _short_form(step, derivation, letters)
+    layout = display(equation, letters, PAGE, LatexPen(letters.notation))
+    side = _short_form(step, derivation, letters)
     if side is None and not equation.sides[1:]:  # nothing else says what it is
         yield equation
         return
@@ -89,7 +91,8 @@ def as_vectors(equation: Equation, step: Step, letters: Letters) -> Equation:
         return equation
     sides = (*equation.sides, sum_of_vectors(step.vector_form, letters))
     whole = replace(equation, sides=sides)
-    fits = not (step.quantity.name.startswith("rates_") or display(whole, letters, PAGE).is_listed)
+    is_listed = display(whole, letters, PAGE, LatexPen(letters.notation)).is_listed
+    fits = not (step.quantity.name.startswith("rates_") or is_listed)
     return whole if fits else without_entries(equation, sides[-1:])
 
 

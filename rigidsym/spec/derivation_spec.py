@@ -6,7 +6,7 @@ import keyword
 import reprlib
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, field, replace
 from typing import TYPE_CHECKING, Any
 
 from rigidsym.models.library import request_of, rotation_from
@@ -14,6 +14,7 @@ from rigidsym.models.rotation import RotationModel
 from rigidsym.motion import DEFAULT, Notation
 from rigidsym.notes.formats import FORMATS
 from rigidsym.spec.faults import Place
+from rigidsym.system.records import Record
 from rigidsym.text.names import A_MODULE_NAME, MODULE_NAME
 
 if TYPE_CHECKING:
@@ -24,8 +25,7 @@ PAGE = "page"  # NAME_page.html: the note with an interactive figure
 NOTES = (*FORMATS, PAGE, PDF)  # all that `note` may list
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class DerivationSpec:
+class DerivationSpec(Record, kw_only=True):
     """What to derive and what to print.
 
     With one rotation, `name` names the derivation: its folder, its files and its module. With

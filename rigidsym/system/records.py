@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import Field, FrozenInstanceError, dataclass, field, fields
+from collections.abc import Set
+from dataclasses import MISSING, Field, FrozenInstanceError, dataclass, field, fields
 from inspect import Parameter, Signature
 from operator import attrgetter
 from typing import Any, ClassVar, dataclass_transform
@@ -19,32 +20,43 @@ class Record:
     __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
     __match_args__: ClassVar[tuple[str, ...]]  # what is set by position
     __signature__: ClassVar[Signature]
-    _names: ClassVar[tuple[str, ...]]
+    _names: ClassVar[Set[str]]
+    _required: ClassVar[Set[str]]
+    _count: ClassVar[int]  # of values by position, if these are all
     _key: ClassVar[attrgetter[Any]]  # what is compared
+    _hashed: ClassVar[attrgetter[Any]]
+    _hash: int | None = None  # kept, or each node of a tree would be asked again and again
 
     def __init_subclass__(cls, *, kw_only: bool = False) -> None:
-        dataclass(init=False, repr=False, eq=False, kw_only=kw_only)(cls)
-        cls._names = tuple(each.name for each in fields(cls))
-        compared = [each.name for each in fields(cls) if each.compare]
-        cls._key = attrgetter(*compared or ["__class__"])
+        own = fields(dataclass(init=False, repr=False, eq=False, kw_only=kw_only)(cls))
+        cls._names = {each.name: None for each in own}.keys()
+        for each in own:
+            if each.default_factory is not MISSING:  # one for all, since records do not change
+                setattr(cls, each.name, each.default_factory())
+        cls._required = {each.name for each in own if not hasattr(cls, each.name)}
+        compared = [each for each in own if each.compare]
+        cls._key = attrgetter(*([each.name for each in compared] or ["__class__"]))
+        hashed = (each.name for each in compared if each.hash is not False)
+        cls._hashed = attrgetter("__class__", *hashed)
+        cls._count = len(own) if len(own) == len(cls.__match_args__) else -1
         parameters = []
-        for each in sorted(fields(cls), key=attrgetter("kw_only")):
+        for each in sorted(own, key=attrgetter("kw_only")):
             kind = Parameter.KEYWORD_ONLY if each.kw_only else Parameter.POSITIONAL_OR_KEYWORD
             default = getattr(cls, each.name, Parameter.empty)
             parameters.append(Parameter(each.name, kind, default=default, annotation=each.type))
         cls.__signature__ = Signature(parameters)
 
     def __init__(self, *values: Any, **named: Any) -> None:
-        names, places, put = self._names, self.__match_args__, object.__setattr__
-        for name, value in zip(places, values, strict=False):
-            put(self, name, value)
-        if named or len(values) != len(names):
-            others = {*names}.difference(places[: len(values)])  # the class has the defaults
-            lacking = [n for n in others if n not in named and not hasattr(type(self), n)]
-            if lacking or len(values) > len(places) or not named.keys() <= others:
+        if named or len(values) != self._count:
+            state = dict(zip(self.__match_args__, values, strict=False), **named)
+            is_each_once = len(state) == len(values) + len(named)
+            if not (is_each_once and self._required <= state.keys() <= self._names):
                 kind, got = type(self).__name__, [*values, *named]
-                raise TypeError(f"{kind} has the fields {names}; got values for {got}")
-            for name, value in named.items():
+                raise TypeError(f"{kind} has the fields {[*self._names]}; got values for {got}")
+            self.__dict__.update(state)  # the class has the defaults
+        else:
+            put = object.__setattr__
+            for name, value in zip(self.__match_args__, values, strict=True):
                 put(self, name, value)
         self.__post_init__()
 
@@ -62,7 +74,13 @@ class Record:
         return (self._key(self),) == (self._key(other),)  # as tuples, one NaN equals itself
 
     def __hash__(self) -> int:
-        return hash(self._key(self))
+        if self._hash is None:
+            object.__setattr__(self, "_hash", hash(self._hashed(self)))
+        return self._hash  # type: ignore[return-value]
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Without the hash, which another process would not compute alike."""
+        return {name: value for name, value in vars(self).items() if name != "_hash"}
 
     def __repr__(self) -> str:
         values = (f"{name}={getattr(self, name)!r}" for name in self._names)

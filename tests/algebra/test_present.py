@@ -12,6 +12,7 @@ from sympy import Rational, cos, cot, sin, sqrt, tan
 from helpers.witness import TOLERANCE, mp, number, paths, values_along
 from rigidsym.algebra import present
 from rigidsym.algebra.codec import Codec, codec_for
+from rigidsym.algebra.generators import added
 from rigidsym.algebra.present import Presenter, presenter_for
 from rigidsym.algebra.ring import Quotient
 from rigidsym.errors import AlgebraError
@@ -107,3 +108,17 @@ def test_rational_functions_cancel_and_are_written_again():
     assert sp.cancel(written(read(1 / (x + y) + 1 / (x - y))) - 2 * x / (x**2 - y**2)) == 0
     assert read((x**2 - y**2) / (x + y)).equals(read(x - y))
     assert written(read(m / (x + y))) == m / (x + y)
+
+
+@pytest.mark.parametrize(
+    "terms", [(), (a,), (2, a, 3), (a, -a), (2 * a * b, b * a), (a + b, 2 * a), (b, a * m, a, 5)]
+)
+def test_sums_are_those_of_sympy(terms):
+    terms = tuple(map(sp.sympify, terms))
+    assert added(*terms).args == sp.Add(*terms).args
+    assert added(*terms) == sp.Add(*terms)
+
+
+@pytest.mark.parametrize("expression", [a, a_dot, sin(a), cos(a - b), 1 / (m + 1), sqrt(2), m])
+def test_operations_are_counted_as_by_sympy(expression):
+    assert present._operations(expression) == sp.count_ops(expression)

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import pickle
+import subprocess
+import sys
 from collections.abc import Iterator
 from random import Random
 
@@ -216,7 +219,7 @@ def test_a_listing_is_aligned_at_its_signs_and_definitions_stand_in_the_middle()
     names = (formula("k_1"), formula("k_2"))
     for sides, environment in (((formula(r"\mathbf{w}"),), "aligned"), ((), "gathered")):
         equation = Equation(sides=sides, matrix=matrix, entries=names)
-        shown = display(equation, LETTERS, 30.0)
+        shown = display(equation, LETTERS, 30.0, PEN)
         assert (shown.environment, shown.lines > 4) == (environment, True)
         assert shown.text == f"\\begin{{{environment}}}\n{shown.inside}\n\\end{{{environment}}}"
         assert ("&" in shown.inside) == (environment == "aligned")
@@ -226,10 +229,10 @@ def test_a_listing_is_aligned_at_its_signs_and_definitions_stand_in_the_middle()
 def test_short_definitions_share_a_line_as_far_as_they_fit(gaps, beside):
     names = tuple(formula(f"k_{k}") for k in range(6))
     matrix = sp.ImmutableMatrix([sp.Symbol("a")] * 6)
-    own = display(Equation(sides=(), matrix=matrix, entries=names), LETTERS, 1.0).width
+    own = display(Equation(sides=(), matrix=matrix, entries=names), LETTERS, 1.0, PEN).width
     count = 2 if gaps < 3 else 3
     width = count * own + gaps + 1e-9
-    shown = display(Equation(sides=(), matrix=matrix, entries=names), LETTERS, width)
+    shown = display(Equation(sides=(), matrix=matrix, entries=names), LETTERS, width, PEN)
     assert shown.inside.count(r"\qquad") == beside
 
 
@@ -293,3 +296,11 @@ def test_entries_that_are_equal_by_symmetry_are_listed_once():
     assert listed == [*twice, ("I₃₃", f)]
     other = sp.ImmutableMatrix(3, 3, range(9))
     assert len([*listed_entries(names, other)]) == 9
+
+
+def test_a_formula_from_another_process_is_the_same():
+    # strings have other hashes there
+    program = "import pickle, sys; from rigidsym.formula.reader import formula; f = formula('a+b')"
+    program += "; hash(f); sys.stdout.buffer.write(pickle.dumps(f))"
+    pickled = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True)
+    assert pickle.loads(pickled.stdout) in {formula("a+b")}

@@ -8,6 +8,7 @@ import sympy as sp
 import rigidsym as rs
 from helpers.typesetting import warnings_of
 from rigidsym.formula.display import PAGE, display
+from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.mechanics.kinematics.workspace import LENGTH
 from rigidsym.models.library import PARAMETRISATIONS, PRESETS, rotation_from
 from rigidsym.models.rotation import hat
@@ -50,7 +51,7 @@ def test_no_display_is_wider_than_a_page(documents):
         blocks = [block for section in document.sections for block in section.blocks]
         equations = [block for block in blocks if isinstance(block, Equation)]
         for equation in equations:
-            shown = display(equation, document.letters, PAGE)
+            shown = display(equation, document.letters, PAGE, LatexPen(document.letters.notation))
             assert shown.width <= PAGE, (document.title, equation.label)
 
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Literal, NamedTuple
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
+from rigidsym.algebra.generators import added
 from rigidsym.formula.letters import TIME
 from rigidsym.mechanics.derivation import Derivation, Singularities, Singularity
 from rigidsym.models.rotation import RotationModel
@@ -69,7 +70,11 @@ class PointFacts(Record):
         if not all(entry.is_Rational for entry in null_rates):
             return []
         q, fixed = self.coordinates, [place.coordinate for place in self.at.places]
-        gradients = sp.Matrix(len(fixed), len(q), [f.diff(by) for f in fixed for by in q])
+        gradients = sp.Matrix(
+            len(fixed),
+            len(q),
+            [sp.Integer(f == by) if f in q else f.diff(by) for f in fixed for by in q],
+        )
         if leaves := any(gradients * null_rates):
             gradients = gradients[:0, :]
         named = [by.diff(TIME) for by in q] if leaves else q
@@ -79,7 +84,9 @@ class PointFacts(Record):
         kept = [(c / next(filter(None, c))).T for c in sp.Matrix(null_rates.T).nullspace()]
         rows = sp.Matrix.vstack(gradients, *kept)
         independent = [k for k in rows.T.rref()[1] if k >= gradients.rows]
-        return [rows[k, :].dot(named).as_content_primitive()[1] for k in independent]
+        chosen = [rows.row(k).tolist()[0] for k in independent]
+        whole = [[number / sp.gcd_list(row) for number in row] for row in chosen]
+        return [added(*(n * by for n, by in zip(row, named, strict=True))) for row in whole]
 
     @property
     def idle(self) -> list[list[sp.Expr]]:
@@ -166,7 +173,7 @@ class SingularFacts(Record):
         angles = angle_facts(self.model)
         return (angles.all[0], angles.all[2]) if angles and self.result.points else ()
 
-    @property
+    @cached_property
     def points(self) -> list[PointFacts]:
         first = self.result.points[:_MOST_POINTS]
         is_only_one = len(self.result.points) == 1
@@ -182,4 +189,7 @@ class SingularFacts(Record):
 
 def singular_facts(derivation: Derivation) -> SingularFacts | None:
     singularities = derivation.singularities
-    return None if singularities is None else SingularFacts(derivation.model, singularities)
+    return singularities and _facts(derivation.model, singularities)
+
+
+_facts = lru_cache(maxsize=32)(SingularFacts)  # of the note, and of the terminal

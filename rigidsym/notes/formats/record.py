@@ -7,7 +7,7 @@ Expressions are strings in the plain names of the arguments ("sin(theta)*phi_dot
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from operator import attrgetter
 from pathlib import Path
@@ -116,7 +116,21 @@ def _attributes(thing: Any) -> dict[str, Any]:
 
 @lru_cache(maxsize=4096)  # an entry comes up in several quantities, and again in other conventions
 def _text(expression: sp.Basic, names: tuple[tuple[sp.Expr, sp.Symbol], ...]) -> str:
-    return str(expression.xreplace(dict(names)))
+    return str(_renamed(expression, _known(names)))
+
+
+_known: Callable[..., dict[sp.Basic, sp.Basic]] = lru_cache(maxsize=32)(dict)
+
+
+def _renamed(node: sp.Basic, known: dict[sp.Basic, sp.Basic]) -> sp.Basic:
+    """The expression with other names, which is not evaluated again; `known` grows by its parts."""
+    if node not in known:
+        parts = [_renamed(part, known) for part in node.args]
+        if isinstance(node, sp.Add | sp.Mul):
+            known[node] = node._from_args(parts)
+        else:
+            known[node] = node.func(*parts) if parts else node
+    return known[node]
 
 
 def _vector(column: sp.ImmutableMatrix | None) -> list[sp.Expr] | None:

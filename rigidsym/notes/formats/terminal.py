@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import sympy as sp
 
 from rigidsym.formula.display import display
+from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.formula.pen import break_lines
@@ -69,7 +70,7 @@ def printed_step(step: Step, form: str, derivation: Derivation, notation: Notati
         screen.step(step, arguments)
         return screen.whole
     equation = as_vectors(equation_of(step, arguments), step, letters)
-    return display(equation, letters, _EMS).text
+    return display(equation, letters, _EMS, LatexPen(notation)).text
 
 
 class _Screen:
