@@ -21,8 +21,9 @@ import rigidsym.tools.compare.search
 from helpers.command import ROOT, call
 from rigidsym.commands.cli import commands
 from rigidsym.errors import ExpressionError
+from rigidsym.tools.compare.comparison import identified
 from rigidsym.tools.compare.program import formula_matrix, program_formulas
-from rigidsym.tools.compare.quantities import _angles
+from rigidsym.tools.compare.quantities import _angles, target
 from rigidsym.tools.compare.search import formulas, search, source_files
 from rigidsym.tools.compare.syntax import patterns
 
@@ -591,6 +592,10 @@ WIDER = {
     " M Rz(float a) { return Rz(Vector2(cos(a), sin(a))); }",
     "d.c": "typedef vec4 mat4x4[4]; void f(float a) { float s = sin(a), c = cos(a); mat4x4 R ="
     " {{c, -s, 0, 0}, {s, c, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}; mul(Q, M, R); }",
+    "e.cs": "class A { Q F(Q a, Q b) { return new Q {\n"
+    " W = a.W*b.W - a.X*b.X - a.Y*b.Y - a.Z*b.Z,\n"
+    " X = a.W*b.X + a.X*b.W + a.Y*b.Z - a.Z*b.Y, Y = a.W*b.Y - a.X*b.Z + a.Y*b.W + a.Z*b.X,\n"
+    " Z = a.W*b.Z + a.X*b.Y - a.Y*b.X + a.Z*b.W }; } }",
     "j.py": "def f(a):\n    R = np.zeros(a.shape + (3, 3))\n    R[...] = np.eye(3)\n"
     "    R[..., 0, 0] = R[..., 1, 1] = np.cos(a)\n    R[..., 1, 0] = np.sin(a)\n"
     "    R[..., 0, 1] = -np.sin(a)\n    return R\n",
@@ -632,7 +637,12 @@ SAID = {
         "o.py": "; terms without",
     },
     **{"d.cs": "rotation_matrix of z", "p.m": "quaternion of ZYX", "e.cpp": "rates_from_"},
-    **{"a.js": "quaternion of x", "a.c": "quaternion_product", "a.cpp": "euler_angles of xyz"},
+    **{
+        "a.js": "quaternion of x",
+        "e.cs": "quaternion_product",
+        "a.c": "quaternion_product",
+        "a.cpp": "euler_angles of xyz",
+    },
 }
 
 
@@ -641,6 +651,7 @@ def test_ways_of_public_programs_are_read(tmp_path, name, said):
     texts = [str(each) for each in found_in(tmp_path, name, WIDER[name])]
     assert any(said in text and "not read" not in text for text in texts), texts
     assert all("close to" not in text for text in texts)
+    assert len(texts) == 1 or name != "e.cs"  # it counts once, beside its components
 
 
 def test_of_equally_near_rotations_that_of_yaw_pitch_and_roll_is_named(tmp_path):
@@ -806,6 +817,80 @@ def test_parts_of_a_state_and_repairs_in_other_entries_are_named(tmp_path, text)
     found = [str(each) for each in found_in(tmp_path, "a.m", text)]
     assert len(found) == len(OF_STATES[text]), found
     assert all(part in own for part, own in zip(OF_STATES[text], found, strict=True)), found
+
+
+WRONG_BY = {  # the last lines of a function in Python: parts of the only finding
+    "return inv(I) @ (t + cross(w, I @ w))": "the terms with w_0, w_1, w_2 should",
+    "return inv(I) @ (t - cross(w, I @ w))": "euler_equations_acceleration, if one matrix is the",
+    "return K @ (t + cross(w, I @ w))": "",  # K may be anything
+    "return [((Iz - Iy)*q*r + tx)/Ix, ((Ix - Iz)*p*r + ty)/Iy, "
+    "((Iy - Ix)*p*q + tz)/Iz]": "the terms with p, q, r should have the opposite sign",
+    "return [[1, sin(a)*tan(b), cos(a)*tan(b)], [0, cos(a), -sin(a)], "
+    "[0, sin(a)*cos(b), cos(a)/cos(b)]]": "sin(a)*cos(b) should be sin(a)/cos(b) (a product in",
+    "a_dot = p + (sin(a)*q + cos(a)*r)*tan(b); b_dot = cos(a)*q - sin(a)*r; "
+    "c_dot = (sin(a)*q + cos(a)*r)*cos(b)": "should be (q*sin(a) + r*cos(a))/cos(b) (a product",
+}
+
+
+@pytest.mark.parametrize(("text", "said"), WRONG_BY.items(), ids=range(len(WRONG_BY)))
+def test_torques_and_quotients_that_are_wrong_are_named(tmp_path, text, said):
+    found = [str(each) for each in found_in(tmp_path, "a.py", f"def f(w, t):\n    {text}\n")]
+    assert len(found) == bool(said), found
+    assert all(said in each for each in found), found
+
+
+def test_a_plain_form_is_named_before_a_conjugated_one_about_other_axes():
+    goal = target("YZX", "quaternion")
+    formula = goal.matrix.xreplace(dict(zip(goal.inputs["q"], sp.symbols("a b c"), strict=True)))
+    wrong = sp.ImmutableMatrix([formula[0] - 2 * formula[0].args[0], *formula[1:]])
+    assert str(identified(wrong, is_in_program=True).found) == "quaternion of YZX"
+
+
+# Names in a program
+
+TURNED = """{above}def {name}(a, b, c):
+    {inside}
+    return np.array([
+        [cos(a)*cos(b), cos(a)*sin(b)*sin(c) - sin(a)*cos(c), cos(a)*sin(b)*cos(c) + sin(a)*sin(c)],
+        [sin(a)*cos(b), sin(a)*sin(b)*sin(c) + cos(a)*cos(c), sin(a)*sin(b)*cos(c) - cos(a)*sin(c)],
+        [-sin(b), cos(b)*sin(c), cos(b)*cos(c)]])
+"""
+CLAIMS = {  # name, comment above, and docstring of a function about z, y, x: what is said of it
+    ("euler_to_rot_zyx", "", "pass"): "",
+    ("euler_to_rot_xyz", "", "pass"): "",  # about axes of space
+    ("euler_to_rot_zxy", "", "pass"): "; the name of euler_to_rot_zxy says zxy, the formula is ZYX",
+    ("rotation312", "", "pass"): "; the name of rotation312 says 312, the formula is ZYX",
+    (
+        "turn",
+        "# A 3-1-2 sequence\n",
+        "pass",
+    ): "; the comment of turn says 3-1-2, the formula is ZYX",
+    ("turn", "", '"""Of angles YXZ."""'): "; the comment of turn says YXZ, the formula is ZYX",
+    ("turn", "", '"""Not YXZ, but ZYX."""'): "",
+    ("turn_123456", "# 213 lines\n\n", "pass"): "",
+}
+
+
+@pytest.mark.parametrize("claim", CLAIMS, ids=range(len(CLAIMS)))
+def test_an_order_of_axes_in_a_name_is_compared_with_the_formula(tmp_path, claim):
+    name, above, inside = claim
+    text = TURNED.format(name=name, above=above, inside=inside)
+    (found,) = found_in(tmp_path, "a.py", text)
+    assert str(found).endswith(f"(proved){CLAIMS[claim]}")
+    (tmp_path / "a.py").write_text(text)
+    assert run(str(tmp_path)).exit_code == 0
+
+
+def test_a_rate_of_a_quaternion_without_the_factor_one_half_is_named(tmp_path):
+    text = """def {name}(q0, q1, q2, q3, wx, wy, wz):
+    v = q0*wx + q2*wz - q3*wy, q0*wy - q1*wz + q3*wx, q0*wz + q1*wy - q2*wx
+    d = [-q1*wx - q2*wy - q3*wz, v[0], v[1], v[2]]
+    return d{half}
+"""
+    for name, half, is_said in (("q_dot", "", 1), ("q_dot", "/2", 0), ("times", "", 0)):
+        found = found_in(tmp_path, "a.py", text.format(name=name, half=half))
+        said = [str(each) for each in found if "it lacks the factor 1/2" in str(each)]
+        assert len(said) == is_said
 
 
 # Euler angles from a matrix or a quaternion

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import product
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -35,15 +35,15 @@ _NEAR = 0.5  # share of entries that must be right for a formula to be close to 
 _NEAREST = 16  # readings of which the wrong entries are repaired
 _MOST_OPERATIONS = 200  # of an entry in which each part is changed
 _MOST_ENTRIES = 3  # that may be wrong, each by one change
-_WHOLE: dict[str, tuple[str, Callable[[Any], Any]]] = {  # changes of all entries together
-    "transpose": ("the formula is the transpose", lambda m: m.T),
-    "sign": ("all signs are the other way round", lambda m: -m),
-    "factor 2": ("a factor 2 is missing", lambda m: 2 * m),
-    "factor 1/2": ("a factor 1/2 is missing", lambda m: m / 2),
-}
+_WHOLE: tuple[tuple[str, str, Callable[[Any], Any]], ...] = (  # changes of all entries together
+    ("transpose", "the formula is the transpose", lambda m: m.T),
+    ("sign", "all signs are the other way round", lambda m: -m),
+    ("factor", "a factor 2 is missing", lambda m: 2 * m),
+    ("factor", "a factor 1/2 is missing", lambda m: m / 2),
+)
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Repair:
     """One change that makes a formula right."""
 
@@ -128,6 +128,7 @@ class Comparison:
     counterexample: str = ""  # where the formula is wrong, if it is right for some angles only
     is_reflection: bool = False
     form: str = ""  # how a program writes it: transposed, or with a factor that is left out
+    left_out: str = ""  # terms of a program that are not compared
     are_body_rates: bool = False  # taken for the rates of Euler angles
     others: tuple[Comparison, ...] = ()  # with other quantities, which are as near
 
@@ -287,24 +288,45 @@ def identified(
             return _proved(equal, asked)
         trials.append(trial)
     unknown = Comparison(formula=formula, asked=asked)
-    for words, form in _other_forms(formula) if is_in_program else ():
-        if (comparison := identified(form, only_equal=True)).found:
-            return replace(comparison, form=words)
-    if only_equal:
-        return unknown
-    if decided := _decided(formula, trials, asked, is_in_program=is_in_program):
+    changes = _ways(formula) if is_in_program else () if only_equal else _changes(formula)
+    for kind, words, changed in changes:
+        if (whole := identified(changed, asked, only_equal=True)).found:
+            if not kind:
+                return replace(whole, form=words)
+            is_passive = kind == "transpose" and whole.found.quantity == "rotation_matrix"
+            words += " (passive)" * is_passive
+            return replace(whole, formula=formula, repairs=(Repair(kind, words, changed),))
+    comparison = None if only_equal else _close(formula, trials, asked, expected)
+    parts = _parts(formula) if is_in_program and comparison is None else ()
+    for w, part, others in parts:
+        if (own := identified(part, only_equal=True)).found:
+            return replace(own, left_out=f"terms without {', '.join(map(str, w))}")
+        # The gyroscopic torque may have the wrong sign.
+        if not only_equal and (own := identified(others - part, only_equal=True)).found:
+            words = f"the terms with {', '.join(map(str, w))} should have the opposite sign"
+            return replace(own, formula=formula, repairs=(Repair("sign", words, others - part),))
+    return comparison or unknown
+
+
+def _close(
+    formula: sp.ImmutableMatrix,
+    trials: Sequence[_Trial],
+    asked: KnownQuantity | None,
+    expected: str,
+) -> Comparison | None:
+    """The quantity, or the one asked for, that a few changes of entries would make of a formula."""
+    if decided := _decided(formula, trials, asked):
         return decided
     if asked is None:
-        return _repaired(_nearest(trials, _NEAR, expected)[:_NEAREST]) or unknown
+        return _repaired(_nearest(trials, _NEAR, expected)[:_NEAREST])
     own = identified(formula, only_equal=True)
     if own.found:
         words = ", ".join(filter(None, (f"this is {own.found}", own.arrangement)))
-        repair = Repair(kind="convention", words=words, formula=formula)
-        return replace(own, asked=asked, repairs=(repair,))
+        return replace(own, asked=asked, repairs=(Repair("convention", words, formula),))
     for nearest in _nearest(trials, 0)[:1]:
         if repairs := entry_repairs(nearest):
             return _proved(nearest, asked, repairs)
-    return unknown
+    return None
 
 
 def _repaired(nearest: Sequence[Reading]) -> Comparison | None:
@@ -333,10 +355,20 @@ def _repaired(nearest: Sequence[Reading]) -> Comparison | None:
     return replace(proved[0], others=tuple(proved[1 : 1 + _MOST_OTHERS])) if proved else None
 
 
-def _other_forms(formula: sp.ImmutableMatrix) -> Iterator[tuple[str, sp.ImmutableMatrix]]:
-    """Other forms of a formula of a program, with the words for them."""
+def _changes(formula: sp.ImmutableMatrix) -> Iterator[tuple[str, str, sp.ImmutableMatrix]]:
+    """(kind, words, changed formula): changes of all entries together.
+
+    Angles are not changed as a whole: their conventions include transposes, orders and senses.
+    """
+    for kind, words, change in _WHOLE if not known.are_angles(formula) else ():
+        if kind != "transpose" or formula.rows == formula.cols:
+            yield kind, words, change(formula)
+
+
+def _ways(formula: sp.ImmutableMatrix) -> Iterator[tuple[str, str, sp.ImmutableMatrix]]:
+    """("", words, formula): other ways of writing a formula, which a program may mean."""
     if formula.shape == (3, 3):  # by columns, or for rows of rates
-        yield "transposed", formula.T
+        yield "", "transposed", formula.T
     values = known.sample(formula)
     for symbol in values:
         angles = [f.args[0] for f in formula.atoms(sp.sin, sp.cos, sp.tan) if f.has(symbol)]
@@ -345,7 +377,28 @@ def _other_forms(formula: sp.ImmutableMatrix) -> Iterator[tuple[str, sp.Immutabl
             is_factor = not any((part / symbol).has(symbol) for part in scaled)
             twice = known.evaluated(scaled, {**values, symbol: 2 * values[symbol]})
             if is_factor or known.near(twice, 2 * known.evaluated(scaled, dict(values))).all():
-                yield f"up to the factor {symbol}", formula.xreplace({symbol: sp.S.One})
+                yield "", f"up to the factor {symbol}", formula.xreplace({symbol: sp.S.One})
+
+
+def _parts(
+    formula: sp.ImmutableMatrix,
+) -> Iterator[tuple[tuple[sp.Symbol, ...], sp.ImmutableMatrix, sp.ImmutableMatrix]]:
+    """(w, part, others): the terms with an angular velocity w, and those without.
+
+    The others are torques in Euler's equations, and corrections in rates of a quaternion.
+    """
+    if formula.shape not in ((3, 1), (4, 1)) or formula.has(sp.Function):
+        return
+    sign = 1 if formula.rows == 3 else -1  # of what is quadratic in ω, or linear
+    names = tuple((s, s.name) for s in sorted(formula.free_symbols, key=str))
+    for w in chain.from_iterable(known.grouped(names)):
+        if len(w) != 3 or not all(e.has(*w) and e.is_polynomial(*w) for e in formula):
+            continue
+        others = formula.xreplace(dict.fromkeys(w, sp.S.Zero))
+        part = (formula - others).expand()
+        opposite = part.xreplace({s: -s for s in w})
+        if any(others) and (part - sign * opposite).expand().is_zero_matrix:
+            yield w, sp.ImmutableMatrix(part), others
 
 
 def _nearest(trials: Sequence[_Trial], least: float, expected: str = "") -> list[Reading]:
@@ -363,38 +416,23 @@ def _nearest(trials: Sequence[_Trial], least: float, expected: str = "") -> list
                 exchanged = trial.compared(trial.numbers[..., order, :])
                 readings += trial.readings(exchanged.all(axis=(2, 3, 4)))
 
-    def rank(each: Reading) -> tuple[float, int, bool]:
-        odd = sum(map(known.oddness, each.names.values()))
-        return -each.share, odd, each.goal.axes != (expected or "z y x")
+    def rank(each: Reading) -> tuple[float, int, int, bool]:
+        odd, words = sum(map(known.oddness, each.names.values())), each.goal.arrangement
+        is_other = each.goal.axes != (expected or "z y x")
+        return -each.share, odd, len(words and words.split(", ")), is_other
 
     return sorted(readings, key=rank)
 
 
 def _decided(
-    formula: sp.ImmutableMatrix,
-    trials: Sequence[_Trial],
-    asked: KnownQuantity | None,
-    *,
-    is_in_program: bool,
+    formula: sp.ImmutableMatrix, trials: Sequence[_Trial], asked: KnownQuantity | None
 ) -> Comparison | None:
     """What is known without a look at single entries."""
-    of_angles = known.are_angles(formula)
-    # Inverse functions are not changed as a whole: transposes, orders and senses of the angles are
-    # already among their conventions.
-    if not (is_in_program or of_angles):
-        for trial, (kind, (words, change)) in product(trials, _WHOLE.items()):
-            numbers = trial.numbers
-            numbers = numbers.swapaxes(-1, -2) if kind == "transpose" else change(numbers)
-            for reading in trial.readings(trial.compared(numbers).all(axis=(2, 3, 4))):
-                goal = reading.goal
-                words += " (passive)" * (goal.quantity == "rotation_matrix" and kind == "transpose")
-                repair = Repair(kind=kind.split()[0], words=words, formula=change(formula))
-                return _proved(reading, asked, [repair])
     # The negative of a reflection may be the wanted rotation. If it is not, det = −1 is the
     # finding, and no repair of entries is looked for.
     if known.is_mirror(formula):
         return Comparison(formula=formula, asked=asked, is_reflection=True)
-    for trial in trials if not of_angles else ():
+    for trial in trials if not known.are_angles(formula) else ():
         is_right: Any = trial.agreement.all(axis=(3, 4))
         for some in trial.readings(is_right[..., : known.NEAR_POINTS].all(axis=2)):
             # No change makes it right for all angles. The point of the smallest angles where the
@@ -443,7 +481,7 @@ def entry_repairs(reading: Reading) -> list[Repair]:
         changed[one], changed[two] = formula[two], formula[one]
         if reading.agrees(changed, goal.values):
             words, fixed = "entries {} and {} are exchanged".format(*called), changed.as_immutable()
-            return [Repair(kind="exchange", words=words, formula=fixed, place=places[0])]
+            return [Repair("exchange", words, fixed, places[0])]
     if len(wrong) > min(_MOST_ENTRIES, max(1, len(formula) // 3)):
         return []
     repairs: list[Repair] = []
@@ -454,7 +492,7 @@ def entry_repairs(reading: Reading) -> list[Repair]:
         words = f"entry {where}: {formula[entry]} should be {after}"
         words += f" ({CHANGES[kind]})" if kind in CHANGES else ""
         fixed = changed.as_immutable()
-        repairs.append(Repair(kind=kind, words=words, formula=fixed, place=place, after=after))
+        repairs.append(Repair(kind, words, fixed, place, after))
     return repairs
 
 
@@ -514,6 +552,7 @@ def variants(
     if e.func == sp.atan:
         above, below = e.args[0].as_numer_denom()
         changes["quadrant"] = [sp.atan2(sign * above, sign * below) for sign in (1, -1)]
-    if not (inside or e.is_Add):
-        changes["product"] += [e * turn for turn in turns]
+    if not inside:
+        changes["quotient"] = [e * turn**k for turn in turns for k in (2, -2)]
+        changes["product"] += [] if e.is_Add else [e * turn for turn in turns]
     yield from ((kind, changed) for kind in changes for changed in changes[kind])

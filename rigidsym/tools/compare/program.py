@@ -139,6 +139,7 @@ class Formula:
     reason: str = ""
     is_flat: bool = False  # nine or sixteen numbers in a row, by rows or by columns
     unread: tuple[tuple[str, int], ...] = ()  # names in it whose values are not read, and lines
+    function: tuple[str, int, int] = ("", 0, 0)  # around it, with its first and last line
     is_final: bool = True  # not if what is not understood changes it: it may not be complete
 
     @property
@@ -241,7 +242,7 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
             named = {f.forms[:1] for f in run.formulas if f.name not in _UNNAMED} - {()}
             for formula in run.formulas:  # a fault counts once
                 if formula.name not in _UNNAMED or formula.forms[:1] not in named:
-                    scope.formulas.append(formula)
+                    scope.formulas.append(replace(formula, function=scope.tree.span))
     formulas: dict[Any, Formula] = {}
     for formula in chain.from_iterable(scope.formulas for scope in scopes):
         key = (formula.lines, formula.forms or formula.name)

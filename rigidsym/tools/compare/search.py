@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
-from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -16,13 +16,15 @@ from rigidsym.models.rotation import RotationModel
 from rigidsym.tools.compare import quantities
 from rigidsym.tools.compare.comparison import Comparison, identified
 from rigidsym.tools.compare.program import Formula, program_formulas
-from rigidsym.tools.compare.quantities import are_angles, are_body_rates
+from rigidsym.tools.compare.quantities import KnownQuantity, are_angles, are_body_rates
 from rigidsym.tools.compare.syntax import GRAMMARS, patterns
 
 SUFFIXES = tuple(GRAMMARS)
 _MOST_BYTES = 300_000  # of a file
 _MOST_SYMBOLS = 12
 _NEAR_LINES = 12  # between the components of a vector and the vector
+_LONGEST_COMMENT = 40  # lines above a function
+_AXES = str.maketrans("123", "xyz")
 _TRIGONOMETRIC = (sp.sin, sp.cos, sp.tan)
 _FAILURES = (  # of SymPy or the file system, or by a defect of ours: other files are still read
     *(ArithmeticError, AssertionError, AttributeError, LookupError, MemoryError),
@@ -42,8 +44,13 @@ class FormulaInFile:
     comparison: Comparison | None = None
     reason: str = ""
     is_case: bool = False  # whether other branches have other values
-    others: str = ""  # terms that are not compared
+    remark: str = ""  # what the names in the program say of it
     is_failure: bool = False  # the rest of the file is not read
+
+    @property
+    def goal(self) -> KnownQuantity | None:
+        """What was found."""
+        return self.comparison.found if self.comparison else None
 
     @property
     def line(self) -> int:
@@ -57,10 +64,10 @@ class FormulaInFile:
     def __str__(self) -> str:
         name = f"{self.formula.name}: " if self.formula.name else ""
         text = self.comparison.text() if self.comparison else f"not read, since {self.reason}"
-        text += f"; {self.others} were not compared" * bool(self.others)
         text += "; in one of several branches" * self.is_case
         if self.formula.unread and self.comparison:
             text += f"; not read: {_in_lines(self.formula.unread)}"
+        text += f"; {self.remark}" * bool(self.remark)
         return f"{self.path}:{self.line}: {name}{text}"
 
     def repeats(self, other: FormulaInFile) -> bool:
@@ -71,13 +78,14 @@ class FormulaInFile:
         if sorted(self.formula.lines) == sorted(other.formula.lines):
             return bool(own == others)
         is_near = self.formula.line - other.formula.line <= _NEAR_LINES
-        is_near &= self.formula.name != other.formula.name  # as in a function after another
-        return ", " in other.formula.name and is_near and {*own} == {*others}
+        is_near &= self.formula.function == other.formula.function
+        has_parts = ", " in self.formula.name + other.formula.name
+        return has_parts and is_near and {*own} == {*others}
 
     def record(self) -> dict[str, Any]:
         """For JSON."""
         place = {"path": str(self.path), "line": self.line, "name": self.formula.name}
-        place |= {"unread": dict(self.formula.unread)}
+        place |= {"unread": dict(self.formula.unread), "remark": self.remark or None}
         return place | (self.comparison.record() if self.comparison else {})
 
 
@@ -115,15 +123,68 @@ def search(path: Path, expected: str = "") -> Iterator[FormulaInFile]:
     Of several rotations close to one, that about the `expected` axes, as in "z y x", is preferred.
     If reading fails, the last one says so.
     """
+    found: list[FormulaInFile] = []
+    text = ""
     try:
-        yield from _findings(path, expected)
+        text = path.read_text(encoding="utf-8", errors="replace")
+        for finding in _findings(path, text, expected):
+            found.append(finding)
     except _FAILURES as error:
         reason = f"there was an error in reading it: {type(error).__name__}: {error}"
-        yield FormulaInFile(path, Formula(lines=(1,), name=""), reason=reason, is_failure=True)
+        failed = Formula(lines=(1,), name="")
+        found.append(FormulaInFile(path, failed, reason=reason, is_failure=True))
+    of_functions: dict[tuple[str, int, int], list[FormulaInFile]] = {}
+    for finding in found:
+        of_functions.setdefault(finding.formula.function, []).append(finding)
+    for finding in found:
+        yield replace(
+            finding, remark=_remark(finding, of_functions[finding.formula.function], text)
+        )
 
 
-def _findings(path: Path, expected: str) -> Iterator[FormulaInFile]:
-    text = path.read_text(encoding="utf-8", errors="replace")
+def _remark(finding: FormulaInFile, others: Sequence[FormulaInFile], text: str) -> str:
+    """How the name of a function or its comment differ from what its formulas are."""
+    (name, first, last), goal = finding.formula.function, finding.goal
+    if goal is None or not name:
+        return ""
+    lines = text.splitlines(keepends=True)
+    body = "".join(lines[first - 1 : last])
+    if goal.quantity == "quaternion_product" and [*map(len, goal.inputs.values())] != [4, 4]:
+        own = finding.formula.name.partition(", ")[0]
+        is_rate = bool(quantities.stem_of(own) or patterns.derivative.search(name))
+        is_half = patterns.half.search(body) is not None
+        return "as the rate of a quaternion it lacks the factor 1/2" * (is_rate and not is_half)
+    above = patterns.comment.search("".join(lines[max(0, first - _LONGEST_COMMENT) : first - 1]))
+    inside = patterns.docstring.match(body)
+    comment = (above[1] if above else "") + (inside[0] if inside else "")
+    for words, said in (("name", name), ("comment", comment)):
+        claims = {_both(match[0]): match[0] for match in patterns.order.finditer(said)}
+        if claims:
+            own = _order(finding)
+            is_certain = len(claims) == 1 and {*map(_order, others)} - {""} == {own}
+            is_other = is_certain and own not in claims
+            said = f"the {words} of {name} says {next(iter(claims.values()))}"
+            return f"{said}, the formula is {goal.rotation}" * is_other
+    return ""
+
+
+def _both(order: str) -> str:
+    """An order of axes in a form that is the same for the reversed one.
+
+    ZYX may mean turns about axes of the body, or about those of space, whose product is reversed.
+    """
+    axes = "".join(re.findall("[xyz]", order.lower().translate(_AXES)))
+    return min(axes, axes[::-1])
+
+
+def _order(finding: FormulaInFile) -> str:
+    """The order of the three axes of a formula; "" if it has none."""
+    goal = finding.goal
+    axes = _both(goal.axes) if goal and goal.rotation else ""
+    return axes if len(axes) == 3 else ""
+
+
+def _findings(path: Path, text: str, expected: str) -> Iterator[FormulaInFile]:
     variants: dict[Any, list[Formula]] = {}
     latest: FormulaInFile | None = None
     for formula in formulas(text, path.suffix):
@@ -147,20 +208,19 @@ def _compared(
             asked = quantities.target("xyz", "rates_from_angular_velocity_body")
             comparison = Comparison(formula=form, asked=asked, are_body_rates=True)
             return FormulaInFile(path, formula, comparison)
-        is_equal = is_case or not formula.is_final
-        whole = [(form, "", is_equal)] * _may_be_known(form)
-        parts = ((part, others, True) for part, others in _partial(form))
-        for part, others, is_equal in chain(whole, parts):
-            try:
-                comparison = _identified(part, only_equal=is_equal, expected=expected)
-            except (ExpressionError, RecursionError) as error:  # a function without values
-                return FormulaInFile(path, formula, reason=str(error))
-            goal = comparison.found
-            if goal is not None and formula.is_flat and goal.arrangement == quantities.PASSIVE:
-                goal = replace(goal, arrangement=quantities.PASSIVE_OR_BY_COLUMNS)
-                comparison = replace(comparison, found=goal)
-            if goal is not None or comparison.is_reflection:
-                return FormulaInFile(path, formula, comparison, "", is_case, others)
+        if not _may_be_known(form):
+            continue
+        try:
+            is_equal = is_case or not formula.is_final
+            comparison = _identified(form, only_equal=is_equal, expected=expected)
+        except (ExpressionError, RecursionError) as error:  # a function without values
+            return FormulaInFile(path, formula, reason=str(error))
+        goal = comparison.found
+        if goal is not None and formula.is_flat and goal.arrangement == quantities.PASSIVE:
+            goal = replace(goal, arrangement=quantities.PASSIVE_OR_BY_COLUMNS)
+            comparison = replace(comparison, found=goal)
+        if goal is not None or comparison.is_reflection:
+            return FormulaInFile(path, formula, comparison, "", is_case)
     reason = formula.reason
     if formula.unread and any(map(_may_be_known, formula.forms)):
         reason = f"{_in_lines(formula.unread)} cannot be read"
@@ -212,30 +272,9 @@ def _block(matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
     return matrix[:3, :3] if is_homogeneous else matrix
 
 
-def _partial(matrix: sp.ImmutableMatrix) -> Iterator[tuple[sp.ImmutableMatrix, str]]:
-    """A formula without some of its terms, and the words that say so.
-
-    These are torques in Euler's equations, and corrections in rates of a quaternion.
-    """
-    if matrix.shape not in ((3, 1), (4, 1)) or matrix.has(sp.Function):
-        return
-    sign = 1 if matrix.rows == 3 else -1  # of what is quadratic in ω, or linear
-    for vectors in quantities.grouped(
-        tuple((s, s.name) for s in sorted(matrix.free_symbols, key=str))
-    ):
-        for w in vectors:
-            if len(w) != 3 or not all(e.has(*w) and e.is_polynomial(*w) for e in matrix):
-                continue
-            others = matrix.xreplace(dict.fromkeys(w, sp.S.Zero))
-            part = (matrix - others).expand()
-            opposite = part.xreplace({s: -s for s in w})
-            if any(others) and (part - sign * opposite).expand().is_zero_matrix:
-                yield sp.ImmutableMatrix(part), f"terms without {', '.join(map(str, w))}"
-
-
 def _may_be_known(matrix: sp.ImmutableMatrix) -> bool:
     """Whether it is worth comparing: sines and cosines, or products of four or more names."""
-    if not 0 < len(matrix.free_symbols) <= _MOST_SYMBOLS * (1 + (matrix.shape == (3, 1))):
+    if not 0 < len(matrix.free_symbols) <= _MOST_SYMBOLS * (1 + (matrix.cols == 1)):
         return False
     if are_angles(matrix) or are_body_rates(matrix):
         return True

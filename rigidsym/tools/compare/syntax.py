@@ -103,6 +103,12 @@ class Tree:
         return int(self.node.start_point[0]) + 1
 
     @cached_property
+    def span(self) -> tuple[str, int, int]:
+        """The name of a function, with its first and last line."""
+        last = int(self.node.end_point[0]) + 1
+        return (self.word, self.line, last) if self.kind == "function" else ("", 0, 0)
+
+    @cached_property
     def text(self) -> str:
         return _text(self.node)
 
