@@ -9,10 +9,12 @@ import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from functools import partial
+from itertools import product
 from pathlib import Path
 from typing import Any
 
 import click
+from click.core import ParameterSource
 
 from rigidsym.errors import printable
 from rigidsym.system.processes import time_limit
@@ -50,14 +52,32 @@ def _use_templates(context: click.Context, _: object, folder: Path | None) -> No
         context.with_resource(overridden_by(folder))
 
 
-_path = partial(click.Path, path_type=Path)
+class _Path(click.Path):
+    """A path; an empty text, as of a shell variable that is not set, is not the current folder."""
+
+    def convert(self, value: Any, option: Any, context: Any) -> Any:
+        return super().convert(value, option, context) if value else self.fail("an empty path")
+
+
+class _Number(click.FloatRange):
+    """A number, which Click's message about another text calls a float range."""
+
+    name = "number"
+
+
+class _Integer(click.IntRange):
+    """A whole number."""
+
+    name = "integer"
+
+
+_path = partial(_Path, path_type=Path)
 KINDS: Mapping[str, Mapping[str, Any]] = {  # what click knows of an option or argument
     "flag": {"is_flag": True},
     "names": {"multiple": True, "callback": _between_commas, "metavar": "NAME,..."},
     "numbers": {"multiple": True, "callback": _by_name, "metavar": "NAME=NUMBER"},
-    "positive": {"type": click.FloatRange(min=0, min_open=True)},
-    "number": {"type": float},
-    "whole": {"type": int},
+    "positive": {"type": _Number(min=0, min_open=True)},
+    "number": {"type": _Number()},
     "count": {},  # a whole number from `least`, by default 1, to `most`
     "path": {"type": _path(exists=True)},
     "file": {"type": _path(exists=True, dir_okay=False)},
@@ -73,7 +93,8 @@ KINDS: Mapping[str, Mapping[str, Any]] = {  # what click knows of an option or a
 }
 
 
-_OURS = ("kind", "choices", "least", "most")  # keys of an entry that click does not take
+# keys of an entry that click does not take
+_OURS = ("kind", "choices", "least", "most", "excludes")
 
 
 def _parameter(
@@ -85,7 +106,7 @@ def _parameter(
     if words := choices.get(name.strip("-").replace("-", "_"), entry.get("choices")):
         settings["type"] = click.Choice(words)
     if entry.get("kind") == "count":
-        settings["type"] = click.IntRange(entry.get("least", 1), entry.get("most"))
+        settings["type"] = _Integer(entry.get("least", 1), entry.get("most"))
     if not name.startswith("-"):
         return click.Argument([name], **settings)
     return click.Option([name], show_default=entry.get("default", "") != "", **settings)
@@ -94,9 +115,11 @@ def _parameter(
 class _Command(click.Command):
     """A command whose time is limited by an option, and which names substitutes of old options."""
 
+    excluded: Mapping[str, Sequence[str]]  # by option, those that it cannot be combined with
+
     def parse_args(self, context: click.Context, args: list[str]) -> list[str]:
         try:
-            return super().parse_args(context, args)
+            rest = super().parse_args(context, args)
         except click.NoSuchOption as error:
             removed = DECLARED["removed"].items()
             old = (text for names, text in removed if error.option_name in names.split())
@@ -104,6 +127,15 @@ class _Command(click.Command):
                 raise
             message = f"there is no {error.option_name}: {substitute}"
             raise click.UsageError(message, context) from None
+        on_line = [
+            option.opts[0]
+            for option in self.params
+            if context.get_parameter_source(option.name or "") is ParameterSource.COMMANDLINE
+        ]
+        for option, other in product(on_line, on_line):
+            if other in self.excluded[option]:
+                raise click.UsageError(f"{option} cannot be combined with {other}", context)
+        return rest
 
     def invoke(self, context: click.Context) -> Any:
         with time_limit(context.params.pop("timeout")):
@@ -123,14 +155,20 @@ def command(name: str, **choices: Sequence[str]) -> Callable[[Callable[..., Any]
         entry.get("options", {}),
         DECLARED["groups"]["every"],
     )
-    parameters = [_parameter(key, table[key], choices) for table in tables for key in table]
-    return lambda function: _Command(
-        name,
-        callback=function,
-        params=parameters,
-        help=entry["help"],
-        epilog=f"\b\nExample: {entry['example']}",  # by \b click keeps the lines
-    )
+    entries = {key: table[key] for table in tables for key in table}
+
+    def made(function: Callable[..., Any]) -> click.Command:
+        made = _Command(
+            name,
+            callback=function,
+            params=[_parameter(key, entries[key], choices) for key in entries],
+            help=entry["help"],
+            epilog=f"\b\nExample: {entry['example']}",  # by \b click keeps the lines
+        )
+        made.excluded = {key: entries[key].get("excludes", ()) for key in entries}
+        return made
+
+    return made
 
 
 def of_rotation(options: Options) -> dict[str, Any]:

@@ -51,15 +51,13 @@ class Notation(Record, kw_only=True):
         return formula if self == DEFAULT else _applied(formula, self)
 
     def check(self, model: HasNames) -> None:
-        """Raises ModelError for a name in a model that looks like the angular velocity."""
-        if self.angular_velocity != "omega":
-            return
-        alike = sorted(name for name in model.names if name.split("_")[0].lower() == "omega")
-        if alike:
-            raise ModelError(
-                f"notation: the angular velocity cannot be called omega beside {alike[0]}; leave "
-                "it Omega"
-            )
+        """Raises ModelError for a name in a model that looks like R, W or the angular velocity."""
+        other = next(word for word in CHOICES["angular_velocity"] if word != self.angular_velocity)
+        meanings = {"R": "the rotation matrix", "W": "the rate matrix"}
+        meanings[self.angular_velocity] = f"the angular velocity, which can also be called {other}"
+        for name in sorted(model.names):
+            if meaning := meanings.get(name.rstrip("_0123456789")):
+                raise ModelError(f"notation: {name} is printed like {meaning}; choose another name")
 
 
 @lru_cache(maxsize=4096)

@@ -111,9 +111,10 @@ class _TexReader:
         """The token that is read next; empty at the end."""
         return self.tokens[-1] if self.tokens else ""
 
-    def error(self) -> AlgebraError:
-        rest = "".join(reversed(self.tokens)) or "the end"
-        return AlgebraError(f"no formula: '{self.text}', at '{rest}'")
+    def error(self, missing: str = "an argument") -> AlgebraError:
+        rest = "".join(reversed(self.tokens))
+        where = f" from '{rest}' on" if rest else f": {missing} is missing at its end"
+        return AlgebraError(f"cannot read the formula '{self.text}'{where}")
 
     def row(self, *ends: str) -> Formula:
         """Parts up to one of `ends`, which is not read; or up to the end of all."""
@@ -134,7 +135,7 @@ class _TexReader:
         """What stands before a closing bracket, which is read too."""
         inside = self.row(end)
         if not self.tokens:
-            raise self.error()
+            raise self.error(end)
         self.tokens.pop()
         return inside
 
@@ -225,7 +226,7 @@ class _TexReader:
         while mark != end:
             rows[-1].append(self.row("&", end, r"\\"))
             if not self.tokens:
-                raise self.error()
+                raise self.error(end)
             mark = self.tokens.pop()
             rows += [[]] if mark == r"\\" else []
         return tree.Matrix(tuple(map(tuple, rows)))

@@ -7,7 +7,7 @@ recalled has none.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from itertools import groupby
@@ -73,8 +73,7 @@ class Composer:
     """What a template prints, for one derivation.
 
     `module` is the file name of a kernel module and `functions` the quantities it evaluates; each
-    of their equations in an audit names its function. Raises ModelError where a name of the model
-    would be taken for one of the notation.
+    of their equations in an audit names its function.
     """
 
     def __init__(
@@ -87,7 +86,6 @@ class Composer:
         conversions: Conversions | None = None,
         is_audit: bool = True,
     ) -> None:
-        notation.check(derivation.model)
         self.derivation, self.moments = in_names(derivation)
         self.model = derivation.model
         self.module = module or ""
@@ -233,16 +231,15 @@ class Composer:
 
         Raises TemplateRuntimeError, with the nearest name, if the derivation lacks it.
         """
-        if name not in self._displayed:
-            near = offer(name, [*self._displayed])
-            raise TemplateRuntimeError(f"nothing is derived by the name {name!r}; {near}")
+        _check_derived(name, self._displayed)
         return self._displayed[name]
 
     def _reference(self, name: str) -> doc.EquationReference:
         """To the equation of a quantity, or in the lecture to the one that it belongs to."""
-        return doc.EquationReference(
-            _WHERE_SHOWN.get(name, name) if self.derivation.theory else name
-        )
+        derivation = self.derivation
+        names = [*(s.quantity.name for s in derivation.steps), *(s.name for s in derivation.theory)]
+        _check_derived(name, names)
+        return doc.EquationReference(_WHERE_SHOWN.get(name, name) if derivation.theory else name)
 
     @cached_property
     def _displayed(self) -> Mapping[str, doc.Equation]:
@@ -354,6 +351,12 @@ class Composer:
             for proof in proofs:
                 once.setdefault((proof.claim, proof.status), (reference, proof))
         return sorted(once.values(), key=lambda pair: numbers[pair[0].label])
+
+
+def _check_derived(name: str, names: Collection[str]) -> None:
+    if name not in names:
+        near = offer(name, names)
+        raise TemplateRuntimeError(f"nothing is derived by the name {name!r}; {near}")
 
 
 def _call(step: Step) -> str:

@@ -34,8 +34,11 @@ def letters_of(
 ) -> Letters:
     """The letters of a derivation, from its arguments, in the notation of the user.
 
-    With the model, the length of its vector is written for what its components make up.
+    With the model, the length of its vector is written for what its components make up. Raises
+    ModelError for a name of the model that is printed like a symbol of the notation.
     """
+    if model is not None:
+        notation.check(model)
     if model is None or not model.vector:
         return _letters(tuple(arguments), notation, None)
     # the vector has the letter of its components, e for (e₁, e₂, e₃), or v

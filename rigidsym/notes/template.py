@@ -66,9 +66,10 @@ _BLOCKS = (doc.Paragraph, doc.Equation, doc.EquationRow, doc.NoteTable, doc.Figu
 
 
 class _Reader:
-    """Reads the Markdown of one text, with the things that its marks stand for."""
+    """Reads the Markdown of a template, with the things that its marks stand for."""
 
-    def __init__(self, letters: Letters) -> None:
+    def __init__(self, template: str, letters: Letters) -> None:
+        self.template = template
         self.letters = letters
         self.things: list[Any] = []
 
@@ -93,7 +94,7 @@ class _Reader:
         elif whole.startswith(("|", _TABLE)):
             yield self._table(whole)
         elif row := re.search(r"^\|.*", whole, re.MULTILINE):
-            raise _unread(row[0], "|")
+            raise self.unread(row[0], "|")
         else:
             yield from self._paragraphs(whole)
 
@@ -102,10 +103,10 @@ class _Reader:
         whole = _TYPED.sub(self._typed, chunk)
         if "$" in whole:
             lines = (line for line in chunk.splitlines() if "$" in _TYPED.sub("", line))
-            raise _fault(next(lines, chunk), "expected $ at the end of a formula")
+            raise self.fault(next(lines, chunk), "expected $ at the end of a formula")
         if unread := _UNREAD.search(whole):
             start = whole.rfind("\n", 0, unread.start()) + 1
-            raise _unread(whole[start:].partition("\n")[0], unread[0])
+            raise self.unread(whole[start:].partition("\n")[0], unread[0])
         return whole
 
     def _typed(self, match: re.Match[str]) -> str:
@@ -142,7 +143,7 @@ class _Reader:
     def _display(self, chunk: str) -> doc.Equation | doc.EquationRow:
         if not re.fullmatch(r"\$\$[^$]+\$\$", chunk):
             lines = (line for line in chunk.splitlines() if line.strip("$ "))
-            raise _fault(next(lines, chunk), "expected $$ at the end of a formula")
+            raise self.fault(next(lines, chunk), "expected $$ at the end of a formula")
         equations = tuple(map(self._equation, chunk.strip("$").split(r"\qquad")))
         return doc.EquationRow(equations) if len(equations) > 1 else equations[0]
 
@@ -162,7 +163,7 @@ class _Reader:
         try:
             read = formula(tex, *(formula(p) if isinstance(p, str) else p for p in parts))
         except AlgebraError as error:
-            raise _fault(typed, str(error)) from error
+            raise self.fault(typed, str(error)) from error
         # facts may hold letters of the user's, which stay
         return with_names(read, self.letters.own) if tex == typed.strip() else read
 
@@ -172,11 +173,23 @@ class _Reader:
         caption = lines.pop(0).removeprefix(_TABLE) if chunk.startswith(_TABLE) else ""
         rows = [[cell.strip() for cell in line.strip().strip("|").split("|")] for line in lines]
         are_rows = rows[1:] and all(re.fullmatch(":?-+:?", cell) for cell in rows[1])
+        are_rows = are_rows and all(line.lstrip().startswith("|") for line in lines)
         if not are_rows or any(len(row) != len(rows[0]) for row in rows):
-            raise _fault(chunk.splitlines()[0], "expected rows of as many cells, the second |---|")
+            expected = "expected equally many cells in each row, |---| in the second, the caption"
+            raise self.fault(chunk.splitlines()[0], f"{expected} directly above")
         of_words = next((k for k, cell in enumerate(rows[1]) if cell.startswith(":")), None)
         head, *others = (tuple(map(self.text, row)) for row in (rows[0], *rows[2:]))
         return doc.NoteTable(text_of(self.text(caption.strip())), head, tuple(others), of_words)
+
+    def unread(self, line: str, what: str) -> TemplateFault:
+        expected = "expected words, *emphasis*, **strong words**, `code`, [links](address), lists"
+        seen = "a list in a list" if what[0].isspace() else f"'{what.strip()}'"
+        return self.fault(line, f"{expected} or a table, not {seen}")
+
+    def fault(self, line: str, expected: str) -> TemplateFault:
+        """With file and line of the template, by the longest part of a line without facts."""
+        words = max(re.split(_MARK, line), key=len)
+        return TemplateFault(f"{resources.place_of(words, self.template)}: {expected}")
 
     def text(self, words: str) -> doc.Text:
         """The spans of a line, in which neighbouring words are one span."""
@@ -230,11 +243,11 @@ def sections_of(name: str, letters: Letters, **facts: Any) -> Iterator[doc.Secti
     Raises TemplateFault, with the template and its line, for a fact that there is not, for a
     formula that cannot be read, and for Markdown that notes do not print.
     """
-    reader = _Reader(letters)
+    reader = _Reader(f"{name}.md.jinja", letters)
     token = _READER.set(reader)
     try:
         environment = resources.environment(autoescape=True, finalize=_printed)
-        markdown = environment.get_template(f"{name}.md.jinja").render(facts)
+        markdown = environment.get_template(reader.template).render(facts)
     finally:
         _READER.reset(token)
     title = ""
@@ -250,22 +263,12 @@ def sections_of(name: str, letters: Letters, **facts: Any) -> Iterator[doc.Secti
     yield doc.Section(title, tuple(blocks))
 
 
-def _unread(line: str, what: str) -> TemplateFault:
-    expected = "expected words, *emphasis*, **strong words**, `code`, [links](address), lists"
-    return _fault(line, f"{expected} or a table, not '{what.strip()}'")
-
-
-def _fault(line: str, expected: str) -> TemplateFault:
-    """With file and line of the template, by the longest part of a line without facts."""
-    place = resources.place_of(max(re.split(_MARK, line), key=len))
-    return TemplateFault(f"{place}: {expected}")
-
-
 def blocks_of(name: str, letters: Letters, **facts: Any) -> tuple[doc.NoteBlock, ...]:
     """The blocks of a template without headings."""
     section, *others = sections_of(name, letters, **facts)
     if others:
-        raise _fault(others[0].title, "expected no heading in this template")
+        reader = _Reader(f"{name}.md.jinja", letters)
+        raise reader.fault(others[0].title, "expected no heading in this template")
     return section.blocks
 
 

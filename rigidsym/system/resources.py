@@ -11,7 +11,7 @@ import re
 import sys
 import tomllib
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from difflib import get_close_matches
 from functools import cache
@@ -28,6 +28,7 @@ from jinja2 import (
     TemplateSyntaxError,
     nodes,
 )
+from jinja2.meta import find_referenced_templates
 from jinja2.sandbox import ImmutableSandboxedEnvironment
 
 from rigidsym.errors import TemplateFault, offer
@@ -156,15 +157,21 @@ def _sentences(text: str, file: str) -> Mapping[str, Any]:
         raise TemplateFault(f"{file}: not TOML: {error}") from None
 
 
-def place_of(words: str) -> str:
-    """The file and line among the user's own templates where words stand, or their folder."""
-    own = _OWN.get() or folder(NOTES)
+def place_of(words: str, name: str) -> str:
+    """The file and line where words stand in a template or those that it uses, or its file."""
+    names, texts = [name], dict[str, str]()
+    for used in names:  # which grows
+        with suppress(FileNotFoundError):  # after `ignore missing`
+            text, file = template(used)
+            texts[file] = text
+            found = find_referenced_templates(environment().parse(text))
+            names += dict.fromkeys(other for other in found if other and other not in names)
     for is_there in (str.__eq__, str.__contains__):  # another line may hold the words as well
-        for name, text in _texts_of(own).items():
+        for file, text in texts.items():
             for number, line in enumerate(text.splitlines(), start=1):
                 if is_there(line.strip(), words.strip()):
-                    return f"{own / name}, line {number}"
-    return str(own)
+                    return f"{file}, line {number}"
+    return template(name)[1]
 
 
 @cache

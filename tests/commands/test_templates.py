@@ -34,6 +34,21 @@ def test_a_fault_is_named_with_its_template_and_line(answered, tmp_path: Path):
     answered("commands/template_faults.txt", answer)
 
 
+def test_a_fault_is_not_ascribed_to_a_template_that_is_not_in_use(tmp_path: Path):
+    for name in ("en/first.md.jinja", "en/mine.md.jinja"):
+        own(
+            tmp_path,
+            name,
+            "{% include 'en/part.md.jinja' %}\n{% include 'x' ignore missing %}\n\n$x",
+        )
+    own(tmp_path, "en/part.md.jinja", "as it is")
+    with resources.overridden_by(tmp_path), pytest.raises(TemplateFault, match=r"mine.* line 4"):
+        derived("ZXZ").note(style="mine")
+    own(tmp_path, "en/part.md.jinja", "\n$y\n\n")
+    with resources.overridden_by(tmp_path), pytest.raises(TemplateFault, match=r"part.* line 2"):
+        derived("ZXZ").note(style="mine")
+
+
 def test_a_file_that_would_be_ignored_or_misread_is_refused(tmp_path: Path):
     own(tmp_path, "en/lectur.md.jinja", "# Named by --style")
     for name in ("en/lecture_2.md.jinja", "es/lectura.md.jinja", "en/.#body.md.jinja", "a.jinja/b"):
