@@ -57,7 +57,7 @@ def _fill(result, block, arrays, shape, threads):
         a if a.shape[:-1] == leading else np.broadcast_to(a, (*leading, a.shape[-1]))
         for a in arrays
     ]
-    longest = _longest(block, result.dtype, shape)
+    longest = _longest(block, result.dtype, shape) // _LANES * _LANES
     if threads > 1:  # longer blocks, as many for each: they wait less for one another
         rounds = -(-prod(leading) // (4 * longest * threads))
         longest = max(longest, -(-prod(leading) // (rounds * threads)))

@@ -41,6 +41,25 @@ def both(functions, name: str, arguments: list[np.ndarray]) -> list[np.ndarray]:
     return found
 
 
+def test_divisors_are_summed_in_one_thread():
+    # from 10,001 values on, OpenBLAS takes several, which wait for one another
+    functions, sizes = derive("ZXZ").kernels().load(), []
+
+    class Counted(np.ndarray):
+        def dot(self, other):
+            sizes.append(self.size)
+            return super().dot(other)
+
+    usual = functions._or_nan
+    functions._or_nan = lambda value, *others: usual(value.view(Counted), *others)
+    for rows in (10_000, 30_000):
+        q = np.full((rows, 3), 0.7)
+        assert np.isfinite(functions.rates_from_angular_velocity_body(q, q)).all()
+        functions.rates_from_angular_velocity_body(q, q, threads=2)
+    assert sizes
+    assert max(sizes) == 10_000
+
+
 def poles(sequence: str, dtype) -> list[float]:
     """Middle angles that round to a pole, computed in several ways."""
     is_proper = sequence[0] == sequence[2]
