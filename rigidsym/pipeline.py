@@ -16,7 +16,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from hashlib import sha256
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from rigidsym.errors import BodyError, ModelError, RequestError, SpecError, offer
 from rigidsym.mechanics.derivation import Proof
@@ -26,6 +26,7 @@ from rigidsym.notes.formats.record import record
 from rigidsym.spec.derivation_spec import PAGE as PAGE, PDF as PDF, DerivationSpec, spec_for
 from rigidsym.spec.faults import fault_at
 from rigidsym.system import resources
+from rigidsym.system.records import NamedTuple
 
 if TYPE_CHECKING:
     from rigidsym.mechanics.conversions.conversions import Conversions

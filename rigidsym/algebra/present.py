@@ -22,7 +22,7 @@ from itertools import combinations
 from math import gcd, lcm
 from operator import sub
 from random import Random
-from typing import Any, NamedTuple
+from typing import Any
 
 import sympy as sp
 from sympy.polys.rings import PolyElement
@@ -32,6 +32,7 @@ from rigidsym.algebra.generators import added
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.ring import NUMBERS, Monomial, Quotient, shortest
 from rigidsym.errors import AlgebraError
+from rigidsym.system.records import NamedTuple
 
 _PRIME = 2**61 - 1  # modulo which images of polynomials are compared
 _MORE_TERMS = 2  # that a sum over one denominator may have; with more it is hardly ever shorter

@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache, reduce
 from operator import add, itemgetter, mul, sub
-from typing import Any, NamedTuple
+from typing import Any
 
 import sympy as sp
 from sympy.polys.domains.rationalfield import RationalField
@@ -22,6 +22,7 @@ from sympy.polys.orderings import grevlex
 from sympy.polys.rings import PolyElement, PolyRing
 
 from rigidsym.errors import AlgebraError
+from rigidsym.system.records import NamedTuple
 
 Monomial = tuple[int, ...]
 Terms = dict[Monomial, Any]  # coefficients in Q

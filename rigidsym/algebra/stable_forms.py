@@ -19,7 +19,6 @@ from fractions import Fraction
 from functools import cache, lru_cache
 from math import factorial
 from operator import mul
-from typing import NamedTuple
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
@@ -29,6 +28,7 @@ from rigidsym.algebra.codec import Codec, codec_for
 from rigidsym.algebra.present import presenter_for
 from rigidsym.algebra.ring import Quotient, split
 from rigidsym.errors import AlgebraError
+from rigidsym.system.records import NamedTuple
 
 _EPS = Fraction(1, 2**52)  # of float64; a shorter type needs no more terms
 _LEFT_OUT = _EPS / 16  # of the value: the most that the first term left out may be

@@ -20,7 +20,7 @@ from decimal import Decimal, localcontext
 from functools import cached_property, lru_cache
 from itertools import starmap
 from math import prod
-from typing import Any, NamedTuple
+from typing import Any
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
@@ -32,6 +32,7 @@ from rigidsym.algebra.generators import TIME, in_names, is_identically_zero
 from rigidsym.algebra.matrix import RingMatrix, Values
 from rigidsym.algebra.ring import Monomial
 from rigidsym.errors import ModelError
+from rigidsym.system.records import NamedTuple
 
 DIGITS = 50
 MORE_DIGITS = 400  # if fewer do not tell a divisor from zero: 10**120 times a hidden zero is one

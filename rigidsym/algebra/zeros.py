@@ -15,7 +15,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
 from math import prod
-from typing import NamedTuple
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
@@ -26,6 +25,7 @@ from rigidsym.algebra.generators import TIME, added, angle_of, combination, is_i
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.ring import shortest, split
 from rigidsym.errors import AlgebraError
+from rigidsym.system.records import NamedTuple
 
 
 class Place(NamedTuple):

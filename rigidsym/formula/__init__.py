@@ -4,5 +4,5 @@ from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.tree import WRITERS
 from rigidsym.formula.unicode_pen import UnicodePen
 
-WRITERS["latex"] = LatexPen
-WRITERS["text"] = UnicodePen
+WRITERS["latex"] = LatexPen()
+WRITERS["text"] = UnicodePen()

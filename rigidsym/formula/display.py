@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import field
 from functools import lru_cache
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import sympy as sp
 
@@ -17,7 +17,7 @@ from rigidsym.formula.letters import Letters
 from rigidsym.formula.pen import Segment, break_lines
 from rigidsym.formula.scalars import factored, formula_of, listed_entries, matrix_of
 from rigidsym.formula.tree import NOTHING, Formula, equal, indexed, row
-from rigidsym.system.records import Record
+from rigidsym.system.records import NamedTuple, Record
 
 PAGE = 39.2  # ems of a display on a page, beside a number such as (13)
 BOX = 0.96  # ems that the box around a result takes

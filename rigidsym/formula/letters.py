@@ -7,7 +7,6 @@ from collections.abc import Iterable, Mapping
 from dataclasses import field
 from enum import IntEnum
 from functools import lru_cache
-from typing import NamedTuple
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
@@ -16,7 +15,7 @@ from rigidsym.errors import AlgebraError
 from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.formula.reader import named
 from rigidsym.formula.tree import Formula, Symbol
-from rigidsym.system.records import Record
+from rigidsym.system.records import NamedTuple, Record
 
 Place = tuple[int, int]  # order of the time derivative, index of the component
 

@@ -10,11 +10,11 @@ from collections.abc import Callable, Iterable, Sequence
 from enum import IntEnum
 from functools import lru_cache
 from itertools import pairwise
-from typing import ClassVar, NamedTuple
+from typing import ClassVar
 
 from rigidsym.formula import tree
 from rigidsym.formula.notation import DEFAULT, Notation
-from rigidsym.system.records import Record
+from rigidsym.system.records import NamedTuple, Record
 
 DIVISOR = 50  # a divisor's brackets are as deep as so many others: 1/(1 + n²) is broken last
 BREAKS = "+−±=≤<⇔"  # signs that may begin a line
@@ -99,11 +99,7 @@ class Pen(Record):
 
     def node(self, formula: tree.Formula) -> Piece:
         """One node, whose notation is settled; raises TypeError for a kind without a method."""
-        kind = type(formula).__name__
-        method = getattr(self, kind.lower(), None)
-        if method is None:
-            raise TypeError(f"no pen for {kind}")
-        return method(formula)
+        return _node(self, formula)
 
     def row(self, node: tree.Row, *, is_tight: bool = False) -> Piece:
         """Factors, and signs at which a line may end; `is_tight` in an index."""
@@ -172,6 +168,15 @@ class Pen(Record):
             return self.node(tree.row(d, rate.of)), self.node(tree.row(d, time))
         above, below = (tree.Power(base, tree.Numeral(str(rate.order))) for base in (d, time))
         return self.node(tree.row(above, rate.of)), self.node(tree.row(d, below))
+
+
+@lru_cache(maxsize=16384)  # the terms of a sum come up in others
+def _node(pen: Pen, formula: tree.Formula) -> Piece:
+    kind = type(formula).__name__
+    method = getattr(pen, kind.lower(), None)
+    if method is None:
+        raise TypeError(f"no pen for {kind}")
+    return method(formula)
 
 
 @lru_cache(maxsize=16384)

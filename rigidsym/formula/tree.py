@@ -6,7 +6,7 @@ the terms; the pens (LaTeX and Unicode) choose spaces and the sizes of brackets.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import fields, replace
 from itertools import product
 from typing import Any, Literal
@@ -23,12 +23,12 @@ class Formula(Record):
     @property
     def latex(self) -> str:
         """In LaTeX, in the notation it was composed in."""
-        return str(WRITERS["latex"]().write(self).text)
+        return str(WRITERS["latex"].write(self).text)
 
     @property
     def text(self) -> str:
         """On one line of Unicode, in the notation it was composed in."""
-        return str(WRITERS["text"]().write(self).text)
+        return str(WRITERS["text"].write(self).text)
 
     @property
     def markup(self) -> dict[str, str]:
@@ -143,7 +143,7 @@ class Matrix(Formula):
     rows: tuple[tuple[Formula, ...], ...]
 
 
-WRITERS: dict[str, Callable[[], Any]] = {}  # the package enters its pens here
+WRITERS: dict[str, Any] = {}  # the package enters its pens here
 NOTHING = Row(())
 GAP = Sign("")  # wide space between two equations on a line
 EQUALS, PLUS, MINUS, COMMA = Sign("="), Sign("+"), Sign("−"), Sign(",")

@@ -11,12 +11,11 @@ from collections.abc import Iterator
 from fractions import Fraction
 from functools import cached_property
 from math import prod
-from typing import NamedTuple
 
 from rigidsym.errors import KernelError
 from rigidsym.mechanics.conversions.function import Continuity
 from rigidsym.models.rotation import RotationModel
-from rigidsym.system.records import Record
+from rigidsym.system.records import NamedTuple, Record
 
 # What every target must be able to call; and c0, c1, c2, ..., the functions c_k of n² that
 # `algebra.stable_forms` derives.

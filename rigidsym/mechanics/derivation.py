@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from dataclasses import field, replace
 from functools import cached_property
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, Literal, Self
 
 import sympy as sp
 
@@ -15,7 +15,7 @@ from rigidsym.errors import QuantityError, TemplateFault, offer
 from rigidsym.formula.reader import Sentence, formula, named
 from rigidsym.formula.tree import NOTHING, Formula, with_names
 from rigidsym.models.rotation import Citation, RotationModel
-from rigidsym.system.records import Record
+from rigidsym.system.records import NamedTuple, Record
 
 if TYPE_CHECKING:
     from rigidsym.models.body import RigidBody

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property
-from typing import NamedTuple
 
 import sympy as sp
 from sympy.polys.rings import PolyElement
@@ -23,6 +22,7 @@ from rigidsym.errors import Defect, DerivationError, NotARotation, RigidsymError
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Proof
 from rigidsym.models.rotation import TIME, Pullback, RotationModel
+from rigidsym.system.records import NamedTuple
 
 _LONGEST, _MOST = 200, 3  # characters of an entry, and entries, of a residual in a message
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from difflib import get_close_matches
 from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import Any
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
@@ -35,6 +35,7 @@ from rigidsym.models.rotation import (
     product_of,
     time_function,
 )
+from rigidsym.system.records import NamedTuple
 from rigidsym.text.expression import names_in, parse_expression, parse_turns
 from rigidsym.text.names import check_name
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from itertools import product
 from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import Any
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
@@ -32,6 +32,7 @@ from rigidsym.models.rotation import (
     time_function,
     unit_example,
 )
+from rigidsym.system.records import NamedTuple
 from rigidsym.text.names import check_name, lettered
 
 Example = tuple[tuple[sp.Expr, sp.Expr], ...]  # symbols and their values

@@ -8,14 +8,14 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import field, replace
 from functools import lru_cache, reduce
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from rigidsym.algebra.generators import TIME as TIME, added, in_names, is_identically_zero, rate_of
 from rigidsym.errors import ModelError
-from rigidsym.system.records import Record
+from rigidsym.system.records import NamedTuple, Record
 from rigidsym.text.names import A_MODULE_NAME, MODULE_NAME, lettered
 
 AXES = ("x", "y", "z")

@@ -9,7 +9,6 @@ import tomllib
 from collections.abc import Mapping, Sequence
 from math import inf
 from pathlib import Path
-from typing import NamedTuple
 
 import sympy as sp
 from sympy.core.symbol import uniquely_named_symbol
@@ -17,6 +16,7 @@ from sympy.core.symbol import uniquely_named_symbol
 from rigidsym.errors import BodyError, offer
 from rigidsym.models.body import Solid
 from rigidsym.models.rotation import symbolic
+from rigidsym.system.records import NamedTuple
 from rigidsym.text.expression import parse_expression
 
 

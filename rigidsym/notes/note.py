@@ -6,7 +6,7 @@ A lecture explains, and an audit shows every identity.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from rigidsym.errors import ModelError
 from rigidsym.formula.notation import DEFAULT, Notation
@@ -14,6 +14,7 @@ from rigidsym.mechanics.derivation import Derivation
 from rigidsym.notes import formats
 from rigidsym.notes.document import Document
 from rigidsym.system import resources
+from rigidsym.system.records import NamedTuple
 
 if TYPE_CHECKING:
     from rigidsym.mechanics.conversions.conversions import Conversions

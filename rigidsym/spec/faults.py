@@ -6,9 +6,9 @@ import re
 import reprlib
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import NamedTuple
 
 from rigidsym.errors import ExpressionError, Fault, MissingExtra, RigidsymError, SpecError
+from rigidsym.system.records import NamedTuple
 
 Path = tuple[str | int, ...]  # ("rotation", "angles", 1)
 

@@ -1,20 +1,24 @@
-"""Immutable records: dataclasses that need no code of their own for each class."""
+"""Immutable records and named tuples that need no code of their own for each class.
+
+`dataclass` compiles six functions for a class, in 0.7 ms, and `typing.NamedTuple` one and each
+annotation, in 0.2 ms. A start loads a hundred of both.
+"""
 
 from __future__ import annotations
 
+import collections
 from collections.abc import Set
 from dataclasses import MISSING, Field, FrozenInstanceError, dataclass, field, fields
 from inspect import Parameter, Signature
 from operator import attrgetter
-from typing import Any, ClassVar, dataclass_transform
+from typing import TYPE_CHECKING, Any, ClassVar, dataclass_transform
 
 
 @dataclass_transform(frozen_default=True, field_specifiers=(field,))
 class Record:
     """Fields that are set once; records of one class with equal fields are equal.
 
-    `dataclasses.fields` and `replace` take records. `dataclass` itself compiles six functions for
-    a class, in 0.7 ms; these serve all classes, of which a start loads forty.
+    `dataclasses.fields` and `replace` take records.
     """
 
     __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
@@ -85,3 +89,52 @@ class Record:
     def __repr__(self) -> str:
         values = (f"{name}={getattr(self, name)!r}" for name in self._names)
         return f"{type(self).__name__}({', '.join(values)})"
+
+
+if TYPE_CHECKING:
+    from typing import NamedTuple as NamedTuple
+else:
+
+    class _TupleType(type):
+        """Makes annotations the fields of a tuple, and what they are set to their defaults."""
+
+        def __new__(cls, name, bases, body):
+            fields = tuple(body.get("__annotations__", ()))
+            defaults = {field: body[field] for field in fields if field in body}
+            body |= {"__slots__": (), "_fields": fields, "_field_defaults": defaults}
+            body |= {field: collections._tuplegetter(k, None) for k, field in enumerate(fields)}
+            return super().__new__(cls, name, bases, {**body, "__match_args__": fields})
+
+    class NamedTuple(tuple, metaclass=_TupleType):
+        """As `typing.NamedTuple`."""
+
+        def __new__(cls, *values, **named):
+            lacking = len(cls._fields) - len(values)
+            if named:
+                own = dict(zip(cls._fields, values, strict=False), **named)
+                state = {**cls._field_defaults, **own}
+                is_each_once = len(own) == len(values) + len(named)
+                lacking = 0 if is_each_once and state.keys() == {*cls._fields} else -1
+                values = map(state.get, cls._fields)
+            elif 0 < lacking <= len(cls._field_defaults):
+                values += tuple(cls._field_defaults.values())[-lacking:]
+                lacking = 0
+            if lacking:
+                raise TypeError(f"{cls.__name__} has the fields {cls._fields}; got {[*values]}")
+            return tuple.__new__(cls, values)
+
+        def __getnewargs__(self):
+            return tuple(self)
+
+        def __repr__(self):
+            fields = (f"{field}={value!r}" for field, value in self._asdict().items())
+            return f"{type(self).__name__}({', '.join(fields)})"
+
+        def _asdict(self):
+            return dict(zip(self._fields, self, strict=True))
+
+        def _replace(self, **changes):
+            changed = tuple.__new__(type(self), map(changes.pop, self._fields, self))
+            if changes:
+                raise TypeError(f"{type(self).__name__} has no fields {[*changes]}")
+            return changed

@@ -10,11 +10,11 @@ from __future__ import annotations
 import operator
 from collections.abc import Callable, Sequence
 from math import ceil, comb
-from typing import NamedTuple
 
 import sympy as sp
 
 from rigidsym.errors import ExpressionError
+from rigidsym.system.records import NamedTuple
 
 _OPERATIONS: dict[str, Callable[[sp.Expr, sp.Expr], sp.Expr]] = {
     "+": operator.add,

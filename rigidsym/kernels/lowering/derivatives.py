@@ -8,13 +8,13 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
-from typing import NamedTuple
 
 import sympy as sp
 
 from rigidsym.errors import KernelError
 from rigidsym.formula.tree import Symbol
 from rigidsym.mechanics.derivation import Derivation, Quantity, Step
+from rigidsym.system.records import NamedTuple
 
 _TEXT = re.compile(r"(\w+)(?: by |:)(\w+)")
 

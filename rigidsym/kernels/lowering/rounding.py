@@ -23,7 +23,7 @@ from dataclasses import replace
 from fractions import Fraction
 from functools import lru_cache, reduce
 from math import ceil, factorial, frexp
-from typing import NamedTuple, TypeGuard
+from typing import TypeGuard
 
 from rigidsym.algebra.stable_forms import FIRST_SERIES, series_of
 from rigidsym.kernels.ir import (
@@ -41,7 +41,7 @@ from rigidsym.kernels.ir import (
     parts,
 )
 from rigidsym.kernels.lowering.naming import Names
-from rigidsym.system.records import Record
+from rigidsym.system.records import NamedTuple, Record
 
 SINE = 1.1  # eps: of a sine or a cosine, what every target keeps; tests measure it
 _ENTIRE = 3.0  # eps of its size: of c0, c1 and c2

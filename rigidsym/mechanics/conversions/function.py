@@ -8,13 +8,14 @@ p = (w, x, y, z), scalar first.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import NamedTuple, TypeVar
+from typing import TypeVar
 
 import sympy as sp
 from sympy.polys.rings import PolyElement
 
 from rigidsym.mechanics.derivation import Argument, Step
 from rigidsym.models.rotation import SOURCES
+from rigidsym.system.records import NamedTuple
 
 Vector = tuple[sp.Expr, ...]
 Line = tuple[sp.Symbol, sp.Expr]

@@ -28,7 +28,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from functools import cache, cached_property
 from itertools import product, starmap
-from typing import Any, NamedTuple
+from typing import Any
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
@@ -45,6 +45,7 @@ from rigidsym.mechanics.prove import Conditions, Prover, consequence
 from rigidsym.mechanics.quantities.kinematics import KINEMATICS
 from rigidsym.mechanics.quantities.table import arguments_of, stems_of
 from rigidsym.models.rotation import TIME, RotationModel, Turn, hat, time_function
+from rigidsym.system.records import NamedTuple
 
 _WRITTEN_OUT = 3  # turns that textbooks multiply out
 _ZERO, _ONE = sp.ImmutableMatrix(sp.zeros(3, 1)), sp.ImmutableMatrix(sp.eye(3))

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 from functools import cache, cached_property, lru_cache
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 from sympy.polys.rings import PolyElement
@@ -26,6 +26,7 @@ from rigidsym.mechanics.prove import Prover, identity
 from rigidsym.mechanics.quantities.table import arguments_of
 from rigidsym.models.parametrisations import AXIS_SEQUENCES, chain
 from rigidsym.models.rotation import AXES, TIME, RotationModel, Turn
+from rigidsym.system.records import NamedTuple
 
 if TYPE_CHECKING:
     from rigidsym.models.body import RigidBody

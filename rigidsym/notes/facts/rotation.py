@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import sympy as sp
 
@@ -32,7 +32,7 @@ from rigidsym.notes.figure.drawing import drawn
 from rigidsym.notes.figure.scene import free_angle, scene_of
 from rigidsym.notes.template import figure_with
 from rigidsym.notes.words import symbols_of, unit_in_words, with_symbols
-from rigidsym.system.records import Record
+from rigidsym.system.records import NamedTuple, Record
 
 PROPER = ("precession", "nutation", "spin")
 TAIT_BRYAN = ("yaw", "pitch", "roll")

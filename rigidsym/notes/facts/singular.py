@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property, lru_cache
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
@@ -14,7 +14,7 @@ from rigidsym.formula.letters import TIME
 from rigidsym.mechanics.derivation import Derivation, Singularities, Singularity
 from rigidsym.models.rotation import RotationModel
 from rigidsym.notes.facts.rotation import angle_facts
-from rigidsym.system.records import Record
+from rigidsym.system.records import NamedTuple, Record
 
 _MOST_POINTS = 8  # that are told of one by one
 _MOST_PLACES = 2  # of one point that are repeated

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
 
 import numpy as np
 
@@ -15,6 +14,7 @@ from rigidsym.mechanics.quantities.table import own_letters
 from rigidsym.notes.figure.body_mesh import Color, Vector, area_of, numbers_of, own_shape, unit
 from rigidsym.notes.figure.drawing import Drawing, Facet, Named, Stroke, beyond, labelled
 from rigidsym.notes.figure.scene import BODY, Point, camera
+from rigidsym.system.records import NamedTuple
 
 _RIGHT, _UP, _TOWARD = np.array(camera(35, 24))
 _LIGHT = unit(-0.36 * _RIGHT + 0.48 * _UP + 0.8 * _TOWARD)

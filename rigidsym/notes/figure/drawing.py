@@ -7,9 +7,8 @@ from __future__ import annotations
 
 from bisect import bisect
 from collections.abc import Iterable, Iterator, Sequence
-from itertools import pairwise
+from itertools import pairwise, tee
 from math import acos, atan2, ceil, cos, hypot, pi, radians, sin, tau
-from typing import NamedTuple
 
 from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.tree import Formula
@@ -26,6 +25,7 @@ from rigidsym.notes.figure.scene import (
     dot,
     is_same,
 )
+from rigidsym.system.records import NamedTuple
 
 TYPE_SIZE = 0.15  # one em, in units of the drawing
 AXIS = 1.35  # lengths of the axes drawn
@@ -62,10 +62,6 @@ class Box(NamedTuple):
         (x, y), (a, b) = self.centre, other.centre
         is_beside = abs(x - a) >= self.half_width + other.half_width
         return not is_beside and abs(y - b) < self.half_height + other.half_height
-
-    def holds(self, point: Point) -> bool:
-        (x, y), (a, b) = self.centre, point
-        return abs(x - a) < self.half_width and abs(y - b) < self.half_height
 
 
 class Label(NamedTuple):
@@ -208,19 +204,20 @@ def labelled(named: Iterable[Named], strokes: Sequence[Stroke]) -> tuple[Label, 
     def touched(box: Box) -> int:
         grown = Box(box.centre, box.half_width + _MARGIN, box.half_height + _MARGIN)
         # few of the points, which are in order from left to right, are above or below the box
-        x, reach = box.centre[0], box.half_width + 2 * _MARGIN
-        near = points[bisect(points, (x - reach,)) : bisect(points, (x + reach,))]
-        return sum(map(grown.holds, near)) + sum(map(grown.meets, taken))
+        (x, y), wide, high = grown
+        near = points[bisect(points, (x - wide - _MARGIN,)) : bisect(points, (x + wide + _MARGIN,))]
+        inside = sum(abs(b - y) < high and abs(a - x) < wide for a, b in near)
+        return inside + sum(map(grown.meets, taken))
 
     widths = half_widths([symbol for _, symbol, _ in named])
     for (_, _, places), half_width in zip(named, widths, strict=True):
-        where = [
+        ways = ((gap, start, direction) for gap in _GAPS for start, direction in places)
+        where, other = tee(
             Box(_shifted(half_width, start, direction, gap), half_width, _HALF_HEIGHT)
-            for gap in _GAPS
-            for start, direction in places
-        ]
+            for gap, start, direction in ways
+        )
         free = next((box for box in where if not touched(box)), None)
-        taken.append(free or min(where, key=touched))
+        taken.append(free or min(other, key=touched))
     pairs = zip(named, taken, strict=True)
     return tuple(Label(kind, symbol, box.centre) for (kind, symbol, _), box in pairs)
 

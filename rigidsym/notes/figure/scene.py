@@ -13,7 +13,7 @@ from collections.abc import Iterator, Sequence
 from functools import cached_property, lru_cache
 from itertools import combinations, pairwise
 from math import cos, hypot, radians, sin
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import sympy as sp
 
@@ -23,7 +23,7 @@ from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import Formula, Numeral, Symbol
 from rigidsym.models.rotation import AXES, RotationModel, Turn
 from rigidsym.notes.letters import VECTOR, length_of
-from rigidsym.system.records import Record
+from rigidsym.system.records import NamedTuple, Record
 
 Vector = tuple[float, float, float]
 Point = tuple[float, float]

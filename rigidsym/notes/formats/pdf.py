@@ -12,9 +12,9 @@ import subprocess
 import tempfile
 import time
 from pathlib import Path
-from typing import NamedTuple
 
 from rigidsym.errors import MissingTool, ToolFailed
+from rigidsym.system.records import NamedTuple
 
 DEBIAN_PACKAGES = ("texlive-latex-recommended", "texlive-pictures", "lmodern")
 TIMEOUT = 120.0  # seconds

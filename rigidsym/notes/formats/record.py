@@ -7,13 +7,14 @@ Expressions are strings in the plain names of the arguments ("sin(theta)*phi_dot
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 from operator import attrgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
+from sympy.printing.str import StrPrinter
 
 from rigidsym.formula.reader import text_of
 from rigidsym.formula.tree import Formula
@@ -35,7 +36,7 @@ _KEYS: Mapping[str, Sequence[str]] = tomllib.loads(
     Path(__file__).with_name("record.toml").read_text(encoding="utf-8")
 )
 
-Names = Mapping[sp.Expr, sp.Symbol]
+Names = dict[sp.Basic, sp.Basic]
 
 
 def record(
@@ -46,7 +47,7 @@ def record(
     `request` is the data that asked for it, from which `rigidsym check` derives it again;
     `conversions` stand in it where they were asked for.
     """
-    names = {  # for functions of time, the highest derivatives first to be replaced first
+    names: Names = {  # for functions of time, the highest derivatives first to be replaced first
         expression: sp.Symbol(name)
         for argument in reversed(derivation.arguments)
         for expression, name in zip(argument.symbols, argument.names, strict=True)
@@ -90,7 +91,7 @@ def _plain(data: Any, names: Names) -> Any:
         case sp.MatrixBase():
             return _plain(data.tolist(), names)
         case sp.Basic():
-            return _text(data, tuple(names.items()))
+            return _PRINTER.doprint(_renamed(data, names))
         case Mapping():
             return {key: _plain(value, names) for key, value in data.items()}
         case list() | tuple():
@@ -114,23 +115,23 @@ def _attributes(thing: Any) -> dict[str, Any]:
     return record
 
 
-@lru_cache(maxsize=4096)  # an entry comes up in several quantities, and again in other conventions
-def _text(expression: sp.Basic, names: tuple[tuple[sp.Expr, sp.Symbol], ...]) -> str:
-    return str(_renamed(expression, _known(names)))
+class _Printer(StrPrinter):
+    """As `str`. A sum comes up in several quantities, and again in other conventions."""
+
+    _print_Add = lru_cache(maxsize=1 << 12)(StrPrinter._print_Add)  # noqa: N815
+    _print_Mul = lru_cache(maxsize=1 << 12)(StrPrinter._print_Mul)  # noqa: N815
 
 
-_known: Callable[..., dict[sp.Basic, sp.Basic]] = lru_cache(maxsize=32)(dict)
+_PRINTER = _Printer({"order": None})
 
 
-def _renamed(node: sp.Basic, known: dict[sp.Basic, sp.Basic]) -> sp.Basic:
-    """The expression with other names, which is not evaluated again; `known` grows by its parts."""
-    if node not in known:
-        parts = [_renamed(part, known) for part in node.args]
-        if isinstance(node, sp.Add | sp.Mul):
-            known[node] = node._from_args(parts)
-        else:
-            known[node] = node.func(*parts) if parts else node
-    return known[node]
+def _renamed(node: sp.Basic, names: Names) -> sp.Basic:
+    """The expression in its names, and not evaluated again; `names` grow by its parts."""
+    if node not in names:
+        parts = [_renamed(part, names) for part in node.args]
+        make = node._from_args if isinstance(node, sp.Add | sp.Mul) else lambda p: node.func(*p)
+        names[node] = make(parts) if parts else node
+    return names[node]
 
 
 def _vector(column: sp.ImmutableMatrix | None) -> list[sp.Expr] | None:
@@ -153,8 +154,8 @@ def _turn(turn: Turn, names: Names) -> Iterator[str]:
     """One turn, or two about the same axis where a number is part of the angle."""
     constant, moving = sp.expand(turn.angle).as_coeff_add()
     constant += sum(term for term in moving if term.is_number)
-    angle = (turn.angle - constant).xreplace(names)
-    axis = ", ".join([str(part.xreplace(names)) for part in turn.direction])
+    angle = _renamed(turn.angle - constant, names)
+    axis = ", ".join([str(_renamed(part, names)) for part in turn.direction])
     if turn.angle != constant:
         yield f"axis_angle({axis}, {angle})" if turn.components else f"{turn.axis}({angle})"
     if constant:
