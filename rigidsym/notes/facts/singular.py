@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, reduce
 from typing import Literal
 
 import sympy as sp
@@ -84,9 +84,12 @@ class PointFacts(Record):
         kept = [(c / next(filter(None, c))).T for c in sp.Matrix(null_rates.T).nullspace()]
         rows = sp.Matrix.vstack(gradients, *kept)
         independent = [k for k in rows.T.rref()[1] if k >= gradients.rows]
-        chosen = [rows.row(k).tolist()[0] for k in independent]
-        whole = [[number / sp.gcd_list(row) for number in row] for row in chosen]
-        return [added(*(n * by for n, by in zip(row, named, strict=True))) for row in whole]
+        combinations = []
+        for numbers in (rows.row(k).tolist()[0] for k in independent):
+            common = reduce(sp.Rational.gcd, filter(None, numbers))
+            parts = (n / common * by for n, by in zip(numbers, named, strict=True))
+            combinations.append(added(*parts))
+        return combinations
 
     @property
     def idle(self) -> list[list[sp.Expr]]:
