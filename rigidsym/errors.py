@@ -11,8 +11,8 @@ from collections.abc import Iterable, Sequence
 from typing import ClassVar, NamedTuple
 
 _LONGEST = 40  # letters of a name that a message looks for
-_FEW = 10  # known names that a message lists
-_SHOWN = 3  # of more than a few
+_FEW, _MANY = 10, 20  # known names that a message lists
+_SHOWN = 3  # of more than that
 _SPELLINGS = {  # letters of quantities, and what their names begin with
     "omega": "angular_velocity",
     "alpha": "angular_acceleration",
@@ -30,8 +30,11 @@ def printable(text: str) -> str:
     )
 
 
-def offer(name: str, known: Iterable[str]) -> str:
-    """The end of a message about an unknown name: the nearest known ones, or a few of them."""
+def offer(name: str, known: Iterable[str], *, listed: bool = False) -> str:
+    """The end of a message about an unknown name: the nearest known ones, or a few of them.
+
+    Of names that `rigidsym list` has as well, fewer are shown.
+    """
     from difflib import get_close_matches  # few commands end with a message
 
     known = list(known)
@@ -42,9 +45,10 @@ def offer(name: str, known: Iterable[str]) -> str:
     near = near or [other for other in known if name and other.startswith(name)][:2]
     if near:
         return f"did you mean {' or '.join(near)}?"
-    if len(known) <= _FEW:
+    if len(known) <= (_FEW if listed else _MANY):
         return f"known: {', '.join(known)}" if known else "no names are known here"
-    return f"known: {', '.join(known[:_SHOWN])} and {len(known) - _SHOWN} more (`rigidsym list`)"
+    hint = " (`rigidsym list`)" if listed else ""
+    return f"known: {', '.join(known[:_SHOWN])} and {len(known) - _SHOWN} more{hint}"
 
 
 class RigidsymError(Exception):

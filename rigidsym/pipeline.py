@@ -99,8 +99,9 @@ def read(source: str, **options: Any) -> DerivationSpec:
     except ModelError as error:
         if options or not source.isidentifier():
             raise
+        near = offer(source, shipped, listed=True)
         raise ModelError(
-            f"{error}\nor a derivation file, NAME.toml or a shipped one; {offer(source, shipped)}"
+            f"{error}\nor a derivation file, NAME.toml or a shipped one; {near}"
         ) from None
 
 

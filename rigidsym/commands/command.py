@@ -9,12 +9,10 @@ import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from functools import partial
-from itertools import product
 from pathlib import Path
 from typing import Any
 
 import click
-from click.core import ParameterSource
 
 from rigidsym.errors import printable
 from rigidsym.system.processes import time_limit
@@ -93,8 +91,28 @@ KINDS: Mapping[str, Mapping[str, Any]] = {  # what click knows of an option or a
 }
 
 
-# keys of an entry that click does not take
-_OURS = ("kind", "choices", "least", "most", "excludes")
+_OURS = ("kind", "choices", "least", "most")  # keys of an entry that click does not take
+
+
+class _Option(click.Option):
+    """An option, which cannot be combined with those that would have no effect beside it."""
+
+    def __init__(self, names: Sequence[str], excludes: Sequence[str] = (), **settings: Any) -> None:
+        super().__init__(names, **settings)
+        self.excludes = excludes
+
+    def handle_parse_result(
+        self, context: click.Context, on_line: Mapping[str, Any], rest: list[str]
+    ) -> tuple[Any, list[str]]:
+        for other in self.excludes if self.name in on_line else ():
+            if _name(other) in on_line:
+                raise click.UsageError(f"{self.opts[0]} cannot be combined with {other}", context)
+        return super().handle_parse_result(context, on_line, rest)
+
+
+def _name(option: str) -> str:
+    """The name of its value: expect_active for --expect-active."""
+    return option.strip("-").replace("-", "_")
 
 
 def _parameter(
@@ -103,23 +121,21 @@ def _parameter(
     """An option, or an argument if its name has no dashes."""
     own = {key: value for key, value in entry.items() if key not in _OURS}
     settings = {**KINDS[entry.get("kind", "text")], **own}
-    if words := choices.get(name.strip("-").replace("-", "_"), entry.get("choices")):
+    if words := choices.get(_name(name), entry.get("choices")):
         settings["type"] = click.Choice(words)
     if entry.get("kind") == "count":
         settings["type"] = _Integer(entry.get("least", 1), entry.get("most"))
     if not name.startswith("-"):
         return click.Argument([name], **settings)
-    return click.Option([name], show_default=entry.get("default", "") != "", **settings)
+    return _Option([name], show_default=entry.get("default", "") != "", **settings)
 
 
 class _Command(click.Command):
     """A command whose time is limited by an option, and which names substitutes of old options."""
 
-    excluded: Mapping[str, Sequence[str]]  # by option, those that it cannot be combined with
-
     def parse_args(self, context: click.Context, args: list[str]) -> list[str]:
         try:
-            rest = super().parse_args(context, args)
+            return super().parse_args(context, args)
         except click.NoSuchOption as error:
             removed = DECLARED["removed"].items()
             old = (text for names, text in removed if error.option_name in names.split())
@@ -127,15 +143,6 @@ class _Command(click.Command):
                 raise
             message = f"there is no {error.option_name}: {substitute}"
             raise click.UsageError(message, context) from None
-        on_line = [
-            option.opts[0]
-            for option in self.params
-            if context.get_parameter_source(option.name or "") is ParameterSource.COMMANDLINE
-        ]
-        for option, other in product(on_line, on_line):
-            if other in self.excluded[option]:
-                raise click.UsageError(f"{option} cannot be combined with {other}", context)
-        return rest
 
     def invoke(self, context: click.Context) -> Any:
         with time_limit(context.params.pop("timeout")):
@@ -155,20 +162,14 @@ def command(name: str, **choices: Sequence[str]) -> Callable[[Callable[..., Any]
         entry.get("options", {}),
         DECLARED["groups"]["every"],
     )
-    entries = {key: table[key] for table in tables for key in table}
-
-    def made(function: Callable[..., Any]) -> click.Command:
-        made = _Command(
-            name,
-            callback=function,
-            params=[_parameter(key, entries[key], choices) for key in entries],
-            help=entry["help"],
-            epilog=f"\b\nExample: {entry['example']}",  # by \b click keeps the lines
-        )
-        made.excluded = {key: entries[key].get("excludes", ()) for key in entries}
-        return made
-
-    return made
+    parameters = [_parameter(key, table[key], choices) for table in tables for key in table]
+    return lambda function: _Command(
+        name,
+        callback=function,
+        params=parameters,
+        help=entry["help"],
+        epilog=f"\b\nExample: {entry['example']}",  # by \b click keeps the lines
+    )
 
 
 def of_rotation(options: Options) -> dict[str, Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import reprlib
+from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
@@ -11,7 +12,7 @@ import numpy as np
 
 from rigidsym.commands.command import command as make
 from rigidsym.data.tables import check_ending, write_table
-from rigidsym.errors import DerivationError, ModelError
+from rigidsym.errors import DerivationError, ExpressionError, ModelError, offer
 from rigidsym.models.forces import Example
 from rigidsym.motion import Motion
 from rigidsym.pipeline import motion_of, read
@@ -19,6 +20,7 @@ from rigidsym.simulation.problem import needed
 from rigidsym.simulation.solver import METHODS
 from rigidsym.system.files import write_text
 from rigidsym.system.processes import bar
+from rigidsym.system.resources import names
 
 
 @make("simulate", method=METHODS)
@@ -61,11 +63,15 @@ def command(source: str, **options: Any) -> None:
 
 def _motion(source: str, *, is_page: bool) -> Motion:
     """The rotation with the quantities that a simulation needs, or with all for a page."""
-    spec = read(source)
-    if spec.dynamics is None:
+    spec = None
+    with suppress(ModelError, ExpressionError):  # neither a file nor a rotation
+        spec = read(source)
+    if spec is None or spec.dynamics is None:
+        shipped = names("derivations", ".toml")
+        near = " (`rigidsym list`)" if spec else f"; {offer(source, shipped, listed=True)}"
         raise ModelError(
             f"{reprlib.repr(source)} has no equations of motion; expected a derivation file with "
-            "[body] and [dynamics], or a shipped one such as heavy_symmetric_top (`rigidsym list`)"
+            f"[body] and [dynamics], or a shipped one such as heavy_symmetric_top{near}"
         )
     if len(spec.models) == 1 and not is_page:
         spec = replace(spec, quantities=needed(spec.dynamics.get("parts")))

@@ -238,7 +238,7 @@ def _columns(table: Table, names: Sequence[str] | None) -> tuple[list[int], Arra
         if table.width not in (3, 4):
             raise BodyError(
                 f"expected 3 columns (x, y, z) or 4 (m, x, y, z), got {table.width}; "
-                "`columns` names them"
+                "--columns (in Python `columns`) names them"
             )
         named = ("m", *_AXES)[4 - table.width :]
     header = ColumnNames(named)
@@ -246,7 +246,7 @@ def _columns(table: Table, names: Sequence[str] | None) -> tuple[list[int], Arra
     columns = [column for column in (*axes, mass) if column is not None]
     if missing := [name for name, column in zip(_AXES, axes, strict=True) if column is None]:
         lacking = f"no column {', '.join(missing)} among {header.listed}"
-        raise BodyError(f"{lacking}; `columns` names the columns in order")
+        raise BodyError(f"{lacking}; --columns (in Python `columns`) names them in order")
     others = [name for k, name in enumerate(header.plain) if k not in columns]
     if mass is None and (near := get_close_matches("mass", others, n=1)):
         raise BodyError(f"no column m or mass among {header.listed}; is {near[0]} the mass?")
@@ -265,7 +265,6 @@ def read_mesh_file(path: Path, *, scale: float = 1.0) -> Any:
 
     Raises MissingExtra without trimesh, BodyError for a file that holds no mesh of finite numbers.
     """
-    trimesh = _trimesh()
     log = logging.getLogger("trimesh")
     if not log.handlers:
         log.addHandler(logging.NullHandler())  # else Python prints tracebacks that trimesh logs
@@ -273,6 +272,7 @@ def read_mesh_file(path: Path, *, scale: float = 1.0) -> Any:
         raise BodyError(f"{path}: no such mesh")
     if path.suffix.lower() not in ENDINGS:
         raise BodyError(f"{path}: expected a mesh, a file that ends in {', '.join(ENDINGS)}")
+    trimesh = _trimesh()
     try:
         with np.errstate(all="ignore"), catch_warnings(action="ignore"):
             loaded = trimesh.load(path, force="mesh", process=False, skip_materials=True)
@@ -301,7 +301,7 @@ def _trimesh() -> Any:
     try:
         import trimesh
     except ImportError:
-        raise MissingExtra("meshes", "mesh") from None
+        raise MissingExtra("reading a mesh", "mesh") from None
     return trimesh
 
 

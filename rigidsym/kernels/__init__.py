@@ -1,7 +1,7 @@
 """Derivation -> source code.
 
-The package is callable, since `rs.kernels` names both this room and the function that users call:
-`rs.kernels("ZYX")` derives a rotation, prints its functions and loads them.
+The package is callable: `rs.kernels("ZYX")` derives a rotation, prints its functions and loads
+them.
 """
 
 import importlib

@@ -138,9 +138,9 @@ class Quantity(NamedTuple):
 
     @property
     def about(self) -> str:
-        """Words: "angular velocity, space components", "Jacobian of ... by q"."""
+        """Words: "angular velocity, space components", "Jacobian with respect to q of ..."."""
         words = phrase("quantities", self.meaning or self.name)
-        return f"Jacobian of {words} by {self.by}" if self.by else words
+        return f"Jacobian with respect to {self.by} of {words}" if self.by else words
 
     def presented(self, traits: Set[str]) -> Quantity:
         """The quantity as it is for a model with these traits; later variants take precedence."""
@@ -372,7 +372,8 @@ class Derivation(Record, kw_only=True):
         steps = {**{step.quantity.name: step for step in self.steps}, **self.functions}
         if quantity in steps:
             return steps[quantity]
-        raise QuantityError(f"{self.name} has no quantity {quantity!r}; {offer(quantity, steps)}")
+        near = offer(quantity, steps, listed=True)
+        raise QuantityError(f"{self.name} has no quantity {quantity!r}; {near}")
 
     def select(self, names: Sequence[str]) -> Self:
         """The derivation with only these quantities, renumbered in the order of the steps.

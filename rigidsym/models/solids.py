@@ -63,7 +63,7 @@ SHAPES: Mapping[str, Shape] = {
 def shape_of(name: str) -> Shape:
     """A shipped shape; raises BodyError for another name."""
     if not isinstance(name, str) or name not in SHAPES:
-        raise BodyError(f"no shape {name!r}; {offer(str(name), SHAPES)}")
+        raise BodyError(f"no shape {name!r}; {offer(str(name), SHAPES, listed=True)}")
     return SHAPES[name]
 
 

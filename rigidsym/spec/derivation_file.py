@@ -43,7 +43,7 @@ def read_file(file: str) -> DerivationSpec:
     try:
         text = read_bytes(path, _MOST_BYTES + 1).decode("utf-8")
     except FileNotFoundError:
-        near = offer(file, shipped)
+        near = offer(file, shipped, listed=True)
         fault = Fault(f"no such file, and no shipped derivation of this name; {near}")
     except OSError as error:
         fault = Fault(f"cannot be read: {error.strerror}")

@@ -185,7 +185,9 @@ def _checked_list(value: list[Any], schema: Schema, place: Place) -> list[Any] |
 
 def _checked_text(value: str, schema: Schema, place: Place) -> str | None:
     if value not in schema.get("enum", [value]):
-        place.fault(f"unknown name {reprlib.repr(value)}; {offer(value, schema['enum'])}")
+        place.fault(
+            f"unknown name {reprlib.repr(value)}; {offer(value, schema['enum'], listed=True)}"
+        )
         return None
     # A control character would end a comment or a line of what is printed from the text.
     allowed = "" if schema.get("format") == "line" else "\n\t"

@@ -358,7 +358,7 @@ def _by_name(arguments: Sequence[_Input], header: ColumnNames) -> list[int]:
             f"no column {', '.join(missing)} among {header.listed}; "
             f"{'without rates, --quantity rotation_matrix gives the attitude; ' * lacks_rates}"
             f"{same * (not constants.isdisjoint(missing))}"
-            "if the file names them otherwise, `columns` names all its columns, in order"
+            "if the file names them otherwise, --columns names all its columns, in order"
             f"{', or --angles the coordinates, such as `--angles yaw,pitch,roll`' * names_angles}"
         )
     return columns

@@ -16,6 +16,7 @@ from helpers.target_modules import loading
 from rigidsym import errors
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.commands.cli import commands
+from rigidsym.data.mass import read_mesh_file
 from rigidsym.kernels.targets import compiling
 from rigidsym.mechanics.body import BodyValues
 from rigidsym.notes.formats.pdf import typeset
@@ -157,6 +158,19 @@ def test_a_missing_package_is_named_by_its_extra(package, extra, command, tmp_pa
     monkeypatch.setitem(sys.modules, package, None)
     with pytest.raises(errors.MissingExtra, match=rf"pip install '\.\[{extra}\]'"):
         said(*command.split())
+
+
+def test_a_mesh_that_does_not_exist_needs_no_package(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "trimesh", None)
+    with pytest.raises(errors.BodyError, match="no such mesh"):
+        read_mesh_file(tmp_path / "a.stl")
+
+
+def test_only_messages_about_shipped_names_refer_to_list():
+    own = [f"k{n}" for n in range(11)]
+    assert errors.offer("tau", own) == f"known: {', '.join(own)}"
+    assert errors.offer("tau", own * 2) == "known: k0, k1, k2 and 19 more"
+    assert "`rigidsym list`" in errors.offer("tau", own, listed=True)
 
 
 def test_no_error_is_left_out():

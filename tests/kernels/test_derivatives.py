@@ -129,6 +129,13 @@ def test_what_has_no_derivative_is_refused():
         motion("ZXZ").kernels(derivatives=["rotation_matrix by q_dot"])
 
 
+def test_a_header_says_what_a_jacobian_is():
+    made = motion("ZXZ").kernels("c", derivatives=["angular_velocity_body by q"])
+    header = next(text for name, text in made.files.items() if name.endswith(".h"))
+    assert "Jacobian with respect to q of angular velocity, body components" in header
+    assert "out[9]  3 by 3, row by row, in rad/s" in header
+
+
 def test_a_scalar_has_a_gradient():
     A, B, C = sp.symbols("A B C", positive=True)
     body = rs.principal_moments(A, B, C)

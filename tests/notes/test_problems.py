@@ -103,7 +103,7 @@ def test_the_matrix_in_question_is_that_of_the_answer(seed):
 @pytest.mark.parametrize("seed", range(3))
 def test_the_determinant_near_gimbal_lock_is_the_volume_of_the_three_axes(seed):
     problem = problem_of(problems.gimbal_lock, Random(seed))
-    sequence = re.search(r"rates of the ([XYZ]{3})", asked(problem))[1]
+    sequence = re.search(r"by the ([XYZ]{3})", asked(problem))[1]
     theta = numbers(asked(problem))[-1]
     unit = dict(zip("XYZ", np.eye(3), strict=True))
     turned = Rotation.from_euler(sequence[1], theta, degrees=True)

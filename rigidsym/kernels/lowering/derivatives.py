@@ -14,6 +14,7 @@ import sympy as sp
 from rigidsym.errors import KernelError
 from rigidsym.formula.tree import Symbol
 from rigidsym.mechanics.derivation import Derivation, Quantity, Step
+from rigidsym.mechanics.quantities import CONVERSIONS
 from rigidsym.system.records import NamedTuple
 
 _TEXT = re.compile(r"(\w+)(?: by |:)(\w+)")
@@ -82,9 +83,11 @@ def derivatives_of(
     the rate of a coordinate too.
 
     Raises QuantityError for a quantity that is not in the derivation, and KernelError for a
-    vector that it does not take.
+    conversion and for a vector that the quantity does not take.
     """
     for request in requests:
+        if request.quantity in CONVERSIONS:
+            raise KernelError(f"{request}: conversions have no Jacobians")
         step = derivation.step(request.quantity)
         quantity = step.quantity
         if request.vector not in quantity.inputs:

@@ -55,7 +55,7 @@ TARGETS: dict[str, Target] = {  # the default first
 def check_options(target: str, options: Mapping[str, str | bool]) -> None:
     """Raises KernelError for an unknown target, an option it does not have, or another value."""
     if target not in TARGETS:
-        raise KernelError(f"no target {target!r}; {offer(target, TARGETS)}")
+        raise KernelError(f"no target {target!r}; {offer(target, TARGETS, listed=True)}")
     known = TARGETS[target].options
     for name, value in options.items():
         if name not in known:

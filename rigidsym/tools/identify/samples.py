@@ -197,7 +197,7 @@ def by_name(names: Sequence[str]) -> Columns:
         lacking = ", ".join(missing)
         lacking = lacking.replace(", ".join(MATRICES[0]), "r11, ..., r33 or qw, qx, qy, qz")
         lacking = f"no column {lacking} among {header.listed}"
-        faults.append(f"{lacking}; `columns` names the columns in order")
+        faults.append(f"{lacking}; --columns (in Python `columns`) names them in order")
     if faults:
         raise SampleError(faults)
 
