@@ -472,6 +472,15 @@ LARGE = {  # programs that took minutes
     "a.c": "void f(int k) {" + "".join(f"x{k} = 1; if (k) y = 2;" for k in range(1_000)) + "}",
     "b.py": "if k: y = 1\n" + "".join(f"elif k == {k}: y = {k}\n" for k in range(2_000)),
     "e.js": f"function f() {{ {','.join(f'x{k}={k}' for k in range(3_000))}; }}",
+    "b.cpp": "void f(double a) { R(0,0) = cos(a) * ; sin( ( [ { " * 6_000,
+    "b.c": "void f(double a, double *R) { R[0]=cos(a);"
+    + "".join(f"if (c[{k}]) R[{k % 9}] = {k}*sin(a); else R[1] = R[2];" for k in range(2_000))
+    + "}",
+    "c.py": "def f(a, b):\n v = cross(a, b)\n" + " v = cross(v, b) + cross(a, v)\n" * 400,
+    "c.cpp": "".join(
+        f"void f{k}(double a) {{ R << cos(a), -sin(a), {k}*sin(a), sin(a), cos(a), 0, 0, 0, 1; }}\n"
+        for k in range(2, 2_000)
+    ),
     "a.cpp": "double f(double a) { return a; }" * 1_500 + "void g() {" + "R[0] = f(a);" * 900 + "}",
 }
 
@@ -891,6 +900,9 @@ def test_a_rate_of_a_quaternion_without_the_factor_one_half_is_named(tmp_path):
         found = found_in(tmp_path, "a.py", text.format(name=name, half=half))
         said = [str(each) for each in found if "it lacks the factor 1/2" in str(each)]
         assert len(said) == is_said
+    returned = text.replace("d = [", "return [").format(name="times", half="")
+    (found,) = found_in(tmp_path, "a.py", returned)
+    assert str(found).endswith("equal to quaternion_product (proved)")
 
 
 # Euler angles from a matrix or a quaternion

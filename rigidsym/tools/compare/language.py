@@ -18,7 +18,7 @@ from rigidsym.tools.compare.syntax import SPELLINGS, patterns
 
 _LARGEST = 20  # rows or columns
 _LARGEST_INVERSE = 4
-_MOST_PARTS = 50_000  # of the entries of a matrix
+_MOST_PARTS = 10_000  # of the entries of a matrix
 _LONGEST_NUMBER = 40  # digits
 
 

@@ -9,6 +9,7 @@ and says which that is. Programs are parsed, never run.
 
 from __future__ import annotations
 
+import math
 import re
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
@@ -49,6 +50,7 @@ _DEEPEST_BLOCK = 40
 _LONGEST_LIST = 64
 _MOST_FORMULAS = 1_000  # of a file
 _MOST_STEPS = 12_000  # expressions of a file: what takes some seconds
+_STEPS_OF_LONG = 200  # for a matrix with so many parts that it takes longer than others
 _NAMES_A_STEP = 4  # of which a branch looks for new matrices
 _FEWEST_FACTORS = 5  # and signs, of a formula without a sine: C(w) I w has three signs
 _MOST_NODES = 400_000  # of a file: a generated megabyte is not worth reading
@@ -73,7 +75,7 @@ _OF_VECTORS = ("T", "C", "inv", "dot", "cross", "outer", "norm")
 _OF_OBJECTS = (*_OF_VECTORS, "fused", "same", "clamp", "least", "pair")
 _WORDS = {*language.OF_NUMBERS, *language.OF_MATRICES, *CALLS}  # functions, if nothing else
 _VIEWS = ("T", "transpose", "reshape", "view", "ravel", "squeeze", "asarray")  # of one matrix
-_RETURNED, _ARGUMENT = _UNNAMED = ("returned", "argument")  # in place of a name
+_RETURNED, _ARGUMENT = UNNAMED = ("returned", "argument")  # in place of a name
 _ALL = slice(None)
 _FROM_ONE = [1, 2, 3]
 
@@ -167,8 +169,8 @@ class _Scope:
         """The number of the branch."""
         if node.id not in self.now:
             free = [k for k in range(len(blocks)) if (node.id, k) not in self.taken]
-            within = [k for k, b in enumerate(blocks) if any(map(b.covers, self.places.values()))]
-            self.now[node.id] = (free[::-1] or within or [len(blocks) - 1])[0]
+            within = (k for k, b in enumerate(blocks) if any(map(b.covers, self.places.values())))
+            self.now[node.id] = free[-1] if free else next(within, len(blocks) - 1)
             self.is_new |= bool(free)
             self.taken.add((node.id, self.now[node.id]))
             self.places.pop(node.id, None)
@@ -239,9 +241,9 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
             except RecursionError:  # SymPy, in a sum that a program nests in itself
                 reason = "expressions are nested too deeply"
                 run.formulas.append(Formula(lines=(scope.tree.line,), name="", reason=reason))
-            named = {f.forms[:1] for f in run.formulas if f.name not in _UNNAMED} - {()}
+            named = {f.forms[:1] for f in run.formulas if f.name not in UNNAMED} - {()}
             for formula in run.formulas:  # a fault counts once
-                if formula.name not in _UNNAMED or formula.forms[:1] not in named:
+                if formula.name not in UNNAMED or formula.forms[:1] not in named:
                     scope.formulas.append(replace(formula, function=scope.tree.span))
     formulas: dict[Any, Formula] = {}
     for formula in chain.from_iterable(scope.formulas for scope in scopes):
@@ -600,7 +602,7 @@ class _Run:
             if not ratio.has(sp.Function):  # whose expansion would take most of the time
                 ratio = self.expanded(ratio)
             is_unit = ratio.is_number and ratio.is_finite
-            if is_unit and abs(ratio * 180 / sp.pi - 1) < 1e-3:  # radians from degrees
+            if is_unit and abs(complex(ratio) * 180 / math.pi - 1) < 1e-3:  # radians from degrees
                 return own
             if is_length(1 / ratio) and self.are_components(own, ratio.free_symbols):
                 symbol = self.symbol_for(path, None)
@@ -909,7 +911,10 @@ class _Run:
                 raise self.unreadable(tree, "is nested too deeply")
             if self.program.steps["read"] > _MOST_STEPS:
                 raise self.unreadable(tree, "is not read, since the file is too long")
-            return getattr(self, f"read_{tree.kind}", self.named)(tree)
+            value = getattr(self, f"read_{tree.kind}", self.named)(tree)
+            if isinstance(value, sp.MatrixBase) and _size(value) > _MOST_PARTS:
+                self.program.steps["read"] += _STEPS_OF_LONG
+            return value
         except ExpressionError as error:
             if str(error).startswith("`"):
                 raise

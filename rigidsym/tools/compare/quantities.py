@@ -492,6 +492,7 @@ def _symbols(formula: sp.MatrixBase) -> tuple[list[sp.Symbol], set[sp.Symbol]]:
     return ordered, inside
 
 
+@lru_cache(maxsize=4096)
 def oddness(meant: sp.Expr) -> int:
     """0 for an input, 1 for an angle in the other sense, more for one from another axis."""
     angle, *others = meant.atoms(AppliedUndef) or [sp.S.One]

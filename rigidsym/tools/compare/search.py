@@ -15,7 +15,7 @@ from rigidsym.errors import ExpressionError, RequestError
 from rigidsym.models.rotation import RotationModel
 from rigidsym.tools.compare import quantities
 from rigidsym.tools.compare.comparison import Comparison, identified
-from rigidsym.tools.compare.program import Formula, program_formulas
+from rigidsym.tools.compare.program import UNNAMED, Formula, program_formulas
 from rigidsym.tools.compare.quantities import KnownQuantity, are_angles, are_body_rates
 from rigidsym.tools.compare.syntax import GRAMMARS, patterns
 
@@ -23,6 +23,7 @@ SUFFIXES = tuple(GRAMMARS)
 _MOST_BYTES = 300_000  # of a file
 _MOST_SYMBOLS = 12
 _NEAR_LINES = 12  # between the components of a vector and the vector
+_MOST_EFFORT, _EFFORT = 250, 10  # of unknown formulas in a row, and of one with sines: 0.3 s
 _LONGEST_COMMENT = 40  # lines above a function
 _AXES = str.maketrans("123", "xyz")
 _TRIGONOMETRIC = (sp.sin, sp.cos, sp.tan)
@@ -151,7 +152,8 @@ def _remark(finding: FormulaInFile, others: Sequence[FormulaInFile], text: str) 
     body = "".join(lines[first - 1 : last])
     if goal.quantity == "quaternion_product" and [*map(len, goal.inputs.values())] != [4, 4]:
         own = finding.formula.name.partition(", ")[0]
-        is_rate = bool(quantities.stem_of(own) or patterns.derivative.search(name))
+        is_rate = patterns.derivative.search(name) is not None
+        is_rate |= own not in UNNAMED and quantities.stem_of(own) != ""
         is_half = patterns.half.search(body) is not None
         return "as the rate of a quaternion it lacks the factor 1/2" * (is_rate and not is_half)
     above = patterns.comment.search("".join(lines[max(0, first - _LONGEST_COMMENT) : first - 1]))
@@ -189,7 +191,12 @@ def _findings(path: Path, text: str, expected: str) -> Iterator[FormulaInFile]:
     latest: FormulaInFile | None = None
     for formula in formulas(text, path.suffix):
         variants.setdefault((formula.line, formula.name), []).append(formula)
+    effort, before = 0, set[Any]()  # for different formulas since the last known one
     for group in variants.values():
+        if effort > _MOST_EFFORT:
+            reason = "the formulas before it resemble no known one, and it takes too long"
+            yield FormulaInFile(path, Formula(lines=(group[0].line,), name=""), reason=reason)
+            return
         # A formula with the values of all branches may be no quantity, while one branch is.
         is_case = len({each.forms for each in group if each.forms}) > 1
         findings = [_compared(path, each, expected, is_case=is_case) for each in group]
@@ -198,6 +205,10 @@ def _findings(path: Path, text: str, expected: str) -> Iterator[FormulaInFile]:
             if latest is None or not finding.repeats(latest):  # a fault counts once
                 yield finding
             latest = finding if finding.comparison else latest
+        new = {form for each in group for form in each.forms if _may_be_known(form)} - before
+        before |= new
+        effort += sum(_EFFORT if form.has(*_TRIGONOMETRIC) else 1 for form in new)
+        effort *= not readable
 
 
 def _compared(

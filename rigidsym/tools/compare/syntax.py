@@ -282,12 +282,17 @@ class Tree:
     def whole_numbers(self) -> dict[tuple[int, str], bool]:
         """Whether names are declared as whole numbers, by the functions that declare them, or 0."""
         names: dict[tuple[int, str], bool] = {}
+        around = [self.node]  # asking each node for its parents is quadratic in a flat tree
         for node in below([self.node]):
+            while len(around) > 1 and node.start_byte >= around[-1].end_byte:
+                around.pop()
             if patterns.declaration.search(node.type) and (outer := _part(node, "type")):
                 is_whole = patterns.integer.fullmatch(patterns.qualifier.sub("", _text(outer)))
-                place = Tree(node).around.id * (_KINDS.get(Tree(node).around.type) == "function")
+                place = around[-1].id * (_KINDS.get(around[-1].type) == "function")
                 for key in ((place, name) for name in _declared(node)):
                     names[key] = names.get(key, False) or is_whole is not None
+            if node.type in _TYPES["around"]:
+                around.append(node)
         return names
 
     @property
