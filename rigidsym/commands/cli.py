@@ -11,7 +11,6 @@ import io
 import os
 import sys
 import warnings
-from difflib import get_close_matches
 from importlib import import_module
 from typing import NoReturn
 
@@ -79,6 +78,8 @@ class _Commands(click.Group):
 
     def get_command(self, context: click.Context, name: str) -> click.Command | None:
         if name not in _SUMMARIES:
+            from difflib import get_close_matches  # few commands are misspelt
+
             near = get_close_matches(name, _SUMMARIES, n=1)
             hint = f"; did you mean {near[0]}?" if near else ""
             raise click.UsageError(f"no command {name!r}{hint}", context)

@@ -76,7 +76,7 @@ def atom(
     text: str, width: float, binding: Binding = Binding.NAME, height: Height = Height.FLAT
 ) -> Piece:
     """A piece without a place to break."""
-    return Piece((Segment(text, width),), width, binding, height)
+    return Piece((Segment(text, width, 0),), width, binding, height)
 
 
 class Pen(Record):

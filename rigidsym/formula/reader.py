@@ -102,9 +102,9 @@ class _TexReader:
     def __init__(self, text: str, parts: tuple[Formula, ...]) -> None:
         self.text = text
         self.parts = parts
-        tokens = (" " if match[0].isspace() else match[0] for match in _TOKEN.finditer(text))
         # Reversed, so that the list is a stack from which pop() takes the next token.
-        self.tokens = [_NORMAL.get(token, token) for token in tokens][::-1]
+        tokens = _TOKEN.findall(text)[::-1]
+        self.tokens = [_NORMAL.get(t, " " if t.isspace() else t) for t in tokens]
 
     @property
     def next(self) -> str:
@@ -150,7 +150,7 @@ class _TexReader:
             case tree.Power() if mark != "^":  # d^⊥_i
                 return tree.Power(self.script(base.base, mark), base.exponent)
             case tree.Symbol() if mark == "'":
-                return replace(base, prime="′")
+                return tree.Symbol(base.letter, base.face, base.dots, "′", base.index)
         script = self.argument()
         match base:
             case tree.Big():
@@ -159,7 +159,7 @@ class _TexReader:
                 is_transpose = script == tree.Symbol("T")
                 return tree.Power(base, tree.TRANSPOSE if is_transpose else script)
             case tree.Symbol():
-                return replace(base, index=script)
+                return tree.Symbol(base.letter, base.face, base.dots, base.prime, script)
         return tree.Indexed(base, script)
 
     def argument(self) -> Formula:

@@ -12,7 +12,7 @@ from difflib import get_close_matches
 from math import isfinite
 from numbers import Real
 from types import MappingProxyType
-from typing import Any
+from typing import Any, NamedTuple
 
 import sympy as sp
 
@@ -27,7 +27,6 @@ from rigidsym.models.rotation import (
     depends_on_time,
     symbolic,
 )
-from rigidsym.system.records import NamedTuple
 from rigidsym.text.expression import names_in, parse_expression
 from rigidsym.text.names import check_name
 

@@ -183,9 +183,8 @@ class RotationModel(Record, kw_only=True):
     vector: tuple[sp.Expr, ...] = ()  # the three coordinates that are components of one vector
     z_down: bool = False  # whether figures show the z-axis of space pointing down
     example: tuple[tuple[sp.Expr, sp.Expr], ...] = ()  # (symbol, value): a real point, if known
-    request: Mapping[str, Any] = field(
-        default_factory=dict, hash=False
-    )  # what asks for it in a file
+    # what asks for it in a file; another may ask for the same
+    request: Mapping[str, Any] = field(default_factory=dict, compare=False)
 
     def __post_init__(self) -> None:
         if not MODULE_NAME.fullmatch(self.name):

@@ -8,7 +8,7 @@ from dataclasses import replace
 from decimal import ROUND_HALF_UP, Context
 from math import degrees, radians
 from random import Random
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import sympy as sp
@@ -25,7 +25,6 @@ from rigidsym.notes.facts.rotation import product_of
 from rigidsym.notes.facts.singular import singular_facts
 from rigidsym.notes.letters import letters_of
 from rigidsym.notes.template import sections_of
-from rigidsym.system.records import NamedTuple
 
 Facts = Mapping[str, Any]
 Kind = Callable[[Random], Facts]

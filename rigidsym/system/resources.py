@@ -13,10 +13,8 @@ import tomllib
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
-from difflib import get_close_matches
 from functools import cache
 from pathlib import Path
-from traceback import walk_tb
 from typing import Any, NoReturn
 
 from jinja2 import (
@@ -102,6 +100,8 @@ def check_names(style: str) -> None:
     """
     if (own := _OWN.get()) is None:
         return
+    from difflib import get_close_matches  # few users have templates of their own
+
     texts = _texts_of(own)
     shipped = [file.name for file in folder(NOTES).rglob("*.*")]
     for name in texts.keys() - {*replaceable(), style}:
@@ -264,6 +264,8 @@ class SandboxedTemplates(ImmutableSandboxedEnvironment):
 
     def handle_exception(self, source: str | None = None) -> NoReturn:
         """Jinja2 comes here with every exception from a template."""
+        from traceback import walk_tb
+
         *_, (frame, _) = walk_tb(sys.exc_info()[2])
         try:
             super().handle_exception(source)
@@ -281,6 +283,8 @@ class SandboxedTemplates(ImmutableSandboxedEnvironment):
 
 def _place(error: BaseException) -> str:
     """The template and the line where an exception passed last."""
+    from traceback import walk_tb
+
     frames = list(walk_tb(error.__traceback__))
     inside = [(f, line) for f, line in frames if "__jinja_exception__" in f.f_globals]
     frame, line = inside[-1]

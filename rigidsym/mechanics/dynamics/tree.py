@@ -22,7 +22,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cache, cached_property
 from itertools import combinations
-from typing import Any
+from typing import Any, NamedTuple
 
 import sympy as sp
 
@@ -41,7 +41,6 @@ from rigidsym.mechanics.quantities.dynamics import TORQUE
 from rigidsym.models.body import RigidBody
 from rigidsym.models.forces import Forces
 from rigidsym.models.rotation import OMEGA_BODY, TIME, RotationModel, Turn, as_typed, hat
-from rigidsym.system.records import NamedTuple
 
 _ZERO = sp.ImmutableMatrix(sp.zeros(3, 1))
 

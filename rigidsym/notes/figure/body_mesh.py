@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from itertools import cycle, islice, pairwise, permutations, product
 from operator import add
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import sympy as sp
@@ -26,7 +26,6 @@ from rigidsym.models.body import (
     RigidBody,
     Solid,
 )
-from rigidsym.system.records import NamedTuple
 
 Vector = NDArray[Any]  # (3,), or more than one of them: (n, 3)
 Color = tuple[int, int, int]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import count, pairwise
 from math import cos, pi, sin
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +21,6 @@ from rigidsym.notes.figure.drawing import Drawing, Label, Named, Stroke, beyond,
 from rigidsym.notes.figure.scene import BODY, Kind, Point, camera
 from rigidsym.simulation.solver import simulate
 from rigidsym.simulation.trajectory import Trajectory
-from rigidsym.system.records import NamedTuple
 
 Curve = NDArray[Any]  # points (n, 2) of the picture
 
