@@ -31,7 +31,10 @@ OTHERS = (
     *("quaternion", "gibbs_vector", "goldstein", "axis_angle", "unit_quaternion"),
     *("modified_rodrigues", "z(phi) x(theta) [0,b,c](psi)", "z(phi) [3,4,0](theta) x(pi/2)"),
     *("z(2*phi - psi) x(theta) z(psi)", "x(a_1) y(a_2) z(a_3) x(a_4)", "z(phi/2) x(theta)"),
+    *("z(phi) x(alpha0)", "z(phi) [a,b,c](beta0)", "z(alpha0) x(phi - beta0)"),
 )
+VELOCITY = "angular_velocity_space"
+NAMED = "z(y) x(by) y(is) z(in_body) x(exists2) z(transposed)"  # words of Coq and of Rotation.v
 CHAIN = "z(a1) x(a2) y(a3) z(a4) x(a5) y(a6) z(a7) x(a8) y(a9) z(a10)"
 
 
@@ -124,10 +127,11 @@ def test_rates_have_a_theorem_without_their_matrix():
     assert certificate_of(record_of("ZXZ", only)).claims == [*only]
 
 
-def test_names_that_proofs_use_get_an_underscore():
+def test_names_that_are_not_plain_get_an_underscore():
     # Coq refused to call a derivative d beside the coordinate d
-    text = certificate_of(record_of("z(d) x(e) z(phi)", BASIC)).text
-    assert "Variables d_ e_ phi : R -> R." in text
+    text = certificate_of(record_of("z(d) x(by) z(phi_1)", BASIC)).text
+    assert "Variables d_ by_ phi_1 : R -> R." in text
+    assert "Variables d_dot by_dot_ phi_1_dot : R -> R." in text
 
 
 def test_the_checker_needs_only_the_standard_library_and_no_binary_fractions():
@@ -184,6 +188,8 @@ def test_a_record_of_which_nothing_is_proved_is_refused_and_its_path_is_one_line
     [
         *((text, None) for text in ("ZXZ", "z(phi) x(phi+psi) z(psi)", "unit_quaternion")),
         *((OTHERS[8], BASIC), (OTHERS[10], BASIC), ("gibbs_vector", None)),
+        *((text, None) for text in ("z(2*phi) x(phi)", "z(phi/2) x(alpha0) z(-phi)")),
+        *(("z(derivable_pt_lim) x(SProp) z(v1)", BASIC), (NAMED, (*BASIC[:2], VELOCITY))),
     ],
 )
 def test_coq_accepts_kinematics_and_refuses_a_wrong_one(tmp_path, text, quantities):

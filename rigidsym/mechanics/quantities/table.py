@@ -169,7 +169,10 @@ def _parameters(model: RotationModel, body: RigidBody | None) -> tuple[Argument,
     entries = {sp.Symbol(f"I_{i}{j}") for i in (1, 2, 3) for j in (1, 2, 3)}
     primed = entries & (body.inertia.free_symbols if body else set())  # along axes of the body
     notation = [named(s.name.replace("_", "'_") if s in primed else s.name) for s in symbols]
-    units = ("",) * len(model.constants) + tuple(p.unit for p in of_body)
+    # a constant is an angle of R, or a number, such as a component of an axis
+    turns, functions = model.turns, model.matrix.atoms(sp.cos, sp.sin) if not model.turns else ()
+    angles = sp.Tuple(*(turn.angle for turn in turns), *(f.args[0] for f in functions)).free_symbols
+    units = [*("rad" if s in angles else "" for s in model.constants), *(p.unit for p in of_body)]
     meaning = "parameters_of_body" if of_body else "parameters_of_rotation"
     meaning = "parameters" if model.constants and of_body else meaning
     return (argument("parameters", symbols, meaning=meaning, units=units, notation=notation),)

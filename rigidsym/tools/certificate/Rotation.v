@@ -103,6 +103,14 @@ Proof.
   intros H d. apply (uniqueness_limite f t _ _ d). intros e p. exists (mkposreal 1 Rlt_0_1). intros h _ _.
   rewrite !H. replace ((c - c) / h - 0) with 0 by (unfold Rdiv; ring). rewrite Rabs_R0. exact p.
 Qed.
+(* sines and cosines of sums and of whole multiples, by those of their parts and of halves *)
+Ltac sums := repeat first [ rewrite sin_plus | rewrite cos_plus | rewrite sin_minus | rewrite cos_minus
+  | rewrite sin_neg | rewrite cos_neg | rewrite Rmult_1_l | match goal with
+  | |- context [?f (IZR ?n * ?a)] => match f with sin => idtac | cos => idtac end; match n with
+    | Z.pos _ => let m := eval compute in (Z.pred n) in replace (IZR n * a) with (a + IZR m * a) by ring
+    | Z.neg ?m => replace (IZR n * a) with (- (IZR (Z.pos m) * a)) by ring end
+  | |- context [_ (?a * / 2)] => match goal with |- context [?f a] =>
+    match f with sin => idtac | cos => idtac end; replace (f a) with (f (2 * (a * / 2))) by (f_equal; field) end end ].
 Ltac apart := repeat split; repeat apply Rmult_integral_contrapositive_currified;
   first [ assumption | lra | match goal with H : _ <> 0 |- _ => intro; apply H; lra end ].
 Ltac derivative := match goal with

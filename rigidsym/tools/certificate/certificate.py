@@ -46,15 +46,11 @@ from rigidsym.tools.certificate.checker import (
 Tree = tuple[Any, ...]  # such as ("*", ("number", 2), ("cos", ("name", "phi")))
 _SIGNS = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/"}
 DEFINITIONS = "Rotation.v"
-# A coordinate with a name that Coq, its real numbers or Rotation.v use gets an underscore
-_WORDS = """
-as at cofix else end exists fix for forall fun if in let match mod Prop return Set then Type using
-where with R cos sin sqrt tan PI V M C I v1 v2 v3 row1 row2 row3 vec mat dot plus scale cross apply
-transpose mul add times det one turn turn_x turn_y turn_z is_rotation rate vector_rate turns
-turns_in_body product squares same F t s u w a b c d e D H inertia derivative entries expand
-total
-"""
-_TAKEN = frozenset(_WORDS.split())
+# Other names get an underscore, so that none is a word of Coq, of Rotation.v or of a proof
+_PLAIN = re.compile(
+    "(?!([CDFHIMRVabcdestuwy]|v[123])$)([A-Za-z]|alpha|beta|gamma|delta|epsilon|zeta|eta|theta|iota"
+    "|kappa|lambda|mu|nu|xi|rho|sigma|tau|upsilon|phi|chi|psi|omega)(_?[0-9]+)*(_d?dot)?"
+)
 _EXTENSIONALITY = "FunctionalExtensionality.functional_extensionality"
 _FIRST = "rotation_matrix", "angular_velocity_space"
 # w and u of quaternions w + x i + y j + z k, in the places of a turn: u (w² + x² + y² + z²) = 1
@@ -179,6 +175,8 @@ class _Section:
         if not claims:
             raise Unproved
         self.names, self.printed = Record(record), printed_in(record)
+        letters = chain.from_iterable(letters for letters, _ in LETTERS.values())
+        self.own = {*letters, *self.names.definitions}  # names of ours
         self.is_passive = record["presentation"] == "passive"
         self.presented = "(fun s => transpose (F s))" if self.is_passive else "F"
         self.rates, self.seconds = ([q + end for q in self.names.q] for end in ("_dot", "_ddot"))
@@ -217,7 +215,8 @@ class _Section:
         return f"({first} {kind} {second})"
 
     def letter(self, name: str) -> str:
-        return f"{name}_" if name in _TAKEN else name
+        is_plain = name in self.own or _PLAIN.fullmatch(name)
+        return name if is_plain else f"{name}_"
 
     def name(self, name: str, at: str = "t") -> str:
         letter = "PI" if name == "pi" else self.letter(name)
@@ -263,7 +262,7 @@ class _Section:
                 return ("number", 0)
             case ("+" | "-" as sign, one, two):
                 return (sign, self.rate(one), self.rate(two))
-            case ("*", ("number", _) as number, part):
+            case ("*", number, part) if not _names(number):
                 return ("*", number, self.rate(part))
             case ("/", part, ("number", _) as number):
                 return ("/", self.rate(part), number)
@@ -340,12 +339,12 @@ class _Section:
             yield from self._sphere(k, sphere)
         yield from self._divisors()
         # those of rates are to be tried before squares; without rates, fewer facts are faster
-        lists = self.facts_of_rates + self.facts, self.facts
-        using, squares = (f" [{' '.join(facts)}]" if facts else "" for facts in lists)
+        lists = self.facts_of_rates + self.facts, self.facts, self.facts_of_sums
+        using, squares, parts = (f" [{' '.join(facts)}]" if facts else "" for facts in lists)
         known = "; ".join(f"pose proof {fact}" for fact in self.known)
         yield f"Ltac known t := {known or 'idtac'}."
         # an angle may be the sum of two others, whose sines and cosines are printed, too
-        sums = f"rewrite ?sin_plus, ?cos_plus, ?sin_minus, ?cos_minus; ring{using}"
+        sums = f"sums; field{parts}; apart"
         yield "Ltac calculation t :="
         ways = [f"ring{using}", f"known t; field{using}; apart"]  # that is likely comes first
         yield f"  entries; first [ {' | '.join([*ways[:: -1 if self.apart else 1], sums])} ]."
@@ -390,8 +389,10 @@ class _Section:
     def _divisors(self) -> Iterator[str]:
         """Squares of cosines; divisors in F are not 0."""
         trees = [*self.trees_of_rotation, *self.trees(*self.claims)]
-        angles = dict.fromkeys(map(self.real, _angles(trees)))
-        self.facts += [f"(squares {text})" for text in angles]
+        angles = _angles(trees)
+        self.facts += [f"(squares {text})" for text in dict.fromkeys(map(self.real, angles))]
+        parts = (f"(squares {self.name(name)})" for name in sorted(_names(("", *angles))))
+        self.facts_of_sums = [*dict.fromkeys((*self.facts, *parts))]
         for k, divisor in enumerate(_divisors(self.trees_of_rotation)):
             text = self.real(divisor)
             yield f"Hypothesis nonzero_{k} : forall t, {text} <> 0."
@@ -428,8 +429,6 @@ class _Section:
             statement = law(name, frame)
         else:
             raise Unproved
-        if not {*_angles(self.trees(name))} <= {*_angles(self.trees_of_rotation)}:
-            raise Unproved  # the facts are about the angles of F
         return (
             f"Theorem {name.replace(' ', '_')} (t : R){statement.letters} : {statement.claim}.\n"
             f"Proof. intros. {statement.proof}. Qed."
@@ -742,9 +741,11 @@ class _Chain(_Section):
     def equation(self, name: str, k: int, claim: str, old: str = "") -> Iterator[str]:
         """About turn k; names are unfolded if they are not in what is old."""
         names = " ".join(sorted(self.defined(claim) - self.defined(old)))
-        square = f"(squares {self.real(self.factors[k - 1].trees[0][1])})"
+        angle = self.factors[k - 1].trees[0][1]
+        square, *parts = (f"(squares {self.real(each)})" for each in _parts(angle) if _names(each))
+        ways = f"ring [{square}] | sums; field [{' '.join([square, *parts])}]"
         yield f"Lemma {name}_{k} t{' y' * (name == 'body')} : {claim}."
-        yield f"Proof. entries; cbv [Rsqr {names}]; ring [{square}]. Qed."
+        yield f"Proof. entries; cbv [Rsqr {names}]; first [ {ways} ]. Qed."
 
     def _turning(self) -> Iterator[str]:
         yield from super()._turning()
