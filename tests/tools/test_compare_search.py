@@ -42,6 +42,8 @@ W_BODY = "[[1, 0, -sin(b)], [0, cos(a), sin(a)*cos(b)], [0, -sin(a), cos(a)*cos(
         ("pow(q.w(), 2) + state->roll", "pow(q_w,2)+roll"),
         (r"\dot\phi \sin^2\theta + \tfrac12 x_1", "phi_dot*sin(theta)**(2)+((1)/(2))*x_1"),
         (r"\sqrt{x^2}\,(a + b)", "sqrt(x**(2))*(a+b)"),
+        (r"c\theta^2 - \sin^{-1}(\frac{a}2 b)", "cos(theta)**2 - asin(a/2*b)"),
+        (r"\dot{\phi}_{12} + \ddot{x}", "phi_12_dot + x_ddot"),
         (r"R = \begin{pmatrix} a & b \\[2pt] w\,x & \sin 2\theta \end{pmatrix}", None),
     ],
 )
@@ -340,6 +342,7 @@ TYPES = ("long", "int32_t", "unsigned", "const short", "const int&")
 WHOLE = [  # divisions and matrices of whole numbers, which are rounded
     *(("c", f"void f({kind} deg, float q[4]) {{ {HALF} }}") for kind in TYPES),
     ("c", f"void f(int n, float q[4]) {{ int x, deg; deg = n; {HALF} }}"),
+    ("c", f"void f(int n, int deg, float q[4]) {{ {HALF} }}"),
     ("cpp", f"struct P {{ int deg; }}; void f(P& p, float q[4]) {{ {OF_MEMBER} }}"),
     *(("java", OF_JAVA.format(kind)) for kind in ("long", "Integer")),
     ("rs", "fn f(a: i32) -> [f64; 4] { [((a / 2) as f64).cos(), ((a / 2) as f64).sin(), 0., 0.] }"),
@@ -383,6 +386,8 @@ CERTAIN |= {  # a program: the end of the verdict, and nothing if there is none
     ("i.py", "def f(w, x, y, z):\n    s = np.clip(2*(w*y - z*x), -0.99, 0.99)\n    return atan2("
      "2*(w*x + y*z), 1 - 2*(x*x + y*y)), np.arcsin(s), np.arctan2(2*(w*z + x*y), 1 - 2*(y*y + "
      "z*z))\n"): None,
+    ("i.c", "short a;\nvoid f(float a, double q[4]) { // a short name\n double h = a/2; q[0] = cos("
+     "h); q[1] = sin(h); q[2] = 0; q[3] = 0; }"): "angle = a (proved)",
     ("h.c", "void f(int a, double q[4]) { q[0] = cos(a/2); q[1] = 0; q[2] = 0; q[3] = sin(a/2); }"):
     None,
     **{(f"w{k}.{suffix}", text): None for k, (suffix, text) in enumerate(WHOLE)},
@@ -399,6 +404,10 @@ CERTAIN |= {  # a program: the end of the verdict, and nothing if there is none
      "q[1] = sin(h); q[2] = T(0); q[3] = T(0)*a; }"): "(proved)",
     ("a.cs", "class A { double S(double d) => Math.Sin(d); double[] F(double a) { return new[] {"
      "Math.Cos(a/2), S(a/2), 0, 0}; } }"): "(proved)",
+    ("b.cs", "class A { float3x3 F(float a) { float s, c; sincos(a, out s, out c); return float3x3("
+     "c, -s, 0, s, c, 0, 0, 0, 1); } }"): "angle = a (proved)",
+    ("s.py", "def f(a):\n    s, c = torch.sin(a), torch.cos(a)\n    return torch.stack((c, -s, 0, "
+     "s, c, 0, 0, 0, 1), -1).reshape(a.shape + (3, 3))\n"): "angle = a (proved)",
     ("k.py", "def f(p, q):\n    a, u, b, v = p[0], p[1:4], q[0], q[1:4]\n    return np.r_[a*b - "
      "np.dot(u, v), a*v + b*u + np.cross(u, v)]\n"): "quaternion_product (proved)",
     ("a.m", "e = [atan2d(R(3,2), R(3,3)); asind(-R(3,1)); atan2d(R(2,1), R(1,1))];"): "not proved)",

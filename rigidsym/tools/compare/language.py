@@ -14,12 +14,7 @@ import sympy as sp
 
 from rigidsym.errors import ExpressionError, offer
 from rigidsym.text.bounds import FUNCTIONS, Sized, apply, longest_number, operate
-from rigidsym.tools.compare.syntax import SPELLINGS, patterns
-
-_LARGEST = 20  # rows or columns
-_LARGEST_INVERSE = 4
-_MOST_PARTS = 10_000  # of the entries of a matrix
-_LONGEST_NUMBER = 40  # digits
+from rigidsym.tools.compare.syntax import SPELLINGS, limits, patterns
 
 
 def as_matrix(value: Any) -> sp.ImmutableMatrix:
@@ -31,9 +26,9 @@ def _bounded(value: Any) -> Any:
     """A value; raises ExpressionError if it is too large."""
     if not isinstance(value, sp.MatrixBase):
         return sp.sympify(value)
-    if max(value.shape) > _LARGEST:
-        raise ExpressionError(f"a matrix of {value.shape}; expected at most {_LARGEST} rows")
-    if sum(1 for entry in value for _ in sp.preorder_traversal(entry)) > _MOST_PARTS:
+    if max(value.shape) > limits.largest:
+        raise ExpressionError(f"a matrix of {value.shape}; expected at most {limits.largest} rows")
+    if sum(1 for entry in value for _ in sp.preorder_traversal(entry)) > limits.entry_parts:
         raise ExpressionError("too large: a matrix with too many terms")
     return sp.ImmutableMatrix(value)
 
@@ -49,8 +44,8 @@ def cross_matrix(vector: sp.MatrixBase) -> sp.Matrix:
 
 
 def _unit(size: sp.Expr) -> sp.Matrix:
-    if not (size.is_Integer and 0 < size <= _LARGEST):
-        raise ExpressionError(f"one(n) takes a whole number up to {_LARGEST}")
+    if not (size.is_Integer and 0 < size <= limits.largest):
+        raise ExpressionError(f"one(n) takes a whole number up to {limits.largest}")
     return sp.eye(int(size))
 
 
@@ -118,17 +113,15 @@ def combined(operator: str, left: Any, right: Any) -> Any:
     match operator:
         case "%" if all(matrices):
             return _bounded(sp.matrix_multiply_elementwise(sp.Matrix(left), sp.Matrix(right)))
-        case "+":
-            return _bounded(left + right)
-        case "-":
-            return _bounded(left - right)
+        case "+" | "-":
+            return _bounded(left + right if operator == "+" else left - right)
         case "*" | "@" | "%":
             product = left * right
             is_scalar = isinstance(product, sp.MatrixBase) and product.shape == (1, 1)
             return _bounded(product[0] if is_scalar else product)
         case "/" if not matrices[1] and right != 0:
             return _bounded(left / right)
-        case "**" if right == -1 and max(left.shape) <= _LARGEST_INVERSE:
+        case "**" if right == -1 and max(left.shape) <= limits.largest_inverse:
             # Berkowitz' algorithm does not divide, so that no symbolic pivot has to be told from
             # zero.
             return _bounded(left.adjugate() / left.det(method="berkowitz"))
@@ -174,13 +167,6 @@ def rows(parts: list[Any]) -> sp.ImmutableMatrix:
         lengths = " and ".join(str(row.cols) for row in matrices)
         raise ExpressionError(f"rows of {lengths} entries; expected rows of equal length")
     return _bounded(sp.Matrix.vstack(*matrices))
-
-
-def number(text: str) -> sp.Rational:
-    """A number in decimal digits."""
-    if len(text) > _LONGEST_NUMBER or not re.fullmatch(r"[\d.]+([eE][+-]?\d\d?)?", text):
-        raise ExpressionError(f"a number of more than {_LONGEST_NUMBER} digits")
-    return sp.Rational(text)
 
 
 _FULL = {"s": sp.sin, "c": sp.cos, "t": sp.tan, "v": lambda angle: 1 - sp.cos(angle)}

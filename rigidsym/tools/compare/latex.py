@@ -1,6 +1,10 @@
-r"""Formulas in LaTeX, translated into Python from left to right.
+r"""Formulas in LaTeX, translated into Python.
 
 python_of(r"\dot\phi \sin^2\theta")     phi_dot*sin(theta)**(2)
+
+Names become words in quotes, and each bracket, from the inside out, a letter of the private use
+area. A formula without brackets is then read from right to left, so that a function finds its
+argument, and a base its power.
 """
 
 from __future__ import annotations
@@ -13,40 +17,41 @@ from rigidsym.text.names import GREEK_LETTERS, spelled
 from rigidsym.tools.compare.language import function_word
 from rigidsym.tools.compare.syntax import patterns
 
-_FIRST = 0xE000  # a matrix stands in a formula as a letter of the private use area
+_FIRST = 0xE000
 _MARKS = "\ue000-\uf8ff"
-_QUOTE = '"'  # around a name of several letters
-_DEEPEST = 60  # nested brackets
-_TEX_TOKEN = re.compile(
-    rf"\\[A-Za-z]+|{_QUOTE}\w+{_QUOTE}|\d+(?:\.\d+)?|[A-Za-z{GREEK_LETTERS}{_MARKS}]"
-    r"|[-+*/=^_(){}\[\]'|,]|(?P<other>\S)"
-)
-_BRACKETS = {"(": ")", "[": "]", "{": "}"}
-_DOTS = {r"\dot": "_dot", r"\ddot": "_ddot"}
-_LETTERS = set(map(spelled, GREEK_LETTERS))
-_GREEK = {r"\varphi": "phi", r"\vartheta": "theta", r"\top": "T", r"\intercal": "T"}
-_ANGLES = {r"\phi", r"\varphi", r"\theta", r"\vartheta", r"\psi", r"\alpha", r"\beta", r"\gamma"}
-_SHORT = {"c": "cos", "C": "cos", "s": "sin", "S": "sin"}  # c\theta
+_TOKEN = re.compile(r'\\[A-Za-z]+|"\w+"|\d+(?:\.\d+)?|\S')
+_LETTER = re.compile(rf'\\[A-Za-z]+|"\w+"|[A-Za-z{GREEK_LETTERS}]')
+_WORD = r'"(\w+)"'
+_SCRIPT = rf"\s*_\s*(?:\{{([^{{}}]*)\}}|{_WORD}|(\d))"
+_SIGNS = {"+": "+", "-": "-", r"\cdot": "*", "*": "*", "/": "/"}
+_NAMES = {letter: letter for letter in map(spelled, GREEK_LETTERS)}
+_NAMES |= {"varphi": "phi", "vartheta": "theta", "top": "T", "intercal": "T"}
 
 
 def python_of(text: str) -> str:
     """The last side of an equation; if a side contains a matrix, the last such side."""
     if mark := re.search(f"[{_MARKS}]", text):
         raise ExpressionError(f"unexpected {mark[0]!r} in LaTeX")
-    matrices: dict[int, str] = {}
+    parts: list[str] = []  # which letters stand for
 
-    def kept(match: re.Match[str]) -> str:
+    def matrix(match: re.Match[str]) -> str:
         lines = [line for line in re.split(r"\\\\(?:\[[^\]]*\])?", match[2]) if line.strip()]
-        cells = (", ".join(_Walk(cell).sum() for cell in line.split("&")) for line in lines)
-        matrices[_FIRST + len(matrices)] = f"[{', '.join(f'[{row}]' for row in cells)}]"
-        return chr(max(matrices))
+        cells = (", ".join(_sum(cell, parts) for cell in line.split("&")) for line in lines)
+        return _kept(f"[{', '.join(f'[{row}]' for row in cells)}]", parts)
 
-    sides = patterns.tex_matrix.sub(
-        kept, patterns.styled_script.sub("", patterns.tex_comment.sub("", text))
-    ).split("=")
+    text = patterns.styled_script.sub("", patterns.tex_comment.sub("", text))
+    sides = patterns.tex_matrix.sub(matrix, text).split("=")
     side = next((s for s in reversed(sides) if re.search(f"[{_MARKS}]", s)), sides[-1])
-    side = patterns.end_of_side.split(side)[0] if matrices else side
-    return _Walk(patterns.punctuation.sub("", side)).sum().translate(matrices)
+    side = patterns.end_of_side.split(side)[0] if parts else side
+    side = _sum(patterns.punctuation.sub("", side), parts)
+    for number in reversed(range(len(parts))):  # a part consists of earlier ones
+        side = side.replace(chr(_FIRST + number), parts[number])
+    return side
+
+
+def _kept(part: str, parts: list[str]) -> str:
+    parts.append(part)
+    return chr(_FIRST + len(parts) - 1)
 
 
 def _styled(match: re.Match[str]) -> str:
@@ -54,119 +59,86 @@ def _styled(match: re.Match[str]) -> str:
     word = match[1] or ""
     if function_word(word) in FUNCTIONS:
         return f"\\{word} "
-    return f"{_QUOTE}{word}{_QUOTE}" if len(word) > 1 and word[0] != "\\" else f"{word} "
+    return f'"{word}"' if len(word) > 1 and word[0] != "\\" else f"{word} "
 
 
-class _Walk:
-    """One entry of a matrix, or a formula in which letters stand for matrices."""
+def _named(match: re.Match[str]) -> str:
+    word = match[0].strip('\\"')
+    is_command = match[0][0] == "\\" and word not in _NAMES
+    return match[0] if is_command else f'"{spelled(_NAMES.get(word, word))}"'
 
-    def __init__(self, text: str) -> None:
-        tokens = list(
-            _TEX_TOKEN.finditer(patterns.layout.sub(" ", patterns.styled.sub(_styled, text)))
-        )
-        for match in tokens:
-            if match["other"]:
-                raise ExpressionError(f"unexpected {match['other']!r} in LaTeX")
-        self.tokens = [match[0] for match in tokens][::-1]
-        self.depth = 0
 
-    def next(self) -> str:
-        return self.tokens[-1] if self.tokens else ""
+def _scripted(match: re.Match[str]) -> str:
+    """A name with its index; the dots of a derivative come last."""
+    stem, dots = re.fullmatch(r"(.*?)((?:_d?dot)?)", match[1]).groups()  # type: ignore[union-attr]
+    index = re.sub(r'[\s"]', "", match[2] or match[3] or match[4] or "")
+    if not index.isalnum():
+        raise ExpressionError(f"unexpected index {index!r} in LaTeX")
+    return f'"{stem}_{index}{dots}"'
 
-    def take(self, *expected: str) -> str:
-        """The next token if it is an expected one, else nothing."""
-        return self.tokens.pop() if self.next() in expected and self.tokens else ""
 
-    def sum(self, end: str = "") -> str:
-        """Up to the bracket `end`, or to the end."""
-        self.depth += 1
-        if self.depth > _DEEPEST:
-            raise ExpressionError("operations are nested too deeply")
-        total = self.take("+", "-") + self._power()
-        while self.next() not in ("", end):
-            sign = self.take("+", "-", r"\cdot", "*", "/")  # none between factors
-            total += {r"\cdot": "*", "": "*"}.get(sign, sign) + self._power()
-        if end and not self.take(end):
-            raise ExpressionError(f"expected {end} in LaTeX")
-        self.depth -= 1
-        return total
+def _sum(text: str, parts: list[str]) -> str:
+    """An entry of a matrix, or a formula in which letters stand for matrices."""
+    text = patterns.layout.sub(" ", patterns.styled.sub(_styled, text))
+    if word := re.search(rf"{_WORD}\s*[(\[]", text):
+        raise ExpressionError(f"{word[1]} is not a function that is known")
+    text = _LETTER.sub(_named, text)
+    text = re.sub(_WORD + _SCRIPT, _scripted, text)
+    text = re.sub(rf"\\(d?dot)\s*(\{{)?\s*{_WORD}\s*(?(2)\}})", r'"\3_\1"', text)
+    text = re.sub(_WORD + _SCRIPT, _scripted, text)
+    text = patterns.tex_short_turn.sub(  # c\theta
+        lambda m: _kept(f"{'cos' if m[1] in 'cC' else 'sin'}({m[2]})", parts), text
+    )
+    while match := re.search(r"\(([^][(){}]*)\)|\[([^][(){}]*)\]|\{([^][(){}]*)\}", text):
+        inner = _product(match[match.lastindex or 0], parts)
+        text = text[: match.start()] + _kept(f"({inner})", parts) + text[match.end() :]
+    return _product(text, parts)
 
-    def _power(self) -> str:
-        base = self._atom()
-        while self.take("^"):
-            power = self._argument()
-            base = f"({base}).T" if power.strip("()") == "T" else f"{base}**({power})"
-        return base
 
-    def _argument(self) -> str:
-        """A group in braces, or one token."""
-        return self._token() if self.next().isdigit() else self._atom()
+def _product(text: str, parts: list[str]) -> str:
+    """A formula without brackets."""
+    stack: list[str] = []  # factors and signs, the first at the end
+    power = ""
 
-    def _token(self) -> str:
-        """A word, or the first digit of several: \frac12, x_12."""
-        token = self.tokens.pop() if self.tokens else ""
-        if token.isdigit() and len(token) > 1:
-            self.tokens.append(token[1:])
-        return token[0] if token.isdigit() else token.strip(_QUOTE).lstrip("\\")
+    def taken(*, is_digit: bool = False) -> str:
+        r"""The next factor, or the first digit of several: \frac12."""
+        factor = stack.pop() if stack else "end"
+        if factor == "end" or factor in _SIGNS:
+            raise ExpressionError(f"unexpected {factor!r} in LaTeX")
+        if is_digit and factor.isdigit() and len(factor) > 1:
+            stack.append(factor[1:])
+            return factor[0]
+        return factor
 
-    def _atom(self) -> str:
-        token = self.next()
-        if token in _BRACKETS:
-            return f"({self.sum(_BRACKETS[self.tokens.pop()])})"
-        if self.take(r"\frac", r"\tfrac", r"\dfrac"):
-            return f"({self._argument()}/{self._argument()})"
-        if token[:1] == "\\" and (name := function_word(token[1:])) in FUNCTIONS:
-            self.tokens.pop()
-            return self._call(name)
-        if token in _SHORT and self.tokens[-2:-1] and self.tokens[-2] in _ANGLES:
-            self.tokens.pop()
-            return f"{_SHORT[token]}({self._atom()})"
-        is_number = token[:1].isdigit() or re.fullmatch(f"[{_MARKS}]", token)
-        name = self.tokens.pop() if is_number else self._name()
-        return "λ" if name == "lambda" else name  # a keyword of Python
-
-    def _name(self) -> str:
-        """A letter or a word, with its dots and its index."""
-        token = self.tokens.pop() if self.tokens else ""
-        if token in _DOTS:
-            is_group = bool(self.take("{"))
-            name = self._name()
-            if is_group and not self.take("}"):
-                raise ExpressionError("expected } in LaTeX")
-            return name + self._script() + _DOTS[token]
-        if token[:1] == _QUOTE:
-            name = spelled(token.strip(_QUOTE))
-            if self.next() in ("(", "["):
-                raise ExpressionError(f"{name} is not a function that is known")
-            return name + self._script()
-        name = spelled(_GREEK.get(token, token.lstrip("\\")))
-        is_command = token[:1] == "\\"
-        if not name.isalpha() or (is_command and name not in _LETTERS and token not in _GREEK):
-            raise ExpressionError(f"unexpected {token or 'end'!r} in LaTeX")
-        return name + self._script()
-
-    def _script(self) -> str:
-        """The index of a name, as part of it."""
-        if not self.take("_"):
-            return ""
-        is_group = self.take("{")
-        index = "" if is_group else self._token()
-        while is_group and self.next() not in ("", "}"):
-            index += self._token()
-        self.take("}" if is_group else "")
-        index = spelled(index)
-        if not index.isalnum():
-            raise ExpressionError(f"unexpected index {index!r} in LaTeX")
-        return f"_{index}"
-
-    def _call(self, function: str) -> str:
-        power = self._argument() if self.take("^") else ""
-        if power.strip("()") == "-1":
-            # sin⁻¹ is the inverse function, although sin² is a power.
-            function, power = f"a{function}", ""
-        is_number = self.next().isdigit()
-        argument = self._argument() if function == "sqrt" else self._power()
-        while is_number and self.next()[:1] == "\\" and self.next() != r"\cdot":  # \sin 2\theta
-            is_number = False
-            argument += f"*{self._power()}"
-        return f"{function}({argument})" + f"**({power})" * bool(power)
+    for token in reversed(_TOKEN.findall(text)):
+        function = function_word(token[1:]) if token[0] == "\\" else ""
+        if token == "^":
+            power = taken(is_digit=True)
+            power = parts[ord(power) - _FIRST] if re.fullmatch(f"[{_MARKS}]", power) else power
+            continue
+        if token in _SIGNS:
+            factor = token
+        elif token in (r"\frac", r"\tfrac", r"\dfrac"):
+            factor = f"({taken(is_digit=True)}/{taken(is_digit=True)})"
+        elif function in FUNCTIONS:
+            if power == "(-1)":  # sin⁻¹ is the inverse function, although sin² is a power
+                function, power = f"a{function}", ""
+            argument = taken(is_digit=function == "sqrt")
+            if argument.isdigit() and stack and stack[-1] not in _SIGNS:  # \sin 2\theta
+                argument += f"*{taken()}"
+            factor = f"{function}({argument})"
+        elif re.fullmatch(rf'"\w+"|[\d.]+|[{_MARKS}]', token):
+            factor = "λ" if token == '"lambda"' else token.strip('"')  # a keyword of Python
+        else:
+            raise ExpressionError(f"unexpected {token!r} in LaTeX")
+        if power:
+            factor = f"({factor}).T" if power.strip("()") == "T" else f"{factor}**({power})"
+            power = ""
+        stack.append(factor)
+    if not stack or stack[0] in _SIGNS:
+        raise ExpressionError("unexpected 'end' in LaTeX")
+    product = ""
+    for factor in stack[::-1]:
+        is_second = product and product[-1] not in "+-*/" and factor not in _SIGNS
+        product += "*" * bool(is_second) + _SIGNS.get(factor, factor)
+    return product

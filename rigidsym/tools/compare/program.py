@@ -16,79 +16,41 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from copy import deepcopy
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
-from itertools import chain, islice, product
+from functools import lru_cache, reduce
+from itertools import chain, islice, product, takewhile
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
 from rigidsym.errors import ExpressionError
 from rigidsym.text.bounds import FUNCTIONS
-from rigidsym.tools.compare import language
+from rigidsym.tools.compare import language, syntax
 from rigidsym.tools.compare.language import as_matrix, called, combined, function_word, rows
 from rigidsym.tools.compare.latex import python_of
-from rigidsym.tools.compare.quantities import are_angles, stem_of
-from rigidsym.tools.compare.syntax import (
-    CALLS,
-    Tree,
-    below,
-    damaged,
-    parameters,
-    parsed,
-    patterns,
-    walk,
-)
+from rigidsym.tools.compare.quantities import are_angles, grouped, stem_of
+from rigidsym.tools.compare.syntax import CALLS, TYPES, Tree, limits, parameters, patterns, walk
 
 if TYPE_CHECKING:
     from tree_sitter import Node
 
-_SHARING = (".py", ".js", ".mjs", ".jsx", ".ts", ".java")  # b = a is the same matrix
-_OF_REALS = (".py", ".m", ".js", ".mjs", ".jsx", ".ts")  # in which 1/2 is a half
-_WITH_SWIZZLES = (".cs", ".cu", ".cuh")  # whose v * w is entry by entry
-_DEEPEST = 60  # nested nodes of an expression; formulas of real programs have fewer than 30
-_DEEPEST_BLOCK = 40
-_LONGEST_LIST = 64
-_MOST_FORMULAS = 1_000  # of a file
-_MOST_STEPS = 12_000  # expressions of a file: what takes some seconds
-_STEPS_OF_LONG = 200  # for a matrix with so many parts that it takes longer than others
-_NAMES_A_STEP = 4  # of which a branch looks for new matrices
-_FEWEST_FACTORS = 5  # and signs, of a formula without a sine: C(w) I w has three signs
-_MOST_NODES = 400_000  # of a file: a generated megabyte is not worth reading
-_MOST_CHARACTERS = 20_000  # of a formula
-_LONGEST_PLACE = 120  # characters
-_LONGEST = 40  # parts of a value without a symbol of its own
-_LONG_IN_LONG = 3  # symbols for long values that use other such symbols
-_MOST_PARTS = 2_000  # of a matrix
-_LONGEST_STATE = 20  # entries of a vector whose parts are looked at
-_SHORT_ARGUMENT = 12  # parts
-_NEAR_LIMIT = 1e-2  # of a value next to a pole
-_MOST_RUNS = 40  # of a function, with other branches
-_INLINED = 3  # calls of functions of the same file inside one another
-
-_AXES = {"x": 0, "y": 1, "z": 2, "X": 0, "Y": 1, "Z": 2}
+_AXES: dict[str, Any] = {"x": 0, "y": 1, "z": 2, "X": 0, "Y": 1, "Z": 2}
+_AXES |= {f"k{k}{axis}": axis.lower() for k in ("", "_") for axis in "WXYZ"}  # Order::kW
 _INVERSE = (sp.atan2, sp.asin, sp.acos, sp.atan)
 _OPPOSITE = str.maketrans("<>=!", "><!=")
 _SIGNS = {".*": "%", "./": "/", ".^": "**", "^": "**"}  # MATLAB
 _SIZES = (3, 4, 9, 16)  # of vectors and matrices that are built of numbers
 _FLAT = {9: (3, 3), 12: (4, 3), 16: (4, 4)}
-_OF_VECTORS = ("T", "C", "inv", "dot", "cross", "outer", "norm")
-_OF_OBJECTS = (*_OF_VECTORS, "fused", "same", "clamp", "least", "pair")
 _WORDS = {*language.OF_NUMBERS, *language.OF_MATRICES, *CALLS}  # functions, if nothing else
-_VIEWS = ("T", "transpose", "reshape", "view", "ravel", "squeeze", "asarray")  # of one matrix
 _RETURNED, _ARGUMENT = UNNAMED = ("returned", "argument")  # in place of a name
 _ALL = slice(None)
-_FROM_ONE = [1, 2, 3]
+_FROM_ONE = ["1", "2", "3"]
 
 _COMPLETE = {frozenset(order.split()): order.split() for order in patterns.orders}
 
 Path = tuple[Any, ...]  # of a name and its members and indices: ("R", 0, 1), ("state", "phi")
 
 
-class _Bounded(sp.Function):
-    """x of clamp(x, -1, 1): no other number has an arc sine."""
-
-    def _sympystr(self, printer: Any) -> str:
-        return f"clamp({printer.doprint(self.args[0])}, -1, 1)"
+_Bounded = sp.Function("clamp", real=True)  # x of clamp(x, -1, 1): no other number has an arc sine
 
 
 def _unbounded(matrix: Any) -> Any:
@@ -109,26 +71,29 @@ class _Record(dict[Any, Any]):
         super().__init__(parts or {})
         self.lines = dict.fromkeys(self, line)  # where each was assigned
 
-    def places(self, is_row: bool = False) -> Iterator[int]:
-        """The lines of all expressions, in the order of the indices."""
-        order = self.order(is_row=is_row)
-        for key in order:
-            part, is_first = self[key], order == _FROM_ONE
-            yield from part.places(is_first) if isinstance(part, _Record) else [self.lines[key]]
-
-    def order(self, *, is_row: bool) -> list[Any]:
-        """The indices of all entries of a vector or rows of a matrix; none if one is missing.
+    def whole(self, *, is_row: bool = False) -> tuple[Any, list[int]]:
+        """The vector, or the matrix of rows, if all is there, and the lines of its entries.
 
         Entries 1, 2, 3 are a row of a matrix whose rows are 1, 2, 3, or of a quaternion.
         """
-        keys = self.keys() - {None}
-        if keys == {*range(len(keys))}:
-            return [*range(len(keys))]
-        letters = {str(key).lower(): key for key in keys}
-        names = [*"abc"] if letters.keys() == {*"abc"} else _COMPLETE.get(frozenset(letters), [])
-        order = [letters[name] for name in names]
-        is_whole = is_row or all(isinstance(self[key], _Record) for key in order)
-        return order if order != _FROM_ONE or is_whole else []
+        keys = {str(key).lower(): key for key in self if key is not None}
+        order = _COMPLETE.get(frozenset(keys)) or [str(k) for k in range(len(keys)) if keys]
+        if not order or not keys.keys() >= {*order}:
+            return None, []
+        parts = [(self[keys[name]], self.lines[keys[name]]) for name in order]
+        are_rows = all(isinstance(part, _Record) for part, _ in parts)
+        if order == _FROM_ONE and not (is_row or are_rows):
+            return None, []
+        if not are_rows:
+            values = [*zip(*parts, strict=True)]
+            are_scalars = all(map(_is_scalar, values[0]))
+            return (sp.ImmutableMatrix(values[0]), [*values[1]]) if are_scalars else (None, [])
+        wholes = (row.whole(is_row=order == _FROM_ONE) for row, _ in parts)
+        columns, places = zip(*wholes, strict=True)
+        shapes = {getattr(column, "shape", (0, 0)) for column in columns}
+        is_regular = len(shapes) == 1 and max(shapes)[1] == 1
+        matrix = sp.ImmutableMatrix([[*column] for column in columns]) if is_regular else None
+        return matrix, [*chain.from_iterable(places)]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -148,6 +113,10 @@ class Formula:
     def line(self) -> int:
         """Where it begins."""
         return min(self.lines)
+
+
+def _fault(line: int, reason: str, name: str = "") -> Formula:
+    return Formula(lines=(line,), name=name, reason=reason)
 
 
 @dataclass
@@ -191,8 +160,7 @@ class _Program:
     arrays: Collection[str] = ()  # names of arrays of C
     is_formula: bool = False  # a formula on its own, with the functions of `language`
     steps: Counter[str] = field(default_factory=Counter)  # expressions that were read
-    written: dict[int, Path] = field(default_factory=dict)  # by nodes, which are asked for often
-    whole: dict[tuple[int, str], bool] = field(default_factory=dict)  # of `Tree`
+    integers: Collection[str] = ()  # members and names of the whole file
 
 
 def program_formulas(text: str, suffix: str) -> list[Formula]:
@@ -204,12 +172,13 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
     if not _has_material(text, suffix):
         return []
     try:
-        root = parsed(text, suffix)
+        root = syntax.parsed(text, suffix)
     except ExpressionError as error:
-        return [Formula(lines=(1,), name="", reason=str(error))]
-    if root.descendant_count > _MOST_NODES:
-        return [Formula(lines=(1,), name="", reason="the file is too long")]
+        return [_fault(1, str(error))]
+    if root.descendant_count > limits.most_nodes:
+        return [_fault(1, "the file is too long")]
     functions = [*walk(root, "function")]
+    outside = reduce(lambda rest, each: rest.replace(each.text, ""), functions, text)
     program = _Program(
         suffix,
         _overloads(functions, suffix),
@@ -218,19 +187,20 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
         _product(text, suffix),
         bool(patterns.glm.search(text)),
         set(patterns.array.findall(text)),
-        whole={} if suffix in _OF_REALS else Tree(root).whole_numbers(),
+        integers=set() if suffix in TYPES["real"] else syntax.integers(outside),
     )
     # A long file of short functions is read to its end; a long function may let a value grow.
     program.steps["read"] = -min(8 * text.count("\n"), 200 * len(functions))
     scopes = [_Scope(tree) for tree in (Tree(root), *_worth_reading(functions, suffix))]
-    for each in below(root.named_children) if root.has_error else ():
+    for each in syntax.below(root.named_children) if root.has_error else ():
         # Beside most errors, such as an unknown macro, no formula is lost.
-        lost = damaged(each)
+        lost = syntax.damaged(each)
         if each.is_error and "(" in lost.text and _has_material(lost.text, ""):
-            reason = "there is a syntax error"
-            scopes[0].formulas.append(Formula(lines=(lost.line,), name="", reason=reason))
+            scopes[0].formulas.append(_fault(lost.line, "there is a syntax error"))
             break
-    for count in range(_MOST_RUNS):  # first runs first, since a long file is not read to its end
+    for count in range(
+        limits.most_runs
+    ):  # first runs first, since a long file is not read to its end
         for scope in scopes:
             if count and not (scope.places and scope.is_new):
                 continue
@@ -239,23 +209,22 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
             try:
                 run.run_scope()
             except RecursionError:  # SymPy, in a sum that a program nests in itself
-                reason = "expressions are nested too deeply"
-                run.formulas.append(Formula(lines=(scope.tree.line,), name="", reason=reason))
-            named = {f.forms[:1] for f in run.formulas if f.name not in UNNAMED} - {()}
-            for formula in run.formulas:  # a fault counts once
-                if formula.name not in UNNAMED or formula.forms[:1] not in named:
-                    scope.formulas.append(replace(formula, function=scope.tree.span))
+                run.formulas.append(_fault(scope.tree.line, "expressions are nested too deeply"))
+            scope.formulas += [replace(each, function=scope.tree.span) for each in run.formulas]
     formulas: dict[Any, Formula] = {}
-    for formula in chain.from_iterable(scope.formulas for scope in scopes):
-        key = (formula.lines, formula.forms or formula.name)
-        if key not in formulas or not formula.is_final:
-            formulas[key] = formula
+    for scope in scopes:
+        named = {f.forms[:1] for f in scope.formulas if f.name not in UNNAMED} - {()}
+        for formula in scope.formulas:
+            key = (formula.lines, formula.forms or formula.name)
+            is_twice = formula.name in UNNAMED and formula.forms[:1] in named
+            if not is_twice and (key not in formulas or not formula.is_final):
+                formulas[key] = formula
     return sorted(formulas.values(), key=lambda each: each.line)
 
 
 def _has_material(text: str, suffix: str) -> bool:
     """Whether there are words, products or signs enough for a formula, a cheap test."""
-    fewest = 1 if suffix in (".py", ".m") else _FEWEST_FACTORS  # which may be matrices
+    fewest = 1 if suffix in (".py", ".m") else limits.fewest_factors  # which may be matrices
     factors = islice(patterns.factors.finditer(text), fewest)
     return bool(patterns.material.search(text)) or len([*factors]) == fewest
 
@@ -263,26 +232,18 @@ def _has_material(text: str, suffix: str) -> bool:
 def _worth_reading(functions: Sequence[Tree], suffix: str) -> list[Tree]:
     """Functions that may hold a formula, in themselves or in functions that they call."""
     names = {tree.word for tree in functions if _has_material(tree.text, suffix)}
-    size = 0
-    while size < len(names):
-        size = len(names)
-        names |= {tree.word for tree in functions if names & tree.called_names}
+    calls = {tree: {*re.findall(r"\w+(?=\s*\()", tree.text)} for tree in functions}
+    while new := {tree.word for tree in functions if names & calls[tree]} - names:
+        names |= new
     return [tree for tree in functions if tree.word in names]
 
 
 @lru_cache(maxsize=256)  # functions are run several times
 def _late(scope: Tree, is_python: bool) -> list[Tree]:
     """Changes of names at a time that the order of the text does not tell."""
-    if is_python:
-        return [t for t in walk(scope.node, "assign", "outer") if t.is_one_of("late")]
-    late: list[Tree] = []
-    end = 0  # of the inner function that contains a node, if any does
-    for each in walk(scope.node, "function", "assign", "call"):
-        if each.kind == "function":
-            end = max(end, each.node.end_byte)
-        elif each.node.start_byte < end and not each.is_one_of("declaration"):
-            late.append(each)
-    return late
+    inner = [scope] if is_python else walk(scope.node, "function")
+    late = chain.from_iterable(walk(each.node, "assign", "call", "outer") for each in inner)
+    return [t for t in late if t.is_one_of("late" if is_python else "declaration") == is_python]
 
 
 def _overloads(functions: Iterable[Tree], suffix: str) -> dict[str, dict[int, list[Tree]]]:
@@ -293,14 +254,14 @@ def _overloads(functions: Iterable[Tree], suffix: str) -> dict[str, dict[int, li
         overloads.setdefault(each.word, {}).setdefault(count, []).append(each)
     for by_count in overloads.values():
         places = [each.around for each in chain.from_iterable(by_count.values())]
-        if len(places) > 1 and (suffix in (*_OF_REALS, ".rs") or len({*places}) > 1):
+        if len(places) > 1 and (suffix in TYPES["real"] | {".rs"} or len({*places}) > 1):
             by_count.clear()
     return overloads
 
 
 def _product(text: str, suffix: str) -> str:
     """What * is for matrices: as in `_Program`."""
-    if suffix in _WITH_SWIZZLES:
+    if suffix in TYPES["swizzling"]:
         return "" if re.search(r"\bfloat[34]x[34]\b", text) else "*"
     by_entries, of_matrices = patterns.numpy.search(text), patterns.matrices.search(text)
     if suffix != ".py" or (of_matrices and not by_entries):
@@ -313,9 +274,9 @@ def formula_matrix(text: str) -> sp.ImmutableMatrix:
 
     Raises ExpressionError for a text in none of these languages, and for one that is too long.
     """
-    if len(text) > _MOST_CHARACTERS:
+    if len(text) > limits.most_characters:
         raise ExpressionError(
-            f"a formula of {len(text)} characters; expected at most {_MOST_CHARACTERS}"
+            f"a formula of {len(text)} characters; expected at most {limits.most_characters}"
         )
     if re.search(r"\\[A-Za-z]", text):
         text = python_of(text)
@@ -337,13 +298,11 @@ def formula_matrix(text: str) -> sp.ImmutableMatrix:
 def _assigned_value(text: str, suffix: str) -> Tree | None:
     """The right-hand side, if the text or `x = text` is an assignment in a language."""
     line = text.strip().rstrip(";")
-    if suffix != ".m":  # a line ends a row in MATLAB only
-        line = line.replace("\n", " ")
-    if suffix == ".py":  # in Python, ^ would bind less than +
-        line = line.replace("^", "**")
+    line = line if suffix == ".m" else line.replace("\n", " ")  # it ends a row in MATLAB only
+    line = line.replace("^", "**") if suffix == ".py" else line  # ^ would bind less than +
     # First as the value of a new name, which needs a type in C++, and then as an assignment itself.
     for program in (f"{'auto ' * (suffix == '.cpp')}x = {line};", f"{line};"):
-        root = parsed(program, suffix)
+        root = syntax.parsed(program, suffix)
         value = next(walk(root, "assign"), None)
         while value is not None and value.kind == "assign":
             value = value.parts[1] if len(value.parts) > 1 else None
@@ -369,14 +328,15 @@ class _Run:
         # A name without a value may be a matrix: (its transpose, None), and (its column, k).
         self.views: dict[sp.Symbol, tuple[sp.Symbol, Any]] = {}
         self.tensors: set[sp.Symbol] = set()  # names without values that are matrices
+        own = set() if program.suffix in TYPES["real"] else syntax.integers(scope.tree.text)
+        self.integers = own | ({*program.integers} - {*parameters(scope.tree.node)})
         self.untracked: set[Path] = set()
         self.links: list[tuple[Path, Path]] = []  # names that may be the same object
         self.tests: dict[str, Tree] = {}  # a comparison by the name that it is given
         self.formulas: list[Formula] = []
         self.emitted: set[Any] = set()
         self.results: list[Any] = []  # None for one that is not read
-        self.end = ""  # "return" or "break" after one
-        self.depth = 0
+        self.end, self.depth = "", 0  # "return" or "break" after one
 
     def unreadable(self, tree: Tree, reason: str = "is not understood") -> ExpressionError:
         text = re.sub(r"\s+", " ", tree.text)
@@ -384,70 +344,59 @@ class _Run:
         where = "" if self.program.is_formula else f" in line {tree.line}"
         return ExpressionError(f"`{text}`{where} {reason}")
 
+    def refuse_if(self, is_so: Any, tree: Tree, reason: str = "is not understood") -> None:
+        if is_so:
+            raise self.unreadable(tree, reason)
+
     # Statements
 
     def run_scope(self) -> None:
         """Run a function, or the whole file, and collect the formulas in it."""
         scope = self.scope.tree
         self.untracked = self.written_in(_late(scope, self.program.suffix == ".py"))
-        body = scope
         if scope.kind == "function":
             self.inputs |= set(parameters(scope.node))
-            body = next(iter(scope.parts), Tree(scope.node, own=[]))
-        if body.kind != "block":  # the expression of an arrow
-            self.run_return(body)
-        elif (
-            self.program.suffix == ".rs"
-            and scope.kind == "function"
-            and body.parts
-            and body.parts[-1].kind != "function"
-            and not patterns.statement.search(body.parts[-1].node.type)
-        ):
-            self.run(Tree(body.node, own=body.parts[:-1]))
-            self.run_return(body.parts[-1])
-        else:
-            self.run(body)
+        for each in scope.parts if scope.kind == "function" else [scope]:
+            self.run(each)
         if not self.end:
             self.emit(self.values)
 
     def run(self, tree: Tree) -> None:
         """One statement, or all statements in a block."""
         steps = self.program.steps
-        if steps["read"] > _MOST_STEPS or steps["formulas"] > _MOST_FORMULAS:
+        if steps["read"] > limits.most_steps or steps["formulas"] > limits.most_formulas:
             self.end = "return"  # later values are unknown
         if self.end or tree.kind == "function":
             return
         self.depth += 1
         try:
-            if self.depth > _DEEPEST_BLOCK:
-                self.forget(tree)
-            else:
-                getattr(self, f"run_{tree.kind}", self.run_parts)(tree)
+            self.refuse_if(self.depth > limits.deepest_block, tree)
+            getattr(self, f"run_{tree.kind}", self.run_block)(tree)
         except ExpressionError:  # what the statement does is unknown
             self.forget(tree)
         self.depth -= 1
 
-    def run_parts(self, tree: Tree) -> None:
-        if tree.parts:
-            self.end_block(self.run_all(tree, tree.parts))
+    def run_block(self, tree: Tree, *, is_value: bool = False) -> Any:
+        """Run statements, the last of which may be a value, as in Rust.
 
-    def run_all(self, block: Tree, statements: Iterable[Tree]) -> dict[str, tuple[Any, int]]:
-        """Run statements; the values that names have outside, if a block declares them anew."""
-        outside: dict[str, tuple[Any, int]] = {}
-        is_scope = self.depth > 1 and block.is_one_of("scope")
-        for each in statements:
-            for name in each.declared - outside.keys() if is_scope else ():
+        Names that a block declares anew have their values outside again behind it.
+        """
+        value, outside = None, dict[str, tuple[Any, int]]()
+        is_scope = self.depth > 1 and tree.is_one_of("scope")
+        for each in tree.parts:
+            for name in syntax.declared(each.node) - outside.keys() if is_scope else ():
                 outside[name] = self.values.get(name), self.values.lines.get(name, 0)
-            self.run(each)
-        return outside
-
-    def end_block(self, outside: Mapping[str, tuple[Any, int]]) -> None:
+            if is_value and each is tree.parts[-1]:
+                value = self.tried(each)
+            else:
+                self.run(each)
         if outside:
             self.emit(self.values, outside)
-        for name, (value, line) in outside.items():
+        for name, (before, line) in outside.items():
             self.values.pop(name, None)
-            if value is not None:
-                self.values[name], self.values.lines[name] = value, line
+            if before is not None:
+                self.values[name], self.values.lines[name] = before, line
+        return value
 
     def run_assign(self, tree: Tree) -> None:
         """a = b, a += b, and a, b = c."""
@@ -461,10 +410,12 @@ class _Run:
             self.unpack(left, values[0])
         elif values:
             self.tests[left.text] = values[0]
-            if values[0].is_integer:
-                self.program.whole[self.scope.tree.node.id, left.text] = True
+            self.integers |= {left.text} if values[0].is_integer else set()
             try:
-                value = self.assigned(values[0])
+                value = self.read(values[0])
+                source = self.part(self.values, self.path(values[0]) or ("",))
+                if isinstance(source, _Record):  # another name for the same matrix, or a copy
+                    value = source if self.program.suffix in TYPES["sharing"] else deepcopy(source)
                 if values[0].kind == "list" and patterns.column_matrix.search(tree.declared_type):
                     value = self.columns(tree, value)
                 self.store(left, value, right=values[0])
@@ -473,19 +424,12 @@ class _Run:
         elif sign or tree.node.type == "assignment_expression":
             raise self.unreadable(tree)
 
-    def assigned(self, right: Tree) -> Any:
-        """The value of an assignment; another name for the same matrix, or a copy."""
-        value, source = self.read(right), self.part(self.values, self.path(right) or ())
-        if not isinstance(source, _Record) or source is self.values:
-            return value
-        return source if self.program.suffix in _SHARING else deepcopy(source)
-
     def link(self, tree: Tree) -> None:
         """Two names may share one object: a reference, a view, or a copy in C#."""
         left, right = tree.parts
-        is_view = right.kind == "index" or right.word in _VIEWS
+        word = right.called if right.kind == "call" else right.word
+        is_view = right.kind == "index" or word in TYPES["views"]
         if right.kind == "call":
-            is_view = right.called in _VIEWS
             right = right.parts[-1] if patterns.module.match(right.base) else right.owner or right
         if right.kind not in ("name", "member", "index", "unary"):
             return
@@ -504,8 +448,7 @@ class _Run:
         """mat3(...) of GLM, of which other libraries have rows, as arrays have."""
         if tree.declared_type in self.program.arrays:
             return value
-        if not self.program.is_glm:
-            raise self.unreadable(tree)
+        self.refuse_if(not self.program.is_glm, tree)
         value = _unflattened(value)
         return value.T if isinstance(value, sp.MatrixBase) and value.rows == value.cols else value
 
@@ -535,16 +478,13 @@ class _Run:
     def store(self, left: Tree, value: Any, right: Tree | None = None) -> None:
         """An assignment to a name, a member, or an entry."""
         path = self.path(left)
-        if path is None:
-            raise self.unreadable(left)
+        self.refuse_if(not path, left)
         if isinstance(value, sp.MatrixBase):
             value = value[0] if len(value) == 1 else value
         if self.holds_integers(path) and not getattr(value, "is_Integer", False):
-            reason = f"{path[0]} holds whole numbers"
             if getattr(value, "free_symbols", ()) and value.has(sp.Function):
-                fault = Formula(lines=(left.line,), name=path[0], reason=reason)
-                self.formulas += [fault] * (reason not in self.emitted)
-                self.emitted.add(reason)
+                fault = _fault(left.line, f"{path[0]} holds whole numbers", path[0])
+                self.formulas += [fault] * (path[0] not in [f.name for f in self.formulas])
             raise self.unreadable(left, "is rounded")
         if _is_scalar(value):
             path = tuple(key for key in path if key != _ALL)  # of a batch
@@ -552,7 +492,7 @@ class _Run:
         while path[-1] == _ALL and len(path) > 1:
             path = path[:-1]
         if isinstance(value, _Record) and any(isinstance(key, slice) for key in path):
-            value = _settled(value)
+            value = value.whole()[0]
         if self.by_columns(path) and len(path) > 1 and isinstance(value, sp.MatrixBase):
             raise self.unreadable(left, "may be a column")
         own = self.part(self.values, path)
@@ -571,7 +511,7 @@ class _Run:
         place = next((n for n, key in enumerate(path) if isinstance(key, slice)), None)
         if place is not None:
             whole, start = as_matrix(value), path[place].start or 0
-            parts = [*whole] if whole.cols == 1 else [whole[k, :].T for k in range(whole.rows)]
+            parts = _lines(whole)
             if len(whole) == 1 or path[place].stop not in (None, start + len(parts)):
                 raise ExpressionError("a block of another size")
             for k, part in enumerate(parts, start):
@@ -586,7 +526,7 @@ class _Run:
                 record.lines[key] = line
                 part = record[key] = _Record({} if is_new else {None: others}, line)
             record = part
-        record[path[-1]] = _record(value, line) if isinstance(value, sp.MatrixBase) else value
+        record[path[-1]] = _record(value, line)
         record.lines[path[-1]] = line
 
     def renamed(self, path: Path, value: sp.Expr) -> sp.Expr:
@@ -604,7 +544,10 @@ class _Run:
             is_unit = ratio.is_number and ratio.is_finite
             if is_unit and abs(complex(ratio) * 180 / math.pi - 1) < 1e-3:  # radians from degrees
                 return own
-            if is_length(1 / ratio) and self.are_components(own, ratio.free_symbols):
+            symbols = ratio.free_symbols
+            is_part = own.free_symbols <= symbols and symbols.isdisjoint(self.normalised)
+            names = tuple((s, s.name) for s in symbols if is_part and is_length(1 / ratio))
+            if any(len(each) == 1 and len(each[0]) > 2 for each in grouped(names)):
                 symbol = self.symbol_for(path, None)
                 self.components.add(symbol)
                 self.normalised.add(symbol)
@@ -615,16 +558,8 @@ class _Run:
             return value
         functions = value.atoms(sp.Function) - value.atoms(sp.sin, sp.cos, sp.tan)
         is_sum = is_first and bool(value.is_Add or functions)
-        is_long = _size(value) > _LONGEST or (value.is_Pow and value.exp == sp.Rational(1, 2))
+        is_long = _size(value) > limits.longest or (value.is_Pow and value.exp == sp.Rational(1, 2))
         return self.symbol_for(path, value) if is_long or is_sum or value.is_number else value
-
-    def are_components(self, own: sp.Expr, symbols: set[sp.Basic]) -> bool:
-        """Whether these are all components of a vector, none of which has been normalised."""
-        roles = [role for s in symbols for role in _roles(str(s)) if role[0] >= 0]
-        stems = {role[:2] for role in roles if own.free_symbols <= symbols}
-        indices = [frozenset(i for *stem, i in roles if (*stem,) == each) for each in stems]
-        are_all = any(each in _COMPLETE and len(each) == len(symbols) for each in indices)
-        return are_all and not symbols & self.normalised
 
     def symbol_for(self, path: Path, value: sp.Expr | None, line: int = 0) -> sp.Symbol:
         """A symbol for a long value, or for one that is not read (None)."""
@@ -638,10 +573,10 @@ class _Run:
 
     def expanded(self, value: Any) -> Any:
         """An expression or a matrix with long values for their symbols."""
-        for _ in range(_LONG_IN_LONG):
-            symbols = value.free_symbols
-            parts = {s: v for s in symbols if (v := self.definitions.get(s)) is not None}
-            if not parts or _size(value) > _MOST_PARTS:
+        for _ in range(limits.long_in_long):
+            defined = ((s, self.definitions.get(s)) for s in value.free_symbols)
+            parts = {s: v for s, v in defined if v is not None}
+            if not parts or _size(value) > limits.most_parts:
                 break
             value = value.xreplace(parts)
         return value
@@ -697,7 +632,8 @@ class _Run:
     def forget(self, tree: Tree) -> None:
         """All names that are written to in a statement become unread, if they have been used."""
         own = self.written_in([tree] if tree.kind == "assign" else [])
-        self.become_unread(self.written_in([tree, *tree.changing]) - own, tree.line)
+        changing = [tree, *walk(tree.node, "assign", "call", "binary")]
+        self.become_unread(self.written_in(changing) - own, tree.line)
         self.become_unread(own, tree.line, is_new=True)
 
     run_error = forget
@@ -708,26 +644,20 @@ class _Run:
         for tree in trees:
             if tree.kind == "call":
                 paths |= self.reached(tree)
-            elif tree.kind == "outer":
-                paths |= {(each.word,) for each in tree.parts}
-            elif tree.kind == "assign" or (tree.kind == "binary" and tree.word == "<<"):
-                paths |= set(map(self.written, tree.parts[0].targets if tree.parts else ()))
+            elif tree.kind in ("assign", "outer") or (tree.kind == "binary" and tree.word == "<<"):
+                first = tree.parts[0].targets if tree.parts else []
+                paths |= {*map(self.written, tree.parts if tree.kind == "outer" else first)}
         return paths - {()}
 
     def written(self, left: Tree) -> Path:
         """The name that an assignment writes to, also through parts that are not understood."""
-        tree: Tree | None = left
-        paths, place = self.program.written, left.node.id
-        while tree is not None and place not in paths:
-            if path := self.path(tree):
-                ends = (n for n, key in enumerate(path) if not isinstance(key, str))
-                paths[place] = path[: next(ends, len(path))]
-            tree = next(iter(tree.parts), None)
-        return paths.setdefault(place, ())
+        while not (path := self.path(left)) and left.parts:
+            left = left.parts[0]
+        return tuple(takewhile(lambda key: isinstance(key, str), path))
 
     def run_if(self, tree: Tree) -> None:
         """if, #if, switch, and handlers of exceptions: each run takes one branch, or none."""
-        self.program.steps["read"] += len(self.values) // _NAMES_A_STEP
+        self.program.steps["read"] += len(self.values) // limits.names_a_step
         choice = self.scope.choice(tree.node, tree.parts)
         block = tree.parts[choice]
         self.run(block)
@@ -754,28 +684,25 @@ class _Run:
         self.end = "break"
 
     def run_return(self, tree: Tree) -> None:
-        is_raised = tree.kind == "return" and not tree.node.type.startswith("return")
-        values = [tree] if tree.kind != "return" else tree.parts[: not is_raised]
-        for value in values:
+        for value in tree.parts:
             self.results.append(result := self.tried(value))
-            if result is not None and self.path(value) is None:
+            if result is not None and not self.path(value):
                 self.add(_RETURNED, result, value.line)
             elif result is None and patterns.may_be_matrix.search(value.text):
-                fault = Formula(lines=(value.line,), name=_RETURNED, reason=self.reason)
-                self.formulas.append(fault)
+                self.formulas.append(_fault(value.line, self.reason, _RETURNED))
+        self.run_raise(tree)
+
+    def run_raise(self, _: Tree) -> None:
         self.emit(self.values)
         self.end = "return"
 
     def run_call(self, tree: Tree) -> None:
         """m.set(...) is an assignment; other calls may change their object and matrices."""
         name, nodes, meaning = tree.called, tree.parts[1:], CALLS.get(tree.called)
-        target = tree.owner or (nodes[-1] if nodes and meaning else None)
-        value: Any = None
+        target = tree.owner or (nodes[-1] if nodes and meaning else Tree(tree.node, "this"))
+        is_static, value = "::" in tree.parts[0].text, None  # of a type, not of an object
         if re.search("sin_?cos", name, re.IGNORECASE) and len(nodes) == 3:
             self.sine_and_cosine(nodes)
-            return
-        if "::" in tree.parts[0].text:  # of a type, not of an object
-            self.tried(tree)
             return
         if meaning == "set_unit":
             value = sp.ImmutableMatrix(sp.eye(4))
@@ -785,49 +712,43 @@ class _Run:
             factor, matrix = map(self.tried, nodes[:2])
             if _is_scalar(factor) and isinstance(matrix, sp.MatrixBase):
                 target, value = nodes[2], factor * matrix
-        elif meaning is None and re.match("set|make|init", name, re.IGNORECASE):
-            values = self.entries(nodes)
-            value = rows(values) if len(values) in _SIZES and None not in values else None
-        if value is not None and (target is not None or tree.owner is None):
-            self.store(target or Tree(tree.node, "this"), value)
+        elif not (meaning or is_static) and re.match("set|make|init", name, re.IGNORECASE):
+            value = self.built(nodes)[1]
+        if value is not None:
+            self.store(target, value)
             return
-        if patterns.may_be_matrix.search(tree.text):
+        if is_static or patterns.may_be_matrix.search(tree.text):
             self.tried(tree)
-        if not patterns.harmless.search(f"{tree.base}.{name}"):
+        if not (is_static or patterns.harmless.search(f"{tree.base}.{name}")):
             self.become_unread(self.reached(tree), tree.line)
 
     def sine_and_cosine(self, nodes: Sequence[Tree]) -> None:
         """sincos(a, &s, &c), sincos(a, out s, out c), or SinCos(&s, &c, a)."""
         results = [each for each in nodes if each.is_reference]
         results = results if len(results) == 2 else [*nodes[1:]]
-        (angle,) = (self.tried(each) for each in nodes if each not in results)
+        angle = [self.tried(each) for each in nodes if each not in results]
+        self.become_unread(map(self.written, results), nodes[0].line, is_new=True)
         for left, word in zip(results, ("sin", "cos"), strict=True):
-            if angle is None:
-                self.become_unread([self.written(left)], left.line, is_new=True)
-            else:
-                self.store(left, called(word, [angle]))
+            self.store(left, called(word, angle))
 
     def reached(self, tree: Tree) -> set[Path]:
         """Paths that a call may change: its object, matrices, and &name."""
         by_value = self.first or (self.program.suffix == ".rs" and "&mut" not in tree.text)
         trees = [tree.owner, *tree.parts[1 : 1 if by_value else None]]
         paths = {self.written(each): each.is_reference for each in trees if each is not None}
-        paths.pop((), None)
-        matrices = {p for p in paths if isinstance(self.part(self.values, p), _Record)}
+        matrices = {p for p in paths if p and isinstance(self.part(self.values, p), _Record)}
         return matrices | {p for p, is_reference in paths.items() if is_reference}
 
     def run_comma(self, tree: Tree) -> None:
         """a = b, c = d; or R << a, b, c."""
-        first, *others = tree.parts
-        if first.kind == "binary":
-            self.run_binary(first, others)
-        for each in tree.parts if first.kind != "binary" else ():
-            self.run(each)
+        first, *others = tree.parts if tree.kind == "comma" else [tree]
+        if first.kind == "binary" and first.word == "<<":
+            left, *right = *first.parts, *others
+            self.store(left, _unflattened(rows([*map(self.read, right)])))
+        else:
+            self.run_block(Tree(tree.node, own=[t for t in tree.parts if t.kind != "binary"]))
 
-    def run_binary(self, tree: Tree, others: Sequence[Tree] = ()) -> None:
-        if tree.word == "<<":
-            left, right = tree.parts
-            self.store(left, _unflattened(rows([self.read(each) for each in (right, *others)])))
+    run_binary = run_comma
 
     # Formulas
 
@@ -844,24 +765,22 @@ class _Run:
             part, own = record.get(key), (*path, key)
             if key is None or not isinstance(part, _Record) or key not in record.lines:
                 continue
-            matrix = _settled(part)
+            matrix, lines = part.whole()
             if matrix is not None and len(matrix) > 2:
-                self.add(_dotted(own), matrix, *part.places(), is_final=is_final)
+                self.add(_dotted(own), matrix, *lines, is_final=is_final)
             else:
                 self.emit(part, path=own, is_final=is_final)
             if matrix is not None and matrix.shape == (3, 1) and _is_scalar(record.get("w")):
-                lines = record.lines["w"], *part.places()
                 whole = sp.Matrix([record["w"], *matrix])  # it may be a quaternion
-                self.add(f"w, {_dotted(own)}", whole, *lines, is_final=False)
+                self.add(f"w, {_dotted(own)}", whole, record.lines["w"], *lines, is_final=False)
         for kind, names in _groups(record):
             values: list[Any] = [self.definitions.get(record[n], record[n]) for n in names]
             if None in values:
                 continue
             # At a pole, an angle is a number: this is no formula, but another case of one.
             are_angles = all(value.has(*_INVERSE) or value.is_number for value in values)
-            is_change = bool(patterns.angles_name.fullmatch(names[0])) and all(
-                map(self.is_step, values)
-            )
+            is_angle = patterns.angles_name.fullmatch(names[0])
+            is_change = is_angle and all(map(self.is_step, values))
             if kind > -2 or are_angles or is_change:
                 stem = _dotted(path) or re.sub(r"\d+$", "", names[0])
                 name = ", ".join(names) if len(names) < 9 else stem
@@ -873,14 +792,12 @@ class _Run:
         if self.inlined or not isinstance(value, sp.MatrixBase) or len(value) < 2:
             return
         value = sp.ImmutableMatrix(value)
-        if (name, value) in self.emitted:
+        self.program.steps["formulas"] += (name, value) not in self.emitted
+        if (name, value) in self.emitted or self.program.steps["formulas"] > limits.most_formulas:
             return
         self.emitted.add((name, value))
-        self.program.steps["formulas"] += 1
-        if self.program.steps["formulas"] > _MOST_FORMULAS:
-            return
         is_state = value.cols == 1 and _unflattened(value).shape in (value.shape, (4, 3))
-        if is_state and 3 < value.rows <= _LONGEST_STATE:  # angles and rates
+        if is_state and 3 < value.rows <= limits.longest_state:  # angles and rates
             for k in range(value.rows - 2):
                 part = value[k : k + 3, :]
                 if len(value) > 4 or are_angles(part):
@@ -888,7 +805,7 @@ class _Run:
         is_flat = value.shape != _unflattened(value).shape
         value = _unbounded(_unflattened(value))
         whole = _unbounded(self.expanded(value))
-        whole = value if _size(whole) > _MOST_PARTS else whole
+        whole = value if _size(whole) > limits.most_parts else whole
         symbols = whole.free_symbols | value.free_symbols
         inputs = whole.free_symbols - self.components
         unread = {s.name for s in inputs if self.definitions.get(s, s) is None}
@@ -907,13 +824,12 @@ class _Run:
         self.depth += 1
         self.program.steps["read"] += 1
         try:
-            if self.depth > _DEEPEST:
-                raise self.unreadable(tree, "is nested too deeply")
-            if self.program.steps["read"] > _MOST_STEPS:
+            self.refuse_if(self.depth > limits.deepest, tree, "is nested too deeply")
+            if self.program.steps["read"] > limits.most_steps:
                 raise self.unreadable(tree, "is not read, since the file is too long")
             value = getattr(self, f"read_{tree.kind}", self.named)(tree)
-            if isinstance(value, sp.MatrixBase) and _size(value) > _MOST_PARTS:
-                self.program.steps["read"] += _STEPS_OF_LONG
+            if isinstance(value, sp.MatrixBase) and _size(value) > limits.most_parts:
+                self.program.steps["read"] += limits.steps_of_long
             return value
         except ExpressionError as error:
             if str(error).startswith("`"):
@@ -935,15 +851,13 @@ class _Run:
         digits = patterns.numbers.fullmatch(tree.text) if not tree.parts else None
         if digits:
             text = digits[2].replace("_", "")
-            value = language.number(text if text.isdigit() else repr(float(text)))
-            return -value if digits[1] else value
-        if not tree.parts or self.program.suffix != ".rs":
-            return self.named(tree)
-        outside = self.run_all(tree, tree.parts[:-1])
-        try:
-            return self.read(tree.parts[-1])
-        finally:
-            self.end_block(outside)
+            text = text if text.isdigit() else repr(float(text))
+            self.refuse_if(text == "inf" or len(text) > limits.longest_number, tree)
+            return sp.Rational(digits[1] + text)
+        is_rust = tree.parts and self.program.suffix == ".rs"
+        value = self.run_block(tree, is_value=True) if is_rust else self.named(tree)
+        self.refuse_if(value is None, tree)
+        return value
 
     def read_index(self, tree: Tree) -> Any:
         is_joined = tree.parts[0].word in ("r_", "c_")  # np.r_[w, v]
@@ -958,8 +872,7 @@ class _Run:
         return self.read(tree.parts[0])
 
     def read_list(self, tree: Tree) -> Any:
-        if not 0 < len(tree.parts) <= _LONGEST_LIST:
-            raise self.unreadable(tree)
+        self.refuse_if(not 0 < len(tree.parts) <= limits.longest_list, tree)
         values = [self.read(each) for each in tree.parts]
         return values[0] if tree.node.type == "argument_list" and len(values) == 1 else rows(values)
 
@@ -967,8 +880,7 @@ class _Run:
         """{w: a, x: b, y: c, z: d} of JavaScript, and Quaternion { x: a, ... } of Rust."""
         if len(tree.parts) == 1:
             return self.read(tree.parts[0])
-        if frozenset(map(str.lower, tree.keys)) not in _COMPLETE:
-            raise self.unreadable(tree)
+        self.refuse_if(frozenset(map(str.lower, tree.keys)) not in _COMPLETE, tree)
         return rows([self.read(each) for each in tree.parts])
 
     def read_matrix(self, tree: Tree) -> Any:
@@ -976,21 +888,17 @@ class _Run:
         return rows(lines) if len(lines) != 1 else lines[0]
 
     def read_row(self, tree: Tree) -> Any:
-        cells = [as_matrix(self.read(cell)) for cell in tree.parts]
-        if len({cell.rows for cell in cells}) != 1:
-            raise self.unreadable(tree)
-        return sp.ImmutableMatrix(sp.Matrix.hstack(*cells))
+        return called("stack", [as_matrix(self.read(cell)).T for cell in tree.parts]).T
 
     def read_transposed(self, tree: Tree) -> Any:
-        value = self.read(tree.parts[0])
-        return self.transposed(value if self.first else _unflattened(value))
+        return self.transposed(self.read(tree.parts[0]))
 
     def transposed(self, value: Any) -> Any:
         """The transpose; for a name without a value another name, since it may be a matrix."""
+        if not _is_scalar(value):
+            return (value if self.first else _unflattened(value)).T
         is_number = value in self.components or self.definitions.get(value) is not None
-        if not _is_scalar(value) or not value.is_Symbol or is_number:
-            return value if _is_scalar(value) else value.T
-        return self.view(value)
+        return self.view(value) if value.is_Symbol and not is_number else value
 
     def read_member(self, tree: Tree) -> Any:
         if tree.word in ("Sin", "Cos", "Tan") and tree.parts:  # angle.Cos
@@ -1006,8 +914,7 @@ class _Run:
         return self.read(tree.parts[-1]) * (1 if tree.word == "+" else -1)
 
     def read_binary(self, tree: Tree) -> Any:
-        if len(tree.parts) != 2:
-            raise self.unreadable(tree)
+        self.refuse_if(len(tree.parts) != 2, tree)
         left, right = map(self.read, tree.parts)
         sign = tree.word
         if sign == "\\" and self.first:  # I \ v
@@ -1015,7 +922,7 @@ class _Run:
         is_turn = sign == "%" and _is_scalar(right) and (right / sp.pi).is_number
         if is_turn and self.expanded(left).has(*_INVERSE):  # the same angle
             return left
-        is_rounded = sign == "/" and self.program.suffix not in _OF_REALS and _is_scalar(right)
+        is_rounded = sign == "/" and self.program.suffix not in TYPES["real"] and _is_scalar(right)
         if is_rounded and not (left / right).is_Integer and all(map(self.is_whole, tree.parts)):
             raise self.unreadable(tree, "is a division of whole numbers, which rounds")
         if sign in ("+", "-"):
@@ -1024,9 +931,6 @@ class _Run:
             return value
         else:
             left, right = (_unflattened(each) for each in (left, right))
-        are_columns = all(getattr(side, "cols", 0) == 1 for side in (left, right))
-        if sign == "*" and are_columns and self.program.suffix in _WITH_SWIZZLES:
-            return combined("%", left, right)
         return combined(self.operation(tree, sign, left, right), left, right)
 
     def is_whole(self, tree: Tree) -> bool:
@@ -1034,17 +938,13 @@ class _Run:
         if tree.kind in ("binary", "unary"):
             return all(map(self.is_whole, tree.parts))
         is_number = patterns.whole_numbers.fullmatch(tree.text) is not None
-        return is_number or self.holds_integers(self.path(tree) or ())
+        return is_number or self.holds_integers(self.path(tree))
 
     def holds_integers(self, path: Path) -> bool:
         """Whether a name or a member is declared as a whole number, or as an array of them."""
         names = [key for key in path if isinstance(key, str)]
-        node = self.scope.tree.node
-        while len(names) == 1 and node.parent:
-            if (node.id, names[0]) in self.program.whole:
-                return self.program.whole[node.id, names[0]]
-            node = Tree(node).around
-        return bool(names) and self.program.whole.get((0, names[-1]), False)
+        whole = self.program.integers if len(names) > 1 else self.integers
+        return bool(names) and names[-1] in whole
 
     def as_vector(self, value: Any, other: Any) -> Any:
         """c v, where v has no value, in components if it is added to a vector."""
@@ -1100,13 +1000,13 @@ class _Run:
 
     def operation(self, tree: Tree, sign: str, *sides: Any) -> str:
         sign = _SIGNS.get(sign, sign) if self.first else sign
-        if sign not in ("+", "-", "*", "/", "**", "@", "%" if self.first else "*"):
-            raise self.unreadable(tree)
+        self.refuse_if(sign not in [*"+-*/@", "**", "%" if self.first else "*"], tree)
         if sign != "*" or not all(isinstance(side, sp.MatrixBase) for side in sides):
             return sign
-        if not self.program.product:
-            raise self.unreadable(tree, "is a product of matrices or of their entries")
-        return self.program.product
+        is_swizzled = self.program.suffix in TYPES["swizzling"]  # v * w, but not M * v
+        product = "%" if is_swizzled and {s.cols for s in sides} == {1} else self.program.product
+        self.refuse_if(not product, tree, "is a product of matrices or of their entries")
+        return product
 
     def read_choose(self, tree: Tree) -> Any:
         constant = tree.parts[0].constant
@@ -1118,18 +1018,19 @@ class _Run:
         """One of two values: a number that belongs to a pole or is a bound is left out."""
         values = [self.tried(each) for each in trees]
         fixed = [_is_scalar(value) and value.is_number for value in values]
-        if sum(fixed) == 1 and None not in values:
+        condition = self.tests.get(condition.text, condition)
+        is_one = sum(fixed) == 1 and None not in values
+        own, sign, number = self.sides(condition) if is_one else (None, "", None)
+        if sign:
             other, limit = (values[fixed.index(is_fixed)] for is_fixed in (False, True))
-            own, sign, number = self.sides(self.tests.get(condition.text, condition))
             if not fixed[0]:  # the number is the value if the condition is false
                 sign = sign.translate(_OPPOSITE)
             if own == _inner(other) and sign in "<>":
                 if limit == {">": 1, "<": -1}[sign] and abs(number - limit) < 0.01:
                     return _Bounded(own)
-            elif sign and self.is_pole(own, sign, number, other):
-                if not own.is_Symbol or other.free_symbols != {own} or other.has(*_INVERSE):
-                    return other
-                if abs(other.xreplace({own: sp.Float(1e-3)}) - limit) < _NEAR_LIMIT:
+            elif self.is_pole(own, sign, number, other):
+                is_other = other.free_symbols != {own} or other.has(*_INVERSE)
+                if is_other or abs(other.subs(own, 1e-3) - limit) < limits.near_limit:
                     return other
         return self.read(trees[self.scope.choice(tree.node, trees)])
 
@@ -1149,49 +1050,47 @@ class _Run:
         """Whether a value, of the same vector or matrix, has a pole where it is replaced."""
         is_near = sign == "=" or (sign == ">" and number > 0.4) or (sign == "<" and number < 0.1)
         whole, own = self.expanded(value), self.expanded(own)
-        one, other = (
-            {patterns.indices.sub("", s.name) for s in x.free_symbols} for x in (whole, own)
-        )
+        names = [{patterns.indices.sub("", s.name) for s in x.free_symbols} for x in (whole, own)]
         has_power = any(power.exp.is_negative for power in whole.atoms(sp.Pow))
-        return is_near and (has_power or whole.has(*_INVERSE)) and not one.isdisjoint(other)
+        return is_near and (has_power or whole.has(*_INVERSE)) and bool(names[0] & names[1])
 
     # Names, members and indices
 
-    def path(self, tree: Tree) -> Path | None:
-        """The path of R[0][1], q.w(), m.at(0, 1), state["phi"], self.phi or *p."""
-        is_long = tree.node.end_byte - tree.node.start_byte > _LONGEST_PLACE
+    def path(self, tree: Tree) -> Path:
+        """The path of R[0][1], q.w(), m.at(0, 1), state["phi"], self.phi or *p; () for others."""
+        is_long = tree.node.end_byte - tree.node.start_byte > limits.longest_place
         if tree.kind == "this":
             return ("this",)
         if is_long or (tree.is_reference and self.program.is_formula):  # a + * b
-            return None
+            return ()
         match tree.kind:
             case "name":
-                return (tree.word,) if tree.word else None
+                return (tree.word,) if tree.word else ()
             case "assign":
                 return self.path(tree.parts[0])
             case "unary" if tree.word in ("*", "&") and not self.program.is_formula:
                 return self.path(tree.parts[-1])
             case "member" if tree.parts:
                 path = self.path(tree.parts[0])
-                return _below(path, tree.word) if path else None
+                return _below(path, tree.word) if path else ()
             case "index":
                 return self.indexed(self.path(tree.parts[0]), tree.parts[1:])
             case "call":
                 return self.path_of_call(tree)
-        return None
+        return ()
 
-    def path_of_call(self, tree: Tree) -> Path | None:
+    def path_of_call(self, tree: Tree) -> Path:
         """A call may be an entry, R(1, 2), or a component, q.w()."""
         name, nodes, word = tree.called, tree.parts[1:], function_word(tree.called)
         owner = self.path(tree.owner) if tree.owner else ()
-        if owner is None:  # (a*b).sum(-1)
-            return None
+        if tree.owner and not owner:  # (a*b).sum(-1)
+            return ()
         if not nodes:
             match = patterns.getter.fullmatch(name)
             if name == "get" and owner and patterns.angle.fullmatch(str(owner[-1])):  # yaw.get()
                 return owner
             own = name if name in [*"WXYZ"] else match and match[1].lower()
-            return _below(owner, own) if own else None
+            return _below(owner, own) if own else ()
         if CALLS.get(name) == "entry":
             return self.indexed(owner, nodes)
         if name in ("row", "col") and len(nodes) == 1 and owner:
@@ -1201,20 +1100,20 @@ class _Run:
         is_known = word in _WORDS and not is_entry
         is_own = word in self.program.functions and not self.first
         if is_own or (is_known and self.part(self.values, (*owner, name)) is None):
-            return None
-        return self.indexed((*owner, name), nodes) if len(nodes) <= 2 + self.first else None
+            return ()
+        return self.indexed((*owner, name), nodes) if len(nodes) <= 2 + self.first else ()
 
-    def indexed(self, path: Path | None, trees: Sequence[Tree]) -> Path | None:
+    def indexed(self, path: Path, trees: Sequence[Tree]) -> Path:
         indices: list[Any] = [self.index(tree) for tree in trees]
         if not path or None in indices:
-            return None
+            return ()
         while indices[:1] == [...] or (len(indices) > 2 and indices[0] == _ALL):  # of a batch
             indices = indices[1:]
         shifted = [i - self.first if isinstance(i, int) else i for i in indices[:2]]
         is_place = all(not isinstance(i, int) or 0 <= i < 64 for i in shifted)
         if self.by_columns(path) and isinstance(path[-1], int):
             path, shifted = path[:-1], [*shifted, path[-1]]
-        return (*path, *shifted) if is_place and trees else None
+        return (*path, *shifted) if is_place and trees else ()
 
     def by_columns(self, path: Path) -> bool:
         return self.program.is_glm and path[0] not in self.program.arrays
@@ -1222,13 +1121,11 @@ class _Run:
     def index(self, tree: Tree) -> Any:
         """An index as it is written, or the key of a table."""
         text = tree.text
-        if text == "...":
-            return ...
+        if text in ("...", "-1"):  # of all before, or the last of a quaternion
+            return 3 if text == "-1" else ...
         if match := re.fullmatch(r"(\d?):(\d?)", text):
             ends = [int(end) if end else None for end in match.groups()]
             return slice(ends[0] - self.first if ends[0] else None, ends[1])
-        if text == "-1":  # of a quaternion
-            return 3
         if match := re.fullmatch(r"""["'](\w+)["']|(\d\d?)""", text):
             return match[1] or int(match[2])
         if tree.kind == "binary":
@@ -1236,15 +1133,14 @@ class _Run:
             if all(isinstance(side, int) for side in sides) and tree.word in "+-*":
                 return int(combined(tree.word, *map(sp.Integer, sides)))
         path = self.path(tree)
-        if path is None:
+        if not path:
             return None
         value: Any = self.part(self.values, path)
         value = self.definitions.get(value, value) if isinstance(value, sp.Symbol) else value
         if value is None and path[0] not in self.inputs and isinstance(path[-1], str):
-            if component := re.fullmatch("k_?([WXYZ])", path[-1]):  # Order::kW
-                return component[1].lower()
             value = self.program.constants.get(path[-1], _AXES.get(path[-1]))
-        return int(value) if isinstance(value, int | sp.Integer) else None
+        value = int(value) if isinstance(value, sp.Integer) else value
+        return value if isinstance(value, int | str) else None
 
     def part(self, value: Any, path: Path) -> Any:
         """What is stored at a path, or None."""
@@ -1257,7 +1153,7 @@ class _Run:
     def named(self, tree: Tree) -> Any:
         """A name, an entry, a component, or several: q.xyz."""
         path = self.path(tree)
-        if path is None:
+        if not path:
             for each in tree.parts if tree.kind != "function" else ():
                 self.add(_ARGUMENT, self.tried(each), each.line)
             raise self.unreadable(tree)
@@ -1270,7 +1166,7 @@ class _Run:
         start = self.values.get(path[0], sp.Symbol(path[0], real=True))
         whole = self.part(self.values, path[:-1]) if path[-1] in [*"wxyz"] else None
         is_list = isinstance(whole, _Record) and whole.keys() == {0, 1, 2, 3}
-        if is_list and self.program.suffix not in _WITH_SWIZZLES:  # in which order nobody knows
+        if is_list and self.program.suffix not in TYPES["swizzling"]:  # in which order nobody knows
             return sp.Symbol(_dotted(path), real=True)
         return self.entry(tree, start, path[1:])
 
@@ -1284,28 +1180,35 @@ class _Run:
                 return self.entry(tree, value[key], keys[1:])
             if None in value and (key is not None or len(value) == 1):  # it is not assigned
                 return self.entry(tree, value[None], keys)
-            value = _settled(value)
-        if value is None:
-            raise self.unreadable(tree, "has entries without values")
+            value = value.whole()[0]
+        self.refuse_if(value is None, tree, "has entries without values")
         if not keys:
             return value
         key, *others = keys
         letters = "xyz" if key in ("vec", "imag", "v") else key
         if isinstance(letters, str) and re.fullmatch("[xyzw]{2,4}", letters):
             return rows([self.entry(tree, value, (letter,)) for letter in letters])
+        lines: list[Any] = []
         if isinstance(value, sp.MatrixBase):
-            return self.block(tree, value, keys)
-        if key == _ALL and others:  # a column, or of a batch: q[:, 0]
+            value = _unflattened(value) if others else value
+            if others and 1 in value.shape:  # v(3, 1) of a column
+                key, others = next((k for k in keys if k not in (0, _ALL)), key), []
+            lines = _lines(value.T if value.rows == 1 else value)
+            key = "xyzw".find(key.lower()) if isinstance(key, str) else key
+        elif key == _ALL and others:  # a column, or of a batch: q[:, 0]
             if isinstance(others[0], int) and value.is_Symbol:
                 value = self.view(value, others.pop(0) + self.first)
             return self.entry(tree, value, tuple(others))
         if isinstance(key, slice):
-            numbers = range(key.start or 0, key.stop or (4 if key.start else 3))
+            of_name = range(key.start or 0, key.stop or (4 if key.start else 3))
+            numbers = range(len(lines))[key] if lines else of_name
             parts = [self.entry(tree, value, (k, *others)) for k in numbers]
             return parts[0] if len(parts) == 1 else rows(parts)
-        part = self.component(value, key + self.first if isinstance(key, int) else key)
-        if part is None:
-            raise self.unreadable(tree, "has no value")
+        if lines:
+            part = lines[key] if key in range(len(lines)) else None
+        else:
+            part = self.component(value, key + self.first if isinstance(key, int) else key)
+        self.refuse_if(part is None, tree, "has no value")
         return self.entry(tree, part, tuple(others))
 
     def component(self, value: sp.Expr, key: int | str) -> Any:
@@ -1338,58 +1241,36 @@ class _Run:
             self.unread.setdefault(part.name, self.unread.get(whole.name, 0))
         return part
 
-    def block(self, tree: Tree, matrix: sp.ImmutableMatrix, keys: Path) -> Any:
-        """An entry, or those of slices as a column or a matrix."""
-        places = ["xyzw".find(key.lower()) if isinstance(key, str) else key for key in keys]
-        if len(places) == 2:
-            matrix = _unflattened(matrix)
-        if len(places) == 2 and matrix.cols == 1:
-            places = [next((p for p in places if p not in (0, _ALL)), places[0])]
-        if len(places) == 1:
-            places = [0, *places] if matrix.rows == 1 else [*places, _ALL]
-        try:
-            part = as_matrix(matrix[tuple(places)])
-        except (IndexError, TypeError, ValueError):
-            raise self.unreadable(tree, "has no value") from None
-        part = part.T if part.rows == 1 else part
-        return part[0] if len(part) == 1 else part
-
     # Calls
 
     def read_call(self, tree: Tree) -> Any:
         """A function of numbers, a method of a matrix, a constructor, or a function of the file."""
-        if self.path(tree) is not None:  # R(0, 1), q.w()
+        if self.path(tree):  # R(0, 1), q.w()
             return self.named(tree)
-        if tree.is_integer:
-            raise self.unreadable(tree, "has whole numbers")
+        self.refuse_if(tree.is_integer, tree, "has whole numbers")
         base, arguments, word = tree.base, tree.parts[1:], tree.called
-        if tree.owner is None:
-            word = self.program.imported.get(word, word)
-            alias = _last(str(self.values.get(word, "")))  # s, c = np.sin, np.cos
+        if tree.owner is None:  # s, c = np.sin, np.cos
+            alias = _last(str(self.values.get(word, self.program.imported.get(word, ""))))
             word = alias if function_word(alias) in FUNCTIONS else word
         name = function_word(word)
         is_own = base in ("", "self", "this", "Self") and tree.called in self.program.functions
         if is_own:  # also if a library has a function of this name
             with suppress(ExpressionError):  # of a constructor
                 return self.inline(tree, tree.called, arguments)
-        meaning = "" if is_own else CALLS.get(name, "")
-        if name == "T" and tree.owner is None:  # of a template
-            meaning = "cast"
+        is_template = name == "T" and tree.owner is None and not self.program.is_formula
+        meaning = "" if is_own else "wrapper" if is_template else CALLS.get(name, "")
         nodes, is_method = arguments, not patterns.module.match(base)
         is_short = name in language.OF_NUMBERS and len(nodes) < 1 + name.startswith(
             ("pow", "atan2")
         )
         if tree.owner is not None and (
-            is_short or (is_method and meaning in _OF_OBJECTS) or base == "?"
+            is_short or (is_method and meaning in TYPES["of_objects"]) or base == "?"
         ):
             nodes = [tree.owner, *nodes]
-        is_letter = name in [*"cstCST"] and len(nodes) == 1
-        in_formula = self.program.is_formula and (name in language.OF_MATRICES or is_letter)
-        if (name in language.OF_NUMBERS or in_formula) and nodes and not is_own:
+        if name in language.OF_NUMBERS and nodes and not is_own:
             values = [self.read(each) for each in nodes]
             # SymPy takes a long argument apart, which costs as much as several expressions.
-            sizes = map(_size, values)
-            self.program.steps["read"] += 3 * sum(n for n in sizes if n > _SHORT_ARGUMENT)
+            self.program.steps["read"] += sum(3 * n for n in map(_size, values) if n > 12)
             return called(name, values)
         is_listed = bool(nodes) and (len(nodes) == 1 or nodes[0].kind in ("list", "matrix"))
         match meaning:
@@ -1397,8 +1278,6 @@ class _Run:
                 return rows([called(each, [self.read(nodes[0])]) for each in ("sin", "cos")])
             case "number" if not arguments and self.program.suffix == ".rs":  # T::zero()
                 return sp.Integer("one" in name.lower())
-            case "cast" if len(nodes) == 1:
-                return self.read(nodes[0])
             case "wrapper" if is_listed:
                 return self.read(nodes[0])
             case "same" if nodes:
@@ -1417,16 +1296,13 @@ class _Run:
                 return combined("+", combined("*", *map(self.read, nodes[:2])), self.read(nodes[2]))
             case "where" if len(nodes) == 3:
                 return self.chosen(tree, nodes[0], nodes[1:])
-            case _ if meaning in _OF_VECTORS and nodes:
+            case _ if meaning in TYPES["of_vectors"] and nodes:
                 return self.of_vectors(meaning, [self.read(each) for each in nodes])
         is_new = self.program.suffix == ".rs" and name == "new" and len(arguments) in (3, 4)
         is_new = is_new and all(each.kind == "call" for each in arguments)  # of columns
         if meaning == "stack" or patterns.by_columns.search(name) or is_new:
             return self.stacked(tree, is_new)
-        values = self.entries(arguments)
-        whole: Any = None
-        with suppress(ExpressionError):  # of matrices that do not fit
-            whole = rows(values) if len(values) in _SIZES and None not in values else None
+        values, whole = self.built(arguments)
         if patterns.built.search(f"{base}.{tree.called}"):
             if whole is not None and len(values) > 4 and self.program.is_glm and name == "new":
                 return self.columns(tree, whole)
@@ -1441,12 +1317,15 @@ class _Run:
             self.add(_ARGUMENT, value, each.line)
         raise self.unreadable(tree)
 
-    def entries(self, nodes: Sequence[Tree]) -> list[Any]:
-        """The arguments of a constructor, without a flag at the end."""
-        has_flag = len(nodes) - 1 in _SIZES and (
-            len(nodes) > 4 or nodes[-1].text in ("true", "false")
-        )
-        return [*map(self.tried, nodes[:-1] if has_flag else nodes)]
+    def built(self, nodes: Sequence[Tree]) -> tuple[list[Any], Any]:
+        """The arguments of a constructor, without a flag at the end, and the matrix of them."""
+        is_flag = len(nodes) > 4 or (nodes and nodes[-1].text in ("true", "false"))
+        count = len(nodes) - bool(is_flag and len(nodes) - 1 in _SIZES)
+        values = [*map(self.tried, nodes[:count])]
+        with suppress(ExpressionError):  # of matrices that do not fit
+            if len(values) in _SIZES and None not in values:
+                return values, rows(values)
+        return values, None
 
     def bounded(self, tree: Tree, meaning: str, values: Sequence[Any]) -> Any:
         """x of clamp(x, -1, 1), of min(1, x) or of max(-1, x), for arc sines and cosines."""
@@ -1457,8 +1336,7 @@ class _Run:
         ]
         least = 1 if re.search("min", tree.called, re.IGNORECASE) else -1
         wanted = ([0, -1, 1],) if meaning == "clamp" else ([0, least], [least, 0])
-        if signs not in wanted:
-            raise self.unreadable(tree)
+        self.refuse_if(signs not in wanted, tree)
         return _Bounded(_inner(values[signs.index(0)]))
 
     def of_vectors(self, meaning: str, values: Sequence[Any]) -> Any:
@@ -1468,11 +1346,12 @@ class _Run:
         if meaning == "dot" and values[0] == values[-1] and isinstance(values[0], sp.Symbol):
             symbol = sp.Dummy(f"{values[0]}²", positive=True)
             return self.squares.setdefault(values[0], symbol)
-        if meaning == "inv" and _is_scalar(values[0]):
-            return 1 / values[0]
-        product = self.of_tensor(*values) if (meaning, len(values)) == ("dot", 2) else None
-        if product is not None:
-            return product
+        if meaning == "inv":
+            return combined("**", _unflattened(values[0]), sp.S.NegativeOne)
+        if meaning == "T":
+            return self.transposed(values[0])
+        if (meaning, len(values)) == ("dot", 2) and (of_tensor := self.of_tensor(*values)):
+            return of_tensor
         if meaning == "cross" and len(values) > 1:
             values = [values[0], self.moment(values[1], values[0])]
         if meaning in ("cross", "dot", "C", "outer"):
@@ -1480,10 +1359,6 @@ class _Run:
             values = [self.vector(value, count) for value in values]
         if meaning == "dot" and any(as_matrix(value).cols > 1 for value in values):
             return combined("@", *map(_unflattened, values))
-        if meaning == "T":
-            return self.transposed(_unflattened(values[0]))
-        if meaning == "inv":
-            values = [_unflattened(value) for value in values]
         return called(meaning, [as_matrix(value) for value in values])
 
     def filled(self, tree: Tree) -> Any:
@@ -1501,8 +1376,7 @@ class _Run:
         axis, nodes = tree.options, tree.parts[1:]
         if len(nodes) == 2 and nodes[0].kind == "list" and re.fullmatch(r"-?\d", nodes[1].text):
             axis, nodes = f"axis={nodes[1].text}", nodes[:1]
-        if axis and not re.fullmatch(r"(axis|dim)=(0|1|-1|-2)", axis):
-            raise self.unreadable(tree)
+        self.refuse_if(axis and not re.fullmatch(r"(axis|dim)=(0|1|-1|-2)", axis), tree)
         by_columns |= bool(patterns.by_columns.search(tree.called)) ^ axis.endswith(("=1", "=-1"))
         if len(nodes) == 1 and nodes[0].kind in ("list", "matrix"):
             nodes = nodes[0].parts
@@ -1510,25 +1384,23 @@ class _Run:
         are_numbers = all(len(each) == 1 for each in parts)
         if tree.kind == "index" and are_numbers and any(each[0].is_Symbol for each in parts):
             raise self.unreadable(tree, "may be of numbers or of vectors")
-        for each in nodes if axis.endswith("=1") else ():  # of a batch, this is the axis of rows
-            part = self.tests.get(each.text, each)
-            if part.kind == "call" and patterns.other_axis.search(part.text):
-                raise self.unreadable(tree, "may be of a batch")
+        # Of a batch, 1 is the axis of rows.
+        own = [self.tests.get(each.text, each) for each in nodes if axis.endswith("=1")]
+        if any(each.kind == "call" and patterns.other_axis.search(each.text) for each in own):
+            raise self.unreadable(tree, "may be of a batch")
         if patterns.column_matrix.search(tree.called) and len(parts) in _FLAT:
             return self.columns(tree, rows([*map(sum, parts)]))
         if all(each.cols == 1 for each in parts) and len({each.rows for each in parts}) > 1:
             return sp.ImmutableMatrix(sp.Matrix.vstack(*parts))  # (w, v)
-        matrix = rows(parts)
-        if re.search("from_?col", tree.called, re.IGNORECASE):
-            matrix = _unflattened(matrix)
+        is_flat = re.search("from_?col", tree.called, re.IGNORECASE)  # but float3x3(...) has rows
+        matrix = _unflattened(rows(parts)) if is_flat else rows(parts)
         return matrix.T if by_columns and 1 not in matrix.shape else matrix
 
     def inline(self, tree: Tree, name: str, nodes: Sequence[Tree]) -> Any:
         """The value of a function of the same file."""
         fitting = self.program.functions[name].get(len(nodes), ())
         own = [each for each in fitting if each.node != self.scope.tree.node]
-        if len(own) != 1 or self.inlined >= _INLINED or not own[0].has_result:
-            raise self.unreadable(tree)
+        self.refuse_if(len(own) != 1 or self.inlined >= limits.inlined, tree)
         around = own[0].around
         is_known = around.start_byte <= tree.node.start_byte < around.end_byte
         if not tree.base and (not is_known or name in self.inputs):  # of another file
@@ -1537,35 +1409,23 @@ class _Run:
         inner, names = _Run(self.program, scope, self.inlined + 1), parameters(own[0].node)
         names = [name for name in names if name not in ("self", "this")]
         for each, node in zip(names, nodes, strict=True):
-            value = self.read(node)
-            inner.values[each] = _record(value, 0) if isinstance(value, sp.MatrixBase) else value
+            inner.put((each,), self.read(node), 0)
         inner.run_scope()
         self.scope.is_new |= scope.is_new
         is_closed = not inner.inputs - set(names) and None not in inner.definitions.values()
-        if not inner.results or None in inner.results or not is_closed:
-            raise self.unreadable(tree)
+        self.refuse_if(not inner.results or None in inner.results or not is_closed, tree)
         return inner.expanded(inner.results[0])
 
 
-def _record(matrix: sp.MatrixBase, line: int) -> _Record:
-    if matrix.cols == 1:
-        return _Record(dict(enumerate(matrix)), line)
-    lines = (matrix[k, :].T for k in range(matrix.rows))
-    return _Record({k: _record(each, line) for k, each in enumerate(lines)}, line)
+def _lines(matrix: sp.MatrixBase) -> list[Any]:
+    """The entries of a column, or rows as columns."""
+    return [*matrix] if matrix.cols == 1 else [matrix[k, :].T for k in range(matrix.rows)]
 
 
-def _settled(record: _Record, *, is_row: bool = False) -> sp.ImmutableMatrix | None:
-    """The matrix or vector in a record, if all its entries are there."""
-    order = record.order(is_row=is_row)
-    parts: list[Any] = [record[key] for key in order]
-    is_row = order == _FROM_ONE
-    parts = [_settled(p, is_row=is_row) if isinstance(p, _Record) else p for p in parts]
-    if not parts or None in parts:
-        return None
-    if all(map(_is_scalar, parts)):
-        return sp.ImmutableMatrix(parts)
-    is_regular = len({getattr(each, "shape", ()) for each in parts}) == 1 and parts[0].cols == 1
-    return sp.ImmutableMatrix([[*each] for each in parts]) if is_regular else None
+def _record(value: Any, line: int) -> Any:
+    if not isinstance(value, sp.MatrixBase):
+        return value
+    return _Record({k: _record(each, line) for k, each in enumerate(_lines(value))}, line)
 
 
 def _groups(record: _Record) -> Iterator[tuple[int, list[str]]]:
@@ -1610,13 +1470,8 @@ def _dotted(path: Path) -> str:
 
 def _last(name: str) -> str:
     """A short name of a path: phi for state.phi, q_w for q.w, R_0_1 for self.R.0.1."""
-    words = name.split(".")
-    is_own = words[0] in ("self", "this") and len(words) > 1 and not words[1].isdigit()
-    words = words[is_own:]
-    count = 1
-    while count < len(words) and re.fullmatch(r"[A-Za-z]?\d?\d?", words[-count]):
-        count += 1
-    return "_".join(words[-count:])
+    own = re.sub(r"^(?:self|this)\.(?!\d+(?:\.|$))", "", name)
+    return re.findall(r"[^.]*(?:\.[A-Za-z]?\d?\d?)*$", own)[0].replace(".", "_")
 
 
 def _short_names(symbols: Iterable[sp.Symbol]) -> dict[sp.Expr, sp.Expr]:
@@ -1670,7 +1525,7 @@ def _is_scalar(value: Any) -> bool:
 
 def _size(value: Any) -> int:
     """The number of parts; that of a sum of sums of itself is exponential, and not counted out."""
-    return sum(1 for _ in islice(sp.preorder_traversal(value), _MOST_PARTS + 1))
+    return sum(1 for _ in islice(sp.preorder_traversal(value), limits.most_parts + 1))
 
 
 def is_length(value: sp.Expr) -> bool:

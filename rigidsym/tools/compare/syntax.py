@@ -12,9 +12,9 @@ import re
 import tomllib
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cache, cached_property, lru_cache
 from importlib import import_module
-from itertools import count
+from itertools import chain, count
 from pathlib import Path
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
@@ -32,14 +32,13 @@ GRAMMARS, _KINDS, CALLS, SPELLINGS = (  # of a file, a type of node, a word, and
     {word: name for name, words in _TABLES[title].items() for word in words.split()}
     for title in ("grammars", "kinds", "words", "functions")
 )
-_TYPES = {name: frozenset(types.split()) for name, types in _TABLES["types"].items()}
+TYPES = {name: frozenset(types.split()) for name, types in _TABLES["types"].items()}
 CHANGES: dict[str, str] = _TABLES["changes"]
 patterns = SimpleNamespace(orders=[order for n in _TABLES["orders"].values() for order in n])
+limits = SimpleNamespace(**_TABLES["limits"])
 for _name, _form in _TABLES["patterns"].items():
     _pattern = [*map(re.compile, _form)] if isinstance(_form, list) else re.compile(_form)
     setattr(patterns, _name, _pattern)
-_CHUNK = 2_048  # bytes that the parser reads at once
-_MOST_STEPS = 50_000  # of the parser: a megabyte without errors takes half as many
 
 
 @cache
@@ -62,8 +61,8 @@ def parsed(text: str, suffix: str) -> Node:
     parser, data, steps = _parser(GRAMMARS[suffix]), text.encode(), count()
     try:
         root: Node = parser.parse(
-            lambda offset, _: data[offset : offset + _CHUNK],
-            progress_callback=lambda *_: next(steps) > _MOST_STEPS,
+            lambda offset, _: data[offset : offset + limits.chunk],
+            progress_callback=lambda *_: next(steps) > limits.parser_steps,
         ).root_node
     except ValueError:
         parser.reset()
@@ -81,7 +80,7 @@ def _children(node: Node | None, types: str = "") -> list[Node]:
     """The parts of a node, all or those of some types."""
     nodes = node.named_children if node is not None else []
     return [
-        c for c in nodes if (c.type in _TYPES[types] if types else c.type not in _TYPES["ignored"])
+        c for c in nodes if (c.type in TYPES[types] if types else c.type not in TYPES["ignored"])
     ]
 
 
@@ -133,19 +132,22 @@ class Tree:
         """The parts, in an order that depends on the kind."""
         if self.own is not None:
             return self.own
-        node, nodes = self.node, _children(self.node)
-        fields = _TABLES["fields"].get(self.kind, ())
+        node, fields = self.node, _TABLES["fields"].get(self.kind, ())
         parts = [part for names in fields if (part := _part(node, names)) is not None]
+        nodes = parts or _children(node)
         match self.kind:
             case "name":
                 return []
             case "call":  # the function, and its arguments
                 outer = _part(node, "arguments value initializer")
                 outer = outer or next(iter(_children(node, "arguments")), None)
-                plain = [c for c in _children(outer) if c.type not in _TYPES["keyword"]]
-                return [self._function(parts or nodes), *map(tree_of, plain)]
+                plain = [c for c in _children(outer) if c.type not in TYPES["keyword"]]
+                return [self._function(nodes), *map(tree_of, plain)]
             case "index":  # the array, and its indices
-                return [tree_of(nodes[0]), *_indices(nodes[1:])]
+                first, *trees = map(tree_of, nodes)
+                is_one = nodes[-1].type == "list"  # m[[i, j]] of Python
+                flat = (t.parts if t.kind == "list" and not is_one else [t] for t in trees)
+                return [first, *chain.from_iterable(flat)]
             case "comma":
                 while _KINDS.get(nodes[-1].type) == "comma":  # as deep as there are parts
                     nodes += _children(nodes.pop())
@@ -154,17 +156,15 @@ class Tree:
             case "member" if not parts:  # no object, if there is only a name
                 nodes = nodes[:-1]
             case "function":
-                nodes = parts or _children(node, "body")
+                return [*map(self._with_result, parts or _children(node, "body"))]
             case "assign" if len(parts) == 1 and node.type == "variable_declarator":  # C#
-                nodes = nodes[:2]
-            case "choose" | "assign" | "member":
-                nodes = parts or nodes
+                nodes = _children(node)[:2]
             case "record":  # the values
                 nodes = [_part(pair, "value right") or pair for pair in self._pairs()]
             case "if":
                 return [*self._branches()]
             case "switch":
-                cases = [each for each in below(nodes) if each.type in _TYPES["case"]]
+                cases = [each for each in below(nodes) if each.type in TYPES["case"]]
                 return [*map(tree_of, cases), Tree(node, own=[])]
         return [*map(tree_of, nodes)]
 
@@ -175,6 +175,17 @@ class Tree:
             node = outer  # MATLAB: a.b(1)
         is_member = node is outer or _part(node, "object") is not None  # Java
         return Tree(node, "member") if is_member else tree_of(nodes[0])
+
+    def _with_result(self, node: Node) -> Tree:
+        """The body of a function, whose value is its last expression in Rust, and of an arrow."""
+        body = tree_of(node)
+        if body.kind != "block":
+            return Tree(node, "return", own=[body])
+        *others, tail = body.parts or [body]
+        is_value = self.is_one_of("valued") and tail.kind != "function" and tail is not body
+        if not is_value or patterns.statement.search(tail.node.type):
+            return body
+        return Tree(node, own=[*others, Tree(tail.node, "return", own=[tail])])
 
     def _pairs(self) -> list[Node]:
         nodes = _children(_part(self.node, "body") or self.node)
@@ -198,23 +209,6 @@ class Tree:
             if constant or (block != self.node and condition is None):
                 return
         yield Tree(self.node, own=[])
-
-    @cached_property
-    def changing(self) -> list[Tree]:
-        """All trees below that may change a name."""
-        return [*walk(self.node, "assign", "call", "binary")]
-
-    @cached_property
-    def called_names(self) -> set[str]:
-        """The names of the functions that a text calls."""
-        return {*re.findall(r"\w+(?=\s*\()", self.text)}
-
-    @cached_property
-    def has_result(self) -> bool:
-        """Whether a function may have a value: one in C++ may be run for its effects only."""
-        body = _part(self.node, "body")
-        has_body = body is not None and body.type == "compound_statement"
-        return not has_body or re.search(r"\breturn\b\s*[^\s;]", self.text) is not None
 
     @property
     def constant(self) -> bool | None:
@@ -256,17 +250,10 @@ class Tree:
         return text if re.fullmatch(r"[\w.]*", text) else "?"
 
     @property
-    def declared(self) -> set[str]:
-        """The names that a statement declares for its block alone."""
-        if not self.is_one_of("local"):
-            return set()
-        return _declared(self.node)
-
-    @property
     def around(self) -> Node:
         """The class, namespace or function that contains a function, or the file."""
         node = self.node.parent or self.node
-        while node.parent and node.type not in _TYPES["around"]:
+        while node.parent and node.type not in TYPES["around"]:
             node = node.parent
         return node
 
@@ -279,28 +266,11 @@ class Tree:
         end = f"{self.options} {self.text[-30:]}"
         return bool(patterns.integer.fullmatch(text) or patterns.integer_entries.search(end))
 
-    def whole_numbers(self) -> dict[tuple[int, str], bool]:
-        """Whether names are declared as whole numbers, by the functions that declare them, or 0."""
-        names: dict[tuple[int, str], bool] = {}
-        around = [self.node]  # asking each node for its parents is quadratic in a flat tree
-        for node in below([self.node]):
-            while len(around) > 1 and node.start_byte >= around[-1].end_byte:
-                around.pop()
-            if patterns.declaration.search(node.type) and (outer := _part(node, "type")):
-                is_whole = patterns.integer.fullmatch(patterns.qualifier.sub("", _text(outer)))
-                place = around[-1].id * (_KINDS.get(around[-1].type) == "function")
-                for key in ((place, name) for name in _declared(node)):
-                    names[key] = names.get(key, False) or is_whole is not None
-            if node.type in _TYPES["around"]:
-                around.append(node)
-        return names
-
     @property
     def is_alias(self) -> bool:
         """Whether an assignment gives an object another name: auto& b = a, b = &a."""
-        parts = (_part(self.node, fields) for fields in ("declarator", "right value"))
-        types = [part.type for part in parts if part is not None]
-        return not _TYPES["alias"].isdisjoint(types) or bool(re.search(r"=\s*&", self.text))
+        of_name = "|^[&*]" if "declarator" in self.node.type else ""
+        return re.search(rf"=\s*&{of_name}", self.text) is not None
 
     @property
     def targets(self) -> list[Tree]:
@@ -308,50 +278,32 @@ class Tree:
         return self.parts if self.kind in ("list", "record") else [self]
 
     def is_one_of(self, types: str) -> bool:
-        return self.node.type in _TYPES[types]
+        return self.node.type in TYPES[types]
 
     def covers(self, byte: int) -> bool:
         """Whether a block contains this place of the text."""
         return any(p.node.start_byte <= byte < p.node.end_byte for p in self.parts or [self])
 
 
-def _declared(node: Node) -> set[str]:
-    """The names that a declaration, or a parameter, declares."""
-    inner = [c for c in node.named_children if c.type == "variable_declaration"]  # C#
-    node = next(iter(inner), node)
-    parts = [c for c in node.named_children if c.type == "variable_declarator"]
-    names: set[str] = set()
-    for own in [*node.children_by_field_name("declarator"), *parts] or [node]:
-        while part := _part(own, "declarator name pattern"):
-            own = part
-        names |= {spelled(_text(n)) for n in below([own]) if _KINDS.get(n.type) == "name"}
-    return names
-
-
-def _flat(nodes: list[Node], kind: str) -> list[Tree]:
-    trees = [*map(tree_of, nodes)]
-    return [part for tree in trees for part in (tree.parts if tree.kind == kind else [tree])]
-
-
-def _indices(nodes: list[Node]) -> list[Tree]:
-    """m[i, j] has two indices, and m[[i, j]] of Python one, which is a list."""
-    return [*map(tree_of, nodes)] if nodes and nodes[0].type == "list" else _flat(nodes, "list")
+def _names(node: Node) -> list[str]:
+    """The names that a declarator declares, without its type and its value."""
+    while part := _part(node, "declarator pattern name"):
+        node = part
+    return [spelled(_text(n)) for n in below([node]) if _KINDS.get(n.type) == "name"]
 
 
 def tree_of(node: Node) -> Tree:
     """The common tree of a node, without brackets, casts and the like around it."""
     is_reference = False
     while (kind := _KINDS.get(node.type, "block")) == "wrap":
-        is_reference |= node.type in _TYPES["reference"]
-        if node.type in _TYPES["cast"] and patterns.integer.fullmatch(
-            _text(_part(node, "type"))
-        ):  # (int)a is another number
-            return Tree(node, "cast")
+        is_reference |= node.type in TYPES["reference"]
+        if node.type in TYPES["cast"] and patterns.integer.fullmatch(_text(_part(node, "type"))):
+            return Tree(node, "cast")  # (int)a is another number
         inner = _part(node, "value declarator") or next(iter(_children(node)[-1:]), None)
         if inner is None:
             return Tree(node)
         node = inner
-    if kind == "list" and (pairs := _children(node)) and pairs[0].type in _TYPES["pair"]:
+    if kind == "list" and (pairs := _children(node)) and pairs[0].type in TYPES["pair"]:
         kind = "record"
     if kind == "member" and _children(node)[-1].type == "function_call":  # MATLAB: a.b(1)
         node, kind = _children(node)[-1], "call"
@@ -388,11 +340,30 @@ def damaged(error: Node) -> Tree:
 
 def parameters(function: Node) -> list[str]:
     """The names of the parameters of a function."""
-    types = _TYPES["parameters"]
+    types = TYPES["parameters"]
     outer = next((each for each in below(function.named_children) if each.type in types), None)
     outer = _part(function, "parameter") or outer
-    names = []
-    for each in _children(outer) or [outer] if outer is not None else ():
-        own = _part(each, "declarator pattern name") or each
-        names += [_text(n) for n in below([own]) if _KINDS.get(n.type) == "name"][:1]
-    return [*map(spelled, names)]
+    declarators = _children(outer) or [outer] if outer is not None else []
+    return [name for each in declarators for name in _names(each)[:1]]
+
+
+def declared(statement: Node) -> set[str]:
+    """The names that a statement declares for its block alone."""
+    if statement.type not in TYPES["local"]:
+        return set()
+    inner = [c for c in statement.named_children if c.type == "variable_declaration"]  # C#
+    node = next(iter(inner), statement)
+    parts = [c for c in node.named_children if c.type == "variable_declarator"]
+    declarators = [*node.children_by_field_name("declarator"), *parts] or [node]
+    return {name for each in declarators for name in _names(each)}
+
+
+@lru_cache(maxsize=256)
+def integers(text: str) -> set[str]:
+    """Names that a text declares as whole numbers, or as arrays of them."""
+    kind = f"(?<!\\w)(?:{patterns.integer.pattern})"  # and no sentence with the word `long`
+    after = r"[\s&*]+(?=(\w+\s*[=,;:)[][^;(){}]*))"  # up to the next type
+    own = rf"{kind}{after}|(\w+) *: *&?(?:mut )?{kind}(?= *[=,;)])"
+    declarations = re.finditer(own, text)
+    lists = (match[2] or match[1] for match in declarations)
+    return {name for each in lists for name in re.findall(r"(?:^|,)[\s&*]*(\w+)", each)}
