@@ -560,6 +560,8 @@ WIDER = {
     " q.z()*q.x()); t = t > 1.0 ? 1.0 : t; t = t < -1.0 ? -1.0 : t; pitch = std::asin(t);"
     " roll = atan2(2*(q.w()*q.x() + q.y()*q.z()), 1 - 2*(q.x()*q.x() + q.y()*q.y()));"
     " yaw = atan2(2*(q.w()*q.z() + q.x()*q.y()), 1 - 2*(q.y()*q.y() + q.z()*q.z())); }",
+    "o.cpp": "void f(double &pitch) { pitch = std::atan2(-R(2, 0), std::hypot(R(0, 0), R(1, 0)));\n"
+    " roll = std::atan2(R(2, 1), R(2, 2)); yaw = std::atan2(R(1, 0), R(0, 0)); }",
     "d.py": "def f(R):\n    b = np.arcsin(np.clip(-R[2, 0], -1, 1))\n"
     "    near = np.isclose(np.cos(b), 0)\n"
     "    c = np.where(near, 0, np.arctan2(R[1, 0], R[0, 0]))\n"
@@ -644,7 +646,7 @@ SAID = {
         "rotation_matrix of z",
     ),
     **{"c.js": "quaternion of x", "c.cs": "quaternion of x", "b.cpp": "rotation_matrix of z"},
-    **dict.fromkeys(("b.py", "d.js", "d.py"), "euler_angles of xyz"),
+    **dict.fromkeys(("b.py", "d.js", "d.py", "o.cpp"), "euler_angles of xyz"),
     **{"c.py": "rotated_vector", "k.py": "rotation_matrix of z", "l.py": "quaternion of ZYX"},
     **{"e.py": "rotated_vector", "g.py": "euler_angles of ZXZ", "b.cs": "quaternion_product"},
     **{"h.py": "rotation_matrix of quaternion", "i.py": "inverse_rate_matrix_body of xyz"},

@@ -63,7 +63,7 @@ OF_MATRICES: dict[str, Callable[..., Any]] = {
     "inv": lambda matrix: combined("**", matrix, sp.S.NegativeOne),
 }
 _IN_DEGREES = {f"{name}d": name for name in FUNCTIONS if re.fullmatch("a?(sin|cos|tan2?)", name)}
-OF_NUMBERS = {*FUNCTIONS, *_IN_DEGREES, "pow", "sq", "deg2rad", "rad2deg"}
+OF_NUMBERS = {*FUNCTIONS, *_IN_DEGREES, "pow", "sq", "hypot", "deg2rad", "rad2deg"}
 
 
 def function_word(name: str) -> str:
@@ -143,6 +143,8 @@ def called(name: str, values: list[Any]) -> Any:
         return combined("*", sp.pi / 180 if name == "deg2rad" else 180 / sp.pi, *values)
     if name in ("pow", "sq"):
         return combined("**", values[0], values[1] if name == "pow" else sp.Integer(2))
+    if name == "hypot":
+        return called("sqrt", [combined("+", *(called("sq", [value]) for value in values))])
     if name in OF_MATRICES:
         return _bounded(OF_MATRICES[name](*values))
     if name not in FUNCTIONS:
