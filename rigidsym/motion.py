@@ -178,6 +178,7 @@ def derive(
     torque: Sequence[sp.Expr | str] | None = None,
     first_integrals: Mapping[str, sp.Expr | str] | None = None,
     parts: Sequence[Mapping[str, Any]] | None = None,
+    fixed_point: Sequence[sp.Expr | str | float] | str | None = None,
     method: str | None = None,
     examples: Sequence[Mapping[str, Any]] | None = None,
     theory: bool = False,
@@ -191,9 +192,12 @@ def derive(
     or another distribution of mass is integrated first.
 
     A `potential` V(q, t), `forces` by coordinate ("theta": "-c*theta_dot") or a `torque` in body
-    components adds the equations of motion about a fixed point; the inertia tensor is then about
-    that point. `method` is "lagrange", with the state (q, q̇) and constraint forces that do no
-    work, or "euler", with the state (q, Ω′). `first_integrals` are claims by name, to be proved.
+    components adds the equations of motion about a fixed point. Principal moments, or a tensor
+    without a centre of mass, are then about this point. For any other body `fixed_point` is
+    needed: three components in the description of the body, (0, 0, "-l"), or "centre_of_mass";
+    its tensor is moved there by the parallel-axis theorem. `method` is "lagrange", with the state
+    (q, q̇) and constraint forces that do no work, or "euler", with the state (q, Ω′).
+    `first_integrals` are claims by name, to be proved.
     `parts` are other moving parts, {"rotation", "principal_moments"} or {"velocity", "mass"}.
     `examples` are motions that the note draws, {"parameters", "initial", "time"}; values that an
     example does not name are those of the first.
@@ -223,6 +227,7 @@ def derive(
         acting = None
         given = {"potential": potential, "forces": forces, "torque": torque, "method": method}
         given |= {"first_integrals": first_integrals, "parts": parts, "examples": examples}
+        given |= {"fixed_point": fixed_point}
         moving: dict[str, Any] = {key: e for key, e in given.items() if e is not None}
         if moving:
             if body is None:

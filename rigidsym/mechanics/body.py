@@ -48,6 +48,8 @@ class BodyValues(Values):
         super().__init__(model, body, also=particles.SYMBOLS)
         self.body: RigidBody = body
         self.has_fixed_point = has_fixed_point
+        if body.fixed_point is not None:
+            self.point = sp.Matrix(body.fixed_point)
 
     @cached_property
     def traits(self) -> frozenset[str]:
@@ -56,6 +58,7 @@ class BodyValues(Values):
             "particles": isinstance(self.body.distribution, Particles),
             "composite": isinstance(self.body.distribution, Composite),
             "fixed_point": self.has_fixed_point,
+            "stated_point": self.body.fixed_point is not None,
         }
         return super().traits | {trait for trait, holds in traits.items() if holds}
 
@@ -70,7 +73,8 @@ class BodyValues(Values):
     def moments(self) -> Moments:
         """The moments of the distribution, or equivalent ones if only the tensor is given."""
         b = self.body
-        return moments_of(b.distribution or Known(mass=b.mass, centre=b.centre, inertia=b.inertia))
+        known = Known(mass=b.mass, centre=b.centre, inertia=b.central or b.inertia)
+        return moments_of(b.distribution or known)
 
     @staticmethod
     def steiner(mass: sp.Expr, by: sp.MatrixBase) -> sp.Matrix:
@@ -98,15 +102,19 @@ class BodyValues(Values):
         m, p = self.moments, self.point
         return m.second - m.first * p.T - p * m.first.T + m.mass * p * p.T
 
+    @property
+    def arm(self) -> sp.Matrix:
+        """p − c."""
+        return self.point - self.body.centre
+
     def shifted_inertia(self) -> sp.ImmutableMatrix:
         """I′ + M (|d|² 1 − d dᵀ)."""
-        shift = self.steiner(self.body.mass, self.point - self.body.centre)
-        return sp.ImmutableMatrix(self.body.inertia + shift)
+        return sp.ImmutableMatrix(self.body.inertia + self.steiner(self.body.mass, self.arm))
 
     def moment_about_line(self) -> sp.Expr:
         """nᵀ I′ n + M |n × (p − c)|²."""
         n, body = self.direction, self.body
-        crossed = n.cross(self.point - body.centre)
+        crossed = n.cross(self.arm)
         about_centre = sp.collect((n.T * body.inertia * n)[0], [*{*body.inertia.diagonal()}])
         return about_centre + body.mass * crossed.dot(crossed)
 
@@ -286,18 +294,20 @@ def steps_of_body(
 
     With a `chain`, R and Ω′ are those that it names.
     """
-    is_fixed = (
+    is_stated = whole.fixed_point is not None
+    is_fixed = is_stated or (
         forces is not None
         and whole.distribution is None
         and not any(OF_BODY[name].of_centre for name in only if name in OF_BODY)
     )
-    wanted = only or {name for name, q in OF_BODY.items() if not (is_fixed and q.of_centre)}
+    left_out = {n for n, q in OF_BODY.items() if is_fixed and q.of_centre}
+    wanted = {*(only or OF_BODY)} - left_out
     values = (NamedRotation if chain else BodyValues)(model, whole, has_fixed_point=is_fixed)
     steps = [step for n, q in OF_BODY.items() if n in wanted and (step := values.step(q))]
     if isinstance(values, NamedRotation) and chain:
         steps = [values.renamed(step, chain) for step in steps]
     # of a body alone, all quantities that it has are asked for
-    entries = {} if BODY_ALONE in only else dict(INERTIA_QUANTITIES)
+    entries = {} if BODY_ALONE in only else dict(OF_BODY if is_stated else INERTIA_QUANTITIES)
     motion = None
     if forces is not None:
         motion = equations_of_motion(model, whole, forces, chain)
@@ -305,7 +315,8 @@ def steps_of_body(
         entries |= motion.table
     names = {step.quantity.name for step in steps}
     if absent := [q for n, q in entries.items() if n in only and n not in names]:
-        reasons = (f"no quantity {q.name}: {sentence_of(q.without)}" for q in absent)
+        whys = ((q.name, q.without or "no_free_centre") for q in absent)
+        reasons = (f"no quantity {name}: {sentence_of(why)}" for name, why in whys)
         raise QuantityError(f"{whole.name} has {'; '.join(reasons)}")
     letters = own_letters(values.arguments.values(), whole, forces)
     return values, [_in_letters(step, letters) for step in steps] if letters else steps, motion

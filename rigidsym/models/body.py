@@ -177,6 +177,8 @@ class RigidBody:
     mass: sp.Expr  # kg
     inertia: sp.ImmutableMatrix  # (3, 3), about the centre of mass, kg m²
     centre: sp.ImmutableMatrix = HERE  # (3, 1), m
+    fixed_point: sp.ImmutableMatrix | None = None  # (3, 1), m; if stated, `inertia` is about it
+    central: sp.ImmutableMatrix | None = None  # the tensor about the centre of mass, then
     parameters: tuple[Parameter, ...] = ()  # every symbol above, in the order of kernels
     source: Citation = SOURCE
     declared: tuple[Parameter, ...] = ()  # descriptions, also of symbols that only forces hold
@@ -216,7 +218,7 @@ class RigidBody:
         symbols = {parameter.symbol for parameter in self.parameters}
         if len(symbols) != len(self.parameters):
             raise BodyError("a parameter is named twice")
-        for entry in (self.mass, *self.inertia, *self.centre):
+        for entry in (self.mass, *self.inertia, *self.centre, *(self.fixed_point or ())):
             if entry.has(TIME, AppliedUndef) or entry.has(sp.I, sp.nan, sp.oo, sp.zoo):
                 raise BodyError(f"{entry} is not a real constant")
             for number in entry.atoms(sp.Float):
@@ -237,7 +239,10 @@ class RigidBody:
     def sentences(self, *, about_fixed_point: bool) -> tuple[str, ...]:
         """The body in plain sentences, to follow the convention of its rotation."""
         if about_fixed_point:
-            return (PHRASES["with_fixed_point"].format(title=self.title),)
+            place = "which may be its centre of mass"
+            if self.fixed_point is not None:
+                place = f"({', '.join(map(str, self.fixed_point))}) in its description"
+            return (PHRASES["with_fixed_point"].format(title=self.title, place=place),)
         return PHRASES["free"].format(title=self.title, mass=self.mass), PHRASES["centre"]
 
     @property
@@ -314,8 +319,9 @@ def principal_moments(
 ) -> RigidBody:
     """A body given by its principal moments A, B, C (kg m²), along its principal axes.
 
-    The moments are about the centre of mass, or about the fixed point if there are forces. The
-    mass is the symbol M by default. `parameters` describes further symbols. Raises BodyError.
+    The moments are about the centre of mass; with forces and without a stated fixed point, they are
+    about the fixed point. The mass is the symbol M by default. `parameters` describes further
+    symbols. Raises BodyError.
     """
     moments = [symbolic(moment, "a principal moment") for moment in (A, B, C)]
     return given_inertia(

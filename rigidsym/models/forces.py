@@ -15,9 +15,10 @@ from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import sympy as sp
+from sympy.core.function import AppliedUndef
 
 from rigidsym.errors import ModelError, offer
-from rigidsym.models.body import Parameter, RigidBody
+from rigidsym.models.body import Body, Parameter, RigidBody
 from rigidsym.models.library import rotation_from
 from rigidsym.models.rotation import (
     OMEGA_BODY,
@@ -107,6 +108,7 @@ _OF_MOTION = (  # names of quantities, which are no constants
 )
 _MOMENT = "principal moment of inertia"
 _NONE: Mapping[Any, sp.Expr] = MappingProxyType({})
+CENTRE = "centre_of_mass"
 
 
 class MovingPart(NamedTuple):
@@ -135,6 +137,8 @@ class Forces:
     first_integrals: Mapping[str, sp.Expr] = field(default_factory=lambda: _NONE)  # claimed
     method: str = ""  # one of METHODS; "": Lagrange's where the coordinates are free
     parts: tuple[MovingPart, ...] = ()
+    # (3,), m, in components of the description; () for the centre of mass; None: not stated
+    fixed_point: tuple[sp.Expr, ...] | None = None
     examples: tuple[Example, ...] = ()  # motions with numbers
 
     def leave_free(self, model: RotationModel) -> bool:
@@ -161,6 +165,7 @@ class Forces:
             potential=function(self.potential),
             generalised={q: function(force) for q, force in self.generalised.items()},
             torque=each(self.torque),
+            fixed_point=self.fixed_point and each(self.fixed_point),
             first_integrals={name: function(e) for name, e in self.first_integrals.items()},
             parts=tuple(
                 part._replace(velocity=each(part.velocity), inertia=each(part.inertia))
@@ -170,7 +175,8 @@ class Forces:
 
     def in_symbols_of(self, body: RigidBody) -> Forces:
         """With the symbols of the body where names are the same: m for a positive m."""
-        own = {symbol.name: symbol for symbol in body.inertia.free_symbols | body.mass.free_symbols}
+        entries = (body.mass, *body.inertia, *body.centre)
+        own = {symbol.name: symbol for entry in entries for symbol in entry.free_symbols}
         # SymPy distinguishes a positive m from one without assumptions, though both print as m.
         return self.map(
             lambda e: e.xreplace({s: own[s.name] for s in e.free_symbols if s.name in own})
@@ -179,27 +185,10 @@ class Forces:
     def with_parameters(self, body: RigidBody, model: RotationModel) -> RigidBody:
         """The body with the constants of the forces among its parameters.
 
-        Raises ModelError for a potential that depends on the rates or on no coordinate, for parts
-        that depend on the time, and for an example with a value of another constant.
+        Raises ModelError for a fixed point that is not stated, and for an example with a value of
+        another constant.
         """
-        depends = f"the potential {as_typed(self.potential)} depends on"
-        if self.potential.has(sp.Derivative, *OMEGA_BODY):
-            raise ModelError(f"{depends} rates; expected V(q, t)")
-        if self.potential.free_symbols and not self.potential.has(*model.coordinates):
-            plain = [*map(as_typed, model.coordinates)]
-            own = sorted(symbol.name for symbol in self.potential.free_symbols)
-            near = [name for each in own for name in get_close_matches(each, plain, n=1)]
-            hint = f" (did you mean {near[0]}?)" if near else ""
-            remedy = f"expected one of them{hint}, or no potential: a constant exerts no force"
-            if name := next(filter(plain.__contains__, own), ""):
-                remedy = f"{name} is a symbol here; expected a text, or the function {name}(t)"
-            raise ModelError(f"{depends} none of the coordinates {', '.join(plain)}; {remedy}")
-        for expression in self._of_parts:
-            what = "t" if depends_on_time(expression) else "Ω′"
-            if what == "t" or expression.has(*OMEGA_BODY):
-                raise ModelError(
-                    f"{as_typed(expression)} depends on {what}; expected a part that does not"
-                )
+        check_fixed_point(body, self.fixed_point)
         bound = {p.symbol for p in body.parameters} | {*model.constants, *OMEGA_BODY, TIME}
         symbols = set().union(*(expression.free_symbols for expression in self.expressions)) - bound
         constants = {str(symbol) for symbol in (bound | symbols) - {*OMEGA_BODY, TIME}}
@@ -224,10 +213,10 @@ class Forces:
     def expressions(self) -> Iterator[sp.Expr]:
         """All that acts, all that is claimed to be constant, and the parts."""
         yield from (self.potential, *self.generalised.values(), *self.torque)
-        yield from (*self.first_integrals.values(), *self._of_parts)
+        yield from (*self.first_integrals.values(), *self.of_parts, *(self.fixed_point or ()))
 
     @property
-    def _of_parts(self) -> Iterator[sp.Expr]:
+    def of_parts(self) -> Iterator[sp.Expr]:
         return (e for part in self.parts for e in (*part.velocity, *part.inertia))
 
 
@@ -239,6 +228,7 @@ def forces_on(
     torque: Sequence[sp.Expr | str] = (),
     first_integrals: Mapping[str, sp.Expr | str] = MappingProxyType({}),
     parts: Sequence[Mapping[str, Any]] = (),
+    fixed_point: Sequence[sp.Expr | str | float] | str | None = None,
     method: str = "",
     examples: Sequence[Mapping[str, Any]] = (),
 ) -> Forces:
@@ -246,8 +236,9 @@ def forces_on(
 
     In a text `theta_dot` is the rate of theta, `omega_body_1`, or its long name, a component of Ω′
     and `t` the time; other names are constants. Raises ModelError for a force on
-    what is no coordinate, for a constant with the name of a quantity or nearly that of a rate, and
-    for parts and examples that are none; ExpressionError for a text that cannot be read.
+    what is no coordinate, for a potential that depends on the rates or on no coordinate, for a
+    constant with the name of a quantity or nearly that of a rate, for parts and examples that are
+    none, and for parts that depend on the time; ExpressionError for a text that cannot be read.
     """
     coordinates = {q.func.__name__: q for q in model.coordinates}
     names = coordinates | {f"{name}_dot": sp.diff(q, TIME) for name, q in coordinates.items()}
@@ -261,17 +252,62 @@ def forces_on(
             )
     if len(torque) not in (0, 3):
         raise ModelError(f"torque: expected three components, got {len(torque)}")
+    point = () if fixed_point in (None, CENTRE) else [_read(x, names) for x in fixed_point]
+    if len(point) not in (0, 3) or any(x.has(TIME, AppliedUndef, *OMEGA_BODY) for x in point):
+        raise ModelError(
+            f'a fixed point: expected three constants or "{CENTRE}", got {fixed_point!r}'
+        )
     if method not in ("", *METHODS):
         raise ModelError(f"no method {method!r}; {offer(method, METHODS)}")
-    return Forces(
+    acting = Forces(
         potential=_read(potential, names),
         generalised={coordinates[name]: _read(force, names) for name, force in forces.items()},
         torque=tuple(_read(component, names) for component in torque),
         first_integrals={n: _read(value, names) for n, value in first_integrals.items()},
         method=method,
         parts=tuple(_part(part, names) for part in parts),
+        fixed_point=None if fixed_point is None else tuple(point),
         examples=tuple(examples_of(model, examples)),
     )
+    depends = f"the potential {as_typed(acting.potential)} depends on"
+    if acting.potential.has(sp.Derivative, *OMEGA_BODY):
+        raise ModelError(f"{depends} rates; expected V(q, t)")
+    if acting.potential.free_symbols and not acting.potential.has(*model.coordinates):
+        plain = [*map(as_typed, model.coordinates)]
+        own = sorted(symbol.name for symbol in acting.potential.free_symbols)
+        near = [name for each in own for name in get_close_matches(each, plain, n=1)]
+        hint = f" (did you mean {near[0]}?)" if near else ""
+        remedy = f"expected one of them{hint}, or no potential: a constant exerts no force"
+        if name := next(filter(plain.__contains__, own), ""):
+            remedy = f"{name} is a symbol here; expected a text, or the function {name}(t)"
+        raise ModelError(f"{depends} none of the coordinates {', '.join(plain)}; {remedy}")
+    for expression in acting.of_parts:
+        what = "t" if depends_on_time(expression) else "Ω′"
+        if what == "t" or expression.has(*OMEGA_BODY):
+            raise ModelError(
+                f"{as_typed(expression)} depends on {what}; expected a part that does not"
+            )
+    return acting
+
+
+def check_fixed_point(body: Body, point: object) -> None:
+    """Raises ModelError if none is stated for a body whose description has a centre of mass.
+
+    A tensor by itself is about the fixed point.
+    """
+    is_described = (
+        not isinstance(body, RigidBody)
+        or body.distribution
+        or body.drawn
+        or any(body.centre)
+        or "centre" in body.request.get("body", ())
+    )
+    if point is None and is_described:
+        raise ModelError(
+            "no fixed point, and the centre of mass in the description of the body may be elsewhere; "
+            "expected fixed_point = [0, 0, 0] or another point of the description about which the "
+            f'body turns, or fixed_point = "{CENTRE}"'
+        )
 
 
 def _part(entry: Mapping[str, Any], names: Mapping[str, sp.Expr]) -> MovingPart:
@@ -303,7 +339,8 @@ def _part(entry: Mapping[str, Any], names: Mapping[str, sp.Expr]) -> MovingPart:
     )
 
 
-def _read(value: sp.Expr | str | int, names: Mapping[str, sp.Expr]) -> sp.Expr:
+def _read(value: sp.Expr | str | float, names: Mapping[str, sp.Expr]) -> sp.Expr:
+    value = str(value) if isinstance(value, float) else value  # 0.1 is 1/10
     if isinstance(value, str):
         for name in set(names_in(value)) - set(names):
             _check_spelling(name, names)

@@ -46,7 +46,7 @@ def in_names(derivation: Derivation) -> tuple[Derivation, Parts]:
     from rigidsym.mechanics.dynamics.flow import free_turning  # with all that bodies need
 
     is_short = all(entry.is_Atom for entry in body.inertia)
-    has_offset = any(body.centre)
+    has_offset = any(body.centre) and body.fixed_point is None
     own = own_names(derivation.arguments, body, derivation.forces)
     moments = [] if is_short else [sp.Symbol(own[f"I_{k}"]) for k in (1, 2, 3)]
     mass = body.mass if isinstance(body.mass, sp.Symbol) else sp.Symbol(own["M"])

@@ -58,7 +58,7 @@ def with_motion(derivation: Derivation) -> Derivation:
         )
     names = {step.quantity.name for step in derivation.steps} | {*derivation.functions}
     names |= {"first_integrals"} if not derivation.first_integrals else set()
-    forces = derivation.forces or Forces()
+    forces = derivation.forces or Forces(fixed_point=())
     if derivation.forces is None or not names.issuperset(needed(forces.parts)):
         return derive(derivation.model, needed(forces.parts), body=body, forces=forces)
     return derivation

@@ -15,11 +15,11 @@ from rigidsym.kernels.lowering.derivatives import read_request, read_requests
 from rigidsym.kernels.targets import TARGETS
 from rigidsym.mechanics.quantities import check_quantity
 from rigidsym.mechanics.quantities.mass import BODY_ALONE, OF_BODY_ALONE
-from rigidsym.models.forces import forces_on
+from rigidsym.models.forces import check_fixed_point, forces_on
 from rigidsym.models.library import rotation_from, rotation_given
 from rigidsym.models.rotation import RotationModel
 from rigidsym.motion import Notation
-from rigidsym.spec.body_table import read_body
+from rigidsym.spec.body_table import Body, read_body
 from rigidsym.spec.derivation_spec import DerivationSpec
 from rigidsym.spec.faults import Place
 from rigidsym.spec.schema import checked, schema_of
@@ -128,6 +128,9 @@ def _spec(
             for key, value in dynamics.items():
                 with place.at("dynamics", key).noting():
                     forces_on(model, **{key: value})
+        if isinstance(body, Body):
+            with place.at("dynamics", "fixed_point").noting():
+                check_fixed_point(body, dynamics.get("fixed_point"))
     for key in ("parameters", "dynamics"):
         if data.get(key) and "body" not in data:
             place.at(key).fault("expected [body] as well")

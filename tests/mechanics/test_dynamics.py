@@ -16,11 +16,13 @@ from helpers.motions import solves_lagrange, values_for
 from helpers.node import load
 from helpers.target_modules import EVERY
 from helpers.witness import agree, evaluate, mp
-from rigidsym.errors import Defect
+from rigidsym.errors import Defect, ModelError, QuantityError
 from rigidsym.mechanics.dynamics import tree
 from rigidsym.mechanics.dynamics.lagrange import LagrangeEquations
 from rigidsym.mechanics.quantities.dynamics import bias_vector
+from rigidsym.models.body import given_inertia
 from rigidsym.models.forces import Forces
+from rigidsym.models.rotation import TIME
 
 A, B, C = sp.symbols("A B C")
 TOP = "m*g*l*cos(theta)"
@@ -50,6 +52,37 @@ def test_accelerations_are_those_of_sympy(sequence, moments, potential, forces):
     q = motion.model.coordinates
     acting = [read(forces.get(c.func.__name__, "0"), q) for c in q]
     assert solves_lagrange(motion, motion.lagrangian, sp.Matrix(acting))
+
+
+@pytest.mark.parametrize("point", [(0, 0, "-l"), (0.25, "d", 0)], ids=str)
+def test_a_stated_fixed_point_is_that_of_sympy(point):
+    """T = ½ M |ṙ_C|² + ½ Ω′ᵀ I′_C Ω′ with r_C = R (c − p), which knows no parallel axes."""
+    a, b, d, g, length, mass = sp.symbols("a b d g l M")
+    exact = {"-l": -length, "d": d, 0.25: sp.Rational(1, 4), 0: 0}
+    arm, tensor = sp.Matrix([a, 0, b]) - sp.Matrix([exact[x] for x in point]), sp.diag(A, B, C)
+    body = given_inertia(tensor, centre=sp.Matrix([a, 0, b]), mass=mass)
+    model = rs.EulerAngles("ZXZ")
+    position = model.matrix * arm
+    acting = {"body": body, "potential": mass * g * position[2]}
+    names = ("angular_velocity_body", "inertia_tensor", "accelerations")
+    motion = rs.derive(model, names, **acting, fixed_point=point)
+    assert motion.is_proved
+    velocity, omega = position.diff(TIME), motion.angular_velocity_body
+    kinetic = (mass * velocity.dot(velocity) + (omega.T * tensor * omega)[0]) / 2
+    assert solves_lagrange(motion, kinetic - mass * g * position[2])
+    for name in ("kinetic_energy", "inertia_tensor_point"):
+        with pytest.raises(QuantityError, match="centre of mass that moves freely"):
+            rs.derive(model, name, **acting, fixed_point=point)
+    with pytest.raises(ModelError, match=r"no fixed point.* expected fixed_point"):
+        rs.derive(model, **acting)
+
+
+def test_a_body_that_moves_freely_turns_about_its_centre_of_mass():
+    body = rs.solid("cone")
+    names, acting = ("energy", "rotational_energy"), {"body": body, "potential": 0}
+    free = rs.derive("ZXZ", names, **acting, fixed_point="centre_of_mass")
+    about = rs.derive("ZXZ", names, **acting, fixed_point=[*body.centre])
+    assert free.energy == about.energy == free.rotational_energy
 
 
 def read(force: str, coordinates) -> sp.Expr:

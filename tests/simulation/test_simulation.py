@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import mpmath as mp
@@ -17,8 +18,10 @@ from helpers.witness import newton_euler
 from rigidsym.errors import LimitReached, ModelError
 from rigidsym.models.body import Parameter
 from rigidsym.models.library import rotation_from
+from rigidsym.pipeline import motion_of
 from rigidsym.simulation.free_body import free_motion
 from rigidsym.simulation.problem import NEEDED
+from rigidsym.spec.derivation_file import read_spec
 
 A, C = sp.symbols("A C")
 TOP = {"A": 1.3, "C": 0.7, "m": 2.0, "g": 9.81, "l": 0.4}
@@ -30,6 +33,67 @@ def top() -> rs.Motion:
     model = rs.EulerAngles("ZXZ", angles=("phi", "theta", "psi"))
     body = rs.principal_moments(A, A, C)
     return rs.derive(model, NEEDED, body=body, potential="m*g*l*cos(theta)")
+
+
+# --- about a fixed point of a described body
+
+CONE = """
+[body]
+shape = "cone"
+radius = "r"
+height = "h"
+mass = "m"
+[dynamics]
+potential = "-3/4*m*g*h*cos(theta)"
+fixed_point = [0, 0, "h"]
+"""
+GYROSCOPE = """
+[[body.parts]]
+shape = "disc"
+radius = "r"
+mass = "m"
+at = [0, 0, "h"]
+[[body.parts]]
+shape = "rod"
+length = "h"
+mass = "mu"
+at = [0, 0, "h/2"]
+[dynamics]
+potential = "(m + mu/2)*g*h*cos(theta)"
+fixed_point = [0, 0, 0]
+"""
+SIZES = {"r": 0.1, "h": 0.2, "m": 0.5, "g": 9.81}
+
+
+@pytest.mark.parametrize(
+    ("text", "values", "moments", "weight"),
+    [
+        # the cone on its apex, from tables: A = 3/20 m r² + 3/5 m h², C = 3/10 m r²
+        (CONE, {}, (0.01275, 0.01275, 0.0015), -0.75 * 0.5 * 9.81 * 0.2),
+        # the disc at 0.2 m on a rod: A = m (r²/4 + h²) + μ h²/3, C = m r²/2
+        (
+            GYROSCOPE,
+            {"mu": 0.06},
+            (0.02205, 0.02205, 0.0025),
+            0.53 * 9.81 * 0.2,
+        ),
+    ],
+    ids=["cone", "gyroscope"],
+)
+def test_a_described_body_turns_about_its_fixed_point(text, values, moments, weight):
+    """Against Euler's equations about the pivot, with the torque of the weight."""
+    spec = read_spec(f'rotation.sequence = "ZXZ"\n{text}', source="top.toml", name="top")
+    motion = motion_of(replace(spec, quantities=NEEDED))
+    start = {"theta": 0.6, "psi_dot": 60, "theta_dot": 1}
+    found = motion.simulate(start, {**SIZES, **values}, 1.0)
+    third, cosine, sine = np.array([0, 0, 1.0]), np.cos(0.6), np.sin(0.6)
+    turned = [[1, 0, 0], [0, cosine, -sine], [0, sine, cosine]]
+    # the weight at the distance d: d e′ × Rᵀ (0, 0, −M g)
+    omega, matrices = newton_euler(
+        moments, lambda r: -weight * np.cross(third, r.T @ third), (1, 0, 60), found.t, turned
+    )
+    assert np.abs(found.angular_velocity_body - omega).max() < 1e-7
+    assert np.abs(found.rotation_matrix - matrices).max() < 1e-7
 
 
 # --- the free body

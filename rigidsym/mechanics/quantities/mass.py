@@ -12,7 +12,7 @@ from typing import Any
 import sympy as sp
 
 from rigidsym.formula.reader import formula
-from rigidsym.mechanics.derivation import Quantity, by_name, law, when
+from rigidsym.mechanics.derivation import Law, Quantity, by_name, law, when
 from rigidsym.models.rotation import SOURCES
 
 MASS = formula("M")
@@ -87,6 +87,19 @@ _OF_PARTS = law(
     lambda k, x: k.inertia_of_parts() - x,
 )
 
+_BY_STEINER = formula(STEINER, formula(r"\I'_C"), MASS, formula(r"\d"), formula(r"\d"))
+_TENSOR_P = r"\int \left(|\x'-\p|^2\,\1 - (\x'-\p)(\x'-\p)^T\right)\,dm"
+
+
+def _about_fixed_point(integral: str = "") -> tuple[Law, ...]:
+    """The parallel-axis theorem, and the integral about the point of a known distribution."""
+    shifted = law(
+        r"\I' = #1", lambda k, x: k.body.central + k.steiner(k.body.mass, k.arm) - x, _BY_STEINER
+    )
+    whole = law(rf"\I' = {integral}", lambda k, x: k.tensor(k.second_about_point) - x)
+    return (_SYMMETRIC, shifted, *([whole] if integral else []))
+
+
 inertia_tensor = Quantity(
     **_BODY,
     symbol=INERTIA,
@@ -109,6 +122,14 @@ inertia_tensor = Quantity(
             meaning="inertia_tensor_fixed_point",
             reason="given_tensor_about_fixed_point",
         ),
+        when(
+            "stated_point",
+            definition=_BY_STEINER,
+            laws=_about_fixed_point(),
+            reason="tensor_about_fixed_point",
+        ),
+        when("stated_point", "distributed", laws=_about_fixed_point(_TENSOR_P)),
+        when("stated_point", "particles", laws=_about_fixed_point(_of_particles(_TENSOR_P))),
     ),
 )
 
@@ -121,7 +142,7 @@ inertia_tensor_point = Quantity(
     value=lambda k: k.shifted_inertia(),
     **_integrated(
         (
-            r"\I'_P = \int \left(|\x'-\p|^2\,\1 - (\x'-\p)(\x'-\p)^T\right)\,dm",
+            rf"\I'_P = {_TENSOR_P}",
             lambda k, x: k.tensor(k.second_about_point) - x,
         )
     ),

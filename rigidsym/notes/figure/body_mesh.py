@@ -59,11 +59,15 @@ _OCTAHEDRON = [  # its faces: signs of the corners on the axes, in counterclockw
 
 
 def own_shape(body: RigidBody | None) -> Shape:
-    """The faces of a body, its centre of mass at the origin; none if only its moments are known."""
+    """The faces of a body, none if only its moments are known.
+
+    Its centre of mass is at the origin, or the fixed point that is stated.
+    """
     numbers = numbers_of(body) if body else None
     if body is None or numbers is None:
         return ()
-    centre = _floats(body.centre.xreplace(numbers))
+    centre = body.centre if body.fixed_point is None else body.fixed_point
+    centre = _floats(centre.xreplace(numbers))
     faces = meshed(_described(body), numbers)
     distances = (np.linalg.norm(face.corners - centre, axis=1).max() for face in faces)
     reach = max(distances, default=0.0)
