@@ -15,7 +15,7 @@ from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import codec_for
 from rigidsym.algebra.matrix import RingMatrix, hat
-from rigidsym.algebra.present import agrees, half_form, half_of_squares, shortest_of
+from rigidsym.algebra.present import agrees, half_form, half_of_squares, presenter_for, shortest_of
 from rigidsym.errors import QuantityError
 from rigidsym.formula.tree import Formula, with_names
 from rigidsym.mechanics import particles
@@ -29,7 +29,7 @@ from rigidsym.mechanics.mass.principal import Principal, principal_of
 from rigidsym.mechanics.prove import Prover
 from rigidsym.mechanics.quantities import OF_BODY
 from rigidsym.mechanics.quantities.kinematics import KINEMATICS
-from rigidsym.mechanics.quantities.mass import BODY_ALONE, INERTIA_QUANTITIES
+from rigidsym.mechanics.quantities.mass import AT_REST, BODY_ALONE
 from rigidsym.mechanics.quantities.table import DIRECTION, POINT, own_letters
 from rigidsym.models.body import Composite, Known, Particles, RigidBody
 from rigidsym.models.forces import Forces
@@ -48,8 +48,7 @@ class BodyValues(Values):
         super().__init__(model, body, also=particles.SYMBOLS)
         self.body: RigidBody = body
         self.has_fixed_point = has_fixed_point
-        if body.fixed_point is not None:
-            self.point = sp.Matrix(body.fixed_point)
+        self.point = self.point if body.fixed_point is None else sp.Matrix(body.fixed_point)
 
     @cached_property
     def traits(self) -> frozenset[str]:
@@ -73,8 +72,8 @@ class BodyValues(Values):
     def moments(self) -> Moments:
         """The moments of the distribution, or equivalent ones if only the tensor is given."""
         b = self.body
-        known = Known(mass=b.mass, centre=b.centre, inertia=b.central or b.inertia)
-        return moments_of(b.distribution or known)
+        inertia = b.inertia if b.central is None else b.central
+        return moments_of(b.distribution or Known(mass=b.mass, centre=b.centre, inertia=inertia))
 
     @staticmethod
     def steiner(mass: sp.Expr, by: sp.MatrixBase) -> sp.Matrix:
@@ -102,19 +101,15 @@ class BodyValues(Values):
         m, p = self.moments, self.point
         return m.second - m.first * p.T - p * m.first.T + m.mass * p * p.T
 
-    @property
-    def arm(self) -> sp.Matrix:
-        """p − c."""
-        return self.point - self.body.centre
-
     def shifted_inertia(self) -> sp.ImmutableMatrix:
         """I′ + M (|d|² 1 − d dᵀ)."""
-        return sp.ImmutableMatrix(self.body.inertia + self.steiner(self.body.mass, self.arm))
+        shift = self.steiner(self.body.mass, self.point - self.body.centre)
+        return sp.ImmutableMatrix(self.body.inertia + shift)
 
     def moment_about_line(self) -> sp.Expr:
         """nᵀ I′ n + M |n × (p − c)|²."""
         n, body = self.direction, self.body
-        crossed = n.cross(self.arm)
+        crossed = n.cross(self.point - body.centre)
         about_centre = sp.collect((n.T * body.inertia * n)[0], [*{*body.inertia.diagonal()}])
         return about_centre + body.mass * crossed.dot(crossed)
 
@@ -234,6 +229,19 @@ class BodyValues(Values):
         return shortest_of([f for f in forms if all(map(is_equal, f, momentum.entries))])
 
 
+def about_fixed_point(body: RigidBody, forces: Forces) -> RigidBody:
+    """The body with its inertia tensor about the fixed point, if one is stated."""
+    if not forces.fixed_point or body.fixed_point is not None:
+        return body
+    point = sp.ImmutableMatrix(forces.fixed_point)
+    moved = body.inertia + BodyValues.steiner(body.mass, point - body.centre)
+    # in the ring of quotients, where the whole mass in the centre of mass cancels
+    codec = codec_for(moved, order=None)
+    presented = presenter_for(codec).quotient
+    tensor = moved.applyfunc(lambda entry: presented(codec.encode_quotient(entry)))
+    return replace(body, inertia=tensor, central=body.inertia, fixed_point=point)
+
+
 class NamedRotation(BodyValues):
     """A body whose rotation is known by names for R and Ω′.
 
@@ -294,20 +302,15 @@ def steps_of_body(
 
     With a `chain`, R and Ω′ are those that it names.
     """
-    is_stated = whole.fixed_point is not None
-    is_fixed = is_stated or (
-        forces is not None
-        and whole.distribution is None
-        and not any(OF_BODY[name].of_centre for name in only if name in OF_BODY)
-    )
-    left_out = {n for n, q in OF_BODY.items() if is_fixed and q.of_centre}
-    wanted = {*(only or OF_BODY)} - left_out
+    is_fixed = forces is not None and forces.fixed_point != ()
+    lacking = {n for n, q in OF_BODY.items() if is_fixed and q.without == AT_REST}
+    wanted = {*(only or OF_BODY)} - lacking
     values = (NamedRotation if chain else BodyValues)(model, whole, has_fixed_point=is_fixed)
     steps = [step for n, q in OF_BODY.items() if n in wanted and (step := values.step(q))]
     if isinstance(values, NamedRotation) and chain:
         steps = [values.renamed(step, chain) for step in steps]
     # of a body alone, all quantities that it has are asked for
-    entries = {} if BODY_ALONE in only else dict(OF_BODY if is_stated else INERTIA_QUANTITIES)
+    entries = {} if BODY_ALONE in only else {**OF_BODY}
     motion = None
     if forces is not None:
         motion = equations_of_motion(model, whole, forces, chain)
@@ -315,8 +318,7 @@ def steps_of_body(
         entries |= motion.table
     names = {step.quantity.name for step in steps}
     if absent := [q for n, q in entries.items() if n in only and n not in names]:
-        whys = ((q.name, q.without or "no_free_centre") for q in absent)
-        reasons = (f"no quantity {name}: {sentence_of(why)}" for name, why in whys)
+        reasons = (f"no quantity {q.name}: {sentence_of(q.without)}" for q in absent)
         raise QuantityError(f"{whole.name} has {'; '.join(reasons)}")
     letters = own_letters(values.arguments.values(), whole, forces)
     return values, [_in_letters(step, letters) for step in steps] if letters else steps, motion

@@ -133,7 +133,6 @@ class Quantity(NamedTuple):
     recursion: str = ""  # over the turns of a chain, in TeX; LAST is the number of turns
     section: str = ""  # of the note
     is_result: bool = False  # whether it is framed in the note
-    of_centre: bool = False  # whether it has no meaning for a body with a fixed point
     variants: tuple[tuple[frozenset[str], Mapping[str, Any]], ...] = ()
 
     @property

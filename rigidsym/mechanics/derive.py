@@ -69,15 +69,14 @@ def derive(
     if BODY_ALONE in only:
         only = {*only, *OF_BODY_ALONE}
     if body is not None:
-        from rigidsym.mechanics.body import steps_of_body
-        from rigidsym.mechanics.mass.bodies import about_fixed_point, rigid_body
+        from rigidsym.mechanics.body import about_fixed_point, steps_of_body
+        from rigidsym.mechanics.mass.bodies import rigid_body
 
         body = rigid_body(body)
         if forces is not None:
             forces = forces.in_symbols_of(body)
             body = forces.with_parameters(body, model)
-            if forces.fixed_point:
-                body = about_fixed_point(body, sp.ImmutableMatrix(forces.fixed_point))
+            body = about_fixed_point(body, forces)
     taken = [parameter.symbol.name for parameter in body.parameters] if body else []
     chain, values = Chain(model, taken) if is_shorter(model) else None, values_of(model)
     turning = [name for name in only if name in KINEMATICS]

@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import combinations
 from math import isfinite
-from typing import Any
+from typing import Any, ClassVar
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
@@ -239,11 +239,14 @@ class RigidBody:
     def sentences(self, *, about_fixed_point: bool) -> tuple[str, ...]:
         """The body in plain sentences, to follow the convention of its rotation."""
         if about_fixed_point:
-            place = "which may be its centre of mass"
-            if self.fixed_point is not None:
-                place = f"({', '.join(map(str, self.fixed_point))}) in its description"
-            return (PHRASES["with_fixed_point"].format(title=self.title, place=place),)
+            return (PHRASES["with_fixed_point"].format(title=self.title),)
         return PHRASES["free"].format(title=self.title, mass=self.mass), PHRASES["centre"]
+
+    @property
+    def is_tensor(self) -> bool:
+        """Whether only a tensor is described, and neither its mass nor a centre of mass."""
+        has_centre = any(self.centre) or "centre" in self.request.get("body", ())
+        return not (self.distribution or self.drawn or has_centre)
 
     @property
     def values(self) -> dict[sp.Symbol, sp.Float]:
@@ -302,6 +305,7 @@ class BodyDescription:
     allow: bool = False  # whether unphysical numbers pass
     keeps_numbers: bool = False  # whether sums of numbers stay sums, and are not rounded once
     request: Mapping[str, Any] = field(default_factory=dict, hash=False)
+    is_tensor: ClassVar[bool] = False
 
 
 Body = RigidBody | BodyDescription | Distribution  # what `derive` takes

@@ -18,7 +18,7 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from rigidsym.errors import ModelError, offer
-from rigidsym.models.body import Body, Parameter, RigidBody
+from rigidsym.models.body import BodyDescription, Parameter, RigidBody
 from rigidsym.models.library import rotation_from
 from rigidsym.models.rotation import (
     OMEGA_BODY,
@@ -175,8 +175,7 @@ class Forces:
 
     def in_symbols_of(self, body: RigidBody) -> Forces:
         """With the symbols of the body where names are the same: m for a positive m."""
-        entries = (body.mass, *body.inertia, *body.centre)
-        own = {symbol.name: symbol for entry in entries for symbol in entry.free_symbols}
+        own = {parameter.symbol.name: parameter.symbol for parameter in body.parameters}
         # SymPy distinguishes a positive m from one without assumptions, though both print as m.
         return self.map(
             lambda e: e.xreplace({s: own[s.name] for s in e.free_symbols if s.name in own})
@@ -254,9 +253,7 @@ def forces_on(
         raise ModelError(f"torque: expected three components, got {len(torque)}")
     point = () if fixed_point in (None, CENTRE) else [_read(x, names) for x in fixed_point]
     if len(point) not in (0, 3) or any(x.has(TIME, AppliedUndef, *OMEGA_BODY) for x in point):
-        raise ModelError(
-            f'a fixed point: expected three constants or "{CENTRE}", got {fixed_point!r}'
-        )
+        raise ModelError(f'expected a point of three constants or "{CENTRE}", got {fixed_point!r}')
     if method not in ("", *METHODS):
         raise ModelError(f"no method {method!r}; {offer(method, METHODS)}")
     acting = Forces(
@@ -290,23 +287,15 @@ def forces_on(
     return acting
 
 
-def check_fixed_point(body: Body, point: object) -> None:
+def check_fixed_point(body: RigidBody | BodyDescription, point: object) -> None:
     """Raises ModelError if none is stated for a body whose description has a centre of mass.
 
     A tensor by itself is about the fixed point.
     """
-    is_described = (
-        not isinstance(body, RigidBody)
-        or body.distribution
-        or body.drawn
-        or any(body.centre)
-        or "centre" in body.request.get("body", ())
-    )
-    if point is None and is_described:
+    if point is None and not body.is_tensor:
         raise ModelError(
-            "no fixed point, and the centre of mass in the description of the body may be elsewhere; "
-            "expected fixed_point = [0, 0, 0] or another point of the description about which the "
-            f'body turns, or fixed_point = "{CENTRE}"'
+            "no fixed point, and the body has a centre of mass, which may be elsewhere; expected "
+            f'fixed_point = [0, 0, 0] or another point of its description, or "{CENTRE}"'
         )
 
 

@@ -17,11 +17,8 @@ from rigidsym.models.body import (
     KEYS,
     PHRASES,
     BodyDescription,
-    Composite,
     Distribution,
-    Known,
     Parameter,
-    Part,
     RigidBody,
     Solid,
     described,
@@ -106,20 +103,6 @@ def body_of(
     except BodyError as error:
         place = error.place or (KEYS[type(distribution)],)
         raise BodyError(str(error), place=place) from error
-
-
-def about_fixed_point(body: RigidBody, point: sp.ImmutableMatrix) -> RigidBody:
-    """The body with its inertia tensor about a point, (3, 1), by the parallel-axis theorem.
-
-    From the moments about the point, not by adding M (|d|² 1 − d dᵀ), in which the masses of parts
-    would stay in divisors.
-    """
-    if body.fixed_point is not None:
-        return body
-    known = Known(mass=body.mass, centre=body.centre, inertia=body.inertia)
-    moved = Composite(parts=(Part(what=body.distribution or known, at=-point),))
-    inertia = moments_of(moved).tensor()
-    return replace(body, inertia=inertia, fixed_point=point, central=body.inertia)
 
 
 def solid(

@@ -24,7 +24,7 @@ from rigidsym.errors import BodyError
 from rigidsym.formula.reader import formula
 from rigidsym.mechanics.derivation import Proof
 from rigidsym.mechanics.prove import Conditions, Prover
-from rigidsym.models.body import HERE, Composite, Distribution, Known, Part, Particles, Solid
+from rigidsym.models.body import Composite, Distribution, Known, Part, Particles, Solid
 
 _PAIRS = tuple((i, j) for i in range(4) for j in range(i, 4))
 _ANTIDERIVATIVES = formula(r"\frac{\partial F}{\partial u} = f \text{ for every integral}")
@@ -54,20 +54,13 @@ class Moments:
         return self.matrix[:3, :3]
 
     def central(self) -> tuple[sp.ImmutableMatrix, sp.ImmutableMatrix]:
-        """The centre c = S/M, (3, 1), and the tensor about it."""
-        codec = codec_for(self.matrix, order=None)
-        read, written = codec.encode_quotient, presenter_for(codec).quotient
-        below = read(self.mass).inverse()
-        centre = sp.ImmutableMatrix([written(read(entry) * below) for entry in self.first])
-        return centre, self.tensor(centre)
-
-    def tensor(self, centre: sp.ImmutableMatrix = HERE) -> sp.ImmutableMatrix:
-        """tr(J) 1 − J of J − M c cᵀ: about the centre c, or about the origin."""
+        """The centre c = S/M, (3, 1), and the tensor about it, tr(J) 1 − J of J − M c cᵀ."""
         codec = codec_for(self.matrix, order=None)
         read, written = codec.encode_quotient, presenter_for(codec).quotient
         # Steiner's theorem for second moments, J_c = J − M c cᵀ, and I = tr(J_c) 1 − J_c: the
         # diagonal of I is the sum of the two other diagonal entries, and elsewhere I is −J_c.
         mass, second = read(self.mass), self.second
+        centre = [written(read(entry) * mass.inverse()) for entry in self.first]
         # Without the mass in its divisor, as S/M has it before it is cancelled: to find the mass of
         # a tetrahedron with twelve symbols in a moment of degree eight would take a minute.
         c = list(map(read, centre))
@@ -78,7 +71,7 @@ class Moments:
             j, k = (i + 1) % 3, (i + 2) % 3
             return written(read(second[j, j] + second[k, k]) - mass * (c[j] * c[j] + c[k] * c[k]))
 
-        return sp.ImmutableMatrix(3, 3, entry)
+        return sp.ImmutableMatrix(centre), sp.ImmutableMatrix(3, 3, entry)
 
 
 def _moments(

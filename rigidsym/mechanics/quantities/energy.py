@@ -12,6 +12,7 @@ from typing import Any
 
 from rigidsym.formula.reader import formula
 from rigidsym.mechanics.derivation import Law, Quantity, by_name, law, when
+from rigidsym.mechanics.quantities.mass import AT_REST
 from rigidsym.models.rotation import SOURCES
 
 ROTATIONAL = formula("E_R")
@@ -29,7 +30,7 @@ def _over_particles(claim: str, summand: Callable[[Any], Any], times: int = 1) -
 _ENERGY: dict[str, Any] = {"unit": "J", "shape": "scalar", "section": ENERGY}
 _ENERGY["source"] = SOURCES["Landau 32"]
 _MOMENTUM: dict[str, Any] = {"unit": "kg m^2/s", "shape": "vector", "section": MOMENTUM}
-_OF_CENTRE = {**_MOMENTUM, "source": SOURCES["Goldstein 1.2"], "of_centre": True}
+_OF_CENTRE = {**_MOMENTUM, "source": SOURCES["Goldstein 1.2"], "without": AT_REST}
 _OF_ROTATION = {**_MOMENTUM, "source": SOURCES["Landau 33"], "is_result": True}
 
 translational_energy = Quantity(
@@ -42,7 +43,7 @@ translational_energy = Quantity(
         _over_particles(r"\tfrac{1}{2} #1\,|\dot\r_C|^2 = E_C", lambda k: k.square(k.velocity), 2),
     ),
     reason="energy_of_centre",
-    of_centre=True,
+    without=AT_REST,
 )
 
 rotational_energy = Quantity(
@@ -79,7 +80,7 @@ kinetic_energy = Quantity(
     ),
     reason="energy_splits",
     is_result=True,
-    of_centre=True,
+    without=AT_REST,
 )
 
 angular_momentum_centre = Quantity(

@@ -12,7 +12,7 @@ from typing import Any
 import sympy as sp
 
 from rigidsym.formula.reader import formula
-from rigidsym.mechanics.derivation import Law, Quantity, by_name, law, when
+from rigidsym.mechanics.derivation import Quantity, by_name, law, when
 from rigidsym.models.rotation import SOURCES
 
 MASS = formula("M")
@@ -23,6 +23,7 @@ DIRECTION = formula(r"\n")
 # I′ + M (|d|² 1 − d dᵀ), the theorem of parallel axes
 STEINER = r"#1 + #2\,(|#3|^2\,\1 - #4 #4^T)"
 _ONE = sp.eye(3)
+AT_REST = "no_free_centre"  # what a body about a fixed point lacks
 OF_BODY, OF_INERTIA = "body", "inertia"  # sections of the note
 _BODY: dict[str, Any] = {"section": OF_BODY, "is_result": True}
 _INERTIA: dict[str, Any] = {"unit": "kg m^2", "section": OF_INERTIA}
@@ -87,17 +88,11 @@ _OF_PARTS = law(
     lambda k, x: k.inertia_of_parts() - x,
 )
 
-_BY_STEINER = formula(STEINER, formula(r"\I'_C"), MASS, formula(r"\d"), formula(r"\d"))
 _TENSOR_P = r"\int \left(|\x'-\p|^2\,\1 - (\x'-\p)(\x'-\p)^T\right)\,dm"
 
 
-def _about_fixed_point(integral: str = "") -> tuple[Law, ...]:
-    """The parallel-axis theorem, and the integral about the point of a known distribution."""
-    shifted = law(
-        r"\I' = #1", lambda k, x: k.body.central + k.steiner(k.body.mass, k.arm) - x, _BY_STEINER
-    )
-    whole = law(rf"\I' = {integral}", lambda k, x: k.tensor(k.second_about_point) - x)
-    return (_SYMMETRIC, shifted, *([whole] if integral else []))
+def _about_point(k: Any, x: sp.MatrixBase) -> sp.MatrixBase:
+    return k.tensor(k.second_about_point) - x
 
 
 inertia_tensor = Quantity(
@@ -124,12 +119,10 @@ inertia_tensor = Quantity(
         ),
         when(
             "stated_point",
-            definition=_BY_STEINER,
-            laws=_about_fixed_point(),
+            definition=formula(STEINER, formula(r"\I'_C"), MASS, formula(r"\d"), formula(r"\d")),
+            laws=(_SYMMETRIC, law(rf"\I' = {_TENSOR_P}", _about_point)),
             reason="tensor_about_fixed_point",
         ),
-        when("stated_point", "distributed", laws=_about_fixed_point(_TENSOR_P)),
-        when("stated_point", "particles", laws=_about_fixed_point(_of_particles(_TENSOR_P))),
     ),
 )
 
@@ -140,14 +133,9 @@ inertia_tensor_point = Quantity(
     definition=formula(r"\I' + M\,(|\p-\c|^2\,\1 - (\p-\c)(\p-\c)^T)"),
     source=SOURCES["Landau 32 (32.12)"],
     value=lambda k: k.shifted_inertia(),
-    **_integrated(
-        (
-            rf"\I'_P = {_TENSOR_P}",
-            lambda k, x: k.tensor(k.second_about_point) - x,
-        )
-    ),
+    **_integrated((rf"\I'_P = {_TENSOR_P}", _about_point)),
     reason="parallel_axes",
-    of_centre=True,
+    without=AT_REST,
 )
 
 
@@ -167,7 +155,7 @@ moment_of_inertia = Quantity(
     value=lambda k: k.moment_about_line(),
     **_integrated((r"I_n = \int |\n\times(\x'-\p)|^2\,dm", _moment_by_mass)),
     reason="form_of_tensor",
-    of_centre=True,
+    without=AT_REST,
 )
 
 

@@ -130,12 +130,6 @@ class MassFacts:
         return [*firsts.values()]
 
     @property
-    def from_fixed_point(self) -> sp.Matrix | None:
-        """The centre of mass as seen from a stated fixed point, (3, 1)."""
-        point = self.body.fixed_point
-        return None if point is None else sp.expand(self.body.centre - point)
-
-    @property
     def principal(self) -> list[dict[str, Any]]:
         """In ascending order of the moments, which need not be that of the formulas."""
         if self.numbers is None:
