@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from itertools import chain
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -13,7 +14,7 @@ from rigidsym.commands.output_folder import CERTIFICATE, content_of, printed
 from rigidsym.errors import CheckError, SpecError, printable
 from rigidsym.notes.formats.record import SCHEMA, SCHEMA_VERSION
 from rigidsym.spec.derivation_file import read_record
-from rigidsym.tools.certificate.checker import BROKEN, load, verify
+from rigidsym.tools.certificate.checker import BROKEN, load, reason, verify
 
 
 @make("check")
@@ -34,7 +35,8 @@ def _strangers(paths: Iterable[Path], derived: set[Path]) -> Iterator[tuple[Path
     """Theorems in folders of records that no record derives: they may prove something else."""
     beside = {file.parent for file in derived}  # elsewhere, a .v may be of another language
     folders = [path.rglob if path.is_dir() else path.parent.glob for path in paths]
-    endings = CERTIFICATE, f"{CERTIFICATE}o"  # a Reals.vo would stand for the one of Coq
+    # a Reals.vo, or what else Coq loads, would stand for its own
+    endings = [f"{CERTIFICATE}{end}" for end in ("", "o", "io", "ok", "os")]
     for path in sorted({*chain(*(files(f"*.{end}") for files in folders for end in endings))}):
         if path.parent in beside and path.with_suffix(f".{CERTIFICATE}") not in derived:
             yield path, "belongs to no record here", ""
@@ -49,7 +51,7 @@ def _records(path: Path) -> list[Path]:
         files = sorted(
             file
             for file in path.rglob("*.json")
-            if file.stem == file.parent.name or content_of(file).get("schema") == SCHEMA
+            if file.stem == file.parent.name or _is_record(content_of(file))
         )
     else:  # NAME.json is also beside NAME.d.mts
         files = [path.with_name(path.name.partition(".")[0] + ".json")]
@@ -58,6 +60,11 @@ def _records(path: Path) -> list[Path]:
             f"{path}: no record of a derivation here; expected NAME.json beside generated files"
         )
     return files
+
+
+def _is_record(content: dict[str, Any]) -> bool:
+    """Whether it claims to be one, even under another schema, which is a fault."""
+    return content.get("schema") == SCHEMA or "rotation" in content
 
 
 def _findings(record: Path) -> Iterator[tuple[Path, str, str]]:
@@ -74,6 +81,9 @@ def _findings(record: Path) -> Iterator[tuple[Path, str, str]]:
     except SpecError as error:  # the other records are checked all the same
         yield record, f"a damaged request: {'; '.join(map(str, error.faults))}; derive it again", ""
         return
+    if record.name not in fresh.files:
+        yield record, f"the record of {fresh.name}.json under another name; remove it", ""
+        return
     for name, text in fresh.files.items():
         path = record.with_name(name)
         is_same = path.is_file() and path.read_bytes() == text.encode("utf-8")
@@ -83,7 +93,7 @@ def _findings(record: Path) -> Iterator[tuple[Path, str, str]]:
             try:
                 proved, reasons = verify(load(record))
             except BROKEN as error:
-                problem = f"{record.name} is refused: {error}"
+                problem = f"{record.name} is refused: {reason(error)}"
             else:
                 is_edited = record.read_bytes() != fresh.files[record.name].encode("utf-8")
                 source = f"{record.name}{' as it was edited' * is_edited}"

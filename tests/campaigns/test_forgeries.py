@@ -279,7 +279,6 @@ OF_ZXZ: dict[str, Change] = {
     "no turns": turned(),
     "the transpose": write("presentation", "passive"),
     "neither active nor passive": write("presentation", "Passive"),
-    "another convention": write("name", "euler_zyx_intrinsic"),
     "R by entries that are none": write(
         "rotation", {"matrix": [["1", "0", "0"]] * 3, "conditions": []}
     ),
@@ -478,6 +477,12 @@ OTHERS: Forgeries = {
         "an inverse with a row too many": added(
             [["1", "1", "1"]], "inverse_rate_matrix_body", "expression"
         ),
+        "Ω of entries and lists": cells(VELOCITY, lambda rows: [*rows[:2], [rows[2]]]),
+        # as a number it would be a multiple of all rates
+        "W of one entry": together(
+            turned("z(0)"),
+            *(only(W), write(W, "expression", [["0"]]), write(W, "shape", [1, 1])),
+        ),
         "powers of powers": powers_of_powers("({} + 1)**60"),
         "powers below a line": powers_of_powers("1/({} + 1)**60"),
         "a difference of 1/10**78": of_velocity("phi/10**39/10**39"),
@@ -512,20 +517,6 @@ OTHERS: Forgeries = {
             *(turned("z(phi)", "x(a)", "z(psi)"), write("name", "any"), only(R)),
             *(defined("a", "theta"), measured(1, "", "1/s", "1/s^2")),
         ),
-        **{
-            f"the name {name!r}": write("name", name)
-            for name in (
-                *("euler_zxz_\u0435xtrinsic", "euler_xyz_intrinsic_passive", "Euler_xyz_intrinsic"),
-                *("euler_xyz_intrinsic ", "euler_zxz_\ud800", "euler_xyz", "xeuler_xyz_extrinsic"),
-            )
-        },
-        **{
-            f"the name euler{end} of what is active and intrinsic": write("name", f"euler{end}")
-            for end in (
-                *("_zxz_intrinsic_passive", "_zxz_passive", "_zxz_intrinsic_extrinsic", "_321"),
-                *("_zxz__passive", "xyz", "_x_y_z", "_angles_zyx", "_zxz_inverse", "_zxza"),
-            )
-        },
         "turns in an object": write("rotation", "turns", dict(zip(ZXZ, (1, 2, 3), strict=True))),
         "conditions in an object": write("rotation", "conditions", {}),
         "a rotation with a sequence": write("rotation", "sequence", ["XYZ"]),
@@ -631,6 +622,12 @@ OTHERS: Forgeries = {
         "undefined integrals": integrals(" + 1/(A - A)"),
         "integrals that hold a definition": together(integrals(" + a"), defined("a", "phi")),
         "integrals that hold an acceleration": integrals(" + phi_ddot"),
+        **{
+            f"{name} and a constant of another unit": added(
+                " + A*g**2", f"constant {name}", "expression"
+            )
+            for name in ("energy", "momentum_phi")
+        },
         "kilojoules": write("energy", "unit", "kJ"),
         "a length of moments": conditions(
             "A**2 + C**2 - 1",
@@ -645,6 +642,11 @@ OTHERS: Forgeries = {
         "inputs without parameters": write("accelerations", "inputs", ["q", "q_dot"]),
     },
     "whole top": {
+        "the centre of mass at the fixed point": lambda c: c["quantities"].append(
+            at(c, "potential_energy")
+            | {"name": "centre_of_mass", "expression": ["0"] * 3, "shape": [3]}
+            | {"unit": "m", "inputs": []}
+        ),
         "a parameter that is the time": together(
             *(only("energy"), added(" + A*t", "motion", "potential")),
             added(" + A*t", "energy", "expression"),
@@ -667,6 +669,7 @@ EVERY |= {f"{text[1]} of {text[0]} is {text[2]}": (of, once(*text)) for of, *tex
 PARTLY = {
     f"a quantity named {name}": name for name in ("angular_velocity_moon", "truth", "nothing")
 }
+PARTLY |= {"the centre of mass at the fixed point": "centre_of_mass"}
 PARTLY |= {"momenta that are themselves": P}
 PARTLY |= {"integrals that hold a definition": "constant energy"}
 PARTLY |= {"a divisor that is zero": "rotation_matrix", "nine coordinates": "mass_matrix"}

@@ -45,11 +45,6 @@ def test_all_conventions_are_proved_by_the_checker():
         assert checker.verify(of_rotation) == (["R is a rotation", *names], {})
 
 
-@pytest.mark.parametrize("name", ["euler_zxz", "my_euler_zxz_2", "euler_top"])
-def test_a_name_may_say_the_axes(name):
-    assert checker.verify(record_of("ZXZ", BASIC) | {"name": name})[1] == {}
-
-
 @pytest.mark.parametrize("text", [*OTHERS, CHAIN])
 def test_other_rotations_are_proved_by_the_checker(text):
     proved, reasons = checker.verify(record_of(text))
@@ -97,7 +92,7 @@ def test_sums_of_angles_are_exact(one, two, is_true):
     if is_true:
         assert checker.verify(changed)[1] == {}
     else:
-        with pytest.raises(checker.Refused, match="rotation_matrix: entry 1 is false"):
+        with pytest.raises(checker.Refused, match="rotation_matrix: entry 1, 1 is false"):
             checker.verify(changed)
         with pytest.raises(CheckError, match=rf"{NAME}: no certificate, since rotation_matrix"):
             certificate_of(changed)
@@ -125,6 +120,38 @@ def test_accelerations_without_the_lagrangian_have_no_theorem():
 def test_rates_have_a_theorem_without_their_matrix():
     only = ("rates_from_angular_velocity_body",)
     assert certificate_of(record_of("ZXZ", only)).claims == [*only]
+
+
+@pytest.mark.parametrize(
+    ("change", "fault"),
+    [
+        ({"rotation": None}, "a key is missing, or of another type: AttributeError"),
+        ({"presentation": "Passive"}, "KeyError('Passive')"),
+        ({"definitions": [{"name": "a"}]}, "KeyError('expression')"),
+        ({"rotation_matrix": []}, "neither a vector nor the rows of a matrix"),
+        ({"rotation_matrix": [["phi // 1"]]}, "the expression 'phi // 1' cannot be read"),
+        ({"rotation_matrix": [["whole"]]}, "the name 'whole' is unknown here"),
+        ({"angular_velocity_body": ["0"] * 3}, "angular_velocity_body: entry 1 is false"),
+        ({"rate_matrix_body": [["0"] * 3] * 3}, "rate_matrix_body: equation 1 is false"),
+    ],
+)
+def test_a_message_says_what_is_wrong(change, fault):
+    changed = copy.deepcopy(record_of("ZXZ", BASIC))
+    for name, value in change.items():
+        if name in BASIC:
+            printed(changed, name)["expression"] = value
+        else:
+            changed[name] = value
+    with pytest.raises(checker.BROKEN) as error:
+        checker.verify(changed)
+    assert fault in checker.reason(error.value)
+
+
+def test_a_long_chain_is_not_checked_and_the_reason_is_plain():
+    turns = [f"{'xyz'[k % 3]}(a{k})" for k in range(26)]
+    of_chain = record_of("ZXZ", BASIC) | {"quantities": [], "arguments": []}
+    of_chain["rotation"] = {"turns": turns, "conditions": []}
+    assert checker.verify(of_chain) == ([], {"R is a rotation": "more than 25 turns"})
 
 
 def test_names_that_are_not_plain_get_an_underscore():
@@ -159,7 +186,7 @@ def test_the_files_are_written_and_checked(tmp_path):
     edit(folder / RECORD, "-sin(phi)*sin(psi)", "sin(phi)*sin(psi)")
     done = subprocess.run(alone, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 1
-    assert "REFUSED: rotation_matrix: entry 1 is false" in done.stdout
+    assert "REFUSED: rotation_matrix: entry 1, 1 is false" in done.stdout
     assert "other.JSON: skipped" in done.stdout
     (tmp_path / "empty").mkdir()
     for words, status in ((["none"], 1), (["out", "empty"], 2), ([], 2)):
@@ -309,7 +336,7 @@ STRANGE = dict.fromkeys((COQ, "Rotation.v"), "belongs to no record here")
         (
             *(RECORD, "cos(phi)*cos(psi)", "sin(phi)*cos(psi)"),
             {
-                COQ: f"{RECORD} is refused: rotation_matrix: entry 1 is false",
+                COQ: f"{RECORD} is refused: rotation_matrix: entry 1, 1 is false",
                 RECORD: "differs from the derivation",
             },
         ),
@@ -328,6 +355,22 @@ def test_a_damaged_or_missing_file_is_named(folder, name, before, after, expecte
     assert all(found[name].startswith(problem) for name, problem in expected.items())
 
 
+def test_a_record_under_another_name_or_schema_is_named(folder):
+    text = (folder / RECORD).read_text()
+    (folder / "copy.json").write_text(text)
+    expected = f"the record of {RECORD} under another name"
+    assert problems(folder.parent)["copy.json"].startswith(expected)
+    assert expected in answered("check", str(folder / "copy.json"))[1]
+    other = folder.parent / "other" / "false.json"
+    other.parent.mkdir()
+    other.write_text(text.replace("rigidsym.derivation", "rigidsym.derivation "))
+    assert problems(other.parent)["false.json"].startswith("cannot be read as the record")
+    alone = [sys.executable, "-I", "-S", str(CHECKER), str(folder / RECORD), str(other)]
+    done = subprocess.run(alone, capture_output=True, text=True, check=False)
+    assert "false.json: REFUSED: the schema is not rigidsym.derivation" in done.stdout
+    assert done.returncode == 1
+
+
 def test_a_certificate_joins_what_is_derived_again(folder):
     only = WRITTEN[:2]
     answered("derive", "ZXZ", *only, "--target", "c", "--out", str(folder.parent))
@@ -343,9 +386,11 @@ def test_a_certificate_of_other_angles_leaves_unless_it_was_edited(folder, is_ed
     answered("derive", "ZXZ", "--angles", "a,b,c", "--quiet", "--out", str(folder.parent))
     assert (folder / COQ).exists() == is_edited
     (folder / "other.v").write_text("")  # theorems about something else
-    (folder / "Reals.vo").write_text("")  # and other real numbers
+    strangers = {f"Reals.{end}" for end in ("vo", "vio", "vok", "vos")}
+    for name in strangers:
+        (folder / name).write_text("")  # and other real numbers
     (folder.parent / "cpu.v").write_text("")  # and Verilog
-    assert {*problems(folder.parent)} == {"other.v", "Reals.vo"} | ({COQ} if is_edited else set())
+    assert {*problems(folder.parent)} == {"other.v", *strangers} | ({COQ} if is_edited else set())
 
 
 def test_a_theorem_that_was_edited_is_not_overwritten(folder):

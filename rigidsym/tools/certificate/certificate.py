@@ -38,6 +38,7 @@ from rigidsym.tools.certificate.checker import (
     Unproved,
     claims_in,
     read,
+    reason,
     turn,
     turn_of,
     verify,
@@ -113,7 +114,7 @@ def certificate_of(record: Mapping[str, Any]) -> Certificate:
     try:
         proved, _ = verify(record)
     except BROKEN as error:
-        raise CheckError(f"{record['name']}: no certificate, since {error}") from error
+        raise CheckError(f"{record['name']}: no certificate, since {reason(error)}") from error
     return theorems(record, proved[1:])
 
 
