@@ -480,8 +480,9 @@ OTHERS: Forgeries = {
         "Ω of entries and lists": cells(VELOCITY, lambda rows: [*rows[:2], [rows[2]]]),
         # as a number it would be a multiple of all rates
         "W of one entry": together(
-            turned("z(0)"),
-            *(only(W), write(W, "expression", [["0"]]), write(W, "shape", [1, 1])),
+            with_turns("", {"phi": "", "theta": ""}),
+            write("rotation", {"matrix": IDENTITY, "conditions": []}),
+            write("quantities", [{"name": W, "expression": [["0"]], "unit": "", "shape": [1, 1]}]),
         ),
         "powers of powers": powers_of_powers("({} + 1)**60"),
         "powers below a line": powers_of_powers("1/({} + 1)**60"),
