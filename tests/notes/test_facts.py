@@ -92,6 +92,7 @@ ALIKE = """
 rotation.sequence = "ZXZ"
 body = { principal_moments = ["E", "V", "T"], mass = "M + m" }
 dynamics.potential = "M*g*(L + H)*cos(theta)"
+dynamics.fixed_point = "centre_of_mass"
 output.quantities = ["lagrangian", "hamiltonian", "mass_matrix", "inertia_tensor_point"]
 """
 JOINTS = """
