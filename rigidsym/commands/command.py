@@ -104,15 +104,11 @@ class _Option(click.Option):
     def handle_parse_result(
         self, context: click.Context, on_line: Mapping[str, Any], rest: list[str]
     ) -> tuple[Any, list[str]]:
-        for other in self.excludes if self.name in on_line else ():
-            if _name(other) in on_line:
+        given = {f"--{name}".replace("_", "-") for name in on_line}
+        for other in self.excludes if self.opts[0] in given else ():
+            if other in given:
                 raise click.UsageError(f"{self.opts[0]} cannot be combined with {other}", context)
         return super().handle_parse_result(context, on_line, rest)
-
-
-def _name(option: str) -> str:
-    """The name of its value: expect_active for --expect-active."""
-    return option.strip("-").replace("-", "_")
 
 
 def _parameter(
@@ -121,7 +117,7 @@ def _parameter(
     """An option, or an argument if its name has no dashes."""
     own = {key: value for key, value in entry.items() if key not in _OURS}
     settings = {**KINDS[entry.get("kind", "text")], **own}
-    if words := choices.get(_name(name), entry.get("choices")):
+    if words := choices.get(name.strip("-").replace("-", "_"), entry.get("choices")):
         settings["type"] = click.Choice(words)
     if entry.get("kind") == "count":
         settings["type"] = _Integer(entry.get("least", 1), entry.get("most"))

@@ -12,6 +12,8 @@ from math import degrees, pi
 
 from rigidsym.errors import DataError
 
+COLUMNS = "--columns (in Python `columns`)"  # as messages call the names that a user gives
+
 # Units
 
 _PREFIXES = {"": 1.0, "n": 1e-9, "u": 1e-6, "m": 1e-3, "c": 1e-2, "k": 1e3}
@@ -152,7 +154,7 @@ class ColumnNames:
             if len(columns) > 1:
                 same = ", ".join(self.names[k] for k in columns)
                 raise DataError(
-                    f"two columns are named {plain(name)}: {same}; `columns` renames them"
+                    f"two columns are named {plain(name)}: {same}; {COLUMNS} renames them"
                 )
             if columns:
                 return columns[0]
@@ -179,7 +181,7 @@ class ColumnNames:
             return conversion(stated, expected)
         except DataError as error:
             raise DataError(
-                f"column {self.names[column]}: {error}; `columns` gives it another name and unit"
+                f"column {self.names[column]}: {error}; {COLUMNS} gives it another name and unit"
             ) from None
 
 
@@ -196,7 +198,7 @@ def names_for(
         return None if former is None else tuple(former)
     if len(names) != width:
         raise DataError(
-            f"{counted(width, 'column')}, but {counted(len(names), 'name')} in `columns`; "
+            f"{counted(width, 'column')}, but {counted(len(names), 'name')} in {COLUMNS}; "
             "expected one name a column, in order, and - for a column to leave out"
         )
     if former is None:

@@ -13,7 +13,7 @@ from warnings import catch_warnings
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rigidsym.data.columns import ColumnNames, names_for
+from rigidsym.data.columns import COLUMNS, ColumnNames, names_for
 from rigidsym.data.tables import ArrayTable, Table, open_table
 from rigidsym.errors import BodyError, DataError, MissingExtra
 
@@ -238,7 +238,7 @@ def _columns(table: Table, names: Sequence[str] | None) -> tuple[list[int], Arra
         if table.width not in (3, 4):
             raise BodyError(
                 f"expected 3 columns (x, y, z) or 4 (m, x, y, z), got {table.width}; "
-                "--columns (in Python `columns`) names them"
+                f"{COLUMNS} names them"
             )
         named = ("m", *_AXES)[4 - table.width :]
     header = ColumnNames(named)
@@ -246,7 +246,7 @@ def _columns(table: Table, names: Sequence[str] | None) -> tuple[list[int], Arra
     columns = [column for column in (*axes, mass) if column is not None]
     if missing := [name for name, column in zip(_AXES, axes, strict=True) if column is None]:
         lacking = f"no column {', '.join(missing)} among {header.listed}"
-        raise BodyError(f"{lacking}; --columns (in Python `columns`) names them in order")
+        raise BodyError(f"{lacking}; {COLUMNS} names them in order")
     others = [name for k, name in enumerate(header.plain) if k not in columns]
     if mass is None and (near := get_close_matches("mass", others, n=1)):
         raise BodyError(f"no column m or mass among {header.listed}; is {near[0]} the mass?")
@@ -272,8 +272,9 @@ def read_mesh_file(path: Path, *, scale: float = 1.0) -> Any:
         raise BodyError(f"{path}: no such mesh")
     if path.suffix.lower() not in ENDINGS:
         raise BodyError(f"{path}: expected a mesh, a file that ends in {', '.join(ENDINGS)}")
-    trimesh = _trimesh()
     try:
+        import trimesh
+
         with np.errstate(all="ignore"), catch_warnings(action="ignore"):
             loaded = trimesh.load(path, force="mesh", process=False, skip_materials=True)
             corners, count = np.asarray(loaded.faces), len(loaded.vertices)
@@ -297,14 +298,6 @@ def read_mesh_file(path: Path, *, scale: float = 1.0) -> Any:
     return loaded
 
 
-def _trimesh() -> Any:
-    try:
-        import trimesh
-    except ImportError:
-        raise MissingExtra("reading a mesh", "mesh") from None
-    return trimesh
-
-
 def mesh_inertia(
     mesh: Any, *, mass: float | None = None, density: float | None = None, allow: bool = False
 ) -> MassProperties:
@@ -313,6 +306,8 @@ def mesh_inertia(
     `mass` in kg or `density` in kg/m³. Raises BodyError for a surface that is open, whose faces
     are not oriented alike, or that is inside out; `allow` accepts the first two.
     """
+    from trimesh.triangles import mass_properties
+
     if (mass is None) == (density is None):
         raise BodyError("mesh: expected either the mass or the density")
     for what, value, unit in (("mass", mass, "kg"), ("density", density, "kg/m³")):
@@ -326,7 +321,7 @@ def mesh_inertia(
     inside = mesh.vertices.mean(axis=0)
     triangles = (mesh.vertices - inside)[mesh.faces]
     with np.errstate(all="ignore"):  # numbers that are too large are looked for below
-        solid = _trimesh().triangles.mass_properties(triangles, density=1.0)
+        solid = mass_properties(triangles, density=1.0)
         volume = float(solid.volume)
         if volume <= 0:
             raise BodyError(

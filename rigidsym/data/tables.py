@@ -410,25 +410,16 @@ def write_table(
     names: Sequence[str],
     rows: Iterable[Rows],
     stream: BinaryIO | None = None,
-) -> int:
+) -> None:
     """Write batches of rows by the ending of a file, which is in place when it is complete.
 
-    With a stream, such as standard output, text is written there. Returns the number of rows.
+    With a stream, such as standard output, text is written there.
     """
-    count = 0
-
-    def tallied() -> Iterator[Rows]:
-        nonlocal count
-        for table, kept in rows:
-            count += len(table)
-            yield table, kept
-
     if stream is not None:
-        _write_text(stream, names, tallied())
-        return count
+        _write_text(stream, names, rows)
+        return
     with whole_file(path) as file:
-        _WRITERS[path.suffix.lower()](file, names, tallied())
-    return count
+        _WRITERS[path.suffix.lower()](file, names, rows)
 
 
 def _write_npy(file: BinaryIO, names: Sequence[str], rows: Iterable[Rows]) -> None:

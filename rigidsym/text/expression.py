@@ -29,7 +29,7 @@ _LETTER = "A-Za-z_" + GREEK_LETTERS
 _TOKEN = re.compile(
     r"(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)"
     rf"|(?P<name>[{_LETTER}][{_LETTER}0-9]*)"
-    r"|(?P<operator>\*\*|[-+*/(),])",
+    r"|(?P<operator>\*\*|[-+*/(),])|(?P<space>[ \t\r\n]+)|(?P<other>(?s:.))",
     re.ASCII,
 )
 _OPERATORS = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "**"}
@@ -48,7 +48,9 @@ def parse_expression(text: str, names: Mapping[str, sp.Expr]) -> sp.Expr:
     _check_length(text)
     _check_order(text)
     spaced = re.sub(r"\s", " ", text)
-    plain = _TOKEN.sub(lambda m: m[0] if m.lastgroup == "operator" else "x" * len(m[0]), spaced)
+    plain = _TOKEN.sub(
+        lambda m: "x" * len(m[0]) if m.lastgroup in ("number", "name") else m[0], spaced
+    )
     try:
         # One line in brackets, since Python takes a space before an expression for an indent.
         tree = ast.parse(f"({plain})", mode="eval")
@@ -105,22 +107,14 @@ def _check_length(text: str) -> None:
 
 
 def _tokens(text: str) -> list[re.Match[str]]:
-    tokens: list[re.Match[str]] = []
-    place = 0
-    while place < len(text):
-        if text[place] in " \t\r\n":
-            place += 1
-            continue
-        token = _TOKEN.match(text, place)
-        if token is None:
-            character = text[place]
+    tokens = [token for token in _TOKEN.finditer(text) if token.lastgroup != "space"]
+    for token in tokens:
+        if token.lastgroup == "other":
             hints = tomllib.loads(
                 Path(__file__).with_name("hints.toml").read_text(encoding="utf-8")
             )
-            hint = hints.get(character, hints["other"])
-            raise ExpressionError(f"unexpected {character!r}; {hint}", column=place + 1)
-        tokens.append(token)
-        place = token.end()
+            hint = hints.get(token[0], hints["other"])
+            raise ExpressionError(f"unexpected {token[0]!r}; {hint}", column=token.start() + 1)
     return tokens
 
 

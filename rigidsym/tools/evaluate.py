@@ -13,7 +13,7 @@ from typing import BinaryIO, NamedTuple
 
 import numpy as np
 
-from rigidsym.data.columns import ColumnNames, counted, in_both_units, names_for
+from rigidsym.data.columns import COLUMNS, ColumnNames, counted, in_both_units, names_for
 from rigidsym.data.tables import (
     ROWS,
     Batch,
@@ -100,23 +100,24 @@ def evaluate(
     )
     factors = [180 / pi if degrees and _is_angle(unit) else 1.0 for _, unit in calls.results]
     largest = np.zeros(len(names))  # the sizes in each column
-    lost, first = 0, ""  # how many rows have inputs and no value, and where the first is
+    # how many rows there are, how many have inputs and no value, and where the first of these is
+    total, lost, first = 0, 0, ""
 
     def computed() -> Iterator[Rows]:
-        nonlocal lost, first
+        nonlocal total, lost, first
         for batch in complete:
             result = _values(calls, table, batch, match.scales, constants, free, threads)
             is_lost = np.isfinite(batch.table).all(axis=1) & ~np.isfinite(result).all(axis=1)
             if is_lost.any() and not lost:
                 first = table.place(int(batch.rows[is_lost.argmax()]))
-            lost += int(is_lost.sum())
+            total, lost = total + len(result), lost + int(is_lost.sum())
             np.fmax(largest, np.fmax.reduce(np.abs(batch.table), initial=0), out=largest)
             yield result * factors, batch.kept
             if progress is not None:
                 progress(batch.share)
 
     titles = (*match.kept.values(), *(_title(*each, degrees=degrees) for each in calls.results))
-    total = write_table(where, titles, computed(), stream)
+    write_table(where, titles, computed(), stream)
     read_as = ", ".join(_title(*match.components[k], degrees=degrees) for k in match.unstated)
     remarks = [remark("unit_assumed", columns=read_as)] if read_as else []
     remarks += [
@@ -316,7 +317,7 @@ def _matched(
     if named is None and table.width != len(components):
         raise DataError(
             f"{counted(table.width, 'column')} without names: expected {len(components)} "
-            f"({', '.join(name for name, _ in components)}); or name them with `columns`"
+            f"({', '.join(name for name, _ in components)}); or name them with {COLUMNS}"
         )
     header = ColumnNames(named or [name for name, _ in components])
     used = [*range(table.width)] if named is None else _by_name(inputs, header)
@@ -358,7 +359,7 @@ def _by_name(arguments: Sequence[_Input], header: ColumnNames) -> list[int]:
             f"no column {', '.join(missing)} among {header.listed}; "
             f"{'without rates, --quantity rotation_matrix gives the attitude; ' * lacks_rates}"
             f"{same * (not constants.isdisjoint(missing))}"
-            "if the file names them otherwise, --columns names all its columns, in order"
+            f"if the file names them otherwise, {COLUMNS} names all its columns, in order"
             f"{', or --angles the coordinates, such as `--angles yaw,pitch,roll`' * names_angles}"
         )
     return columns

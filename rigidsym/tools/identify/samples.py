@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rigidsym.data.columns import ColumnNames, counted, names_for
+from rigidsym.data.columns import COLUMNS, ColumnNames, counted, names_for
 from rigidsym.data.tables import MOST_SHOWN, ArrayTable, Batch, Table, listed, names_of, open_table
 from rigidsym.errors import DataError
 from rigidsym.tools.identify.readings import ANGLE_NAMES
@@ -151,7 +151,7 @@ def by_width(width: int) -> Columns:
     if width not in _WITHOUT_HEADER:
         widths = "; ".join(f"{w} ({', '.join(parts)})" for w, parts in _WITHOUT_HEADER.items())
         names = f"{counted(width, 'column')} without names"
-        raise SampleError([f"{names}: expected {widths}; or name them with `columns`"])
+        raise SampleError([f"{names}: expected {widths}; or name them with {COLUMNS}"])
     columns = iter(range(width))
     parts = _WITHOUT_HEADER[width]
     return Columns({part: [next(columns) for _ in range(SIZES[part])] for part in parts})
@@ -197,7 +197,7 @@ def by_name(names: Sequence[str]) -> Columns:
         lacking = ", ".join(missing)
         lacking = lacking.replace(", ".join(MATRICES[0]), "r11, ..., r33 or qw, qx, qy, qz")
         lacking = f"no column {lacking} among {header.listed}"
-        faults.append(f"{lacking}; --columns (in Python `columns`) names them in order")
+        faults.append(f"{lacking}; {COLUMNS} names them in order")
     if faults:
         raise SampleError(faults)
 
