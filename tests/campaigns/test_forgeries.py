@@ -480,7 +480,7 @@ OTHERS: Forgeries = {
         "Ω of entries and lists": cells(VELOCITY, lambda rows: [*rows[:2], [rows[2]]]),
         # as a number it would be a multiple of all rates
         "W of one entry": together(
-            with_turns("", {"phi": "", "theta": ""}),
+            with_turns("", dict.fromkeys(("phi", "theta", "psi"), "")),
             write("rotation", {"matrix": IDENTITY, "conditions": []}),
             write("quantities", [{"name": W, "expression": [["0"]], "unit": "", "shape": [1, 1]}]),
         ),
