@@ -79,7 +79,7 @@ def _findings(record: Path) -> Iterator[tuple[Path, str, str]]:
     try:
         fresh = printed(read_record(content.get("request"), source=str(record)))
     except SpecError as error:  # the other records are checked all the same
-        yield record, f"a damaged request: {'; '.join(map(str, error.faults))}; derive it again", ""
+        yield record, f"its request cannot be derived: {'; '.join(map(str, error.faults))}", ""
         return
     if record.name not in fresh.files:
         yield record, f"the record of {fresh.name}.json under another name; remove it", ""

@@ -95,6 +95,6 @@ def check_style(style: str) -> str:
     except (FileNotFoundError, ValueError):
         names = ", ".join(resources.STYLES)
         raise ModelError(
-            f"no style {style!r}: expected {names}, or a template {name} of your own"
+            f"no style {style!r}: expected {names}, or your own {name} in --templates DIR"
         ) from None
     return style

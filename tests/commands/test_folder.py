@@ -108,9 +108,21 @@ def test_a_damaged_record_is_named_and_keeps_no_other_from_being_checked(tmp_pat
     (tmp_path / "old.json").write_text(json.dumps(content | {"schema_version": 1}))
     printed = call("check", str(tmp_path), str(half), cwd=tmp_path, status=1).stdout
     assert "old.json: its schema version is 1, expected 2; derive it again" in printed
-    assert f"{record}: a damaged request: " in printed
+    assert f"{record}: its request cannot be derived: " in printed
     assert f"{half}: cannot be read as the record of a derivation" in printed
     assert f"{NAME}.py: up to date" in printed
+
+
+def test_a_note_in_a_style_of_the_users_is_checked_with_its_templates(tmp_path):
+    style = tmp_path / "mine" / "en" / "handout.md.jinja"
+    style.parent.mkdir(parents=True)
+    style.write_text("# Handout\n\n{{ equation('rotation_matrix') }}\n")
+    own = ("--templates", str(tmp_path / "mine"))
+    _run("derive", "ZXZ", *ONLY, *own, "--style", "handout", "--out", str(tmp_path / "out"))
+    assert call("check", "out", *own, cwd=tmp_path).stdout
+    without = call("check", "out", cwd=tmp_path, status=1).stdout
+    assert "json: its request cannot be derived: style: no style 'handout'" in without
+    assert "or your own en/handout.md.jinja in --templates DIR" in without
 
 
 def test_an_error_of_writing_names_the_file_and_not_its_draft(tmp_path):
