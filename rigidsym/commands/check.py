@@ -38,7 +38,9 @@ def _strangers(paths: Iterable[Path], derived: set[Path]) -> Iterator[tuple[Path
     # a Reals.vo, or what else Coq loads, would stand for its own
     endings = [f"{CERTIFICATE}{end}" for end in ("", "o", "io", "ok", "os")]
     for path in sorted({*chain(*(files(f"*.{end}") for files in folders for end in endings))}):
-        if path.parent in beside and path.with_suffix(f".{CERTIFICATE}") not in derived:
+        # coqc writes no .vio, but loads a newer Rotation.vio instead of the Rotation.vo it wrote
+        is_compiled = path.with_suffix(f".{CERTIFICATE}") in derived and path.suffix != ".vio"
+        if path.parent in beside and not is_compiled:
             yield path, "belongs to no record here", ""
 
 

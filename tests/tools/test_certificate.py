@@ -376,6 +376,9 @@ def test_a_certificate_joins_what_is_derived_again(folder):
     answered("derive", "ZXZ", *only, "--target", "c", "--out", str(folder.parent))
     (folder / "Rotation.vo").write_text("")  # compiled
     assert problems(folder.parent) == {}
+    (folder / "Rotation.vio").write_text("")  # which Coq would load instead
+    assert problems(folder.parent) == {"Rotation.vio": "belongs to no record here"}
+    (folder / "Rotation.vio").unlink()
     assert json.loads((folder / RECORD).read_text())["files"].keys() >= {COQ, "Rotation.v"}
 
 
