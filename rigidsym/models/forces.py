@@ -206,7 +206,8 @@ class Forces:
             (declared.get(s) or Parameter(symbol=s, positive=False)).described_by(about.get(s, ""))
             for s in sp.ordered(symbols)
         )
-        return replace(body, parameters=(*body.parameters, *more))
+        example = self.examples[0].parameters if self.examples else {}
+        return replace(body, parameters=(*body.parameters, *more), example=example)
 
     @property
     def expressions(self) -> Iterator[sp.Expr]:

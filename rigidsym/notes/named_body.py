@@ -19,6 +19,7 @@ from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import NOTHING, Formula, with_names
 from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.derive import derive
+from rigidsym.mechanics.quantities.dynamics import DYNAMICS_QUANTITIES
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
 from rigidsym.mechanics.quantities.mass import INERTIA, INERTIA_QUANTITIES, STEINER
 from rigidsym.mechanics.quantities.table import POINT, own_names
@@ -26,12 +27,14 @@ from rigidsym.models.rotation import OMEGA_BODY
 
 if TYPE_CHECKING:
     from rigidsym.models.body import RigidBody
+    from rigidsym.models.forces import Forces
 
 Parts = Sequence[tuple[sp.Symbol, sp.Expr]]  # names with what they stand for
 
 _AS_DESCRIBED = ("mass", "centre_of_mass", "principal_moments", "principal_axes")
 _ABOUT_POINT = ("inertia_tensor_point", "moment_of_inertia")
 OFFSET = tuple(sp.Symbol(f"d_{axis}") for axis in "xyz")
+_SHORT = 3  # operations of a moment such as m l² or 2 A, which needs no letter in a motion
 _DISTANCE = formula(r"\mathbf{d}")
 
 
@@ -51,23 +54,26 @@ def in_names(derivation: Derivation) -> tuple[Derivation, Parts]:
     moments = [] if is_short else [sp.Symbol(own[f"I_{k}"]) for k in (1, 2, 3)]
     mass = body.mass if isinstance(body.mass, sp.Symbol) else sp.Symbol(own["M"])
     parts, letters = _named(body, mass, moments)
-    renamed: Sequence[str] = _ABOUT_POINT if has_offset else ()
+    renamed = [*_ABOUT_POINT] if has_offset else []
     if not is_short or mass != body.mass:
         renamed = [n for n in (*INERTIA_QUANTITIES, *ENERGY_QUANTITIES) if n not in _AS_DESCRIBED]
         if not body.inertia.is_diagonal():
             renamed.remove("inertia_tensor")
     present = {step.quantity.name for step in derivation.steps}
+    forces = _moving(derivation)
+    renamed += [n for n in DYNAMICS_QUANTITIES if forces]
     taken = {letter for argument in derivation.arguments for letter in argument.notation}
     names = {named(str(name)) for name in OFFSET} if has_offset else set()
     if present.isdisjoint(renamed) or taken & names:
         return derivation, ()
-    again = derive(derivation.model, [n for n in renamed if n in present], body=letters)
+    wanted = [] if forces else [n for n in renamed if n in present]
+    again = derive(derivation.model, wanted, body=letters, forces=forces)
     expressions = {step.quantity.name: step.expression for step in again.steps}
     steiner = formula(STEINER, INERTIA, named(letters.mass.name), _DISTANCE, _DISTANCE)
     steps = []
     for step in derivation.steps:
         name, quantity = step.quantity.name, step.quantity
-        expression = expressions.get(name, step.expression)
+        expression = expressions.get(name, step.expression) if name in renamed else step.expression
         if name in expressions and has_offset and name in _ABOUT_POINT:
             expression = expression.xreplace(dict(zip(POINT, OFFSET, strict=True)))
             if name == "inertia_tensor_point":
@@ -78,7 +84,24 @@ def in_names(derivation: Derivation) -> tuple[Derivation, Parts]:
         steps.append(replace(step, quantity=quantity, expression=expression))
     if mass != body.mass and "mass" not in present and any(_holds(s, mass) for s in steps):
         parts = (*parts, (mass, body.mass))
-    return replace(derivation, steps=tuple(steps)), parts
+    derivation = replace(derivation, steps=tuple(steps))
+    if forces:
+        integrals = tuple(derivation.first_integrals and again.first_integrals)
+        consequences = tuple(derivation.consequences and again.consequences)
+        derivation = replace(derivation, first_integrals=integrals, consequences=consequences)
+    return derivation, parts
+
+
+def _moving(derivation: Derivation) -> Forces | None:
+    """The forces, if the equations of motion are shorter with letters for the principal moments.
+
+    Claims may rest on the values of the moments, and equations in names have their own letters.
+    """
+    body, forces = derivation.body, derivation.forces
+    if body is None or forces is None or derivation.definitions or forces.first_integrals:
+        return None
+    is_long = body.inertia.is_diagonal() and max(map(sp.count_ops, body.inertia)) > _SHORT
+    return replace(forces, fixed_point=(), examples=()) if is_long else None
 
 
 def _holds(step: Step, mass: sp.Symbol) -> bool:

@@ -102,6 +102,8 @@ class Problem:
         body, constants = self.derivation.body, self.names.get("parameters", ())
         assert body is not None
         # the mass of a body about a fixed point may not matter
+        own = {str(symbol): float(value) for symbol, value in body.values.items()}
+        parameters = own | {**parameters}
         acting = (e.free_symbols for e in self.forces.expressions)
         names = {str(symbol) for symbol in body.inertia.free_symbols.union(*acting)}
         names |= {*map(str, self.model.constants)}

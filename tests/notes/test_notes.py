@@ -139,6 +139,27 @@ def test_a_lecture_has_every_equation_and_leaves_out_what_an_audit_adds():
     assert last == ["Identities verified", "Symbols", "Functions"]
 
 
+def test_equations_of_motion_have_letters_for_long_moments():
+    """The moments of a disc on a rod would fill the page, and are in the note once."""
+    file = """[rotation]
+sequence = "ZXZ"
+[body]
+parts = [{ shape = "disc", radius = "r", mass = "m", at = [0, 0, "l"] },
+         { shape = "rod", length = "l", mass = "mu", at = [0, 0, "l/2"] }]
+[dynamics]
+fixed_point = [0, 0, 0]
+potential = "(m + mu/2)*g*l*cos(theta)"
+[output]
+note = ["md"]
+"""
+    spec = read_spec(file, source="gyro.toml", name="gyro")
+    text = output_of(spec).files["gyro.md"]
+    equations = text.partition("## The equations of motion")[2].partition("## Appendix")[0]
+    assert "I _1" in equations
+    assert "r^2" not in equations
+    assert "r^2" in text
+
+
 def test_a_file_chooses_the_style_and_the_record_knows_it():
     file = '[rotation]\nsequence = "ZXZ"\n[output]\nnote = ["md"]\nstyle = "audit"\nkernels = []\n'
     spec = read_spec(file, source="top.toml", name="top")

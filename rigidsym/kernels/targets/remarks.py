@@ -80,11 +80,11 @@ def series(program: Program, form: str, width: int, *, more: int = 0) -> str:
 
 
 def in_units(units: Sequence[str]) -> str:
-    """The unit of components behind their names: " in rad"; pure numbers have none."""
+    """The unit of components behind their names: " in rad"; a dash if none is declared."""
     if not any(units):
         return ""
     same = len(set(units)) == 1
-    return f" in {units[0] if same else '(' + ', '.join(unit or '1' for unit in units) + ')'}"
+    return f" in {units[0] if same else '(' + ', '.join(unit or '-' for unit in units) + ')'}"
 
 
 def table(rows: Sequence[tuple[str, str, str]]) -> str:

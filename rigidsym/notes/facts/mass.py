@@ -61,6 +61,7 @@ class MassFacts:
             self.letters,
             axes=[label.symbol for label in drawing.labels],
             are_own=are_own,
+            is_fixed=self.body.fixed_point is not None,
             is_to_scale=self.body.distribution is not None,
             lengths=[
                 equal(formula_of(s, self.letters), decimal(float(numbers[s]))) for s in chosen

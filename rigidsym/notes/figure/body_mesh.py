@@ -83,7 +83,10 @@ def numbers_of(body: RigidBody) -> Numbers | None:
     """
     if not _described(body):
         return None
-    values = {p.symbol: p.value for p in (*body.declared, *body.parameters)}
+    values = {
+        p.symbol: body.example.get(p.symbol.name) if p.value is None else p.value
+        for p in (*body.declared, *body.parameters)
+    }
     lengths = lengths_of(_described(body), values)
     # Parameters that are no lengths, such as densities, do not change the shape; 1 will do.
     return None if lengths is None else lengths | dict.fromkeys({*values} - {*lengths}, sp.Float(1))

@@ -229,8 +229,12 @@ class _Screen:
         if integrals := derivation.first_integrals:
             self.section("Constant along every motion (first integrals)")
             for integral in integrals:
-                self.equation(Equation(sides=(integral.symbol,), scalar=integral.expression))
-                self.abbreviations(integral.expression, derivation)
+                value = integral.expression
+                if value.is_Symbol and (own := [s for s in steps if value in s.expression]):
+                    self.line(_INDENT, integral.symbol, f", see ({own[0].number})")
+                    continue
+                self.equation(Equation(sides=(integral.symbol,), scalar=value))
+                self.abbreviations(value, derivation)
 
         singular = singular_facts(derivation)
         if singular is not None:
