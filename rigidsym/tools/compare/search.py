@@ -194,7 +194,7 @@ def _findings(path: Path, text: str, expected: str) -> Iterator[FormulaInFile]:
     effort, before = 0, set[Any]()  # for different formulas since the last known one
     for group in variants.values():
         if effort > _MOST_EFFORT:
-            reason = "the formulas before it resemble no known one, and it takes too long"
+            reason = "too many unknown formulas before it"
             yield FormulaInFile(path, Formula(lines=(group[0].line,), name=""), reason=reason)
             return
         # A formula with the values of all branches may be no quantity, while one branch is.
