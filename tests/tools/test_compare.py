@@ -154,6 +154,18 @@ def test_the_finding_is_said_in_one_sentence():
         assert sentence in found.text()
 
 
+@pytest.mark.parametrize("quantity", ["rotation_matrix", "angular_velocity_body"])
+def test_angles_may_have_our_names_in_another_order_unless_the_rotation_names_them(quantity):
+    turns = "z(psi) y(theta) x(phi)"
+    aerospace = right(turns, quantity)
+    assert rs.compare(aerospace, turns, quantity).is_equal
+    found = rs.compare(aerospace, "ZYX", quantity)
+    assert found.is_equal and found.is_proved
+    assert f"{quantity} of ZYX with the names psi, theta, phi in this order" in found.text()
+    named = rs.derive("z(phi) y(theta) x(psi)", quantity)
+    assert not rs.compare(aerospace, named, quantity).is_equal
+
+
 UNAIDED = {
     "{2*(q[3]*qd[0]-q[0]*qd[3]-q[1]*qd[2]+q[2]*qd[1]), 2*(q[3]*qd[1]-q[1]*qd[3]-q[2]*qd[0]+q[0]*"
     "qd[2]), 2*(q[3]*qd[2]-q[2]*qd[3]-q[0]*qd[1]+q[1]*qd[0])}": (

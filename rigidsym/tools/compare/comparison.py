@@ -182,9 +182,12 @@ class Comparison:
         q = found.inputs["q"] if found and is_of_angles else ()
         own = [name for name, symbol in (found.names if found else {}).items() if symbol in q]
         theirs = [called.get(name) or known.stem_of(called.get(f"{name}_dot", "")) for name in own]
+        calls = [(a, b) for a, b in zip(own, theirs, strict=True) if b and a != b]
+        has_other_order = all(theirs) and {a for a, _ in calls} & {b for _, b in calls}
         facts: dict[str, Any] = vars(self) | {
             "arrangement": self.arrangement,
-            "calls": [(a, b) for a, b in zip(own, theirs, strict=True) if b and a != b],
+            "calls": calls,
+            "in_order": theirs if has_other_order else (),
             "others": [other.text() for other in self.others],
             "points": known.POINTS,
             "is_as_asked": found and asked and str(asked) == str(found),

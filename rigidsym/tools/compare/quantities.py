@@ -60,6 +60,7 @@ def _points() -> Array:
 TABLE = _points()
 AXES = [a + b + c for a, b, c in product("XYZ", repeat=3) if a != b != c]
 _THREE = (*AXES, *(axes.lower() for axes in AXES))
+_AXES_ALONE = re.compile("[XYZ]{3}|[xyz]{3}|[123]{3}")  # a rotation whose angles have our names
 _SEQUENCES = {
     1: tuple(f"{a}(angle)" for a in "xyz"),
     2: tuple(f"{a}(first) {b}(second)" for a, b in permutations("xyz", 2)),
@@ -449,11 +450,12 @@ _INDICES = (("abc", "xyz"), ("012", "012"), ("123", "123"))  # of rows and colum
 def meanings(formula: sp.MatrixBase, goal: KnownQuantity, *, is_asked: bool) -> list[Names]:
     """The possible meanings of the names in a formula.
 
-    If the quantity `is_asked` for, and all names are those of its inputs, no other is possible.
+    If the quantity `is_asked` for, and all names are those of its inputs, no other is possible,
+    unless these are the names of angles that nobody has chosen, as in "ZYX".
     """
     symbols, inside = _symbols(formula)
     own = {s: goal.names.get(s.name) or goal.names.get(f"{stem_of(s.name)}_dot") for s in symbols}
-    if None not in own.values() and is_asked:
+    if None not in own.values() and is_asked and not _AXES_ALONE.fullmatch(goal.rotation):
         return [own]
     turns = goal.motion.model.turns
     vectors = [*goal.inputs.values()]
