@@ -212,7 +212,7 @@ CHANGED = {  # statements of a function of phi and psi: what its matrix is
     f"phi *= -1; {SINES}; return {TURN}": "transposed",
     f"phi = -phi; phi = -phi; {SINES}; return {TURN}": "equal to",
     f"phi = np.pi/2 - phi; {SINES}; return {TURN}": "from another axis",
-    f"phi, psi = psi, phi; {SINES}; return {TURN}": "with angle = psi",
+    f"phi, psi = psi, phi; {SINES}; return {TURN}": "with psi as angle",
     f"{SINES}; M = {TURN}; M[0, 1] = s; return M": "entry (1, 2): sin(phi) should be -sin(phi)",
     f"{SINES}; M = {TURN}; change(M); return M": "equal to",  # before it is changed
     f"{SINES}; M = {TURN}; N = M; N[0, 1] = s; return M": "entry (1, 2)",
@@ -301,11 +301,11 @@ EXACT = {  # bodies of void f(int k, double a, x, y, z, R[9]) in C++: the words 
     f"double c = cos(std::min(a, 1.0)), s = sin(std::min(a, 1.0)); {TURNED}": "",
     f"double s = k ? sin(a) : 0, c = cos(a); {TURNED}": "in one of several branches",
     f"double s = sin(a), c = cos(a); switch (k) {{ case 0: s = -s; case 1: s = 2*s; }} {TURNED}": (
-        "angle = a (proved); in one of several branches"
+        "a as angle (proved); in one of several branches"
     ),
     f"double s = cosine(a), c = cos(a); {TURNED}": "",
     f"double s = sinus(a), c = cos(a); {TURNED}": "(proved)",
-    f"glm::dmat3 m{COLUMNS}; R = m;": "angle = a (proved)",
+    f"glm::dmat3 m{COLUMNS}; R = m;": "a as angle (proved)",
     f"x = x/sqrt({SQUARES}); y = y/sqrt({SQUARES}); {AXIS}": "",
     f"double n = sqrt({SQUARES}); x /= n; y /= n; {AXIS}": "",
     f"double n = sqrt({SQUARES} + z*z); x /= n; y /= n; z /= n; {AXIS}": "(proved)",
@@ -387,7 +387,7 @@ CERTAIN |= {  # a program: the end of the verdict, and nothing if there is none
      "2*(w*x + y*z), 1 - 2*(x*x + y*y)), np.arcsin(s), np.arctan2(2*(w*z + x*y), 1 - 2*(y*y + "
      "z*z))\n"): None,
     ("i.c", "short a;\nvoid f(float a, double q[4]) { // a short name\n double h = a/2; q[0] = cos("
-     "h); q[1] = sin(h); q[2] = 0; q[3] = 0; }"): "angle = a (proved)",
+     "h); q[1] = sin(h); q[2] = 0; q[3] = 0; }"): "a as angle (proved)",
     ("h.c", "void f(int a, double q[4]) { q[0] = cos(a/2); q[1] = 0; q[2] = 0; q[3] = sin(a/2); }"):
     None,
     **{(f"w{k}.{suffix}", text): None for k, (suffix, text) in enumerate(WHOLE)},
@@ -405,13 +405,13 @@ CERTAIN |= {  # a program: the end of the verdict, and nothing if there is none
     ("a.cs", "class A { double S(double d) => Math.Sin(d); double[] F(double a) { return new[] {"
      "Math.Cos(a/2), S(a/2), 0, 0}; } }"): "(proved)",
     ("b.cs", "class A { float3x3 F(float a) { float s, c; sincos(a, out s, out c); return float3x3("
-     "c, -s, 0, s, c, 0, 0, 0, 1); } }"): "angle = a (proved)",
+     "c, -s, 0, s, c, 0, 0, 0, 1); } }"): "a as angle (proved)",
     ("s.py", "def f(a):\n    s, c = torch.sin(a), torch.cos(a)\n    return torch.stack((c, -s, 0, "
-     "s, c, 0, 0, 0, 1), -1).reshape(a.shape + (3, 3))\n"): "angle = a (proved)",
+     "s, c, 0, 0, 0, 1), -1).reshape(a.shape + (3, 3))\n"): "a as angle (proved)",
     ("k.py", "def f(p, q):\n    a, u, b, v = p[0], p[1:4], q[0], q[1:4]\n    return np.r_[a*b - "
      "np.dot(u, v), a*v + b*u + np.cross(u, v)]\n"): "quaternion_product (proved)",
     ("a.m", "e = [atan2d(R(3,2), R(3,3)); asind(-R(3,1)); atan2d(R(2,1), R(1,1))];"): "not proved)",
-    ("b.m", f"function R = f(a)\n  R = reshape({FLAT}, 3, 3);\nend\n"): "angle = a (proved)",
+    ("b.m", f"function R = f(a)\n  R = reshape({FLAT}, 3, 3);\nend\n"): "a as angle (proved)",
     ("l.py", f"def f(a):\n    return np.reshape({FLAT}, (3, 3), 'F')\n"): None,
     ("m.py", f"def f(a):\n    a = degrees(a)\n    R = {FLAT}\n"): None,
     ("e.js", f"function f(a) {{ {INNER.replace('#', 'let g = () => { s = -s; }; g();')} }}"): None,
@@ -422,24 +422,24 @@ CERTAIN |= {  # a program: the end of the verdict, and nothing if there is none
      ", 2*(y*z + w*x), 1 - 2*(x*x + y*y)]]\n"): None,
     ("o.py", "def f(q):\n    w, x, y, z = q[0], q[1], q[2], q[3]\n    R = [[1 - 2*(y*y + z*z), 2*("
      "x*y - w*z), 2*(x*z + w*y)], [2*(x*y + w*z), 1 - 2*(x*x + z*z), 2*(y*z - w*x)], [2*(x*z - "
-     "w*y), 2*(y*z + w*x), 2*(w*w + z*z) - norm(q)**2]]\n"): "y = q_2, z = q_3 (proved)",
-    ("a.rs", f"use cgmath; fn f(a: f32) {BY_COLUMNS}"): "angle = a (proved)",
+     "w*y), 2*(y*z + w*x), 2*(w*w + z*z) - norm(q)**2]]\n"): "q_3 as w, x, y, z (proved)",
+    ("a.rs", f"use cgmath; fn f(a: f32) {BY_COLUMNS}"): "a as angle (proved)",
     ("b.rs", f"use mine; fn f(a: f32) {BY_COLUMNS}"):
     "transposed (passive, or stored by columns) (proved)",
     ("c.js", "function f(a) { let c = Math.cos(a), s = Math.sin(a); m[0] = c; m[3] = -s; m[6] = 0;"
      " m[1] = s; m[4] = c; m[7] = 0; m[2] = 0; m[5] = 0; m[8] = 1; }"):
     "transposed (passive, or stored by columns) (proved)",
     ("d.cpp", "void f(double a) { m(1,1) = cos(a); m(1,2) = -sin(a); m(1,3) = 0; m(2,1) = sin(a); "
-     "m(2,2) = cos(a); m(2,3) = 0; m(3,1) = 0; m(3,2) = 0; m(3,3) = 1; }"): "angle = a (proved)",
+     "m(2,2) = cos(a); m(2,3) = 0; m(3,1) = 0; m(3,2) = 0; m(3,3) = 1; }"): "a as angle (proved)",
     ("e.cpp", "M f() { M H; H(0,0) = -x(); H(0,1) = w(); H(0,2) = -z(); H(0,3) = y(); H(1,0) = "
      "-y(); H(1,1) = z(); H(1,2) = w(); H(1,3) = -x(); H(2,0) = -z(); H(2,1) = -y(); H(2,2) = x(); "
      "H(2,3) = w(); return H; }"): "rate_matrix_space of unit_quaternion, half (proved)",
     ("f.cpp", "P f(Q q) { P a; a.p.X(cos(q.W())*p.X() - sin(q.W())*p.Y()); "
      "a.p.Y(sin(q.W())*a.p.X() + cos(q.W())*p.Y()); a.p.Z(p.Z()); return a; }"): None,
     ("g.cpp", "void f(double a) { q.W(cos(a/2)); q.X(sin(a/2)); q.Y(0); q.Z(0); }"):
-    "angle = a (proved)",
+    "a as angle (proved)",
     ("k.cpp", "void f(float yaw, float pitch) { a = yaw/2; b = pitch/2; v.x = -sin(a)*sin(b); v.y "
-     "= cos(a)*sin(b); v.z = sin(a)*cos(b); w = cos(a)*cos(b); }"): "second = pitch (proved)",
+     "= cos(a)*sin(b); v.z = sin(a)*cos(b); w = cos(a)*cos(b); }"): "as first, second (proved)",
     ("p.py", "def f(self):\n    v, a = self.turn()\n    R = np.cos(a)*np.eye(3) + np.sin(a)*np.arr"
      "ay([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]]) + (1 - np.cos(a))*np.outer(v, "
      "v)\n"):
@@ -447,17 +447,17 @@ CERTAIN |= {  # a program: the end of the verdict, and nothing if there is none
     ("c.m", "function a = f(obj, t, w, U)\n  a = obj.I\\(t - cross(w, obj.I*w));\nend\n"):
     "if one matrix is the inverse of the other (proved)",
     ("q.py", "def f(x, y, z, q):\n    return np.dot(np.array([[0, -x, -y, -z], [x, 0, z, -y], [y, "
-     "-z, 0, x], [z, y, -x, 0]]), q)/2\n"): "z = q_3 (proved)",
+     "-z, 0, x], [z, y, -x, 0]]), q)/2\n"): "q_3 as w, x, y, z (proved)",
     ("c.rs", "fn f(yaw: Angle<f64>) -> Q { let h = 0.5 * yaw.get(); let (s, c) = h.sin_cos(); "
-     "Q::quaternion(0.0, 0.0, s, c) }"): "z(angle) with angle = yaw, scalar last (proved)",
+     "Q::quaternion(0.0, 0.0, s, c) }"): "z(angle) with yaw as angle, scalar last (proved)",
     ("h.cc", "void f(double *q, double B[3][3]) { B[0][0] = 1; B[0][1] = q[2]; B[0][2] = -q[1]; B"
      "[1][0] = -q[2]; B[1][1] = 1; B[1][2] = q[0]; B[2][0] = q[1]; B[2][1] = -q[0]; B[2][2] = 1;"
-     "\nm33Scale(1. / (1 + v3Dot(q, q)), B, B); }"): "g3 = q_2, half (proved)",
+     "\nm33Scale(1. / (1 + v3Dot(q, q)), B, B); }"): "q_2 as g1, g2, g3, half (proved)",
     ("r.py", "def f(q):\n    B = np.zeros((3, 4)); B[0, 0] = -q[1]; B[0, 1] = q[0]; B[0, 2] = q[3];"
      " B[0, 3] = -q[2]; B[1, 0] = -q[2]; B[1, 1] = -q[3]; B[1, 2] = q[0]; B[1, 3] = q[1]; B[2, 0] ="
-     " -q[3]; B[2, 1] = q[2]; B[2, 2] = -q[1]; B[2, 3] = q[0]\n"): "z = q_3, half (proved)",
+     " -q[3]; B[2, 1] = q[2]; B[2, 2] = -q[1]; B[2, 3] = q[0]\n"): "as w, x, y, z, half (proved)",
     ("d.rs", "fn f(a: f64) -> M { let c = a.cos(); let s = a.sin(); let k = s.mul_add(-1.0, 0.0); "
-     "M::from([[c, k, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]) }"): "angle = a (proved)",
+     "M::from([[c, k, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]) }"): "a as angle (proved)",
     ("d.js", "const k = 180 / PI; function f(a, b, c, d) { return [atan2(2*(a*b + c*d), 1 - 2*(b*b"
      " + c*c))*k, asin(2*(a*c - d*b))*k, atan2(2*(a*d + b*c), 1 - 2*(c*c + d*d))*k]; }"):
     "up to the factor k (to nine digits at 20 points, not proved)",
@@ -533,7 +533,7 @@ LANGUAGES = {
 def test_a_rotation_about_z_is_read_in_every_language(tmp_path, name):
     said = {str(each).partition(": ")[2] for each in found_in(tmp_path, name, LANGUAGES[name])}
     assert any(
-        "equal to rotation_matrix of z(angle) with angle = a (proved)" in each for each in said
+        "equal to rotation_matrix of z(angle) with a as angle (proved)" in each for each in said
     )
 
 
@@ -682,7 +682,7 @@ def test_of_equally_near_rotations_that_of_yaw_pitch_and_roll_is_named(tmp_path)
     return [cr*cp*cy + sr*sp*sy, x, y, cr*cp*sy + sr*sp*cy]
 """
     (found,) = found_in(tmp_path, "q.py", text)
-    assert "close to quaternion of ZYX with phi = yaw, theta = pitch, psi = roll: entry 4: " in str(
+    assert "quaternion of ZYX with yaw, pitch, roll as the angles about z, y, x: entry 4: " in str(
         found
     )
 
@@ -815,7 +815,7 @@ def test_a_transposed_rate_matrix_of_a_program_may_be_meant(tmp_path):
     transposed = "[[1, 0, 0], [0, cos(a), -sin(a)], [-sin(b), sin(a)*cos(b), cos(a)*cos(b)]]"
     assert [r.kind for r in rs.compare(transposed).repairs] == ["transpose"]
     (own,) = found_in(tmp_path, "a.py", f"W_T = {transposed}\n")
-    assert str(own).endswith("with phi = a, theta = b, transposed (proved)")
+    assert str(own).endswith("with a, b as the angles about x, y, transposed (proved)")
 
 
 OF_STATES = {  # statements of MATLAB, and parts of the findings

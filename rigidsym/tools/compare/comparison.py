@@ -178,19 +178,18 @@ class Comparison:
     def text(self) -> str:
         """The findings in sentences."""
         asked, found, called = self.asked, self.found, self._called()
-        is_of_angles = found and found.rotation and found.quantity != ANGLES
-        q = found.inputs["q"] if found and is_of_angles else ()
-        own = [name for name, symbol in (found.names if found else {}).items() if symbol in q]
-        theirs = [called.get(name) or known.stem_of(called.get(f"{name}_dot", "")) for name in own]
-        calls = [(a, b) for a, b in zip(own, theirs, strict=True) if b and a != b]
-        has_other_order = all(theirs) and {a for a, _ in calls} & {b for _, b in calls}
+        calls = []  # the names of coordinates: ours, the user's, and the axis of the turn
+        if found and found.rotation and found.quantity != ANGLES:
+            turns = {turn.angle: turn.axis for turn in found.motion.model.turns}
+            q = ((own, s) for own, s in found.names.items() if s in found.inputs["q"])
+            for own, symbol in q:
+                name = called.get(own) or known.stem_of(called.get(f"{own}_dot", ""))
+                calls += [(own, name, turns.get(symbol))] if name else []
         facts: dict[str, Any] = vars(self) | {
             "arrangement": self.arrangement,
-            "calls": calls,
-            "in_order": theirs if has_other_order else (),
+            "calls": calls if any(own != name for own, name, _ in calls) else [],
             "others": [other.text() for other in self.others],
             "points": known.POINTS,
-            "is_as_asked": found and asked and str(asked) == str(found),
             "shape": in_words(self.formula.shape),
             "expected": in_words(asked.matrix.shape if asked else self.formula.shape),
             "names": sorted(map(str, self.formula.free_symbols)),
@@ -285,7 +284,7 @@ def identified(
     nearest rotations, that about the `expected` axes, as in "z y x", is preferred.
     """
     trials = []
-    for family in known.families(formula) if asked is None else [(asked,)]:
+    for family in known.families(formula) if asked is None else [asked.in_orders()]:
         trial = _Trial(formula, family, is_asked=asked is not None)
         for equal in trial.readings(trial.agreement.all(axis=(2, 3, 4))):
             return _proved(equal, asked)
@@ -324,8 +323,8 @@ def _close(
         return _repaired(_nearest(trials, _NEAR, expected)[:_NEAREST])
     own = identified(formula, only_equal=True)
     if own.found:
-        words = ", ".join(filter(None, (f"this is {own.found}", own.arrangement)))
-        return replace(own, asked=asked, repairs=(Repair("convention", words, formula),))
+        repair = Repair("convention", f"this is {own.found}", formula)
+        return replace(own, asked=asked, repairs=(repair,))
     for nearest in _nearest(trials, 0)[:1]:
         if repairs := entry_repairs(nearest):
             return _proved(nearest, asked, repairs)

@@ -222,6 +222,18 @@ class KnownQuantity:
             goals.append(replace(self, arrangement=arrangement, matrix=sp.ImmutableMatrix(matrix)))
         return goals
 
+    def in_orders(self) -> Family:
+        """The quantity, also with the rates backwards if nobody chose the names of the angles.
+
+        ZYX is xyz with the angles in the other order.
+        """
+        has_order = self.quantity in _OF_RATES and not self.quantity.startswith("angular")
+        if not has_order or not _AXES_ALONE.fullmatch(self.rotation):
+            return (self,)
+        is_matrix = self.quantity.startswith("rate_matrix")
+        turned = lambda m, *_: m[:, ::-1] if is_matrix else m[::-1, :]  # noqa: E731
+        return tuple(self.written(_ways(the_rates_in_the_order_3_2_1=turned)))
+
 
 Family = tuple[KnownQuantity, ...]  # of the same inputs and shape, compared in one step
 
