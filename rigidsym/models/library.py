@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
-from difflib import get_close_matches
 from types import MappingProxyType
 from typing import Any
 
@@ -107,6 +106,8 @@ def rotation_from(
     else:
         letters = text.translate(DIGITS)
         if len(letters) != 3 or not set(letters.lower()) <= {*AXES}:
+            from difflib import get_close_matches  # few commands end with a message
+
             excerpt = text if len(text) <= _SHOWN else text[:_SHOWN] + "…"
             near = get_close_matches(text.lower(), [*PARAMETRISATIONS, *PRESETS], n=1)
             bare = re.sub(r"[\W_]", "", text)  # Z-Y-X, 3-1-3

@@ -53,11 +53,9 @@ class Record:
             if not (is_each_once and self._required <= state.keys() <= self._names):
                 kind, got = type(self).__name__, [*values, *named]
                 raise TypeError(f"{kind} has the fields {[*self._names]}; got values for {got}")
-            self.__dict__.update(state)  # the class has the defaults
         else:
-            put = object.__setattr__
-            for name, value in zip(self.__match_args__, values, strict=True):
-                put(self, name, value)
+            state = dict(zip(self.__match_args__, values, strict=True))
+        self.__dict__.update(state)  # the class has the defaults
         self.__post_init__()
 
     def __post_init__(self) -> None:

@@ -201,13 +201,13 @@ def labelled(named: Iterable[Named], strokes: Sequence[Stroke]) -> tuple[Label, 
     named, points = tuple(named), sorted(_sampled(strokes))
     taken: list[Box] = []
 
-    def touched(box: Box) -> int:
+    def touched(box: Box) -> Iterator[bool]:
         grown = Box(box.centre, box.half_width + _MARGIN, box.half_height + _MARGIN)
         # few of the points, which are in order from left to right, are above or below the box
         (x, y), wide, high = grown
         near = points[bisect(points, (x - wide - _MARGIN,)) : bisect(points, (x + wide + _MARGIN,))]
-        inside = sum(abs(b - y) < high and abs(a - x) < wide for a, b in near)
-        return inside + sum(map(grown.meets, taken))
+        yield from (True for a, b in near if abs(b - y) < high and abs(a - x) < wide)
+        yield from map(grown.meets, taken)
 
     widths = half_widths([symbol for _, symbol, _ in named])
     for (_, _, places), half_width in zip(named, widths, strict=True):
@@ -216,8 +216,8 @@ def labelled(named: Iterable[Named], strokes: Sequence[Stroke]) -> tuple[Label, 
             Box(_shifted(half_width, start, direction, gap), half_width, _HALF_HEIGHT)
             for gap, start, direction in ways
         )
-        free = next((box for box in where if not touched(box)), None)
-        taken.append(free or min(other, key=touched))
+        free = next((box for box in where if not any(touched(box))), None)
+        taken.append(free or min(other, key=lambda box: sum(touched(box))))
     pairs = zip(named, taken, strict=True)
     return tuple(Label(kind, symbol, box.centre) for (kind, symbol, _), box in pairs)
 
