@@ -12,6 +12,7 @@ import click
 from rigidsym.commands.command import command as make
 from rigidsym.commands.output_folder import CERTIFICATE, content_of, printed
 from rigidsym.errors import CheckError, SpecError, printable
+from rigidsym.mechanics.derivation import remark
 from rigidsym.notes.formats.record import SCHEMA, SCHEMA_VERSION
 from rigidsym.spec.derivation_file import read_record
 from rigidsym.tools.certificate.checker import BROKEN, load, reason, verify
@@ -41,7 +42,7 @@ def _strangers(paths: Iterable[Path], derived: set[Path]) -> Iterator[tuple[Path
         # coqc writes no .vio, but loads a newer Rotation.vio instead of the Rotation.vo it wrote
         is_compiled = path.with_suffix(f".{CERTIFICATE}") in derived and path.suffix != ".vio"
         if path.parent in beside and not is_compiled:
-            yield path, "belongs to no record here", ""
+            yield path, remark("no_record_of_theorems"), ""
 
 
 def _records(path: Path) -> list[Path]:
@@ -75,16 +76,17 @@ def _findings(record: Path) -> Iterator[tuple[Path, str, str]]:
     version = content.get("schema_version") if content.get("schema") == SCHEMA else None
     if version != SCHEMA_VERSION:
         problem = f"its schema version is {version!r}, expected {SCHEMA_VERSION}"
-        problem = problem if version else "cannot be read as the record of a derivation"
+        problem = problem if version else remark("no_record")
         yield record, f"{problem}; derive it again", ""
         return
     try:
         fresh = printed(read_record(content.get("request"), source=str(record)))
     except SpecError as error:  # the other records are checked all the same
-        yield record, f"its request cannot be derived: {'; '.join(map(str, error.faults))}", ""
+        faults = "; ".join(map(str, error.faults))
+        yield record, remark("request_not_derived", faults=faults), ""
         return
     if record.name not in fresh.files:
-        yield record, f"the record of {fresh.name}.json under another name; remove it", ""
+        yield record, remark("record_renamed", name=fresh.name), ""
         return
     for name, text in fresh.files.items():
         path = record.with_name(name)

@@ -85,8 +85,8 @@ class _Commands(click.Group):
             hint = f"; did you mean {near[0]}?" if near else ""
             raise click.UsageError(f"no command {name!r}{hint}", context)
         if name not in _NUMERICAL:
-            # The modules of SymPy import each other from frame to frame. If it starts further down,
-            # Python takes and returns the last piece of its stack 1,500 times: 50 ms, a tenth of it.
+            # SymPy's modules import each other, from frame to frame. If they start further down,
+            # Python takes and returns the last piece of its stack 1,500 times, in 50 ms.
             import_module("sympy")
         command = import_module(f"rigidsym.commands.{name}").command
         assert isinstance(command, click.Command)

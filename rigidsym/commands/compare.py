@@ -139,8 +139,9 @@ def _faults(baseline: Path) -> list[dict[str, Any]]:
         for record in faults:
             _key(record), str(record["text"])
     except (ValueError, KeyError, TypeError) as error:
-        expected = "expected a result of `rigidsym compare --format json`"
-        raise DataError(f"{baseline}: {expected}") from error
+        raise DataError(
+            f"{baseline}: expected a result of `rigidsym compare --format json`"
+        ) from error
     return faults
 
 

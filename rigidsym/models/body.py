@@ -17,6 +17,7 @@ from sympy.core.function import AppliedUndef
 from rigidsym.algebra.generators import not_exact
 from rigidsym.errors import BodyError
 from rigidsym.models.rotation import SOURCES, TIME, WORDS, Citation, symbolic
+from rigidsym.system.records import Record
 from rigidsym.text.names import A_MODULE_NAME, MODULE_NAME
 
 Bounds = tuple[sp.Expr, sp.Expr]
@@ -24,8 +25,7 @@ HERE = sp.ImmutableMatrix.zeros(3, 1)
 UPRIGHT = sp.ImmutableMatrix(sp.eye(3))
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Particle:
+class Particle(Record, kw_only=True):
     """A point mass, in kg, at a position (3, 1), in m."""
 
     mass: sp.Expr
@@ -36,8 +36,7 @@ class Particle:
             raise BodyError(f"a position has three components, got {len(self.position)}")
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Particles:
+class Particles(Record, kw_only=True):
     """A rigid set of point masses."""
 
     particles: tuple[Particle, ...]
@@ -50,8 +49,7 @@ class Particles:
                 raise BodyError(f"expected an rs.Particle, got {particle!r}")
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Solid:
+class Solid(Record, kw_only=True):
     """A line, a surface or a volume: a map from coordinates within bounds to its points.
 
     The bounds of a coordinate may contain the coordinates before it. `element` is the length or
@@ -95,8 +93,7 @@ class Solid:
                     )
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Part:
+class Part(Record, kw_only=True):
     """A part of a composite body: turned about its origin, then moved by `at`."""
 
     what: Distribution
@@ -106,8 +103,7 @@ class Part:
     label: str = ""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Composite:
+class Composite(Record, kw_only=True):
     """A body composed of parts."""
 
     parts: tuple[Part, ...]
@@ -117,8 +113,7 @@ class Composite:
             raise BodyError("expected at least one part")
 
 
-@dataclass(frozen=True, slots=True)
-class Known:
+class Known(Record):
     """A part of which only mass, centre and inertia tensor about the centre are given."""
 
     mass: sp.Expr
@@ -141,8 +136,7 @@ PRODUCT, COORDINATE = PHRASES["product_of_inertia"], PHRASES["coordinate_of_cent
 _ROUNDING = 1e-12  # of the sum of the moments: what arithmetic in double precision leaves
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Parameter:
+class Parameter(Record, kw_only=True):
     """A constant of a body: a mass, a length, a density, a moment of inertia."""
 
     symbol: sp.Symbol

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from difflib import get_close_matches
 from math import isfinite
 from numbers import Real
@@ -28,6 +28,7 @@ from rigidsym.models.rotation import (
     depends_on_time,
     symbolic,
 )
+from rigidsym.system.records import Record
 from rigidsym.text.expression import names_in, parse_expression
 from rigidsym.text.names import check_name
 
@@ -123,8 +124,7 @@ class MovingPart(NamedTuple):
     inertia: tuple[sp.Expr, ...]  # (3,), kg m² or kg
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Forces:
+class Forces(Record, kw_only=True):
     """A potential energy V(q, t), in joules, and generalised forces Q by coordinate, in N m.
 
     Symbols that are no coordinates are constants; they become parameters of the body. Forces may

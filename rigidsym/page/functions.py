@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import sympy as sp
 
@@ -17,14 +17,14 @@ from rigidsym.mechanics.quantities.dynamics import MOTION
 from rigidsym.models.body import RigidBody
 from rigidsym.models.rotation import RotationModel
 from rigidsym.notes.figure.scene import MOST_TURNS
+from rigidsym.system.records import Record
 
 OF_THE_FIGURE = ("rotation_matrix", "angular_velocity_space", "angular_velocity_body")
 _WITH_A_MARGIN = "rate_matrix_space"
 _FLOW = ("state_derivative", "first_integrals")
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Functions:
+class Functions(Record, kw_only=True):
     """The kernels of a page, and what they are made from."""
 
     derivation: Derivation  # of all functions

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rigidsym.system.records import Record
+
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, repr=False)
-class Trajectory:
+class Trajectory(Record, kw_only=True):
     """A motion at n times, of k coordinates; SI units, angles in radians."""
 
     name: str  # of the derivation

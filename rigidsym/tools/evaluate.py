@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from inspect import signature
 from itertools import compress, product
 from math import pi
@@ -32,12 +32,12 @@ from rigidsym.mechanics.derivation import remark
 from rigidsym.mechanics.quantities import CONVERSIONS
 from rigidsym.motion import Motion
 from rigidsym.system.processes import Progress
+from rigidsym.system.records import Record
 from rigidsym.tools.identify.samples import SLACK, Columns, samples_of
 from rigidsym.tools.spellings import MATRICES, groups_of, of_component
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Evaluated:
+class Evaluated(Record, kw_only=True):
     """What was written."""
 
     path: Path
@@ -162,8 +162,7 @@ def _values(
 # The functions, their arguments and results
 
 
-@dataclass(frozen=True, slots=True)
-class _Input:
+class _Input(Record):
     """A vector or matrix that functions take, with a name and a unit for each component."""
 
     name: str

@@ -13,7 +13,7 @@ templates/notes/en/conversions.toml.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property, reduce
 from itertools import chain
 from typing import Any
@@ -47,6 +47,7 @@ from rigidsym.mechanics.derivation import Derivation, Proof, Quantity, Step, arg
 from rigidsym.mechanics.prove import Prover
 from rigidsym.models.parametrisations import PARAMETRISATIONS, parametrised
 from rigidsym.models.rotation import AXES, SOURCES, RotationModel, rotation_of
+from rigidsym.system.records import Record
 
 Claim = tuple[tuple[sp.Expr, ...], Formula]  # what vanishes, and how it is written
 Way = Callable[[NamedValues, Vector], Vector]
@@ -72,8 +73,7 @@ def vanishing(model: RotationModel, claims: Sequence[Claim]) -> tuple[Proof, ...
     return tuple(prove.vanishes(codec.column(parts), text) for parts, text in claims)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Rule:
+class Rule(Record, kw_only=True):
     """The coordinates from a quaternion of any length but zero, and perhaps the way there.
 
     Quaternions are scalar first, and coordinates in the order of their kind.
@@ -368,8 +368,7 @@ _PARTS: dict[str, Callable[[Vector], dict[str, Any]]] = {
 # What converts, for one model
 
 
-@dataclass(frozen=True)
-class Conversions:
+class Conversions(Record):
     """What converts between a model's coordinates, its unit quaternion and its matrix.
 
     Each is derived and proved in the ring of the model when it is asked for.

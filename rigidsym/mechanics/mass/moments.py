@@ -9,7 +9,6 @@ inertia tensor is tr(J) 1 − J (lecture, section 2.2).
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from functools import lru_cache, singledispatch
 
 import sympy as sp
@@ -25,14 +24,14 @@ from rigidsym.formula.reader import formula
 from rigidsym.mechanics.derivation import Proof
 from rigidsym.mechanics.prove import Conditions, Prover
 from rigidsym.models.body import Composite, Distribution, Known, Part, Particles, Solid
+from rigidsym.system.records import Record
 
 _PAIRS = tuple((i, j) for i in range(4) for j in range(i, 4))
 _ANTIDERIVATIVES = formula(r"\frac{\partial F}{\partial u} = f \text{ for every integral}")
 _ELEMENT = formula(r"\frac{dA}{du\,dv} = \sqrt{\det\mathbf{J}^{\mathsf T}\mathbf{J}}")
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Moments:
+class Moments(Record, kw_only=True):
     """∫ X Xᵀ dm (4, 4) with X = (x, y, z, 1), in the axes of the distribution."""
 
     matrix: sp.ImmutableMatrix

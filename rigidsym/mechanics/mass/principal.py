@@ -6,20 +6,18 @@ equation. Other tensors have no closed form that anyone would read.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import sympy as sp
 
 from rigidsym.algebra.codec import codec_for
 from rigidsym.algebra.present import presenter_for
 from rigidsym.mechanics.derivation import sentence_of
+from rigidsym.system.records import Record
 
 _MOST_OF_AXES = 1000  # operations of axes: longer ones fill pages, and take minutes to prove
 _LETTERS, _BASIS = ("x", "y", "z"), [sp.eye(3).col(k) for k in range(3)]
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Principal:
+class Principal(Record, kw_only=True):
     """Principal moments (3, 1) and axes (3, 3), and how they follow."""
 
     moments: sp.ImmutableMatrix

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby
 from typing import Any
@@ -33,12 +32,12 @@ from rigidsym.notes.figure.body_drawing import body_drawing
 from rigidsym.notes.figure.body_mesh import lengths_in, numbers_of
 from rigidsym.notes.template import figure_with
 from rigidsym.notes.words import number, unit_in_words
+from rigidsym.system.records import Record
 
 _KINDS = {Particles: "particles", Composite: "composite", Known: "measured"}
 
 
-@dataclass(frozen=True)
-class MassFacts:
+class MassFacts(Record):
     """The distribution of the mass, and the parameters of the body."""
 
     derivation: Derivation

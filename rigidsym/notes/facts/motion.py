@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from functools import cached_property
 
 import sympy as sp
@@ -22,10 +21,10 @@ from rigidsym.notes.document import Equation, Figure
 from rigidsym.notes.equations import claims_of
 from rigidsym.notes.figure.motion_picture import motion_picture
 from rigidsym.notes.template import figure_with
+from rigidsym.system.records import Record
 
 
-@dataclass(frozen=True)
-class MotionFacts:
+class MotionFacts(Record):
     """The motion of a body under forces."""
 
     derivation: Derivation

@@ -18,7 +18,7 @@ from rigidsym.formula.pen import break_lines
 from rigidsym.formula.scalars import formula_of, listed_entries, matrix_of
 from rigidsym.formula.tree import Formula, equal
 from rigidsym.formula.unicode_pen import UnicodePen, columns
-from rigidsym.mechanics.derivation import Argument, Derivation, Step, phrases
+from rigidsym.mechanics.derivation import Argument, Derivation, Step, phrases, remark
 from rigidsym.mechanics.quantities.kinematics import BODY, ROTATION, SPACE
 from rigidsym.notes.document import Equation, EquationRow, Listing, NoteBlock, NoteTable, Paragraph
 from rigidsym.notes.equations import equation_of, in_parts, sum_of_vectors
@@ -227,7 +227,7 @@ class _Screen:
             if not step.recursion:
                 self.abbreviations(step.expression, derivation)
         if integrals := derivation.first_integrals:
-            self.section("Constant along every motion (first integrals)")
+            self.section(remark("first_integrals"))
             for integral in integrals:
                 value = integral.expression
                 if value.is_Symbol and (own := [s for s in steps if value in s.expression]):

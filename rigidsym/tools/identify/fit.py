@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import pi, sqrt
 from typing import NamedTuple
 
 import numpy as np
 
+from rigidsym.system.records import Record
 from rigidsym.system.resources import environment
 from rigidsym.tools.identify.readings import (
     RADIANS_PER_DEGREE,
@@ -135,8 +136,7 @@ def misfit(readings: Sequence[Reading], samples: Samples, scale: float) -> Misfi
     return result
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Answer:
+class Answer(Record, kw_only=True):
     """One reading in its plainest words, and how well it fits all of the data."""
 
     reading: Reading

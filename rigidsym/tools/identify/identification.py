@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from math import degrees
 from pathlib import Path
 from textwrap import fill
@@ -12,6 +12,7 @@ from typing import Any
 from numpy.typing import ArrayLike
 
 from rigidsym.data.columns import counted
+from rigidsym.system.records import Record
 from rigidsym.system.resources import environment
 from rigidsym.tools.identify.fit import Answer, Tolerance, fit
 from rigidsym.tools.identify.readings import ANGLE_NAMES, VELOCITIES, Reading, distinct
@@ -22,8 +23,7 @@ SCHEMA_VERSION = 4
 _NEAR = 0.2  # radians; no tolerance is suggested for a nearest reading further off
 
 
-@dataclass(frozen=True, kw_only=True)
-class Identification:
+class Identification(Record, kw_only=True):
     """Every reading that fits, the plainest first; if none does, the nearest."""
 
     answers: tuple[Answer, ...]

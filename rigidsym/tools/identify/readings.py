@@ -7,11 +7,13 @@ data, and lists the different ones.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache
 from itertools import permutations, product
 from math import pi
 from typing import Literal
+
+from rigidsym.system.records import Record
 
 Three = tuple[int, ...]  # three of them
 Frame = Literal["space", "body"]
@@ -23,8 +25,7 @@ _OTHER: dict[Frame, Frame] = {"space": "body", "body": "space"}
 _FACTORS = {"": 1.0, "rates in deg/s, Ω in rad/s": pi / 180, "rates in rad/s, Ω in deg/s": 180 / pi}
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Velocity:
+class Velocity(Record, kw_only=True):
     """One convention for three components of the angular velocity of R."""
 
     frame: Frame  # of the components
@@ -52,8 +53,7 @@ VELOCITIES = tuple(
 )
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Reading:
+class Reading(Record, kw_only=True):
     """One convention: from three angle columns to a matrix or a quaternion.
 
     Turn k is about the axis `sequence[k]`, by the angle `signs[k]` · column `columns[k]`; upper

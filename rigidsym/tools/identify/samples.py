@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence, Set
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import ceil
 from pathlib import Path
 from types import MappingProxyType
@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from rigidsym.data.columns import COLUMNS, ColumnNames, counted, names_for
 from rigidsym.data.tables import MOST_SHOWN, ArrayTable, Batch, Table, listed, names_of, open_table
 from rigidsym.errors import DataError
+from rigidsym.system.records import Record
 from rigidsym.tools.identify.readings import ANGLE_NAMES
 from rigidsym.tools.spellings import (
     ANGLES,
@@ -65,8 +66,7 @@ class Columns(NamedTuple):
         return (False, True) if self.scalar_last is None else (self.scalar_last,)
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Samples:
+class Samples(Record, kw_only=True):
     """The samples of a table in one unit, (n, ...) each."""
 
     rows: NDArray[np.intp]  # their numbers in the data, (n,)
