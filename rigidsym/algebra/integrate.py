@@ -62,7 +62,7 @@ class Integrator:
                     f"in {self.variable}, its sine and its cosine; describe the solid by other "
                     "coordinates"
                 )
-            total += self.codec.encode(_integral(function, self.variable)) * part
+            total += self.codec.encode(_integrate(function, self.variable)) * part
         return self.codec.ring.reduce(total)
 
     def between(self, antiderivative: PolyElement, bounds: Bounds) -> PolyElement:
@@ -74,6 +74,4 @@ class Integrator:
         return upper - lower
 
 
-@lru_cache(maxsize=1024)
-def _integral(function: sp.Expr, variable: sp.Symbol) -> sp.Expr:
-    return sp.integrate(function, variable)
+_integrate = lru_cache(maxsize=1024)(sp.integrate)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,6 @@ from numpy.typing import ArrayLike, NDArray
 from rigidsym.data.columns import COLUMNS, ColumnNames, names_for
 from rigidsym.data.tables import ArrayTable, Table, open_table
 from rigidsym.errors import BodyError, DataError, MissingExtra
-from rigidsym.system.records import Record
 
 Array = NDArray[np.float64]
 # A product of inertia is a sum of n terms m x y, each rounded by a few u = 1.1e-16 of its size, and
@@ -26,7 +25,8 @@ Array = NDArray[np.float64]
 _ROUNDING = 1e-14
 
 
-class PrincipalAxes(Record, kw_only=True):
+@dataclass(frozen=True, kw_only=True, slots=True)
+class PrincipalAxes:
     """Moments in ascending order, and their axes."""
 
     moments: Array  # (3,), kg m²
@@ -81,7 +81,8 @@ def _without_rounding(values: Array, size: float) -> Array:
     return np.where(np.abs(values) > _ROUNDING * size, values, 0.0)
 
 
-class MassProperties(Record, kw_only=True):
+@dataclass(frozen=True, kw_only=True, slots=True, repr=False)
+class MassProperties:
     """Mass, centre, inertia tensor and principal axes of a body, in SI units."""
 
     count: int  # particles, or faces of a mesh
