@@ -65,7 +65,7 @@ def _searched(paths: Sequence[Path], options: Options) -> int:
 
     It is 1 if a formula is wrong or too few were recognised, or else 3 if reading a file failed.
     """
-    baseline = options["baseline"] and Path(options["baseline"])
+    baseline: Path | None = options["baseline"]
     accepted = _faults(baseline) if baseline else []
     files = list(source_files(paths))
     records: list[dict[str, Any]] = []
@@ -77,7 +77,7 @@ def _searched(paths: Sequence[Path], options: Options) -> int:
         if record.pop("is_unreadable"):
             unreadable += 1
             if options["why"] or is_failure:
-                message(record["text"])
+                message(_line(record))
             continue
         same = [each for each in accepted if record["fault"] and _key(each) == _key(record)]
         record["accepted"] = bool(same)
@@ -85,7 +85,7 @@ def _searched(paths: Sequence[Path], options: Options) -> int:
             accepted.remove(old)
         records.append(record)
         if options["format"] == "text" and not record["accepted"]:
-            click.echo(record["text"])
+            click.echo(_line(record))
     faults = [record for record in records if record["fault"] and not record["accepted"]]
     if options["format"] == "json":
         click.echo(_json(records))
@@ -102,7 +102,7 @@ def _searched(paths: Sequence[Path], options: Options) -> int:
         message(f"{counted(count, 'fault')} accepted by {baseline}")
         for old in accepted:
             if (path := Path(old["path"])) in files or not path.exists():
-                message(f"{baseline}: no longer found: {old['text']}")
+                message(f"{baseline}: no longer found: {_line(old)}")
     count = counted(len(records), "formula") if records else "no known formula"
     rest = f", {unreadable} not readable" if unreadable else ""
     hint = "; --why lists them" if unreadable and not options["why"] else ""
@@ -116,14 +116,16 @@ def _records(expected: str | None, is_active: bool, file: Path) -> list[dict[str
     """The formulas of a file: where they are, what they are, and whether that is a fault."""
     axes = derive(expected, "rotation_matrix").model if expected else None
     records = []
-    for formula in search(file, " ".join(turn.axis for turn in axes.turns) if axes else ""):
+    order = (" ".join(turn.axis for turn in axes.turns),) if axes else ()
+    for formula in search(file, order):
         record, comparison = formula.record(), formula.comparison
         other = disappointment(comparison, axes, is_active=is_active) if comparison else ""
-        is_right = comparison is None or comparison.is_equal or comparison.is_reflection
         record |= {"unexpected": other or None, "is_unreadable": comparison is None}
         record["is_failure"] = formula.is_failure
-        record["text"] = f"{formula}; {other}" if other else str(formula)
-        records.append(record | {"fault": bool(other) or not is_right})
+        record["text"] = f"{formula.text}; {other}" if other else formula.text
+        records.append(
+            record | {"fault": bool(other) or (comparison is not None and comparison.is_wrong)}
+        )
     return records
 
 
@@ -137,12 +139,17 @@ def _faults(baseline: Path) -> list[dict[str, Any]]:
     try:
         faults = [record for record in json.loads(read_bytes(baseline)) if record["fault"]]
         for record in faults:
-            _key(record), str(record["text"])
+            _key(record), _line(record)
     except (ValueError, KeyError, TypeError) as error:
+        what = f"not JSON: {error}" if isinstance(error, ValueError) else "another JSON file"
         raise DataError(
-            f"{baseline}: expected a result of `rigidsym compare --format json`"
-        ) from error
+            f"{baseline}: {what}; expected a result of `rigidsym compare --format json`"
+        ) from None
     return faults
+
+
+def _line(record: dict[str, Any]) -> str:
+    return "{path}:{line}: {text}".format_map(record)
 
 
 def _json(data: Any) -> str:

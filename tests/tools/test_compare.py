@@ -147,6 +147,23 @@ def test_a_forgotten_operator_is_named_with_its_neighbours():
 
 
 @pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (
+            "[[cos(a), -sin(a), 0], [sin(a), cos(a), 0], [0, 0, 1]",
+            "'[' at character 1 is not closed",
+        ),
+        (r"\begin{pmatrix}\cos(\phi\\1\end{pmatrix}", "'(' at character 20 is not closed"),
+        ("[c, -s)", "')' at character 7 closes '[' at character 1"),
+        ("[[1, 0]], [0, c]]", "']' at character 17 closes nothing"),
+    ],
+)
+def test_a_bracket_without_its_other_half_is_named_with_its_place(text, said):
+    with pytest.raises(ExpressionError, match=re.escape(said)):
+        rs.compare(text)
+
+
+@pytest.mark.parametrize(
     ("text", "entries"),
     [
         ("+[[a, b], [c, d]].T", "[[a, c], [b, d]]"),

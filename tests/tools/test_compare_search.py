@@ -708,7 +708,7 @@ def test_another_convention_than_the_expected_one_is_a_fault(tmp_path):
     (tmp_path / "c.py").write_text(f"def f(a):\n    R = {FLAT}\n")
     assert run(str(tmp_path / "c.py"), "--expect-active").exit_code == 0  # or by columns
     annotation = run(b, "--expect-active", "--format", "github").stdout
-    assert annotation.startswith(f"::error file={b},line=2::{b}:2: returned: equal to")
+    assert annotation.startswith(f"::error file={b},line=2::returned: equal to")
 
 
 def test_a_log_in_sarif_has_what_github_shows(tmp_path, monkeypatch):
@@ -754,10 +754,17 @@ def test_a_fault_of_the_baseline_is_accepted_wherever_its_lines_move(tmp_path):
     done = run(*accepted)
     assert done.exit_code == 1
     assert f"{baseline}: no longer found: {file}:2: returned: " in done.stderr
-    for text in ("{", "[{}]"):
+    for text, fault in (
+        ("{", "not JSON: Expecting property name"),
+        ("[{}]", "another JSON file; "),
+    ):
         baseline.write_text(text)
         refused = call("compare", *accepted, cwd=tmp_path, status=3).stderr
+        assert f"{baseline}: {fault}" in refused
         assert "expected a result of `rigidsym compare --format json`" in refused
+    for name, fault in (("", "an empty path"), ("x.json", "File 'x.json' does not exist")):
+        refused = call("compare", str(file), "--baseline", name, cwd=tmp_path, status=2).stderr
+        assert f"Invalid value for '--baseline': {fault}" in refused
 
 
 def test_what_cannot_be_read_is_listed_with_its_reason(tmp_path):
@@ -767,6 +774,10 @@ def test_what_cannot_be_read_is_listed_with_its_reason(tmp_path):
     file.write_text(text)
     done = run(str(file), "--why")
     assert "a.py:4: returned: not read, since s in line 3 cannot be read" in done.stderr
+    file.write_text(text.replace("c, s = cos(a", "c, s = cos((a"))
+    reason = "a.py:2: not read, since there is a syntax error: '(' was never closed"
+    assert reason in run(str(file), "--why").stderr
+    file.unlink()
     # An unknown macro is an error of syntax too, but no formula is lost.
     macro = "API_EXPORT int h(int k) {\n return 2 ** k;\n}\n"
     (tmp_path / "a.cpp").write_text(f"int f() {{\n sin(a);\n}}\n{macro}x = [3*sin(a) 4 +;\n")
@@ -774,7 +785,7 @@ def test_what_cannot_be_read_is_listed_with_its_reason(tmp_path):
     (tmp_path / "a.rs").write_text("pub fn f(a: f32) -> f32 {\n    a\n}\nfn g() {}\n// sin")
     done = run(str(tmp_path), "--why")
     assert "a.cpp:7: not read, since there is a syntax error" in done.stderr
-    assert "no known formula in 4 files, 2 not readable" in done.stderr
+    assert "no known formula in 3 files, 1 not readable" in done.stderr
 
 
 def test_a_failure_in_one_file_does_not_end_the_search(tmp_path, monkeypatch):
@@ -828,8 +839,19 @@ OF_STATES = {  # statements of MATLAB, and parts of the findings
     "m = [r(2); r(1); r(3)];": ["to rotated_vector", "entries 1 and 2 are exchanged"],
     "a = x/2; b = y/2; c = z/2; m = [cos(a)*cos(b)*cos(c) + sin(a)*sin(b)*sin(c); sin(a)*cos(b)*"
     "cos(c) + cos(a)*sin(b)*sin(c); cos(a)*sin(b)*cos(c) - sin(a)*cos(b)*sin(c); cos(a)*cos(b)*"
-    "sin(c) + sin(a)*sin(b)*cos(c)];": ["proved with this change; or close to quaternion of"],
+    "sin(c) + sin(a)*sin(b)*cos(c)];": ["proved with this change\n  or close to quaternion of"],
 }
+
+
+@pytest.mark.parametrize("axes", ["XYZ", "YXZ", "XZY"])
+def test_several_readings_have_lines_of_their_own_the_named_order_first(tmp_path, axes):
+    file = tmp_path / "a.m"
+    file.write_text(f"function m = of_{axes}(x, y, z)\n{[*OF_STATES][-1]}\nend\n")
+    text = run(str(file)).stdout
+    assert text.startswith(f"{file}:2: m: close to quaternion of {axes} with ")
+    assert text.count("\n  or close to quaternion of ") == 2
+    annotation = run(str(file), "--format", "github").stdout
+    assert annotation.partition("::m: ")[2] == text.partition(" m: ")[2].replace("\n", "%0A", 2)
 
 
 @pytest.mark.parametrize("text", OF_STATES, ids=range(len(OF_STATES)))
@@ -998,7 +1020,28 @@ def f(a, b):
     (found,) = found_in(tmp_path, "a.py", file.read_text())
     assert found.formula.line == 4
     annotation = run(str(file), "--format", "github").stdout
-    assert annotation.startswith(f"::error file={file},line=4::{file}:4: R: close to")
+    assert annotation.startswith(f"::error file={file},line=4::R: close to")
+
+
+OF_TURNS = {  # a wrong turn about y, and a product with it
+    "a.py": "def Ry(t):\n    s, c = sin(t), cos(t)\n    return [[c, 0, s], [0, 1, 0], [s, 0, c]]\n"
+    "def Rz(t):\n    return [[cos(t), -sin(t), 0], [sin(t), cos(t), 0], [0, 0, 1]]\n"
+    "def f(a, b):\n    return np.dot(\n        Rz(a), Ry(b))\n",
+    "b.py": "def f(a, b):\n    R = array([[cos(b), 0, sin(b)], [0, 1, 0], [sin(b), 0, cos(b)]])\n"
+    "    T = array([[cos(a), -sin(a), 0], [sin(a), cos(a), 0], [0, 0, 1]]) @ R\n    S = T @ T\n",
+}
+
+
+@pytest.mark.parametrize("name", OF_TURNS)
+def test_a_fault_is_not_reported_again_in_a_product(tmp_path, name):
+    file = tmp_path / name
+    file.write_text(OF_TURNS[name])
+    done = run(str(file), "--why")
+    assert done.stdout.count("close to") == done.stdout.count("close to rotation_matrix of y(") == 2
+    assert ": not read, since it contains " in done.stderr
+    right = OF_TURNS[name].replace("[s, 0", "[-s, 0").replace("[sin(b), 0", "[-sin(b), 0")
+    file.write_text(right)
+    assert "close to" not in run(str(file)).stdout
 
 
 def test_a_vector_is_found_once_beside_its_components_and_up_to_a_factor(tmp_path):

@@ -154,6 +154,11 @@ class Comparison:
         """Whether the formula is right as it stands."""
         return self.found is not None and not self.repairs and not self.counterexample
 
+    @property
+    def is_wrong(self) -> bool:
+        """Whether it is a fault; a reflection may be meant."""
+        return not (self.is_equal or self.is_reflection)
+
     def record(self) -> dict[str, Any]:
         """The comparison as plain data for JSON."""
         found = self.found
@@ -255,12 +260,31 @@ def _checked(formula: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
 def as_matrix(formula: Any) -> sp.ImmutableMatrix:
     """The matrix that a formula stands for."""
     if isinstance(formula, str):
-        return formula_matrix(formula)
+        try:
+            return formula_matrix(formula)
+        except ExpressionError:
+            _check_brackets(formula)
+            raise
     if isinstance(formula, sp.MatrixBase):
         exact = {number: sp.Rational(str(number)) for number in formula.atoms(sp.Float)}
         return sp.ImmutableMatrix(in_names(formula.xreplace(exact)))
     rows = [row if isinstance(row, list | tuple) else [row] for row in formula]
     return sp.ImmutableMatrix([[as_matrix(entry)[0] for entry in row] for row in rows])
+
+
+def _check_brackets(text: str) -> None:
+    """Raises ExpressionError for a bracket without its other half."""
+    ends, stack = {"(": ")", "[": "]", "{": "}", "": "nothing"}, [("", "nothing")]
+    for column, letter in enumerate(text, 1):
+        this = f"{letter!r} at character {column}"
+        if letter in ends:
+            stack.append((letter, this))
+        elif letter in ends.values():
+            begin, other = stack.pop()
+            if ends[begin] != letter:
+                raise ExpressionError(f"{this} closes {other}")
+    if len(stack) > 1:
+        raise ExpressionError(f"{stack[-1][1]} is not closed")
 
 
 def in_words(shape: tuple[int, int]) -> str:
@@ -276,12 +300,12 @@ def identified(
     *,
     only_equal: bool = False,
     is_in_program: bool = False,
-    expected: str = "",
+    expected: Sequence[str] = (),
 ) -> Comparison:
     """Compare with the quantity that is asked for, or with all; the nearest if none is equal.
 
     In a program, a transpose, a sign or a factor of the whole formula may be meant. Of several
-    nearest rotations, that about the `expected` axes, as in "z y x", is preferred.
+    nearest rotations, one about the `expected` axes, such as "z y x", is preferred.
     """
     trials = []
     for family in known.families(formula) if asked is None else [asked.in_orders()]:
@@ -314,7 +338,7 @@ def _close(
     formula: sp.ImmutableMatrix,
     trials: Sequence[_Trial],
     asked: KnownQuantity | None,
-    expected: str,
+    expected: Sequence[str],
 ) -> Comparison | None:
     """The quantity, or the one asked for, that a few changes of entries would make of a formula."""
     if decided := _decided(formula, trials, asked):
@@ -403,7 +427,7 @@ def _parts(
             yield w, sp.ImmutableMatrix(part), others
 
 
-def _nearest(trials: Sequence[_Trial], least: float, expected: str = "") -> list[Reading]:
+def _nearest(trials: Sequence[_Trial], least: float, expected: Sequence[str] = ()) -> list[Reading]:
     """The readings of which this share of all entries is right, the best first."""
     readings: list[Reading] = []
     for trial in trials:
@@ -420,7 +444,7 @@ def _nearest(trials: Sequence[_Trial], least: float, expected: str = "") -> list
 
     def rank(each: Reading) -> tuple[float, int, int, bool]:
         odd, words = sum(map(known.oddness, each.names.values())), each.goal.arrangement
-        is_other = each.goal.axes != (expected or "z y x")
+        is_other = each.goal.axes not in (expected or ["z y x"])
         return -each.share, odd, len(words and words.split(", ")), is_other
 
     return sorted(readings, key=rank)

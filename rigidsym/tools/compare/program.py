@@ -198,6 +198,9 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
         if each.is_error and "(" in lost.text and _has_material(lost.text, ""):
             scopes[0].formulas.append(_fault(lost.line, "there is a syntax error"))
             break
+    if suffix == ".py" and root.has_error and (found := syntax.python_error(text)):
+        fault = _fault(found.lineno or 1, f"there is a syntax error: {found.msg}")
+        scopes[0].formulas = [fault]
     for count in range(
         limits.most_runs
     ):  # first runs first, since a long file is not read to its end

@@ -63,13 +63,19 @@ class FormulaInFile:
         return min(own[(row - 1) * columns + column - 1] for row, column in places)
 
     def __str__(self) -> str:
+        return f"{self.path}:{self.line}: {self.text}"
+
+    @property
+    def text(self) -> str:
+        """The finding without its place; other readings have lines of their own."""
         name = f"{self.formula.name}: " if self.formula.name else ""
         text = self.comparison.text() if self.comparison else f"not read, since {self.reason}"
-        text += "; in one of several branches" * self.is_case
+        first, *others = text.split("\n")
+        first += "; in one of several branches" * self.is_case
         if self.formula.unread and self.comparison:
-            text += f"; not read: {_in_lines(self.formula.unread)}"
-        text += f"; {self.remark}" * bool(self.remark)
-        return f"{self.path}:{self.line}: {name}{text}"
+            first += f"; not read: {_in_lines(self.formula.unread)}"
+        first += f"; {self.remark}" * bool(self.remark)
+        return "\n".join([name + first, *others])
 
     def repeats(self, other: FormulaInFile) -> bool:
         """Whether this vector, or its components, have been found just before."""
@@ -118,11 +124,11 @@ def source_files(paths: Sequence[Path]) -> Iterator[Path]:
     yield from dict.fromkeys(files)
 
 
-def search(path: Path, expected: str = "") -> Iterator[FormulaInFile]:
+def search(path: Path, expected: tuple[str, ...] = ()) -> Iterator[FormulaInFile]:
     """The formulas of a file that are a known quantity or close to one, and unreadable ones.
 
-    Of several rotations close to one, that about the `expected` axes, as in "z y x", is preferred.
-    If reading fails, the last one says so.
+    Of several rotations close to one, that about the `expected` axes, such as "z y x", or those
+    that its function names, is preferred. If reading fails, the last one says so.
     """
     found: list[FormulaInFile] = []
     text = ""
@@ -137,10 +143,33 @@ def search(path: Path, expected: str = "") -> Iterator[FormulaInFile]:
     of_functions: dict[tuple[str, int, int], list[FormulaInFile]] = {}
     for finding in found:
         of_functions.setdefault(finding.formula.function, []).append(finding)
+    wrong = [each for each in found if each.comparison and each.comparison.is_wrong]
     for finding in found:
-        yield replace(
-            finding, remark=_remark(finding, of_functions[finding.formula.function], text)
-        )
+        if finding in wrong and (part := _wrong_part(finding, wrong, text)):
+            yield FormulaInFile(path, finding.formula, reason=f"it contains {part}")
+            continue
+        remark = _remark(finding, of_functions[finding.formula.function], text)
+        yield replace(finding, remark=remark)
+
+
+def _wrong_part(finding: FormulaInFile, wrong: Sequence[FormulaInFile], text: str) -> str:
+    """Another wrong matrix in the statement of a wrong one, which is then the only fault."""
+    own, depth, statement = finding.formula, 0, ""
+    for line in _lines(text)[own.line - 1 :]:
+        statement += line
+        depth += sum((letter in "([{") - (letter in ")]}") for letter in line)
+        if depth <= 0:
+            break
+    for formula in (each.formula for each in wrong):
+        function, is_before = formula.function[0], formula.line < own.line
+        if function and formula.function != own.function:
+            name, is_part = function, re.search(rf"\b{function}\s*\(", statement)
+        else:
+            name, is_part = formula.name, re.search(rf"\b{re.escape(formula.name)}\b", statement)
+            is_part = is_part if is_before and formula.name != own.name else None
+        if is_part:
+            return f"{name}, which is wrong in line {formula.line}"
+    return ""
 
 
 def _remark(finding: FormulaInFile, others: Sequence[FormulaInFile], text: str) -> str:
@@ -148,26 +177,38 @@ def _remark(finding: FormulaInFile, others: Sequence[FormulaInFile], text: str) 
     (name, first, last), goal = finding.formula.function, finding.goal
     if goal is None or not name:
         return ""
-    lines = text.splitlines(keepends=True)
-    body = "".join(lines[first - 1 : last])
     if goal.quantity == "quaternion_product" and [*map(len, goal.inputs.values())] != [4, 4]:
         own = finding.formula.name.partition(", ")[0]
         is_rate = patterns.derivative.search(name) is not None
         is_rate |= own not in UNNAMED and quantities.stem_of(own) != ""
-        is_half = patterns.half.search(body) is not None
+        is_half = patterns.half.search("".join(_lines(text)[first - 1 : last])) is not None
         return "as the rate of a quaternion it lacks the factor 1/2" * (is_rate and not is_half)
+    words, claims = _claims(finding.formula.function, text)
+    own = _order(finding)
+    is_certain = len(claims) == 1 and {*map(_order, others)} - {""} == {own}
+    said = f"the {words} of {name} says {', '.join(claims.values())}"
+    return f"{said}, the formula is {goal.rotation}" * (is_certain and own not in claims)
+
+
+@lru_cache(maxsize=1)
+def _lines(text: str) -> list[str]:
+    return text.splitlines(keepends=True)
+
+
+@lru_cache(maxsize=64)
+def _claims(function: tuple[str, int, int], text: str) -> tuple[str, dict[str, str]]:
+    """Orders of axes, each as it is written, in the name of a function or in its comment."""
+    name, first, last = function
+    if not name:
+        return "", {}
+    lines = _lines(text)
     above = patterns.comment.search("".join(lines[max(0, first - _LONGEST_COMMENT) : first - 1]))
-    inside = patterns.docstring.match(body)
+    inside = patterns.docstring.match("".join(lines[first - 1 : last]))
     comment = (above[1] if above else "") + (inside[0] if inside else "")
     for words, said in (("name", name), ("comment", comment)):
-        claims = {_both(match[0]): match[0] for match in patterns.order.finditer(said)}
-        if claims:
-            own = _order(finding)
-            is_certain = len(claims) == 1 and {*map(_order, others)} - {""} == {own}
-            is_other = is_certain and own not in claims
-            said = f"the {words} of {name} says {next(iter(claims.values()))}"
-            return f"{said}, the formula is {goal.rotation}" * is_other
-    return ""
+        if claims := {_both(match[0]): match[0] for match in patterns.order.finditer(said)}:
+            return words, claims
+    return "", {}
 
 
 def _both(order: str) -> str:
@@ -186,7 +227,7 @@ def _order(finding: FormulaInFile) -> str:
     return axes if len(axes) == 3 else ""
 
 
-def _findings(path: Path, text: str, expected: str) -> Iterator[FormulaInFile]:
+def _findings(path: Path, text: str, expected: tuple[str, ...]) -> Iterator[FormulaInFile]:
     variants: dict[Any, list[Formula]] = {}
     latest: FormulaInFile | None = None
     for formula in formulas(text, path.suffix):
@@ -199,7 +240,9 @@ def _findings(path: Path, text: str, expected: str) -> Iterator[FormulaInFile]:
             return
         # A formula with the values of all branches may be no quantity, while one branch is.
         is_case = len({each.forms for each in group if each.forms}) > 1
-        findings = [_compared(path, each, expected, is_case=is_case) for each in group]
+        named = [order for own in _claims(group[0].function, text)[1] for order in (own, own[::-1])]
+        order = expected or tuple(map(" ".join, named))
+        findings = [_compared(path, each, order, is_case=is_case) for each in group]
         readable = [each for each in findings if each and each.comparison]
         for finding in [*readable, *filter(None, findings)][:1]:
             if latest is None or not finding.repeats(latest):  # a fault counts once
@@ -212,7 +255,7 @@ def _findings(path: Path, text: str, expected: str) -> Iterator[FormulaInFile]:
 
 
 def _compared(
-    path: Path, formula: Formula, expected: str, *, is_case: bool
+    path: Path, formula: Formula, expected: tuple[str, ...], *, is_case: bool
 ) -> FormulaInFile | None:
     for form in formula.forms:  # a long value may be an angle
         if patterns.angles_name.fullmatch(formula.name) and are_body_rates(form):

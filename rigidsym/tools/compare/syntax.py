@@ -8,6 +8,7 @@ it is looked at, since most of a program holds no formula.
 
 from __future__ import annotations
 
+import ast
 import re
 import tomllib
 from collections.abc import Iterable, Iterator
@@ -18,6 +19,7 @@ from itertools import chain, count
 from pathlib import Path
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
+from warnings import catch_warnings
 
 from rigidsym.errors import ExpressionError, MissingExtra
 from rigidsym.text.names import spelled
@@ -68,6 +70,18 @@ def parsed(text: str, suffix: str) -> Node:
         parser.reset()
         raise ExpressionError("the syntax errors of this file take too long to parse") from None
     return root
+
+
+def python_error(text: str) -> SyntaxError | None:
+    """What Python says of a program."""
+    try:
+        with catch_warnings(action="ignore"):
+            ast.parse(text)
+    except SyntaxError as error:
+        return error
+    except (ValueError, RecursionError, MemoryError):  # a null byte, or too many brackets
+        pass
+    return None
 
 
 def _part(node: Node, fields: str) -> Node | None:
