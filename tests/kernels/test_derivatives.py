@@ -65,8 +65,7 @@ def numerical(motion, quantity: str, vector: str, point: dict) -> np.ndarray:
 SWITCHES = [float(series_of(k).switch) ** 0.5 for k in range(FIRST_SERIES, FIRST_SERIES + 3)]
 SIZES = (1e-9, *(switch * side for switch in SWITCHES for side in (1 - 1e-9, 1 + 1e-9)))
 CASES = [  # sizes of q where series stand in for quotients that cancel, or as it comes
-    ("ZXZ", "angular_velocity_body", "q", ()),
-    ("ZXZ", "rotation_matrix", "q", ()),
+    *(("ZXZ", name, "q", ()) for name in ("angular_velocity_body", "rotation_matrix")),
     ("ZXZ", "rates_from_angular_velocity_space", "q", ()),
     ("zyx", "angular_acceleration_space", "q_dot", ()),
     ("quaternion", "angular_velocity_body", "q", ()),

@@ -1,19 +1,21 @@
 """SymPy expressions -> one graph -> assignments in order, and outputs, as people would write them.
 
 Expressions are kept as a graph of sums and products in which equal things are one node, whatever
-their sign. Common parts of several products or sums become nodes, the most frequent pair first.
-Factors are written in the order numbers, inputs, intermediate values, sines and cosines, sums;
-terms with a plus come before terms with a minus.
+their sign. Common parts of several products or sums become nodes, first the pair that saves most.
+Before that, sums may be multiplied out and factored anew: each step saves an operation, so that
+they end. Factors are written in the order numbers, inputs, intermediate values, sines and cosines,
+sums; terms with a plus come before terms with a minus.
 """
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
+from copy import copy
 from fractions import Fraction
-from functools import lru_cache
+from functools import cache, lru_cache
 from itertools import chain, combinations
-from math import nan, prod
+from math import comb, gcd, nan, prod
 from types import MappingProxyType
 from typing import Any, TypeVar
 
@@ -43,11 +45,16 @@ INPUT, NUMBER, PRODUCT, SUM, HELD, CHOICE = "input", "number", "product", "sum",
 # Divisions by one thing that a reciprocal and as many products replace. A division takes as long as
 # two products in vectors (NumPy on AVX-512) and several in scalars, so that two would gain nothing.
 _FEWEST_RECIPROCALS = 3
+_MOST_TERMS = 24  # of a sum that is multiplied out
+_MOST_PAIRS = 5000  # of terms, which take 0.1 s; a kernel with more keeps its form
 
 Factors = tuple[int, ...]  # nodes in order; ~node divides
 Weighted = tuple[Fraction, int]  # a number times a node
 Monomial = tuple[Fraction, Factors]  # a number times nodes
-PairOfTerms = tuple[int, int, Fraction]  # two nodes, and the coefficient of the second
+PairOfTerms = tuple[int, int, int, int]  # two nodes, and the ratio of their numbers
+
+# two terms over their common factors, these, and the operations that they save
+Apart = Callable[[int, int], tuple[int, int, Factors, int]]
 
 Pair = TypeVar("Pair", bound=Hashable)
 
@@ -101,7 +108,7 @@ class Graph:
             if coefficient != 1 or kind in (PRODUCT, SUM):
                 coefficient, node = Fraction(1), self._node(HELD, (weighted,))
             self.held[node] = symbol.name
-        self._known[symbol] = self._factored((coefficient, node))
+        self._known[symbol] = coefficient, self._factors(node)
 
     def _monomial(self, expression: sp.Expr) -> Monomial:
         if expression not in self._known:
@@ -124,7 +131,8 @@ class Graph:
             coefficient = prod((number for number, _ in parts), start=one)
             return coefficient, tuple(chain.from_iterable(factors for _, factors in parts))
         if expression.is_Add:
-            return self._factored(self._sum(map(self.weighted, arguments)))
+            coefficient, node = self._sum(map(self.weighted, arguments))
+            return coefficient, self._factors(node)
         if expression.is_Pow and (2 * expression.exp).is_Integer:
             return self._power(expression.base, expression.exp)
         if isinstance(expression, Stumpff):
@@ -159,10 +167,9 @@ class Graph:
         factors = factors if times > 0 else tuple(~factor for factor in factors)
         return coefficient**times, factors * abs(times)
 
-    def _factored(self, weighted: Weighted) -> Monomial:
-        coefficient, node = weighted
+    def _factors(self, node: int) -> Factors:
         kind, factors = self.nodes[node]
-        return coefficient, factors if kind == PRODUCT else (node,)
+        return factors if kind == PRODUCT else (node,)
 
     # nodes
 
@@ -181,14 +188,14 @@ class Graph:
             counted[max(factor, ~factor)] += 1 if factor >= 0 else -1
         counted.pop(self.one, None)
         flat = tuple(sorted(n if k > 0 else ~n for n, k in counted.items() for _ in range(abs(k))))
+        return self._of_factors(flat)
+
+    def _of_factors(self, flat: Factors) -> int:
         return flat[0] if len(flat) == 1 and flat[0] >= 0 else self._node(PRODUCT, flat)
 
     def _sum(self, terms: Iterable[Weighted]) -> Weighted:
         """The sum of weighted nodes, as one node whose sign and size have been taken out."""
-        total: dict[int, Fraction] = {}
-        for coefficient, node in terms:
-            total[node] = total.get(node, Fraction(0)) + coefficient
-        rest = [(c, node) for node, c in sorted(total.items()) if c]
+        rest = _collected(terms)
         if len(rest) < 2:
             return rest[0] if rest else (Fraction(0), self.one)
         # the sign of most coefficients, and their size where it is one
@@ -217,24 +224,98 @@ class Graph:
                 waiting.extend(self.parts(node))
         return reached
 
+    def operations(self, node: int) -> int:
+        """Those of a sum or a product, without its parts; a division counts as two."""
+        kind, value = self.nodes[node]
+        if kind == SUM:
+            return len(value) - 1 + sum(c not in (1, -1) for c, _ in value)
+        return len(value) - 1 + (value[0] < 0) if kind == PRODUCT and value else 0
+
+    def divides(self, roots: Iterable[int]) -> bool:
+        """Whether the roots have a divisor that is not a number."""
+        nodes = map(self.nodes.__getitem__, self.reachable(roots))
+        return any(kind == PRODUCT and value[:1] < (0,) for kind, value in nodes if value)
+
     # common parts
 
     def share(self, roots: Iterable[int]) -> None:
         """Give a node of its own to what several products or several sums have in common."""
         roots = list(roots)
-        self._take(roots, PRODUCT, _factor_pairs, self._without_factors)
-        self._take_reciprocals(self._used(roots, PRODUCT))
-        self._take(roots, SUM, _term_pairs, self._without_terms)
+        used = self._used(roots, PRODUCT)
+        while pair := _most_saved(_factor_pairs(self.nodes[node][1]) for node in used):
+            self._without_factors(used, *pair)
+        self._take_reciprocals(used)
+        self._factor(self._used(roots, SUM), lambda a, b: (a, b, (), 1))
 
-    def _take(
-        self, roots: list[int], kind: str, pairs: Callable[[Any], Any], without: Callable[..., None]
-    ) -> None:
-        while True:
-            used = self._used(roots, kind)
-            pair = _most_common([pairs(self.nodes[node][1]) for node in used])
-            if pair is None:
-                return
-            without(used, *pair)
+    def factored(self, roots: list[int]) -> Graph | None:
+        """The graph with its sums multiplied out and factored anew, if a term holds a sum.
+
+        Divisors and arguments of functions stay, since guards judge the terms of a divisor.
+        """
+        kept = self.reachable(
+            part
+            for node in self.reachable(roots)
+            for kind, value in [self.nodes[node]]
+            for part in self.parts(node)
+            if kind != SUM and (kind != PRODUCT or part not in value)
+        )
+        sums = [node for node in self._used(roots, SUM) if node not in kept]
+        graph = copy(self)
+        graph.nodes, graph._numbers = self.nodes.copy(), self._numbers.copy()
+        is_other = [graph._multiply_out(node, sums) for node in sums]
+        sums = [node for node in graph._used(roots, SUM) if node not in kept]
+        pairs = sum(comb(len(graph.nodes[node][1]), 2) for node in sums)
+        if not any(is_other) or pairs > _MOST_PAIRS:
+            return None
+        graph._factor(sums, cache(graph._apart))
+        return graph
+
+    def _multiply_out(self, node: int, sums: list[int]) -> bool:
+        """Multiply out one sum in each term, unless it has a power; whether there is one."""
+        terms: list[Weighted] = []
+        for coefficient, term in self.nodes[node][1]:
+            factors = self._factors(term)
+            inner = [f for f in factors if f in sums and factors.count(f) == 1][:1]
+            rest = [f for f in factors if f not in inner]
+            parts = self.nodes[inner[0]][1] if inner else ((Fraction(1), self.one),)
+            for number, part in parts:
+                whole = self._product((*rest, *self._factors(part))) if inner else term
+                terms.append((coefficient * number, whole))
+        is_other = len(self.nodes[node][1]) < len(terms) <= _MOST_TERMS
+        if is_other:
+            self._set_terms(node, terms)
+        return is_other
+
+    def _set_terms(self, node: int, terms: Iterable[Weighted]) -> None:
+        self._redefine(node, tuple(_collected(terms)) or ((Fraction(0), self.one),))
+
+    def _factor(self, sums: list[int], apart: Apart) -> None:
+        """Give a node to the pair a + b in a d + b d = (a + b) d that saves most, and so on."""
+        pairs = {node: _term_pairs(self.nodes[node][1], apart) for node in sums}
+        while pair := _most_saved(saved for saved, _ in pairs.values()):
+            one, two, above, below = pair
+            scale, common = self._sum(((Fraction(1), one), (Fraction(above, below), two)))
+            for node, (_, places) in [*pairs.items()]:
+                if node != common and pair in places:
+                    a, b, coefficient, factors = places[pair]
+                    rest = [term for term in self.nodes[node][1] if term[1] not in (a, b)]
+                    whole = self._product((*factors, common))
+                    self._set_terms(node, (*rest, (coefficient * scale, whole)))
+                    pairs[node] = _term_pairs(self.nodes[node][1], apart)
+            if common not in pairs:
+                pairs[common] = _term_pairs(self.nodes[common][1], apart)
+
+    def _apart(self, a: int, b: int) -> tuple[int, int, Factors, int]:
+        """Two terms over their common factors, these, and the operations that they save."""
+        first, second, common = [*self._factors(a)], [*self._factors(b)], list[int]()
+        for factor in self._factors(a):
+            if factor in second:
+                common.append(factor)
+                first.remove(factor)
+                second.remove(factor)
+        one, two = self._of_factors(tuple(first)), self._of_factors(tuple(second))
+        before, after = (sum(map(self.operations, pair)) for pair in ((a, b), (one, two)))
+        return one, two, tuple(common), 1 + before - after - len(common)
 
     def _used(self, roots: list[int], kind: str) -> list[int]:
         """The nodes of one kind that the roots are made of, in their order."""
@@ -250,16 +331,8 @@ class Graph:
                 factors.subtract({a: 2 * times} if a == b else {a: times, b: times})
                 factors[common] += times
                 self._redefine(node, tuple(sorted(factors.elements())))
-
-    def _without_terms(self, used: list[int], a: int, b: int, ratio: Fraction) -> None:
-        # c a + d b = c (a + (d/c) b): pairs of terms are the same if the ratio d/c is.
-        _, common = self._sum(((Fraction(1), a), (ratio, b)))
-        for node in used:
-            terms = {part: c for c, part in self.nodes[node][1]}
-            if node != common and a in terms and terms.get(b) == ratio * terms[a]:
-                terms[common] = terms.pop(a)
-                del terms[b]
-                self._redefine(node, tuple((c, n) for n, c in sorted(terms.items())))
+        if common not in used:
+            used.append(common)
 
     def _take_reciprocals(self, used: list[int]) -> None:
         """One reciprocal for several divisions by one thing."""
@@ -278,6 +351,14 @@ class Graph:
         self._numbers.setdefault((kind, value), node)
 
 
+def _collected(terms: Iterable[Weighted]) -> list[Weighted]:
+    """The terms by node, each node once."""
+    total: dict[int, Fraction] = {}
+    for coefficient, node in terms:
+        total[node] = total[node] + coefficient if node in total else coefficient
+    return [(c, node) for node, c in sorted(total.items()) if c]
+
+
 @lru_cache(maxsize=4096)  # a round alters few nodes
 def _factor_pairs(factors: Factors) -> Counter[tuple[int, int]]:
     """Pairs of factors, and how often each can be taken out of the product at once."""
@@ -288,25 +369,35 @@ def _factor_pairs(factors: Factors) -> Counter[tuple[int, int]]:
     return Counter(pairs | squares)
 
 
-@lru_cache(maxsize=4096)
-def _term_pairs(terms: tuple[Weighted, ...]) -> Counter[PairOfTerms]:
-    """Pairs of terms up to a common number."""
-    return Counter((a, b, d / c) for (c, a), (d, b) in combinations(terms, 2))
+def _term_pairs(
+    terms: tuple[Weighted, ...], apart: Apart
+) -> tuple[dict[PairOfTerms, int], dict[PairOfTerms, tuple[int, int, Fraction, Factors]]]:
+    """Pairs of terms up to a common number: what each saves, and the terms and what they share."""
+    savings, places = {}, {}
+    for (c, a), (d, b) in combinations(terms, 2):
+        one, two, common, saved = apart(a, b)
+        if one > two:
+            one, two, a, b, c, d = two, one, b, a, d, c
+        above, below = d.numerator * c.denominator, d.denominator * c.numerator
+        size = gcd(above, below) if below > 0 else -gcd(above, below)
+        pair = one, two, above // size, below // size
+        savings[pair], places[pair] = saved, (a, b, c, common)
+    return savings, places
 
 
-def _most_common(found: Iterable[Counter[Pair]]) -> Pair | None:
-    """The pair that occurs most often, of those that occur twice.
+def _most_saved(found: Iterable[Mapping[Pair, int]]) -> Pair | None:
+    """The pair that saves most operations, of those that save more than their own one.
 
     Among equals the one that is a whole node already, which comes without a new operation.
     """
-    times: Counter[Pair] = Counter()
+    saved: Counter[Pair] = Counter()
     wholes: set[Pair] = set()
     for pairs in found:
-        times.update(pairs)
+        saved.update(pairs)
         if len(pairs) == 1:
             wholes.update(pairs)
-    several = [pair for pair, count in times.items() if count > 1]
-    return max(several, key=lambda pair: (times[pair], pair in wholes), default=None)
+    several = [pair for pair, operations in saved.items() if operations > 1]
+    return max(several, key=lambda pair: (saved[pair], pair in wholes), default=None)
 
 
 # From the graph to assignments

@@ -3,8 +3,8 @@
 Tangents and cotangents become quotients of sines and cosines, and the sine and cosine of an angle
 and the common parts of the outputs are computed once. Removable singularities in n = √(v·v) are
 written in Stumpff functions of n², divisors 1 ± cos θ in θ/2, and divisors that can vanish are
-guarded. Nothing else is changed: substituted into each other, the assignments give the expression
-of the derivation.
+guarded. Sums may be factored anew. Nothing else is changed: substituted into each other, the
+assignments give the expression of the derivation.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from rigidsym.kernels import ir
 from rigidsym.kernels.lowering.derivatives import Jacobian
 from rigidsym.kernels.lowering.graph import Graph, Weighted, write
 from rigidsym.kernels.lowering.naming import Names
-from rigidsym.kernels.lowering.rounding import guarded
+from rigidsym.kernels.lowering.rounding import error_of_form, guarded
 from rigidsym.mechanics.conversions.function import ConversionFunction, Converted
 from rigidsym.mechanics.derivation import Argument as Vector, Derivation, Step, phrase
 
@@ -220,8 +220,24 @@ def _shared(
     definitions: tuple[tuple[sp.Expr, sp.Expr], ...],
     entries: tuple[sp.Expr, ...],
 ) -> tuple[Graph, list[Weighted]]:
-    """The entries as nodes of a graph, in which what they have in common is one node."""
+    """The entries as nodes of a graph, in which what they have in common is one node.
+
+    They are factored anew if that saves a tenth of the operations and the bound on rounding gets no
+    larger. Where quotients leave no bound, the error at operands of one may grow by an eighth.
+    """
     graph = Graph(name, dict(inputs), dict(definitions))
     weighted = list(map(graph.weighted, entries))
-    graph.share(node for _, node in weighted)
+    roots = [node for _, node in weighted]
+    factored = graph.factored(roots)
+    graph.share(roots)
+    if factored is not None:
+        factored.share(roots)
+        many, few = (sum(map(g.operations, g.reachable(roots))) for g in (graph, factored))
+        if few < 0.9 * many:
+            names = [text for _, text in inputs]
+            limit, error = (
+                error_of_form(*write(g, weighted, Names(names))) for g in (graph, factored)
+            )
+            if error <= limit * (1.125 if graph.divides(roots) else 1):
+                graph = factored
     return graph, weighted

@@ -18,7 +18,8 @@ than the rounding errors of their angles.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
 from functools import lru_cache, reduce
@@ -26,20 +27,7 @@ from math import ceil, factorial, frexp
 from typing import TypeGuard
 
 from rigidsym.algebra.stable_forms import FIRST_SERIES, series_of
-from rigidsym.kernels.ir import (
-    Assignment,
-    Call,
-    Expression,
-    Guarded,
-    Kernel,
-    Name,
-    Negative,
-    Number,
-    Product,
-    Sum,
-    names_in,
-    parts,
-)
+from rigidsym.kernels import ir
 from rigidsym.kernels.lowering.naming import Names
 from rigidsym.system.records import NamedTuple, Record
 
@@ -80,7 +68,7 @@ class Rounding(NamedTuple):
 
 
 @lru_cache(maxsize=256)  # each language tells the bound, and the module that there is one
-def rounding(kernel: Kernel) -> Rounding | None:
+def rounding(kernel: ir.Kernel) -> Rounding | None:
     """The bound of a kernel; None for one that divides or takes roots."""
     plain, exact = numbers_and_angles(kernel)
     try:
@@ -96,7 +84,7 @@ def rounding(kernel: Kernel) -> Rounding | None:
 
 
 def largest_error(
-    kernel: Kernel, inputs: Mapping[str, Bounded], exact: Collection[str] = ()
+    kernel: ir.Kernel, inputs: Mapping[str, Bounded], exact: Collection[str] = ()
 ) -> float:
     """In eps, of the outputs; names in `exact`, and inputs without bounds, are exact angles.
 
@@ -109,7 +97,26 @@ def largest_error(
     return max(_bounded(output, values).error for output in kernel.outputs)
 
 
-def numbers_and_angles(kernel: Kernel) -> tuple[set[str], set[str]]:
+class _Ones(dict[str, Bounded]):
+    """Bounds of what has none: exact, and at most one; so are divisors."""
+
+    def __missing__(self, name: str) -> Bounded:
+        return Bounded(1.0, 0.0)
+
+
+def error_of_form(assignments: Iterable[ir.Assignment], outputs: Iterable[ir.Expression]) -> float:
+    """A measure of the rounding in a form, with which others of the same function compare.
+
+    It is the error in eps if inputs, divisors, roots and choices were exact and at most one.
+    """
+    values = _Ones()
+    for name, value in assignments:
+        with suppress(NoBoundError):
+            values[name] = _bounded(value, values)
+    return max(_bounded(output, values).error for output in outputs)
+
+
+def numbers_and_angles(kernel: ir.Kernel) -> tuple[set[str], set[str]]:
     """The inputs that more is taken of than a sine or a cosine, of them or of a half of them, and
     the names of halves as exact as the angle itself.
 
@@ -120,8 +127,8 @@ def numbers_and_angles(kernel: Kernel) -> tuple[set[str], set[str]]:
     plain = {
         name
         for value in (*others, *kernel.outputs)
-        if not (isinstance(value, Guarded) or _is_sine(value))
-        for name in names_in(value)
+        if not (isinstance(value, ir.Guarded) or _is_sine(value))
+        for name in ir.names_in(value)
     }
     # From the last one to the first, since a half may be taken of a half.
     for name, source in reversed(halves.items()):
@@ -130,18 +137,18 @@ def numbers_and_angles(kernel: Kernel) -> tuple[set[str], set[str]]:
     return plain.intersection(kernel.components), halves.keys() - plain
 
 
-def adds_angles(kernel: Kernel) -> bool:
+def adds_angles(kernel: ir.Kernel) -> bool:
     """Whether a sine or a cosine is taken of what was rounded: a sum or a multiple of angles."""
     exact = {*kernel.components, *_halves(kernel)}
     return any(angle.text not in exact for angle in kernel.sines)
 
 
-def _halves(kernel: Kernel) -> dict[str, str]:
+def _halves(kernel: ir.Kernel) -> dict[str, str]:
     """name: what it is a half of, or another power of two times, and so exact."""
     halves = {}
     for name, product in kernel.assignments:
         match product:
-            case Product((Number(value), Name(source)), ()) if _is_power_of_two(value):
+            case ir.Product((ir.Number(value), ir.Name(source)), ()) if _is_power_of_two(value):
                 halves[name] = source
     return halves
 
@@ -150,42 +157,45 @@ def _is_power_of_two(value: Fraction | float) -> bool:
     return frexp(float(value))[0] in (0.5, -0.5)
 
 
-def _is_sine(value: Expression) -> TypeGuard[Call]:
-    return isinstance(value, Call) and value.function in ("sin", "cos")
+def _is_sine(value: ir.Expression) -> TypeGuard[ir.Call]:
+    return isinstance(value, ir.Call) and value.function in ("sin", "cos")
 
 
-def _bounded(expression: Expression, values: Mapping[str, Bounded]) -> Bounded:
+def _bounded(expression: ir.Expression, values: Mapping[str, Bounded]) -> Bounded:
     """From left to right, as the targets compute."""
     match expression:
-        case Name(text):
+        case ir.Name(text):
             return values[text]
-        case Number(value):
+        case ir.Number(value):
             size, is_scale = abs(float(value)), _is_power_of_two(value)
             if is_scale or (isinstance(value, Fraction) and Fraction(float(value)) == value):
                 return Bounded(size, 0.0, is_scale)
             return Bounded.rounded(size)
-        case Negative(operand):
+        case ir.Negative(operand):
             return _bounded(operand, values)
-        case Sum(terms):
+        case ir.Sum(terms):
             bounds = (_bounded(term, values) for term in terms)
             return reduce(lambda a, b: Bounded.rounded(a.size + b.size, a.error + b.error), bounds)
-        case Product(factors, divisors) if all(isinstance(d, Number) for d in divisors):
+        case ir.Product(factors, divisors):
+            numbers = tuple(d for d in divisors if isinstance(d, ir.Number))
+            if numbers != divisors and not isinstance(values, _Ones):
+                raise NoBoundError
             above, below = (
                 reduce(_product, (_bounded(part, values) for part in side), _ONE)
-                for side in (factors, divisors)
+                for side in (factors, numbers)
             )
             # The error of 1/b is that of b over b². The error of the quotient is rounded once, in
             # the product.
             inverse = Bounded(1 / below.size, below.error / below.size**2, below.is_scale)
             return _product(above, inverse)
-        case Call("sin" | "cos", argument):
+        case ir.Call("sin" | "cos", argument):
             # The slope of sine and cosine is at most 1 in size, so that they pass the error of the
             # angle on.
             angle = values.get(argument.text, Bounded(0.0, 0.0))  # an input is exact as given
             return Bounded(1.0, SINE + angle.error)
-        case Call("abs", argument):
+        case ir.Call("abs", argument):
             return values[argument.text]
-        case Call(_, argument) if expression.order is not None:
+        case ir.Call(_, argument) if expression.order is not None:
             # c_k takes n²: its error, and one eps of its size for the rounding of n, pass on with
             # the slope.
             size, slope, own = entire_bounds(expression.order)
@@ -213,11 +223,11 @@ def entire_bounds(order: int) -> tuple[float, float, float]:
     return Bounded.rounded(1 / factorial(order)).size, slope, own
 
 
-_ROUNDINGS = Number(Fraction(4))
-_DOUBLE_ZERO = Number(Fraction(8))  # c₂ near a zero is half the square of the error of n over n
+_ROUNDINGS = ir.Number(Fraction(4))
+_DOUBLE_ZERO = ir.Number(Fraction(8))  # c₂ near a zero is half the square of the error of n over n
 
 
-def guarded(kernel: Kernel, names: Names) -> Kernel:
+def guarded(kernel: ir.Kernel, names: Names) -> ir.Kernel:
     """The same kernel with its divisors guarded, as far as they can vanish.
 
     `names` gives out the names that are new.
@@ -234,115 +244,115 @@ def guarded(kernel: Kernel, names: Names) -> Kernel:
 
 class _Guard:
     def __init__(self, names: Names) -> None:
-        self.assignments: list[Assignment] = []
+        self.assignments: list[ir.Assignment] = []
         self._names = names
-        self._values: dict[str, Expression] = {}
-        self._known: dict[Expression, Expression] = {}  # divisors
-        self._made: dict[Expression, Name] = {}  # sizes and limits
+        self._values: dict[str, ir.Expression] = {}
+        self._known: dict[ir.Expression, ir.Expression] = {}  # divisors
+        self._made: dict[ir.Expression, ir.Name] = {}  # sizes and limits
 
-    def assign(self, name: str, value: Expression) -> Name:
-        self.assignments.append(Assignment(name, value))
+    def assign(self, name: str, value: ir.Expression) -> ir.Name:
+        self.assignments.append(ir.Assignment(name, value))
         self._values[name] = value
-        return Name(name)
+        return ir.Name(name)
 
-    def expression(self, whole: Expression) -> Expression:
+    def expression(self, whole: ir.Expression) -> ir.Expression:
         """The expression with its divisors guarded; what that takes is assigned before it."""
         match whole:
-            case Product(factors, divisors):
+            case ir.Product(factors, divisors):
                 divided = tuple(map(self._divisor, divisors))
-                return Product(tuple(map(self.expression, factors)), divided)
-            case Sum(terms):
-                return Sum(tuple(map(self.expression, terms)))
-            case Negative(operand):
-                return Negative(self.expression(operand))
+                return ir.Product(tuple(map(self.expression, factors)), divided)
+            case ir.Sum(terms):
+                return ir.Sum(tuple(map(self.expression, terms)))
+            case ir.Negative(operand):
+                return ir.Negative(self.expression(operand))
         return whole
 
-    def _divisor(self, divisor: Expression) -> Expression:
+    def _divisor(self, divisor: ir.Expression) -> ir.Expression:
         if divisor not in self._known:
             whole = self.expression(divisor)
             limit = self._limit(whole)
             if limit is not None:
                 value = self._named(whole)
                 name = self._names.fresh(f"{value.text}_or_nan")
-                whole = self.assign(name, Guarded(value, *limit))
+                whole = self.assign(name, ir.Guarded(value, *limit))
             self._known[divisor] = whole
         return self._known[divisor]
 
-    def _limit(self, divisor: Expression) -> tuple[Name | Number | None, int] | None:
+    def _limit(self, divisor: ir.Expression) -> tuple[ir.Name | ir.Number | None, int] | None:
         """The scale of a guard and its power of eps; none if the divisor cannot vanish."""
         value = self._value(divisor)
         match value:
-            case Call("sin" | "cos", angle):
+            case ir.Call("sin" | "cos", angle):
                 return angle, 1
-            case Call("c0", square):
+            case ir.Call("c0", square):
                 # c₀ = cos n has the slope ±1 at its zeros and is off by 4 eps n there.
-                root = self._new(Call("sqrt", square))
-                return self._new(Product((_ROUNDINGS, root))), 1
-            case Call("c1"):
+                root = self._new(ir.Call("sqrt", square))
+                return self._new(ir.Product((_ROUNDINGS, root))), 1
+            case ir.Call("c1"):
                 # c₁ = sin n/n: an error of 4 eps n in the sine is one of 4 eps.
                 return _ROUNDINGS, 1
-            case Call("c2"):
+            case ir.Call("c2"):
                 return _DOUBLE_ZERO, 2
-            case Sum():
-                terms = list(self._flat(value, Sum))
+            case ir.Sum():
+                terms = list(self._flat(value, ir.Sum))
                 is_positive = all(map(self._is_positive, terms))
-                if is_positive and any(isinstance(term, Number) for term in terms):
+                if is_positive and any(isinstance(term, ir.Number) for term in terms):
                     return None
                 self._named(divisor)
-                factors = (factor for term in terms for factor in self._flat(term, Product))
+                factors = (factor for term in terms for factor in self._flat(term, ir.Product))
                 if not is_positive:
                     return self._sizes(value), 1
-                if any(isinstance(f, Name) and f.text in self._values for f in factors):
+                if any(isinstance(f, ir.Name) and f.text in self._values for f in factors):
                     return self._reach(), 2
                 return None, 1  # squares of inputs hold no rounding, but may underflow
         return None
 
-    def _reach(self) -> Name:
+    def _reach(self) -> ir.Name:
         """The square of how far rounding reaches where sines and cosines are squared, over eps²."""
         # Near its zeros, a sine or a cosine of a may be wrong by 4 eps (1 + |a|), rounding of a
         # included.
         called = {v.argument: None for v in self._values.values() if _is_sine(v)}
-        sizes = [self._new(Call("abs", angle)) for angle in called]
-        reach = self._new(Product((_ROUNDINGS, Sum((Number(Fraction(1)), *sizes)))))
-        return self._new(Product((reach, reach)))
+        sizes = [self._new(ir.Call("abs", angle)) for angle in called]
+        reach = self._new(ir.Product((_ROUNDINGS, ir.Sum((ir.Number(Fraction(1)), *sizes)))))
+        return self._new(ir.Product((reach, reach)))
 
-    def _value(self, expression: Expression) -> Expression:
+    def _value(self, expression: ir.Expression) -> ir.Expression:
         """What is behind a name, if it is not an input."""
-        if isinstance(expression, Name):
+        if isinstance(expression, ir.Name):
             return self._values.get(expression.text, expression)
         return expression
 
-    def _flat(self, whole: Expression, kind: type) -> Iterator[Expression]:
+    def _flat(self, whole: ir.Expression, kind: type) -> Iterator[ir.Expression]:
         """The terms of a sum and of the sums among them, or the factors of a product likewise."""
         value = self._value(whole)
-        if isinstance(value, kind) and not (isinstance(value, Product) and value.divisors):
-            for part in parts(value):
+        if isinstance(value, kind) and not (isinstance(value, ir.Product) and value.divisors):
+            for part in ir.parts(value):
                 yield from self._flat(part, kind)
         else:
             yield whole
 
-    def _is_positive(self, part: Expression) -> bool:
+    def _is_positive(self, part: ir.Expression) -> bool:
         """Whether it is a positive number, or a number times squares."""
         # An even number of equal factors is a square.
-        factors = list(self._flat(part, Product))
+        factors = list(self._flat(part, ir.Product))
         return all(
-            factor.value > 0 if isinstance(factor, Number) else factors.count(factor) % 2 == 0
+            factor.value > 0 if isinstance(factor, ir.Number) else factors.count(factor) % 2 == 0
             for factor in factors
         )
 
-    def _sizes(self, total: Sum) -> Name:
+    def _sizes(self, total: ir.Sum) -> ir.Name:
         """The sum of the sizes of the terms, times the roundings that each may bring."""
         sizes = []
         for term in total.terms:
-            part = term.operand if isinstance(term, Negative) else term
+            part = term.operand if isinstance(term, ir.Negative) else term
             is_size = self._is_positive(part)
-            sizes.append(part if is_size else self._new(Call("abs", self._named(part))))
-        return self._new(Product((_ROUNDINGS, Sum(tuple(sizes)))))
+            sizes.append(part if is_size else self._new(ir.Call("abs", self._named(part))))
+        return self._new(ir.Product((_ROUNDINGS, ir.Sum(tuple(sizes)))))
 
-    def _named(self, expression: Expression) -> Name:
-        return expression if isinstance(expression, Name) else self._new(expression)
+    def _named(self, expression: ir.Expression) -> ir.Name:
+        return expression if isinstance(expression, ir.Name) else self._new(expression)
 
-    def _new(self, value: Expression) -> Name:
+    def _new(self, value: ir.Expression) -> ir.Name:
         if value not in self._made:
             self._made[value] = self.assign(self._names.numbered("x"), value)
         return self._made[value]

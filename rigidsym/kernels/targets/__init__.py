@@ -42,9 +42,7 @@ class Target:
 TARGETS: dict[str, Target] = {  # the default first
     "numpy": Target(),
     "c": Target(
-        stands_alone=False,
-        is_compiled=True,
-        options={"lean": ("none", "double", "float")},
+        stands_alone=False, is_compiled=True, options={"lean": ("none", "double", "float")}
     ),
     "javascript": Target(),
     "jax": Target(package="jax"),

@@ -9,19 +9,7 @@ from math import isnan
 from textwrap import wrap
 from types import MappingProxyType
 
-from rigidsym.kernels.ir import (
-    Call,
-    Choice,
-    Compare,
-    Expression,
-    Guarded,
-    Name,
-    Negative,
-    Number,
-    Product,
-    Sum,
-    parts,
-)
+from rigidsym.kernels import ir
 
 _CHOICE, _SUM, _PRODUCT, _ATOM = range(4)  # how tightly a piece of text holds together
 
@@ -32,7 +20,7 @@ _LIMITS = {"limit0": "None", "limit1": "{}", "limit2": "{}, 2"}
 
 
 def infix(
-    expression: Expression, forms: Mapping[str, str] = MappingProxyType({}), number: str = "{}"
+    expression: ir.Expression, forms: Mapping[str, str] = MappingProxyType({}), number: str = "{}"
 ) -> str:
     """The expression in one line; `forms` are how the target writes what is not arithmetic.
 
@@ -44,10 +32,10 @@ def infix(
     return _text(expression, forms, number)[0]
 
 
-def _text(expression: Expression, forms: Mapping[str, str], number: str) -> tuple[str, int]:
+def _text(expression: ir.Expression, forms: Mapping[str, str], number: str) -> tuple[str, int]:
     """The text, and how tightly it holds together."""
 
-    def within(part: Expression, tightness: int) -> str:
+    def within(part: ir.Expression, tightness: int) -> str:
         text, held = _text(part, forms, number)
         return text if held >= tightness else f"({text})"
 
@@ -55,34 +43,34 @@ def _text(expression: Expression, forms: Mapping[str, str], number: str) -> tupl
         return forms.get(function, f"{function}({{}})").format(arguments)
 
     match expression:
-        case Name(text):
+        case ir.Name(text):
             return text, _ATOM
-        case Number(value) if isnan(value):
+        case ir.Number(value) if isnan(value):
             return forms.get("nan", "nan"), _ATOM
-        case Number(value) if value == float(value):
+        case ir.Number(value) if value == float(value):
             return number.format(float(value)), _ATOM
-        case Number(value):
+        case ir.Number(value):
             ratio = (number.format(float(whole)) for whole in Fraction(value).as_integer_ratio())
             return " / ".join(ratio), _PRODUCT
-        case Call(function):
+        case ir.Call(function):
             return called(function, ", ".join(a.text for a in expression.arguments)), _ATOM
-        case Compare(relation, left, right):
+        case ir.Compare(relation, left, right):
             sign = forms.get(relation, relation)
             return f"{within(left, _SUM)} {sign} {within(right, _SUM)}", _CHOICE
-        case Choice():
+        case ir.Choice():
             form = forms.get("choice", "{1} if {0} else {2}")
-            return form.format(*(within(part, _CHOICE) for part in parts(expression))), _CHOICE
-        case Guarded(value, scale, power):
+            return form.format(*(within(part, _CHOICE) for part in ir.parts(expression))), _CHOICE
+        case ir.Guarded(value, scale, power):
             key = f"limit{0 if scale is None else power}"
             limit = forms.get(key, _LIMITS[key]).format(within(scale, _SUM) if scale else "")
             return called("or_nan", f"{value.text}, {limit}"), _ATOM
-        case Negative(operand):
+        case ir.Negative(operand):
             return f"-{within(operand, _PRODUCT)}", _SUM
-        case Sum(terms):
+        case ir.Sum(terms):
             first, *others = (within(term, _SUM) for term in terms)
             signed = (f"- {t[1:]}" if t.startswith("-") else f"+ {t}" for t in others)
             return " ".join([first, *signed]), _SUM
-        case Product(factors, divisors):
+        case ir.Product(factors, divisors):
             above, below = (
                 " * ".join(within(part, tightness) for part in side)
                 for side, tightness in (
