@@ -216,10 +216,12 @@ def derive(
             f"name='mine') for a matrix R(q); got {model!r}"
         )
     if body is not None:
-        from rigidsym.models.body import Body  # a derivation without a body needs none of its kinds
+        # A derivation without a body needs none of its kinds.
+        from rigidsym.models.body import Body, RigidBody
 
         if not isinstance(body, Body):
             raise TypeError(f"expected a body, such as rs.solid('cone'), got {body!r}")
+        body = body.as_described if isinstance(body, RigidBody) else body
     if not (isinstance(only, Collection) and all(isinstance(name, str) for name in only)):
         raise TypeError(f"only: expected names of quantities, got {only!r}")
     wanted = (only,) if isinstance(only, str) else tuple(only)

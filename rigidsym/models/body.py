@@ -238,6 +238,13 @@ class RigidBody:
         return PHRASES["free"].format(title=self.title, mass=self.mass), PHRASES["centre"]
 
     @property
+    def as_described(self) -> RigidBody:
+        """The body before a derivation took its tensor about a fixed point."""
+        if self.central is None:
+            return self
+        return replace(self, inertia=self.central, central=None, fixed_point=None)
+
+    @property
     def is_tensor(self) -> bool:
         """Whether only a tensor is described, and neither its mass nor a centre of mass."""
         has_centre = any(self.centre) or "centre" in self.request.get("body", ())

@@ -252,9 +252,6 @@ def forces_on(
             )
     if len(torque) not in (0, 3):
         raise ModelError(f"torque: expected three components, got {len(torque)}")
-    point = () if fixed_point in (None, CENTRE) else [_read(x, names) for x in fixed_point]
-    if len(point) not in (0, 3) or any(x.has(TIME, AppliedUndef, *OMEGA_BODY) for x in point):
-        raise ModelError(f'expected a point of three constants or "{CENTRE}", got {fixed_point!r}')
     if method not in ("", *METHODS):
         raise ModelError(f"no method {method!r}; {offer(method, METHODS)}")
     acting = Forces(
@@ -264,7 +261,7 @@ def forces_on(
         first_integrals={n: _read(value, names) for n, value in first_integrals.items()},
         method=method,
         parts=tuple(_part(part, names) for part in parts),
-        fixed_point=None if fixed_point is None else tuple(point),
+        fixed_point=None if fixed_point is None else _point(fixed_point, names),
         examples=tuple(examples_of(model, examples)),
     )
     depends = f"the potential {as_typed(acting.potential)} depends on"
@@ -329,8 +326,25 @@ def _part(entry: Mapping[str, Any], names: Mapping[str, sp.Expr]) -> MovingPart:
     )
 
 
+def _point(stated: object, names: Mapping[str, sp.Expr]) -> tuple[sp.Expr, ...]:
+    """Three constants, or none for the centre of mass."""
+    expected = f'a fixed point: expected three constants or "{CENTRE}", got {stated!r}'
+    if isinstance(stated, str):
+        if stated != CENTRE:
+            raise ModelError(expected)
+        return ()
+    parts = [*stated] if isinstance(stated, Iterable) else []
+    point = tuple(_read(part, names) for part in parts)
+    if len(point) != 3 or any(x.has(TIME, AppliedUndef, *OMEGA_BODY) for x in point):
+        raise ModelError(expected)
+    return point
+
+
 def _read(value: sp.Expr | str | float, names: Mapping[str, sp.Expr]) -> sp.Expr:
-    value = str(value) if isinstance(value, float) else value  # 0.1 is 1/10
+    if isinstance(value, float):
+        if not isfinite(value):
+            raise ModelError(f"expected a finite number, got {value}")
+        value = str(value)  # 0.1 is 1/10
     if isinstance(value, str):
         for name in set(names_in(value)) - set(names):
             _check_spelling(name, names)

@@ -77,6 +77,26 @@ def test_a_stated_fixed_point_is_that_of_sympy(point):
         rs.derive(model, **acting)
 
 
+def test_the_body_of_a_derivation_is_the_described_one_wherever_it_turned():
+    mass, length = sp.symbols("M l")
+    acting = {"body": rs.principal_moments(A, A, C, mass=mass), "potential": "k*cos(theta)"}
+    first = rs.derive("ZXZ", "inertia_tensor", **acting, fixed_point=(0, 0, "l"))
+    acting["body"] = first.body
+    for distance, point in ((2 * length, (0, 0, "2*l")), (0, "centre_of_mass"), (0, None)):
+        again = rs.derive("ZXZ", "inertia_tensor", **acting, fixed_point=point)
+        assert again.inertia_tensor[0, 0] == A + mass * distance**2
+
+
+WRONG_POINTS = ["com", "", "center_of_mass", (), [0, 0], [0, 0, "theta"], 3]
+
+
+@pytest.mark.parametrize("point", [*WRONG_POINTS, [0, 0, float("inf")]], ids=repr)
+def test_a_fixed_point_is_three_constants_or_the_centre_of_mass(point):
+    expected = "expected three constants" if point in WRONG_POINTS else "expected a finite number"
+    with pytest.raises(ModelError, match=expected):
+        rs.derive("ZXZ", "energy", body=rs.solid("cone"), potential=0, fixed_point=point)
+
+
 def test_a_body_that_moves_freely_turns_about_its_centre_of_mass():
     body = rs.solid("cone")
     names, acting = ("energy", "rotational_energy"), {"body": body, "potential": 0}
