@@ -116,7 +116,7 @@ def test_kernels_and_notes_know_nothing_of_one_another_nor_the_representation_of
 BUDGETS = {  # what was reached; who makes the house smaller lowers them
     "files": 188,
     "lines of code": 24_200,
-    "lines of tests": 16_660,
+    "lines of tests": 16_800,
     "lines of benchmarks": 2_500,
 }
 
