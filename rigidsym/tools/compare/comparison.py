@@ -185,13 +185,13 @@ class Comparison:
         asked, found, called = self.asked, self.found, self._called()
         calls = []  # the names of coordinates: ours, the user's, and the axis of the turn
         if found and found.rotation and found.quantity != ANGLES:
-            turns = {turn.angle: turn.axis for turn in found.motion.model.turns}
-            q = ((own, s) for own, s in found.names.items() if s in found.inputs["q"])
-            for own, symbol in q:
+            for own, axis in found.coordinates.items():
                 name = called.get(own) or known.stem_of(called.get(f"{own}_dot", ""))
-                calls += [(own, name, turns.get(symbol))] if name else []
+                calls += [(own, name, axis)] if name else []
+        fixed = asked.coordinates.items() if asked and asked.has_own_names else ()
         facts: dict[str, Any] = vars(self) | {
             "arrangement": self.arrangement,
+            "fixed": [(own, own, axis) for own, axis in fixed],
             "calls": calls if any(own != name for own, name, _ in calls) else [],
             "others": [other.text() for other in self.others],
             "points": known.POINTS,
@@ -236,10 +236,13 @@ def compare(
     if quantity == "coriolis_matrix":
         raise ExpressionError("a Coriolis matrix is not unique; compare the bias vector C(q, q̇) q̇")
     if isinstance(rotation, Motion):
-        goal = known.of_motion(rotation, quantity, rotation.name)
+        model = rotation.model  # euler_zyx_intrinsic is ZYX
+        is_named = rotation.name != model.name or model.passive
+        name = rotation.name if is_named else model.request.get("sequence", rotation.name)
+        goal = known.of_motion(rotation, quantity, name)
     else:
         goal = known.target(rotation, quantity)
-    angles = [n for n, symbol in goal.names.items() if symbol in goal.inputs.get("q", ())]
+    angles = [*goal.coordinates]
     return identified(spelled_out(matrix, only=angles[0] if len(angles) == 1 else "angle"), goal)
 
 
@@ -308,7 +311,7 @@ def identified(
     nearest rotations, one about the `expected` axes, such as "z y x", is preferred.
     """
     trials = []
-    for family in known.families(formula) if asked is None else [asked.in_orders()]:
+    for family in known.families(formula) if asked is None else zip(asked.in_orders()):
         trial = _Trial(formula, family, is_asked=asked is not None)
         for equal in trial.readings(trial.agreement.all(axis=(2, 3, 4))):
             return _proved(equal, asked)

@@ -60,7 +60,9 @@ def _points() -> Array:
 TABLE = _points()
 AXES = [a + b + c for a, b, c in product("XYZ", repeat=3) if a != b != c]
 _THREE = (*AXES, *(axes.lower() for axes in AXES))
-_AXES_ALONE = re.compile("[XYZ]{3}|[xyz]{3}|[123]{3}")  # a rotation whose angles have our names
+# Rotations whose angles nobody has named. Roll, pitch and yaw often have our names in another
+# order. In proper Euler angles, such as ZXZ, exchanged names are a mistake.
+_AXES_ONLY = re.compile(r"(?!.*(.).*\1)([XYZ]{3}|[xyz]{3}|[123]{3})")
 _SEQUENCES = {
     1: tuple(f"{a}(angle)" for a in "xyz"),
     2: tuple(f"{a}(first) {b}(second)" for a, b in permutations("xyz", 2)),
@@ -179,6 +181,7 @@ class KnownQuantity:
     matrix: sp.ImmutableMatrix
     motion: Motion  # in whose ring equality is decided
     inputs: Mapping[str, tuple[sp.Expr, ...]]  # the symbols of each argument that it depends on
+    has_own_names: bool = True  # False if the angles may have our names in another order
 
     @property
     def points(self) -> Values:
@@ -205,6 +208,12 @@ class KnownQuantity:
         return names | {s.name: s for s in plain}
 
     @property
+    def coordinates(self) -> dict[str, str | None]:
+        """The axis of the turn by each angle; None for a coordinate that is no angle of a turn."""
+        turns, q = {t.angle: t.axis for t in self.motion.model.turns}, self.inputs.get("q", ())
+        return {name: turns.get(s) for name, s in self.names.items() if s in q}
+
+    @property
     def axes(self) -> str:
         """Those of the turns, as in "z y x"."""
         return " ".join(turn.axis for turn in self.motion.model.turns)
@@ -222,17 +231,17 @@ class KnownQuantity:
             goals.append(replace(self, arrangement=arrangement, matrix=sp.ImmutableMatrix(matrix)))
         return goals
 
-    def in_orders(self) -> Family:
+    def in_orders(self) -> list[KnownQuantity]:
         """The quantity, also with the rates backwards if nobody chose the names of the angles.
 
         ZYX is xyz with the angles in the other order.
         """
         has_order = self.quantity in _OF_RATES and not self.quantity.startswith("angular")
-        if not has_order or not _AXES_ALONE.fullmatch(self.rotation):
-            return (self,)
+        if not has_order or self.has_own_names:
+            return [self]
         is_matrix = self.quantity.startswith("rate_matrix")
         turned = lambda m, *_: m[:, ::-1] if is_matrix else m[::-1, :]  # noqa: E731
-        return tuple(self.written(_ways(the_rates_in_the_order_3_2_1=turned)))
+        return self.written(_ways(the_rates_in_the_order_3_2_1=turned))
 
 
 Family = tuple[KnownQuantity, ...]  # of the same inputs and shape, compared in one step
@@ -277,7 +286,8 @@ def target(rotation: str, quantity: str) -> KnownQuantity:
     derived = "rotation_matrix" if quantity == QUATERNION else quantity
     of_rates = rotation in _THREE and quantity in _OF_RATES
     motion = _kinematics(rotation, _OF_RATES if of_rates else (derived,))
-    return of_motion(motion, quantity, rotation)
+    goal = of_motion(motion, quantity, rotation)
+    return replace(goal, has_own_names=not _AXES_ONLY.fullmatch(rotation))
 
 
 def families(formula: sp.MatrixBase) -> Iterator[Family]:
@@ -463,11 +473,12 @@ def meanings(formula: sp.MatrixBase, goal: KnownQuantity, *, is_asked: bool) -> 
     """The possible meanings of the names in a formula.
 
     If the quantity `is_asked` for, and all names are those of its inputs, no other is possible,
-    unless these are the names of angles that nobody has chosen, as in "ZYX".
+    unless these are the names of angles that nobody has chosen, as in "ZYX". If the rates are in
+    the opposite order, the first and the last angle have lost our names.
     """
     symbols, inside = _symbols(formula)
     own = {s: goal.names.get(s.name) or goal.names.get(f"{stem_of(s.name)}_dot") for s in symbols}
-    if None not in own.values() and is_asked and not _AXES_ALONE.fullmatch(goal.rotation):
+    if None not in own.values() and is_asked and goal.has_own_names:
         return [own]
     turns = goal.motion.model.turns
     vectors = [*goal.inputs.values()]
@@ -482,6 +493,9 @@ def meanings(formula: sp.MatrixBase, goal: KnownQuantity, *, is_asked: bool) -> 
     names: list[Names] = [own] * (None not in own.values()) + [*of_names]
     if goal.quantity == ANGLES:
         names += _of_entries(symbols, goal.motion.rotation_matrix)
+    if is_asked and goal.arrangement:
+        kept = {(s, own[s]) for s in symbols if own[s] in goal.inputs["q"][::2]}
+        names = [each for each in names if not kept & {*each.items()}]
     if is_asked or not turns or goal.quantity not in (QUATERNION, "rotation_matrix"):
         return names
     # Angles may count in the other sense, which for one turn is the transpose, and from another
