@@ -123,9 +123,8 @@ def _records(expected: str | None, is_active: bool, file: Path) -> list[dict[str
         record |= {"unexpected": other or None, "is_unreadable": comparison is None}
         record["is_failure"] = formula.is_failure
         record["text"] = f"{formula.text}; {other}" if other else formula.text
-        records.append(
-            record | {"fault": bool(other) or (comparison is not None and comparison.is_wrong)}
-        )
+        record["fault"] = bool(other or (comparison and comparison.is_wrong))
+        records.append(record)
     return records
 
 

@@ -117,12 +117,8 @@ def _ways(**ways: Way) -> Ways:
 
 _LAST = _ways(scalar_last=_scalar_last)
 _NEGATIVE = _ways(negative=_times(-1))
-_SCALED = _ways(
-    twice=_times(2),
-    half=_times(sp.Rational(1, 2)),
-    four_times=_times(4),
-    a_quarter=_times(sp.Rational(1, 4)),
-)
+_SCALES = {"twice": 2, "half": sp.S.Half, "four_times": 4, "a_quarter": sp.S.Half / 2}
+_SCALED = _ways(**{words: _times(factor) for words, factor in _SCALES.items()})
 _OF_QUATERNION_RATES = (_LAST, _SCALED, {**_ways(), "of the conjugate (passive)": _of_conjugate})
 PASSIVE = "transposed (passive, the direction cosine matrix)"
 PASSIVE_OR_BY_COLUMNS = "transposed (passive, or stored by columns)"  # of numbers in a row
@@ -386,16 +382,8 @@ _LAWS: tuple[_Law, ...] = (  # entries of each vector, and the value
     *((_TORQUE, (3, size, 3), _torque) for size in (3, 9)),
     (_STEINER, (1, 3, 6), _steiner),
     (_STEINER, (1, 3, 3), lambda m, d, i: _steiner(m, d, i).diagonal().T),
-    (
-        _STEINER,
-        (1, 3, 3),
-        lambda m, d, i: i + sp.Matrix([_steiner(m, d, 0 * i)[k] for k in (1, 2, 5)]),
-    ),
-    (
-        _STEINER,
-        (1, 3, 3),
-        lambda m, d, e: BodyValues.steiner(m[0], d) - BodyValues.steiner(m[0], e),
-    ),
+    (_STEINER, (1, 3, 3), lambda m, d, i: i + _steiner(m, d, 0 * i).vec()[[1, 2, 5], 0]),
+    (_STEINER, (1, 3, 3), lambda m, d, e: _steiner(m, d, 0 * e) - _steiner(m, e, 0 * e)),
 )
 
 
