@@ -36,7 +36,7 @@ def _strangers(paths: Iterable[Path], derived: set[Path]) -> Iterator[tuple[Path
     """Theorems in folders of records that no record derives: they may prove something else."""
     beside = {file.parent for file in derived}  # elsewhere, a .v may be of another language
     folders = [path.rglob if path.is_dir() else path.parent.glob for path in paths]
-    # a Reals.vo, or what else Coq loads, would stand for its own
+    # Coq would load this Reals.vo instead of its own
     endings = [f"{CERTIFICATE}{end}" for end in ("", "o", "io", "ok", "os")]
     for path in sorted({*chain(*(files(f"*.{end}") for files in folders for end in endings))}):
         # coqc writes no .vio, but loads a newer Rotation.vio instead of the Rotation.vo it wrote

@@ -54,9 +54,11 @@ class Notation(Record, kw_only=True):
         """Raises ModelError for a name in a model that looks like R, W or the angular velocity."""
         other = next(word for word in CHOICES["angular_velocity"] if word != self.angular_velocity)
         meanings = {"R": "the rotation matrix", "W": "the rate matrix"}
-        meanings[self.angular_velocity] = f"the angular velocity, which can also be called {other}"
-        for name in sorted(model.names):
-            if meaning := meanings.get(name.rstrip("_0123456789")):
+        letters = {name: name.rstrip("_0123456789") for name in sorted(model.names)}
+        also = "" if other in letters.values() else f", which can also be called {other}"
+        meanings[self.angular_velocity] = f"the angular velocity{also}"
+        for name, letter in letters.items():
+            if meaning := meanings.get(letter):
                 raise ModelError(f"notation: {name} is printed like {meaning}; choose another name")
 
 

@@ -96,7 +96,7 @@ else:
             types = body.get("__annotations__", {})
             defaults = [body.pop(field) for field in types if field in body]
             made = namedtuple(name, types, defaults=defaults, module=body["__module__"])
-            for key, value in body.items():
+            for key, value in body.items():  # Python refuses a body with super() in a method
                 setattr(made, key, value)
             return made
 

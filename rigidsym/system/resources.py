@@ -160,7 +160,7 @@ def _sentences(text: str, file: str) -> Mapping[str, Any]:
 def place_of(words: str, name: str) -> str:
     """The file and line where words stand in a template or those that it uses, or its file."""
     names, texts = [name], dict[str, str]()
-    for used in names:  # which grows
+    for used in names:  # the list is extended while it is read
         with suppress(FileNotFoundError):  # after `ignore missing`
             text, file = template(used)
             texts[file] = text

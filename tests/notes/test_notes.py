@@ -156,7 +156,7 @@ note = ["md"]
     text = output_of(spec).files["gyro.md"]
     equations = text.partition("## The equations of motion")[2].partition("## Appendix")[0]
     assert "I _1" in equations
-    assert "r^2" not in equations
+    assert not [words for words in ("r^2", "moves freely") if words in equations]
     assert "r^2" in text
 
 
@@ -238,11 +238,11 @@ def test_a_choice_that_is_none_is_refused():
 
 @pytest.mark.parametrize(("name", "other"), [("omega", "Omega"), ("Omega", "omega")])
 def test_an_angle_called_omega_is_not_mistaken_for_the_angular_velocity(name, other):
-    motion = rs.derive(EulerAngles("ZXZ", (name, "theta", "psi")))
+    for psi, also in ((other, ";"), ("psi", f", which can also be called {other};")):
+        motion = rs.derive(EulerAngles("ZXZ", (name, "theta", psi)))
+        with pytest.raises(ModelError, match=f"{name} is printed like the angular velocity{also}"):
+            motion.with_notation(angular_velocity=name).note()
     motion.with_notation(angular_velocity=other).note()
-    like = f"{name} is printed like the angular velocity, which can also be called {other}"
-    with pytest.raises(ModelError, match=like):
-        motion.with_notation(angular_velocity=name).note()
 
 
 def test_options_go_before_the_file_and_check_knows_them(tmp_path: Path):

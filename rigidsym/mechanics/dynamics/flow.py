@@ -73,6 +73,7 @@ class Flow(Workspace):
             "no_gradient": not any(sp.diff(potential, q) for q in self.model.coordinates),
             "unforced": not any((*self.forces.generalised.values(), *self.forces.torque)),
             "driven": not self.driving.is_zero(),
+            "stated_point": self.body.fixed_point is not None,
         }
         return frozenset((*self.kind, *(trait for trait in holds if holds[trait])))
 

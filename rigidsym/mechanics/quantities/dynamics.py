@@ -66,7 +66,10 @@ lagrangian = Quantity(
     value=lambda k: k.kinetic - k.forces.potential,
     reason="fixed_point",
     is_result=True,
-    variants=_energies("-", reason="energies_of_joints"),
+    variants=(
+        when("stated_point", reason="stated_point"),
+        *_energies("-", reason="energies_of_joints"),
+    ),
 )
 
 

@@ -44,8 +44,8 @@ def record(
 ) -> dict[str, Any]:
     """All of a derivation as dictionaries, lists, strings, numbers and booleans.
 
-    `request` is the data that asked for it, from which `rigidsym check` derives it again;
-    `conversions` stand in it where they were asked for.
+    `request` is the data that asked for it, from which `rigidsym check` derives it again. The
+    record contains the `conversions`, if requested.
     """
     names: Names = {  # for functions of time, the highest derivatives first to be replaced first
         expression: sp.Symbol(name)

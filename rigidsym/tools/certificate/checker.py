@@ -472,7 +472,7 @@ class Record:
         }
 
         def constant(v: Matrix, rate: Matrix) -> tuple[Any, ...]:
-            """The value v; its rate is one that is zero where the balance is."""
+            """The claim equals v, and dv/dt vanishes on every motion."""
             return None, 0, lambda x: Matrix((x - v).rows + (v.rate() - rate).rows), *moving
 
         for q, p, row in zip(self.q, momenta.rows, balance.rows, strict=True):
