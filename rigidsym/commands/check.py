@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from itertools import chain
 from pathlib import Path
-from typing import Any
 
 import click
 
@@ -51,11 +50,7 @@ def _records(path: Path) -> list[Path]:
     Raises CheckError if there is none.
     """
     if path.is_dir():
-        files = sorted(
-            file
-            for file in path.rglob("*.json")
-            if file.stem == file.parent.name or _is_record(content_of(file))
-        )
+        files = sorted(filter(_is_record, path.rglob("*.json")))
     else:  # NAME.json is also beside NAME.d.mts
         files = [path.with_name(path.name.partition(".")[0] + ".json")]
     if not any(file.exists() for file in files):
@@ -65,9 +60,11 @@ def _records(path: Path) -> list[Path]:
     return files
 
 
-def _is_record(content: dict[str, Any]) -> bool:
+def _is_record(file: Path) -> bool:
     """Whether it claims to be one, even under another schema, which is a fault."""
-    return content.get("schema") == SCHEMA or "rotation" in content
+    content, keys = content_of(file), {"rotation", "quantities"}
+    is_like_one = content.get("schema") == SCHEMA or keys <= content.keys()
+    return is_like_one or file.stem == file.parent.name
 
 
 def _findings(record: Path) -> Iterator[tuple[Path, str, str]]:

@@ -575,6 +575,12 @@ OTHERS: Forgeries = {
         "a tensor that is not symmetric": with_a_skew_part,
         "a body that moves": write("body", "centre", ["X", "0", "0"]),
         "a mass that turns": write("body", "mass", "M*phi"),
+        "a tensor about a stated point": write("body", "fixed_point", ["1", "0", "0"]),
+    },
+    "cone on its apex": {
+        "a fixed point that moves": write("body", "fixed_point", ["0", "0", "h*phi"]),
+        "a fixed point in a plane": write("body", "fixed_point", ["0", "h"]),
+        "a fixed point that nobody states": lambda content: content["body"].pop("fixed_point"),
     },
     "torque": {"exchanged torques": write("motion", "torque", ["l*F", "k*F", "0"])},
     "euler": {
@@ -671,7 +677,7 @@ PARTLY = {
     f"a quantity named {name}": name for name in ("angular_velocity_moon", "truth", "nothing")
 }
 PARTLY |= {"the centre of mass at the fixed point": "centre_of_mass"}
-PARTLY |= {"momenta that are themselves": P}
+PARTLY |= {"momenta that are themselves": P, "a tensor about a stated point": "kinetic_energy"}
 PARTLY |= {"integrals that hold a definition": "constant energy"}
 PARTLY |= {"a divisor that is zero": "rotation_matrix", "nine coordinates": "mass_matrix"}
 PARTLY |= {"a parameter of the body that is defined": "accelerations"}

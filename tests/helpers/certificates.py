@@ -60,6 +60,13 @@ NEEDS: dict[str, Callable[[], rs.Motion]] = {
     ),
     "top": lambda: of_top(*OF_TOP),
     "whole top": of_top,
+    "cone on its apex": lambda: rs.derive(
+        "ZXZ",
+        ["centre_of_mass", "inertia_tensor", "angular_velocity_body", *OF_MOTION],
+        body=rs.solid("cone"),
+        potential="-3/4*m*g*h*cos(theta)",
+        fixed_point=[0, 0, "h"],
+    ),
     "torque": lambda: rs.derive(
         "ZYX",
         ["angular_velocity_body", "accelerations"],

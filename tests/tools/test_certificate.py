@@ -364,10 +364,13 @@ def test_a_record_under_another_name_or_schema_is_named(folder):
     other = folder.parent / "other" / "false.json"
     other.parent.mkdir()
     other.write_text(text.replace("rigidsym.derivation", "rigidsym.derivation "))
-    assert problems(other.parent)["false.json"].startswith("cannot be read as the record")
-    alone = [sys.executable, "-I", "-S", str(CHECKER), str(folder / RECORD), str(other)]
+    (other.parent / "robot.json").write_text('{"rotation": 90}')
+    (problem,) = problems(other.parent).values()  # a robot is no record
+    assert problem.startswith("cannot be read as the record")
+    alone = [sys.executable, "-I", "-S", str(CHECKER), str(folder / RECORD), str(other.parent)]
     done = subprocess.run(alone, capture_output=True, text=True, check=False)
     assert "false.json: REFUSED: the schema is not rigidsym.derivation" in done.stdout
+    assert "robot.json: skipped" in done.stdout
     assert done.returncode == 1
 
 

@@ -68,7 +68,7 @@ lagrangian = Quantity(
     is_result=True,
     variants=(
         when("stated_point", reason="stated_point"),
-        *_energies("-", reason="energies_of_joints"),
+        *_energies("-", reason="joint_energies"),
     ),
 )
 

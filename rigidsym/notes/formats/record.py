@@ -183,23 +183,21 @@ def _body(body: RigidBody) -> dict[str, Any]:
 
 def _motion(derivation: Derivation) -> dict[str, Any]:
     """V, the forces and the torque in body components, if they depend on q and q̇ only."""
-    acting, groups = derivation.forces, {argument.name for argument in derivation.arguments}
-    if acting is None or "momenta" not in groups:
-        return {}
-    # the checker counts places from the fixed point, and the record from that of the description
-    is_off = derivation.body and any(derivation.body.centre)
-    if acting.depend_on_time or derivation.definitions or is_off:
+    acting, body, model = derivation.forces, derivation.body, derivation.model
+    # a record without a fixed point does not say that a tensor about the centre of mass is meant
+    is_off = body and body.fixed_point is None and any(body.centre)
+    if acting is None or acting.depend_on_time or derivation.definitions or is_off:
         return {}
     from rigidsym.mechanics.dynamics.lagrange import is_bound
 
-    torque = acting.torque or (sp.S.Zero,) * 3
-    if any(component.has(*OMEGA_BODY) for component in torque):
+    # Euler's equations, or those of coordinates that depend on one another
+    is_euler = "torque_body" in (step.quantity.name for step in derivation.steps)
+    has_momenta = "momenta" in (argument.name for argument in derivation.arguments)
+    torque = sp.ImmutableMatrix([acting.torque or (0, 0, 0)])
+    if is_euler or is_bound(model) or not has_momenta or torque.has(*OMEGA_BODY):
         return {}
-    if is_bound(derivation.model) or "torque_body" in (s.quantity.name for s in derivation.steps):
-        return {}  # Euler's equations, or those of coordinates that depend on one another
-    coordinates = derivation.model.coordinates
-    forces = [sp.sympify(acting.generalised.get(q, 0)) for q in coordinates]
-    return {"motion": {"potential": acting.potential, "forces": forces, "torque": torque}}
+    forces = [sp.sympify(acting.generalised.get(q, 0)) for q in model.coordinates]
+    return {"motion": {"potential": acting.potential, "forces": forces, "torque": [*torque]}}
 
 
 def _argument(argument: Argument) -> dict[str, Any]:

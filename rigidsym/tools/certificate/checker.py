@@ -414,9 +414,11 @@ class Record:
         direction, w = self.columns["direction"], self.columns["omega_body"]
         euler = w.hat() * inertia * w - self.columns["torque"]
         self.centre, self.inertia, self.momentum, self.energy = centre, inertia, momentum, energy
-        # in a motion, the body turns about a fixed point, from which places are counted
+        # in a motion, the body turns about a fixed point; the tensor is about it, as about a stated
+        # one. Only if it is stated, the description says where the centre of mass is
+        is_moving, is_stated = "motion" in self.content, "fixed_point" in body
+        located: Laws = {} if is_moving and not is_stated else {"centre_of_mass": ("m", 1, centre)}
         placed: Laws = {
-            "centre_of_mass": ("m", 1, centre),
             "inertia_tensor_point": ("kg m^2", 2, about_point),
             "moment_of_inertia": ("kg m^2", 0, direction.T() * about_point * direction),
             "translational_energy": ("J", 0, translation),
@@ -424,7 +426,7 @@ class Record:
             "angular_momentum_centre": ("kg m^2/s", 1, of_centre),
             "angular_momentum": ("kg m^2/s", 1, of_centre + R * momentum),
         }
-        return ({} if "motion" in self.content else placed) | {
+        return (located if is_moving or is_stated else located | placed) | {
             "mass": ("kg", 0, mass),
             "inertia_tensor": ("kg m^2", 2, inertia),
             "inertia_tensor_space": ("kg m^2", 2, R * inertia * R.T()),
@@ -449,7 +451,9 @@ class Record:
         """d'Alembert's principle: W'ᵀ (dL'/dt + Ω' × L') + ∂V/∂q = Q, which is M q̈ + h = Q."""
         is_plain = self.is_free and len(self.q) <= 3 and not self.definitions
         refuse_unless(is_plain, "coordinates that depend on one another, or definitions", Unproved)
-        self.centre.refuse_unless_zero("the centre of mass")
+        offset = self.centre - self.read(self.content["body"].get("fixed_point", ["0"] * 3))
+        if "fixed_point" not in self.content["body"]:
+            offset.refuse_unless_zero("the centre of mass")
         motion, W, energy, moving = self.content["motion"], self.W, self.energy, (*PLACES, "q_dot")
         rates, seconds = self.columns["q_dot"], self.columns["q_ddot"]
         potential = self.read(motion["potential"], PLACES)
@@ -538,7 +542,7 @@ if __name__ == "__main__":
         try:
             content = load(path)
             is_ours = content.get("schema") == "rigidsym.derivation"
-            if not is_ours and "rotation" not in content:
+            if not is_ours and not {"rotation", "quantities"} <= {*content}:
                 lines.append(f"{path}: skipped, since it is no record of a derivation")
                 continue
             refuse_unless(is_ours, "the schema is not rigidsym.derivation")
