@@ -23,7 +23,7 @@ DIRECTION = formula(r"\n")
 # I′ + M (|d|² 1 − d dᵀ), the theorem of parallel axes
 STEINER = r"#1 + #2\,(|#3|^2\,\1 - #4 #4^T)"
 _ONE = sp.eye(3)
-AT_REST = "no_free_centre"  # what a body about a fixed point lacks
+AT_REST = "no_free_centre"  # of quantities that need a centre of mass which moves freely
 OF_BODY, OF_INERTIA = "body", "inertia"  # sections of the note
 _BODY: dict[str, Any] = {"section": OF_BODY, "is_result": True}
 _INERTIA: dict[str, Any] = {"unit": "kg m^2", "section": OF_INERTIA}
