@@ -328,7 +328,7 @@ def _part(entry: Mapping[str, Any], names: Mapping[str, sp.Expr]) -> MovingPart:
 
 def _point(stated: object, names: Mapping[str, sp.Expr]) -> tuple[sp.Expr, ...]:
     """Three constants, or none for the centre of mass."""
-    expected = f'a fixed point: expected three constants or "{CENTRE}", got {stated!r}'
+    expected = f'expected three constants or "{CENTRE}" for a fixed point, got {stated!r}'
     if isinstance(stated, str):
         if stated != CENTRE:
             raise ModelError(expected)
