@@ -69,14 +69,15 @@ def _searched(paths: Sequence[Path], options: Options) -> int:
     accepted = _faults(baseline) if baseline else []
     files = list(source_files(paths))
     records: list[dict[str, Any]] = []
-    unreadable, has_failed = 0, False
+    unreadable, cut, has_failed = 0, 0, False
     work = partial(_records, options["expect"], options["expect_active"])
     for record in chain.from_iterable(in_processes(work, files)):
-        is_failure = record.pop("is_failure")
+        is_failure, is_end = record.pop("is_failure"), record.pop("is_end")
         has_failed |= is_failure
+        cut += is_end
         if record.pop("is_unreadable"):
-            unreadable += 1
-            if options["why"] or is_failure:
+            unreadable += not is_end
+            if options["why"] or is_failure or is_end:
                 message(_line(record))
             continue
         same = [each for each in accepted if record["fault"] and _key(each) == _key(record)]
@@ -104,7 +105,8 @@ def _searched(paths: Sequence[Path], options: Options) -> int:
             if (path := Path(old["path"])) in files or not path.exists():
                 message(f"{baseline}: no longer found: {_line(old)}")
     count = counted(len(records), "formula") if records else "no known formula"
-    rest = f", {unreadable} not readable" if unreadable else ""
+    rest = f", {cut} not compared to the end" if cut else ""
+    rest += f", {unreadable} not readable" if unreadable else ""
     hint = "; --why lists them" if unreadable and not options["why"] else ""
     message(f"{count} in {counted(len(files), 'file')}{rest}{hint}")
     if len(records) < options["require"]:
@@ -121,7 +123,7 @@ def _records(expected: str | None, is_active: bool, file: Path) -> list[dict[str
         record, comparison = formula.record(), formula.comparison
         other = disappointment(comparison, axes, is_active=is_active) if comparison else ""
         record |= {"unexpected": other or None, "is_unreadable": comparison is None}
-        record["is_failure"] = formula.is_failure
+        record |= {"is_failure": formula.is_failure, "is_end": formula.is_end}
         record["text"] = f"{formula.text}; {other}" if other else formula.text
         record["fault"] = bool(other or (comparison and comparison.is_wrong))
         records.append(record)

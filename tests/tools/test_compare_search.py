@@ -764,6 +764,16 @@ def test_what_cannot_be_read_is_listed_with_its_reason(tmp_path):
     assert "no known formula in 3 files, 1 not readable" in done.stderr
 
 
+def test_a_file_that_is_not_compared_to_the_end_is_named(tmp_path):
+    odd = "def f(a):\n    return [sin(a)**{0}, cos(a) + {0}, a*sin({0}*a)]\n"
+    wrong = "def f(a):\n    return [[cos(a), sin(a), 0], [sin(a), cos(a), 0], [0, 0, 1]]\n"
+    (tmp_path / "a.py").write_text("".join(map(odd.format, range(2, 42))) + wrong)
+    done = run(str(tmp_path))
+    assert (done.exit_code, done.stdout) == (0, "")
+    assert re.search(r"a\.py:\d+: not compared from here on, since the formulas", done.stderr)
+    assert "no known formula in 1 file, 1 not compared to the end" in done.stderr
+
+
 def test_a_failure_in_one_file_does_not_end_the_search(tmp_path, monkeypatch):
     for name in ("a.py", "b.py", "c.py"):
         (tmp_path / name).write_text(f"# {name}\nR = lambda s, c: {TURN}\n")

@@ -47,6 +47,7 @@ class FormulaInFile:
     is_case: bool = False  # whether other branches have other values
     remark: str = ""  # what the names in the program say of it
     is_failure: bool = False  # the rest of the file is not read
+    is_end: bool = False  # the rest of the file is not compared
 
     @property
     def goal(self) -> KnownQuantity | None:
@@ -69,7 +70,11 @@ class FormulaInFile:
     def text(self) -> str:
         """The finding without its place; other readings have lines of their own."""
         name = f"{self.formula.name}: " if self.formula.name else ""
-        text = self.comparison.text() if self.comparison else f"not read, since {self.reason}"
+        text = (
+            self.comparison.text()
+            if self.comparison
+            else f"not {'compared from here on' if self.is_end else 'read'}, since {self.reason}"
+        )
         first, *others = text.split("\n")
         first += "; in one of several branches" * self.is_case
         if self.formula.unread and self.comparison:
@@ -235,8 +240,9 @@ def _findings(path: Path, text: str, expected: tuple[str, ...]) -> Iterator[Form
     effort, before = 0, set[Any]()  # for different formulas since the last known one
     for group in variants.values():
         if effort > _MOST_EFFORT:
-            reason = "too many unknown formulas before it"
-            yield FormulaInFile(path, Formula(lines=(group[0].line,), name=""), reason=reason)
+            reason = "the formulas before it resemble no known one"
+            end = Formula(lines=(group[0].line,), name="")
+            yield FormulaInFile(path, end, reason=reason, is_end=True)
             return
         # A formula with the values of all branches may be no quantity, while one branch is.
         is_case = len({each.forms for each in group if each.forms}) > 1
