@@ -30,20 +30,24 @@ def printable(text: str) -> str:
     )
 
 
+def nearest(name: str, known: Sequence[str]) -> list[str]:
+    """The known names, two at most, that an unknown one may be meant for."""
+    from difflib import get_close_matches  # few commands end with a message
+
+    spelled = "_".join(_SPELLINGS.get(word, word) for word in name.split("_"))
+    if spelled != name and [other for other in known if other.startswith(spelled)]:
+        name = spelled
+    near = get_close_matches(name, known, n=2) if len(name) <= _LONGEST else []
+    return near or [other for other in known if name and other.startswith(name)][:2]
+
+
 def offer(name: str, known: Iterable[str], *, listed: bool = False) -> str:
     """The end of a message about an unknown name: the nearest known ones, or a few of them.
 
     Of names that `rigidsym list` has as well, fewer are shown.
     """
-    from difflib import get_close_matches  # few commands end with a message
-
     known = list(known)
-    spelled = "_".join(_SPELLINGS.get(word, word) for word in name.split("_"))
-    if spelled != name and [other for other in known if other.startswith(spelled)]:
-        name = spelled
-    near = get_close_matches(name, known, n=2) if len(name) <= _LONGEST else []
-    near = near or [other for other in known if name and other.startswith(name)][:2]
-    if near:
+    if near := nearest(name, known):
         return f"did you mean {' or '.join(near)}?"
     if len(known) <= (_FEW if listed else _MANY):
         return f"known: {', '.join(known)}" if known else "no names are known here"

@@ -130,22 +130,25 @@ def _records(expected: str | None, is_active: bool, file: Path) -> list[dict[str
     return records
 
 
+_KEYS = ("path", "name", "formula", "unexpected")  # what a fault keeps if lines are added above it
+
+
 def _key(record: dict[str, Any]) -> list[Any]:
-    """What a fault keeps if lines are added above it."""
-    return [record[key] for key in ("path", "name", "formula", "unexpected")]
+    return [record[key] for key in _KEYS]
 
 
 def _faults(baseline: Path) -> list[dict[str, Any]]:
     """The faults in an earlier result; raises DataError for another file."""
     try:
         faults = [record for record in json.loads(read_bytes(baseline)) if record["fault"]]
-        for record in faults:
-            _key(record), _line(record)
+        is_old = any({*_KEYS, "line", "text"} - {*record} for record in faults)
     except (ValueError, KeyError, TypeError) as error:
         what = f"not JSON: {error}" if isinstance(error, ValueError) else "another JSON file"
         raise DataError(
             f"{baseline}: {what}; expected a result of `rigidsym compare --format json`"
         ) from None
+    if is_old:
+        raise DataError(f"{baseline}: made by an earlier version; write it again")
     return faults
 
 

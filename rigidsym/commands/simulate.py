@@ -12,7 +12,7 @@ import numpy as np
 
 from rigidsym.commands.command import command as make
 from rigidsym.data.tables import check_ending, write_table
-from rigidsym.errors import DerivationError, ExpressionError, ModelError, offer
+from rigidsym.errors import DerivationError, ExpressionError, ModelError, nearest
 from rigidsym.models.forces import Example
 from rigidsym.motion import Motion
 from rigidsym.pipeline import motion_of, read
@@ -33,7 +33,7 @@ def command(source: str, **options: Any) -> None:
         raise ModelError(f"{animate}: expected a file that ends in .html")
     motion = _motion(source, is_page=animate is not None)
     examples = motion.forces.examples if motion.forces else ()
-    example = examples[0] if examples else Example({}, {}, 10.0)
+    example = next(iter(examples), Example({}, {}, 10.0))
     initial = options["initial"] or dict(example.initial)
     constants = {**example.parameters, **options["set"]}
     t_end = example.time if options["time"] is None else options["time"]
@@ -67,11 +67,12 @@ def _motion(source: str, *, is_page: bool) -> Motion:
     with suppress(ModelError, ExpressionError):  # neither a file nor a rotation
         spec = read(source)
     if spec is None or spec.dynamics is None:
-        shipped = names("derivations", ".toml")
-        near = " (`rigidsym list`)" if spec else f"; {offer(source, shipped, listed=True)}"
+        near = nearest(source, [n for n in names("derivations", ".toml") if read(n).dynamics])
+        example = ", or a shipped one such as heavy_symmetric_top (`rigidsym list`)"
+        hint = f"; did you mean {' or '.join(near)}?" if near else example
         raise ModelError(
             f"{reprlib.repr(source)} has no equations of motion; expected a derivation file with "
-            f"[body] and [dynamics], or a shipped one such as heavy_symmetric_top{near}"
+            f"[body] and [dynamics]{hint}"
         )
     if len(spec.models) == 1 and not is_page:
         spec = replace(spec, quantities=needed(spec.dynamics.get("parts")))

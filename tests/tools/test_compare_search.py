@@ -730,14 +730,15 @@ def test_a_fault_of_the_baseline_is_accepted_wherever_its_lines_move(tmp_path):
     done = run(*accepted)
     assert done.exit_code == 1
     assert f"{baseline}: no longer found: {file}:2: returned: " in done.stderr
-    for text, fault in (
-        ("{", "not JSON: Expecting property name"),
-        ("[{}]", "another JSON file; "),
+    for text, fault, wanted in (
+        ("{", "not JSON: Expecting property name", "expected a result of `rigidsym compare"),
+        ("[{}]", "another JSON file; ", "expected a result of `rigidsym compare --format json`"),
+        ('[{"fault": true, "path": "a.py"}]', "made by an earlier version; ", "write it again"),
     ):
         baseline.write_text(text)
         refused = call("compare", *accepted, cwd=tmp_path, status=3).stderr
         assert f"{baseline}: {fault}" in refused
-        assert "expected a result of `rigidsym compare --format json`" in refused
+        assert wanted in refused
     for name, fault in (("", "an empty path"), ("x.json", "File 'x.json' does not exist")):
         refused = call("compare", str(file), "--baseline", name, cwd=tmp_path, status=2).stderr
         assert f"Invalid value for '--baseline': {fault}" in refused

@@ -22,7 +22,8 @@ CONVERSIONS = {  # and what they take
 def check_quantity(name: str, *, body: object = True, forces: object = True) -> None:
     """Raise QuantityError for a name that is no quantity, or one of what a derivation lacks."""
     if name not in NAMES:
-        why = "--conversions adds it" if name in CONVERSIONS else offer(name, NAMES, listed=True)
+        writes = "--conversions writes it to files, without --format"
+        why = writes if name in CONVERSIONS else offer(name, NAMES, listed=True)
         raise QuantityError(f"no quantity {name!r}; {why}")
     if not (forces if name in OF_MOTION else body or name in KINEMATICS):
         needed = "a body and forces or a potential" if name in OF_MOTION else "a body"

@@ -231,15 +231,13 @@ def compare(
     if rotation is None and quantity is None:
         return identified(_checked(spelled_out(matrix)))
     if rotation is None or quantity is None:
-        expected = "expected a rotation and a quantity, such as 'ZYX', 'rotation_matrix'"
-        raise ExpressionError(expected)
+        raise ExpressionError("expected a rotation and a quantity, as in 'ZYX', 'rotation_matrix'")
     if quantity == "coriolis_matrix":
         raise ExpressionError("a Coriolis matrix is not unique; compare the bias vector C(q, q̇) q̇")
     if isinstance(rotation, Motion):
-        model = rotation.model  # euler_zyx_intrinsic is ZYX
-        is_named = rotation.name != model.name or model.passive
-        name = rotation.name if is_named else model.request.get("sequence", rotation.name)
-        goal = known.of_motion(rotation, quantity, name)
+        is_named = rotation.name != rotation.model.name or rotation.model.passive
+        axes = None if is_named else rotation.model.request.get("sequence")  # ZYX
+        goal = known.of_motion(rotation, quantity, axes or rotation.name)
     else:
         goal = known.target(rotation, quantity)
     angles = [*goal.coordinates]

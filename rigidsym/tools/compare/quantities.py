@@ -442,9 +442,7 @@ def _angles(axes: str, r: sp.MatrixBase) -> sp.ImmutableMatrix:
 
 def are_body_rates(formula: sp.MatrixBase) -> bool:
     """Whether three entries are components of an angular velocity, and nothing else."""
-    names = {
-        entry.name for entry in formula if entry.is_Symbol and patterns.omega.fullmatch(entry.name)
-    }
+    names = {e.name for e in formula if e.is_Symbol and patterns.omega.fullmatch(e.name)}
     return formula.shape == (3, 1) and len(names) == 3
 
 

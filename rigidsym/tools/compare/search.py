@@ -139,12 +139,11 @@ def search(path: Path, expected: tuple[str, ...] = ()) -> Iterator[FormulaInFile
     text = ""
     try:
         text = path.read_text(encoding="utf-8", errors="replace")
-        for finding in _findings(path, text, expected):
-            found.append(finding)
+        found.extend(_findings(path, text, expected))  # keeps what is before an error
     except _FAILURES as error:
         reason = f"there was an error in reading it: {type(error).__name__}: {error}"
-        failed = Formula(lines=(1,), name="")
-        found.append(FormulaInFile(path, failed, reason=reason, is_failure=True))
+        whole = Formula(lines=(1,), name="")
+        found.append(FormulaInFile(path, whole, reason=reason, is_failure=True))
     of_functions: dict[tuple[str, int, int], list[FormulaInFile]] = {}
     for finding in found:
         of_functions.setdefault(finding.formula.function, []).append(finding)
