@@ -38,19 +38,12 @@ def command(source: str, **options: Any) -> None:
     constants = {**example.parameters, **options["set"]}
     t_end = example.time if options["time"] is None else options["time"]
     with bar(motion.name) as progress:
-        result = motion.simulate(
-            initial,
-            constants,
-            t_end,
-            samples=options["samples"],
-            method=options["method"],
-            progress=progress,
-        )
+        how = {key: options[key] for key in ("samples", "method")}
+        result = motion.simulate(initial, constants, t_end, progress=progress, **how)
     click.echo(replace(result, ended="").report())  # the error at the end says it
     if out is not None:
         columns = result.columns()
-        rows = np.column_stack([*columns.values()])
-        write_table(out, tuple(columns), [(rows, ())])
+        write_table(out, tuple(columns), [(np.column_stack([*columns.values()]), ())])
         click.echo(out)
     if animate is not None:
         start = dict(constants)

@@ -531,9 +531,8 @@ def _entry(reading: Reading, place: tuple[int, int]) -> tuple[str, sp.Expr]:
     turns = sorted(reading.formula.atoms(*_SWAPPED), key=str)
     changes = set(variants(before, [*reading.names], turns)) if is_short else set()
     kinds = [*CHANGES]
-    for kind, after in sorted(
-        changes, key=lambda v: (kinds.index(v[0]), v[1].count_ops(), str(v[1]))
-    ):
+    least = sorted(changes, key=lambda v: (kinds.index(v[0]), v[1].count_ops(), str(v[1])))
+    for kind, after in least:
         with suppress(ExpressionError):  # a change without real values, such as 1/0, is no repair
             if reading.agrees(sp.Matrix([[after]]), wanted):
                 return kind, after
