@@ -32,16 +32,17 @@ def command(context: click.Context, paths: tuple[Path, ...]) -> None:
 
 
 def _strangers(paths: Iterable[Path], derived: set[Path]) -> Iterator[tuple[Path, str, str]]:
-    """Theorems in folders of records that no record derives: they may prove something else."""
+    """Files that no record derives: those named, and theorems, which may prove something else."""
     beside = {file.parent for file in derived}  # elsewhere, a .v may be of another language
     folders = [path.rglob if path.is_dir() else path.parent.glob for path in paths]
     # Coq would load this Reals.vo instead of its own
-    endings = [f"{CERTIFICATE}{end}" for end in ("", "o", "io", "ok", "os")]
-    for path in sorted({*chain(*(files(f"*.{end}") for files in folders for end in endings))}):
+    endings = [f".{CERTIFICATE}{end}" for end in ("", "o", "ok", "os", "io")]
+    near = (p for files in folders for e in endings for p in files(f"*{e}") if p.parent in beside)
+    for path in sorted({*filter(Path.is_file, paths), *near}):
         # coqc writes no .vio, but loads a newer Rotation.vio instead of the Rotation.vo it wrote
-        is_compiled = path.with_suffix(f".{CERTIFICATE}") in derived and path.suffix != ".vio"
-        if path.parent in beside and not is_compiled:
-            yield path, remark("no_record_of_theorems"), ""
+        is_theorem = path.suffix in endings[:-1] and path.with_suffix(endings[0]) in derived
+        if path not in derived and not is_theorem:
+            yield path, remark("no_record_of_file"), ""
 
 
 def _records(path: Path) -> list[Path]:
@@ -50,13 +51,11 @@ def _records(path: Path) -> list[Path]:
     Raises CheckError if there is none.
     """
     if path.is_dir():
-        files = sorted(filter(_is_record, path.rglob("*.json")))
+        files = sorted(filter(_is_record, path.rglob("*.[jJ][sS][oO][nN]")))
     else:  # NAME.json is also beside NAME.d.mts
         files = [path.with_name(path.name.partition(".")[0] + ".json")]
     if not any(file.exists() for file in files):
-        raise CheckError(
-            f"{path}: no record of a derivation here; expected NAME.json beside generated files"
-        )
+        raise CheckError(f"{path}: no record of a derivation; expected NAME.json beside the files")
     return files
 
 

@@ -22,6 +22,8 @@ Change = Callable[[Content], object]
 Forgeries = dict[str, dict[str, Change]]  # by the record that is forged, and by name
 R, VELOCITY, W = "rotation_matrix", "angular_velocity_space", "rate_matrix_body"
 P = "generalised_momenta"
+TWICE = "an energy that counts the centre of mass twice"
+FREE_TOP = "the centre of mass of a top without its potential"
 TORQUE, RATES = "angular_acceleration_from_torque", "rates_from_angular_velocity_space"
 
 
@@ -177,7 +179,7 @@ def grouped(name: str, *components: str) -> Change:
 def with_turns(turn: str, units: dict[str, str], *conditions: str, **definitions: str) -> Change:
     """One turn of coordinates with the units that are said, and R only."""
     components = [{"name": name, "unit": unit} for name, unit in units.items()]
-    whole = {"name": "any", "arguments": [{"name": "q", "components": components}]}
+    whole = {"arguments": [{"name": "q", "components": components}]}
     whole |= {"rotation": {"turns": [turn], "conditions": [*conditions]}, "quantities": []}
     whole |= {"definitions": [{"name": n, "expression": e} for n, e in definitions.items()]}
     return lambda content: content.update(whole)
@@ -198,9 +200,8 @@ def with_a_body(*parameters: str) -> Change:
     """A ball, whose parameters have names of something else and are in no group of arguments."""
 
     def change(content: Content) -> None:
-        named = [{"name": name, "unit": ""} for name in parameters]
-        tensor = {"mass": "1", "centre": ["0"] * 3, "inertia": IDENTITY, "parameters": named}
-        content["body"] = tensor
+        content["body"] = {"mass": "1", "centre": ["0"] * 3, "inertia": IDENTITY}
+        content["body"]["parameters"] = [{"name": name, "unit": ""} for name in parameters]
         content["arguments"] = [g for g in content["arguments"] if g["name"] != "parameters"]
 
     return change
@@ -224,8 +225,7 @@ def constants_read_as(form: str) -> Change:
         content["rotation"]["turns"] = [
             f"{axis}({each['name']})" for axis, each in zip("zxz", q, strict=True)
         ]
-        still = at(content, VELOCITY) | {"expression": ["0"] * 3, "inputs": ["q"]}
-        content["quantities"] = [still]
+        content["quantities"] = [at(content, VELOCITY) | {"expression": ["0"] * 3, "inputs": ["q"]}]
 
     return change
 
@@ -246,6 +246,20 @@ def with_a_moment_too_many(content: Content) -> None:
     content["quantities"] += [axes, moments]
 
 
+def with_a_centre(content: Content) -> None:
+    centre = {"name": "centre_of_mass", "unit": "m", "inputs": [], "expression": ["0"] * 3}
+    content["quantities"].append(at(content, "principal_moments") | centre)
+
+
+def with_energy_of_the_centre(content: Content) -> None:
+    """T = ½ M |ṙ_C|² + ½ Ω' · I' Ω', in which I' is about the fixed point."""
+    total, potential = (at(content, name)["expression"] for name in ("energy", "potential_energy"))
+    text = f"{total} - ({potential}) + M*(X_dot**2 + Y_dot**2 + Z_dot**2)/2"
+    inputs = ["q", "q_dot", "centre_dot", "parameters"]
+    energy = {"name": "kinetic_energy", "expression": text, "inputs": inputs}
+    content["quantities"].append(at(content, "energy") | energy)
+
+
 # What a record says beside its entries; Coq gets these too
 OF_ZXZ: dict[str, Change] = {
     "an argument that is defined": together(grouped("gains", "K"), of_velocity("K", ("K", "0"))),
@@ -255,7 +269,7 @@ OF_ZXZ: dict[str, Change] = {
         *(everywhere("phi_dot", "0"), everywhere("sin(phi)", "0"), everywhere("cos(phi)", "1")),
     ),
     "a constant angle in degrees": together(
-        *(write("rotation", "turns", 1, "x(a)"), write("name", "chain"), only("rotation_matrix")),
+        *(write("rotation", "turns", 1, "x(a)"), only(R)),
         *(everywhere("theta", "a"), grouped("parameters", "a")),
         write("arguments", "parameters", "components", "a", "unit", "deg"),
     ),
@@ -263,14 +277,12 @@ OF_ZXZ: dict[str, Change] = {
     "a power of degree zero": put(VELOCITY, 2, "0*(phi**0)**900000000000"),
     "a rate with the other sign": everywhere("phi_dot", "(-phi_dot)"),
     "a comment that hides a rate": put(W, 2, 0, "cos(theta) + psi_dot/phi_dot # '"),
-    "conditions that contradict each other": conditions(
-        "phi - 1", "phi - 1 - 29682952539239999999", then=FALSE
-    ),
+    "contradictory conditions": conditions("phi - 1", "phi - 1 - 29682952539239999999", then=FALSE),
     "a condition without a real point": conditions("phi**2 + theta**2 + 1", then=FALSE),
-    "a divisor that is zero": put("rotation_matrix", 2, 2, f"cos(theta) + 0/{ZERO}"),
+    "a divisor that is zero": put(R, 2, 2, f"cos(theta) + 0/{ZERO}"),
     "R about other axes": turned("z(phi)", "x(theta)", "x(psi)"),
     "R by an angle of the other sense": turned("z(-phi)", "x(theta)", "z(psi)"),
-    "half an angle": together(turned("z(phi/2)", *ZXZ[1:]), write("name", "any")),
+    "half an angle": turned("z(phi/2)", *ZXZ[1:]),
     "two turns": turned("z(phi)", "x(theta)"),
     "a turn with more places": turned("z(phi, theta)", "x(theta)", "z(psi)"),
     "a turn in more pieces": turned("axis_angle(0, 0, 1); cos(phi), phi)", "x(theta)", "z(psi)"),
@@ -279,22 +291,14 @@ OF_ZXZ: dict[str, Change] = {
     "no turns": turned(),
     "the transpose": write("presentation", "passive"),
     "neither active nor passive": write("presentation", "Passive"),
-    "R by entries that are none": write(
-        "rotation", {"matrix": [["1", "0", "0"]] * 3, "conditions": []}
-    ),
+    "R of no rotation": write("rotation", {"matrix": [["1", "0", "0"]] * 3, "conditions": []}),
     "turns and a matrix": write("rotation", "matrix", IDENTITY),
-    "a divisor of a double angle by definition": of_velocity(
-        "0/(10**39*(cos(a) - 2*cos(phi)**2 + 1))", ("a", "2*phi")
-    ),
-    "a definition of a rate": together(
-        defined("a", "psi_dot/phi_dot"), put(W, 2, 0, "cos(theta) + a")
-    ),
+    "a defined divisor": of_velocity("0/(10**39*(cos(a) - 2*cos(phi)**2 + 1))", ("a", "2*phi")),
+    "a defined rate": together(defined("a", "psi_dot/phi_dot"), put(W, 2, 0, "cos(theta) + a")),
     "a definition of a coordinate": defined("phi", "psi"),
     "a definition in a circle": together(defined("a", "a"), put(VELOCITY, 2, "a")),
     "a sphere of no real radius": conditions("phi**2 + pi**2 - 1", then=FALSE),
-    "a divisor that vanishes under its condition": conditions(
-        SPHERE, then=of_velocity(f"0/({SPHERE})")
-    ),
+    "a divisor that is its condition": conditions(SPHERE, then=of_velocity(f"0/({SPHERE})")),
     "a condition twice": conditions(SPHERE, SPHERE, then=FALSE),
     "two conditions": conditions(SPHERE, "theta**2 + psi**2 - 1", then=FALSE),
     "a name of two lines": write(W, "name", "a\n  proved: everything"),
@@ -322,14 +326,14 @@ OF_ZXZ: dict[str, Change] = {
     },
 }
 OF_TOP: dict[str, Change] = {
-    "a parameter of the body that is defined": with_a_parameter_defined,
+    "a defined parameter of the body": with_a_parameter_defined,
     "a centre beside the fixed point": write("body", "centre", ["0", "0", "l"]),
     "a principal moment too many": with_a_moment_too_many,
     # of a thin rod, for which every ψ̈ satisfies Lagrange's equations
     "a singular mass matrix": together(
         *(THIN_ROD, everywhere("C", "0"), put("accelerations", 2, "1000*phi_dot*psi_dot"))
     ),
-    "a potential by definition, without its force": together(
+    "a potential by definition": together(
         defined("a", "m*g*l*cos(theta)"),
         *(write("motion", "potential", "a"), everywhere("g", "0*g")),
     ),
@@ -429,7 +433,6 @@ def coordinates(content: Content) -> None:
         names = [{"name": f"a{k}{end}", "unit": unit} for k in range(9)]
         at(content, "arguments", group)["components"] = names
     content["arguments"] = [g for g in content["arguments"] if g["name"] not in ("y", "momenta")]
-    content["name"] = "any"
     content["rotation"]["turns"] = [f"{'xyz'[k % 3]}(a{k})" for k in range(9)]
     content["motion"] = {"potential": "a0", "forces": ["0"] * 9, "torque": ["0"] * 3}
     only("mass_matrix")(content)
@@ -450,31 +453,29 @@ OTHERS: Forgeries = {
                 added([{"name": f"by time{end}", "unit": u}], "arguments", f"q{end}", "components")
                 for end, u in (("", ""), ("_dot", "1/s"), ("_ddot", "1/s^2"))
             ),
-            only("rotation_matrix"),
+            only(R),
         ),
         "a rate in W'": put(W, 2, ["cos(theta) + psi_dot/phi_dot", "0", "0"]),
         **{
-            f"the entry {text!r:.20}": put("rotation_matrix", 0, 0, text)
+            f"the entry {text!r:.20}": put(R, 0, 0, text)
             for text in (
                 *("phi[0]", "exp(phi)", "cos(phi", "2**phi", "2**(1/3)", "x**999", "", None, "1.0"),
                 *("cos(*phi)", "-" * 50_000 + "phi", "cos(phi, phi)"),
             )
         },
-        "nine entries of R in a row": cells(
-            "rotation_matrix", lambda rows: [text for row in rows for text in row], [3, 3]
-        ),
+        "R in a row of nine": cells(R, lambda rows: [text for row in rows for text in row], [3, 3]),
         "Ω as a row": cells(VELOCITY, lambda rows: [rows], [3]),
         "Ω as a column": cells(VELOCITY, lambda rows: [[row] for row in rows]),
         "degrees in a constant turn": together(
             write("rotation", "turns", 0, "constant_turn(0, 0, 1, cos(phi), sin(phi))"),
-            *(write("name", "chain"), measured(0, "deg", "deg/s", "deg/s^2")),
+            measured(0, "deg", "deg/s", "deg/s^2"),
         ),
         "a letter that is defined": defined("omega_space_1", "0"),
         "a momentum in W": put(W, 2, 0, "cos(theta) + p_phi - p_phi"),
         "the transpose of an inverse": lambda c: put(
             "inverse_rate_matrix_body", 0, printed(c, W)["expression"][0]
         )(c),
-        "an inverse with a row too many": added(
+        "an inverse of four rows": added(
             [["1", "1", "1"]], "inverse_rate_matrix_body", "expression"
         ),
         "Ω of entries and lists": cells(VELOCITY, lambda rows: [*rows[:2], [rows[2]]]),
@@ -496,7 +497,7 @@ OTHERS: Forgeries = {
             write(
                 "rotation", {"matrix": wider("0", "0")(at(c, R, "expression")), "conditions": []}
             ),
-            *(write("name", "any"), write("quantities", [])),
+            write("quantities", []),
         )(c),
         "another shape": cells(W, lambda rows: rows, shape=[7]),
         "no inputs": write(W, "inputs", []),
@@ -504,18 +505,14 @@ OTHERS: Forgeries = {
         "rates among constants": lambda c: c["arguments"].append(
             at(c, "arguments", "q_dot") | {"name": "constants"}
         ),
-        "turns that are none": together(turned(*HALVES, *ZXZ), write("name", "any")),
+        "turns that are none": turned(*HALVES, *ZXZ),
         "a length of angles": conditions(
-            SPHERE,
-            then=together(
-                only("rotation_matrix"),
-                added(f" + {SPHERE}", "rotation_matrix", "expression", 2, 2),
-            ),
+            SPHERE, then=together(only(R), added(f" + {SPHERE}", R, "expression", 2, 2))
         ),
         **{f"{name} in kg": write(name, "unit", "kg") for name in (W, RATES)},
         # of a turn, by the name of a coordinate that is said to be no angle
         "an angle without a unit": together(
-            *(turned("z(phi)", "x(a)", "z(psi)"), write("name", "any"), only(R)),
+            *(turned("z(phi)", "x(a)", "z(psi)"), only(R)),
             *(defined("a", "theta"), measured(1, "", "1/s", "1/s^2")),
         ),
         "turns in an object": write("rotation", "turns", dict(zip(ZXZ, (1, 2, 3), strict=True))),
@@ -529,12 +526,12 @@ OTHERS: Forgeries = {
         **{
             f"the shape {shape}": write(name, "shape", shape)
             for name, shape in (
-                *(("rotation_matrix", [3, 3, 1]), (VELOCITY, [3, 1, 1])),
+                *((R, [3, 3, 1]), (VELOCITY, [3, 1, 1])),
                 *((VELOCITY, [3, 1]), (VELOCITY, [3, True])),
             )
         },
         **{
-            f"inputs {inputs}": write("rotation_matrix", "inputs", inputs)
+            f"inputs {inputs}": write(R, "inputs", inputs)
             for inputs in (["q", "nonsense"], ["q", "q"], ["q", "momenta"], {"q": "space"}, "q")
         },
         "inputs that are not listed": lambda c: write("arguments", [at(c, "arguments", "q")])(c),
@@ -565,9 +562,7 @@ OTHERS: Forgeries = {
             for name in ("w_ddot", "x_dot", "omega_space_2", "anything")
         },
         # R does not depend on the length, which is lost
-        "rates that leave the conditions": beside_the_rates(
-            "omega_body_1", "w**2 + x**2 + y**2 + z**2 - 1"
-        ),
+        "rates off the sphere": beside_the_rates("omega_body_1", "w**2 + x**2 + y**2 + z**2 - 1"),
     },
     "box": {
         "an energy in brackets": cells("kinetic_energy", lambda energy: [energy]),
@@ -581,6 +576,14 @@ OTHERS: Forgeries = {
         "a fixed point that moves": write("body", "fixed_point", ["0", "0", "h*phi"]),
         "a fixed point in a plane": write("body", "fixed_point", ["0", "h"]),
         "a fixed point that nobody states": lambda content: content["body"].pop("fixed_point"),
+        "another fixed point": write("body", "fixed_point", ["0", "0", "0"]),
+        "another centre of mass": write("body", "centre", 2, "h/2"),
+        "a tensor that is moved twice": lambda c: c["body"].update(
+            inertia=at(c, "inertia_tensor", "expression")
+        ),
+        TWICE: with_energy_of_the_centre,
+        "an unknown key of a body": write("body", "offset", ["0", "0", "h"]),
+        "an unknown key of a motion": write("motion", "parts", [{"inertia": "M"}]),
     },
     "torque": {"exchanged torques": write("motion", "torque", ["l*F", "k*F", "0"])},
     "euler": {
@@ -630,9 +633,7 @@ OTHERS: Forgeries = {
         "integrals that hold a definition": together(integrals(" + a"), defined("a", "phi")),
         "integrals that hold an acceleration": integrals(" + phi_ddot"),
         **{
-            f"{name} and a constant of another unit": added(
-                " + A*g**2", f"constant {name}", "expression"
-            )
+            f"{name} in mixed units": added(" + A*g**2", f"constant {name}", "expression")
             for name in ("energy", "momentum_phi")
         },
         "kilojoules": write("energy", "unit", "kJ"),
@@ -649,19 +650,15 @@ OTHERS: Forgeries = {
         "inputs without parameters": write("accelerations", "inputs", ["q", "q_dot"]),
     },
     "whole top": {
-        "the centre of mass at the fixed point": lambda c: c["quantities"].append(
-            at(c, "potential_energy")
-            | {"name": "centre_of_mass", "expression": ["0"] * 3, "shape": [3]}
-            | {"unit": "m", "inputs": []}
-        ),
+        "the centre of mass at the fixed point": with_a_centre,
+        # the state of a motion is listed, but not the motion
+        FREE_TOP: together(lambda c: c.pop("motion"), with_a_centre),
         "a parameter that is the time": together(
             *(only("energy"), added(" + A*t", "motion", "potential")),
             added(" + A*t", "energy", "expression"),
             added([{"name": "t", "unit": "s"}], "arguments", "parameters", "components"),
         ),
-        "inputs of another quantity": write(
-            "hamiltonian", "inputs", ["q", "momenta", "parameters", "torque"]
-        ),
+        "another input": write("hamiltonian", "inputs", ["q", "momenta", "parameters", "torque"]),
     },
 }
 
@@ -676,18 +673,29 @@ EVERY |= {f"{text[1]} of {text[0]} is {text[2]}": (of, once(*text)) for of, *tex
 PARTLY = {
     f"a quantity named {name}": name for name in ("angular_velocity_moon", "truth", "nothing")
 }
-PARTLY |= {"the centre of mass at the fixed point": "centre_of_mass"}
-PARTLY |= {"momenta that are themselves": P, "a tensor about a stated point": "kinetic_energy"}
-PARTLY |= {"integrals that hold a definition": "constant energy"}
-PARTLY |= {"a divisor that is zero": "rotation_matrix", "nine coordinates": "mass_matrix"}
-PARTLY |= {"a parameter of the body that is defined": "accelerations"}
-PARTLY |= {"a potential by definition, without its force": "accelerations"}
-PARTLY |= {"a potential of unknown angles": "accelerations"}
-PARTLY |= {"a motion under conditions": "accelerations"}
-PARTLY |= dict.fromkeys(("powers of powers", "powers below a line"), VELOCITY)
-PARTLY |= {"too many multiples of angles": VELOCITY, "a difference of 1/10**78": VELOCITY}
-PARTLY |= {"a divisor of a double angle by definition": VELOCITY}
-PARTLY |= {"a definition in a circle": VELOCITY}
+OF_FORCES = (
+    "a potential of unknown angles",
+    "a potential by definition",
+    "a motion under conditions",
+)
+OF_TURNS = "powers of powers", "powers below a line", "too many multiples of angles"
+for each, names in {
+    "accelerations": (*OF_FORCES, "a defined parameter of the body", "an unknown key of a motion"),
+    "centre_of_mass": ("the centre of mass at the fixed point", FREE_TOP),
+    "kinetic_energy": (TWICE, "a tensor about a stated point"),
+    "inertia_tensor": ("an unknown key of a body",),
+    P: ("momenta that are themselves",),
+    "constant energy": ("integrals that hold a definition",),
+    "mass_matrix": ("nine coordinates",),
+    R: ("a divisor that is zero", f"the entry {'-' * 50_000!r:.20}"),  # too deep to be read
+    VELOCITY: (
+        *OF_TURNS,
+        "a difference of 1/10**78",
+        "a defined divisor",
+        "a definition in a circle",
+    ),
+}.items():
+    PARTLY |= dict.fromkeys(names, each)
 
 
 def is_refused(content: Content, name: str | None = None) -> None:
@@ -703,7 +711,7 @@ def original(name: str) -> Content:
     return of_motion(name) if name in NEEDS else record_of(name)
 
 
-@pytest.mark.parametrize("name", ["top", "ZXZ", "unit_quaternion"])
+@pytest.mark.parametrize("name", ["top", "ZXZ", "unit_quaternion", "cone on its apex"])
 def test_what_is_forged_here_is_accepted_as_it_was(name):
     assert checker.verify(original(name))[1] == {}
 
@@ -718,9 +726,7 @@ def first_entry(content: Content, name: str) -> tuple[Any, int]:
     """The list and the place of the first entry of a quantity that is not a number."""
     rows = printed(content, name)["expression"]
     rows = rows if isinstance(rows[0], list) else [rows]
-    return next(
-        (row, k) for row in rows for k, text in enumerate(row) if any(map(str.isalpha, text))
-    )
+    return next((row, k) for row in rows for k, t in enumerate(row) if any(map(str.isalpha, t)))
 
 
 # Changes of one entry: each makes it false, or unreadable
@@ -728,16 +734,12 @@ CHANGES: dict[str, Callable[[str], str]] = {
     "a factor": lambda text: f"2*({text})",
     "a sign": lambda text: f"-({text})",
     "a small number": lambda text: f"{text} + 1/10**25*sin(phi)",
-    "another angle": lambda text: (
-        f"({text})*sin(phi)/sin(psi)" if "psi" in text else f"{text} + psi"
-    ),
+    "another angle": lambda t: f"({t})*sin(phi)/sin(psi)" if "psi" in t else f"{t} + psi",
     "a comment": lambda text: f"{text} # + 1",
     "a root of a negative number": lambda text: f"{text} + 0*sqrt(-1)",
     "a divisor that vanishes": lambda text: f"{text} + 0/(cos(phi)**2 + sin(phi)**2 - 1)",
     "the sine of pi": lambda text: f"{text} + 0/sin(pi)",
-    "a double angle in disguise": lambda text: (
-        f"{text} + 0/(cos((phi + phi)*psi/psi) - 2*cos(phi)**2 + 1)"
-    ),
+    "a hidden double angle": lambda t: f"{t} + 0/(cos((phi + phi)*psi/psi) - 2*cos(phi)**2 + 1)",
     "a huge exponent": lambda text: f"({text})**999999999",
     "exponents of exponents": lambda text: f"({text}) + 0*((((1 + phi)**39)**39)**39)**39",
     "a long number": lambda text: f"{text} + 0*{'9' * 5000}",
@@ -752,7 +754,7 @@ CHANGES: dict[str, Callable[[str], str]] = {
 CHANGED = [
     (change, name)
     for k, change in enumerate(CHANGES)
-    for name in (VELOCITY, ("rotation_matrix", W, "angular_acceleration_body")[k % 3])
+    for name in (VELOCITY, (R, W, "angular_acceleration_body")[k % 3])
 ]
 
 
@@ -778,9 +780,8 @@ def false_claims(content: Content) -> list[str]:
     false = []
     for name in printed_in(content):
         one = {"quantities": [], "first_integrals": []}
-        one["first_integrals" if name.startswith("constant ") else "quantities"] = [
-            printed(content, name)
-        ]
+        group = "first_integrals" if name.startswith("constant ") else "quantities"
+        one[group] = [printed(content, name)]
         try:
             checker.verify(content | one)
         except checker.BROKEN:

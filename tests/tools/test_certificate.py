@@ -399,6 +399,13 @@ def test_a_certificate_of_other_angles_leaves_unless_it_was_edited(folder, is_ed
     assert {*problems(folder.parent)} == {"other.v", *strangers} | ({COQ} if is_edited else set())
 
 
+@pytest.mark.parametrize("name", [f"{NAME}.copy.json", f"{NAME}.JSON", f"{NAME}.old.py"])
+def test_a_file_that_no_record_derives_is_named_if_it_is_asked_for(folder, name):
+    (folder / name).write_bytes((folder / RECORD).read_bytes())
+    assert problems(folder / name) == {name: "belongs to no record here"}
+    assert {*problems(folder.parent)} == ({name} - {f"{NAME}.old.py"})
+
+
 def test_a_theorem_that_was_edited_is_not_overwritten(folder):
     edit(folder / COQ, "Qed.", "Admitted.")
     words = "derive", "ZXZ", *WRITTEN, "--out", str(folder.parent)

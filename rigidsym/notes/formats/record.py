@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from rigidsym.mechanics.conversions.conversions import Conversions
     from rigidsym.mechanics.derivation import Argument, Derivation
     from rigidsym.models.body import RigidBody
+    from rigidsym.models.forces import Forces
     from rigidsym.models.rotation import RotationModel, Turn
 
 SCHEMA = "rigidsym.derivation"
@@ -72,7 +73,7 @@ def record(
         "first_integrals": derivation.first_integrals,
         "definitions": derivation.definitions,
         "singularities": derivation.singularities,
-        **({"body": _body(derivation.body)} if derivation.body else {}),
+        **({"body": _body(derivation.body, derivation.forces)} if derivation.body else {}),
         **_motion(derivation),
         **({"conversions": conversions} if conversions else {}),
     }
@@ -162,20 +163,21 @@ def _turn(turn: Turn, names: Names) -> Iterator[str]:
         yield f"constant_turn({axis}, {sp.cos(constant)}, {sp.sin(constant)})"
 
 
-def _body(body: RigidBody) -> dict[str, Any]:
+def _body(body: RigidBody, acting: Forces | None) -> dict[str, Any]:
     """The body itself; its principal axes in numbers, where all its parameters have values.
 
-    The inertia tensor is about the fixed point, if one is stated.
+    If a point is stated about which it turns, the inertia tensor is about the centre of mass.
     """
     from rigidsym.mechanics.mass.bodies import in_numbers
 
     numbers = in_numbers(body)
+    fixed = body.centre if acting and acting.fixed_point == () else body.fixed_point
     return {
         "title": body.title,
         "mass": body.mass,
         "centre": _vector(body.centre),
-        "inertia": body.inertia,
-        **({} if body.fixed_point is None else {"fixed_point": _vector(body.fixed_point)}),
+        "inertia": body.as_described.inertia,
+        **({} if fixed is None else {"fixed_point": _vector(fixed)}),
         "parameters": body.parameters,
         "in_numbers": None if numbers is None else numbers.record(),
     }
@@ -183,10 +185,8 @@ def _body(body: RigidBody) -> dict[str, Any]:
 
 def _motion(derivation: Derivation) -> dict[str, Any]:
     """V, the forces and the torque in body components, if they depend on q and q̇ only."""
-    acting, body, model = derivation.forces, derivation.body, derivation.model
-    # a record without a fixed point does not say that a tensor about the centre of mass is meant
-    is_off = body and body.fixed_point is None and any(body.centre)
-    if acting is None or acting.depend_on_time or derivation.definitions or is_off:
+    acting, model = derivation.forces, derivation.model
+    if acting is None or acting.depend_on_time or derivation.definitions:
         return {}
     from rigidsym.mechanics.dynamics.lagrange import is_bound
 

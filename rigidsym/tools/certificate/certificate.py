@@ -15,13 +15,12 @@ import ast
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
 from functools import cache, reduce
 from itertools import accumulate, chain, pairwise
 from operator import mul
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import Any, NamedTuple
 
 from rigidsym.errors import CheckError
 from rigidsym.tools.certificate.checker import (
@@ -62,8 +61,8 @@ _QUATERNIONS = {
 }
 _TURNS = {"space": "turns", "body": "turns_in_body"}
 _ABOUT_POINT = (
-    "(add inertia (times {M} (mul (transpose (C (plus (V p_x p_y p_z) (scale (-1) {centre}))))"
-    " (C (plus (V p_x p_y p_z) (scale (-1) {centre}))))))"
+    "(add {tensor} (times {M} (mul (transpose (C (plus {point} (scale (-1) {centre}))))"
+    " (C (plus {point} (scale (-1) {centre}))))))"
 )
 _CENTRE = "(scale {M} (cross (V X Y Z) (V X_dot Y_dot Z_dot)))"
 _TRANSLATION = "{M} * dot (V X_dot Y_dot Z_dot) (V X_dot Y_dot Z_dot) / 2"
@@ -95,8 +94,7 @@ _OF_BODY = {
 }
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Certificate:
+class Certificate(NamedTuple):
     """Theorems for Coq about a record, and what they are about."""
 
     text: str
@@ -146,8 +144,7 @@ def printed_in(record: Mapping[str, Any]) -> dict[str, Any]:
     return {name: claim["expression"] for name, claim in claims_in(record).items()}
 
 
-@dataclass(frozen=True, slots=True)
-class _Factor:
+class _Factor(NamedTuple):
     """A turn as a function of s, its angular velocity at t, the proof, and what is in it."""
 
     text: str
@@ -156,8 +153,7 @@ class _Factor:
     trees: Sequence[Tree]
 
 
-@dataclass(frozen=True, slots=True)
-class _Statement:
+class _Statement(NamedTuple):
     claim: str
     proof: str = "equal t"
     letters: str = ""  # that are in the claim besides t
@@ -308,32 +304,28 @@ class _Section:
             else:
                 yield self._as_printed(text, trees)
 
-    def _as_printed(
-        self, text: str, trees: list[Tree], proof: str = "turning ltac:(calculation t)"
-    ) -> _Factor:
+    def _as_printed(self, text: str, trees: list[Tree], proof: str = "") -> _Factor:
         """F that turns with the printed Ω, which is the claim."""
         if "angular_velocity_space" not in self.claims:
             raise Unproved
         velocity = self.text(self.printed["angular_velocity_space"])
-        return _Factor(text, velocity, proof, trees)
+        return _Factor(text, velocity, proof or "turning ltac:(calculation t)", trees)
 
     def head(self) -> Iterator[str]:
         """Coordinates as functions of time, facts, F, and its angular velocity."""
         names = self.names
         groups = [names.q, self.rates, *([self.seconds] if self.definitions else [])]
         functions = [[*map(self.letter, group)] for group in groups]
-        yield "From Coq Require Import Reals Lra. Require Import Rotation."
-        yield "Open Scope R_scope."
+        yield "From Coq Require Import Reals Lra. Require Import Rotation.\nOpen Scope R_scope."
         yield "Section Claims."
         if names.constants:
             yield f"Variables {' '.join(map(self.letter, names.constants))} : R."
         yield f"Variables {' '.join(functions[0])} : R -> R. (* coordinates, functions of time *)"
         for one, two in pairwise(functions):
             yield f"Variables {' '.join(two)} : R -> R. (* derivatives of {' '.join(one)} *)"
-        for pair in pairwise(functions):
-            for function, rate in zip(*pair, strict=True):
-                slope = f"derivable_pt_lim {function} t ({rate} t)"
-                yield f"Hypothesis {function}_is_differentiable : forall t, {slope}."
+        for function, rate in chain(*map(zip, functions, functions[1:])):
+            slope = f"derivable_pt_lim {function} t ({rate} t)"
+            yield f"Hypothesis {function}_is_differentiable : forall t, {slope}."
         for name, tree in self.definitions.items():
             yield f"Definition {name} t := {self.real(tree)}."
         for k, sphere in enumerate(names.spheres):
@@ -350,8 +342,11 @@ class _Section:
         ways = [f"ring{using}", f"known t; field{using}; apart"]  # that is likely comes first
         yield f"  entries; first [ {' | '.join([*ways[:: -1 if self.apart else 1], sums])} ]."
         yield f"Ltac still t := known t; entries; field{squares}; apart."
-        if "body" in self.record:
-            yield f"Definition inertia := {self.text(self.record['body']['inertia'])}."
+        if body := self.record.get("body"):
+            tensor, fixed = self.text(body["inertia"]), body.get("fixed_point", body["centre"])
+            if fixed != body["centre"]:
+                tensor = _ABOUT_POINT.format(tensor=tensor, point=self.text(fixed), **self.parts)
+            yield f"Definition inertia := {tensor}."
         texts = [factor.text for factor in self.factors]
         product = reduce(lambda right, left: f"mul ({left}) ({right})", reversed(texts))
         yield f"Definition F s := {product}. (* R *)"
@@ -390,7 +385,8 @@ class _Section:
     def _divisors(self) -> Iterator[str]:
         """Squares of cosines; divisors in F are not 0."""
         trees = [*self.trees_of_rotation, *self.trees(*self.claims)]
-        angles = _angles(trees)
+        all_parts = (part for tree in trees for part in _parts(tree))
+        angles = [part[1] for part in all_parts if part[0] in ("cos", "sin")]
         self.facts += [f"(squares {text})" for text in dict.fromkeys(map(self.real, angles))]
         parts = (f"(squares {self.name(name)})" for name in sorted(_names(("", *angles))))
         self.facts_of_sums = [*dict.fromkeys((*self.facts, *parts))]
@@ -552,7 +548,7 @@ class _Section:
 
     def of_body(self, name: str) -> _Statement:
         """An equation of `_OF_BODY`, for the w with which the body turns."""
-        right = _OF_BODY[name].format(**self.parts)
+        right = _OF_BODY[name].format(tensor="inertia", point="(V p_x p_y p_z)", **self.parts)
         claim = f"{self.text(self.printed[name])} = {right}"
         free = sorted({*re.findall(r"\b[XYZ](?:_dot)?\b|\b[pn]_[xyz]\b", claim)})
         letters = "".join(f" {letter}" for letter in free)
@@ -698,10 +694,7 @@ class _Chain(_Section):
         self.T = [f"({factor.text})".replace(" s)", " t)") for factor in self.factors]
         self.v = [factor.velocity for factor in self.factors]
         turns = [turn(*record.read(forms, groups).entries) for _, forms in record.turns]
-        spins = ((T.rate() * T.T()).rows for T in turns)
-        pairs = [
-            (T, Matrix([S[2][1], S[0][2], S[1][0]])) for T, S in zip(turns, spins, strict=True)
-        ]
+        pairs = [(T, (T.rate() * T.T()).axis()) for T in turns]
         # their values: P₁ ... Pₙ, w₁ ... wₙ and uₙ ... u₁ of kinematics/chain.py
         self.P = [*accumulate(turns, mul)]
         rest = Matrix([ZERO] * 3)
@@ -815,17 +808,16 @@ class _Chain(_Section):
         """F turns with the sum of Pₖ₋₁ vₖ."""
         self.need("matrix")
         products = self.levels(self.T[0], self.P[1:-1])
-        axes = (f"(apply {P} {v})" for P, v in zip(products, self.v[1:], strict=True))
-        terms = [self.v[0], *axes]
+        axes = [f"(apply {P} {v})" for P, v in zip(products, self.v[1:], strict=True)]
         steps = ", ".join(
             f"(apply_plus {P}), <- (apply_mul {P} {T}), prefix_{k}"
             for k, (P, T) in enumerate(zip(products, self.T[1:-1], strict=False), start=2)
         )
-        yield f"Lemma space_axes t : turns F t {_nested('plus', terms)}."
+        yield f"Lemma space_axes t : turns F t {_nested('plus', [self.v[0], *axes])}."
         yield f"Proof. apply (same (turns F t) _ _ (total t)). rewrite {steps}. reflexivity. Qed."
 
     def of_rotation_matrix(self, name: str) -> _Statement:
-        return replace(super().of_rotation_matrix(name), proof=self.equal)
+        return super().of_rotation_matrix(name)._replace(proof=self.equal)
 
     def turning(self, frame: str, velocity: str, name: str) -> _Statement:
         lemma = f"{frame}_axes" if name.startswith("rate_matrix") else frame
@@ -886,11 +878,6 @@ def _parts(tree: Tree) -> Iterator[Tree]:
 
 def _names(tree: Tree) -> set[str]:
     return {part[1] for part in _parts(tree) if part[0] == "name"}
-
-
-def _angles(trees: Iterable[Tree]) -> list[Tree]:
-    parts = (part for tree in trees for part in _parts(tree))
-    return [*dict.fromkeys(part[1] for part in parts if part[0] in ("cos", "sin"))]
 
 
 def _divisors(trees: Iterable[Tree]) -> list[Tree]:

@@ -43,6 +43,8 @@ RESERVED = dict.fromkeys(("cos", "sin", "tan", "cot", "sqrt", "pi"), "")
 PLACES = "q", "parameters"
 NAME = "[A-Za-z][A-Za-z0-9_]*"  # "(phi)" and " phi" would be read as phi
 PRINCIPAL = "principal_axes", "principal_moments"
+# of a body and its motion; others could give these another meaning
+KEYS = "mass centre inertia fixed_point parameters title in_numbers potential forces torque"
 SUM = "({0}**2 + {1}**2 + {2}**2 + {3}**2)"
 TURNS = {  # a vector v and numbers c and s: R = 1 + s C(v) + (1 - c) C(v)²
     "x": ("1", "0", "0", "cos({0})", "sin({0})"),
@@ -171,6 +173,10 @@ class Matrix:
         (x,), (y,), (z,) = self.rows
         return Matrix([[ZERO, MINUS * z, y], [z, ZERO, MINUS * x], [MINUS * y, x, ZERO]])
 
+    def axis(self) -> Matrix:
+        """The vector v of C(v)."""
+        return Matrix([self.rows[2][1], self.rows[0][2], self.rows[1][0]])
+
     def determinant(self) -> Number:
         """By the first column and its minors; 1 without rows."""
         total = ZERO if self.rows else ONE
@@ -216,7 +222,9 @@ def read(text: str) -> ast.expr:
             raise SyntaxError  # for one, 0x1 is a number for Python, but reads as a product
         suffixed = re.sub(r"\b[A-Za-z]\w*", r"\g<0>_", text.strip())
         return ast.parse(suffixed, mode="eval").body
-    except (SyntaxError, MemoryError, RecursionError) as error:
+    except (MemoryError, RecursionError) as error:
+        raise Unproved("too large an expression") from error
+    except SyntaxError as error:
         raise Refused(f"the expression {text[:60]!r} cannot be read") from error
 
 
@@ -384,7 +392,7 @@ class Record:
 
     def of_frame(self, frame: str, spin: Matrix) -> Laws:
         """Ω with components in space or in the body: C(Ω) is the spin, and Ω = W q̇."""
-        omega = Matrix([spin.rows[2][1], spin.rows[0][2], spin.rows[1][0]])  # skew, as R Rᵀ = 1
+        omega = spin.axis()  # of a skew matrix, as R Rᵀ = 1
         W = Matrix(omega.rate(f"{q}_dot").entries for q in self.q).T()
         # rates along a radius would leave the sphere of a condition
         spheres = [sphere for sphere in self.spheres if sphere[0] in self.q]
@@ -402,23 +410,30 @@ class Record:
         }
 
     def of_body(self) -> Laws:
-        body, omega, R = self.content["body"], self.omega, self.R
+        body, omega, R, half = self.content["body"], self.omega, self.R, ONE / TWO
         mass, centre, inertia = (self.read(body[part]) for part in ("mass", "centre", "inertia"))
-        (m,), half = mass.entries, ONE / TWO
+        (m,), is_moving = mass.entries, "motion" in self.content or "y" in self.listed
         (inertia - inertia.T()).refuse_unless_zero("the inertia tensor")
-        velocity, arm = self.columns["centre_dot"], (self.columns["point"] - centre).hat()
-        about_point = inertia + (arm.T() * arm).scaled(m)  # the parallel-axis theorem
-        momentum, of_centre = inertia * omega, (self.columns["centre"].hat() * velocity).scaled(m)
+
+        def moved(tensor: Matrix, vector: Matrix) -> Matrix:
+            """To another point, by the parallel-axis theorem."""
+            return tensor + (vector.hat().T() * vector.hat()).scaled(m)
+
+        about_point = moved(inertia, self.columns["point"] - centre)
+        # in a motion, the body turns about a fixed point, which is the origin unless it is stated
+        is_placed = "fixed_point" in body or not is_moving
+        fixed = self.read(body.get("fixed_point", ["0"] * 3 if is_moving else body["centre"]))
+        offset = fixed - centre
+        is_free = is_placed and not any(chain(*(each.values for each in offset.entries)))
+        inertia = moved(inertia, offset)
+        velocity, momentum = self.columns["centre_dot"], inertia * omega
+        of_centre = (self.columns["centre"].hat() * velocity).scaled(m)
         energy = (omega.T() * momentum).scaled(half)
         translation = (velocity.T() * velocity).scaled(half * m)
         direction, w = self.columns["direction"], self.columns["omega_body"]
         euler = w.hat() * inertia * w - self.columns["torque"]
-        self.centre, self.inertia, self.momentum, self.energy = centre, inertia, momentum, energy
-        # in a motion, the body turns about a fixed point; the tensor is about it, as about a stated
-        # one. Only if it is stated, the description says where the centre of mass is
-        is_moving, is_stated = "motion" in self.content, "fixed_point" in body
-        located: Laws = {} if is_moving and not is_stated else {"centre_of_mass": ("m", 1, centre)}
-        placed: Laws = {
+        self.inertia, self.momentum, self.energy = inertia, momentum, energy
+        free: Laws = {
             "inertia_tensor_point": ("kg m^2", 2, about_point),
             "moment_of_inertia": ("kg m^2", 0, direction.T() * about_point * direction),
             "translational_energy": ("J", 0, translation),
@@ -426,7 +441,9 @@ class Record:
             "angular_momentum_centre": ("kg m^2/s", 1, of_centre),
             "angular_momentum": ("kg m^2/s", 1, of_centre + R * momentum),
         }
-        return (located if is_moving or is_stated else located | placed) | {
+        laws = free if is_free else {}
+        laws |= {"centre_of_mass": ("m", 1, centre)} if is_placed else {}
+        return laws | {
             "mass": ("kg", 0, mass),
             "inertia_tensor": ("kg m^2", 2, inertia),
             "inertia_tensor_space": ("kg m^2", 2, R * inertia * R.T()),
@@ -451,9 +468,6 @@ class Record:
         """d'Alembert's principle: W'ᵀ (dL'/dt + Ω' × L') + ∂V/∂q = Q, which is M q̈ + h = Q."""
         is_plain = self.is_free and len(self.q) <= 3 and not self.definitions
         refuse_unless(is_plain, "coordinates that depend on one another, or definitions", Unproved)
-        offset = self.centre - self.read(self.content["body"].get("fixed_point", ["0"] * 3))
-        if "fixed_point" not in self.content["body"]:
-            offset.refuse_unless_zero("the centre of mass")
         motion, W, energy, moving = self.content["motion"], self.W, self.energy, (*PLACES, "q_dot")
         rates, seconds = self.columns["q_dot"], self.columns["q_ddot"]
         potential = self.read(motion["potential"], PLACES)
@@ -491,6 +505,8 @@ def verify(content: Mapping[str, Any]) -> tuple[list[str], dict[str, str]]:
         record = Record(content)
         laws |= record.of_rotation()
         proved.append("R is a rotation")
+        unknown = {*content.get("body", ()), *content.get("motion", ())} - {*KEYS.split()}
+        refuse_unless(not unknown, f"{unknown} of a body or its motion", Unproved)
         laws |= record.of_body() if "body" in content else {}
         laws |= record.of_motion() if "motion" in content else {}
     except Unproved as error:
