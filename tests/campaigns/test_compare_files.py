@@ -20,6 +20,8 @@ FILES = {
     "nested blocks": "".join("    " * k + f"if x{k}:\n" for k in range(300))
     + "    " * 300
     + "y = 1",
+    "nested braces": "void f() { " + "{ if (a > 1) " * 3_000 + "a = sin(a);" + "}" * 3_000 + "}",
+    "nested choices": "x = " + "a ? sin(b) : " * 20_000 + "c;",
     "a value that grows": "def f(x):\n" + "    x = x*x + sin(x)\n" * 3_000 + "    return [x, x, x]",
     "values of values": "\n".join(f"y{k} = y{k - 1} + sin(y{k - 1})" for k in range(1, 3_000)),
 }
@@ -28,7 +30,7 @@ FILES = {
 def cost(text: str) -> tuple[float, int]:
     """The most seconds of a language, and the largest memory of this process in kilobytes."""
     seconds = []
-    for suffix in (".py", ".cpp", ".m"):
+    for suffix in (".py", ".cpp", ".js", ".m"):
         start = time.process_time()
         for _ in formulas(text, suffix):
             pass

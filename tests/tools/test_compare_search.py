@@ -620,6 +620,12 @@ WIDER = {
     "p.m": "function q = f(e)\n e = [e(1) e(2) e(3)]; c = cos(e/2); s = sin(e/2); g(c);\n q = ["
     "c(1)*c(2)*c(3) + s(1)*s(2)*s(3), s(1)*c(2)*c(3) - c(1)*s(2)*s(3),"
     " c(1)*s(2)*c(3) + s(1)*c(2)*s(3), c(1)*c(2)*s(3) - s(1)*s(2)*c(3)];\nend",
+    "p.py": "def f(r):\n    t = np.linalg.norm(r)\n    k = hat(r/t)\n"
+    "    return np.eye(3) + np.sin(t)*k + (1 - np.cos(t))*k@k\n",
+    "q.py": "def f(a):\n    c, s, o, z = cos(a), sin(a), torch.ones_like(a), torch.zeros_like(a)\n"
+    "    return torch.stack((c, -s, z, s, c, z, z, z, o), -1).reshape(-1, 3, 3)\n",
+    "f.cpp": "M f(double a, double b) { auto Rz = [](double t) { M R; R << cos(t), -sin(t), 0,"
+    " sin(t), cos(t), 0, 0, 0, 1; return R; }; return Rz(b)*Rz(a); }",
     # in public programs, a local name of an inlined function is that of its argument
     "e.cpp": "struct V mk(float x, float y, float z) { struct V v; v.x = x; v.y = y; v.z = z;"
     " return v; }\nstruct V f(struct V v, float a, float b) { return mk(v.x + sin(a)*tan(b)*v.y"
@@ -641,7 +647,9 @@ SAID = {
     "(proved); terms without p, q, r were not compared": "n.m",
     "; terms without": "o.py",
     "rates_from_": "e.cpp",
-    "equal to rotation_matrix of z": "a.py b.js a.rs a.m f.py b.rs j.py c.cpp d.c b.cpp d.cs",
+    "equal to rotation_matrix of z": "a.py b.js a.rs a.m f.py b.rs j.py c.cpp d.c b.cpp d.cs q.py "
+    "f.cpp",
+    "rotation_vector": "p.py",
 }
 
 

@@ -192,10 +192,8 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
     # A long file of short functions is read to its end; a long function may let a value grow.
     program.steps["read"] = -min(8 * text.count("\n"), 200 * len(functions))
     scopes = [_Scope(tree) for tree in (Tree(root), *_worth_reading(functions, suffix))]
-    for each in syntax.below(root.named_children) if root.has_error else ():
-        # Beside most errors, such as an unknown macro, no formula is lost.
-        lost = syntax.damaged(each)
-        if each.is_error and "(" in lost.text and _has_material(lost.text, ""):
+    for lost in syntax.damaged(root):  # by most errors, such as an unknown macro, no formula is
+        if "(" in lost.text and _has_material(lost.text, ""):
             scopes[0].formulas.append(_fault(lost.line, "there is a syntax error"))
             break
     if suffix == ".py" and root.has_error and (found := syntax.python_error(text)):
@@ -213,15 +211,17 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
                 run.run_scope()
             except RecursionError:  # SymPy, in a sum that a program nests in itself
                 run.formulas.append(_fault(scope.tree.line, "expressions are nested too deeply"))
-            scope.formulas += [replace(each, function=scope.tree.span) for each in run.formulas]
+            named = {f.forms[:1] for f in run.formulas if f.name not in UNNAMED} - {()}
+            scope.formulas += [
+                replace(each, function=scope.tree.span)
+                for each in run.formulas
+                if each.name not in UNNAMED or each.forms[:1] not in named  # it is there already
+            ]
     formulas: dict[Any, Formula] = {}
-    for scope in scopes:
-        named = {f.forms[:1] for f in scope.formulas if f.name not in UNNAMED} - {()}
-        for formula in scope.formulas:
-            key = (formula.lines, formula.forms or formula.name)
-            is_twice = formula.name in UNNAMED and formula.forms[:1] in named
-            if not is_twice and (key not in formulas or not formula.is_final):
-                formulas[key] = formula
+    for formula in chain.from_iterable(scope.formulas for scope in scopes):
+        key = (formula.lines, formula.forms or formula.name)
+        if key not in formulas or not formula.is_final:
+            formulas[key] = formula
     return sorted(formulas.values(), key=lambda each: each.line)
 
 
@@ -326,7 +326,7 @@ class _Run:
         self.components: set[sp.Symbol] = set()  # of values that are not read, which are inputs
         self.normalised: set[sp.Basic] = set()  # components that were divided by the length
         self.unread: dict[str, int] = {}  # lines of names without values
-        self.later: dict[tuple[sp.Expr, Any], sp.Dummy] = {}  # parts of names assigned anew
+        self.later: dict[tuple[sp.Expr, Any], sp.Dummy] = {}  # parts without names of their own
         self.squares: dict[sp.Symbol, sp.Symbol] = {}  # |v|² of names without values
         # A name without a value may be a matrix: (its transpose, None), and (its column, k).
         self.views: dict[sp.Symbol, tuple[sp.Symbol, Any]] = {}
@@ -342,7 +342,7 @@ class _Run:
         self.end, self.depth = "", 0  # "return" or "break" after one
 
     def unreadable(self, tree: Tree, reason: str = "is not understood") -> ExpressionError:
-        text = re.sub(r"\s+", " ", tree.text)
+        text = re.sub(r"\s+", " ", tree.text[:1000])
         text = text if len(text) <= 60 else f"{text[:57]}..."
         where = "" if self.program.is_formula else f" in line {tree.line}"
         return ExpressionError(f"`{text}`{where} {reason}")
@@ -468,7 +468,7 @@ class _Run:
         elif value is not None and (
             left.kind == "record" or value.is_Function or patterns.turns.match(str(value))
         ):
-            parts = [_part(value, key) for key in keys]
+            parts = [self.component(value, key) for key in keys]
         for target, part in zip(left.parts, parts, strict=True):
             if part is not None:
                 self.store(target, part)
@@ -482,8 +482,7 @@ class _Run:
         """An assignment to a name, a member, or an entry."""
         path = self.path(left)
         self.refuse_if(not path, left)
-        if isinstance(value, sp.MatrixBase):
-            value = value[0] if len(value) == 1 else value
+        value = value[0] if isinstance(value, sp.MatrixBase) and len(value) == 1 else value
         if self.holds_integers(path) and not getattr(value, "is_Integer", False):
             if getattr(value, "free_symbols", ()) and value.has(sp.Function):
                 fault = _fault(left.line, f"{path[0]} holds whole numbers", path[0])
@@ -594,7 +593,7 @@ class _Run:
             self.put((name,), change, left.line)
             rates = [s for s in change.free_symbols if patterns.rates_name.fullmatch(_last(s.name))]
             if patterns.angles_name.fullmatch(name) and len(rates) == 1 and self.is_step(change):
-                parts = [change.xreplace({rates[0]: _part(rates[0], k)}) for k in "xyz"]
+                parts = [change.xreplace({rates[0]: self.component(rates[0], k)}) for k in "xyz"]
                 self.add(name, sp.Matrix(parts), left.line)
         record = self.values.get(path[0]) if path and len(path) == 1 else None
         if isinstance(record, _Record) and isinstance(value, sp.MatrixBase):
@@ -799,6 +798,8 @@ class _Run:
         if (name, value) in self.emitted or self.program.steps["formulas"] > limits.most_formulas:
             return
         self.emitted.add((name, value))
+        numbers = {s: v for s, v in self.definitions.items() if v in (0, 1)}  # a name `zero`
+        value = value.applyfunc(lambda entry: numbers.get(entry, entry))
         is_state = value.cols == 1 and _unflattened(value).shape in (value.shape, (4, 3))
         if is_state and 3 < value.rows <= limits.longest_state:  # angles and rates
             for k in range(value.rows - 2):
@@ -929,7 +930,7 @@ class _Run:
         if is_rounded and not (left / right).is_Integer and all(map(self.is_whole, tree.parts)):
             raise self.unreadable(tree, "is a division of whole numbers, which rounds")
         if sign in ("+", "-"):
-            left, right = self.as_vector(left, right), self.as_vector(right, left)
+            left, right = self.beside(left, right), self.beside(right, left)
         elif sign in ("*", "@") and (value := self.of_tensor(left, right)) is not None:
             return value
         else:
@@ -949,20 +950,16 @@ class _Run:
         whole = self.program.integers if len(names) > 1 else self.integers
         return bool(names) and names[-1] in whole
 
-    def as_vector(self, value: Any, other: Any) -> Any:
-        """c v, where v has no value, in components if it is added to a vector."""
+    def beside(self, value: Any, other: Any) -> Any:
+        """A summand: c v, where v has no value, in components if it is added to a vector."""
         if _is_scalar(value) and self.is_moment(other):
             value = self.moment(value)
-        if not _is_scalar(value) or getattr(other, "shape", ()) != (3, 1):
-            return value
-        names = [s for s in value.free_symbols if self.definitions.get(s) is None]
-        parts = {s.name.rpartition(".")[0] for s in other.free_symbols}
-        factor, vector = value.as_independent(*[s for s in names if s.name in parts] or names)
-        return combined("*", factor, self.vector(vector)) if vector.is_Symbol else value
+        is_vector = getattr(other, "shape", ()) == (3, 1)
+        return self.vector(value, 3, other.free_symbols) if is_vector else value
 
     def is_moment(self, value: Any) -> bool:
         """Whether a vector is a sum with w × I w in it."""
-        entries = [_tensor(name)[0, 0] for name in self.tensors]
+        entries = [self.tensor(name)[0, 0] for name in self.tensors]
         return getattr(value, "shape", ()) == (3, 1) and bool(value.has(*entries))
 
     def moment(self, value: Any, w: Any = None) -> Any:
@@ -978,7 +975,7 @@ class _Run:
             own, parts = (as_matrix(self.vector(each)) for each in (tensor, vector))
             if len(own) == len(parts) and value in (tensor * vector, own.dot(parts)):
                 self.tensors.add(tensor)
-                return _tensor(tensor) * parts
+                return self.tensor(tensor) * parts
         return value
 
     def of_tensor(self, left: Any, right: Any) -> Any:
@@ -988,17 +985,23 @@ class _Run:
         if self.is_moment(right) and _is_scalar(left):
             inverse = sp.Symbol(f"{1 / left}_inv", real=True) if 1 / left in self.tensors else left
             if inverse.is_Symbol and "inv" in inverse.name:
-                return _tensor(inverse) * right
+                return self.tensor(inverse) * right
         if getattr(left, "shape", ()) == (3, 3) and (left * right).is_zero_matrix:
             for tensor in left.free_symbols - right.free_symbols:
                 self.tensors.add(tensor)
-                return left.xreplace({tensor: sp.S.One}) * _tensor(tensor) * right
+                return left.xreplace({tensor: sp.S.One}) * self.tensor(tensor) * right
         return None
 
-    def vector(self, value: Any, count: int = 3) -> Any:
-        """Components for a name without a value."""
-        keys = [key + self.first for key in range(count)]
-        parts = [self.component(value, key) for key in keys] if _is_scalar(value) else [None]
+    def tensor(self, name: sp.Symbol) -> Any:
+        """The nine entries of a matrix without a value."""
+        return rows([self.vector(self.component(name, k + self.first)) for k in range(3)])
+
+    def vector(self, value: Any, count: int = 3, others: Iterable[Any] = ()) -> Any:
+        """Components for a name without a value, the likelier if `others` are components of it."""
+        if not _is_scalar(value):
+            return value
+        stems = {symbol.name.rpartition(".")[0] for symbol in others}
+        parts = [self.component(value, key + self.first, stems) for key in range(count)]
         return value if None in parts else rows(parts)
 
     def operation(self, tree: Tree, sign: str, *sides: Any) -> str:
@@ -1035,7 +1038,8 @@ class _Run:
                 is_other = other.free_symbols != {own} or other.has(*_INVERSE)
                 if is_other or abs(other.subs(own, 1e-3) - limit) < limits.near_limit:
                     return other
-        return self.read(trees[self.scope.choice(tree.node, trees)])
+        chosen = self.scope.choice(tree.node, trees)
+        return self.read(trees[chosen]) if values[chosen] is None else values[chosen]
 
     def sides(self, condition: Tree) -> tuple[Any, str, Any]:
         """An expression, one of = ! < >, and a number; no sign for another condition."""
@@ -1214,31 +1218,37 @@ class _Run:
         self.refuse_if(part is None, tree, "has no value")
         return self.entry(tree, part, tuple(others))
 
-    def component(self, value: sp.Expr, key: int | str) -> Any:
-        """A component of a name without a value, or of c v; None for numbers."""
+    def component(self, value: Any, key: int | str, stems: Collection[str] = ()) -> Any:
+        """A component of a name v without a value, of v/θ if θ = |v|, of f(v), or None."""
         if value in self.views:
             matrix, column = self.views[value]
             if column is None:
                 return self.view(matrix, key)
             return self.component(self.component(matrix, key), column)
-        part = _part(value, key) if value not in self.components else None
-        if part is not None and value in self.definitions:  # which is not read, or assigned anew
-            dummy = sp.Dummy(part.name, real=True)
-            part = self.unread_part(value, self.later.setdefault((value, key), dummy))
-        return part
+        whole = value if value.is_Symbol else self.expanded(value)
+        names = whole.free_symbols - ({*self.squares.values()} - value.free_symbols)
+        names = {name for name in value.free_symbols if name.name in stems} or names
+        vector: Any = next(iter(names), None)
+        is_one = len(names) == 1 and not names & self.components
+        if not is_one or not (value.is_Function or vector not in (value / vector).free_symbols):
+            return None
+        is_input = vector not in self.definitions  # but is read, and not assigned anew
+        part = sp.Symbol(f"{vector.name}.{key}", real=True) if is_input else None
+        return value.xreplace({vector: part or self.later_part(vector, key)})
 
     def view(self, matrix: sp.Symbol, key: int | str | None = None) -> sp.Symbol:
         """The transpose or a column of a name, or a number if that is a batch of vectors."""
         whole, column = self.views.get(matrix, (None, 0))
         if whole is not None and column is None:
             return whole if key is None else self.component(whole, key)
-        views = (view for view, place in self.views.items() if place == (matrix, key))
-        view = next(views, None) or sp.Dummy(f"{matrix}.{'T' if key is None else key}", real=True)
+        view = self.later_part(matrix, "T" if key is None else f"column {key}")
         self.views[view] = matrix, key
-        return self.unread_part(matrix, view)
+        return view
 
-    def unread_part(self, whole: Any, part: sp.Symbol) -> sp.Symbol:
-        """A part of a name; it is not read if the name is not."""
+    def later_part(self, whole: sp.Symbol, key: int | str) -> sp.Symbol:
+        """A part of a name that has no name of its own; it is not read if the name is not."""
+        symbol = sp.Dummy(f"{whole.name}.{key}".replace("column ", ""), real=True)
+        part = self.later.setdefault((whole, key), symbol)
         if whole in self.definitions:
             self.definitions.setdefault(part, None)
             self.unread.setdefault(part.name, self.unread.get(whole.name, 0))
@@ -1280,7 +1290,10 @@ class _Run:
             case "pair" if len(nodes) == 1:
                 return rows([called(each, [self.read(nodes[0])]) for each in ("sin", "cos")])
             case "number" if not arguments and self.program.suffix == ".rs":  # T::zero()
-                return sp.Integer("one" in name.lower())
+                return sp.Integer("one" in name)
+            case "like" if arguments:  # ones_like(a)
+                own, number = self.read(nodes[0]), sp.Integer("one" in name)
+                return own.applyfunc(lambda _: number) if isinstance(own, sp.MatrixBase) else number
             case "wrapper" if is_listed:
                 return self.read(nodes[0])
             case "same" if nodes:
@@ -1345,7 +1358,8 @@ class _Run:
     def of_vectors(self, meaning: str, values: Sequence[Any]) -> Any:
         """An operation of matrices; a name without a value is a vector."""
         if meaning == "norm":
-            return called("sqrt", [self.of_vectors("dot", [*values, *values])])
+            return called("sqrt", [self.of_vectors("dot", values)])
+        values = [*values, *values] if meaning == "dot" and len(values) == 1 else values
         if meaning == "dot" and values[0] == values[-1] and isinstance(values[0], sp.Symbol):
             symbol = sp.Dummy(f"{values[0]}²", positive=True)
             return self.squares.setdefault(values[0], symbol)
@@ -1505,21 +1519,6 @@ def _square(vector: sp.Symbol, names: Mapping[sp.Expr, sp.Expr], first: int) -> 
     symbols = [sp.Symbol(f"{vector}.{key}", real=True) for key in keys]
     symbols = symbols[: 3 + (symbols[3].name in used)]
     return sum(names.get(s, sp.Symbol(_last(s.name), real=True)) ** 2 for s in symbols)
-
-
-def _part(value: sp.Expr, key: int | str) -> Any:
-    """A component of c v, or of a function of it, if v is a name without a value."""
-    vector: Any = next(iter(value.free_symbols), None)
-    if len(value.free_symbols) != 1 or not (
-        isinstance(value, sp.Function) or (value / vector).is_number
-    ):
-        return None
-    return value.xreplace({vector: sp.Symbol(f"{vector.name}.{key}", real=True)})
-
-
-def _tensor(name: sp.Symbol) -> sp.ImmutableMatrix:
-    """The nine entries of a matrix without a value."""
-    return sp.ImmutableMatrix(3, 3, lambda i, k: sp.Symbol(f"{name}.{i}.{k}", real=True))
 
 
 def _is_scalar(value: Any) -> bool:

@@ -130,9 +130,10 @@ class Tree:
         """The name of a name, a member or a function, or an operator."""
         node: Node | None = self.node
         if self.kind == "function":
-            name = _part(self.node, "name declarator")
-            name = name or (self.node.parent and _part(self.node.parent, "left name declarator"))
-            return (re.findall(r"\w+", _text(name).partition("(")[0]) or [""])[-1]
+            outer = self.node.parent and _part(self.node.parent, "left name declarator")
+            names = (_part(self.node, "name declarator"), outer)
+            words = (re.findall(r"\w+", _text(name).partition("(")[0]) for name in names)
+            return next((each[-1] for each in words if each), "")
         if self.kind == "member":
             node = _part(self.node, "name") or _children(self.node)[-1]
         if self.kind in ("name", "member"):
@@ -184,11 +185,12 @@ class Tree:
 
     def _function(self, nodes: list[Node]) -> Tree:
         """The function of a call: a name, or a member of an object."""
-        node, outer = self.node, self.node.parent
+        node = self.node
+        # MATLAB: a.b(1). To ask for a parent takes as long as a node is deep.
+        outer = node.parent if node.type == "function_call" else None
         if outer is not None and outer.type == "field_expression" and node == _children(outer)[-1]:
-            node = outer  # MATLAB: a.b(1)
-        is_member = node is outer or _part(node, "object") is not None  # Java
-        return Tree(node, "member") if is_member else tree_of(nodes[0])
+            return Tree(outer, "member")
+        return Tree(node, "member") if _part(node, "object") else tree_of(nodes[0])  # of Java
 
     def _with_result(self, node: Node) -> Tree:
         """The body of a function, whose value is its last expression in Rust, and of an arrow."""
@@ -344,12 +346,14 @@ def walk(node: Node, *kinds: str) -> Iterator[Tree]:
     )
 
 
-def damaged(error: Node) -> Tree:
-    """The expression or assignment that is not read because of an error in it."""
-    node, around = error, ("block", "function", "if", "switch", "loop")
-    while node.parent and _KINDS.get(node.parent.type, "block") not in around:
-        node = node.parent
-    return Tree(node)
+def damaged(root: Node) -> Iterator[Tree]:
+    """The expressions and assignments that are not read because of syntax errors in them."""
+    around = ("block", "function", "if", "switch", "loop")
+    for node in below(root.named_children) if root.has_error else ():
+        if node.is_error:
+            while node.parent and _KINDS.get(node.parent.type, "block") not in around:
+                node = node.parent
+            yield Tree(node)
 
 
 def parameters(function: Node) -> list[str]:
