@@ -114,9 +114,9 @@ def test_kernels_and_notes_know_nothing_of_one_another_nor_the_representation_of
 
 
 BUDGETS = {  # what was reached; who makes the house smaller lowers them
-    "files": 188,
-    "lines of code": 24_200,
-    "lines of tests": 16_800,
+    "files": 182,
+    "lines of code": 24_210,
+    "lines of tests": 16_730,
     "lines of benchmarks": 2_500,
 }
 
