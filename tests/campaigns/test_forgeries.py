@@ -360,7 +360,15 @@ OF_QUATERNION: dict[str, Change] = {
     "a component that is lost": put(VELOCITY, 0, "0"),
     "a norm that is 2": everywhere("w", "(w + w**2 + x**2 + y**2 + z**2 - 2)"),
 }
+OF_CONE: dict[str, Change] = {
+    "another fixed point": write("body", "fixed_point", ["0", "0", "0"]),
+    "another centre of mass": write("body", "centre", 2, "h/2"),
+    "a tensor that is moved twice": lambda c: c["body"].update(
+        inertia=at(c, "inertia_tensor", "expression")
+    ),
+}
 BESIDE: Forgeries = {"ZXZ": OF_ZXZ, "top": OF_TOP, "unit_quaternion": OF_QUATERNION}
+BESIDE |= {"cone on its apex": OF_CONE}
 
 
 # Texts in what is printed of a motion, and what a forger writes for them
@@ -576,11 +584,6 @@ OTHERS: Forgeries = {
         "a fixed point that moves": write("body", "fixed_point", ["0", "0", "h*phi"]),
         "a fixed point in a plane": write("body", "fixed_point", ["0", "h"]),
         "a fixed point that nobody states": lambda content: content["body"].pop("fixed_point"),
-        "another fixed point": write("body", "fixed_point", ["0", "0", "0"]),
-        "another centre of mass": write("body", "centre", 2, "h/2"),
-        "a tensor that is moved twice": lambda c: c["body"].update(
-            inertia=at(c, "inertia_tensor", "expression")
-        ),
         TWICE: with_energy_of_the_centre,
         "an unknown key of a body": write("body", "offset", ["0", "0", "h"]),
         "an unknown key of a motion": write("motion", "parts", [{"inertia": "M"}]),
@@ -816,7 +819,7 @@ def entries() -> Iterator[tuple[str, Content]]:
     for name, (of, change) in flat(BESIDE).items():
         # nor what leaves no false theorem to state: names, roots, conditions, units
         if not re.search("divisor|singular|degrees|potential by definition|motion under", name):
-            yield name, changed(of_motion("whole top") if of == "top" else record_of(of), change)
+            yield name, changed(original("whole top" if of == "top" else of), change)
 
 
 def refusal(content: Content, name: str) -> str:

@@ -420,10 +420,11 @@ class Record:
             return tensor + (vector.hat().T() * vector.hat()).scaled(m)
 
         about_point = moved(inertia, self.columns["point"] - centre)
-        # in a motion, the body turns about a fixed point, which is the origin unless it is stated
+        # in a motion, the body turns about a fixed point, and its tensor is about an unstated one
         is_placed = "fixed_point" in body or not is_moving
-        fixed = self.read(body.get("fixed_point", ["0"] * 3 if is_moving else body["centre"]))
-        offset = fixed - centre
+        if not is_placed:
+            centre.refuse_unless_zero("the centre of mass")
+        offset = self.read(body.get("fixed_point", body["centre"])) - centre
         is_free = is_placed and not any(chain(*(each.values for each in offset.entries)))
         inertia = moved(inertia, offset)
         velocity, momentum = self.columns["centre_dot"], inertia * omega
