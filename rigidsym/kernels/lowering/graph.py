@@ -386,7 +386,7 @@ def _term_pairs(
 
 
 def _most_saved(found: Iterable[Mapping[Pair, int]]) -> Pair | None:
-    """The pair that saves most operations, of those that save more than their own one.
+    """The pair that saves the most operations, if it saves more than the one that it takes.
 
     Among equals the one that is a whole node already, which comes without a new operation.
     """

@@ -170,6 +170,7 @@ def _body(body: RigidBody, acting: Forces | None) -> dict[str, Any]:
     """
     from rigidsym.mechanics.mass.bodies import in_numbers
 
+    numbers = in_numbers(body)
     fixed = body.centre if acting and acting.fixed_point == () else body.fixed_point
     return {
         "title": body.title,
@@ -178,7 +179,7 @@ def _body(body: RigidBody, acting: Forces | None) -> dict[str, Any]:
         "inertia": body.as_described.inertia,
         **({} if fixed is None else {"fixed_point": _vector(fixed)}),
         "parameters": body.parameters,
-        "in_numbers": (numbers := in_numbers(body)) and numbers.record(),
+        "in_numbers": numbers and numbers.record(),
     }
 
 

@@ -236,8 +236,9 @@ class KnownQuantity:
         if not has_order or self.has_own_names:
             return [self]
         is_matrix = self.quantity.startswith("rate_matrix")
-        turned = lambda m, *_: m[:, ::-1] if is_matrix else m[::-1, :]  # noqa: E731
-        return self.written(_ways(the_rates_in_the_order_3_2_1=turned))
+        step = (1, -1) if is_matrix else (-1, 1)
+        turned = _ways(the_rates_in_the_order_3_2_1=lambda m, *_: m[:: step[0], :: step[1]])
+        return self.written(turned)
 
 
 Family = tuple[KnownQuantity, ...]  # of the same inputs and shape, compared in one step
