@@ -52,32 +52,27 @@ Lemma transposed A B : transpose (mul A B) = mul (transpose B) (transpose A). Pr
 Lemma one_right A : mul A one = A. Proof. entries; ring. Qed.
 Lemma sum_left A B D : mul (add A B) D = add (mul A D) (mul B D). Proof. entries; ring. Qed.
 Lemma det_mul A B : det (mul A B) = det A * det B. Proof. entries; ring. Qed.
-Lemma C_turned A w : det A = 1 -> mul (transpose A) A = one ->
-  mul (mul A (C w)) (transpose A) = C (apply A w).
-Proof.
-  destruct A as [x y z]; intros d a; set (cofactors := M (cross y z) (cross z x) (cross x y)).
+Lemma C_turned A w : det A = 1 -> mul (transpose A) A = one -> mul (mul A (C w)) (transpose A) = C (apply A w).
+Proof. destruct A as [x y z]; intros d a; set (cofactors := M (cross y z) (cross z x) (cross x y)).
   assert (e : cofactors = M x y z); [ | rewrite <- e at 3; unfold cofactors; entries; ring ].
   transitivity (mul cofactors (mul (transpose (M x y z)) (M x y z))); [ rewrite a, one_right; reflexivity | ].
   transitivity (times (det (M x y z)) (M x y z)); [ unfold cofactors | rewrite d ]; entries; ring.
 Qed.
 Lemma product_rotation A B : is_rotation A -> is_rotation B -> is_rotation (mul A B).
-Proof.
-  intros [a [a' d]] [b [b' e]]; repeat split; [ | | rewrite det_mul, d, e; ring ];
+Proof. intros [a [a' d]] [b [b' e]]; repeat split; [ | | rewrite det_mul, d, e; ring ];
     rewrite transposed, <- associative; [ rewrite (associative A B), b | rewrite (associative _ _ A), a' ];
     rewrite one_right; assumption.
 Qed.
 Lemma same {A} (P : A -> Prop) a b : P a -> a = b -> P b. Proof. intros; subst; assumption. Qed.
 Lemma product_rate F G t A B : rate F t A -> rate G t B ->
   rate (fun s => mul (F s) (G s)) t (add (mul A (G t)) (mul (F t) B)).
-Proof.
-  intros [[? [? ?]] [[? [? ?]] [? [? ?]]]] [[? [? ?]] [[? [? ?]] [? [? ?]]]].
+Proof. intros [[? [? ?]] [[? [? ?]] [? [? ?]]]] [[? [? ?]] [[? [? ?]] [? [? ?]]]].
   repeat split; (eapply (same (derivable_pt_lim _ _)); [ repeat apply derivable_pt_lim_plus;
     apply derivable_pt_lim_mult; eassumption | simpl; unfold dot; simpl; ring ]).
 Qed.
 Theorem product F G t v w : turns F t v -> turns G t w ->
   turns (fun s => mul (F s) (G s)) t (plus v (apply (F t) w)).
-Proof.
-  intros [f [A [a a']]] [g [B [b b']]]. split; [ apply product_rotation; assumption | ].
+Proof. intros [f [A [a a']]] [g [B [b b']]]. split; [ apply product_rotation; assumption | ].
   exists (add (mul A (G t)) (mul (F t) B)); split; [ apply product_rate; assumption | ].
   rewrite sum_left, transposed, <- !associative, (associative A (G t)), (proj1 g), one_right, a',
     (associative (F t) B), b', C_turned; [ entries; ring | apply f | apply f ].
@@ -87,8 +82,7 @@ Proof. intros [f [D [d e]]]. rewrite <- e, associative, (proj1 (proj2 f)), one_r
 Lemma transpose_rate F t D : rate F t D -> rate (fun s => transpose (F s)) t (transpose D).
 Proof. unfold rate, vector_rate; simpl; tauto. Qed.
 Theorem in_body F t w : turns F t (apply (F t) w) -> turns_in_body F t w.
-Proof.
-  intro T; pose proof (rate_of_turns _ _ _ T) as d; destruct T as [r _]; split; [ exact r | ].
+Proof. intro T; pose proof (rate_of_turns _ _ _ T) as d; destruct T as [r _]; split; [ exact r | ].
   destruct r as [_ [a e]]; eexists; split; [ exact d | ].
   rewrite <- C_turned, !associative, a, one_right, <- associative, a by assumption. entries; ring.
 Qed.
@@ -99,8 +93,7 @@ Proof. intro H; exact (derivable_pt_lim_comp f cos t a _ H (derivable_pt_lim_cos
 Lemma sin_rate f t a : derivable_pt_lim f t a -> derivable_pt_lim (fun s => sin (f s)) t (cos (f t) * a).
 Proof. intro H; exact (derivable_pt_lim_comp f sin t a _ H (derivable_pt_lim_sin (f t))). Qed.
 Lemma constant_rate f t a c : (forall s, f s = c) -> derivable_pt_lim f t a -> a = 0.
-Proof.
-  intros H d. apply (uniqueness_limite f t _ _ d). intros e p. exists (mkposreal 1 Rlt_0_1). intros h _ _.
+Proof. intros H d. apply (uniqueness_limite f t _ _ d). intros e p. exists (mkposreal 1 Rlt_0_1). intros h _ _.
   rewrite !H. replace ((c - c) / h - 0) with 0 by (unfold Rdiv; ring). rewrite Rabs_R0. exact p.
 Qed.
 (* sines and cosines of sums and of whole multiples, by those of their parts and of halves *)
@@ -137,12 +130,12 @@ Proof. intro; assert (e := squares (f t)); turning ltac:(ring [e]). Qed.
 Theorem turn_turns v c s t a : dot v v = 1 -> c t * c t + s t * s t = 1 ->
   derivable_pt_lim c t (- s t * a) -> derivable_pt_lim s t (c t * a) ->
   turns (fun u => turn v (c u) (s u)) t (scale a v).
-Proof.
-  destruct v as [x y z]; cbv [dot v1 v2 v3]; intros. assert (m : z * z = 1 - x * x - y * y) by lra.
+Proof. destruct v as [x y z]; cbv [dot v1 v2 v3]; intros. assert (m : z * z = 1 - x * x - y * y) by lra.
   assert (k : c t * c t = 1 - s t * s t) by lra. turning ltac:(ring [k m]).
 Qed.
 Lemma turn_rotation v c s : s * s = (1 - c) * (2 - (1 - c) * dot v v) -> is_rotation (turn v c s).
-Proof. destruct v; cbv [dot v1 v2 v3]; intro m; set (d := 1 - c) in m. repeat split; cbv [turn]; fold d; entries; ring [m]. Qed.
+Proof. destruct v; cbv [dot v1 v2 v3]; intro m; set (d := 1 - c) in m.
+  repeat split; cbv [turn]; fold d; entries; ring [m]. Qed.
 Theorem quaternion_turns w x y z u c s t a b d e k : (* of the length 1 / sqrt u *)
   (forall r, u r * (w r * w r + x r * x r + y r * y r + z r * z r) = 1) ->
   (forall r, c r = 1 - 2 * u r) -> (forall r, s r = 2 * w r * u r) -> derivable_pt_lim w t a ->
@@ -150,8 +143,7 @@ Theorem quaternion_turns w x y z u c s t a b d e k : (* of the length 1 / sqrt u
   k = - (2 * u t * u t * (w t * a + x t * b + y t * d + z t * e)) ->
   turns (fun r => turn (V (x r) (y r) (z r)) (c r) (s r)) t (scale (2 * u t)
     (plus (scale (w t) (V b d e)) (plus (scale (- a) (V (x t) (y t) (z t))) (cross (V (x t) (y t) (z t)) (V b d e))))).
-Proof.
-  intros n C S ? ? ? ? ? K; rewrite (functional_extensionality c _ C), (functional_extensionality s _ S).
+Proof. intros n C S ? ? ? ? ? K; rewrite (functional_extensionality c _ C), (functional_extensionality s _ S).
   assert (m : u t * w t * w t = 1 - u t * x t * x t - u t * y t * y t - u t * z t * z t) by (rewrite <- (n t); ring).
   split; [ apply turn_rotation; cbv [dot v1 v2 v3]; ring [m] | eexists (M (V _ _ _) (V _ _ _) (V _ _ _)); split ];
     [ repeat split; expand; derivative | entries; rewrite K; ring [m] ].

@@ -102,7 +102,7 @@ class Number:
         return self.combined(add, other, lambda by: self.rate(by) + other.rate(by))
 
     def __sub__(self, other: Number) -> Number:
-        return self.combined(sub, other, lambda by: self.rate(by) - other.rate(by))
+        return self + MINUS * other
 
     def __mul__(self, other: Number) -> Number:
         if self is ZERO or other is ZERO:
