@@ -6,10 +6,9 @@ import re
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
 
+from helpers.command import call
 from helpers.motions import derived
-from rigidsym.commands.cli import commands
 from rigidsym.errors import LimitReached, TemplateFault
 from rigidsym.notes.document import said
 from rigidsym.notes.formats.terminal import show
@@ -35,12 +34,9 @@ def test_a_fault_is_named_with_its_template_and_line(answered, tmp_path: Path):
 
 
 def test_a_fault_is_not_ascribed_to_a_template_that_is_not_in_use(tmp_path: Path):
+    included = "{% include 'en/part.md.jinja' %}\n{% include 'x' ignore missing %}\n\n$x"
     for name in ("en/first.md.jinja", "en/mine.md.jinja"):
-        own(
-            tmp_path,
-            name,
-            "{% include 'en/part.md.jinja' %}\n{% include 'x' ignore missing %}\n\n$x",
-        )
+        own(tmp_path, name, included)
     own(tmp_path, "en/part.md.jinja", "as it is")
     with resources.overridden_by(tmp_path), pytest.raises(TemplateFault, match=r"mine.* line 4"):
         derived("ZXZ").note(style="mine")
@@ -151,17 +147,9 @@ Our course writes {{ equation("rotation_matrix").sides[0] }} for the rotation; s
 FRENCH = """\
 # La rotation
 
-Voici la matrice de rotation :
-
 {{ equation("rotation_matrix") }}
 
-# La vitesse angulaire
-
 Dans le repère du corps, elle vaut
-
-{{ equation("angular_velocity_body") }}
-
-et $\\boldsymbol{\\Omega} = \\mathbf{R}\\,\\boldsymbol{\\Omega}'$.
 """
 
 
@@ -193,31 +181,28 @@ def test_an_equation_is_printed_again_with_its_number(tmp_path: Path):
 
 def test_a_second_language_is_a_folder_of_templates(tmp_path: Path):
     own(tmp_path, "fr/cours.md.jinja", FRENCH)
-    style = ["derive", "ZXZ", "--style", "fr/cours"]
-    words = ["--templates", str(tmp_path), "--out", str(tmp_path / "out")]
-    done = CliRunner().invoke(commands, [*style, *words])
-    assert done.exit_code == 0, done.output
+    words, own_words = ("derive", "ZXZ", "--style", "fr/cours"), ("--templates", str(tmp_path))
+    call(*words, *own_words, cwd=tmp_path)
     html = (tmp_path / "out" / NAME / f"{NAME}.html").read_text(encoding="utf-8")
     assert '<html lang="fr">' in html
     assert "Dans le repère du corps, elle vaut" in html
     assert "The rotation" not in html
-    missing = CliRunner().invoke(commands, style)
-    assert "no style 'fr/cours': expected lecture, audit, or" in str(missing.exception)
+    expected = "no style 'fr/cours': expected lecture, audit, or"
+    assert expected in call(*words, cwd=tmp_path, status=2).stderr
+    call("check", "out", *own_words, cwd=tmp_path)
+    without = call("check", "out", cwd=tmp_path, status=1).stdout
+    assert f"json: its request cannot be derived: style: {expected}" in without
+    assert "or your own fr/cours.md.jinja in --templates DIR" in without
 
 
 def test_templates_are_copied_out_and_used_again(tmp_path: Path):
-    mine, out = tmp_path / "own", tmp_path / "out"
-    done = CliRunner().invoke(commands, ["templates", str(mine)])
-    assert done.exit_code == 0, done.output
+    mine = tmp_path / "own"
+    call("templates", "own", cwd=tmp_path)
     copies = {file.relative_to(mine).as_posix() for file in mine.rglob("*.*")}
     assert copies == {*resources.replaceable()}
     html = mine / "note.html.jinja"
     html.write_text(html.read_text("utf-8").replace("</main>", "<p>Mine</p></main>"), "utf-8")
-    words = ("--templates", str(mine))
-    for line, code in (
-        (("derive", "ZXZ", *words, "--out", str(out)), 0),
-        (("check", str(out), *words), 0),
-        (("check", str(out)), 1),
-    ):
-        assert CliRunner().invoke(commands, line).exit_code == code
-    assert "<p>Mine</p>" in (out / NAME / f"{NAME}.html").read_text("utf-8")
+    call("derive", "ZXZ", "--templates", "own", cwd=tmp_path)
+    call("check", "out", "--templates", "own", cwd=tmp_path)
+    call("check", "out", cwd=tmp_path, status=1)
+    assert "<p>Mine</p>" in (tmp_path / "out" / NAME / f"{NAME}.html").read_text("utf-8")

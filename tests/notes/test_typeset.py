@@ -134,14 +134,3 @@ def test_tex_runs_no_program_and_reads_no_file_of_the_user(tmp_path: Path):
     secret.write_text("secret")
     with pytest.raises(ToolFailed):
         typeset(_page(rf"\input{{{secret}}}"))
-
-
-def test_without_tex_the_debian_packages_are_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path):
-    monkeypatch.setenv("PATH", str(tmp_path))
-    with pytest.raises(MissingTool) as caught:
-        typeset(_page("x"))
-    assert str(caught.value) == (
-        "a PDF needs pdflatex, not found here; on Debian: apt install "
-        "texlive-latex-recommended texlive-pictures lmodern"
-    )
-    assert caught.value.exit_code == 4
