@@ -12,10 +12,8 @@ from sympy import Rational, cos, cot, csc, pi, sin, sqrt, tan
 from helpers.witness import TOLERANCE, mp, number, paths, values_along
 from rigidsym.algebra.codec import codec_for
 from rigidsym.errors import AlgebraError
-from rigidsym.models.rotation import time_function
+from rigidsym.models.rotation import TIME, time_function
 
-LAW = settings(max_examples=80, deadline=None, derandomize=True)
-TIME = sp.Symbol("t")
 a, b, u, x, y, z = map(time_function, ("a", "b", "u", "x", "y", "z"))
 k, m, length = sp.symbols("k m l")
 squares = x**2 + y**2 + z**2
@@ -108,7 +106,7 @@ def expressions() -> st.SearchStrategy:
 
 
 @given(first=expressions(), second=expressions())
-@LAW
+@settings(max_examples=80)
 def test_the_codec_keeps_values_sums_products_and_derivatives(first, second):
     ring, encode = EVERY.ring, EVERY.encode
     one, two = encode(first), encode(second)

@@ -36,7 +36,7 @@ TREES = st.recursive(
 )
 
 
-@settings(max_examples=150, derandomize=True, deadline=None)
+@settings(max_examples=150)
 @given(TREES)
 def test_all_arithmetics_agree_with_fifty_digits(expression):
     assume(not expression.has(sp.zoo, sp.nan))

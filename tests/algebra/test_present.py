@@ -16,10 +16,8 @@ from rigidsym.algebra.generators import added
 from rigidsym.algebra.present import Presenter, presenter_for
 from rigidsym.algebra.ring import Quotient
 from rigidsym.errors import AlgebraError
-from rigidsym.models.rotation import time_function
+from rigidsym.models.rotation import TIME, time_function
 
-LAW = settings(max_examples=40, deadline=None, derandomize=True)
-TIME = sp.Symbol("t")
 a, b, w, x, y, z = map(time_function, ("a", "b", "w", "x", "y", "z"))
 a_dot, b_dot = a.diff(TIME), b.diff(TIME)
 m = sp.Symbol("m")
@@ -79,7 +77,7 @@ def elements(codec: Codec) -> st.SearchStrategy:
 
 @pytest.mark.parametrize("codec", CODECS.values(), ids=CODECS)
 @given(data=st.data())
-@LAW
+@settings(max_examples=40)
 def test_a_form_has_the_value_of_the_element_and_is_not_longer(codec, data):
     element = data.draw(elements(codec))
     form, plain = presenter_for(codec).element(element), codec.decode(element)

@@ -12,11 +12,10 @@ import numpy as np
 import polars as pl
 import pytest
 import trimesh
-from click.testing import CliRunner
 from scipy.spatial.transform import Rotation
 
 import rigidsym as rs
-from rigidsym.commands.cli import commands
+from helpers.command import call
 from rigidsym.data.mass import inertia_of, mesh_inertia, principal_axes_of, read_mesh_file
 from rigidsym.errors import BodyError, MissingExtra, RigidsymError
 from rigidsym.tools.evaluate import evaluate
@@ -183,14 +182,13 @@ def test_open_torn_and_inverted_meshes_are_refused():
 
 def test_the_command_shows_and_prints_as_json(tmp_path):
     np.save(tmp_path / "cloud.npy", rows())
-    shown = CliRunner().invoke(commands, ["inertia", str(tmp_path / "cloud.npy")])
-    assert shown.exit_code == 0
-    assert "500 particles" in shown.output
-    assert repr(inertia_of(tmp_path / "cloud.npy")) in shown.output
-    assert "principal axes as columns, right-handed" in shown.output
-    MESHES["ring"].export(tmp_path / "ball.stl")
-    ball = [str(tmp_path / "ball.stl"), "--density", "1000", "--json"]
-    assert '"principal_moments"' in CliRunner().invoke(commands, ["inertia", *ball]).output
+    shown = call("inertia", "cloud.npy", cwd=tmp_path).stdout
+    assert "500 particles" in shown
+    assert repr(inertia_of(tmp_path / "cloud.npy")) in shown
+    assert "principal axes as columns, right-handed" in shown
+    MESHES["ring"].export(tmp_path / "ring.stl")
+    words = ("inertia", "ring.stl", "--density", "1000", "--json")
+    assert '"principal_moments"' in call(*words, cwd=tmp_path).stdout
 
 
 @pytest.mark.parametrize(
@@ -213,8 +211,7 @@ def test_the_examples_in_docstrings_run(module):
 def test_an_option_that_does_not_fit_is_refused(tmp_path, file, options, message):
     (tmp_path / "cloud.csv").write_text("m,x,y,z\n1,0,0,0\n2,1,0,0\n")
     MESHES["ring"].export(tmp_path / "ring.stl")
-    done = CliRunner().invoke(commands, ["inertia", str(tmp_path / file), *options])
-    assert (done.exit_code, message in done.output) == (2, True)
+    assert message in call("inertia", file, *options, cwd=tmp_path, status=2).stderr
 
 
 MUTATIONS = 30  # of each kind of file
@@ -233,20 +230,14 @@ def mutated(content: bytes, rng: np.random.Generator) -> bytes:
 
 ANGLES = np.random.default_rng(1).uniform(-60, 60, (4, 3))
 MATRICES = Rotation.from_euler("ZYX", ANGLES, degrees=True).as_matrix().reshape(4, 9)
-TABLE = np.hstack([ANGLES, MATRICES])
 NAMES = ["phi", "theta", "psi", *(f"r{i}{j}" for i in "123" for j in "123")]
-
-
-def text(separator: str, mark: str) -> bytes:
-    header = separator.join(f"{n}_deg" if n in NAMES[:3] else n for n in NAMES)
-    rows = [separator.join(f"{x:.8f}".replace(".", mark) for x in row) for row in TABLE]
-    return "\n".join(["# flight 7", header, *rows, ""]).encode()
+LOG = pl.DataFrame(np.hstack([ANGLES, MATRICES]), schema=NAMES)
 
 
 FILES = {
-    "semicolons.csv": lambda path: path.write_bytes(text(";", ",")),
-    "plain.npy": lambda path: np.save(path, TABLE),
-    "log.parquet": lambda path: pl.DataFrame(TABLE, schema=NAMES).write_parquet(path),
+    "semicolons.csv": lambda path: LOG.write_csv(path, separator=";", decimal_comma=True),
+    "plain.npy": lambda path: np.save(path, LOG.to_numpy()),
+    "log.parquet": LOG.write_parquet,
 }
 
 
@@ -296,8 +287,6 @@ def test_a_file_that_is_no_mesh_is_described(tmp_path):
     empty.write_text("solid nothing\nendsolid nothing\n")
     with pytest.raises(BodyError, match=r"empty\.stl"):
         read_mesh_file(empty)
-    with pytest.raises(BodyError, match="no such mesh"):
-        read_mesh_file(tmp_path / "none.stl")
     with pytest.raises(BodyError, match=r"expected a mesh, a file that ends in \.stl, \.obj"):
         read_mesh_file(Path("/etc/passwd"))
 

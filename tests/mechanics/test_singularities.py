@@ -5,7 +5,6 @@ The witness builds R and the rate matrix from exponentials of skew matrices and 
 
 from __future__ import annotations
 
-from functools import cache
 from itertools import product
 from typing import Any
 
@@ -14,9 +13,9 @@ import pytest
 import sympy as sp
 from scipy.spatial.transform import Rotation
 
-from helpers.parametrisations import CHAINS, LONG, WITNESSES, constants_of, motion_of
+from helpers.parametrisations import CHAINS, LONG, constants_of, motion_of, way_of
 from helpers.target_modules import INVERSES
-from helpers.witness import evaluate, mp, number
+from helpers.witness import evaluate, mp, number, unhat
 from rigidsym.models.library import PARAMETRISATIONS
 
 Array = np.ndarray[Any, Any]
@@ -32,40 +31,14 @@ EVERY = (*PARAMETRISATIONS, *TURNS)
 UNDECIDED = "z(phi) [a,b,c](beta) [1,2,2](psi)"  # a cosine and a sine by any constants
 
 
-@cache
-def turns_of(text: str) -> tuple[tuple[Array, Array, float], ...]:
-    """Axis, the multiples of the coordinates in its angle, and what is added, of each turn."""
-    motion = motion_of(text)
-    model, constants = motion.model, constants_of(motion)
-    found = []
-    for turn in model.turns:
-        axis = np.array([float(number(sp.sympify(e), dict(constants))) for e in turn.direction])
-        weights = [float(sp.diff(turn.angle, q)) for q in model.coordinates]
-        rest = turn.angle.xreplace(dict.fromkeys(model.coordinates, sp.S.Zero))
-        found.append((axis, np.array(weights), float(number(rest, dict(constants)))))
-    return tuple(found)
-
-
 def rate_matrix(text: str, q: Array) -> Array:
-    """W of the rates that the constraints allow, one column for each of them."""
-    if text in WITNESSES:
-        return by_differences(text, q)
-    turned, result = Rotation.identity(), np.zeros((3, len(q)))
-    for axis, weights, rest in turns_of(text):
-        result += np.outer(turned.apply(axis), weights)
-        turned = turned * Rotation.from_rotvec(axis * (weights @ q + rest))
-    return result
-
-
-def by_differences(text: str, q: Array) -> Array:
     """Columns (∂R Rᵀ)∨ along an orthonormal basis of the allowed rates, at 50 digits."""
-    _, build = WITNESSES[text]
+    _, build = way_of(text)
     columns, point, step = [], [mp.mpf(float(x)) for x in q], mp.mpf(10) ** -20
     here = build(point)
     for direction in allowed(text, q).T:
         ahead = build([x + step * float(d) for x, d in zip(point, direction, strict=True)])
-        spin = (ahead - here) * here.T / step
-        columns.append([float(spin[i, j] - spin[j, i]) / 2 for i, j in ((2, 1), (0, 2), (1, 0))])
+        columns.append([float(part) for part in unhat((ahead - here) * here.T / step)])
     return np.array(columns).T
 
 
