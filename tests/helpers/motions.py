@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -12,6 +13,22 @@ from sympy.physics.mechanics import LagrangesMethod
 import rigidsym as rs
 from helpers.witness import agree, evaluate, mp
 from rigidsym.motion import derive
+from rigidsym.pipeline import motion_of
+from rigidsym.spec.derivation_file import read_spec
+
+GYROSCOPE = """
+[body]
+parts = [{ shape = "disc", radius = "r", mass = "m", at = [0, 0, "h"] },
+         { shape = "rod", length = "h", mass = "mu", at = [0, 0, "h/2"] }]
+[dynamics]
+potential = "(m + mu/2)*g*h*cos(theta)"
+fixed_point = [0, 0, 0]
+"""
+
+
+def motion_in(text: str, **changes: Any) -> rs.Motion:
+    """The motion of a derivation file, for ZXZ unless it has another rotation."""
+    return motion_of(replace(read_spec(text, source="top.toml", name="top"), **changes))
 
 
 @cache

@@ -11,6 +11,7 @@ import pytest
 import sympy as sp
 
 import rigidsym as rs
+from helpers.motions import motion_in
 from rigidsym.formula.scalars import formula_of, matrix_of
 from rigidsym.formula.tree import Formula, Symbol
 from rigidsym.mechanics.quantities.mass import OF_BODY_ALONE
@@ -23,37 +24,26 @@ from rigidsym.notes.figure.drawing import Facet
 from rigidsym.notes.formats.terminal import show
 from rigidsym.notes.named_body import in_names
 from rigidsym.pipeline import motion_of, read
-from rigidsym.spec.derivation_file import read_spec
 
 SYSTEMS = ("composite_body", "dual_spin_satellite", "free_body", "free_symmetric_body")
 SYSTEMS += ("heavy_asymmetric_body", "heavy_symmetric_top", "kovalevskaya_top", "solid_cone")
 
 
 DRILLED = """
-[rotation]
-sequence = "ZXZ"
-[output]
-quantities = [
+output.quantities = [
     "body", "kinetic_energy", "inertia_tensor_space", "rotational_energy", "translational_energy",
     "angular_momentum", "angular_momentum_rotation", "angular_momentum_rotation_body",
 ]
-[[body.parts]]
-shape = "box"
-sides = ["2*a", "b", "b/2"]
-density = "rho"
-[[body.parts]]
-shape = "cylinder"
-radius = "b/4"
-height = "b"
-density = "rho"
-hole = true
+[body]
+parts = [{ shape = "box", sides = ["2*a", "b", "b/2"], density = "rho" },
+         { shape = "cylinder", radius = "b/4", height = "b", density = "rho", hole = true }]
 """
 
 
 @cache
 def drilled(density: str = "rho", length: str = "a", half: str = "b") -> Motion:
-    text = DRILLED.replace("rho", density).replace("2*a", f"2*{length}").replace('"b/', f'"{half}/')
-    return motion_of(read_spec(text, source="drilled.toml", name="drilled"))
+    text = DRILLED.replace("rho", density).replace("2*a", f"2*{length}")
+    return motion_in(text.replace('"b/', f'"{half}/'))
 
 
 @pytest.mark.parametrize("letters", ["I", "J M I2 M0", "I₀ K1 I1 J1"])  # a free one, and taken ones
@@ -89,7 +79,6 @@ def letters_in(part: object) -> set[Symbol]:
 
 
 ALIKE = """
-rotation.sequence = "ZXZ"
 body = { principal_moments = ["E", "V", "T"], mass = "M + m" }
 dynamics.potential = "M*g*(L + H)*cos(theta)"
 dynamics.fixed_point = "centre_of_mass"
@@ -109,7 +98,7 @@ output.quantities = ["lagrangian", "generalised_momenta", "mass_matrix", "bias_v
     "name", [ALIKE, JOINTS, *(pytest.param(n, marks=pytest.mark.campaign) for n in SYSTEMS)]
 )
 def test_every_letter_of_a_note_is_explained(name):
-    motion = motion_of(read(name) if name in SYSTEMS else read_spec(name, source="", name="alike"))
+    motion = motion_of(read(name)) if name in SYSTEMS else motion_in(name)
     document = motion.note().document
     spans = [span for b in document.blocks for text in texts_of(b) for span in text]
     told = [each.notation for each in motion.arguments if each.name in ("q", "parameters")]
@@ -143,8 +132,7 @@ def test_names_of_moments_do_not_make_eulers_equations_longer():
 
 
 def test_letters_of_one_meaning_come_with_their_parts():
-    text = DRILLED.replace('b"\ndensity = "rho"', 'b"\ndensity = "sigma"')
-    note = motion_of(read_spec(text, source="drilled.toml", name="drilled")).note().markdown()
+    note = motion_in(DRILLED.replace('rho", hole', 'sigma", hole')).note().markdown()
     assert "is the density of the box, and $\\sigma$ is the density of the solid cylinder." in note
 
 
@@ -212,9 +200,7 @@ def test_principal_axes_are_named_after_moments_and_angles_without_inertia_are_c
     """Of a rod across a cylinder that is turned about its own axis"""
     part = '{ shape = "cylinder", radius = 0.5, density = "rho", turned = "y(beta) z(alpha)" }'
     rod = '{ shape = "rod", length = 2, mass = 1.5, turned = "y(beta) z(theta)" }'
-    head = '[rotation]\nsequence = "zxz"\n[output]\nquantities = ["body"]\n'
-    text = f"{head}[body]\nparts = [{part}, {rod}]\n"
-    motion = motion_of(read_spec(text, source="turned.toml", name="turned"))
+    motion = motion_in(f'output.quantities = ["body"]\nbody.parts = [{part}, {rod}]\n')
     assert "drawn for" in motion.note().markdown()
     drawing, is_principal = body_drawing(motion)
     assert not is_principal

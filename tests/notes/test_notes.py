@@ -13,7 +13,7 @@ import sympy as sp
 
 import rigidsym as rs
 from helpers.command import call
-from helpers.motions import derived
+from helpers.motions import GYROSCOPE, derived, motion_in
 from helpers.pages import motion_of
 from helpers.typesetting import bound_together
 from rigidsym.errors import ModelError
@@ -141,19 +141,7 @@ def test_a_lecture_has_every_equation_and_leaves_out_what_an_audit_adds():
 
 def test_equations_of_motion_have_letters_for_long_moments():
     """The moments of a disc on a rod would fill the page, and are in the note once."""
-    file = """[rotation]
-sequence = "ZXZ"
-[body]
-parts = [{ shape = "disc", radius = "r", mass = "m", at = [0, 0, "l"] },
-         { shape = "rod", length = "l", mass = "mu", at = [0, 0, "l/2"] }]
-[dynamics]
-fixed_point = [0, 0, 0]
-potential = "(m + mu/2)*g*l*cos(theta)"
-[output]
-note = ["md"]
-"""
-    spec = read_spec(file, source="gyro.toml", name="gyro")
-    text = output_of(spec).files["gyro.md"]
+    text = motion_in(GYROSCOPE).note().markdown()
     equations = text.partition("## The equations of motion")[2].partition("## Appendix")[0]
     assert "I _1" in equations
     assert not [words for words in ("r^2", "moves freely") if words in equations]
