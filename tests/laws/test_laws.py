@@ -33,9 +33,6 @@ def test_every_step_is_proved(m: Moving):
     assert all(step.proofs for step in m.motion.steps)
 
 
-# The rotation
-
-
 @every_rotation
 def test_the_matrix_is_the_rotation_of_its_name(m: Moving):
     """R = R_z(φ) R_x(θ) R_z(ψ) for ZXZ, R x = q x q* for a quaternion q, ..."""
@@ -46,9 +43,6 @@ def test_the_matrix_is_the_rotation_of_its_name(m: Moving):
 def test_the_rate_of_the_matrix_is_its_derivative_along_the_path(m: Moving):
     """Ṙ = dR(q(t))/dt"""
     assert agree(m.R_dot, m.turned_rate)
-
-
-# The angular velocity
 
 
 @every_rotation
@@ -82,9 +76,6 @@ def test_space_and_body_components_are_one_vector(m: Moving):
 def test_angular_acceleration_is_the_derivative_of_the_velocity(m: Moving):
     """dΩ/dt, from the second derivative of R"""
     assert agree(m.angular_acceleration_space, m.turned_acceleration)
-
-
-# The rates of the coordinates
 
 
 @every_rotation

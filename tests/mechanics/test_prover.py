@@ -109,9 +109,6 @@ def test_symbols_in_axes_have_an_example(axes):
         assert sp.expand(condition.xreplace(dict(model.example))) == 0
 
 
-# Matrices that are real nowhere, or at a point only
-
-
 @pytest.mark.parametrize(
     "model",
     [
@@ -187,9 +184,6 @@ def test_singular_points_satisfy_the_conditions(constraint, value):
         assert point.rank > 0
 
 
-# Claims are evaluated
-
-
 def test_a_false_claim_that_the_ring_takes_for_true_is_a_defect(monkeypatch):
     monkeypatch.setattr(RingMatrix, "is_zero", lambda *_: True)
     with pytest.raises(Defect, match="a defect of rigidsym"):
@@ -205,9 +199,6 @@ def test_every_claim_of_a_derivation_is_evaluated(monkeypatch):
 def test_what_is_false_on_the_conditions_is_refuted_by_a_value():
     with pytest.raises(NotARotation, match="left over"):
         derive(own(ABOUT_Z * (x**2 + y**2), x**2 + y**2 - 4, example={x: 0, y: 2}))
-
-
-# The prover in small rings
 
 
 def column(codec: Codec, *entries: sp.Expr) -> RingMatrix:

@@ -136,9 +136,6 @@ def test_an_entry_that_states_no_axes_is_derived_about_the_axes_of_each_model():
         values_of(XYX).step(rows)
 
 
-# Quantities by name
-
-
 @pytest.mark.parametrize(
     "names",
     [("rotation_matrix", "angular_velocity_body"), ("rates_from_angular_velocity_body",)],
@@ -165,9 +162,6 @@ def test_quantities_that_there_are_not_are_refused():
         rs.derive("ZXZ").anglar_velocity_body  # noqa: B018
     with pytest.raises(AttributeError, match="no quantity rotational_energy; it needs a body"):
         rs.derive("ZXZ").rotational_energy  # noqa: B018
-
-
-# Conversions beside them
 
 
 def test_conversions_are_part_of_what_is_proved(monkeypatch):

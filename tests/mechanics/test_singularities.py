@@ -44,20 +44,11 @@ def rate_matrix(text: str, q: Array) -> Array:
 
 def allowed(text: str, q: Array) -> Array:
     """An orthonormal basis, in columns, of the rates that keep to the constraints."""
-    if text == "unit_quaternion":
-        normals = q[None, :]
-    elif text == "axis_angle":
-        normals = np.array([[*q[:3], 0.0]])
-    elif text == "direction_cosines":
-        rows = q.reshape(3, 3)
-        pairs = [(i, j) for i in range(3) for j in range(i, 3)]
-        normals = np.zeros((6, 9))
-        for place, (i, j) in enumerate(pairs):
-            normals[place, 3 * i : 3 * i + 3] += rows[j]
-            normals[place, 3 * j : 3 * j + 3] += rows[i]
-    else:
+    model = motion_of(text).model
+    if not model.constraints:
         return np.eye(len(q))
-    return np.linalg.svd(normals)[2][len(normals) :].T
+    normals = numbers(sp.Matrix(model.constraints).jacobian(model.coordinates), text, q)
+    return np.linalg.svd(normals)[2][rank(normals) :].T
 
 
 def rank(matrix: Array) -> int:

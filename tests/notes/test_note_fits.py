@@ -6,7 +6,9 @@ import pytest
 import sympy as sp
 
 import rigidsym as rs
+from helpers.motions import values_for
 from helpers.typesetting import warnings_of
+from helpers.witness import agree, evaluate
 from rigidsym.formula.display import PAGE, display
 from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.mechanics.kinematics.workspace import LENGTH
@@ -74,16 +76,8 @@ def test_lengths_change_no_value(name):
     for entry in (entry for step in motion.steps for entry in step.expression[:2]):
         short = length.shortened(entry)
         assert short.has(length.symbol)
-        assert _agree(entry, short.subs(length.rate, rate).subs(length.symbol, square))
-
-
-def _agree(one: sp.Expr, other: sp.Expr) -> bool:
-    """Whether two expressions have the same value at a point, to 40 digits."""
-    moving = sorted(one.atoms(sp.Derivative), key=lambda d: (-d.derivative_count, str(d)))
-    moving += sorted(one.atoms(sp.core.function.AppliedUndef, sp.Symbol), key=str)
-    point = {part: sp.Rational(k + 2, 7) for k, part in enumerate(moving)}
-    left, right = (e.xreplace(point).evalf(60) for e in (one, other))
-    return bool(abs(left - right) < sp.Float(10) ** -40)
+        plain = short.subs(length.rate, rate).subs(length.symbol, square)
+        assert agree(*(evaluate(sp.Matrix([e]), values_for(motion)) for e in (entry, plain)))
 
 
 @pytest.mark.parametrize("name", VECTORS)
@@ -99,7 +93,7 @@ def test_matrices_of_a_vector_are_shown_as_such(name):
         for term in step.vector_form.terms:
             coefficient = term.coefficient.subs(step.vector_form.length, size)
             total += coefficient * named[term.vector.text]
-        assert all(_agree(e, t) for e, t in zip(step.expression, total, strict=True))
+        assert agree(*(evaluate(m, values_for(motion)) for m in (step.expression, total)))
 
 
 def test_signs_before_fractions_and_half_angles_change_no_coefficient():

@@ -128,9 +128,6 @@ def test_coordinates_that_are_no_rotation_are_refused():
         motion.simulate(turning((1, 0, 0)) | {"x": 0.5}, BRICK, 1.0)
 
 
-# --- the top
-
-
 @pytest.mark.parametrize("choose", [min, max])
 def test_steady_precession_goes_on_for_a_hundred_turns(choose):
     """A cos θ φ̇² − C ω₃ φ̇ + m g l = 0 keeps θ constant, with ω₃ = ψ̇ + φ̇ cos θ"""
@@ -253,9 +250,6 @@ def test_the_command_writes_a_page(tmp_path):
 )
 def test_wrong_options_of_the_command_are_refused(wrong, message, tmp_path):
     assert message in call("simulate", *wrong.split(), cwd=tmp_path, status=2).stderr
-
-
-# --- motions that reach a pole of their coordinates
 
 
 @pytest.mark.parametrize(
