@@ -178,7 +178,11 @@ class Moving:
     @cached_property
     def values(self) -> dict[sp.Expr, Any]:
         """The constants, and the coordinates with their rates and second derivatives."""
-        return values_on(self.motion, way_of(self.text)[0])
+        values, curve = constants_of(self.motion), way_of(self.text)[0]
+        for order in range(3):
+            for place, symbol in enumerate(self.motion.arguments[order].symbols):
+                values[symbol] = mp.diff(lambda t, k=place: curve(t)[k], 0, order)
+        return values
 
     def argument(self, name: str) -> Any:
         return mp.matrix([self.values[symbol] for symbol in self.motion.argument(name).symbols])
@@ -218,15 +222,6 @@ class Moving:
     @property
     def R_dot(self) -> Any:
         return self.rotation_rate.T if self.is_passive else self.rotation_rate
-
-
-def values_on(motion: Motion, curve: Curve) -> dict[sp.Expr, Any]:
-    """Coordinates and rates at t = 0 of a curve, and values of the constants."""
-    values = constants_of(motion)
-    for order in range(3):
-        for place, symbol in enumerate(motion.arguments[order].symbols):
-            values[symbol] = mp.diff(lambda t, k=place: curve(t)[k], 0, order)
-    return values
 
 
 # Every rotation that can be asked for by name, and some chains.

@@ -13,11 +13,9 @@ from typing import Any
 import pytest
 import sympy as sp
 
-import rigidsym as rs
-from helpers.parametrisations import values_on, way_of
+from helpers.parametrisations import Moving
 from helpers.reading import Values, define, equations
 from helpers.witness import TOLERANCE, evaluate, mp
-from rigidsym.models.library import rotation_from
 
 VECTORS = {  # as the notes call it, its components, and those whose length is n
     "quaternion": ("v", "q_1 q_2 q_3", "q_0 q_1 q_2 q_3"),
@@ -47,8 +45,11 @@ class Printed:
     """A motion, a point in its coordinates, and what each quantity is worth there."""
 
     def __init__(self, text: str) -> None:
-        self.motion = rs.derive(rotation_from(text))
-        self.point = self._point(text)
+        moving = Moving(text, passive=False)
+        self.motion, self.point = moving.motion, dict(moving.values)
+        for frame in ("space", "body"):
+            omega = getattr(moving, f"angular_velocity_{frame}")
+            self.point |= zip(self.motion.argument(f"omega_{frame}").symbols, omega, strict=True)
         self.expected = {
             step.quantity.name: evaluate(self.motion.spelled(step.expression), self.point)
             for step in self.motion.steps
@@ -73,14 +74,6 @@ class Printed:
         self._add_slopes("W'", "rate_matrix_body")
         if text in VECTORS:
             self._add_vectors(*VECTORS[text])
-
-    def _point(self, text: str) -> dict[sp.Expr, Any]:
-        values = values_on(self.motion, way_of(text)[0])
-        for frame in ("space", "body"):
-            expression = self.motion.step(f"angular_velocity_{frame}").expression
-            omega = evaluate(self.motion.spelled(expression), values)
-            values |= zip(self.motion.argument(f"omega_{frame}").symbols, omega, strict=True)
-        return values
 
     def _add_vectors(self, letter: str, components: str, long: str) -> None:
         def vector(names: str, dots: str = "") -> Any:
