@@ -16,15 +16,10 @@ w, x, y, z = map(time_function, ("w", "x", "y", "z"))
 m, length, alpha = sp.symbols("m l alpha")
 
 
-def values(**numbers: int | str) -> dict[sp.Expr, sp.Rational]:
-    """Rational values of symbols by name."""
-    by_name = {str(getattr(s, "func", s)): s for s in (phi, theta, w, x, y, z)} | {"m": m}
-    return {by_name[name]: Rational(number) for name, number in numbers.items()}
-
-
 def model(matrix, *coordinates, constraints=(), example=None) -> RotationModel:
     """A model with a given matrix in given coordinates; by default, a unit quaternion's example."""
-    point = dict(zip((w, x, y, z), (Rational(k, 11) for k in (1, 2, 4, 10)), strict=True))
+    unit = {w: Rational(1, 11), x: Rational(2, 11), y: Rational(4, 11), z: Rational(10, 11)}
+    point = {symbol: sp.sympify(value) for symbol, value in (example or unit).items()}
     return RotationModel(
         name="sample",
         title="Sample",
@@ -33,7 +28,7 @@ def model(matrix, *coordinates, constraints=(), example=None) -> RotationModel:
         matrix=sp.ImmutableMatrix(matrix),
         source=Citation(text="this test"),
         constraints=constraints,
-        example=tuple((point if example is None else example).items()) if constraints else (),
+        example=tuple(point.items()) if constraints and example != {} else (),
     )
 
 
@@ -59,7 +54,7 @@ ROTATIONS = {
         QUATERNION / m,
         *(w, x, y, z),
         constraints=(w**2 + SQUARE - m,),
-        example=values(m=15, w=1, x=1, y=2, z=3),
+        example={m: 15, w: 1, x: 1, y: 2, z: 3},
     ),
     "sums and multiples": model(
         chain(("z", 2 * phi), ("x", theta), ("z", phi / 3 + psi)), phi, theta, psi
@@ -86,7 +81,7 @@ ROTATIONS = {
         chain(("z", phi), ("x", theta), ("z", psi)),
         *(phi, theta, psi),
         constraints=(phi - theta,),
-        example=values(phi="1/3", theta="1/3"),
+        example={phi: Rational(1, 3), theta: Rational(1, 3)},
     ),
 }
 TINY = Rational(1, 10**30)

@@ -220,8 +220,6 @@ def test_a_quaternion_is_printed_in_letters_that_are_no_axes(order):
 def test_a_choice_that_is_none_is_refused():
     with pytest.raises(ModelError, match="notation, rates: expected dot or fraction, got 'dots'"):
         derived("ZXZ").with_notation(rates="dots")
-    with pytest.raises(ModelError, match=r"no style 'book': expected lecture, audit, or .* en/b"):
-        derived("ZXZ").note(style="book")
 
 
 @pytest.mark.parametrize(("name", "other"), [("omega", "Omega"), ("Omega", "omega")])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 from runpy import run_path
 from textwrap import dedent
 
@@ -11,9 +10,8 @@ import numpy as np
 import pytest
 import sympy as sp
 import trimesh
-from click.testing import CliRunner
 
-from rigidsym.commands.cli import commands
+from helpers.command import call
 from rigidsym.errors import KernelError
 from rigidsym.models.body import RigidBody
 from rigidsym.pipeline import integrated, output_of
@@ -53,18 +51,9 @@ def test_numbers_with_a_point_are_values_of_parameters():
 
 BOX = trimesh.creation.box(extents=(1.0, 2.0, 3.0))
 BRACKET = """
-[[body.parts]]
-shape = "box"
-sides = [0.2, 0.1, 0.05]
-mass = 3.0
-[[body.parts]]
-shape = "cylinder"
-radius = 0.02
-height = 0.05
-mass = 0.4
-at = [0.05, 0.0, 0]
-turned = "z(pi/4)"
-hole = true
+body.parts = [{ shape = "box", sides = [0.2, 0.1, 0.05], mass = 3.0 },
+    { shape = "cylinder", radius = 0.02, height = 0.05, mass = 0.4, hole = true, at = [
+        0.05, 0.0, 0], turned = "z(pi/4)" }]
 """
 
 
@@ -104,37 +93,27 @@ def test_a_part_is_turned_by_any_rotation():
     assert body_in(f"[body]\nparts = [{part}]").inertia == sp.diag(10, 13, 5)
 
 
-@pytest.fixture
-def folder(tmp_path: Path) -> Path:
-    """A folder with a mesh and a cloud of particles."""
+def test_one_command_from_a_file_to_energies_kernels_and_note(tmp_path):
+    """I, principal axes, energies, kernels and note; and the record asks for the same again."""
     BOX.export(tmp_path / "box.stl")
-    random = np.random.default_rng(3)
-    np.save(tmp_path / "cloud.npy", random.uniform(0.5, 2, size=(50, 4)))
+    np.save(tmp_path / "cloud.npy", np.random.default_rng(3).uniform(0.5, 2, size=(50, 4)))
     (tmp_path / "mesh.toml").write_text('[body]\nmesh = "box.stl"\ndensity = 2.0\n')
     parts = '[body]\nparts = [{ mesh = "box.stl", mass = 6.0 }, { particles = "cloud.npy" }]\n'
     (tmp_path / "both.toml").write_text(parts)
-    return tmp_path
-
-
-def test_one_command_from_a_file_to_energies_kernels_and_note(folder):
-    """I, principal axes, energies, kernels and note; and the record asks for the same again."""
-    name = "both"
-    run = ["run", str(folder / f"{name}.toml"), "--out", str(folder / "out")]
-    result = CliRunner().invoke(commands, run)
-    assert result.exit_code == 0, result.output
-    assert "principal moment " in result.output
-    assert "unproved" not in result.output
-    made = folder / "out" / name
-    record = json.loads((made / f"{name}.json").read_text(encoding="utf-8"))
+    shown = call("run", str(tmp_path / "both.toml"), cwd=tmp_path).stdout
+    assert "principal moment " in shown
+    assert "unproved" not in shown
+    made = tmp_path / "out" / "both"
+    record = json.loads((made / "both.json").read_text(encoding="utf-8"))
     assert record["is_proved"]
-    assert str(folder) not in json.dumps(record)
+    assert str(tmp_path) not in json.dumps(record)
     names = {quantity["name"] for quantity in record["quantities"]}
     assert {"inertia_tensor", "kinetic_energy", "angular_momentum"} <= names
-    assert "Principal moments" in (made / f"{name}.html").read_text(encoding="utf-8")
+    assert "Principal moments" in (made / "both.html").read_text(encoding="utf-8")
     values = [p["value"] for p in record["body"]["parameters"]]
-    tensor = run_path(str(made / f"{name}.py"))["inertia_tensor"](values)
+    tensor = run_path(str(made / "both.py"))["inertia_tensor"](values)
     assert np.allclose(tensor, record["body"]["in_numbers"]["inertia_tensor"], rtol=1e-13)
-    body = integrated(read_file(str(folder / "mesh.toml"))).body
+    body = integrated(read_file(str(tmp_path / "mesh.toml"))).body
     assert np.allclose(np.array(body.in_numbers(body.inertia), float), 2 * BOX.moment_inertia)
     again = integrated(read_record(record["request"])).body
     assert again is not None
