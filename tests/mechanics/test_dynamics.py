@@ -1,7 +1,8 @@
-"""Equations of motion: SymPy's own Lagrange, first integrals, and what cannot be asked for."""
+"""Energy, momentum and equations of motion: laws, SymPy's own forms, and what is refused."""
 
 from __future__ import annotations
 
+import json
 import re
 from dataclasses import replace
 from functools import cache
@@ -10,15 +11,19 @@ import numpy as np
 import pytest
 import sympy as sp
 from scipy.spatial.transform import Rotation
+from sympy.physics.vector import dynamicsymbols
 
 import rigidsym as rs
+from helpers.command import ROOT
 from helpers.motions import solves_lagrange, values_for
 from helpers.node import load
 from helpers.target_modules import EVERY
 from helpers.witness import agree, evaluate, mp
 from rigidsym.errors import Defect, ModelError, QuantityError
 from rigidsym.mechanics.dynamics import tree
+from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
 from rigidsym.models.body import given_inertia
+from rigidsym.models.library import PARAMETRISATIONS
 from rigidsym.models.rotation import TIME
 
 A, B, C = sp.symbols("A B C")
@@ -247,3 +252,68 @@ def test_forces_that_cannot_be_are_refused(given, message):
         rs.derive(rotation, ["state_derivative"], body=rs.principal_moments(A, A, C), **given)
     with pytest.raises(rs.RigidsymError, match="a body"):
         rs.derive("ZXZ", potential=TOP)
+
+
+BODIES = {
+    "general": rs.principal_moments(A, B, C),
+    "symmetric": rs.principal_moments(A, A, C),
+    "spherical": rs.principal_moments(A, A, A),
+    "six entries": rs.general_inertia(),
+}
+ENERGY = ("inertia_tensor", *ENERGY_QUANTITIES)
+
+
+@cache
+def derived(rotation: str, body: str = "six entries") -> rs.Motion:
+    return rs.derive(rotation, ENERGY, body=BODIES[body])
+
+
+MODELS = (
+    # the proof of the direction cosines is long
+    *(name for name in PARAMETRISATIONS if name not in ("direction_cosines", "rotation_vector")),
+    pytest.param("rotation_vector", marks=pytest.mark.campaign),
+    "z(phi) x(theta) z(psi) y(delta)",
+    "x(a_1) y(a_2) z(a_3) x(a_4) y(a_5)",
+    "z(2*phi - psi) x(theta) z(psi)",
+)
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_laws_over_the_catalogue(name):
+    """Proved, and in coordinates and rates: q·q̇ = 0 would bring accelerations in."""
+    motion = derived(name)
+    assert motion.is_proved
+    claims = {proof.claim.text for proof in motion.proofs}
+    assert {"L_R·Ω = 2E_R", "L′_R·Ω′ = 2E_R", "½Ωᵀ (R I′ Rᵀ) Ω = E_R"} <= claims
+    symbols = [s for n in ("q_dot", "q", "parameters") for s in motion.argument(n).symbols]
+    functions = sp.Matrix([motion.rotational_energy, *motion.angular_momentum_rotation])
+    plain = functions.xreplace(dict(zip(symbols, sp.symbols(f"s:{len(symbols)}"), strict=True)))
+    assert not plain.atoms(sp.Derivative)
+
+
+@pytest.mark.parametrize("body", ["general", "symmetric", "spherical"])
+def test_never_longer_than_sympy_after_simplify(body):
+    kept = ROOT / "tests/golden/operations_of_sympy.json"  # SymPy takes an hour to simplify them
+    for name, shortest in json.loads(kept.read_text("utf-8"))["ZXZ"][body].items():
+        expression = derived("ZXZ", body).step(name).expression
+        assert sum(int(sp.count_ops(entry)) for entry in expression) <= shortest, name
+
+
+def test_the_symmetric_body_as_a_textbook_prints_it():
+    theta = dynamicsymbols("theta")
+    phi_dot, theta_dot, psi_dot = dynamicsymbols("phi theta psi", 1)
+    energy = sp.Rational(1, 2) * A * (theta_dot**2 + phi_dot**2 * sp.sin(theta) ** 2)
+    energy += sp.Rational(1, 2) * C * (psi_dot + phi_dot * sp.cos(theta)) ** 2
+    assert derived("ZXZ", "symmetric").rotational_energy == energy
+    spherical = theta_dot**2 + phi_dot**2 + psi_dot**2 + 2 * phi_dot * psi_dot * sp.cos(theta)
+    assert derived("ZXZ", "spherical").rotational_energy == A * spherical / 2
+    squares = sp.Add(*(rate**2 for rate in dynamicsymbols("w x y z", 1)))
+    assert derived("unit_quaternion", "spherical").rotational_energy == 2 * A * squares
+
+
+def test_names_that_stand_for_two_things_are_refused():
+    body = rs.principal_moments(A, B, sp.Symbol("X"))
+    with pytest.raises(ModelError, match="X is a name both"):
+        rs.derive("ZXZ", body=body)
+    with pytest.raises(ModelError, match="A is a name both"):
+        rs.derive(rs.EulerAngles("ZXZ", ("A", "beta", "gamma")), body=BODIES["general"])

@@ -1,5 +1,7 @@
 """Equations 1 to 18 of the lecture: proved in the ring, and true of one cloud of particles.
 
+The formulas typed from its page are those of the derivation by ==, which is equality of the form.
+
 The cloud moves and turns along a path in 50 digits; nothing of the derivation takes part in it.
 """
 
@@ -12,6 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 import sympy as sp
+from sympy import cos, sin
 from sympy.physics.vector import dynamicsymbols
 
 import rigidsym as rs
@@ -22,6 +25,8 @@ from rigidsym.errors import DerivationError, ModelError, SpecError
 from rigidsym.mechanics import lecture as theory_of
 from rigidsym.mechanics.derivation import Statement
 from rigidsym.mechanics.lecture import theory
+from rigidsym.models.library import PRESETS
+from rigidsym.models.rotation import SOURCES, lecture as cited
 from rigidsym.notes.formats.pdf import typeset
 from rigidsym.notes.formats.record import record
 from rigidsym.pipeline import output_of
@@ -174,6 +179,68 @@ def test_the_theory_goes_with_any_rotation_and_says_what_it_cannot():
     text = 'theory = true\n[rotation]\nsequence = "ZXZ"\npassive = true'
     with pytest.raises(SpecError, match=r"theory: .*active"):
         read_spec(text, source="file", name="mine")
+
+
+phi, theta, psi = dynamicsymbols("phi theta psi")
+phi_dot, theta_dot, psi_dot = dynamicsymbols("phi theta psi", 1)
+
+
+def typed(*rows: str) -> sp.ImmutableMatrix:
+    """A matrix in the letters c and s of the angles f, t and p, with their rates F, T and P."""
+    names = {
+        f"{name}{angle}": function(q)
+        for name, function in (("c", cos), ("s", sin))
+        for angle, q in (("f", phi), ("t", theta), ("p", psi))
+    }
+    names |= {"F": phi_dot, "T": theta_dot, "P": psi_dot}
+    return sp.ImmutableMatrix([[sp.sympify(e, names) for e in row.split(",")] for row in rows])
+
+
+TYPED = {
+    "rotation_matrix": typed(
+        "cf*cp - sf*sp*ct, -cf*sp - sf*cp*ct, sf*st",
+        "sf*cp + cf*sp*ct, cf*cp*ct - sf*sp, -cf*st",
+        "sp*st, cp*st, ct",
+    ),
+    "spin_matrix": typed(
+        "0, -F - P*ct, sf*T - P*cf*st",
+        "F + P*ct, 0, -P*sf*st - cf*T",
+        "P*cf*st - sf*T, P*sf*st + cf*T, 0",
+    ),
+    "angular_velocity_space": typed("P*sf*st + cf*T", "sf*T - P*cf*st", "F + P*ct"),
+    "angular_velocity_body": typed("F*sp*st + T*cp", "F*st*cp - T*sp", "F*ct + P"),
+}
+
+
+@pytest.mark.parametrize("quantity", TYPED)
+def test_the_printed_formulas_are_derived_term_by_term(quantity):
+    derived = getattr(lecture(), quantity)
+    assert derived.shape == TYPED[quantity].shape
+    assert [*derived] == [*TYPED[quantity]]
+
+
+def test_equation_17_is_the_product_as_written():
+    """Of R_z and R_x as the lecture prints them below it."""
+
+    def turn_z(beta):
+        return sp.Matrix([[cos(beta), -sin(beta), 0], [sin(beta), cos(beta), 0], [0, 0, 1]])
+
+    turn_x = sp.Matrix([[1, 0, 0], [0, cos(theta), -sin(theta)], [0, sin(theta), cos(theta)]])
+    motion = rs.derive("ZXZ")
+    assert motion.model.matrix == turn_z(phi) * turn_x * turn_z(psi)
+    assert rs.EulerAngles("313") == motion.model
+    # "for θ = 0 all φ and ψ of one sum lead to one orientation"
+    assert [p.places[0].value for p in motion.singularities.points] == [0, sp.pi]
+    assert [tuple(p.null_rates) for p in motion.singularities.points] == [(1, 0, -1), (1, 0, 1)]
+    level = motion.rotation_matrix.subs(theta, 0) - turn_z(phi + psi).applyfunc(sp.expand_trig)
+    assert level.applyfunc(sp.expand) == sp.zeros(3)
+
+
+def test_sources_are_published_books_and_the_lecture_for_its_own_angles():
+    sources = {step.quantity.name: step.quantity.source for step in lecture().steps}
+    assert sources["rotation_matrix"] == SOURCES["Landau 35"]
+    assert sources["spin_matrix"] == sources["angular_velocity_body"] == SOURCES["Murray 2.4"]
+    assert PRESETS["lecture_angles"].source == cited("17", "section 3.2")
 
 
 @pytest.mark.usefixtures("tex")
