@@ -16,7 +16,7 @@ from math import isfinite
 from types import FrameType
 from typing import TypeVar
 
-from rigidsym.errors import LimitReached, RequestError, printable
+from rigidsym.errors import LimitReached, RequestError, RigidsymError, printable
 
 T = TypeVar("T")
 R = TypeVar("R")
@@ -54,7 +54,7 @@ def in_processes(work: Callable[[T], R], items: Sequence[T]) -> Iterator[R]:
     """The result of each item, in order; work, items, results and errors can be pickled.
 
     The first item is done before this process is copied, so that the copies have all that it
-    imported and kept for the next.
+    imported and kept for the next. This process does its share of the others.
     """
     yield from map(work, items[:1])
     # the threads of JAX are not copied, and a copy would wait for them
@@ -62,15 +62,27 @@ def in_processes(work: Callable[[T], R], items: Sequence[T]) -> Iterator[R]:
     if count < 2:
         yield from map(work, items[1:])
         return
+    from concurrent.futures import Future
     from concurrent.futures.process import BrokenProcessPool, ProcessPoolExecutor
     from multiprocessing import active_children, get_context
 
     done = 1
-    with ProcessPoolExecutor(count, get_context("fork"), _obey_this_process) as pool:
+    with ProcessPoolExecutor(count - 1, get_context("fork"), _obey_this_process) as pool:
         try:
-            for result in pool.map(work, items[1:]):
-                yield result
-                done += 1
+            futures = [pool.submit(work, item) for item in items[1:]]
+            while done < len(items):
+                # until a copy has the next result, this process does the first that none has begun
+                waiting = () if futures[done - 1].done() else range(done - 1, len(futures))
+                place = next((k for k in waiting if futures[k].cancel()), None)
+                if place is None:
+                    yield futures[done - 1].result()
+                    done += 1
+                    continue
+                futures[place] = Future()
+                try:
+                    futures[place].set_result(work(items[place + 1]))
+                except RigidsymError as error:  # which is raised in its turn
+                    futures[place].set_exception(error)
         except BrokenProcessPool:  # the system ended a copy, for want of memory for instance
             yield from map(work, items[done:])
         except BaseException:  # an interrupt does not wait for results
