@@ -23,7 +23,7 @@ from rigidsym.models.forces import OMEGA_COMPONENTS, initial_values
 from rigidsym.notes.document import Document
 from rigidsym.notes.facts.rotation import sum_of_turns
 from rigidsym.notes.figure.body_mesh import lengths_in
-from rigidsym.notes.formats.html import HtmlPrinter, escape, rendered
+from rigidsym.notes.formats.html import escape, printer_of, rendered
 from rigidsym.notes.words import unit_in_words
 from rigidsym.page.controls import constants_of, controls_of
 from rigidsym.page.functions import Functions, functions_of, has_turns
@@ -73,7 +73,7 @@ def print_page(
         )
     ]
     in_degrees = any(control["unit"] == "°" for control in controls)
-    printer = HtmlPrinter(document)
+    printer = printer_of(document)
     values = [_value(step, in_degrees=in_degrees) for step in functions.live]
     factors = {value["name"]: value["factor"] for value in values}
     factors |= {"first_integrals": 1} if functions.integrals else {}

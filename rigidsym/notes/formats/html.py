@@ -7,6 +7,7 @@ in smaller type, and scrolls sideways if that is not enough.
 from __future__ import annotations
 
 import re
+from functools import cached_property, lru_cache
 from html import escape as escape_markup
 
 from math_core import LatexToMathML
@@ -32,17 +33,13 @@ _INLINE = 13.0  # ems of a formula between words on a phone
 
 def render(document: doc.Document) -> str:
     """The note as an HTML file; the same document gives the same bytes."""
-    return rendered(TEMPLATE, HtmlPrinter(document))
+    return rendered(TEMPLATE, printer_of(document))
 
 
 def rendered(template: str, printer: HtmlPrinter, **more: object) -> str:
     """A template with the note in it; `more` is what else the template places."""
-    document = printer.document
-    sections = [
-        {"title": escape(section.title), "key": f"section-{place}", "body": printer.body(section)}
-        for place, section in enumerate(document.sections, start=1)
-    ]
-    parts = {"language": document.language, "sections": sections, **printer.placed(), **more}
+    parts = {"language": printer.document.language, "sections": printer.sections}
+    parts |= printer.placed() | more
     return resources.environment().get_template(template).render(parts)
 
 
@@ -64,6 +61,7 @@ _MENDED = (
 )
 
 
+@lru_cache(maxsize=1 << 12)  # a note prints a symbol in many places
 def math(latex: str, *, is_display: bool = False, is_tall: bool = False) -> str:
     """A `math` element, with its LaTeX for readers that know no MathML.
 
@@ -94,6 +92,13 @@ class HtmlPrinter(NotePrinter):
             for equation, layout in self.displays.items()
         }
         self._blocks = resources.environment().get_template(BLOCKS).module
+
+    @cached_property
+    def sections(self) -> list[dict[str, str]]:
+        return [
+            {"title": escape(section.title), "key": f"section-{place}", "body": self.body(section)}
+            for place, section in enumerate(self.document.sections, start=1)
+        ]
 
     def block(self, block: doc.NoteBlock) -> str:
         return str(getattr(self._blocks, type(block).__name__.lower())(self, block)).strip()
@@ -128,3 +133,6 @@ class HtmlPrinter(NotePrinter):
         # a line may end within the long name of a function
         breakable = escape(text).replace("_", "_<wbr>").replace("(", "<wbr>(")
         return f"<code>{breakable}</code>"
+
+
+printer_of = lru_cache(maxsize=1)(HtmlPrinter)  # a page holds the note that has a file of its own
