@@ -115,7 +115,8 @@ def constants_of(body: RigidBody | None) -> dict[sp.Symbol, float]:
 def period_of(symbol: sp.Expr, model: RotationModel) -> float:
     """After how many radians R is as before; 0 if the symbol is not part of an angle of a turn."""
     turns = turns_of(model)
-    slopes = [turn.angle.diff(symbol) for turn in turns if turn.angle.has(symbol)]
+    angles = [turn.angle for turn in turns if turn.angle.has(symbol)]
+    slopes = [sp.S.One if angle == symbol else angle.diff(symbol) for angle in angles]
     is_angle = slopes and not any(part.has(symbol) for turn in turns for part in turn.components)
     # R depends on sines and cosines of p/q times the angle, with whole p and q; each repeats after
     # 2π q.

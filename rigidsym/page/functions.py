@@ -67,7 +67,7 @@ def functions_of(derivation: Derivation) -> Functions:
     live = tuple(step for step in whole.steps if is_live(step.quantity))
     arguments = {argument.name: argument for argument in (*whole.arguments, *derivation.arguments)}
     flow = tuple(derivation.step(name) for name in _FLOW if name in derivation.functions)
-    steps = (*live, whole.step(_WITH_A_MARGIN), *_more(derivation), *flow)
+    steps = (*live, *_more(derivation), *flow)
     merged = replace(
         whole.select(needed),
         body=None,
@@ -76,11 +76,10 @@ def functions_of(derivation: Derivation) -> Functions:
         steps=tuple(replace(step, number=0) for step in steps),
         functions={},
     )
-    kernels = lower(merged, javascript.RESERVED).kernels
     return Functions(
         derivation=merged,
         live=live,
-        kernels=tuple(kernel for kernel in kernels if kernel.name != _WITH_A_MARGIN),
+        kernels=lower(merged, javascript.RESERVED).kernels,
         integrals=derivation.first_integrals if flow else (),
     )
 

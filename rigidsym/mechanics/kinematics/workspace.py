@@ -299,10 +299,11 @@ class Renamed(Values):
         step, moves = self._steps[entry.name], self.moves
         if step is None or moves == [0, 1, 2]:
             return step
-        omegas = (self.arguments[f"omega_{frame}"].symbols for frame in ("space", "body"))
+        omegas = [self.arguments[n].symbols for n in entry.inputs if n.startswith("omega")]
         names = {omega[m]: omega[k] for omega in omegas for k, m in enumerate(moves)}
+        expression = step.expression.xreplace(names) if names else step.expression
         rows, columns = (moves if n in entry.axes else slice(None) for n in ("rows", "columns"))
-        return replace(step, expression=step.expression.xreplace(names)[rows, columns])
+        return replace(step, expression=expression[rows, columns])
 
 
 @lru_cache(maxsize=32)

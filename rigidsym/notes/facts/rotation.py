@@ -140,7 +140,7 @@ class RotationFacts(Record):
         scene = scene_of(self.model, self.letters)
         if scene is None:
             return None
-        posed = scene.posed(scene.view.angles)
+        posed = scene.shown
         kinds = ("space", "body", "node", "vector")
         named = [(k, [ray.name for ray in posed.rays if ray.kind == k]) for k in kinds]
         return figure_with(
@@ -186,13 +186,13 @@ class RotationFacts(Record):
         """The letter of the length; nothing where it is 1."""
         return self.letters.names[self.letters.length.symbol] if self.letters.length else ""
 
-    @property
+    @cached_property
     def sum(self) -> Formula | None:
         """Ω as a sum over the turns, if it can be read off."""
         is_sum = len(self.model.turns) > 1 and all(t.rate for t in self.model.turns)
         return sum_of_turns(self.model, self.letters) if is_sum else None
 
-    @property
+    @cached_property
     def axes(self) -> EquationRow | None:
         """The axes in space components, if they are few and short."""
         turns = self.model.turns
@@ -229,8 +229,7 @@ def title_of(derivation: Derivation, letters: Letters) -> Text:
 def axes_of_turns(model: RotationModel, letters: Letters) -> list[Formula]:
     """The unit vectors about which the turns are made, named after the figure: e_z, e_N, e_z′."""
     scene = scene_of(model, letters)
-    posed = scene.posed(scene.view.angles) if scene else None
-    rays = [posed.named(arc.axis) for arc in posed.arcs] if posed else []
+    rays = [scene.shown.named(arc.axis) for arc in scene.shown.arcs] if scene else []
     if not rays or not all(rays) or len(rays) != len(model.turns):
         return [_carried(k) for k in range(1, len(model.turns) + 1)]
     return [Symbol("e", "bold", index=ray.name) for ray in rays if ray]

@@ -61,8 +61,9 @@ def cross(a: Vector, b: Vector) -> Vector:
 
 def combined(factors: Sequence[float], vectors: Sequence[Sequence[float]]) -> Vector:
     """The linear combination Σ c_k v_k; of the axes of a frame, a vector from its components."""
-    pairs = list(zip(factors, vectors, strict=True))
-    x, y, z = (sum(c * v[k] for c, v in pairs) for k in range(3))
+    x = y = z = 0.0
+    for c, (a, b, d) in zip(factors, vectors, strict=True):
+        x, y, z = x + c * a, y + c * b, z + c * d
     return (x, y, z)
 
 
@@ -89,7 +90,7 @@ def frames(axes: Sequence[Vector], angles: Sequence[float]) -> Iterator[Frame]:
 
 
 def is_same(a: Vector, b: Vector) -> bool:
-    return max(abs(p - q) for p, q in zip(a, b, strict=True)) < 1e-6
+    return abs(a[0] - b[0]) < 1e-6 and abs(a[1] - b[1]) < 1e-6 and abs(a[2] - b[2]) < 1e-6
 
 
 class Camera(NamedTuple):
@@ -215,6 +216,11 @@ class Scene(Record, kw_only=True):
             seen = camera(azimuth, elevation, z_down=self.z_down, scale=scale)
             views.append(View(angles, azimuth, elevation, seen))
         return max(views, key=self._clarity)
+
+    @cached_property
+    def shown(self) -> Posed:
+        """The scene as it is drawn."""
+        return self.posed(self.view.angles)
 
     def _clarity(self, view: View) -> tuple[int, float]:
         """How many axes do not coincide, how far apart they end, and how open the arcs are."""

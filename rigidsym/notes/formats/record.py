@@ -83,6 +83,8 @@ def record(
 def _plain(data: Any, names: Names) -> Any:
     """Formulas in both markups, expressions in plain names, matrices as lists of rows."""
     match data:
+        case str() | int():  # most of it
+            return data
         case _ if type(data).__name__ in _KEYS:
             return _plain(_attributes(data), names)
         case Formula():
