@@ -60,6 +60,9 @@ class RigidsymError(Exception):
 
     exit_code: ClassVar[int] = 1
 
+    def __init_subclass__(cls, *, exit_code: int = 0) -> None:
+        cls.exit_code = exit_code or cls.exit_code
+
     def __str__(self) -> str:
         return printable(super().__str__())
 
@@ -76,23 +79,19 @@ class AlgebraError(RigidsymError):
     """An expression that exact algebra cannot represent, or a derivative of too high an order."""
 
 
-class ModelError(RigidsymError):
+class ModelError(RigidsymError, exit_code=2):
     """An invalid rotation model: unknown sequence, repeated coordinate, wrong shape."""
-
-    exit_code: ClassVar[int] = 2
 
 
 class NotARotation(RigidsymError):
     """A 3x3 matrix with R Rᵀ ≠ 1 or det R ≠ 1; the message shows the residual."""
 
 
-class BodyError(RigidsymError):
+class BodyError(RigidsymError, exit_code=3):
     """An impossible body: a mass that is not positive, an unphysical inertia tensor, an open mesh.
 
     `place` leads to the fault within the body, in the keys of a derivation file: ("parts", 2).
     """
-
-    exit_code: ClassVar[int] = 3
 
     def __init__(self, message: str, *, place: tuple[str | int, ...] = ()) -> None:
         super().__init__(message)
@@ -107,16 +106,12 @@ class Defect(RigidsymError):
     """A proved claim that is false at a point: a mistake in rigidsym, not in its use."""
 
 
-class QuantityError(RigidsymError, AttributeError):
+class QuantityError(RigidsymError, AttributeError, exit_code=2):
     """An unknown quantity, or one that the derivation does not contain."""
 
-    exit_code: ClassVar[int] = 2
 
-
-class ExpressionError(RigidsymError):
+class ExpressionError(RigidsymError, exit_code=2):
     """A text that is not a valid expression in the declared names; `column` counts from 1."""
-
-    exit_code: ClassVar[int] = 2
 
     def __init__(self, message: str, *, column: int = 1) -> None:
         super().__init__(message)
@@ -134,10 +129,8 @@ class Fault(NamedTuple):
         return f"{self.path}: {self.message}" if self.path else self.message
 
 
-class SpecError(RigidsymError):
+class SpecError(RigidsymError, exit_code=3):
     """A bad derivation file: all its faults at once."""
-
-    exit_code: ClassVar[int] = 3
 
     def __init__(self, source: str, faults: Sequence[Fault]) -> None:
         self.source = source
@@ -147,16 +140,12 @@ class SpecError(RigidsymError):
         super().__init__(f"{source}: {count}, nothing written\n{lines}")
 
 
-class MissingTool(RigidsymError):
+class MissingTool(RigidsymError, exit_code=4):
     """A program outside Python that is not installed; the message names the Debian packages."""
 
-    exit_code: ClassVar[int] = 4
 
-
-class MissingExtra(RigidsymError):
+class MissingExtra(RigidsymError, exit_code=4):
     """A Python package that an extra brings; the message says how to install it."""
-
-    exit_code: ClassVar[int] = 4
 
     def __init__(self, what: str, extra: str) -> None:
         super().__init__(
@@ -164,39 +153,29 @@ class MissingExtra(RigidsymError):
         )
 
 
-class TemplateFault(RigidsymError):
+class TemplateFault(RigidsymError, exit_code=3):
     """A template that cannot be filled; the message names the template, the line and the fault."""
-
-    exit_code: ClassVar[int] = 3
 
 
 class ToolFailed(RigidsymError):
     """A program outside Python that failed; the message contains the end of its log."""
 
 
-class DataError(RigidsymError):
+class DataError(RigidsymError, exit_code=3):
     """A file of numbers with missing or wrong content; the message says where."""
 
-    exit_code: ClassVar[int] = 3
 
-
-class RequestError(DataError):
+class RequestError(DataError, exit_code=2):
     """A request that cannot be satisfied, whatever the file contains."""
 
-    exit_code: ClassVar[int] = 2
 
-
-class KernelError(RigidsymError):
+class KernelError(RigidsymError, exit_code=2):
     """A kernel that cannot be made: unknown target, or a function that no target can print."""
-
-    exit_code: ClassVar[int] = 2
 
 
 class EditedFiles(RigidsymError):
     """Generated files that were edited and that a command would overwrite."""
 
 
-class CheckError(RigidsymError):
+class CheckError(RigidsymError, exit_code=2):
     """A path without the record of a derivation that `rigidsym check` needs."""
-
-    exit_code: ClassVar[int] = 2

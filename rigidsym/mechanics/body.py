@@ -101,11 +101,6 @@ class BodyValues(Values):
         m, p = self.moments, self.point
         return m.second - m.first * p.T - p * m.first.T + m.mass * p * p.T
 
-    def shifted_inertia(self) -> sp.ImmutableMatrix:
-        """I′ + M (|d|² 1 − d dᵀ)."""
-        shift = self.steiner(self.body.mass, self.point - self.body.centre)
-        return sp.ImmutableMatrix(self.body.inertia + shift)
-
     def moment_about_line(self) -> sp.Expr:
         """nᵀ I′ n + M |n × (p − c)|²."""
         n, body = self.direction, self.body
@@ -128,11 +123,6 @@ class BodyValues(Values):
     @cached_property
     def inertia(self) -> RingMatrix:
         return self.codec.matrix(self.body.inertia)
-
-    @cached_property
-    def inertia_space(self) -> RingMatrix:
-        """R I′ Rᵀ."""
-        return self.rotation @ (self.inertia @ self.rotation.T)
 
     def trace(self, matrix: RingMatrix) -> PolyElement:
         return sum((matrix[k, k] for k in range(3)), self.codec.ring.zero)

@@ -17,15 +17,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, NoReturn
 
-from jinja2 import (
-    FileSystemBytecodeCache,
-    FunctionLoader,
-    StrictUndefined,
-    TemplateError,
-    TemplateNotFound,
-    TemplateSyntaxError,
-    nodes,
-)
+import jinja2
 from jinja2.meta import find_referenced_templates
 from jinja2.sandbox import ImmutableSandboxedEnvironment
 
@@ -224,9 +216,9 @@ class SandboxedTemplates(ImmutableSandboxedEnvironment):
     def __init__(self, **options: Any) -> None:
         compiled = cache_folder("templates")
         settings: dict[str, Any] = {
-            "loader": FunctionLoader(self._load),
-            "bytecode_cache": compiled and FileSystemBytecodeCache(str(compiled)),
-            "undefined": StrictUndefined,
+            "loader": jinja2.FunctionLoader(self._load),
+            "bytecode_cache": compiled and jinja2.FileSystemBytecodeCache(str(compiled)),
+            "undefined": jinja2.StrictUndefined,
             "autoescape": False,
             "keep_trailing_newline": True,
             "trim_blocks": True,
@@ -258,14 +250,14 @@ class SandboxedTemplates(ImmutableSandboxedEnvironment):
         """
         own = base = self.parse(text, name, file)
         known: set[str] = set()
-        while extended := base.find(nodes.Extends):
+        while extended := base.find(jinja2.nodes.Extends):
             try:
                 base = self.parse(*template(extended.template.as_const()))
-            except (FileNotFoundError, ValueError, nodes.Impossible):  # Jinja2 says so
+            except (FileNotFoundError, ValueError, jinja2.nodes.Impossible):  # Jinja2 says so
                 return
-            known |= {block.name for block in base.find_all(nodes.Block)}
+            known |= {block.name for block in base.find_all(jinja2.nodes.Block)}
         for block in own.body if base is not own else ():
-            if isinstance(block, nodes.Block) and block.name not in known:
+            if isinstance(block, jinja2.nodes.Block) and block.name not in known:
                 fault = f"there is no block {block.name} to override; {offer(block.name, known)}"
                 raise TemplateFault(f"{file}, line {block.lineno}: {fault}")
 
@@ -276,15 +268,24 @@ class SandboxedTemplates(ImmutableSandboxedEnvironment):
         *_, (frame, _) = walk_tb(sys.exc_info()[2])
         try:
             super().handle_exception(source)
-        except TemplateSyntaxError as error:
+        except jinja2.TemplateSyntaxError as error:
             place = f"{error.filename or error.name}, line {error.lineno}"
             raise TemplateFault(f"{place}: {error.message}") from error
-        except (TemplateError, RecursionError, ArithmeticError, TypeError, ValueError) as error:
+        except (
+            jinja2.TemplateError,
+            RecursionError,
+            ArithmeticError,
+            TypeError,
+            ValueError,
+        ) as error:
             is_of_jinja = frame.f_globals.get("__name__", "").startswith("jinja2.")
             is_of_template = is_of_jinja or "__jinja_template__" in frame.f_globals
-            if not (is_of_template or isinstance(error, TemplateError | RecursionError)):
+            if not (is_of_template or isinstance(error, jinja2.TemplateError | RecursionError)):
                 raise  # from a function that the template calls
-            texts = {TemplateNotFound: f"no template {error}", RecursionError: "it includes itself"}
+            texts = {
+                jinja2.TemplateNotFound: f"no template {error}",
+                RecursionError: "it includes itself",
+            }
             raise TemplateFault(f"{_place(error)}: {texts.get(type(error), error)}") from error
 
 

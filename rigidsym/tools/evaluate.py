@@ -13,20 +13,8 @@ from typing import BinaryIO, NamedTuple
 
 import numpy as np
 
+from rigidsym.data import tables
 from rigidsym.data.columns import COLUMNS, ColumnNames, counted, in_both_units, names_for
-from rigidsym.data.tables import (
-    ROWS,
-    Batch,
-    Missing,
-    Numbers,
-    Rows,
-    Table,
-    TextTable,
-    check_ending,
-    open_table,
-    without_missing,
-    write_table,
-)
 from rigidsym.errors import DataError, QuantityError, RequestError, offer
 from rigidsym.mechanics.derivation import remark
 from rigidsym.mechanics.quantities import CONVERSIONS
@@ -55,10 +43,10 @@ def evaluate(
     columns: Sequence[str] | None = None,
     given: Mapping[str, float] | None = None,
     keep: Sequence[str] = (),
-    missing: Missing = "error",
+    missing: tables.Missing = "error",
     degrees: bool = False,
     threads: int = 1,
-    rows: int = ROWS,
+    rows: int = tables.ROWS,
     progress: Progress | None = None,
 ) -> Evaluated:
     """Write functions of a motion for each row of a file: NPY, Parquet, or text with separators.
@@ -77,12 +65,12 @@ def evaluate(
     SampleError, with the rows, for matrices that are not rotations.
     """
     if isinstance(source, Path):
-        table = open_table(source)
+        table = tables.open_table(source)
     else:
-        table = TextTable(Path("standard input"), source.read())
+        table = tables.TextTable(Path("standard input"), source.read())
     where, stream = (path, None) if isinstance(path, Path) else (Path("standard output"), path)
     if stream is None:
-        check_ending(where)
+        tables.check_ending(where)
         if isinstance(source, Path) and where.resolve() == source.resolve():
             raise RequestError(f"{where}: the result would replace the file that is read")
     calls = _calls_of(motion, quantities)
@@ -95,7 +83,7 @@ def evaluate(
     except DataError as error:
         raise DataError(f"{table.source}: {error}") from None
     names = [name for name, _ in match.components]
-    complete = without_missing(
+    complete = tables.without_missing(
         table, table.batches(match.columns, rows, [*match.kept]), names, missing
     )
     factors = [180 / pi if degrees and _is_angle(unit) else 1.0 for _, unit in calls.results]
@@ -103,7 +91,7 @@ def evaluate(
     # how many rows there are, how many have inputs and no value, and where the first of these is
     total, lost, first = 0, 0, ""
 
-    def computed() -> Iterator[Rows]:
+    def computed() -> Iterator[tables.Rows]:
         nonlocal total, lost, first
         for batch in complete:
             result = _values(calls, table, batch, match.scales, constants, free, threads)
@@ -117,7 +105,7 @@ def evaluate(
                 progress(batch.share)
 
     titles = (*match.kept.values(), *(_title(*each, degrees=degrees) for each in calls.results))
-    write_table(where, titles, computed(), stream)
+    tables.write_table(where, titles, computed(), stream)
     read_as = ", ".join(_title(*match.components[k], degrees=degrees) for k in match.unstated)
     remarks = [remark("unit_assumed", columns=read_as)] if read_as else []
     remarks += [
@@ -132,13 +120,13 @@ def evaluate(
 
 def _values(
     calls: _Calls,
-    table: Table,
-    batch: Batch,
+    table: tables.Table,
+    batch: tables.Batch,
     scales: Sequence[float],
-    constants: Mapping[str, Numbers],
+    constants: Mapping[str, tables.Numbers],
     free: Sequence[_Input],
     threads: int,
-) -> Numbers:
+) -> tables.Numbers:
     """The values of all functions for the rows of a batch, side by side."""
     count = len(batch.table)
     ends = np.cumsum([len(each.names) for each in free])[:-1]
@@ -171,7 +159,7 @@ class _Input(Record):
     shape: tuple[int, ...] = (-1,)  # of one row
     every: tuple[str, ...] = ()  # of constants, also those on which no result depends
 
-    def rows(self, numbers: Numbers) -> Numbers:
+    def rows(self, numbers: tables.Numbers) -> tables.Numbers:
         """The argument, from numbers (n, k); NaN where no result depends on it."""
         if not self.every:
             return numbers.reshape(len(numbers), *self.shape)
@@ -270,7 +258,7 @@ def _title(name: str, unit: str, *, degrees: bool) -> str:
 # Which column is which argument
 
 
-def _constants(inputs: Sequence[_Input], given: Mapping[str, float]) -> dict[str, Numbers]:
+def _constants(inputs: Sequence[_Input], given: Mapping[str, float]) -> dict[str, tables.Numbers]:
     """The arguments whose components all have given numbers.
 
     Raises RequestError for numbers that belong to no input, and for some of a vector only.
@@ -303,7 +291,7 @@ class _Match(NamedTuple):
 
 
 def _matched(
-    table: Table,
+    table: tables.Table,
     inputs: Sequence[_Input],
     columns: Sequence[str] | None,
     keep: Sequence[str],

@@ -132,7 +132,7 @@ inertia_tensor_point = Quantity(
     inputs=("point",),
     definition=formula(r"\I' + M\,(|\p-\c|^2\,\1 - (\p-\c)(\p-\c)^T)"),
     source=SOURCES["Landau 32 (32.12)"],
-    value=lambda k: k.shifted_inertia(),
+    value=lambda k: k.body.inertia + k.steiner(k.body.mass, k.point - k.body.centre),
     **_integrated((rf"\I'_P = {_TENSOR_P}", _about_point)),
     reason="parallel_axes",
     without=AT_REST,
@@ -203,7 +203,7 @@ inertia_tensor_space = Quantity(
     inputs=("q",),
     definition=formula(r"\R\,\I'\,\R^T"),
     source=SOURCES["Goldstein 5.2"],
-    value=lambda k: k.inertia_space,
+    value=lambda k: k.rotation @ (k.inertia @ k.rotation.T),
     laws=(
         law(r"\I' = \R^T\,\I\,\R", lambda k, x: k.rotation.T @ (x @ k.rotation) - k.inertia),
         law(
