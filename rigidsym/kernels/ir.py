@@ -258,6 +258,15 @@ class Kernel(Record, kw_only=True):
         found = (d for node in self.nodes if isinstance(node, Product) for d in node.divisors)
         return tuple(dict.fromkeys(found))
 
+    @property
+    def passed(self) -> list[int]:
+        """Places of the arguments whose components can be results as they are."""
+        names = {output.text for output in self.outputs if isinstance(output, Name)}
+        for name, value in reversed(self.assignments):
+            if name in names and isinstance(value, Name | Choice | Guarded):
+                names.update(names_in(value))
+        return [k for k, a in enumerate(self.arguments) if not names.isdisjoint(a.components)]
+
     @cached_property
     def delicate(self) -> frozenset[str]:
         """Names whose relative error is the result's: factors of a divisor or of a size."""

@@ -53,9 +53,9 @@ def _fill(result, block, arrays, shape, threads):
     NumPy holds no lock while it works on a block, so that threads share them.
     """
     leading = result.shape[: result.ndim - len(shape)]
+    # a block may be written before the next one is read
     wide = [
-        a if a.shape[:-1] == leading else np.broadcast_to(a, (*leading, a.shape[-1]))
-        for a in arrays
+        np.broadcast_to(_unshared(a, result), (*leading, a.shape[-1])) for a in arrays
     ]
     longest = _longest(block, result.dtype, shape) // _LANES * _LANES
     if threads > 1:  # longer blocks, as many for each: they wait less for one another

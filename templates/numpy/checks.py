@@ -60,9 +60,9 @@ def _expected(name, shape=None):
 
 def _checked_out(out, shape, dtype):
     """`out` if it is what the result needs, or an error."""
-    if not isinstance(out, np.ndarray):
+    if not isinstance(out, _ARRAY):
         raise TypeError(f"out: got {type(out).__name__}; expected a NumPy array")
-    if out.dtype != dtype:
+    if out.dtype is not dtype and out.dtype != dtype:
         raise TypeError(f"out: got dtype {out.dtype}; expected {dtype}")
     if out.shape != shape:
         raise ValueError(f"out: got shape {out.shape}; expected {shape}")

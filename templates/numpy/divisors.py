@@ -2,7 +2,7 @@
 
 _EPS = 2.0**-52  # of float64
 _LEAST = 2.0**-970  # of float64: the smallest normal number over eps
-_FAR = {_DOUBLE: 2.0**103, _SINGLE: 2.0**45}  # half of 1/eps² by the type
+_FAR, _FAR_SINGLE = 2.0**103, 2.0**45  # half of 1/eps²
 
 
 def _or_nan(value, scale, power=1):
@@ -14,7 +14,8 @@ def _or_nan(value, scale, power=1):
     # which wait for one another: for up to eleven times as long on a busy processor.
     if scale is not None and value.ndim == 1 and value.size <= 10_000:
         ratio = scale / value
-        if ratio.dot(ratio) < _FAR[value.dtype] ** power:
+        far = _FAR if value.dtype is _DOUBLE else _FAR_SINGLE
+        if ratio.dot(ratio) < far**power:
             return value
     eps, least = (2.0**-23, 2.0**-103) if value.dtype.char == "f" else (_EPS, _LEAST)
     limit = least if scale is None else eps**power * np.abs(scale)

@@ -17,18 +17,20 @@ def _sin_cos(*angles):
     """Sines of angles in radians, then their cosines, within 1.1 eps.
 
     In double precision both follow from one tangent t of half the angle, as 2t/(1 + t²)
-    and (1 - t²)/(1 + t²): NumPy's tan costs no more than its sin, and on processors with
-    AVX-512 a sixth of it. The sine keeps its relative accuracy at multiples of pi. For
+    and (1 - t²)/(1 + t²). The sine keeps its relative accuracy at multiples of pi. For
     few angles and in single precision NumPy's own sin and cos are the fastest.
     """
-    first = angles[0]
-    if len(angles) == 1:
-        if first.size < _FEW or first.dtype is _SINGLE:
-            return _SINE(first), _COSINE(first)
-        return _by_tangent(first)
-    if first.dtype is _SINGLE or first.size * len(angles) < _FEW:
-        return *map(_SINE, angles), *map(_COSINE, angles)
-    if first.size < _MANY:  # one array of all angles saves calls
+    size, count = angles[0].size, len(angles)
+    if size * count < _FEW or angles[0].dtype is _SINGLE:
+        values = []  # appending costs half of what map does
+        for angle in angles:
+            values.append(_SINE(angle))
+        for angle in angles:
+            values.append(_COSINE(angle))
+        return values
+    if count == 1:
+        return _by_tangent(angles[0])
+    if size < _MANY:  # one array of all angles saves calls
         sines, cosines = _by_tangent(np.array(angles))
     else:
         sines, cosines = zip(*map(_by_tangent, angles))
@@ -50,7 +52,7 @@ def _by_tangent(angle):
 
 def _sin(angle):
     """The sine alone, as in `_sin_cos`."""
-    if angle.dtype is _SINGLE or angle.size < _FEW:
+    if not _IS_WIDE or angle.size < _FEW or angle.dtype is _SINGLE:
         return np.sin(angle)
     t = np.tan(_HALF * angle)
     return (t + t) / (_ONE + t * t)
@@ -58,7 +60,7 @@ def _sin(angle):
 
 def _cos(angle):
     """The cosine alone, as in `_sin_cos`."""
-    if angle.dtype is _SINGLE or angle.size < _FEW:
+    if not _IS_WIDE or angle.size < _FEW or angle.dtype is _SINGLE:
         return np.cos(angle)
     t = np.tan(_HALF * angle)
     square = t * t

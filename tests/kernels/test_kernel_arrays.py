@@ -96,10 +96,6 @@ def test_threads_work_in_a_forked_process_and_while_the_interpreter_ends(tmp_pat
     assert (done.stdout, done.stderr) == ("True\n", "")
 
 
-# What a call of few rows costs is calls, of Python and of NumPy, since each takes as long as the
-# arithmetic of a hundred rows. The time itself is in `benchmarks/run.py sizes`.
-
-
 @pytest.mark.filterwarnings("error")
 def test_twins_of_long_functions_agree_with_arrays_and_are_nan_where_these_are():
     functions = rs.derive("z(a) x(b) y(c) z(d)").kernels().load()

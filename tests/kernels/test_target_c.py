@@ -189,13 +189,17 @@ def test_one_time_and_one_row_of_constants_serve_many_tops():
     a, c = sp.symbols("A C")
     body = rs.principal_moments(a, a, c)
     motion = rs.derive("ZXZ", ["state_derivative"], body=body, potential="m*g*l*cos(theta)")
-    derivative, count = motion.kernels("c").load().state_derivative, 70
-    y = np.random.default_rng(6).uniform(0.3, 3, (count, 6))
-    constants = np.linspace(1, 2, len(motion.argument("parameters").names))
-    expected = derivative(np.full(count, 0.5), y, np.tile(constants, (count, 1)))
-    for time in (0.5, np.array(0.5), np.full(count, 0.5)):
-        np.testing.assert_array_equal(derivative(time, y, constants), expected)
-        np.testing.assert_array_equal(derivative(time, y, constants, threads=2), expected)
+    memory = np.random.default_rng(6).uniform(0.3, 3, 70 * 6 + 4)
+    y, constants = memory[:-4].reshape(-1, 6), np.linspace(1, 2, 6)
+    for target in ("numpy", "c"):
+        derivative = motion.kernels(target).load().state_derivative
+        expected = derivative(np.full(70, 0.5), y, np.tile(constants, (70, 1)))
+        for time in (0.5, np.array(0.5), np.full(70, 0.5)):
+            for threads in (1, 2):
+                assert np.array_equal(derivative(time, y, constants, threads=threads), expected)
+        out = memory.copy()[4:].reshape(y.shape)  # three results are components of y
+        rows = out.base[:-4].reshape(y.shape)
+        assert np.array_equal(derivative(0.5, rows, constants, out=out), expected)
     single = derivative(0.5, y.astype(np.float32), constants.astype(np.float32))
     assert single.dtype == np.float64  # a plain number is one
 

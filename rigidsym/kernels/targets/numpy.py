@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from itertools import groupby
 from math import isnan, prod
 from types import MappingProxyType
 
@@ -70,6 +69,7 @@ def module_text(
     endings = ("", "_scalar") if twins else ("",)
     names = [f"{kernel.name}{ending}" for kernel in kernels for ending in endings]
     continuity = program.continuity if is_plain else None
+    passing = [f"_{k.name}: {k.passed}" for k in kernels if k.passed and is_plain]
     about_unwrap = ""
     if continuity:
         texts = remarks.paragraphs("numpy/unwrap.txt.jinja", continuity=continuity)
@@ -83,6 +83,7 @@ def module_text(
         names=[*names, *(["unwrap"] if continuity else [])],
         bodies=bodies,
         twins=twins,
+        passing=bracketed(0, "_PASSING = {", passing, "}"),
         imports=", ".join(sorted({*of_math, "prod"})),
         continuity=continuity,
         about_unwrap=about_unwrap,
@@ -181,20 +182,12 @@ def _block(kernel: Kernel) -> Iterator[str]:
 def _gathered(kernel: Kernel) -> dict[str, list[Name]]:
     """Angles whose sines and cosines are taken in one call, by the name of their first sine.
 
-    Neighbours of one vector; not with a cosine that divides, which is taken anew.
+    Angles of one vector; not with a cosine that divides, which is taken anew.
     """
-    vectors = {name: (a.name,) for a in kernel.arguments for name in a.components}
-    both = [angle for angle, pair in kernel.sines.items() if len(pair) > 1]
-    groups: dict[str, list[Name]] = {}
-    for _, angles in groupby(
-        both,
-        lambda angle: (
-            angle
-            if kernel.sines[angle]["cos"] in kernel.delicate
-            else vectors.get(angle.text, angle)
-        ),
-    ):
-        neighbours = list(angles)
-        first = min(kernel.sines[neighbours[0]].values(), key=[*kernel.calls].index)
-        groups[first] = neighbours
-    return groups
+    vectors = {name: a.name for a in kernel.arguments for name in a.components}
+    groups: dict[Name | str, list[Name]] = {}
+    for angle, pair in kernel.sines.items():
+        if len(pair) > 1:
+            key = angle if pair["cos"] in kernel.delicate else vectors.get(angle.text, angle)
+            groups.setdefault(key, []).append(angle)
+    return {next(iter(kernel.sines[a[0]].values())): a for a in groups.values()}
