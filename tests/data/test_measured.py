@@ -74,7 +74,6 @@ def test_columns_by_name_in_every_format(tmp_path):
         tmp_path / "named.npy", np.rec.fromarrays(mixed.T, names=",".join(names)).view(np.ndarray)
     )
     np.savetxt(tmp_path / "cloud.csv", mixed, delimiter=",", header=",".join(names), fmt="%.17g")
-    np.savetxt(tmp_path / "blanks.txt", mixed, header=" ".join(names), fmt="%.17g", comments="")
     columns = {n: mixed[:, k] for k, n in enumerate(names)}
     frame = pl.DataFrame(columns | {"name": ["ball"] * 30})
     frame.write_parquet(tmp_path / "cloud.parquet")
@@ -82,7 +81,7 @@ def test_columns_by_name_in_every_format(tmp_path):
     for named in (np.rec.fromarrays(mixed.T, names=",".join(names)), frame, columns):
         assert (inertia_of(named).inertia == expected).all(), type(named)
     assert (inertia_of(tmp_path / "plain.npy", columns=names).inertia == expected).all()
-    for file in ("named.npy", "cloud.csv", "blanks.txt", "cloud.parquet"):
+    for file in ("named.npy", "cloud.csv", "cloud.parquet"):
         assert (inertia_of(tmp_path / file).inertia == expected).all(), file
     np.savez(tmp_path / "several.npz", table, mixed)
     with pytest.raises(BodyError, match=r"npy: an NPZ archive of arrays; expected one array"):
@@ -104,7 +103,6 @@ def test_units_are_converted_and_a_negative_mass_may_be_allowed(tmp_path):
         (rows(20)[:0], r"expected at least one particle, got none"),
         (rows(20) * (1, 1e200, 1, 1), r"too large for double precision"),
         (rows(20).ravel(), r"expected numbers of shape \(rows, columns\), got float64 of"),
-        ("m,x,y,z\n1,0,0,0\n1,0,0\n", "line 3: 3 fields, expected 4"),
         ("m,x,y,z\n1,0,0,0\n\n# -\n-2,0,0,0\n", r"csv, line 5: expected a mass .* got mass -2"),
         ("x,y,z,masse\n0,0,0,1\n", r"column m or mass among x, y, z, masse; is masse the mass"),
         (np.zeros(2, [("m", float), ("x", float, 3)]), "column x has several numbers in a row"),

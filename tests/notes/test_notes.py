@@ -29,8 +29,6 @@ from rigidsym.notes.facts.singular import PointFacts
 from rigidsym.notes.formats.pdf import typeset
 from rigidsym.notes.formats.terminal import show
 from rigidsym.notes.note import note
-from rigidsym.pipeline import output_of
-from rigidsym.spec.derivation_file import read_spec
 from rigidsym.system.resources import STYLES
 
 ZXZ = "euler_zxz_intrinsic"
@@ -146,15 +144,6 @@ def test_equations_of_motion_have_letters_for_long_moments():
     assert "I _1" in equations
     assert not [words for words in ("r^2", "moves freely") if words in equations]
     assert "r^2" in text
-
-
-def test_a_file_chooses_the_style_and_the_record_knows_it():
-    file = '[rotation]\nsequence = "ZXZ"\n[output]\nnote = ["md"]\nstyle = "audit"\nkernels = []\n'
-    spec = read_spec(file, source="top.toml", name="top")
-    assert spec.to_data()["style"] == "audit"
-    assert "Proved: " in output_of(spec).files["top.md"]
-    assert "Proved: " not in output_of(replace(spec, style="lecture")).files["top.md"]
-    assert "style" not in replace(spec, style="lecture").to_data()
 
 
 OTHER = {"rates": "fraction", "vectors": "arrow", "angular_velocity": "omega"}

@@ -163,15 +163,12 @@ def test_a_heavy_body_of_the_page_moves_as_newton_and_euler_have_it(method, tmp_
     start = {"theta": 0.6, **{f"angular_velocity_body_{k + 1}": x for k, x in enumerate(spin)}}
     start |= {"A": 1.0, "C": 0.6, "k": 3.0}
     begun = Rotation.from_euler("ZXZ", [0, 0.6, 0]).as_matrix()
-    check_flow(
-        motion.page(start=start),
-        (1, 1, 0.6),
-        lambda r: -3.0 * np.cross(third, r.T @ third),
-        begun,
-        spin,
-        [0.5, 1.0, 2.0, 5.0],
-        tmp_path,
-    )
+    page, times = motion.page(start=start), [0.5, 1.0, 2.0, 5.0]
+
+    def torque(r):
+        return -3.0 * np.cross(third, r.T @ third)
+
+    check_flow(page, (1, 1, 0.6), torque, begun, spin, times, tmp_path)
 
 
 CORNERS = (0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1)

@@ -357,22 +357,14 @@ def test_large_angles_are_named_in_radians():
 
 def test_two_links_are_solved_for_their_accelerations_in_numbers():
     """The double pendulum, with its textbook equations"""
+    across, along = (f"l*({f}(a)*a_dot + {f}(a + b)*(a_dot + b_dot))" for f in ("cos", "sin"))
+    velocities = (["0", "l*a_dot", "0"], ["0", across, along])
     links = rs.derive(
         "x(a) x(b)",
         NEEDED,
         body=rs.principal_moments(*sp.symbols("J J J")),
         potential="-m*g*l*(2*cos(a) + cos(a + b))",
-        parts=[
-            {"velocity": ["0", "l*a_dot", "0"], "mass": "m"},
-            {
-                "velocity": [
-                    "0",
-                    "l*(cos(a)*a_dot + cos(a + b)*(a_dot + b_dot))",
-                    "l*(sin(a)*a_dot + sin(a + b)*(a_dot + b_dot))",
-                ],
-                "mass": "m",
-            },
-        ],
+        parts=[{"velocity": velocity, "mass": "m"} for velocity in velocities],
     )
     values = {"l": 0.4, "m": 1.5, "g": 9.81, "J": 0.01}
     found = links.simulate({"a": 1.0, "b": 0.5}, values, 5.0, samples=51)

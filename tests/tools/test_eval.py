@@ -97,11 +97,19 @@ def test_each_kind_of_file_to_each(motion, table, kernel, tmp_path, source, targ
         ("ZYX --angles a,b_turn,c_deg --quantity quaternion", "0,0,2\n", WXYZ, ABOUT_X),
         ("ZYX --angles a,A,b --quantity quaternion", "0,0,2\n", WXYZ, ABOUT_X),
         ("z(a)x(b) --constants b --given b=2 --quantity quaternion", "a\n0\n", WXYZ, ABOUT_X),
+        (
+            "ZYX --degrees --quantity from_quaternion",  # of ROS
+            "Time,header.seq,header.frame_id,orientation.x,orientation.y,orientation.z,"
+            "orientation.w,orientation_covariance_0,angular_velocity.x\n1.7e9,1,imu,0,0,1,0,0,0.1\n",
+            "phi [deg],theta [deg],psi [deg]",
+            [180, 0, 0],
+        ),
     ],
 )
 def test_columns_are_found_and_named(words, log, head, row):
     done = run("eval", *words.split(), "-", "--out", "-", given=log)
     assert done.stdout.startswith(head), done.stderr
+    assert "standard output: 1 row" in done.stderr
     assert np.allclose([float(x) for x in done.stdout.splitlines()[1].split(",")], row)
 
 

@@ -10,8 +10,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import rigidsym as rs
-from helpers.command import run
-from rigidsym.data.tables import TextTable, open_table
+from rigidsym.data.tables import TextTable
 from rigidsym.errors import DataError, RigidsymError
 from rigidsym.tools.evaluate import evaluate
 from rigidsym.tools.identify.identification import identify_file
@@ -71,27 +70,6 @@ def test_eval_reads(motion, tmp_path, name):
     np.testing.assert_allclose(found, MATRIX, atol=1e-14)
 
 
-QUATERNION = Rotation.from_matrix(MATRIX.reshape(-1, 3, 3)).as_quat(scalar_first=True)
-ROS = (
-    "Time,header.seq,header.frame_id,orientation.x,orientation.y,orientation.z,orientation.w,"
-    "orientation_covariance_0,angular_velocity.x,angular_velocity.y,angular_velocity.z",
-    *(
-        f"1700000000.5,{k},imu,{x!r},{y!r},{z!r},{w!r},0,0.1,0.2,0.3"
-        for k, (w, x, y, z) in enumerate(QUATERNION.tolist())
-    ),
-)
-
-
-def test_angles_from_the_quaternions_of_ros(motion, tmp_path):
-    result = tmp_path / "angles.csv"
-    path = text(tmp_path / "log.csv", *ROS)
-    made = evaluate(motion, ("from_quaternion",), path, result, degrees=True)
-    assert made.columns == ("yaw [deg]", "pitch [deg]", "roll [deg]")
-    reader = open_table(result)
-    (chunk,) = reader.batches(range(3))
-    np.testing.assert_allclose(chunk.table, ANGLES, atol=1e-12)
-
-
 def test_units_are_converted_column_by_column_whatever_degrees_says(motion, tmp_path):
     header = "yaw [cdeg],pitch [mrad],roll [arcmin],yaw_rate [rpm],pitch_rate [deg/h],roll_rate"
     row = "1000,349.0658503988659,1800,60,3600,0.5"
@@ -145,26 +123,6 @@ def test_identify_drops_samples_with_missing_numbers_on_request(tmp_path):
     with pytest.raises(DataError, match="line 5: angles: a number that is missing"):
         identify_file(path)
     assert identify_file(path, drops_missing=True).samples == 3
-
-
-def test_standard_input_and_output_with_kept_columns_and_names_of_angles():
-    log = "\n".join(
-        [
-            "# flight 7",
-            f'time,"note, free",{HEADER}',
-            *(f'{k},"a, b",{row}' for k, row in enumerate(ROWS)),
-        ]
-    )
-    options = ("--angles", "yaw,pitch,roll", "--keep", "time", "--quantity", "quaternion")
-    done = run("eval", "ZYX", "-", "--out", "-", *options, given=log)
-    assert done.returncode == 0
-    head, *rows = done.stdout.splitlines()
-    assert head == "time,qw,qx,qy,qz"
-    table = np.array([row.split(",") for row in rows], float)
-    assert table[:, 0].tolist() == [0, 1, 2]
-    angle = np.abs(np.sum(table[:, 1:] * QUATERNION, axis=1))
-    np.testing.assert_allclose(angle, 1, atol=1e-14)
-    assert "standard output: 3 rows" in done.stderr
 
 
 @pytest.mark.parametrize("ending", [".csv", ".parquet", ".npy"])
