@@ -13,12 +13,13 @@ from pathlib import Path
 from typing import Any
 
 import rigidsym as rs
+from helpers.motions import motion_in
 from rigidsym.models.library import PARAMETRISATIONS
 from rigidsym.models.rotation import Citation, elementary, time_function
 from rigidsym.motion import derive
 from rigidsym.page.functions import OF_THE_FIGURE
 from rigidsym.pipeline import motion_of as motion_of_spec
-from rigidsym.spec.derivation_file import read_file, read_spec
+from rigidsym.spec.derivation_file import read_file
 from rigidsym.system import resources
 
 LONG = "x(a_1) y(a_2) z(a_3) x(a_4) y(a_5) z(a_6)"  # more turns than a figure has arcs for
@@ -29,19 +30,15 @@ CHAINS = (
     LONG,
 )
 FILES = {
-    "passive": '[rotation]\nsequence = "z(heading) y(elevation) x(bank)"\npassive = true',
+    "passive": 'rotation = { sequence = "z(heading) y(elevation) x(bank)", passive = true }',
     "own": """
-        [rotation]
-        matrix = [["cos(a)", "-sin(a)", "0"], ["sin(a)", "cos(a)", "0"], ["0", "0", "1"]]
-        coordinates = ["a"]
+        rotation.matrix = [["cos(a)", "-sin(a)", "0"], ["sin(a)", "cos(a)", "0"], ["0", "0", "1"]]
+        rotation.coordinates = ["a"]
         """,
     "top": """
-        [rotation]
-        sequence = "z(phi) x(theta) z(psi) y(alpha0)"
-        [parameters]
-        A = { positive = true, about = "a moment", unit = "kg m^2" }
-        [body]
-        principal_moments = ["A", "A", "2*A"]
+        rotation.sequence = "z(phi) x(theta) z(psi) y(alpha0)"
+        parameters.A = { positive = true, about = "a moment", unit = "kg m^2" }
+        body.principal_moments = ["A", "A", "2*A"]
         """,
 }
 OTHERS = (*PARAMETRISATIONS, *CHAINS, *FILES)
@@ -83,7 +80,7 @@ class Elements(HTMLParser):
 def motion_of(name: str) -> rs.Motion:
     """A rotation, a file of this module, or a shipped derivation."""
     if name in FILES:
-        return motion_of_spec(read_spec(FILES[name], source=f"{name}.toml", name=name))
+        return motion_in(FILES[name])
     if name in resources.names("derivations", ".toml"):
         (spec,) = read_file(name).singles()
         return motion_of_spec(spec)

@@ -200,9 +200,6 @@ class Formula:
         return self._known(name)
 
     def _known(self, name: str) -> Value:
-        if name not in self.known and name[:2] in ("s_", "c_"):  # of an angle, in wide matrices
-            angle = Formula(name[2:], self.known).value()
-            return mp.sin(angle) if name[0] == "s" else mp.cos(angle)
         if name not in self.known:
             raise UnreadError(name)
         return self.known[name]

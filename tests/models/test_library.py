@@ -1,6 +1,8 @@
-"""The catalogue of rotations, the checks of a model, and arguments from Python.
+"""Rotations of the catalogue and others, the checks of a model, and arguments from Python.
 
-What the command line refuses stands in golden/commands/refused.txt.
+Whatever is a rotation is proved so without a change to the ring; whatever is not is refused; and
+what cannot be told is marked unproved. What the command line refuses stands in
+golden/commands/refused.txt.
 """
 
 from __future__ import annotations
@@ -10,23 +12,30 @@ from dataclasses import FrozenInstanceError, replace
 
 import pytest
 import sympy as sp
+from sympy import pi, sech, sin, sqrt, tanh
 from sympy.physics.vector import dynamicsymbols
+from sympy.printing.pretty.pretty_symbology import pretty_use_unicode
 
 import rigidsym as rs
 from helpers.parametrisations import CHAINS, motion_of
-from helpers.samples import ONE, chain, model, phi
-from helpers.witness import CONVENTIONS
+from helpers.samples import ROTATIONS, TIME, WRONG, about_z, chain, model
+from helpers.witness import CONVENTIONS, agree, evaluate, mp, paths, unhat, values_along
+from rigidsym.errors import AlgebraError, DerivationError, ModelError, NotARotation
+from rigidsym.mechanics.derive import derive
 from rigidsym.models.body import Parameter, RigidBody
 from rigidsym.models.forces import no_rotation
 from rigidsym.models.library import PRESETS, rotation_from, rotation_given, turned_by
-from rigidsym.models.parametrisations import EULER_SEQUENCES, axis_turn, chain as chain_of
-from rigidsym.models.rotation import Turn
+from rigidsym.models.parametrisations import EULER_SEQUENCES, axis_turn
+from rigidsym.models.rotation import Turn, elementary, time_function
 from rigidsym.notes.problems import sheets_of
 from rigidsym.spec.derivation_file import read_record
 from rigidsym.spec.derivation_spec import spec_for
 
 a, b = sp.symbols("a b")
 q = dynamicsymbols("q")
+phi, theta, psi, u = map(time_function, ("phi", "theta", "psi", "u"))
+w, x, y, z = map(time_function, "wxyz")
+SQUARE = x**2 + y**2 + z**2
 IDENTITY = [["1", "0", "0"], ["0", "1", "0"], ["0", "0", "1"]]
 M = Parameter(symbol=a, about="mass", unit="kg")
 NO_NUMBER = Parameter(symbol=a, positive=False, value=float("nan"))
@@ -95,7 +104,10 @@ def own(**options: object) -> rs.RotationModel:
         (lambda: sample(coordinates=(sp.Symbol("phi"),)), "phi is not a function of t"),
         (lambda: sample(units=("rad", "m")), "1 coordinates, but 2 units"),
         (lambda: sample(turns=(Turn(axis="x", angle=phi),)), "product of its turns, Rx(φ)"),
-        (lambda: sample(matrix=sp.GoldenRatio * sp.ImmutableMatrix(ONE)), "number GoldenRatio"),
+        (
+            lambda: sample(matrix=sp.GoldenRatio * sp.ImmutableMatrix.eye(3)),
+            "number GoldenRatio",
+        ),
     ],
 )
 def test_a_wrong_argument_is_named(make, said):
@@ -167,10 +179,105 @@ def test_roots_of_roots_are_a_unit_axis_where_they_are_one():
     root = sp.sqrt(2 + sp.sqrt(2)) / 2  # cos π/8
     other = sp.sqrt(2 - sp.sqrt(2)) / 2
     nested = sp.sqrt(5 + 2 * sp.sqrt(6)) - sp.sqrt(2) - sp.sqrt(3)  # zero, not when expanded
-    assert chain_of([axis_turn((root, other, nested), phi)]).constraints == ()
+    assert rs.chain([axis_turn((root, other, nested), phi)]).constraints == ()
     b, c = sp.symbols("b c", real=True)
     divided = tuple(e / sp.sqrt(b**2 + c**2) for e in (b, c, 0))
-    assert chain_of([axis_turn(divided, phi)]).constraints == ()
+    assert rs.chain([axis_turn(divided, phi)]).constraints == ()
     near = (root, other + sp.Rational(1, 10**40), 0)
     assert axis_turn(near, phi).components != near  # made one
     assert axis_turn((1, 1, 0), phi).components == (sp.sqrt(2) / 2, sp.sqrt(2) / 2, 0)
+
+
+@pytest.mark.parametrize("name", ROTATIONS)
+def test_other_rotations_are_data_and_turn_as_the_numbers_do(name):
+    """Small coordinates, so that roots and tangents stay where they are real."""
+    sample = ROTATIONS[name]
+    motion = derive(sample)
+    assert motion.is_proved
+    assert hasattr(motion, "inverse_rate_matrix_space") == (motion.singularities.rank == 3)
+    if sample.constraints:
+        return
+    (path,) = paths(1, size=len(sample.coordinates), seed=6)
+    path = replace(path, q=tuple(value / 9 for value in path.q))
+    numbers = (mp.mpf(3) / 7, mp.mpf(5) / 7, mp.mpf(2) / 3)
+    constants = dict(zip(sp.symbols("m l alpha"), numbers, strict=True))
+
+    def R(t):
+        return evaluate(sample.matrix, {**values_along(sample.coordinates, path, t), **constants})
+
+    def printed(quantity):
+        values = {**values_along(sample.coordinates, path), **constants}
+        return evaluate(getattr(motion, quantity), values)
+
+    first, second = mp.diff(R, 0), mp.diff(R, 0, 2)
+    omega = unhat(first * R(0).T)
+    alpha_space = unhat(second * R(0).T + first * first.T)
+    assert agree(printed("angular_velocity_body"), R(0).T * omega)
+    assert agree(printed("rate_matrix_space") * mp.matrix(path.q_dot), omega)
+    assert agree(printed("angular_acceleration_body"), R(0).T * alpha_space)
+
+
+def test_functions_of_unknown_relations_leave_the_claims_unproved():
+    """It is a rotation, but the ring does not know sech² + tanh² = 1."""
+    motion = derive(model(about_z(sech(u), tanh(u)), u))
+    unproved = [proof for proof in motion.proofs if not proof.is_exact]
+    assert not motion.is_proved
+    assert {proof.claim.text for proof in unproved} >= {"R Rᵀ = 1", "det R = 1"}
+    for proof in unproved:
+        assert proof.status == "unproved"
+        values = {**values_along([u], paths(1, size=1)[0]), TIME: mp.mpf(0)}
+        assert proof.residual is not None
+        assert not proof.residual.is_zero_matrix
+        assert agree(evaluate(proof.residual, values), mp.zeros(*proof.residual.shape))
+
+
+@pytest.mark.parametrize(("sample", "claim", "residual"), WRONG.values(), ids=WRONG)
+def test_what_is_no_rotation_is_refused_with_what_is_left_over(sample, claim, residual):
+    with pytest.raises(NotARotation) as caught:
+        derive(sample)
+    message = str(caught.value)
+    assert message.startswith(f"sample: not a rotation, since {claim} fails; left over: ")
+    assert residual in message.split("left over: ", 1)[1]
+
+
+@pytest.mark.parametrize(
+    ("factor", "constraint"),
+    [
+        (sqrt(4 * SQUARE) / (2 * sqrt(SQUARE)), w - phi),  # dependent roots
+        (w, (w - 1) ** 2),  # w = 1, which is not in the ideal that it spans
+    ],
+)
+def test_what_the_ring_does_not_know_refutes_no_rotation(factor, constraint):
+    example = {w: sp.S.One, phi: sp.S.One}
+    turned = factor * elementary("z", phi)
+    bound = {"constraints": (constraint,), "example": example}
+    assert not derive(model(turned, *(phi, x, y, z, w), **bound)).is_proved
+
+
+@pytest.mark.parametrize(
+    "angle", [phi + TIME, phi + a * sp.sin(TIME), phi + psi], ids=["time", "drive", "stranger"]
+)
+def test_motion_that_the_coordinates_do_not_hold_is_refused(angle):
+    with pytest.raises((DerivationError, AlgebraError, ModelError)):
+        derive(model(elementary("z", angle), phi))
+
+
+def test_a_double_zero_of_the_determinant_is_one_singular_point():
+    turns = ("z", phi), ("x", theta), ("z", psi * sin(theta))
+    found = derive(model(chain(*turns), phi, theta, psi)).singularities
+    assert (found.is_solved, found.determinant) == (True, -(sin(theta) ** 2))
+    places = {(p.places[0].value, p.places[0].period, p.rank) for p in found.points}
+    assert places == {(0, 2 * pi, 2), (pi, 2 * pi, 2)}
+
+
+def test_a_convention_is_said_in_greek_letters_whatever_the_terminal_shows():
+    before = pretty_use_unicode(False)  # as SymPy decides where standard output is ASCII
+    try:
+        model = rs.EulerAngles("ZXZ", ("phi_1", "theta", "psi"))
+        assert model.product == "Rz(φ₁) Rx(θ) Rz(ψ)"
+        assert "first by φ₁ about the z-axis, then by θ about the new x-axis" in " ".join(
+            model.convention
+        )
+        assert not pretty_use_unicode(False)  # which stays as it was
+    finally:
+        pretty_use_unicode(before)
