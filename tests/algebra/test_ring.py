@@ -100,7 +100,6 @@ PATH = paths(1, seed=4)[0]
 
 
 def at(t) -> dict[sp.Expr, object]:
-    """Values on a path, at time t."""
     return {**values_along((a, b, u), PATH, t), m: mp.mpf(3) / 7}
 
 

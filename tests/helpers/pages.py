@@ -93,7 +93,6 @@ def page_of(name: str) -> str:
 
 
 def odd_page() -> str:
-    """The page of a rotation whose words hold markup."""
     return derive(odd_model()).page()
 
 

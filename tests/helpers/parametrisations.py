@@ -62,27 +62,22 @@ def by_cayley(vector: list[Any]) -> Any:
     return mp.inverse(mp.eye(3) - hat(vector)) * (mp.eye(3) + hat(vector))
 
 
-def normalised(values: list[Any], size: int) -> list[Any]:
-    """The first `size` values made a unit vector, the others as they are."""
-    length = mp.sqrt(sum(value**2 for value in values[:size]))
-    return [value / length for value in values[:size]] + values[size:]
+def nearly_straight(size: int, unit: int = 0) -> Curve:
+    """A path of which the first `unit` coordinates are a unit vector."""
+    path = paths(1, size=size, seed=3)[0]
 
+    def at(t: Any) -> list[Any]:
+        values = path.at(t)
+        length = mp.sqrt(sum(value**2 for value in values[:unit]))
+        return [value / length for value in values[:unit]] + [*values[unit:]]
 
-def nearly_straight(size: int, start: int = 3) -> Curve:
-    path = paths(1, size=size, seed=start)[0]
-    return lambda t: list(path.at(t))
+    return at
 
 
 WITNESSES: dict[str, tuple[Curve, Build]] = {
     "quaternion": (nearly_straight(4), lambda q: by_quaternion(*q)),
-    "unit_quaternion": (
-        lambda t: normalised(nearly_straight(4)(t), 4),
-        lambda q: by_quaternion(*q),
-    ),
-    "axis_angle": (
-        lambda t: normalised(nearly_straight(4)(t), 3),
-        lambda q: mp.expm(q[3] * hat(q[:3])),
-    ),
+    "unit_quaternion": (nearly_straight(4, unit=4), lambda q: by_quaternion(*q)),
+    "axis_angle": (nearly_straight(4, unit=3), lambda q: mp.expm(q[3] * hat(q[:3]))),
     "rotation_vector": (nearly_straight(3), lambda q: mp.expm(hat(q))),
     "gibbs_vector": (nearly_straight(3), by_cayley),
     "modified_rodrigues": (nearly_straight(3), lambda q: by_cayley(q) ** 2),

@@ -33,7 +33,6 @@ def model(matrix, *coordinates, constraints=(), example=None) -> RotationModel:
 
 
 def about_z(cosine, sine) -> sp.Matrix:
-    """The turn about z with a given cosine and sine."""
     return sp.Matrix([[cosine, -sine, 0], [sine, cosine, 0], [0, 0, 1]])
 
 

@@ -28,20 +28,8 @@ CONVENTIONS = (*(axes.upper() for axes in _SEQUENCES), *_SEQUENCES)
 TOLERANCE = mp.mpf(10) ** -40
 
 _TIME = sp.Symbol("t")
-_FUNCTIONS: dict[Any, Callable[[Any], Any]] = {
-    sp.sin: mp.sin,
-    sp.cos: mp.cos,
-    sp.tan: mp.tan,
-    sp.cot: mp.cot,
-    sp.sec: mp.sec,
-    sp.csc: mp.csc,
-    sp.sinh: mp.sinh,
-    sp.cosh: mp.cosh,
-    sp.tanh: mp.tanh,
-    sp.sech: mp.sech,
-    sp.exp: mp.exp,
-    sp.atan: mp.atan,
-}
+_NAMES = ("sin", "cos", "tan", "cot", "sec", "csc", "sinh", "cosh", "tanh", "sech", "exp", "atan")
+_FUNCTIONS: dict[Any, Callable[[Any], Any]] = {getattr(sp, n): getattr(mp, n) for n in _NAMES}
 
 
 def turn(axis: str, angle: Any) -> Matrix:

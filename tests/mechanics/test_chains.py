@@ -17,7 +17,6 @@ LETTERS = "zxzyxyzxyzxyzxzyxyzx"
 
 
 def chain(count: int) -> rs.RotationModel:
-    """`count` turns about coordinate axes."""
     return rs.rotation_from(" ".join(f"{axis}(q{k})" for k, axis in enumerate(LETTERS[:count], 1)))
 
 

@@ -95,8 +95,6 @@ def own(**options: object) -> rs.RotationModel:
         (lambda: dynamics(method="newton"), "no method 'newton'"),
         (lambda: dynamics(parts=[{"mass": 1}]), "a part with mass; expected rotation and"),
         (lambda: dynamics(parts=[TURNED]), "a part turns by psi, which is not a coordinate"),
-        (lambda: dynamics(examples=[{"mass": 1}]), "an example: unknown key mass; exp"),
-        (lambda: dynamics(examples=[{"time": 1, "parameters": {"k": 1}}]), "unknown parameter k"),
         (lambda: sample(name="Upper"), "'Upper' cannot name a model"),
         (lambda: sample(matrix=sp.ImmutableMatrix(sp.eye(2))), "matrix is 3x3, got (2, 2)"),
         (lambda: sample(coordinates=()), "needs at least one coordinate"),

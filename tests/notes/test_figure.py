@@ -29,7 +29,6 @@ from rigidsym.notes.letters import letters_of
 
 
 def letters(text: str) -> RotationModel:
-    """A chain of turns about coordinate axes."""
     return rotation_from(" ".join(map("{}({})".format, text, "abcdef")))
 
 

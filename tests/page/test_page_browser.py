@@ -62,7 +62,6 @@ def slide(tab: Page, **values: float) -> None:
 
 
 def set_all(tab: Page, values: dict[str, float]) -> None:
-    """Type numbers into the fields of the sliders."""
     slide(tab, **{f"{key}-number": value for key, value in values.items()})
 
 

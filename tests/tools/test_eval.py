@@ -56,7 +56,6 @@ def motion() -> rs.Motion:
 
 @pytest.fixture(scope="module")
 def table() -> np.ndarray:
-    """Rows of three angles and their rates."""
     return np.random.default_rng(7).uniform(-3, 3, (COUNT, 6))
 
 
