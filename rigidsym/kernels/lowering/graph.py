@@ -247,10 +247,11 @@ class Graph:
         self._take_reciprocals(used)
         self._factor(self._used(roots, SUM), lambda a, b: (a, b, (), 1))
 
-    def factored(self, roots: list[int]) -> Graph | None:
+    def factored(self, roots: list[int], constants: Iterable[str]) -> Graph | None:
         """The graph with its sums multiplied out and factored anew, if a term holds a sum.
 
-        Divisors and arguments of functions stay, since guards judge the terms of a divisor.
+        The product of several `constants` in a term becomes one factor, with a name. Divisors and
+        arguments of functions stay, since guards judge the terms of a divisor.
         """
         kept = self.reachable(
             part
@@ -262,7 +263,8 @@ class Graph:
         sums = [node for node in self._used(roots, SUM) if node not in kept]
         graph = copy(self)
         graph.nodes, graph._numbers = self.nodes.copy(), self._numbers.copy()
-        is_other = [graph._multiply_out(node, sums) for node in sums]
+        fixed = {self._numbers[INPUT, name] for name in constants}
+        is_other = [graph._multiply_out(node, sums, fixed) for node in sums]
         sums = [node for node in graph._used(roots, SUM) if node not in kept]
         pairs = sum(comb(len(graph.nodes[node][1]), 2) for node in sums)
         if not any(is_other) or pairs > _MOST_PAIRS:
@@ -270,7 +272,7 @@ class Graph:
         graph._factor(sums, cache(graph._apart))
         return graph
 
-    def _multiply_out(self, node: int, sums: list[int]) -> bool:
+    def _multiply_out(self, node: int, sums: list[int], fixed: set[int]) -> bool:
         """Multiply out one sum in each term, unless it has a power; whether there is one."""
         terms: list[Weighted] = []
         for coefficient, term in self.nodes[node][1]:
@@ -279,8 +281,13 @@ class Graph:
             rest = [f for f in factors if f not in inner]
             parts = self.nodes[inner[0]][1] if inner else ((Fraction(1), self.one),)
             for number, part in parts:
-                whole = self._product((*rest, *self._factors(part))) if inner else term
-                terms.append((coefficient * number, whole))
+                factors = *rest, *self._factors(part)
+                group = [f for f in factors if max(f, ~f) in fixed]
+                if len(group) > 1:
+                    held = self._node(HELD, ((Fraction(1), self._product(group)),))
+                    factors = held, *(f for f in factors if f not in group)
+                    fixed.add(held)
+                terms.append((coefficient * number, self._product(factors)))
         is_other = len(self.nodes[node][1]) < len(terms) <= _MOST_TERMS
         if is_other:
             self._set_terms(node, terms)

@@ -201,7 +201,9 @@ class _Lowering:
         """A kernel whose common subexpressions are shared, with its divisors guarded."""
         arguments = tuple(map(self._argument, vectors))
         inputs = tuple((s, self._known[s]) for vector in vectors for s in vector.symbols)
-        graph, weighted = _shared(name, inputs, tuple(self._definitions.items()), tuple(entries))
+        constants = tuple(c for a in arguments if a.name == "parameters" for c in a.components)
+        definitions = tuple(self._definitions.items())
+        graph, weighted = _shared(name, inputs, definitions, tuple(entries), constants)
         names = self._names.copy()
         return guarded(
             _written(graph, weighted, names, name=name, arguments=arguments, **words), names
@@ -219,6 +221,7 @@ def _shared(
     inputs: tuple[tuple[sp.Expr, str], ...],
     definitions: tuple[tuple[sp.Expr, sp.Expr], ...],
     entries: tuple[sp.Expr, ...],
+    constants: tuple[str, ...],
 ) -> tuple[Graph, list[Weighted]]:
     """The entries as nodes of a graph, in which what they have in common is one node.
 
@@ -228,16 +231,16 @@ def _shared(
     graph = Graph(name, dict(inputs), dict(definitions))
     weighted = list(map(graph.weighted, entries))
     roots = [node for _, node in weighted]
-    factored = graph.factored(roots)
-    graph.share(roots)
-    if factored is not None:
-        factored.share(roots)
-        many, few = (sum(map(g.operations, g.reachable(roots))) for g in (graph, factored))
-        if few < 0.9 * many:
-            names = [text for _, text in inputs]
-            limit, error = (
-                error_of_form(*write(g, weighted, Names(names))) for g in (graph, factored)
-            )
-            if error <= limit * (1.125 if graph.divides(roots) else 1):
-                graph = factored
+    # products of constants make one form shorter, and take others apart that have one in common
+    anew = [graph.factored(roots, each) for each in sorted({(), constants})]
+    forms = [graph, *filter(None, anew)]
+    for form in forms:
+        form.share(roots)
+    counts = [sum(map(form.operations, form.reachable(roots))) for form in forms]
+    best = forms[counts.index(min(counts))]
+    if min(counts) < 0.9 * counts[0]:
+        names = [text for _, text in inputs]
+        limit, error = (error_of_form(*write(g, weighted, Names(names))) for g in (graph, best))
+        if error <= limit * (1.125 if graph.divides(roots) else 1):
+            graph = best
     return graph, weighted

@@ -71,16 +71,12 @@ def _text(expression: ir.Expression, forms: Mapping[str, str], number: str) -> t
             signed = (f"- {t[1:]}" if t.startswith("-") else f"+ {t}" for t in others)
             return " ".join([first, *signed]), _SUM
         case ir.Product(factors, divisors):
-            above, below = (
-                " * ".join(within(part, tightness) for part in side)
-                for side, tightness in (
-                    (factors, _PRODUCT),
-                    (divisors, _PRODUCT if len(divisors) > 1 else _ATOM),
-                )
-            )
-            if not divisors:
-                return above, _PRODUCT
-            return f"{above} / {f'({below})' if len(divisors) > 1 else below}", _PRODUCT
+            whole = " * ".join(within(part, _PRODUCT) for part in factors)
+            if len(divisors) > 1:
+                whole += f" / ({' * '.join(within(part, _PRODUCT) for part in divisors)})"
+            elif divisors:
+                whole += f" / {within(divisors[0], _ATOM)}"
+            return whole, _PRODUCT
 
 
 def broken(text: str, width: int, margin: str = "") -> str:

@@ -34,15 +34,12 @@ def render(program: Program) -> dict[str, str]:
     of_math |= {"sqrt", "tan"} if program.has_series else set()
     numbers = (node.value for k in kernels for node in k.nodes if isinstance(node, Number))
     of_math |= {"nan"} if any(map(isnan, numbers)) else set()
-    twins = {}
-    for kernel in kernels:
-        scalar = "\n".join([twin_head(kernel), *_scalar_body(kernel)])
-        twins[kernel.name] = "\n\n\n".join((scalar, "\n".join(_block(kernel))))
+    lines = {k.name: [twin_head(k), *_scalar_body(k), "\n", *_block(k)] for k in kernels}
     text = module_text(
         program,
         TEMPLATE,
         {k.name: called(k, f"_{k.name}", f"{k.name}_scalar") for k in kernels},
-        twins,
+        {name: "\n".join(texts) for name, texts in lines.items()},
         of_math=of_math,
         series=remarks.series(program, python.SERIES, WIDTH),
         has_choices=any(isinstance(v, Choice) for k in kernels for v in k.values),
@@ -70,10 +67,8 @@ def module_text(
     names = [f"{kernel.name}{ending}" for kernel in kernels for ending in endings]
     continuity = program.continuity if is_plain else None
     passing = [f"_{k.name}: {k.passed}" for k in kernels if k.passed and is_plain]
-    about_unwrap = ""
-    if continuity:
-        texts = remarks.paragraphs("numpy/unwrap.txt.jinja", continuity=continuity)
-        about_unwrap = docstring(texts, indent=4)
+    about = "numpy/unwrap.txt.jinja"
+    texts = remarks.paragraphs(about, continuity=continuity) if continuity else [""]
     return python.module_text(
         program,
         template,
@@ -86,7 +81,7 @@ def module_text(
         passing=bracketed(0, "_PASSING = {", passing, "}"),
         imports=", ".join(sorted({*of_math, "prod"})),
         continuity=continuity,
-        about_unwrap=about_unwrap,
+        about_unwrap=docstring(texts, indent=4),
         **more,
     )
 
