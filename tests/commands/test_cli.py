@@ -195,12 +195,10 @@ def test_one_equation_is_printed_and_nothing_written(tmp_path, monkeypatch):
 
 
 def test_two_derivations_of_one_name_are_refused(tmp_path):
-    files = [tmp_path / name / "own.toml" for name in "ab"]
-    for file, axes in zip(files, ("ZXZ", "ZYX"), strict=True):
-        file.parent.mkdir()
-        file.write_text(f'[rotation]\nsequence = "{axes}"\n')
-    done = run("run", *map(str, files), "--out", str(tmp_path / "out"))
-    assert done.returncode == 2
+    for axes in ("ZXZ", "ZYX"):
+        (tmp_path / axes).mkdir()
+        (tmp_path / axes / "own.toml").write_text(f'[rotation]\nsequence = "{axes}"\n')
+    done = call("run", "ZXZ/own.toml", "ZYX/own.toml", cwd=tmp_path, status=2)
     assert "two different derivations are named own and would write one folder" in done.stderr
 
 

@@ -223,7 +223,6 @@ def test_an_example_takes_from_the_first_what_it_does_not_name():
 
 
 REFUSED = {
-    "thta; did you mean theta?": {"initial": {"thta": 1}, "time": 1},
     "a time > 0": {"initial": {"theta": 1}},
     "needs finite numbers": {"initial": {"theta": float("nan")}, "time": 1},
     "finite numbers, and a time > 0": {"parameters": {"A": "1"}, "time": 1},

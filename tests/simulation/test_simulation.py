@@ -242,17 +242,6 @@ def test_the_command_writes_a_page(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("wrong", "message"),
-    [
-        ("free_body --animate=free.gif", "free.gif: expected a file that ends in .html"),
-        ("heavy_symmetric_top --set A", "expected NAME=NUMBER"),
-    ],
-)
-def test_wrong_options_of_the_command_are_refused(wrong, message, tmp_path):
-    assert message in call("simulate", *wrong.split(), cwd=tmp_path, status=2).stderr
-
-
-@pytest.mark.parametrize(
     "rotation", [pytest.param("rotation_vector", marks=pytest.mark.campaign), "ZXZ"]
 )
 def test_a_heavy_body_is_carried_through_the_poles_of_its_coordinates(rotation):

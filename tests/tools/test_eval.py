@@ -59,18 +59,14 @@ def table() -> np.ndarray:
     return np.random.default_rng(7).uniform(-3, 3, (COUNT, 6))
 
 
-@pytest.fixture(scope="module")
-def kernel(motion):
-    return motion.kernels().load().angular_velocity_body
-
-
 @pytest.mark.parametrize("target", WRITERS)
 @pytest.mark.parametrize("source", WRITERS)
-def test_each_kind_of_file_to_each(motion, table, kernel, tmp_path, source, target):
+def test_each_kind_of_file_to_each(motion, table, tmp_path, source, target):
     given, result = tmp_path / f"given{source}", tmp_path / f"result{target}"
     WRITERS[source](given, table)
     made = evaluate(motion, VELOCITY, given, result, rows=137)
     assert made.rows == COUNT
+    kernel = motion.kernels().load().angular_velocity_body
     assert_array_equal(read(result), velocities(kernel, table, 137))
     assert sorted(tmp_path.iterdir()) == sorted([given, result])  # no draft, no marks
 
