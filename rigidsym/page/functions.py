@@ -20,7 +20,6 @@ from rigidsym.notes.figure.scene import MOST_TURNS
 from rigidsym.system.records import Record
 
 OF_THE_FIGURE = ("rotation_matrix", "angular_velocity_space", "angular_velocity_body")
-_WITH_A_MARGIN = "rate_matrix_space"
 _FLOW = ("state_derivative", "first_integrals")
 
 
@@ -60,7 +59,7 @@ def is_live(quantity: Quantity) -> bool:
 
 def functions_of(derivation: Derivation) -> Functions:
     """All functions that the page of a derivation evaluates."""
-    needed = (*OF_THE_FIGURE, _WITH_A_MARGIN)
+    needed = (*OF_THE_FIGURE, "rate_matrix_space")  # with singular orientations, and a margin
     whole = derivation
     if not {step.quantity.name for step in derivation.steps}.issuperset(needed):
         whole = derivation_of(derivation.model, needed)

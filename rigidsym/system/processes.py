@@ -10,13 +10,17 @@ import os
 import signal
 import sys
 import threading
+from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from math import isfinite
 from types import FrameType
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
-from rigidsym.errors import LimitReached, RequestError, RigidsymError, printable
+from rigidsym.errors import LimitReached, RequestError, printable
+
+if TYPE_CHECKING:
+    from concurrent.futures import Future
 
 T = TypeVar("T")
 R = TypeVar("R")
@@ -54,7 +58,8 @@ def in_processes(work: Callable[[T], R], items: Sequence[T]) -> Iterator[R]:
     """The result of each item, in order; work, items, results and errors can be pickled.
 
     The first item is done before this process is copied, so that the copies have all that it
-    imported and kept for the next. This process does its share of the others.
+    imported and kept for the next. Then it goes on from the front, and they begin at the end:
+    neighbours are often alike, and a process that has done one does the next in less time.
     """
     yield from map(work, items[:1])
     # the threads of JAX are not copied, and a copy would wait for them
@@ -62,29 +67,32 @@ def in_processes(work: Callable[[T], R], items: Sequence[T]) -> Iterator[R]:
     if count < 2:
         yield from map(work, items[1:])
         return
-    from concurrent.futures import Future
     from concurrent.futures.process import BrokenProcessPool, ProcessPoolExecutor
     from multiprocessing import active_children, get_context
 
-    done = 1
+    waiting, lock = deque(range(1, len(items))), threading.Lock()
+    futures: dict[int, Future[R]] = {}
+
+    def hand_out(before: Future[R] | None = None) -> None:
+        """Give the last item that is waiting to a copy, if it has done the one before."""
+        with lock:
+            if not waiting or (before and before.exception()):
+                return
+            last = waiting.pop()
+            future = futures[last] = pool.submit(work, items[last])
+        future.add_done_callback(hand_out)
+
+    place = 1
     with ProcessPoolExecutor(count - 1, get_context("fork"), _obey_this_process) as pool:
         try:
-            futures = [pool.submit(work, item) for item in items[1:]]
-            while done < len(items):
-                # until a copy has the next result, this process does the first that none has begun
-                waiting = () if futures[done - 1].done() else range(done - 1, len(futures))
-                place = next((k for k in waiting if futures[k].cancel()), None)
-                if place is None:
-                    yield futures[done - 1].result()
-                    done += 1
-                    continue
-                futures[place] = Future()
-                try:
-                    futures[place].set_result(work(items[place + 1]))
-                except RigidsymError as error:  # which is raised in its turn
-                    futures[place].set_exception(error)
+            for _ in range(count - 1):
+                hand_out()
+            for place in range(1, len(items)):
+                with lock:
+                    is_own = bool(waiting) and waiting.popleft() == place
+                yield work(items[place]) if is_own else futures.pop(place).result()
         except BrokenProcessPool:  # the system ended a copy, for want of memory for instance
-            yield from map(work, items[done:])
+            yield from map(work, items[place:])
         except BaseException:  # an interrupt does not wait for results
             for copy in active_children():
                 copy.terminate()

@@ -47,15 +47,13 @@ class Record:
         cls.__signature__ = Signature(parameters)
 
     def __init__(self, *values: Any, **named: Any) -> None:
+        state = self.__dict__  # the class has the defaults
+        state.update(zip(self.__match_args__, values, strict=False), **named)
         if named or len(values) != self._count:
-            state = dict(zip(self.__match_args__, values, strict=False), **named)
             is_each_once = len(state) == len(values) + len(named)
             if not (is_each_once and self._required <= state.keys() <= self._names):
                 kind, got = type(self).__name__, [*values, *named]
                 raise TypeError(f"{kind} has the fields {[*self._names]}; got values for {got}")
-        else:
-            state = dict(zip(self.__match_args__, values, strict=True))
-        self.__dict__.update(state)  # the class has the defaults
         self.__post_init__()
 
     def __post_init__(self) -> None:

@@ -119,10 +119,9 @@ def _attributes(thing: Any) -> dict[str, Any]:
 
 
 class _Printer(StrPrinter):
-    """As `str`. A sum comes up in several quantities, and again in other conventions."""
+    """As `str`. A part comes up in several quantities, and again in other conventions."""
 
-    _print_Add = lru_cache(maxsize=1 << 12)(StrPrinter._print_Add)  # noqa: N815
-    _print_Mul = lru_cache(maxsize=1 << 12)(StrPrinter._print_Mul)  # noqa: N815
+    _print = lru_cache(maxsize=1 << 13)(StrPrinter._print)
 
 
 _PRINTER = _Printer({"order": None})
