@@ -38,8 +38,7 @@ def _compute(result, leading, block, arrays, shape, threads):
 def _place(result, values, shape):
     """Write entries to where they belong."""
     if len(shape) == 2 and result.flags.c_contiguous:
-        result, shape = result.reshape(*result.shape[:-2], prod(shape)), shape[:1]
-    if len(shape) == 1:
+        result = result.reshape(*result.shape[:-2], prod(shape))
         for k, value in enumerate(values):
             result[..., k] = value
     else:

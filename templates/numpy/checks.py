@@ -13,7 +13,7 @@ def _arrays(arguments):
             is_uneven = is_uneven or leading != ()
             leading = axes
         arrays.append(array)
-    if 0 < singles < len(arrays):
+    if singles and singles < len(arrays):
         arrays = [array.astype(_DOUBLE, copy=False) for array in arrays]
     if is_uneven:
         try:

@@ -22,6 +22,9 @@ def _sin_cos(*angles):
     """
     size, count = angles[0].size, len(angles)
     if size * count < _FEW or angles[0].dtype is _SINGLE:
+        if count == 2:  # without a list, a fiftieth of ten orientations less
+            a, b = angles
+            return _SINE(a), _SINE(b), _COSINE(a), _COSINE(b)
         values = []  # appending costs half of what map does
         for angle in angles:
             values.append(_SINE(angle))
