@@ -61,7 +61,7 @@ def test_a_stated_fixed_point_is_that_of_sympy(point):
     exact = {"-l": -length, "d": d, 0.25: sp.Rational(1, 4), 0: 0}
     arm, tensor = sp.Matrix([a, 0, b]) - sp.Matrix([exact[x] for x in point]), sp.diag(A, B, C)
     body = given_inertia(tensor, centre=sp.Matrix([a, 0, b]), mass=mass)
-    model = rs.EulerAngles("ZXZ")
+    model = rs.rotation_from("z(phi) x(theta)")
     position = model.matrix * arm
     acting = {"body": body, "potential": mass * g * position[2]}
     names = ("angular_velocity_body", "inertia_tensor", "accelerations")
