@@ -214,10 +214,6 @@ class Moving:
         """Body to space components, whichever of R and its transpose is printed."""
         return self.rotation_matrix.T if self.is_passive else self.rotation_matrix
 
-    @property
-    def R_dot(self) -> Any:
-        return self.rotation_rate.T if self.is_passive else self.rotation_rate
-
 
 # Every rotation that can be asked for by name, and some chains.
 MOVING = tuple(

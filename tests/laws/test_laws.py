@@ -45,7 +45,7 @@ def test_the_matrix_is_the_rotation_of_its_name(m: Moving):
 @every_rotation
 def test_the_rate_of_the_matrix_is_its_derivative_along_the_path(m: Moving):
     """Ṙ = dR(q(t))/dt"""
-    assert agree(m.R_dot, m.turned_rate)
+    assert agree(m.rotation_rate.T if m.is_passive else m.rotation_rate, m.turned_rate)
 
 
 @every_rotation

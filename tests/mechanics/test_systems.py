@@ -32,8 +32,7 @@ def frame(*turns) -> list[ReferenceFrame]:
     """Frames after each turn: (axis, angle)."""
     found = [ReferenceFrame("N")]
     for k, (axis, angle) in enumerate(turns):
-        unit = dict(zip("xyz", (found[-1].x, found[-1].y, found[-1].z), strict=True))[axis]
-        found.append(found[-1].orientnew(f"F{k}", "Axis", [angle, unit]))
+        found.append(found[-1].orientnew(f"F{k}", "Axis", [angle, getattr(found[-1], axis)]))
     return found
 
 
