@@ -22,6 +22,7 @@ from rigidsym.system.files import read_bytes
 from rigidsym.system.processes import in_processes
 from rigidsym.system.resources import environment
 from rigidsym.tools.compare.comparison import compare
+from rigidsym.tools.compare.quantities import symbols_in
 from rigidsym.tools.compare.search import disappointment, search, source_files
 from rigidsym.version import __version__
 
@@ -36,6 +37,11 @@ def command(context: click.Context, /, paths: tuple[Path, ...], **options: Any) 
     motion = _motion(options)
     if formula is not None:
         result = compare(formula, motion, options["quantity"])
+        names, angles = symbols_in(result.formula), options["angles"] or ()
+        others = [s.name for s in names[1] if s.name not in angles]  # inside sines and cosines
+        if angles and (others or not {*angles} & {s.name for s in names[0]}):
+            there = ", ".join(others or map(str, names[0]))
+            raise click.UsageError(f"--angles {','.join(angles)}: the formula has {there}")
         click.echo(result.text() if options["format"] == "text" else _json(result.record()))
         context.exit(not result.is_equal)
     if motion is not None:
@@ -123,7 +129,7 @@ def _records(expected: str | None, is_active: bool, file: Path) -> list[dict[str
         record, comparison = formula.record(), formula.comparison
         other = disappointment(comparison, axes, is_active=is_active) if comparison else ""
         record |= {"unexpected": other or None, "is_unreadable": comparison is None}
-        record |= {"is_failure": formula.is_failure, "is_end": formula.is_end}
+        record |= {"is_failure": formula.is_failure, "is_end": formula.formula.is_end}
         record["text"] = f"{formula.text}; {other}" if other else formula.text
         record["fault"] = bool(other or (comparison and comparison.is_wrong))
         records.append(record)

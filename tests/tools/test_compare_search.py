@@ -25,7 +25,7 @@ from rigidsym.tools.compare.comparison import identified
 from rigidsym.tools.compare.program import formula_matrix, program_formulas
 from rigidsym.tools.compare.quantities import _angles, target
 from rigidsym.tools.compare.search import formulas, search, source_files
-from rigidsym.tools.compare.syntax import patterns
+from rigidsym.tools.compare.syntax import limits, patterns
 
 W_BODY = "[[1, 0, -sin(b)], [0, cos(a), sin(a)*cos(b)], [0, -sin(a), cos(a)*cos(b)]]"
 
@@ -41,7 +41,7 @@ W_BODY = "[[1, 0, -sin(b)], [0, cos(a), sin(a)*cos(b)], [0, -sin(a), cos(a)*cos(
         ("float R[9] = {1, 0, 0, 0, c, -s, 0, s, c};", "[[1, 0, 0], [0, c, -s], [0, s, c]]"),
         ("pow(q.w(), 2) + state->roll", "pow(q_w,2)+roll"),
         (r"\dot\phi \sin^2\theta + \tfrac12 x_1", "phi_dot*sin(theta)**(2)+((1)/(2))*x_1"),
-        (r"\sqrt{x^2}\,(a + b)", "sqrt(x**(2))*(a+b)"),
+        (r"\sqrt{x^2}\,(a + b) \sqrt2 y", "sqrt(x**(2))*(a+b)*sqrt(2)*y"),
         (r"c\theta^2 - \sin^{-1}(\frac{a}2 b)", "cos(theta)**2 - asin(a/2*b)"),
         (r"\dot{\phi}_{12} + \ddot{x}", "phi_12_dot + x_ddot"),
         (r"R = \begin{pmatrix} a & b \\[2pt] w\,x & \sin 2\theta \end{pmatrix}", None),
@@ -781,6 +781,36 @@ def test_a_file_that_is_not_compared_to_the_end_is_named(tmp_path):
     assert (done.exit_code, done.stdout) == (0, "")
     assert re.search(r"a\.py:\d+: not compared from here on, since the formulas", done.stderr)
     assert "no known formula in 1 file, 1 not compared to the end" in done.stderr
+
+
+def test_angles_that_are_not_in_the_formula_are_an_error():
+    about = "--rotation", "ZYX", "--quantity", "rotation_matrix", "--formula"
+    turn = "[cos(psi) -sin(psi) 0; sin(psi) cos(psi) 0; 0 0 1]"
+    for angles, is_there in (("a,b,c", False), ("psi,b,c", True)):
+        done = run(*about, turn, "--angles", angles)
+        assert done.exit_code == (1 if is_there else 2)
+        assert (f"--angles {angles}: the formula has psi" in done.output) != is_there
+
+
+@pytest.mark.parametrize("limit", ["most_formulas", "most_steps", "most_nodes"])
+def test_a_file_above_a_limit_is_named(limit, tmp_path, monkeypatch):
+    file = tmp_path / "a.py"
+    file.write_text("".join(f"def f{k}(c, s):\n    return {TURN}\n" for k in range(4)))
+    whole = run(str(file))
+    assert (whole.exit_code, whole.stdout.count("(proved)"), "compared" in whole.stderr) == (
+        0,
+        4,
+        False,
+    )
+    monkeypatch.setattr(
+        limits, limit, {"most_formulas": 2, "most_steps": -30, "most_nodes": 20}[limit]
+    )
+    done = run(str(file))
+    assert done.exit_code == 0
+    assert re.search(
+        r"a\.py:\d: not compared from here on, since the file is too long", done.stderr
+    )
+    assert "1 not compared to the end" in done.stderr
 
 
 def test_a_failure_in_one_file_does_not_end_the_search(tmp_path, monkeypatch):

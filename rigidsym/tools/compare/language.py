@@ -13,6 +13,7 @@ from typing import Any
 import sympy as sp
 
 from rigidsym.errors import ExpressionError, offer
+from rigidsym.models.rotation import hat
 from rigidsym.text.bounds import FUNCTIONS, Sized, apply, longest_number, operate
 from rigidsym.tools.compare.syntax import SPELLINGS, limits, patterns
 
@@ -37,12 +38,6 @@ def _sized(value: sp.Expr) -> Sized:
     return Sized.atom(value, bits=longest_number(value) or 1)
 
 
-def cross_matrix(vector: sp.MatrixBase) -> sp.Matrix:
-    """The matrix C(v) with C(v) u = v x u."""
-    x, y, z = vector
-    return sp.Matrix([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-
-
 def _unit(size: sp.Expr) -> sp.Matrix:
     if not (size.is_Integer and 0 < size <= limits.largest):
         raise ExpressionError(f"one(n) takes a whole number up to {limits.largest}")
@@ -50,7 +45,7 @@ def _unit(size: sp.Expr) -> sp.Matrix:
 
 
 OF_MATRICES: dict[str, Callable[..., Any]] = {
-    "C": cross_matrix,
+    "C": hat,
     "T": lambda matrix: matrix.T,
     "one": _unit,
     "col": lambda *entries: sp.Matrix(entries),

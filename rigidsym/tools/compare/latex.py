@@ -124,7 +124,8 @@ def _product(text: str, parts: list[str]) -> str:
             if power == "(-1)":  # sin⁻¹ is the inverse function, although sin² is a power
                 function, power = f"a{function}", ""
             argument = taken(is_digit=function == "sqrt")
-            if argument.isdigit() and stack and stack[-1] not in _SIGNS:  # \sin 2\theta
+            is_factor = function != "sqrt" and stack and stack[-1] not in _SIGNS
+            if argument.isdigit() and is_factor:  # \sin 2\theta
                 argument += f"*{taken()}"
             factor = f"{function}({argument})"
         elif re.fullmatch(rf'"\w+"|[\d.]+|[{_MARKS}]', token):

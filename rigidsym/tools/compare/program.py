@@ -108,6 +108,7 @@ class Formula:
     unread: tuple[tuple[str, int], ...] = ()  # names in it whose values are not read, and lines
     function: tuple[str, int, int] = ("", 0, 0)  # around it, with its first and last line
     is_final: bool = True  # not if what is not understood changes it: it may not be complete
+    is_end: bool = False  # the reason holds for the rest of the file
 
     @property
     def line(self) -> int:
@@ -115,8 +116,8 @@ class Formula:
         return min(self.lines)
 
 
-def _fault(line: int, reason: str, name: str = "") -> Formula:
-    return Formula(lines=(line,), name=name, reason=reason)
+def _fault(line: int, reason: str, name: str = "", *, is_end: bool = False) -> Formula:
+    return Formula(lines=(line,), name=name, reason=reason, is_end=is_end)
 
 
 @dataclass
@@ -174,9 +175,9 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
     try:
         root = syntax.parsed(text, suffix)
     except ExpressionError as error:
-        return [_fault(1, str(error))]
+        return [_fault(1, str(error), is_end=True)]
     if root.descendant_count > limits.most_nodes:
-        return [_fault(1, "the file is too long")]
+        return [_fault(1, "the file is too long", is_end=True)]
     functions = [*walk(root, "function")]
     outside = reduce(lambda rest, each: rest.replace(each.text, ""), functions, text)
     program = _Program(
@@ -217,6 +218,10 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
                 for each in run.formulas
                 if each.name not in UNNAMED or each.forms[:1] not in named  # it is there already
             ]
+        if line := program.steps["end"]:  # in a later run, all has been read, with some branches
+            reason = "it has too many branches" if count else "the file is too long"
+            scopes[-1].formulas.append(_fault(line, reason, is_end=not count))
+            break
     formulas: dict[Any, Formula] = {}
     for formula in chain.from_iterable(scope.formulas for scope in scopes):
         key = (formula.lines, formula.forms or formula.name)
@@ -351,6 +356,13 @@ class _Run:
         if is_so:
             raise self.unreadable(tree, reason)
 
+    def is_full(self, line: int) -> bool:
+        """Whether a limit on a whole file is reached, in this line or before."""
+        steps = self.program.steps
+        if steps["read"] > limits.most_steps or steps["formulas"] > limits.most_formulas:
+            steps.setdefault("end", line)
+        return "end" in steps
+
     # Statements
 
     def run_scope(self) -> None:
@@ -366,8 +378,7 @@ class _Run:
 
     def run(self, tree: Tree) -> None:
         """One statement, or all statements in a block."""
-        steps = self.program.steps
-        if steps["read"] > limits.most_steps or steps["formulas"] > limits.most_formulas:
+        if self.is_full(tree.line):
             self.end = "return"  # later values are unknown
         if self.end or tree.kind == "function":
             return
@@ -795,7 +806,7 @@ class _Run:
             return
         value = sp.ImmutableMatrix(value)
         self.program.steps["formulas"] += (name, value) not in self.emitted
-        if (name, value) in self.emitted or self.program.steps["formulas"] > limits.most_formulas:
+        if (name, value) in self.emitted or self.is_full(min(lines)):
             return
         self.emitted.add((name, value))
         numbers = {s: v for s, v in self.definitions.items() if v in (0, 1)}  # a name `zero`
@@ -829,8 +840,7 @@ class _Run:
         self.program.steps["read"] += 1
         try:
             self.refuse_if(self.depth > limits.deepest, tree, "is nested too deeply")
-            if self.program.steps["read"] > limits.most_steps:
-                raise self.unreadable(tree, "is not read, since the file is too long")
+            self.refuse_if(self.is_full(tree.line), tree, "is not read, since the file is too long")
             value = getattr(self, f"read_{tree.kind}", self.named)(tree)
             if isinstance(value, sp.MatrixBase) and _size(value) > limits.most_parts:
                 self.program.steps["read"] += limits.steps_of_long

@@ -31,6 +31,7 @@ from sympy.core.function import AppliedUndef
 from rigidsym.algebra.evaluate import Floats, Unknown, evaluate
 from rigidsym.errors import ExpressionError
 from rigidsym.mechanics.body import BodyValues
+from rigidsym.mechanics.conversions.function import half_turn, product as product_of
 from rigidsym.models.rotation import rotation_of
 from rigidsym.motion import Motion, derive
 from rigidsym.tools.compare.syntax import patterns
@@ -253,11 +254,8 @@ def values_of(family: Family) -> Array:
 def of_motion(motion: Motion, quantity: str, rotation: str) -> KnownQuantity:
     """A quantity of a derivation."""
     if quantity == QUATERNION:
-        turns = (
-            sp.Matrix([sp.cos(t.angle / 2), *(sp.sin(t.angle / 2) * d for d in t.direction)])
-            for t in motion.model.turns
-        )
-        matrix, uses = reduce(quaternion_product, turns), tuple("q")
+        turns = (half_turn(turn.direction, turn.angle) for turn in motion.model.turns)
+        matrix, uses = sp.Matrix(reduce(product_of, turns)), tuple("q")
     else:
         step = motion.step(quantity)
         matrix, uses = motion.spelled(step.expression), step.quantity.inputs
@@ -338,16 +336,14 @@ def _rotations(
 # Laws in vectors
 
 
-def quaternion_product(a: sp.MatrixBase, b: sp.MatrixBase) -> sp.Matrix:
+def _product(*factors: sp.MatrixBase) -> sp.Matrix:
     """a b, each a column with the scalar first, or a vector."""
-    (s, *u), (t, *v) = (each if len(each) == 4 else [0, *each] for each in (a, b))
-    u, v = sp.Matrix(u), sp.Matrix(v)
-    return sp.Matrix([s * t - u.dot(v), *(s * v + t * u + u.cross(v))])
+    return sp.Matrix(product_of(*([0] * (4 - len(each)) + [*each] for each in factors)))
 
 
 def _rate_operator(v: sp.Matrix) -> sp.Matrix:
     """The matrix of q v as a function of q."""
-    return sp.Matrix.hstack(*(quaternion_product(sp.eye(4)[:, k], v) for k in range(4)))
+    return sp.Matrix.hstack(*(_product(sp.eye(4)[:, k], v) for k in range(4)))
 
 
 def _tensor(entries: sp.Matrix) -> sp.Matrix:
@@ -374,7 +370,7 @@ _ACCELERATION, _TORQUE = "euler_equations_acceleration", "euler_equations_torque
 _WITH_INVERSE = f"{_ACCELERATION}, if one matrix is the inverse of the other"
 _Law = tuple[str, tuple[int, ...], Callable[..., sp.Matrix]]
 _LAWS: tuple[_Law, ...] = (  # entries of each vector, and the value
-    *((_PRODUCT, sizes, quaternion_product) for sizes in ((4, 4), (4, 3), (3, 4))),
+    *((_PRODUCT, sizes, _product) for sizes in ((4, 4), (4, 3), (3, 4))),
     ("quaternion_rate_operator", (3,), _rate_operator),
     ("rotated_vector", (4, 3), lambda q, v: rotation_of([*q]) * v),
     *((_ACCELERATION, sizes, _acceleration) for sizes in ((3, 3, 3), (3, 3))),
@@ -463,7 +459,7 @@ def meanings(formula: sp.MatrixBase, goal: KnownQuantity, *, is_asked: bool) -> 
     unless these are the names of angles that nobody has chosen, as in "ZYX". If the rates are in
     the opposite order, the first and the last angle have lost our names.
     """
-    symbols, inside = _symbols(formula)
+    symbols, inside = symbols_in(formula)
     own = {s: goal.names.get(s.name) or goal.names.get(f"{stem_of(s.name)}_dot") for s in symbols}
     if None not in own.values() and is_asked and goal.has_own_names:
         return [own]
@@ -498,7 +494,7 @@ def meanings(formula: sp.MatrixBase, goal: KnownQuantity, *, is_asked: bool) -> 
 
 
 @lru_cache(maxsize=256)  # one formula is compared with many quantities
-def _symbols(formula: sp.MatrixBase) -> tuple[list[sp.Symbol], set[sp.Symbol]]:
+def symbols_in(formula: sp.MatrixBase) -> tuple[list[sp.Symbol], set[sp.Symbol]]:
     """The names of a formula in order, q2 before q10, and those inside sines and cosines."""
     inside = {a for f in formula.atoms(sp.sin, sp.cos, sp.tan) for a in f.free_symbols}
 

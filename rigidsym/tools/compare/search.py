@@ -38,16 +38,14 @@ _identified = lru_cache(maxsize=1024)(partial(identified, is_in_program=True))
 
 @dataclass(frozen=True, slots=True)
 class FormulaInFile:
-    """A formula, where it begins, and what it is or why it cannot be read."""
+    """A formula, where it begins, and what it is, unless it cannot be read."""
 
     path: Path
     formula: Formula
     comparison: Comparison | None = None
-    reason: str = ""
     is_case: bool = False  # whether other branches have other values
     remark: str = ""  # what the names in the program say of it
     is_failure: bool = False  # the rest of the file is not read
-    is_end: bool = False  # the rest of the file is not compared
 
     @property
     def goal(self) -> KnownQuantity | None:
@@ -70,11 +68,9 @@ class FormulaInFile:
     def text(self) -> str:
         """The finding without its place; other readings have lines of their own."""
         name = f"{self.formula.name}: " if self.formula.name else ""
-        text = (
-            self.comparison.text()
-            if self.comparison
-            else f"not {'compared from here on' if self.is_end else 'read'}, since {self.reason}"
-        )
+        what = "compared from here on" if self.formula.is_end else "read"
+        reason = f"not {what}, since {self.formula.reason}"
+        text = self.comparison.text() if self.comparison else reason
         first, *others = text.split("\n")
         first += "; in one of several branches" * self.is_case
         if self.formula.unread and self.comparison:
@@ -142,18 +138,18 @@ def search(path: Path, expected: tuple[str, ...] = ()) -> Iterator[FormulaInFile
         found.extend(_findings(path, text, expected))  # keeps what is before an error
     except _FAILURES as error:
         reason = f"there was an error in reading it: {type(error).__name__}: {error}"
-        whole = Formula(lines=(1,), name="")
-        found.append(FormulaInFile(path, whole, reason=reason, is_failure=True))
+        whole = Formula(lines=(1,), name="", reason=reason)
+        found.append(FormulaInFile(path, whole, is_failure=True))
     of_functions: dict[tuple[str, int, int], list[FormulaInFile]] = {}
     for finding in found:
         of_functions.setdefault(finding.formula.function, []).append(finding)
     wrong = [each for each in found if each.comparison and each.comparison.is_wrong]
     for finding in found:
         if finding in wrong and (part := _wrong_part(finding, wrong, text)):
-            yield FormulaInFile(path, finding.formula, reason=f"it contains {part}")
-            continue
-        remark = _remark(finding, of_functions[finding.formula.function], text)
-        yield replace(finding, remark=remark)
+            yield FormulaInFile(path, replace(finding.formula, reason=f"it contains {part}"))
+        else:
+            remark = _remark(finding, of_functions[finding.formula.function], text)
+            yield replace(finding, remark=remark)
 
 
 def _wrong_part(finding: FormulaInFile, wrong: Sequence[FormulaInFile], text: str) -> str:
@@ -165,13 +161,11 @@ def _wrong_part(finding: FormulaInFile, wrong: Sequence[FormulaInFile], text: st
         if depth <= 0:
             break
     for formula in (each.formula for each in wrong):
-        function, is_before = formula.function[0], formula.line < own.line
-        if function and formula.function != own.function:
-            name, is_part = function, re.search(rf"\b{function}\s*\(", statement)
-        else:
-            name, is_part = formula.name, re.search(rf"\b{re.escape(formula.name)}\b", statement)
-            is_part = is_part if is_before and formula.name != own.name else None
-        if is_part:
+        name, end = formula.name, r"\b"
+        is_other = formula.line < own.line and name != own.name
+        if formula.function[0] and formula.function != own.function:
+            name, end, is_other = formula.function[0], r"\s*\(", True
+        if is_other and re.search(rf"\b{re.escape(name)}{end}", statement):
             return f"{name}, which is wrong in line {formula.line}"
     return ""
 
@@ -235,13 +229,12 @@ def _findings(path: Path, text: str, expected: tuple[str, ...]) -> Iterator[Form
     variants: dict[Any, list[Formula]] = {}
     latest: FormulaInFile | None = None
     for formula in formulas(text, path.suffix):
-        variants.setdefault((formula.line, formula.name), []).append(formula)
+        variants.setdefault((formula.line, formula.name, formula.is_end), []).append(formula)
     effort, before = 0, set[Any]()  # for different formulas since the last known one
     for group in variants.values():
         if effort > _MOST_EFFORT:
             reason = "the formulas before it resemble no known one"
-            end = Formula(lines=(group[0].line,), name="")
-            yield FormulaInFile(path, end, reason=reason, is_end=True)
+            yield FormulaInFile(path, replace(group[0], name="", reason=reason, is_end=True))
             return
         # A formula with the values of all branches may be no quantity, while one branch is.
         is_case = len({each.forms for each in group if each.forms}) > 1
@@ -273,17 +266,16 @@ def _compared(
             is_equal = is_case or not formula.is_final
             comparison = _identified(form, only_equal=is_equal, expected=expected)
         except (ExpressionError, RecursionError) as error:  # a function without values
-            return FormulaInFile(path, formula, reason=str(error))
+            return FormulaInFile(path, replace(formula, reason=str(error)))
         goal = comparison.found
         if goal is not None and formula.is_flat and goal.arrangement == quantities.PASSIVE:
             goal = replace(goal, arrangement=quantities.PASSIVE_OR_BY_COLUMNS)
             comparison = replace(comparison, found=goal)
         if goal is not None or comparison.is_reflection:
-            return FormulaInFile(path, formula, comparison, "", is_case)
-    reason = formula.reason
+            return FormulaInFile(path, formula, comparison, is_case)
     if formula.unread and any(map(_may_be_known, formula.forms)):
-        reason = f"{_in_lines(formula.unread)} cannot be read"
-    return FormulaInFile(path, formula, reason=reason) if reason else None
+        formula = replace(formula, reason=f"{_in_lines(formula.unread)} cannot be read")
+    return FormulaInFile(path, formula) if formula.reason else None
 
 
 def formulas(text: str, suffix: str) -> Iterator[Formula]:
