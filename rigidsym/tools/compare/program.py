@@ -194,15 +194,11 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
     program.steps["read"] = -min(8 * text.count("\n"), 200 * len(functions))
     scopes = [_Scope(tree) for tree in (Tree(root), *_worth_reading(functions, suffix))]
     for lost in syntax.damaged(root):  # by most errors, such as an unknown macro, no formula is
-        if "(" in lost.text and _has_material(lost.text, ""):
+        if {*lost.text} & {*"(["} and _has_material(lost.text, ""):
             scopes[0].formulas.append(_fault(lost.line, "there is a syntax error"))
             break
-    if suffix == ".py" and root.has_error and (found := syntax.python_error(text)):
-        fault = _fault(found.lineno or 1, f"there is a syntax error: {found.msg}")
-        scopes[0].formulas = [fault]
-    for count in range(
-        limits.most_runs
-    ):  # first runs first, since a long file is not read to its end
+    # All scopes are run once before any is run again: a long file is not read to its end.
+    for count in range(limits.most_runs):
         for scope in scopes:
             if count and not (scope.places and scope.is_new):
                 continue
@@ -213,11 +209,8 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
             except RecursionError:  # SymPy, in a sum that a program nests in itself
                 run.formulas.append(_fault(scope.tree.line, "expressions are nested too deeply"))
             named = {f.forms[:1] for f in run.formulas if f.name not in UNNAMED} - {()}
-            scope.formulas += [
-                replace(each, function=scope.tree.span)
-                for each in run.formulas
-                if each.name not in UNNAMED or each.forms[:1] not in named  # it is there already
-            ]
+            own = (f for f in run.formulas if f.name not in UNNAMED or f.forms[:1] not in named)
+            scope.formulas += [replace(each, function=scope.tree.span) for each in own]
         if line := program.steps["end"]:  # in a later run, all has been read, with some branches
             reason = "it has too many branches" if count else "the file is too long"
             scopes[-1].formulas.append(_fault(line, reason, is_end=not count))
@@ -1283,12 +1276,10 @@ class _Run:
         is_template = name == "T" and tree.owner is None and not self.program.is_formula
         meaning = "" if is_own else "wrapper" if is_template else CALLS.get(name, "")
         nodes, is_method = arguments, not patterns.module.match(base)
-        is_short = name in language.OF_NUMBERS and len(nodes) < 1 + name.startswith(
-            ("pow", "atan2")
-        )
-        if tree.owner is not None and (
-            is_short or (is_method and meaning in TYPES["of_objects"]) or base == "?"
-        ):
+        fewest = 1 + name.startswith(("pow", "atan2"))
+        is_short = name in language.OF_NUMBERS and len(nodes) < fewest
+        is_first = is_short or (is_method and meaning in TYPES["of_objects"]) or base == "?"
+        if tree.owner is not None and is_first:
             nodes = [tree.owner, *nodes]
         if name in language.OF_NUMBERS and nodes and not is_own:
             values = [self.read(each) for each in nodes]
@@ -1356,10 +1347,8 @@ class _Run:
     def bounded(self, tree: Tree, meaning: str, values: Sequence[Any]) -> Any:
         """x of clamp(x, -1, 1), of min(1, x) or of max(-1, x), for arc sines and cosines."""
         parts = [value.as_coeff_Add() for value in values]  # a bound may be -1 + epsilon
-        signs = [
-            round(c) if 0.995 < abs(c) < 1.005 and rest.as_coeff_Mul()[1].is_Atom else 0
-            for c, rest in parts
-        ]
+        near = [0.995 < abs(c) < 1.005 and rest.as_coeff_Mul()[1].is_Atom for c, rest in parts]
+        signs = [round(c) if is_one else 0 for (c, _), is_one in zip(parts, near, strict=True)]
         least = 1 if re.search("min", tree.called, re.IGNORECASE) else -1
         wanted = ([0, -1, 1],) if meaning == "clamp" else ([0, least], [least, 0])
         self.refuse_if(signs not in wanted, tree)

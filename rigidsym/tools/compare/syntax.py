@@ -8,7 +8,6 @@ it is looked at, since most of a program holds no formula.
 
 from __future__ import annotations
 
-import ast
 import re
 import tomllib
 from collections.abc import Iterable, Iterator
@@ -19,7 +18,6 @@ from itertools import chain, count
 from pathlib import Path
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
-from warnings import catch_warnings
 
 from rigidsym.errors import ExpressionError, MissingExtra
 from rigidsym.text.names import spelled
@@ -72,18 +70,6 @@ def parsed(text: str, suffix: str) -> Node:
     return root
 
 
-def python_error(text: str) -> SyntaxError | None:
-    """What Python says of a program."""
-    try:
-        with catch_warnings(action="ignore"):
-            ast.parse(text)
-    except SyntaxError as error:
-        return error
-    except (ValueError, RecursionError, MemoryError):  # a null byte, or too many brackets
-        pass
-    return None
-
-
 def _part(node: Node, fields: str) -> Node | None:
     """The first of some parts that a node has."""
     parts = map(node.child_by_field_name, fields.split())
@@ -93,9 +79,7 @@ def _part(node: Node, fields: str) -> Node | None:
 def _children(node: Node | None, types: str = "") -> list[Node]:
     """The parts of a node, all or those of some types."""
     nodes = node.named_children if node is not None else []
-    return [
-        c for c in nodes if (c.type in TYPES[types] if types else c.type not in TYPES["ignored"])
-    ]
+    return [c for c in nodes if (c.type in TYPES[types or "ignored"]) == bool(types)]
 
 
 def _text(node: Node | None) -> str:
@@ -339,11 +323,8 @@ def below(nodes: Iterable[Node]) -> Iterator[Node]:
 
 def walk(node: Node, *kinds: str) -> Iterator[Tree]:
     """All trees of some kinds below a node, in the order of the text."""
-    return (
-        Tree(each, kind)
-        for each in below(node.named_children)
-        if (kind := _KINDS.get(each.type, "block")) in kinds
-    )
+    nodes = ((each, _KINDS.get(each.type, "block")) for each in below(node.named_children))
+    return (Tree(each, kind) for each, kind in nodes if kind in kinds)
 
 
 def damaged(root: Node) -> Iterator[Tree]:
