@@ -447,6 +447,8 @@ CERTAIN |= {  # a program: the end of the verdict, and nothing if there is none
      "M::from([[c, k, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]) }"): "a as angle (proved)",
     ("t.py", "W_T = [[1, 0, 0], [0, cos(a), -sin(a)], [-sin(b), sin(a)*cos(b), cos(a)*cos(b)]]\n"):
     "with a, b as the angles about x, y, transposed (proved)",
+    ("s.cc", "void f(M A, double b) { auto g = [&]() { d = 1; }; double c = cos(b), s = sin(b); "
+     "v = A.row(0); R = Matrix3d(c, -s, 0, s, c, 0, 0, 0, 1); }"): "b as angle (proved)",
     ("d.js", "const k = 180 / PI; function f(a, b, c, d) { return [atan2(2*(a*b + c*d), 1 - 2*(b*b"
      " + c*c))*k, asin(2*(a*c - d*b))*k, atan2(2*(a*d + b*c), 1 - 2*(c*c + d*d))*k]; }"):
     "up to the factor k (to nine digits at 20 points, not proved)",

@@ -540,8 +540,8 @@ class _Run:
         own = self.part(self.values, path)
         is_first = own is None and path[0] not in self.inputs
         own = sp.Symbol(_dotted(path), real=True) if own is None else own
-        if value.is_Mul and _is_scalar(own) and not own.is_number:
-            ratio = value / own
+        if value.is_Mul and _is_scalar(own) and (own in value.args or own.is_Mul):
+            ratio = value / own  # of others with own, none is simple, and some take long
             values = [self.definitions.get(s, s) for s in ratio.free_symbols]
             if values == [None] and own not in ratio.free_symbols:  # q0 *= recipNorm
                 return self.symbol_for(path, None)
@@ -803,7 +803,7 @@ class _Run:
             return
         self.emitted.add((name, value))
         numbers = {s: v for s, v in self.definitions.items() if v in (0, 1)}  # a name `zero`
-        value = value.applyfunc(lambda entry: numbers.get(entry, entry))
+        value = value.applyfunc(lambda entry: numbers.get(entry, entry)) if numbers else value
         is_state = value.cols == 1 and _unflattened(value).shape in (value.shape, (4, 3))
         if is_state and 3 < value.rows <= limits.longest_state:  # angles and rates
             for k in range(value.rows - 2):
@@ -1169,7 +1169,7 @@ class _Run:
             raise self.unreadable(tree)
         if isinstance(path[-1], str) and path[-1] in language.CONSTANTS:
             return language.CONSTANTS[path[-1]]
-        if any(path[:n] in self.untracked for n in range(1, len(path) + 1) if self.untracked):
+        if any(path[: len(each)] == each for each in self.untracked):  # slices have no hash
             raise self.unreadable(tree, "is changed inside an expression or an inner function")
         if path[0] not in self.values:
             self.inputs.add(path[0])
@@ -1524,6 +1524,7 @@ def _is_scalar(value: Any) -> bool:
     return isinstance(value, sp.Expr) and not isinstance(value, sp.MatrixBase)
 
 
+@lru_cache(maxsize=4096)
 def _size(value: Any) -> int:
     """The number of parts; that of a sum of sums of itself is exponential, and not counted out."""
     return sum(1 for _ in islice(sp.preorder_traversal(value), limits.most_parts + 1))
