@@ -5,7 +5,6 @@ Nothing here imports NumPy or SymPy, so that `rigidsym --help` answers at once.
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from functools import partial
@@ -15,11 +14,12 @@ from typing import Any
 import click
 
 from rigidsym.errors import printable
+from rigidsym.system.files import table_beside
 from rigidsym.system.processes import time_limit
 
 Options = Mapping[str, Any]  # the values of a command's options, by name
 
-DECLARED = tomllib.loads(Path(__file__).with_name("commands.toml").read_text(encoding="utf-8"))
+DECLARED = table_beside(__file__, "commands.toml")
 
 
 def _between_commas(_context: object, _option: object, texts: Sequence[str]) -> tuple[str, ...]:

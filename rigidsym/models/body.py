@@ -180,9 +180,7 @@ class RigidBody:
     distribution: Distribution | None = None  # of its mass, if that is known
     drawn: Distribution | None = None  # its distribution, where only moments in numbers are kept
     example: Mapping[str, float] = field(default_factory=dict, hash=False)  # values, for figures
-    request: Mapping[str, Any] = field(
-        default_factory=dict, hash=False
-    )  # what asks for it in a file
+    request: Mapping[str, Any] = field(default_factory=dict, hash=False)  # its tables in a file
 
     def __post_init__(self) -> None:
         if not MODULE_NAME.fullmatch(self.name):

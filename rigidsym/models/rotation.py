@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import re
-import tomllib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import field, replace
 from functools import lru_cache, reduce
-from pathlib import Path
 from typing import Any
 
 import sympy as sp
@@ -15,6 +13,7 @@ from sympy.core.function import AppliedUndef
 
 from rigidsym.algebra.generators import TIME as TIME, added, in_names, is_identically_zero, rate_of
 from rigidsym.errors import ModelError
+from rigidsym.system.files import table_beside
 from rigidsym.system.records import NamedTuple, Record
 from rigidsym.text.names import A_MODULE_NAME, MODULE_NAME, lettered
 
@@ -35,9 +34,7 @@ class Citation(NamedTuple):
         return ", ".join(filter(None, (self.text, self.section, equation)))
 
 
-WORDS: Mapping[str, Mapping[str, Any]] = tomllib.loads(
-    Path(__file__).with_name("rotations.toml").read_text(encoding="utf-8")
-)
+WORDS: Mapping[str, Mapping[str, Any]] = table_beside(__file__, "rotations.toml")
 
 
 class _Sources(dict[str, Citation]):

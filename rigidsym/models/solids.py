@@ -5,10 +5,8 @@ They are the entries of solids.toml. Moments of inertia are not stored; all are 
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping, Sequence
 from math import inf
-from pathlib import Path
 
 import sympy as sp
 from sympy.core.symbol import uniquely_named_symbol
@@ -16,6 +14,7 @@ from sympy.core.symbol import uniquely_named_symbol
 from rigidsym.errors import BodyError, offer
 from rigidsym.models.body import Solid
 from rigidsym.models.rotation import symbolic
+from rigidsym.system.files import table_beside
 from rigidsym.system.records import NamedTuple
 from rigidsym.text.expression import parse_expression
 
@@ -54,9 +53,7 @@ SHAPES: Mapping[str, Shape] = {
         **entry
         | {"lengths": [Length(k, names.split(), about) for k, names, about in entry["lengths"]]}
     )
-    for name, entry in tomllib.loads(
-        Path(__file__).with_name("solids.toml").read_text(encoding="utf-8")
-    ).items()
+    for name, entry in table_beside(__file__, "solids.toml").items()
 }
 
 

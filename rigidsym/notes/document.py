@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import cached_property
 from itertools import chain
-from typing import TYPE_CHECKING
 
 from rigidsym.errors import AlgebraError, ModelError, TemplateFault
 from rigidsym.formula.display import Equation as Equation
@@ -18,10 +17,8 @@ from rigidsym.formula.reader import sentence, text_of
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import phrases
 from rigidsym.models.rotation import Citation
+from rigidsym.notes.figure.drawing import Drawing
 from rigidsym.system.records import NamedTuple, Record
-
-if TYPE_CHECKING:
-    from rigidsym.notes.figure.drawing import Drawing
 
 
 class Code(NamedTuple):

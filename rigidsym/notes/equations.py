@@ -19,11 +19,8 @@ _SUM = formula(r"\sum_i m_i")
 
 def claims_of(proofs: Iterable[Proof]) -> tuple[tuple[Formula, ...], tuple[Formula, ...]]:
     """The proved claims, and the unproved ones."""
-    proofs = list(proofs)
-    return (
-        tuple([proof.claim for proof in proofs if proof.is_exact]),
-        tuple([proof.claim for proof in proofs if not proof.is_exact]),
-    )
+    pairs = [(proof.claim, proof.is_exact) for proof in proofs]
+    return tuple([c for c, is_exact in pairs if is_exact]), tuple([c for c, e in pairs if not e])
 
 
 def equation_of(step: Step, arguments: Iterable[Argument]) -> Equation:

@@ -11,9 +11,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
+from rigidsym.algebra.generators import rate_of
 from rigidsym.formula.display import PAGE, display
 from rigidsym.formula.latex_pen import LatexPen
-from rigidsym.formula.letters import TIME, Letters
+from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import (
     PLUS,
@@ -41,15 +42,12 @@ _RATHER_SHORT = frozenset(  # than broken
 _IN_SHORT = {"angular_momentum_rotation": row(ROTATION, MOMENTUM_BODY)}
 _ADJUGATES, _INVERSES = dict[str, Formula](), dict[str, Formula]()  # of three rates, and of more
 for _frame in (SPACE, BODY):
-    _acceleration = formula(
-        r"#1\,\ddot{\mathbf{q}} + #3\,#2", _frame.matrix, RATES, Rate(_frame.matrix)
-    )
-    # the right inverse of least norm
-    _inverse = formula(r"#2\,(#1#2)^{-1}", _frame.matrix, transpose_of(_frame.matrix))
+    _matrix, _inverse = _frame.matrix, f"inverse_rate_matrix_{_frame.name}"
+    _acceleration = formula(r"#1\,\ddot{\mathbf{q}} + #3\,#2", _matrix, RATES, Rate(_matrix))
     _IN_SHORT[f"angular_acceleration_{_frame.name}"] = _acceleration
-    _INVERSES[f"inverse_rate_matrix_{_frame.name}"] = _inverse
-    _adjugate = formula(r"\frac{1}{\det#1}\,\operatorname{adj}#1", _frame.matrix)
-    _ADJUGATES[f"inverse_rate_matrix_{_frame.name}"] = _adjugate
+    # the right inverse of least norm
+    _INVERSES[_inverse] = formula(r"#2\,(#1#2)^{-1}", _matrix, transpose_of(_matrix))
+    _ADJUGATES[_inverse] = formula(r"\frac{1}{\det#1}\,\operatorname{adj}#1", _matrix)
 
 
 def fitted(
@@ -66,15 +64,13 @@ def fitted(
     # Quantities of a rotation by a vector are said best by vectors. In a lecture, nine long entries
     # of dR/dt say less than the chain rule.
     is_of_body = name in {*INERTIA_QUANTITIES, *ENERGY_QUANTITIES}
-    by_vectors = (bool(model.vector) and not is_of_body) or (
-        name == "rotation_rate" and not is_audit
-    )
+    by_vectors = bool(model.vector) and not is_of_body
+    by_vectors |= name == "rotation_rate" and not is_audit
     is_matrix = equation.matrix is not None and not layout.is_listed
     lines = equation.matrix.rows if equation.matrix and is_matrix else layout.lines
     most = _MOST_OF_ROTATION if name == "rotation_matrix" else _MOST_LINES
-    if (by_vectors and layout.is_listed) or (
-        layout.is_broken and (by_vectors or name in _RATHER_SHORT)
-    ):
+    is_long = layout.is_broken and (by_vectors or name in _RATHER_SHORT)
+    if is_long or (by_vectors and layout.is_listed):
         yield short
     elif layout.width > PAGE or (layout.is_broken and lines > most):
         yield from (short, said("left_out"))  # the function evaluates it all the same
@@ -116,14 +112,10 @@ def _short_form(step: Step, derivation: Derivation, letters: Letters) -> Formula
         return formula(r"\left(#1\right)^{\mathsf T}", whole) if model.passive else whole
     if name == "rotation_rate":  # φ̇ ∂R/∂φ + ..., which is what its entries come from
         rate = step.quantity.symbol
-        above = row(Differential("∂"), rate.of if isinstance(rate, Rate) else rate)
-        terms = [
-            row(
-                letters.name(q.diff(TIME)), Fraction(above, row(Differential("∂"), letters.name(q)))
-            )
-            for q in model.coordinates
-        ]
-        return joined(terms, PLUS)
+        d = Differential("∂")
+        above = row(d, rate.of if isinstance(rate, Rate) else rate)
+        pairs = [(letters.name(rate_of(q)), row(d, letters.name(q))) for q in model.coordinates]
+        return joined([row(name, Fraction(above, below)) for name, below in pairs], PLUS)
     count = len(model.coordinates)
     is_free = count > 3 and not model.constraints
     inverses = _INVERSES if is_free else _ADJUGATES if count == 3 else {}

@@ -17,7 +17,7 @@ from contextvars import ContextVar
 from html import unescape
 from itertools import count, groupby
 from textwrap import dedent
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from urllib.parse import quote
 
 import sympy as sp
@@ -32,10 +32,8 @@ from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import Formula, with_names
 from rigidsym.models.rotation import Citation
 from rigidsym.notes import document as doc
+from rigidsym.notes.figure.drawing import Drawing
 from rigidsym.system import resources
-
-if TYPE_CHECKING:
-    from rigidsym.notes.figure.drawing import Drawing
 
 # Of a private use area, whose letters no font has; `re` compiles ranges up to U+FFFF slowly.
 _FIRST = 0xF0000

@@ -265,15 +265,12 @@ class Problem:
     # --- the motion as a quaternion
 
     @cached_property
-    def _euler(self) -> EulerEquations:
-        forces = replace(self.forces, method="euler", first_integrals={})
-        assert self.derivation.body is not None
-        return EulerEquations(self.model, self.derivation.body, forces)
-
-    @cached_property
     def torque(self) -> sp.ImmutableMatrix:
         """N′ in q, Ω′ and t, every common factor cancelled."""
-        return self._euler.present.matrix(*self._euler.torque)
+        forces = replace(self.forces, method="euler", first_integrals={})
+        assert self.derivation.body is not None
+        euler = EulerEquations(self.model, self.derivation.body, forces)
+        return euler.present.matrix(*euler.torque)
 
     @cached_property
     def no_quaternion(self) -> str:

@@ -8,11 +8,9 @@ from __future__ import annotations
 
 import json
 import reprlib
-import tomllib
 from collections.abc import Callable, Iterable, Mapping
 from functools import cache
 from math import isfinite
-from pathlib import Path
 from typing import Any
 from unicodedata import category
 
@@ -29,6 +27,7 @@ from rigidsym.motion import CHOICES, QUANTITIES
 from rigidsym.notes.note import check_style
 from rigidsym.spec.derivation_spec import NOTES
 from rigidsym.spec.faults import Place, dotted
+from rigidsym.system.files import table_beside
 from rigidsym.text.names import check_name
 
 Schema = dict[str, Any]
@@ -63,8 +62,7 @@ _LARGEST = 1e300  # sums and products of numbers in a file stay finite
 @cache
 def schema_of(kind: str) -> Schema:
     """The schema of a "file", or of the request in a "record"."""
-    text = Path(__file__).with_name("keys.toml").read_text(encoding="utf-8")
-    declared = tomllib.loads(text)
+    declared = table_beside(__file__, "keys.toml")
     definitions = declared["definitions"]
     distribution = definitions["distribution"]["properties"]
     for key, length in LENGTHS.items():

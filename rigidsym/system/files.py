@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import errno
 import os
-import tempfile
+import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO
+
+
+def table_beside(module: str, name: str) -> dict[str, Any]:
+    """The content of a TOML file in the folder of a module, which gives its `__file__`."""
+    return tomllib.loads(Path(module).with_name(name).read_text(encoding="utf-8"))
 
 
 def read_bytes(path: Path, most: int = -1) -> bytes:
@@ -36,6 +41,8 @@ def write_bytes(path: Path, content: bytes) -> Path:
 
 def cache_folder(kind: str) -> Path | None:
     """The user's folder (XDG_CACHE_HOME) for one kind of files; None if it cannot be written."""
+    import tempfile  # with all that `rigidsym --help` needs none of
+
     try:
         cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
         home = cache / "rigidsym" / kind

@@ -15,12 +15,9 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from math import isfinite
 from types import FrameType
-from typing import TYPE_CHECKING, TypeVar
+from typing import Any, TypeVar
 
 from rigidsym.errors import LimitReached, RequestError, printable
-
-if TYPE_CHECKING:
-    from concurrent.futures import Future
 
 T = TypeVar("T")
 R = TypeVar("R")
@@ -71,9 +68,9 @@ def in_processes(work: Callable[[T], R], items: Sequence[T]) -> Iterator[R]:
     from multiprocessing import active_children, get_context
 
     waiting, lock = deque(range(1, len(items))), threading.Lock()
-    futures: dict[int, Future[R]] = {}
+    futures: dict[int, Any] = {}
 
-    def hand_out(before: Future[R] | None = None) -> None:
+    def hand_out(before: Any = None) -> None:
         """Give the last item that is waiting to a copy, if it has done the one before."""
         with lock:
             if not waiting or (before and before.exception()):

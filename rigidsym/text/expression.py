@@ -10,14 +10,13 @@ from __future__ import annotations
 
 import ast
 import re
-import tomllib
 from collections.abc import Mapping
 from itertools import accumulate, takewhile
-from pathlib import Path
 
 import sympy as sp
 
 from rigidsym.errors import ExpressionError, offer
+from rigidsym.system.files import table_beside
 from rigidsym.text.bounds import FUNCTIONS, Sized, apply, operate
 from rigidsym.text.names import GREEK_LETTERS, spelled
 
@@ -110,9 +109,7 @@ def _tokens(text: str) -> list[re.Match[str]]:
     tokens = [token for token in _TOKEN.finditer(text) if token.lastgroup != "space"]
     for token in tokens:
         if token.lastgroup == "other":
-            hints = tomllib.loads(
-                Path(__file__).with_name("hints.toml").read_text(encoding="utf-8")
-            )
+            hints = table_beside(__file__, "hints.toml")
             hint = hints.get(token[0], hints["other"])
             raise ExpressionError(f"unexpected {token[0]!r}; {hint}", column=token.start() + 1)
     return tokens

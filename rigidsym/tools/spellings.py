@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import tomllib
 from itertools import product
-from pathlib import Path
+
+from rigidsym.system.files import table_beside
 
 Names = tuple[str, ...]
 
-_TABLES = tomllib.loads(Path(__file__).with_name("spellings.toml").read_text(encoding="utf-8"))
+_TABLES = table_beside(__file__, "spellings.toml")
 RATES, _ACCELERATIONS, _MATRICES = (
     tuple(_TABLES[key].split()) for key in ("rates", "accelerations", "matrices")
 )

@@ -6,11 +6,9 @@ Expressions are strings in the plain names of the arguments ("sin(theta)*phi_dot
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 from operator import attrgetter
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
@@ -19,6 +17,7 @@ from sympy.printing.str import StrPrinter
 from rigidsym.formula.reader import text_of
 from rigidsym.formula.tree import Formula
 from rigidsym.models.rotation import OMEGA_BODY, Citation
+from rigidsym.system.files import table_beside
 from rigidsym.version import OWNERSHIP, __version__
 
 if TYPE_CHECKING:
@@ -33,9 +32,7 @@ SCHEMA_VERSION = 2
 
 
 # attributes of each class, "key=attribute" where their names differ
-_KEYS: Mapping[str, Sequence[str]] = tomllib.loads(
-    Path(__file__).with_name("record.toml").read_text(encoding="utf-8")
-)
+_KEYS: Mapping[str, Sequence[str]] = table_beside(__file__, "record.toml")
 
 Names = dict[sp.Basic, sp.Basic]
 
