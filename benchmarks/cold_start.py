@@ -14,7 +14,7 @@ from benchmarks.report import Column, Figure, Report, Table, spread_columns
 HELP, DERIVE, IMPORT = "rigidsym --help", "rigidsym derive ZXZ", 'python -c "import sympy"'
 EMPTY = 'python -c ""'
 MOST_SECONDS = 0.150
-MOST_RATIO = 1.6
+MOST_RATIO = 1.5
 REPEATS = 10
 
 _MAIN = (

@@ -42,9 +42,8 @@ class Notation(Record, kw_only=True):
         for name, choices in CHOICES.items():
             chosen = getattr(self, name)
             if chosen not in choices:
-                raise ModelError(
-                    f"notation, {name}: expected {' or '.join(choices)}, got {chosen!r}"
-                )
+                expected = " or ".join(choices)
+                raise ModelError(f"notation, {name}: expected {expected}, got {chosen!r}")
 
     def applied(self, formula: tree.Formula) -> tree.Formula:
         """The formula in this notation; twice is the same as once."""

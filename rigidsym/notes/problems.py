@@ -134,14 +134,10 @@ def rotational_energy(rng: Random) -> Facts:
     moments = rng.sample(range(4, 9), 3)  # each is less than the sum of the others
     omega = np.array([rng.choice(_RATES) for _ in range(3)])
     momentum = moments * omega
-    twice_the_energy, size = omega @ momentum, np.linalg.norm(momentum)
+    twice_energy, size = omega @ momentum, np.linalg.norm(momentum)
     # cos α = L·Ω/(|L| |Ω|), and L·Ω is twice the energy.
-    angle = degrees(np.arccos(twice_the_energy / (np.linalg.norm(omega) * size)))
-    return {
-        "moments": moments,
-        "omega": omega.tolist(),
-        "values": [twice_the_energy / 2, size, angle],
-    }
+    angle = degrees(np.arccos(twice_energy / (np.linalg.norm(omega) * size)))
+    return {"moments": moments, "omega": omega.tolist(), "values": [twice_energy / 2, size, angle]}
 
 
 _EULER: tuple[Kind, ...] = (which_convention, angular_velocity, gimbal_lock)

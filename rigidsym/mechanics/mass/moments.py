@@ -218,10 +218,8 @@ class _Integrals:
 
     def split(self, measure: PolyElement) -> tuple[PolyElement, PolyElement]:
         """The measure as a constant times an integrand, one of which is 1."""
-        names = set(self.solid.coordinates)
-        moving = [
-            k for k, g in enumerate(self.ring.generators) if g.expression.free_symbols & names
-        ]
+        own = {*self.solid.coordinates}
+        moving = [k for k, g in enumerate(self.ring.generators) if g.expression.free_symbols & own]
         if any(monomial[place] for monomial in measure for place in moving):
             return self.ring.one, measure
         return measure, self.ring.one

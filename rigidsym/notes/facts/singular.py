@@ -141,11 +141,7 @@ class SingularFacts(Record):
 
     @cached_property
     def zeros(self) -> list[PointFacts]:
-        return [
-            PointFacts(point, self.model.coordinates)
-            for point in self.result.points
-            if point.places
-        ]
+        return [PointFacts(p, self.model.coordinates) for p in self.result.points if p.places]
 
     @property
     def multiples(self) -> Multiples | None:
