@@ -631,8 +631,8 @@ class _Run:
 
     def lose(self, path: Path, line: int) -> None:
         value = self.part(self.values, path)
-        same = [(name,) for name, part in self.values.items() if part is value]
-        for each in same if isinstance(value, _Record) and same else [path]:
+        names = self.values.items() if isinstance(value, _Record) else ()  # few, of many names
+        for each in [(name,) for name, part in names if part is value] or [path]:
             self.put(each, self.symbol_for(each, None, line), line)
 
     def forget(self, tree: Tree) -> None:
