@@ -72,8 +72,10 @@ def in_processes(work: Callable[[T], R], items: Sequence[T]) -> Iterator[R]:
 
     def hand_out(before: Any = None) -> None:
         """Give the last item that is waiting to a copy, if it has done the one before."""
+        if before and before.exception():
+            return
         with lock:
-            if not waiting or (before and before.exception()):
+            if not waiting:
                 return
             last = waiting.pop()
             future = futures[last] = pool.submit(work, items[last])
@@ -86,11 +88,14 @@ def in_processes(work: Callable[[T], R], items: Sequence[T]) -> Iterator[R]:
                 hand_out()
             for place in range(1, len(items)):
                 with lock:
-                    is_own = bool(waiting) and waiting.popleft() == place
+                    if is_own := bool(waiting):
+                        waiting.popleft()
                 yield work(items[place]) if is_own else futures.pop(place).result()
         except BrokenProcessPool:  # the system ended a copy, for want of memory for instance
             yield from map(work, items[place:])
         except BaseException:  # an interrupt does not wait for results
+            with lock:  # a copy that ends its item now gets no other: the pool takes no more work
+                waiting.clear()
             for copy in active_children():
                 copy.terminate()
             raise
