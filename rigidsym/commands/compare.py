@@ -37,11 +37,12 @@ def command(context: click.Context, /, paths: tuple[Path, ...], **options: Any) 
     motion = _motion(options)
     if formula is not None:
         result = compare(formula, motion, options["quantity"])
-        names, angles = symbols_in(result.formula), options["angles"] or ()
-        others = [s.name for s in names[1] if s.name not in angles]  # inside sines and cosines
-        if angles and (others or not {*angles} & {s.name for s in names[0]}):
-            there = ", ".join(others or map(str, names[0]))
-            raise click.UsageError(f"--angles {','.join(angles)}: the formula has {there}")
+        (names, inside), angles = symbols_in(result.formula), options["angles"] or ()
+        there = [s.name for s in names]
+        others = [s.name for s in names if s in inside and s.name not in angles]
+        if angles and there and (others or not {*angles} & {*there}):
+            message = f"the formula has {', '.join(others or there)}"
+            raise click.UsageError(f"--angles {','.join(angles)}: {message}")
         click.echo(result.text() if options["format"] == "text" else _json(result.record()))
         context.exit(not result.is_equal)
     if motion is not None:

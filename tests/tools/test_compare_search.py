@@ -787,11 +787,17 @@ def test_a_file_that_is_not_compared_to_the_end_is_named(tmp_path):
 
 def test_angles_that_are_not_in_the_formula_are_an_error():
     about = "--rotation", "ZYX", "--quantity", "rotation_matrix", "--formula"
-    turn = "[cos(psi) -sin(psi) 0; sin(psi) cos(psi) 0; 0 0 1]"
-    for angles, is_there in (("a,b,c", False), ("psi,b,c", True)):
-        done = run(*about, turn, "--angles", angles)
-        assert done.exit_code == (1 if is_there else 2)
-        assert (f"--angles {angles}: the formula has psi" in done.output) != is_there
+    turn, of_ten = "[cos(psi) -sin(psi) 0; sin(psi) cos(psi) 0; 0 0 1]", [*"abcdefghij"]
+    many = f"[{' '.join(f'sin({name})' for name in of_ten)}]"
+    for angles, formula, there in (
+        ("a,b,c", turn, "psi"),
+        ("k,l,m", many, ", ".join(of_ten)),
+        ("psi,b,c", turn, ""),
+        ("a,b,c", "[1 0 0; 0 1 0; 0 0 1]", ""),
+    ):
+        done = run(*about, formula, "--angles", angles)
+        assert done.exit_code == (2 if there else 1)
+        assert (f"--angles {angles}: the formula has {there}\n" in done.output) == bool(there)
 
 
 @pytest.mark.parametrize("limit", ["most_formulas", "most_steps", "most_nodes"])
