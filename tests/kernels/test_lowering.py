@@ -25,11 +25,12 @@ INPUTS = {symbol: symbol.name for symbol in (A, B, C, D)}
 OBLIQUE = "z(phi) x(theta) [1,1,0](psi)"
 
 
-def lower_all(expressions, *, is_factored=False):
+def lower_all(expressions, *, constants=None):
+    """Assignments and outputs, with sums factored anew unless `constants` is None."""
     graph = Graph("test", INPUTS)
     weighted = [graph.weighted(sp.sympify(e)) for e in expressions]
     roots = [node for _, node in weighted]
-    graph = (graph.factored(roots, ()) if is_factored else None) or graph
+    graph = (None if constants is None else graph.factored(roots, constants)) or graph
     graph.share(roots)
     return write(graph, weighted, Names(INPUTS.values()))
 
@@ -209,8 +210,8 @@ EXPRESSIONS = st.recursive(
 @settings(max_examples=60, deadline=None)
 def test_lowering_is_exact_for_any_sum_of_products_and_quotients(expressions):
     values = {symbol.name: symbol for symbol in INPUTS}
-    for is_factored in (False, True):
-        found = restored(*lower_all(expressions, is_factored=is_factored), values)
+    for constants in (None, "", "ac"):
+        found = restored(*lower_all(expressions, constants=constants), values)
         assert all(sp.expand(x - y) == 0 for x, y in zip(found, expressions, strict=True))
 
 
@@ -224,9 +225,16 @@ NEW = {  # lines of what is factored anew, and its expressions
 }
 
 
-def test_sums_are_multiplied_out_and_factored_anew():
-    for lines, expressions in NEW.items():
-        assignments, outputs = lower_all(expressions, is_factored=True)
+OF_CONSTANTS = {  # the same with the constants a and b
+    "x0 = a * b; c * x0 + d * (a + x0)": (A * (B * C + D) + A * B * D,),
+    "x0 = a * b; c + d * (b + c) + x0": (A * (C / A + B) + D * (C + B),),  # a / a is no step
+}
+
+
+@pytest.mark.parametrize(("forms", "constants"), [(NEW, ""), (OF_CONSTANTS, "ab")])
+def test_sums_are_multiplied_out_and_factored_anew(forms, constants):
+    for lines, expressions in forms.items():
+        assignments, outputs = lower_all(expressions, constants=constants)
         text = [f"{a.name} = {infix(a.value)}" for a in assignments]
         assert "; ".join([*text, *map(infix, outputs)]) == lines
 

@@ -282,10 +282,10 @@ class Graph:
             parts = self.nodes[inner[0]][1] if inner else ((Fraction(1), self.one),)
             for number, part in parts:
                 factors = *rest, *self._factors(part)
-                group = [f for f in factors if max(f, ~f) in fixed]
-                if len(group) > 1:
-                    held = self._node(HELD, ((Fraction(1), self._product(group)),))
-                    factors = held, *(f for f in factors if f not in group)
+                group = self._product(f for f in factors if max(f, ~f) in fixed)
+                if len(self._factors(group)) > 1:
+                    held = self._node(HELD, ((Fraction(1), group),))
+                    factors = held, *(f for f in factors if max(f, ~f) not in fixed)
                     fixed.add(held)
                 terms.append((coefficient * number, self._product(factors)))
         is_other = len(self.nodes[node][1]) < len(terms) <= _MOST_TERMS

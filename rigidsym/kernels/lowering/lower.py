@@ -231,8 +231,8 @@ def _shared(
     graph = Graph(name, dict(inputs), dict(definitions))
     weighted = list(map(graph.weighted, entries))
     roots = [node for _, node in weighted]
-    # products of constants make one form shorter, and take others apart that have one in common
-    anew = [graph.factored(roots, each) for each in sorted({(), constants})]
+    # A product of constants makes some forms shorter, and parts the common factors of others.
+    anew = [graph.factored(roots, each) for each in dict.fromkeys(((), constants))]
     forms = [graph, *filter(None, anew)]
     for form in forms:
         form.share(roots)
