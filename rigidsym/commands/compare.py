@@ -38,11 +38,10 @@ def command(context: click.Context, /, paths: tuple[Path, ...], **options: Any) 
     if formula is not None:
         result = compare(formula, motion, options["quantity"])
         (names, inside), angles = symbols_in(result.formula), options["angles"] or ()
-        there = [s.name for s in names]
-        others = [s.name for s in names if s in inside and s.name not in angles]
-        if angles and there and (others or not {*angles} & {*there}):
-            message = f"the formula has {', '.join(others or there)}"
-            raise click.UsageError(f"--angles {','.join(angles)}: {message}")
+        others = [s for s in names if s in inside and s.name not in angles]
+        if angles and names and (others or not {*angles} & {s.name for s in names}):
+            there = ", ".join(map(str, others or names))
+            raise click.UsageError(f"--angles {','.join(angles)}: the formula has {there}")
         click.echo(result.text() if options["format"] == "text" else _json(result.record()))
         context.exit(not result.is_equal)
     if motion is not None:

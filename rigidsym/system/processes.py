@@ -88,9 +88,8 @@ def in_processes(work: Callable[[T], R], items: Sequence[T]) -> Iterator[R]:
                 hand_out()
             for place in range(1, len(items)):
                 with lock:
-                    if is_own := bool(waiting):
-                        waiting.popleft()
-                yield work(items[place]) if is_own else futures.pop(place).result()
+                    own = waiting.popleft() if waiting else None  # this place
+                yield work(items[place]) if own else futures.pop(place).result()
         except BrokenProcessPool:  # the system ended a copy, for want of memory for instance
             yield from map(work, items[place:])
         except BaseException:  # an interrupt does not wait for results

@@ -206,6 +206,10 @@ def _shipped(name: str) -> tuple[str, str]:
     return (home / name).read_text(encoding="utf-8"), str(home / name)
 
 
+# of Jinja2, and of Python for what a template includes, computes and calls
+_FAULTS = (jinja2.TemplateError, RecursionError, ArithmeticError, TypeError, ValueError)
+
+
 class SandboxedTemplates(ImmutableSandboxedEnvironment):
     """Templates in Jinja's sandbox, shipped ones and the user's own.
 
@@ -271,21 +275,13 @@ class SandboxedTemplates(ImmutableSandboxedEnvironment):
         except jinja2.TemplateSyntaxError as error:
             place = f"{error.filename or error.name}, line {error.lineno}"
             raise TemplateFault(f"{place}: {error.message}") from error
-        except (
-            jinja2.TemplateError,
-            RecursionError,
-            ArithmeticError,
-            TypeError,
-            ValueError,
-        ) as error:
+        except _FAULTS as error:
             is_of_jinja = frame.f_globals.get("__name__", "").startswith("jinja2.")
             is_of_template = is_of_jinja or "__jinja_template__" in frame.f_globals
             if not (is_of_template or isinstance(error, jinja2.TemplateError | RecursionError)):
                 raise  # from a function that the template calls
-            texts = {
-                jinja2.TemplateNotFound: f"no template {error}",
-                RecursionError: "it includes itself",
-            }
+            missing = f"no template {error}"
+            texts = {jinja2.TemplateNotFound: missing, RecursionError: "it includes itself"}
             raise TemplateFault(f"{_place(error)}: {texts.get(type(error), error)}") from error
 
 

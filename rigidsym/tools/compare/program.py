@@ -541,7 +541,7 @@ class _Run:
         is_first = own is None and path[0] not in self.inputs
         own = sp.Symbol(_dotted(path), real=True) if own is None else own
         if value.is_Mul and _is_scalar(own) and (own in value.args or own.is_Mul):
-            ratio = value / own  # of others with own, none is simple, and some take long
+            ratio = value / own  # other quotients do not cancel, and some take long
             values = [self.definitions.get(s, s) for s in ratio.free_symbols]
             if values == [None] and own not in ratio.free_symbols:  # q0 *= recipNorm
                 return self.symbol_for(path, None)
