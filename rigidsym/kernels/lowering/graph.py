@@ -46,7 +46,9 @@ INPUT, NUMBER, PRODUCT, SUM, HELD, CHOICE = "input", "number", "product", "sum",
 # two products in vectors (NumPy on AVX-512) and several in scalars, so that two would gain nothing.
 _FEWEST_RECIPROCALS = 3
 _MOST_TERMS = 24  # of a sum that is multiplied out
-_MOST_PAIRS = 5000  # of terms, which take 0.1 s; a kernel with more keeps its form
+# Of terms, which take 0.1 s; a kernel with more keeps its form. Products of constants are tried
+# with a twentieth of them: they made no long kernel shorter.
+_MOST_PAIRS = 5000
 
 Factors = tuple[int, ...]  # nodes in order; ~node divides
 Weighted = tuple[Fraction, int]  # a number times a node
@@ -267,7 +269,7 @@ class Graph:
         is_other = [graph._multiply_out(node, sums, fixed) for node in sums]
         sums = [node for node in graph._used(roots, SUM) if node not in kept]
         pairs = sum(comb(len(graph.nodes[node][1]), 2) for node in sums)
-        if not any(is_other) or pairs > _MOST_PAIRS:
+        if not any(is_other) or pairs > (_MOST_PAIRS // 20 if fixed else _MOST_PAIRS):
             return None
         graph._factor(sums, cache(graph._apart))
         return graph
