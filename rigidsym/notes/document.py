@@ -136,6 +136,10 @@ class Document(Record, kw_only=True):
     author: str = ""
     byline: tuple[str, ...] = ()  # below the title: author, course, date
     language: str = "en"
+    # only the same document has the same printer: equations with other claims are equal, and users
+    # have templates of their own
+    __eq__ = object.__eq__
+    __hash__ = object.__hash__
 
     @property
     def blocks(self) -> Iterator[NoteBlock]:

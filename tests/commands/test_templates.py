@@ -200,9 +200,9 @@ def test_templates_are_copied_out_and_used_again(tmp_path: Path):
     call("templates", "own", cwd=tmp_path)
     copies = {file.relative_to(mine).as_posix() for file in mine.rglob("*.*")}
     assert copies == {*resources.replaceable()}
-    html = mine / "note.html.jinja"
-    html.write_text(html.read_text("utf-8").replace("</main>", "<p>Mine</p></main>"), "utf-8")
+    html = mine / "blocks.html.jinja"
+    html.write_text(html.read_text("utf-8").replace("<p>", "<p>Mine: "), "utf-8")
     call("derive", "ZXZ", "--templates", "own", cwd=tmp_path)
     call("check", "out", "--templates", "own", cwd=tmp_path)
     call("check", "out", cwd=tmp_path, status=1)
-    assert "<p>Mine</p>" in (tmp_path / "out" / NAME / f"{NAME}.html").read_text("utf-8")
+    assert "<p>Mine: " in (tmp_path / "out" / NAME / f"{NAME}.html").read_text("utf-8")
