@@ -122,7 +122,7 @@ def _searched(paths: Sequence[Path], options: Options) -> int:
 
 def _records(expected: str | None, is_active: bool, file: Path) -> list[dict[str, Any]]:
     """The formulas of a file: where they are, what they are, and whether that is a fault."""
-    axes = derive(expected, "rotation_matrix").model if expected else None
+    axes = derive(expected, "rotation_matrix").model if expected is not None else None
     records = []
     order = (" ".join(turn.axis for turn in axes.turns),) if axes else ()
     for formula in search(file, order):
@@ -146,7 +146,8 @@ def _key(record: dict[str, Any]) -> list[Any]:
 def _faults(baseline: Path) -> list[dict[str, Any]]:
     """The faults in an earlier result; raises DataError for another file."""
     try:
-        faults = [record for record in json.loads(read_bytes(baseline)) if record["fault"]]
+        records = json.loads(read_bytes(baseline))[:]  # of a list only
+        faults = [record for record in records if record["fault"]]
         is_old = any({*_KEYS, "line", "text"} - {*record} for record in faults)
     except (ValueError, KeyError, TypeError) as error:
         what = f"not JSON: {error}" if isinstance(error, ValueError) else "another JSON file"

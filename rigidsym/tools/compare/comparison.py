@@ -142,7 +142,7 @@ class Comparison:
         lengths = [x for x in own if is_length(x) or is_length(2 / x)]
         words = (
             self.found.arrangement if self.found else "",
-            opposite and f"with the opposite sense of {opposite} (a convention, or wrong signs)",
+            opposite and f"with the opposite sense of {opposite} (a convention or wrong signs)",
             turned and f"with {turned} from another axis, a quarter or half turn away",
             "".join(f"if {own.pop(x)} = {x.xreplace(own)}" for x in lengths),
             self.form,

@@ -176,7 +176,7 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
         root = syntax.parsed(text, suffix)
     except ExpressionError as error:
         return [_fault(1, str(error), is_end=True)]
-    if root.descendant_count > limits.most_nodes:
+    if len(text) > limits.longest_file or root.descendant_count > limits.most_nodes:
         return [_fault(1, "the file is too long", is_end=True)]
     functions = [*walk(root, "function")]
     outside = reduce(lambda rest, each: rest.replace(each.text, ""), functions, text)

@@ -156,9 +156,8 @@ _WAYS: dict[str, tuple[Ways, ...]] = {
     "parallel_axis_theorem": (_ways(to_the_centre_of_mass=lambda m, *v: _opposite(m, v[0])),),
     ANGLES: (
         {
-            f"with the opposite sense of angle {' and '.join(angles)}" * bool(angles): _times(
-                *(-1 if k in angles else 1 for k in "123")
-            )
+            f"with the opposite sense of angle {' and '.join(angles)} (a convention or wrong signs)"
+            * bool(angles): _times(*(-1 if k in angles else 1 for k in "123"))
             for count in range(4)
             for angles in combinations("123", count)
         },

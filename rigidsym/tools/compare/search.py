@@ -17,10 +17,9 @@ from rigidsym.tools.compare import quantities
 from rigidsym.tools.compare.comparison import Comparison, identified
 from rigidsym.tools.compare.program import UNNAMED, Formula, program_formulas
 from rigidsym.tools.compare.quantities import KnownQuantity, are_angles, are_body_rates
-from rigidsym.tools.compare.syntax import GRAMMARS, patterns
+from rigidsym.tools.compare.syntax import GRAMMARS, limits, patterns
 
 SUFFIXES = tuple(GRAMMARS)
-_MOST_BYTES = 300_000  # of a file
 _MOST_SYMBOLS = 12
 _NEAR_LINES = 12  # between the components of a vector and the vector
 _MOST_EFFORT, _EFFORT = 250, 10  # of unknown formulas in a row, and of one with sines: 0.3 s
@@ -104,20 +103,17 @@ def _in_lines(unread: Sequence[tuple[str, int]]) -> str:
 def source_files(paths: Sequence[Path]) -> Iterator[Path]:
     """The source files among the paths and below them, in order, without hidden folders.
 
-    Raises RequestError for a file in another language or of more than 300 kB, and if there are no
-    source files.
+    Raises RequestError for a file in another language, and if there are no source files.
     """
     for path in paths:
         if not path.is_dir() and not (path.is_file() and path.suffix in SUFFIXES):
             raise RequestError(f"{path}: expected a folder, or a file {', '.join(SUFFIXES)}")
-        if path.is_file() and (size := path.stat().st_size) > _MOST_BYTES:
-            raise RequestError(f"{path}: {size} bytes; expected {_MOST_BYTES} at most")
     files = [
         file
         for path in paths
         for file in (sorted(path.rglob("*")) if path.is_dir() else [path])
         if not any(part.startswith(".") for part in file.relative_to(path).parts)
-        if file.suffix in SUFFIXES and file.is_file() and file.stat().st_size <= _MOST_BYTES
+        if file.suffix in SUFFIXES and file.is_file()
     ]
     if not files:
         where = ", ".join(map(str, paths))
@@ -134,7 +130,8 @@ def search(path: Path, expected: tuple[str, ...] = ()) -> Iterator[FormulaInFile
     found: list[FormulaInFile] = []
     text = ""
     try:
-        text = path.read_text(encoding="utf-8", errors="replace")
+        with path.open(encoding="utf-8", errors="replace") as file:
+            text = file.read(limits.longest_file + 1)
         found.extend(_findings(path, text, expected))  # keeps what is before an error
     except _FAILURES as error:
         reason = f"there was an error in reading it: {type(error).__name__}: {error}"
@@ -295,6 +292,8 @@ def disappointment(
         return ""
     if is_active and quantities.PASSIVE in comparison.arrangement:
         return "expected an active rotation matrix, which takes body to space components"
+    if known.quantity == quantities.ANGLES and "transposed" not in known.arrangement:
+        known = quantities.target(known.rotation, "rotation_matrix")
     model = known.motion.model
     if expected is None or len(model.turns) != len(expected.turns):
         return ""
