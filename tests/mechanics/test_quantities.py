@@ -98,6 +98,13 @@ def test_twice_the_value_of_an_entry_is_refuted_by_each_of_its_laws(name):
                 assert law.claim.text == BLIND.get(name)
 
 
+def test_a_wrong_bias_is_refuted():
+    (work,) = workspaces("bias_vector")
+    work.gyroscopic = work.gyroscopic.scale(work.ring.one * 2)
+    with pytest.raises(DerivationError, match="is false"):
+        work.step(QUANTITIES["bias_vector"])
+
+
 # Euler angles about renamed axes
 
 XYX = rs.EulerAngles("XYX")

@@ -186,9 +186,8 @@ ROOTS = (sp.sqrt(2), sp.sqrt(3))
 def zeros(expression: sp.Expr) -> tuple[list[dict[sp.Expr, sp.Expr]], bool]:
     codec = codec_for([expression, *ROOTS], order=0)
     found, is_complete = solver_for(codec, (phi, theta)).common([codec.encode(expression)])
-    return [
-        {root.place.coordinate: root.place.value for root in zero} for zero in found
-    ], is_complete
+    places = [[root.place for root in zero] for zero in found]
+    return [{place.coordinate: place.value for place in zero} for zero in places], is_complete
 
 
 @pytest.mark.parametrize(

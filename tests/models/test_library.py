@@ -102,10 +102,7 @@ def own(**options: object) -> rs.RotationModel:
         (lambda: sample(coordinates=(sp.Symbol("phi"),)), "phi is not a function of t"),
         (lambda: sample(units=("rad", "m")), "1 coordinates, but 2 units"),
         (lambda: sample(turns=(Turn(axis="x", angle=phi),)), "product of its turns, Rx(φ)"),
-        (
-            lambda: sample(matrix=sp.GoldenRatio * sp.ImmutableMatrix.eye(3)),
-            "number GoldenRatio",
-        ),
+        (lambda: sample(matrix=sp.GoldenRatio * sp.ImmutableMatrix.eye(3)), "number GoldenRatio"),
     ],
 )
 def test_a_wrong_argument_is_named(make, said):
