@@ -977,11 +977,7 @@ OF_ANGLES = {  # three entries: the finding
     (ROLL, PITCH, YAW): "agrees with euler_angles of xyz (to nine digits at 20 points",
     (YAW, PITCH, ROLL): "agrees with euler_angles of ZYX (",
     (PITCH, ROLL, YAW): "of xyz, the angles in the order 2 1 3 (",
-    (
-        ROLL,
-        f"-{PITCH}",
-        YAW,
-    ): "of xyz, with the opposite sense of angle 2 (a convention or wrong signs)",
+    (ROLL, f"-{PITCH}", YAW): "of xyz, with the opposite sense of angle 2 (a convention or wrong",
     (ROLL.replace("2*(w*x + y*z)", "w*x + y*z"), PITCH, YAW): "entry 1: atan2(w*x + y*z, -2*x**2",
     (ROLL.replace("x*x + y*y", "x*x - y*y"), PITCH, YAW): "close to euler_angles of xyz: entry 1",
     (ROLL, PITCH, YAW.replace("1 - 2*(y*y", "1 - 2*(x*x")): "entry 3",
