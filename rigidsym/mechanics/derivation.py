@@ -396,9 +396,8 @@ class Derivation(Record, kw_only=True):
 
     def definitions_in(self, expression: sp.Basic, defined: Set[sp.Basic]) -> list[Definition]:
         """The definitions that an expression rests on, in their order, without those `defined`."""
-        if not self.definitions:  # to look for symbols takes time
-            return []
-        return needed_of(self.definitions, expression.free_symbols - defined, defined)
+        symbols = expression.free_symbols - defined if self.definitions else frozenset()
+        return needed_of(self.definitions, symbols, defined)
 
     @property
     def subject(self) -> str:

@@ -173,10 +173,11 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
     if not _has_material(text, suffix):
         return []
     try:
-        root = syntax.parsed(text, suffix)
+        # to parse a megabyte takes a second or more
+        root = syntax.parsed(text, suffix) if len(text) <= limits.longest_file else None
     except ExpressionError as error:
         return [_fault(1, str(error), is_end=True)]
-    if len(text) > limits.longest_file or root.descendant_count > limits.most_nodes:
+    if root is None or root.descendant_count > limits.most_nodes:
         return [_fault(1, "the file is too long", is_end=True)]
     functions = [*walk(root, "function")]
     outside = reduce(lambda rest, each: rest.replace(each.text, ""), functions, text)
