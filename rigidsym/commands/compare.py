@@ -146,8 +146,8 @@ def _key(record: dict[str, Any]) -> list[Any]:
 def _faults(baseline: Path) -> list[dict[str, Any]]:
     """The faults in an earlier result; raises DataError for another file."""
     try:
-        records = json.loads(read_bytes(baseline))[:]  # of a list only
-        faults = [record for record in records if record["fault"]]
+        # a slice, so that no object is taken for a list
+        faults = [each for each in json.loads(read_bytes(baseline))[:] if each["fault"]]
         is_old = any({*_KEYS, "line", "text"} - {*record} for record in faults)
     except (ValueError, KeyError, TypeError) as error:
         what = f"not JSON: {error}" if isinstance(error, ValueError) else "another JSON file"

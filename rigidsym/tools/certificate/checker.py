@@ -501,7 +501,7 @@ class Record:
 
 def verify(content: Mapping[str, Any]) -> tuple[list[str], dict[str, str]]:
     """What is proved, and why other claims are not; raises one of BROKEN if something is false."""
-    proved, reasons, laws, lack = list[str](), dict[str, str](), Laws(), "no definition of it here"
+    proved, reasons, laws, lack = list[str](), dict[str, str](), Laws(), "no definition of it"
     try:
         record = Record(content)
         laws |= record.of_rotation()

@@ -955,11 +955,16 @@ class _Run:
         return bool(names) and names[-1] in whole
 
     def beside(self, value: Any, other: Any) -> Any:
-        """A summand: c v, where v has no value, in components if it is added to a vector."""
+        """A summand: c v, where v has no value, in components if it is added to a vector.
+
+        A name without a value is a matrix if it is added to one.
+        """
         if _is_scalar(value) and self.is_moment(other):
             value = self.moment(value)
-        is_vector = getattr(other, "shape", ()) == (3, 1)
-        return self.vector(value, 3, other.free_symbols) if is_vector else value
+        shape = getattr(other, "shape", ())
+        if shape == (3, 3) and isinstance(value, sp.Symbol):
+            return self.tensor(value)
+        return self.vector(value, 3, other.free_symbols) if shape == (3, 1) else value
 
     def is_moment(self, value: Any) -> bool:
         """Whether a vector is a sum with w × I w in it."""

@@ -376,7 +376,7 @@ _LAWS: tuple[_Law, ...] = (  # entries of each vector, and the value
     (_WITH_INVERSE, (3, 9, 3, 9), lambda w, i, t, k: _tensor(k) * (t - _torque(w, i))),
     (_WITH_INVERSE, (3, 9, 9), lambda w, i, k: -_tensor(k) * _torque(w, i)),
     *((_TORQUE, (3, size, 3), _torque) for size in (3, 9)),
-    (_STEINER, (1, 3, 6), _steiner),
+    *((_STEINER, (1, 3, size), _steiner) for size in (6, 9)),
     (_STEINER, (1, 3, 3), lambda m, d, i: _steiner(m, d, i).diagonal().T),
     (_STEINER, (1, 3, 3), lambda m, d, i: i + _steiner(m, d, 0 * i).vec()[[1, 2, 5], 0]),
     (_STEINER, (1, 3, 3), lambda m, d, e: _steiner(m, d, 0 * e) - _steiner(m, e, 0 * e)),

@@ -20,7 +20,7 @@ from rigidsym.tools.compare.quantities import KnownQuantity, are_angles, are_bod
 from rigidsym.tools.compare.syntax import GRAMMARS, limits, patterns
 
 SUFFIXES = tuple(GRAMMARS)
-_MOST_SYMBOLS = 12
+_MOST_SYMBOLS = 13  # of the parallel-axis theorem
 _NEAR_LINES = 12  # between the components of a vector and the vector
 _MOST_EFFORT, _EFFORT = 250, 10  # of unknown formulas in a row, and of one with sines: 0.3 s
 _LONGEST_COMMENT = 40  # lines above a function
@@ -178,8 +178,7 @@ def _remark(finding: FormulaInFile, others: Sequence[FormulaInFile], text: str) 
         is_rate |= own not in UNNAMED and quantities.stem_of(own) != ""
         is_half = patterns.half.search("".join(_lines(text)[first - 1 : last])) is not None
         return "as the rate of a quaternion it lacks the factor 1/2" * (is_rate and not is_half)
-    words, claims = _claims(finding.formula.function, text)
-    own = _order(finding)
+    (words, claims), own = _claims(finding.formula.function, text), _order(finding)
     is_certain = len(claims) == 1 and {*map(_order, others)} - {""} == {own}
     said = f"the {words} of {name} says {', '.join(claims.values())}"
     return f"{said}, the formula is {goal.rotation}" * (is_certain and own not in claims)
