@@ -168,7 +168,7 @@ def test_the_command_says_what_is_wrong_and_returns_one():
     text = W_BODY.replace("-sin(b)", "sin(b)")
     done = run("--formula", text, "--rotation", "xyz", "--quantity", "rate_matrix_body")
     assert "entry (1, 3): sin(b) should be -sin(b)" in done.stdout
-    assert run("--formula", W_BODY).exit_code == 0
+    assert (done.exit_code, run("--formula", W_BODY).exit_code) == (1, 0)
 
 
 def test_the_command_needs_a_formula_or_paths(tmp_path):
