@@ -171,8 +171,7 @@ def test_the_stated_angles_are_all(m: Moving):
     assert {place.period for place in places} == {2 * sp.pi}
     grid = [2 * mp.pi * (k + mp.mpf(1) / 3) / 97 for k in range(98)]
     signs = [mp.sign(number(found.determinant, {middle: angle})) for angle in grid]
-    changes = sum(a != b for a, b in pairwise(signs))
-    assert changes == len(found.points)
+    assert sum(a != b for a, b in pairwise(signs)) == len(found.points)
 
 
 @every_convention

@@ -95,6 +95,8 @@ def own(**options: object) -> rs.RotationModel:
         (lambda: dynamics(method="newton"), "no method 'newton'"),
         (lambda: dynamics(parts=[{"mass": 1}]), "a part with mass; expected rotation and"),
         (lambda: dynamics(parts=[TURNED]), "a part turns by psi, which is not a coordinate"),
+        (lambda: dynamics(examples=[{"mass": 1}]), "an example: unknown key mass; exp"),
+        (lambda: dynamics(examples=[{"time": 1, "parameters": {"k": 1}}]), "unknown parameter k"),
         (lambda: sample(name="Upper"), "'Upper' cannot name a model"),
         (lambda: sample(matrix=sp.ImmutableMatrix(sp.eye(2))), "matrix is 3x3, got (2, 2)"),
         (lambda: sample(coordinates=()), "needs at least one coordinate"),
@@ -166,8 +168,7 @@ def test_the_scalar_stands_last_on_request_and_rates_have_the_unit_of_the_coordi
     assert last.matrix == first.matrix
     assert last.name != first.name
     for text, unit in (("ZXZ", "rad/s"), ("unit_quaternion", "1/s")):
-        rates = motion_of(text).step("rates_from_angular_velocity_body")
-        assert rates.quantity.unit == unit
+        assert motion_of(text).step("rates_from_angular_velocity_body").quantity.unit == unit
 
 
 def test_roots_of_roots_are_a_unit_axis_where_they_are_one():
