@@ -259,7 +259,7 @@ class Kernel(Record, kw_only=True):
         return tuple(dict.fromkeys(found))
 
     @property
-    def passed(self) -> list[int]:
+    def returned_arguments(self) -> list[int]:
         """Places of the arguments whose components can be results as they are."""
         names = {output.text for output in self.outputs if isinstance(output, Name)}
         for name, value in reversed(self.assignments):

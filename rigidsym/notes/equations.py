@@ -19,8 +19,10 @@ _SUM = formula(r"\sum_i m_i")
 
 def claims_of(proofs: Iterable[Proof]) -> tuple[tuple[Formula, ...], tuple[Formula, ...]]:
     """The proved claims, and the unproved ones."""
-    pairs = [(proof.claim, proof.is_exact) for proof in proofs]
-    return tuple([c for c, is_exact in pairs if is_exact]), tuple([c for c, e in pairs if not e])
+    claims: dict[bool, list[Formula]] = {True: [], False: []}
+    for proof in proofs:
+        claims[proof.is_exact].append(proof.claim)
+    return tuple(claims[True]), tuple(claims[False])
 
 
 def equation_of(step: Step, arguments: Iterable[Argument]) -> Equation:

@@ -1,8 +1,7 @@
 """Rotations of the catalogue and others, the checks of a model, and arguments from Python.
 
-Whatever is a rotation is proved so without a change to the ring; whatever is not is refused; and
-what cannot be told is marked unproved. What the command line refuses stands in
-golden/commands/refused.txt.
+A rotation is proved to be one without a change to the ring, any other matrix is refused, and an
+undecided one is marked unproved. What the command line refuses is in golden/commands/refused.txt.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""`identify` names the convention of data from SciPy, also in files; and every fault is said."""
+"""`identify` names the convention of data from SciPy, also in files, and lists every fault."""
 
 from __future__ import annotations
 

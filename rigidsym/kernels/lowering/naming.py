@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import keyword
 import re
-import tomllib
 from collections.abc import Iterable
 from itertools import count
-from pathlib import Path
 from unicodedata import normalize
 
-_WORDS = tomllib.loads(Path(__file__).with_name("reserved_words.toml").read_text(encoding="utf-8"))
+from rigidsym.system.files import table_beside
+
+_WORDS = table_beside(__file__, "reserved_words.toml")
 WORDS = frozenset(keyword.kwlist).union(*(text.split() for text in _WORDS["everywhere"].values()))
 NAMES = {target: frozenset(text.split()) for target, text in _WORDS["own"].items()}
 _NOT_IN_A_NAME = re.compile(r"\W+")

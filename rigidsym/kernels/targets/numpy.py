@@ -66,7 +66,8 @@ def module_text(
     endings = ("", "_scalar") if twins else ("",)
     names = [f"{kernel.name}{ending}" for kernel in kernels for ending in endings]
     continuity = program.continuity if is_plain else None
-    passing = [f"_{k.name}: {k.passed}" for k in kernels if k.passed and is_plain]
+    returned = {k.name: k.returned_arguments for k in kernels if is_plain}
+    passing = [f"_{name}: {places}" for name, places in returned.items() if places]
     about = "numpy/unwrap.txt.jinja"
     texts = remarks.paragraphs(about, continuity=continuity) if continuity else [""]
     return python.module_text(

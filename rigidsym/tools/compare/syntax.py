@@ -9,25 +9,22 @@ it is looked at, since most of a program holds no formula.
 from __future__ import annotations
 
 import re
-import tomllib
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cache, cached_property, lru_cache
 from importlib import import_module
 from itertools import chain, count
-from pathlib import Path
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 from rigidsym.errors import ExpressionError, MissingExtra
+from rigidsym.system.files import table_beside
 from rigidsym.text.names import spelled
 
 if TYPE_CHECKING:
     from tree_sitter import Node
 
-_TABLES: dict[str, dict[str, Any]] = tomllib.loads(
-    Path(__file__).with_name("nodes.toml").read_text(encoding="utf-8")
-)
+_TABLES: dict[str, dict[str, Any]] = table_beside(__file__, "nodes.toml")
 GRAMMARS, _KINDS, CALLS, SPELLINGS = (  # of a file, a type of node, a word, and a function
     {word: name for name, words in _TABLES[title].items() for word in words.split()}
     for title in ("grammars", "kinds", "words", "functions")
