@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache, partial
 from importlib import import_module
 from importlib.util import find_spec
+from statistics import median
 from time import process_time
 from types import ModuleType
 from typing import Any, NamedTuple
@@ -33,7 +34,7 @@ SYMBOLS = {
     "state_derivative": "right-hand side of a top",
 }
 TOP = {"A": 1.3, "C": 0.7, "g": 9.81, "l": 0.4, "m": 2.0}
-OURS = ("numpy", "c", "numba", "jax")
+OURS = ("numpy", "numba", "c", "jax")  # between lambdify and heyoka, by turns: peers are adjacent
 PEER, HEYOKA, SCIPY = "lambdify, cse, stacked", "heyoka cfunc", "SciPy from_euler"
 COPY = "a plain copy of as many bytes"
 SIZES = tuple(map(int, (1, 10, 100, 1e3, 1e4, 3e4, 1e5, 2e5, 3e5, 5e5, 1e6, 2e6, 1e7)))
@@ -47,9 +48,11 @@ PLACES: Mapping[str, tuple[str, Mapping[str, bool]]] = {
 DOCUMENTED = (1, 100, 10**4, 10**6)  # of the table in the README, and with `out`
 MOST = {"numpy": 12e-6, "c": 1.5e-6}  # seconds of the smallest call
 LIMITS = (("numpy", PEER, 1.0), ("c", HEYOKA, 0.9), ("numba", "numpy", 1.0))  # of a peer's time
-FLAT, FROM = 1.35, 10**4  # slowest over fastest size, from this size on
+MOST_FLAT, FROM = 1.35, 10**4  # slowest over fastest size, from this size on
+FLAT = f" as a part of its time at {FROM:,} rows"
 LARGE = (("numpy", PEER, 3.0), ("c", HEYOKA, 1.0))  # times as fast, at large batches
 _TURN = 1e-3  # seconds of a turn: a short call is repeated until it lasts as long
+_PAIRS = 25  # turns of two sizes
 
 Array = NDArray[np.float64]
 Call = Callable[[], Any]
@@ -167,17 +170,15 @@ def sides(
     calls: dict[str, Call] = {
         PEER: partial(stacked, np.empty((size, count)) if is_filled else None)
     }
-    if find_spec("heyoka"):
-        room: dict[str, Array] = {"outputs": np.empty((count, size))} if is_filled else {}
-        calls[HEYOKA] = partial(_compiled(name), np.array(columns), **room)
     for target, module in modules(name).items():
         if target == "jax" and not is_large:
             continue  # it compiles anew for every size
         out = {"out": np.empty((size, *of.shape))} if is_filled and target != "jax" else {}
-        function = getattr(module, name)
-        calls[target] = partial(function, *arguments, **out)
-        if target == "jax":
-            calls[target] = _jitted(function, arguments)
+        whole = partial(getattr(module, name), *arguments, **out)
+        calls[target] = _jitted(whole.func, arguments) if target == "jax" else whole
+    if find_spec("heyoka"):
+        room: dict[str, Array] = {"outputs": np.empty((count, size))} if is_filled else {}
+        calls[HEYOKA] = partial(_compiled(name), np.array(columns), **room)
     if name == "rotation_matrix" and is_large and find_spec("scipy"):
         rotations: Any = import_module("scipy.spatial.transform").Rotation
         calls[SCIPY] = lambda: rotations.from_euler("ZXZ", arrays[0]).as_matrix()
@@ -210,9 +211,21 @@ def seconds(call: Call) -> float:
 
 
 def measured(name: str, size: int, repeats: int, layout: str = "rows", **options: bool) -> Turns:
+    """Seconds of a call of each side, and of c and the copy the ratio to a call of `FROM` rows.
+
+    That call is made by turns with the other: if others share the processor, its speed changes by
+    a half within milliseconds, and sizes that are measured one after the other differ by as much.
+    """
     progress(f"{name}, {layout}, {size}")
     calls = sides(name, size, layout, **options)
-    return interleaved({side: partial(seconds, call) for side, call in calls.items()}, repeats)
+    turns = interleaved({side: partial(seconds, call) for side, call in calls.items()}, repeats)
+    is_flat = size > FROM and "c" in calls and not options.get("is_large")
+    for side in ("c", COPY) if is_flat else ():
+        first = sides(name, FROM, layout, **options)[side]
+        pair = {"this": partial(seconds, calls[side]), "first": partial(seconds, first)}
+        each = interleaved(pair, _PAIRS)
+        turns[side + FLAT] = [a / b for a, b in zip(each["this"], each["first"], strict=True)]
+    return turns
 
 
 # large batches
@@ -280,7 +293,7 @@ def sizes(settings: Settings) -> Report:
                 cases[f"{symbol}, {place}"] = {
                     size: measured(name, size, settings.repeats or repeats, layout, **options)
                     for size in SIZES
-                    for repeats in [11 if size < 10**5 else 5]  # for eight minutes in all
+                    for repeats in [25 if size < 10**5 else 7]  # for ten minutes in all
                     if size <= (settings.size or 2 * 10**6)
                 }
     progress()
@@ -348,14 +361,14 @@ def _limits(cases: Mapping[str, Mapping[int, Turns]]) -> Iterator[Figure]:
 
 
 def _flat(cases: Mapping[str, Mapping[int, Turns]]) -> Iterator[Figure]:
-    """The slowest size over the fastest, by the shortest times of an orientation."""
+    """The slowest size over the fastest, by the middle ratios to the time at `FROM` rows."""
     for title, sized in cases.items():
-        spreads = {
-            side: max(times) / min(times)
+        large = {size: turns for size, turns in sized.items() if f"c{FLAT}" in turns}
+        each = {
+            side: [1.0, *(median(t[side + FLAT]) * FROM / n for n, t in large.items())]
             for side in ("c", COPY)
-            if (times := [min(t[side]) / n for n, t in sized.items() if n >= FROM and side in t])
         }
-        if "c" in spreads:
-            name, goal = f"c from {FROM:,} on: {title}", f"at most {FLAT:g} from size to size"
-            result = f"{spreads['c']:.2f}; a plain copy {spreads[COPY]:.2f}"
-            yield Figure(name, goal, result, spreads["c"] <= FLAT)
+        c, copy = (max(ratios) / min(ratios) for ratios in each.values())
+        if large:
+            name, goal = f"c from {FROM:,} on: {title}", f"at most {MOST_FLAT:g} from size to size"
+            yield Figure(name, goal, f"{c:.2f}; a plain copy {copy:.2f}", c <= MOST_FLAT)

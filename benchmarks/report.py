@@ -31,12 +31,15 @@ class Table:
     columns: tuple[Column, ...]
     rows: tuple[tuple[Cell, ...], ...]
 
+    @property
+    def grid(self) -> list[list[str]]:
+        """The headings, then the values as text; what was not measured stays empty."""
+        body = (zip(self.columns, row, strict=True) for row in self.rows)
+        texts = [[column.text(value) for column, value in row] for row in body]
+        return [[column.heading for column in self.columns], *texts]
+
     def lines(self) -> Iterator[str]:
-        body = [
-            [column.text(value) for column, value in zip(self.columns, row, strict=True)]
-            for row in self.rows
-        ]
-        grid = [[column.heading for column in self.columns], *body]
+        grid = self.grid
         widths = [max(map(len, texts)) for texts in zip(*grid, strict=True)]
         yield self.title
         for texts in grid:
@@ -44,12 +47,8 @@ class Table:
             yield ("  " + "  ".join(padded)).rstrip()
 
     def markdown(self) -> str:
-        """The same for a Markdown file; what was not measured stays empty."""
-        head = [column.heading for column in self.columns]
-        body = [
-            [column.text(value) for column, value in zip(self.columns, row, strict=True)]
-            for row in self.rows
-        ]
+        """The same for a Markdown file."""
+        head, *body = self.grid
         lines = [head, ["---"] * len(head), *body]
         return "".join(f"| {' | '.join(texts)} |\n" for texts in lines)
 

@@ -44,13 +44,15 @@ NAMES = (
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the chosen benchmarks and print each as soon as it is done."""
+    from benchmarks.measure import Settings
     from benchmarks.report import machine, summary
 
     given = _parser().parse_args(arguments)
     print("  ".join(f"{name} {value}" for name, value in machine().items()), flush=True)
+    settings = Settings(given.repeats, given.size, given.samples, given.fresh)
     reports = {}
     for name in given.names or NAMES:
-        reports[name] = run(name, _settings(given))
+        reports[name] = run(name, settings)
         print(f"\n\n{reports[name].text()}", flush=True)
     if len(reports) > 1:
         print(f"\n\n{summary(reports)}")
@@ -80,17 +82,6 @@ def run(name: str, settings: Settings) -> Report:
     module, _, function = {"sizes": "kernels.sizes"}.get(name, f"{name}.run").partition(".")
     report: Report = getattr(import_module(f"benchmarks.{module}"), function)(settings)
     return report
-
-
-def _settings(given: argparse.Namespace) -> Settings:
-    from benchmarks.measure import Settings
-
-    return Settings(
-        repeats=given.repeats,
-        size=given.size,
-        samples=given.samples,
-        fresh=given.fresh,
-    )
 
 
 def _parser() -> argparse.ArgumentParser:
