@@ -160,9 +160,6 @@ def rows(parts: list[Any]) -> sp.ImmutableMatrix:
         return _bounded(sp.Matrix(parts))
     matrices = [as_matrix(part) for part in parts]
     matrices = [row.T if row.cols == 1 else row for row in matrices]
-    if len({row.cols for row in matrices}) > 1:
-        lengths = " and ".join(str(row.cols) for row in matrices)
-        raise ExpressionError(f"rows of {lengths} entries; expected rows of equal length")
     return _bounded(sp.Matrix.vstack(*matrices))
 
 

@@ -43,6 +43,7 @@ _FLAT = {9: (3, 3), 12: (4, 3), 16: (4, 4)}
 _WORDS = {*language.OF_NUMBERS, *language.OF_MATRICES, *CALLS}  # functions, if nothing else
 _RETURNED, _ARGUMENT = UNNAMED = ("returned", "argument")  # in place of a name
 _ALL = slice(None)
+_OBJECTS = {"self", "this"}
 _FROM_ONE = ["1", "2", "3"]
 
 _COMPLETE = {frozenset(order.split()): order.split() for order in patterns.orders}
@@ -64,12 +65,15 @@ def _inner(value: Any) -> Any:
     return value.args[0] if isinstance(value, _Bounded) else value
 
 
-class _Record(dict[Any, Any]):
-    """Parts of a value by member or index; None for all others, if they are inputs."""
+class _Record(dict[Any, tuple[Any, int]]):
+    """Parts of a value by member or index, each with the line where it was assigned.
 
-    def __init__(self, parts: Mapping[Any, Any] | None = None, line: int = 0) -> None:
-        super().__init__(parts or {})
-        self.lines = dict.fromkeys(self, line)  # where each was assigned
+    That of None stands for all others, if they are inputs.
+    """
+
+    def at(self, key: Any) -> Any:
+        """The part at a key, or None."""
+        return self.get(key, (None, 0))[0]
 
     def whole(self, *, is_row: bool = False) -> tuple[Any, list[int]]:
         """The vector, or the matrix of rows, if all is there, and the lines of its entries.
@@ -77,23 +81,19 @@ class _Record(dict[Any, Any]):
         Entries 1, 2, 3 are a row of a matrix whose rows are 1, 2, 3, or of a quaternion.
         """
         keys = {str(key).lower(): key for key in self if key is not None}
-        order = _COMPLETE.get(frozenset(keys)) or [str(k) for k in range(len(keys)) if keys]
-        if not order or not keys.keys() >= {*order}:
-            return None, []
-        parts = [(self[keys[name]], self.lines[keys[name]]) for name in order]
-        are_rows = all(isinstance(part, _Record) for part, _ in parts)
-        if order == _FROM_ONE and not (is_row or are_rows):
-            return None, []
-        if not are_rows:
-            values = [*zip(*parts, strict=True)]
-            are_scalars = all(map(_is_scalar, values[0]))
-            return (sp.ImmutableMatrix(values[0]), [*values[1]]) if are_scalars else (None, [])
-        wholes = (row.whole(is_row=order == _FROM_ONE) for row, _ in parts)
-        columns, places = zip(*wholes, strict=True)
-        shapes = {getattr(column, "shape", (0, 0)) for column in columns}
-        is_regular = len(shapes) == 1 and max(shapes)[1] == 1
-        matrix = sp.ImmutableMatrix([[*column] for column in columns]) if is_regular else None
-        return matrix, [*chain.from_iterable(places)]
+        order = _COMPLETE.get(frozenset(keys)) or [str(k) for k in range(len(keys))]
+        parts = [self[keys[name]] for name in order if name in keys]
+        is_from_one = order == _FROM_ONE
+        if all(isinstance(part, _Record) for part, _ in parts):
+            wholes = [part.whole(is_row=is_from_one) for part, _ in parts]
+        else:
+            wholes = [(part, [line]) for part, line in parts if is_row or not is_from_one]
+        are_vectors = all(_is_scalar(v) or getattr(v, "shape", (0, 0))[1] == 1 for v, _ in wholes)
+        if are_vectors and 0 < len(wholes) == len(order):
+            with suppress(ExpressionError):  # of rows of different lengths
+                values, lines = zip(*wholes, strict=True)
+                return rows([*values]), [*chain.from_iterable(lines)]
+        return None, []
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -153,7 +153,7 @@ class _Program:
     """All functions know this of their file."""
 
     suffix: str
-    functions: Mapping[str, Mapping[int, Sequence[Tree]]] = field(default_factory=dict)
+    functions: Mapping[str, Sequence[Tree]] = field(default_factory=dict)  # by name
     constants: Mapping[str, int] = field(default_factory=dict)  # q_i = 0 of the whole file
     imported: Mapping[str, str] = field(default_factory=dict)  # from numpy import sin as s
     product: str = "*"  # what * is for matrices: "%" entry by entry, "" if nobody knows
@@ -181,9 +181,12 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
         return [_fault(1, "the file is too long", is_end=True)]
     functions = [*walk(root, "function")]
     outside = reduce(lambda rest, each: rest.replace(each.text, ""), functions, text)
+    by_name: dict[str, list[Tree]] = {}
+    for each in functions:
+        by_name.setdefault(each.word, []).append(each)
     program = _Program(
         suffix,
-        _overloads(functions, suffix),
+        by_name,
         {match[1]: int(match[2]) for match in patterns.index_name.finditer(text)},
         {match[2]: match[1] for match in patterns.imported_name.finditer(text)},
         _product(text, suffix),
@@ -246,19 +249,6 @@ def _late(scope: Tree, is_python: bool) -> list[Tree]:
     inner = [scope] if is_python else walk(scope.node, "function")
     late = chain.from_iterable(walk(each.node, "assign", "call", "outer") for each in inner)
     return [t for t in late if t.is_one_of("late" if is_python else "declaration") == is_python]
-
-
-def _overloads(functions: Iterable[Tree], suffix: str) -> dict[str, dict[int, list[Tree]]]:
-    """Functions by name and number of parameters, if these tell which one is called."""
-    overloads: dict[str, dict[int, list[Tree]]] = {}
-    for each in (function for function in functions if function.word):
-        count = len({*parameters(each.node)} - {"self", "this"})
-        overloads.setdefault(each.word, {}).setdefault(count, []).append(each)
-    for by_count in overloads.values():
-        places = [each.around for each in chain.from_iterable(by_count.values())]
-        if len(places) > 1 and (suffix in TYPES["real"] | {".rs"} or len({*places}) > 1):
-            by_count.clear()
-    return overloads
 
 
 def _product(text: str, suffix: str) -> str:
@@ -325,10 +315,7 @@ class _Run:
         self.components: set[sp.Symbol] = set()  # of values that are not read, which are inputs
         self.normalised: set[sp.Basic] = set()  # components that were divided by the length
         self.unread: dict[str, int] = {}  # lines of names without values
-        self.later: dict[tuple[sp.Expr, Any], sp.Dummy] = {}  # parts without names of their own
         self.squares: dict[sp.Symbol, sp.Symbol] = {}  # |v|² of names without values
-        # A name without a value may be a matrix: (its transpose, None), and (its column, k).
-        self.views: dict[sp.Symbol, tuple[sp.Symbol, Any]] = {}
         self.tensors: set[sp.Symbol] = set()  # names without values that are matrices
         own = set() if program.suffix in TYPES["real"] else syntax.integers(scope.tree.text)
         self.integers = own | ({*program.integers} - {*parameters(scope.tree.node)})
@@ -389,21 +376,20 @@ class _Run:
 
         Names that a block declares anew have their values outside again behind it.
         """
-        value, outside = None, dict[str, tuple[Any, int]]()
+        value, outside = None, dict[str, Any]()
         is_scope = self.depth > 1 and tree.is_one_of("scope")
         for each in tree.parts:
             for name in syntax.declared(each.node) - outside.keys() if is_scope else ():
-                outside[name] = self.values.get(name), self.values.lines.get(name, 0)
+                outside[name] = self.values.get(name)
             if is_value and each is tree.parts[-1]:
                 value = self.tried(each)
             else:
                 self.run(each)
         if outside:
             self.emit(self.values, outside)
-        for name, (before, line) in outside.items():
+        for name in outside:
             self.values.pop(name, None)
-            if before is not None:
-                self.values[name], self.values.lines[name] = before, line
+        self.values |= {name: before for name, before in outside.items() if before}
         return value
 
     def run_assign(self, tree: Tree) -> None:
@@ -488,11 +474,8 @@ class _Run:
         path = self.path(left)
         self.refuse_if(not path, left)
         value = value[0] if isinstance(value, sp.MatrixBase) and len(value) == 1 else value
-        if self.holds_integers(path) and not getattr(value, "is_Integer", False):
-            if getattr(value, "free_symbols", ()) and value.has(sp.Function):
-                fault = _fault(left.line, f"{path[0]} holds whole numbers", path[0])
-                self.formulas += [fault] * (path[0] not in [f.name for f in self.formulas])
-            raise self.unreadable(left, "is rounded")
+        is_rounded = self.holds_integers(path) and not getattr(value, "is_Integer", False)
+        self.refuse_if(is_rounded, left, "is rounded")
         if _is_scalar(value):
             path = tuple(key for key in path if key != _ALL)  # of a batch
             value = self.renamed(path, value)
@@ -526,15 +509,14 @@ class _Run:
             return
         record = self.values
         for depth, key in enumerate(path[:-1], 1):
-            part = record.get(key)
+            part = record.at(key)
             if not isinstance(part, _Record):
                 is_new = part is None and path[0] not in self.inputs
                 others = part if part is not None else sp.Symbol(_dotted(path[:depth]), real=True)
-                record.lines[key] = line
-                part = record[key] = _Record({} if is_new else {None: others}, line)
+                part = _Record({} if is_new else {None: (others, line)})
+                record[key] = part, line
             record = part
-        record[path[-1]] = _record(value, line)
-        record.lines[path[-1]] = line
+        record[path[-1]] = _record(value, line), line
 
     def renamed(self, path: Path, value: sp.Expr) -> sp.Expr:
         """A value, or a symbol: for a long one, in another unit, or divided by a length."""
@@ -600,11 +582,10 @@ class _Run:
             if patterns.angles_name.fullmatch(name) and len(rates) == 1 and self.is_step(change):
                 parts = [change.xreplace({rates[0]: self.component(rates[0], k)}) for k in "xyz"]
                 self.add(name, sp.Matrix(parts), left.line)
-        record = self.values.get(path[0]) if path and len(path) == 1 else None
+        record = self.values.at(path[0]) if len(path) == 1 else None
         if isinstance(record, _Record) and isinstance(value, sp.MatrixBase):
             record.clear()  # also of other names for this matrix
-            record.update(entries := _record(value, left.line))
-            record.lines = entries.lines
+            record |= _record(value, left.line)
         else:
             self.store(left, value, right=left)
 
@@ -633,7 +614,7 @@ class _Run:
     def lose(self, path: Path, line: int) -> None:
         value = self.part(self.values, path)
         names = self.values.items() if isinstance(value, _Record) else ()  # few, of many names
-        for each in [(name,) for name, part in names if part is value] or [path]:
+        for each in [(name,) for name, (part, _) in names if part is value] or [path]:
             self.put(each, self.symbol_for(each, None, line), line)
 
     def forget(self, tree: Tree) -> None:
@@ -761,7 +742,7 @@ class _Run:
 
     def emit_at(self, path: Path, *, is_final: bool) -> None:
         """A matrix has its values, before another is assigned."""
-        if len(path) == 1 and isinstance(self.values.get(path[0]), _Record):
+        if len(path) == 1 and isinstance(self.values.at(path[0]), _Record):
             self.emit(self.values, path, is_final=is_final)
 
     def emit(
@@ -769,19 +750,21 @@ class _Run:
     ) -> None:
         """All matrices and vectors among the parts of a record have their values."""
         for key in [*record] if keys is None else keys:
-            part, own = record.get(key), (*path, key)
-            if key is None or not isinstance(part, _Record) or key not in record.lines:
+            part, own = record.at(key), (*path, key)
+            if not isinstance(part, _Record):
                 continue
             matrix, lines = part.whole()
             if matrix is not None and len(matrix) > 2:
                 self.add(_dotted(own), matrix, *lines, is_final=is_final)
             else:
                 self.emit(part, path=own, is_final=is_final)
-            if matrix is not None and matrix.shape == (3, 1) and _is_scalar(record.get("w")):
-                whole = sp.Matrix([record["w"], *matrix])  # it may be a quaternion
-                self.add(f"w, {_dotted(own)}", whole, record.lines["w"], *lines, is_final=False)
+            if matrix is not None and matrix.shape == (3, 1) and _is_scalar(record.at("w")):
+                scalar, line = record["w"]
+                whole = sp.Matrix([scalar, *matrix])  # it may be a quaternion
+                self.add(f"w, {_dotted(own)}", whole, line, *lines, is_final=False)
         for kind, names in _groups(record):
-            values: list[Any] = [self.definitions.get(record[n], record[n]) for n in names]
+            parts, lines = zip(*map(record.get, names), strict=True)
+            values: list[Any] = [self.definitions.get(part, part) for part in parts]
             if None in values:
                 continue
             # At a pole, an angle is a number: this is no formula, but another case of one.
@@ -791,8 +774,7 @@ class _Run:
             if kind > -2 or are_angles or is_change:
                 stem = _dotted(path) or re.sub(r"\d+$", "", names[0])
                 name = ", ".join(names) if len(names) < 9 else stem
-                places = (record.lines[n] for n in names)
-                self.add(name, sp.Matrix(values), *places, is_final=is_final)
+                self.add(name, sp.Matrix(values), *lines, is_final=is_final)
 
     def add(self, name: str, value: Any, *lines: int, is_final: bool = True) -> None:
         """A matrix or a vector is a formula; so is each part of a long vector."""
@@ -906,7 +888,7 @@ class _Run:
         if not _is_scalar(value):
             return (value if self.first else _unflattened(value)).T
         is_number = value in self.components or self.definitions.get(value) is not None
-        return self.view(value) if value.is_Symbol and not is_number else value
+        return self.part_of(value, "T") if value.is_Symbol and not is_number else value
 
     def read_member(self, tree: Tree) -> Any:
         if tree.word in ("Sin", "Cos", "Tan") and tree.parts:  # angle.Cos
@@ -1144,26 +1126,19 @@ class _Run:
             return slice(ends[0] - self.first if ends[0] else None, ends[1])
         if match := re.fullmatch(r"""["'](\w+)["']|(\d\d?)""", text):
             return match[1] or int(match[2])
-        if tree.kind == "binary":
-            sides = [self.index(side) for side in tree.parts]
-            if all(isinstance(side, int) for side in sides) and tree.word in "+-*":
-                return int(combined(tree.word, *map(sp.Integer, sides)))
         path = self.path(tree)
-        if not path:
-            return None
-        value: Any = self.part(self.values, path)
-        value = self.definitions.get(value, value) if isinstance(value, sp.Symbol) else value
-        if value is None and path[0] not in self.inputs and isinstance(path[-1], str):
-            value = self.program.constants.get(path[-1], _AXES.get(path[-1]))
-        value = int(value) if isinstance(value, sp.Integer) else value
-        return value if isinstance(value, int | str) else None
+        if path and path[0] not in {*self.values, *self.inputs}:
+            return self.program.constants.get(str(path[-1]), _AXES.get(str(path[-1])))
+        value = self.tried(tree) if tree.kind != "assign" else None  # i++
+        value = self.definitions.get(value, value)
+        return int(value) if isinstance(value, sp.Integer) else None
 
     def part(self, value: Any, path: Path) -> Any:
         """What is stored at a path, or None."""
         for key in path:
             if isinstance(key, slice) or not isinstance(value, _Record):
                 return None
-            value = value.get(key)
+            value = value.at(key)
         return value
 
     def named(self, tree: Tree) -> Any:
@@ -1177,9 +1152,10 @@ class _Run:
             return language.CONSTANTS[path[-1]]
         if any(path[: len(each)] == each for each in self.untracked):  # slices have no hash
             raise self.unreadable(tree, "is changed inside an expression or an inner function")
-        if path[0] not in self.values:
+        start = self.values.at(path[0])
+        if start is None:
             self.inputs.add(path[0])
-        start = self.values.get(path[0], sp.Symbol(path[0], real=True))
+            start = sp.Symbol(path[0], real=True)
         whole = self.part(self.values, path[:-1]) if path[-1] in [*"wxyz"] else None
         is_list = isinstance(whole, _Record) and whole.keys() == {0, 1, 2, 3}
         if is_list and self.program.suffix not in TYPES["swizzling"]:  # in which order nobody knows
@@ -1189,13 +1165,13 @@ class _Run:
     def entry(self, tree: Tree, value: Any, keys: Path) -> Any:
         """A part of a value."""
         if isinstance(value, _Record):
-            if self.first and len(keys) == len(value) == 1 and isinstance(value.get(0), _Record):
-                value = value[0]  # M(2) of a row
+            if self.first and len(keys) == len(value) == 1 and isinstance(value.at(0), _Record):
+                value = value.at(0)  # M(2) of a row
             key = keys[0] if keys and not isinstance(keys[0], slice) else None
             if key is not None and key in value:
-                return self.entry(tree, value[key], keys[1:])
+                return self.entry(tree, value.at(key), keys[1:])
             if None in value and (key is not None or len(value) == 1):  # it is not assigned
-                return self.entry(tree, value[None], keys)
+                return self.entry(tree, value.at(None), keys)
             value = value.whole()[0]
         self.refuse_if(value is None, tree, "has entries without values")
         if not keys:
@@ -1213,7 +1189,7 @@ class _Run:
             key = "xyzw".find(key.lower()) if isinstance(key, str) else key
         elif key == _ALL and others:  # a column, or of a batch: q[:, 0]
             if isinstance(others[0], int) and value.is_Symbol:
-                value = self.view(value, others.pop(0) + self.first)
+                value = self.part_of(value, f"@{others.pop(0) + self.first}")
             return self.entry(tree, value, tuple(others))
         if isinstance(key, slice):
             of_name = range(key.start or 0, key.stop or (4 if key.start else 3))
@@ -1229,11 +1205,6 @@ class _Run:
 
     def component(self, value: Any, key: int | str, stems: Collection[str] = ()) -> Any:
         """A component of a name v without a value, of v/θ if θ = |v|, of f(v), or None."""
-        if value in self.views:
-            matrix, column = self.views[value]
-            if column is None:
-                return self.view(matrix, key)
-            return self.component(self.component(matrix, key), column)
         whole = value if value.is_Symbol else self.expanded(value)
         names = whole.free_symbols - ({*self.squares.values()} - value.free_symbols)
         names = {name for name in value.free_symbols if name.name in stems} or names
@@ -1241,26 +1212,22 @@ class _Run:
         is_one = len(names) == 1 and not names & self.components
         if not is_one or not (value.is_Function or vector not in (value / vector).free_symbols):
             return None
-        is_input = vector not in self.definitions  # but is read, and not assigned anew
-        part = sp.Symbol(f"{vector.name}.{key}", real=True) if is_input else None
-        return value.xreplace({vector: part or self.later_part(vector, key)})
+        return value.xreplace({vector: self.part_of(vector, key)})
 
-    def view(self, matrix: sp.Symbol, key: int | str | None = None) -> sp.Symbol:
-        """The transpose or a column of a name, or a number if that is a batch of vectors."""
-        whole, column = self.views.get(matrix, (None, 0))
-        if whole is not None and column is None:
-            return whole if key is None else self.component(whole, key)
-        view = self.later_part(matrix, "T" if key is None else f"column {key}")
-        self.views[view] = matrix, key
-        return view
+    def part_of(self, whole: sp.Symbol, key: int | str) -> sp.Symbol:
+        """An entry of a name without a value, its transpose R.T, or its column R.@0.
 
-    def later_part(self, whole: sp.Symbol, key: int | str) -> sp.Symbol:
-        """A part of a name that has no name of its own; it is not read if the name is not."""
-        symbol = sp.Dummy(f"{whole.name}.{key}".replace("column ", ""), real=True)
-        part = self.later.setdefault((whole, key), symbol)
+        It is not read if the name is not.
+        """
+        name = f"{whole.name}.{key}"
+        for view, own in syntax.VIEWS.items():
+            name = re.sub(view, own, name)
+        part = sp.Symbol(name, real=True)
+        if whole.is_Dummy:
+            part = sp.Dummy(name, whole.dummy_index, real=True)
         if whole in self.definitions:
             self.definitions.setdefault(part, None)
-            self.unread.setdefault(part.name, self.unread.get(whole.name, 0))
+            self.unread.setdefault(name, self.unread.get(whole.name, 0))
         return part
 
     # Calls
@@ -1272,7 +1239,7 @@ class _Run:
         self.refuse_if(tree.is_integer, tree, "has whole numbers")
         base, arguments, word = tree.base, tree.parts[1:], tree.called
         if tree.owner is None:  # s, c = np.sin, np.cos
-            alias = _last(str(self.values.get(word, self.program.imported.get(word, ""))))
+            alias = _last(str(self.values.at(word) or self.program.imported.get(word, "")))
             word = alias if function_word(alias) in FUNCTIONS else word
         name = function_word(word)
         is_own = base in ("", "self", "this", "Self") and tree.called in self.program.functions
@@ -1389,10 +1356,9 @@ class _Run:
         sizes = numbers[-2:] or [3]
         is_zero = CALLS[tree.called] == "zeros"
         is_column = len(sizes) == 1 and len(tree.parts) > 1 and is_zero and not self.first
-        height, width = sizes[0], 1 if is_column else sizes[-1]
-        if not {height, width} <= {3, 4} or re.search("vec|quat", tree.base, re.IGNORECASE):
-            raise self.unreadable(tree)
-        return sp.ImmutableMatrix(sp.zeros(height, width) if is_zero else sp.eye(height, width))
+        is_vector = is_column or re.search("vec|quat", tree.base, re.IGNORECASE)
+        self.refuse_if(is_vector or not {*sizes} <= {3, 4}, tree)
+        return sp.ImmutableMatrix((sp.zeros if is_zero else sp.eye)(sizes[0], sizes[-1]))
 
     def stacked(self, tree: Tree, by_columns: bool) -> Any:
         axis, nodes = tree.options, tree.parts[1:]
@@ -1420,16 +1386,21 @@ class _Run:
 
     def inline(self, tree: Tree, name: str, nodes: Sequence[Tree]) -> Any:
         """The value of a function of the same file."""
-        fitting = self.program.functions[name].get(len(nodes), ())
-        own = [each for each in fitting if each.node != self.scope.tree.node]
-        self.refuse_if(len(own) != 1 or self.inlined >= limits.inlined, tree)
+        every = self.program.functions[name]
+        counted = [t for t in every if len({*parameters(t.node)} - _OBJECTS) == len(nodes)]
+        own = [each for each in counted if each.node != self.scope.tree.node]
+        is_one = len(own) == 1
+        if len(every) > 1:  # the count of arguments tells which is called, in some languages
+            is_one &= self.program.suffix not in TYPES["real"] | {".rs"}
+            is_one &= len({each.around for each in every}) == 1
+        self.refuse_if(not is_one or self.inlined >= limits.inlined, tree)
         around = own[0].around
         is_known = around.start_byte <= tree.node.start_byte < around.end_byte
         if not tree.base and (not is_known or name in self.inputs):  # of another file
             raise self.unreadable(tree)
         scope = replace(self.scope, tree=own[0])
-        inner, names = _Run(self.program, scope, self.inlined + 1), parameters(own[0].node)
-        names = [name for name in names if name not in ("self", "this")]
+        inner = _Run(self.program, scope, self.inlined + 1)
+        names = [name for name in parameters(own[0].node) if name not in _OBJECTS]
         for each, node in zip(names, nodes, strict=True):
             inner.put((each,), self.read(node), 0)
         inner.run_scope()
@@ -1447,14 +1418,14 @@ def _lines(matrix: sp.MatrixBase) -> list[Any]:
 def _record(value: Any, line: int) -> Any:
     if not isinstance(value, sp.MatrixBase):
         return value
-    return _Record({k: _record(each, line) for k, each in enumerate(_lines(value))}, line)
+    return _Record({k: (_record(each, line), line) for k, each in enumerate(_lines(value))})
 
 
 def _groups(record: _Record) -> Iterator[tuple[int, list[str]]]:
     """Names of scalars that may be components of one vector, or entries of one matrix."""
     groups: dict[tuple[int, str], dict[str, str]] = {}
-    for name, value in record.items():
-        if isinstance(name, str) and _is_scalar(value) and name in record.lines:
+    for name, (value, _) in record.items():
+        if isinstance(name, str) and _is_scalar(value):
             for kind, stem, index in _roles(name):
                 groups.setdefault((kind, stem), {})[index] = name
     for (kind, _), members in groups.items():
@@ -1492,7 +1463,7 @@ def _dotted(path: Path) -> str:
 
 def _last(name: str) -> str:
     """A short name of a path: phi for state.phi, q_w for q.w, R_0_1 for self.R.0.1."""
-    own = re.sub(r"^(?:self|this)\.(?!\d+(?:\.|$))", "", name)
+    own = re.sub(r"^(?:self|this)\.(?!\d+(?:\.|$))|@", "", name)
     return re.findall(r"[^.]*(?:\.[A-Za-z]?\d?\d?)*$", own)[0].replace(".", "_")
 
 
