@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import json
 import shutil
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from pathlib import Path
+from functools import partial
 from typing import Any
 
 import click
@@ -19,10 +19,11 @@ from rigidsym.kernels.lowering.derivatives import read_requests
 from rigidsym.mechanics.derivation import remark
 from rigidsym.notes.formats.record import record
 from rigidsym.notes.formats.terminal import show
-from rigidsym.pipeline import PDF, Output, integrated, motion_of
+from rigidsym.pipeline import PDF, integrated, motion_of
 from rigidsym.spec.derivation_spec import DerivationSpec, spec_for
 from rigidsym.system.files import write_bytes
 from rigidsym.system.processes import in_processes
+from rigidsym.system.records import NamedTuple
 from rigidsym.system.resources import names
 
 
@@ -79,46 +80,55 @@ def produce(specs: Iterable[DerivationSpec], options: Options) -> None:
                 "run them separately with different --out, or rename a file"
             )
     wanted = [with_existing_files(single, out) for single in singles.values()]
+    is_shown = len(wanted) == 1 and not (options["quiet"] or options["json"])
+    width = min(shutil.get_terminal_size((88, 24)).columns, 120) if is_shown else 0
     missing: list[RigidsymError] = []
-    for output, paper in in_processes(_made, wanted):
-        written = write(output, out, force=options["force"])
+    made = in_processes(partial(_made, width=width), wanted)
+    for single, (files, warning, shown, paper) in zip(wanted, made, strict=True):
+        written = write(single, files, out, force=options["force"])
         if isinstance(paper, bytes):
-            written.append(write_bytes(written[0].parent / f"{output.name}.pdf", paper))
+            written.append(write_bytes(written[0].parent / f"{single.name}.pdf", paper))
         elif paper is not None:
             missing.append(paper)
-        _show(output, written, options, is_only=len(wanted) == 1)
+        if warning:
+            message(warning)
+        if options["quiet"]:
+            click.echo("\n".join(map(str, written)))
+        elif options["json"]:
+            click.echo(files[f"{single.name}.json"], nl=False)
+        elif is_shown:
+            click.echo(f"{shown}\n\nWritten: " + "\n         ".join(map(str, written)))
+        else:
+            click.echo(f"{shown}  {written[0].parent}")
     if missing:
         raise missing[0]
 
 
-def _made(single: DerivationSpec) -> tuple[Output, bytes | RigidsymError | None]:
-    """The output of a rotation, and its PDF or why there is none, which is reported at the end."""
+class _Printed(NamedTuple):
+    """What is printed of a rotation: all that a copy of this process hands over to it."""
+
+    files: Mapping[str, str]
+    warning: str  # or nothing
+    shown: str  # on standard output: the derivation, or one line of it
+    paper: bytes | RigidsymError | None  # the PDF, or why there is none
+
+
+def _made(single: DerivationSpec, *, width: int) -> _Printed:
+    """All that is printed, with the derivation itself if it has a width on the screen."""
     output = printed(single)
-    if PDF not in output.spec.note:
-        return output, None
-    from rigidsym.notes.formats.pdf import typeset
-
-    try:
-        return output, typeset(output.files[f"{output.name}.tex"]).pdf
-    except RigidsymError as error:
-        return output, error
-
-
-def _show(output: Output, written: Sequence[Path], options: Options, *, is_only: bool) -> None:
-    """The files, the record, the derivation or one line of it on standard output."""
-    if output.uncovered:
-        steps = ", ".join(output.uncovered)
-        message(remark("certificate_does_not_cover", name=output.name, steps=steps))
-    if options["quiet"]:
-        click.echo("\n".join(map(str, written)))
-    elif options["json"]:
-        click.echo(output.record_text, nl=False)
-    elif is_only:
-        width = min(shutil.get_terminal_size((88, 24)).columns, 120)
+    steps, proofs = ", ".join(output.uncovered), output.proofs
+    paper: bytes | RigidsymError | None = None
+    count = f"{sum(proof.is_exact for proof in proofs)} of {len(proofs)} claims proved"
+    shown = f"{output.name:<28} {count}"
+    if width:
         motion, conversions = output.motion, output.conversions
-        click.echo(show(motion, width=width, notation=motion.notation, conversions=conversions))
-        click.echo("\nWritten: " + "\n         ".join(map(str, written)))
-    else:
-        proved = sum(proof.is_exact for proof in output.proofs)
-        claims = f"{proved} of {len(output.proofs)} claims proved"
-        click.echo(f"{output.name:<28} {claims}  {written[0].parent}")
+        shown = show(motion, width=width, notation=motion.notation, conversions=conversions)
+    if PDF in single.note:
+        from rigidsym.notes.formats.pdf import typeset
+
+        try:
+            paper = typeset(output.files[f"{output.name}.tex"]).pdf
+        except RigidsymError as error:  # which is reported at the end
+            paper = error
+    warning = steps and remark("certificate_does_not_cover", name=output.name, steps=steps)
+    return _Printed(output.files, warning, shown, paper)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -49,29 +50,29 @@ def with_existing_files(spec: DerivationSpec, out: Path) -> DerivationSpec:
     )
 
 
-def write(output: Output, out: Path, *, force: bool) -> list[Path]:
+def write(spec: DerivationSpec, files: Mapping[str, str], out: Path, *, force: bool) -> list[Path]:
     """Write the files of a derivation to out/NAME/, the record last.
 
     Each file is whole or as it was before. What an earlier run printed there and this one does not
     is removed, unless it was edited. Raises EditedFiles, before anything is written, for edited
     files that would be overwritten, unless `force` is set.
     """
-    folder = out / output.spec.name
+    folder = out / spec.name
     record = content_of(folder / f"{folder.name}.json")
     digests = record["files"] if isinstance(record.get("files"), dict) else {}
     own = [folder / name for name in digests if Path(name).name == name]  # none elsewhere
     contents = {path: path.read_bytes() for path in own if path.is_file()}
     edited = {path for path, text in contents.items() if digest(text) != digests[path.name]}
-    new = {folder / name: text for name, text in output.files.items()}
+    new = {folder / name: text for name, text in files.items()}
     lost = [path for path in edited & new.keys() if contents[path] != new[path].encode()]
     if lost and not force:
         raise EditedFiles(
             f"{', '.join(sorted(map(str, lost)))} changed since it was generated; use --force to "
             "overwrite it, or --out for another folder"
         )
-    before = _spec_of(record, output.spec)
+    before = _spec_of(record, spec)
     gone = sorted(contents.keys() - edited - new.keys())
-    if before.models != output.spec.models:
+    if before.models != spec.models:
         message(remark("replacing_rotation", folder=folder))
     elif gone:
         names = ", ".join(path.name for path in gone)

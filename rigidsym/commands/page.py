@@ -20,5 +20,6 @@ def command(source: str, **options: Any) -> None:
     out = options["out"]
     for single in applied(options, integrated(read(source, **of_rotation(options)))).singles():
         asked = replace(single, kernels=(), note=(PAGE,))
-        write(printed(with_existing_files(asked, out)), out, force=options["force"])
+        output = printed(with_existing_files(asked, out))
+        write(output.spec, output.files, out, force=options["force"])
         click.echo(out / single.name / page_name(single.name))

@@ -72,7 +72,7 @@ def test_no_message_commands_a_terminal(tmp_path, words):
 
 FOUR = """\
 rotation.sequence = ["ZXZ", "xyz", "ZYX", "zxz"]
-output = { note = ["html", "page"], quantities = ["rotation_matrix"] }
+output = { note = ["html", "page"], quantities = ["rotation_matrix"], conversions = true }
 """
 
 
