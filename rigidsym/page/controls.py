@@ -13,7 +13,6 @@ from rigidsym.mechanics.derivation import Derivation
 from rigidsym.models.body import RigidBody
 from rigidsym.models.forces import OMEGA_COMPONENTS
 from rigidsym.models.rotation import RotationModel
-from rigidsym.notes.figure.body_mesh import lengths_of
 from rigidsym.notes.figure.scene import turns_of
 from rigidsym.notes.words import unit_in_words
 
@@ -105,6 +104,8 @@ def constants_of(body: RigidBody | None) -> dict[sp.Symbol, float]:
     """Values of the constants of a body: their own, or those of a body that is possible."""
     if body is None:
         return {}
+    from rigidsym.notes.figure.body_mesh import lengths_of  # with NumPy
+
     values = {p.symbol: p.value for p in body.parameters}
     lengths = lengths_of(body.distribution, values) if body.distribution is not None else None
     chosen = _WEIGHT | dict(zip(dict.fromkeys(body.inertia.diagonal()), _MOMENTS, strict=False))

@@ -22,13 +22,11 @@ from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.models.forces import OMEGA_COMPONENTS, initial_values
 from rigidsym.notes.document import Document
 from rigidsym.notes.facts.rotation import sum_of_turns
-from rigidsym.notes.figure.body_mesh import lengths_in
 from rigidsym.notes.formats.html import escape, printer_of, rendered
 from rigidsym.notes.words import unit_in_words
 from rigidsym.page.controls import constants_of, controls_of
 from rigidsym.page.functions import Functions, functions_of, has_turns
 from rigidsym.page.stage import body_of, shown_angles, stage_of
-from rigidsym.simulation.problem import Problem, with_motion
 from rigidsym.system import resources
 
 TEMPLATE = "page/page.html.jinja"
@@ -60,8 +58,11 @@ def print_page(
     constants = constants_of(derivation.body)
     constants |= {s: start[s.name] for s in constants if s.name in start}
     steps = functions.derivation.steps
-    used = {symbol for step in steps for symbol in step.expression.free_symbols}
-    sliding = used - lengths_in(derivation.body)  # the body is drawn with the lengths that it has
+    sliding = {symbol for step in steps for symbol in step.expression.free_symbols}
+    if derivation.body:
+        from rigidsym.notes.figure.body_mesh import lengths_in  # with NumPy
+
+        sliding -= lengths_in(derivation.body)  # the body is drawn with the lengths that it has
     controls = [
         *controls_of(
             functions.derivation,
@@ -140,6 +141,8 @@ def _moving(
         return values
     names = arguments.get("parameters", ())
     parameters = {s.name: value for s, value in constants.items() if s.name in names}
+    from rigidsym.simulation.problem import Problem, with_motion
+
     begun = Problem(with_motion(derivation), state, parameters).start
     return dict(zip((*q, *wanted), begun.tolist(), strict=True))
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from functools import cache
+from itertools import pairwise
+from math import cos, pi, sin
 from typing import Any
 
-import numpy as np
 import sympy as sp
 
 from rigidsym.algebra import generators
@@ -16,7 +17,7 @@ from rigidsym.formula.tree import NOTHING, Formula, Numeral, Symbol
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.quantities.kinematics import SPACE
 from rigidsym.models.rotation import AXES, RotationModel
-from rigidsym.notes.figure.body_mesh import RED, Color, Face, Shape, own_shape, tiles
+from rigidsym.notes.figure.drawing import RED, Color
 from rigidsym.notes.figure.scene import BODY, RADII, STANDARD, Scene, Vector, scene_of, turns_of
 from rigidsym.notes.formats.drawings import in_a_figure
 from rigidsym.page.functions import Functions, has_turns, moments_of
@@ -26,6 +27,7 @@ _SLAB = [1.25, 0.8, 1.75]  # moments of the body of a page without one: three di
 _WHITE = (246, 244, 238)
 _SECTORS = 8  # of a top, red and white
 _ROUND = 24  # corners of its circles
+Faces = Sequence[tuple[Iterable[Iterable[float]], Color]]  # corners and color of each
 _TOP = ((0, 0), (0.02, 0), (0.46, 0.66), (0.06, 0.86), (0.06, 1.22), (0, 1.22))  # radius, height
 
 
@@ -99,8 +101,13 @@ def body_of(derivation: Derivation, functions: Functions) -> dict[str, Any]:
     A known shape is drawn as it is. A motion of which only the principal moments are known is that
     of a cuboid with these moments, or of a top on its tip.
     """
-    moments, own = moments_of(derivation.body), own_shape(derivation.body)
-    forces = derivation.forces
+    body, forces = derivation.body, derivation.forces
+    own: Faces = ()
+    if body:  # NumPy, with which it is meshed, takes longer to import than a rotation to derive
+        from rigidsym.notes.figure.body_mesh import own_shape
+
+        own = own_shape(body)
+    moments = moments_of(body)
     axes = [turn.axis for turn in derivation.model.turns]
     # A sequence such as ZXZ: precession about z, nutation, and spin about z′.
     is_about_z = len(axes) == 3 and axes[0] == axes[2] == "z"
@@ -116,32 +123,26 @@ def body_of(derivation: Derivation, functions: Functions) -> dict[str, Any]:
 
 
 @cache
-def spinning_top() -> Shape:
+def spinning_top() -> Faces:
     """A top on its tip, about z′: its profile, turned, in sectors that show the spin."""
-    turns = np.linspace(0, 2 * np.pi, _ROUND + 1)
-    rings = [np.stack([r * np.cos(turns), r * np.sin(turns), h + 0 * turns], 1) for r, h in _TOP]
-    surface = np.stack(rings, axis=1)
+    turns = [2 * pi * k / _ROUND for k in range(_ROUND + 1)]
+    profiles = [[(r * cos(turn), r * sin(turn), h) for r, h in _TOP] for turn in turns]
     return tuple(
-        Face(corners, (RED, _WHITE)[k * _SECTORS // _ROUND % 2])
-        for k in range(_ROUND)
-        for corners in tiles(surface[k : k + 2])
+        # no corner is repeated where the profile begins and ends on the axis
+        (tuple(dict.fromkeys((a, c, d, b))), (RED, _WHITE)[k * _SECTORS // _ROUND % 2])
+        for k, both in enumerate(pairwise(profiles))
+        for (a, b), (c, d) in zip(*map(pairwise, both), strict=True)
     )
 
 
-def as_data(shape: Shape) -> dict[str, Any]:
-    """The shape by indices: points, colours, and faces as [colour, corner, corner, ...]."""
+def as_data(faces: Faces) -> dict[str, Any]:
+    """The faces by indices: points, colours, and faces as [colour, corner, corner, ...]."""
     points: dict[tuple[float, ...], int] = {}
     colors: dict[Color, int] = {}
-    faces = [
-        [
-            colors.setdefault(face.color, len(colors)),
-            *(
-                # Rounding makes one point of the corners that faces share; + 0.0 turns −0.0 into
-                # 0.0.
-                points.setdefault((*p,), len(points))
-                for p in (np.round(face.corners, 3) + 0.0).tolist()
-            ),
-        ]
-        for face in shape
-    ]
-    return {"points": [*points], "colors": [*colors], "faces": faces}
+    indices = []
+    for corners, color in faces:
+        # Rounding makes one point of the corners that faces share; + 0.0 turns −0.0 into 0.0.
+        rounded = [tuple(round(float(x), 3) + 0.0 for x in corner) for corner in corners]
+        places = [points.setdefault(corner, len(points)) for corner in rounded]
+        indices.append([colors.setdefault(color, len(colors)), *places])
+    return {"points": [*points], "colors": [*colors], "faces": indices}

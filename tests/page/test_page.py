@@ -33,7 +33,7 @@ from rigidsym.models.body import Composite, Part
 from rigidsym.models.solids import SHAPES as SOLIDS, shaped
 from rigidsym.motion import derive
 from rigidsym.notes.figure.body_drawing import body_drawing
-from rigidsym.notes.figure.body_mesh import BLUE, Shape, lengths_of, meshed, own_shape
+from rigidsym.notes.figure.body_mesh import BLUE, Face, Shape, lengths_of, meshed, own_shape
 from rigidsym.notes.figure.scene import Camera, camera
 from rigidsym.page.functions import OF_THE_FIGURE
 from rigidsym.page.stage import as_data, spinning_top
@@ -282,7 +282,7 @@ def test_what_is_nearer_is_drawn_later_also_where_parts_pierce_each_other():
 
 @pytest.mark.usefixtures("node")
 def test_the_top_of_a_page_is_closed_and_seen_from_any_side():
-    shape = spinning_top()
+    shape = [Face(np.round(corners, 9) + 0.0, color) for corners, color in spinning_top()]
     assert volume(shape) > 0.01
     assert is_closed(shape)
     assert np.linalg.norm([p for face in shape for p in face.corners], axis=1).max() < 1.3

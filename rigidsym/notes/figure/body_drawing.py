@@ -11,8 +11,8 @@ from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import with_names
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.quantities.table import own_letters
-from rigidsym.notes.figure.body_mesh import Color, Vector, area_of, numbers_of, own_shape, unit
-from rigidsym.notes.figure.drawing import Drawing, Facet, Named, Stroke, beyond, labelled
+from rigidsym.notes.figure.body_mesh import Vector, area_of, numbers_of, own_shape, unit
+from rigidsym.notes.figure.drawing import Color, Drawing, Facet, Named, Stroke, beyond, labelled
 from rigidsym.notes.figure.scene import BODY, Point, camera
 from rigidsym.system.records import NamedTuple
 

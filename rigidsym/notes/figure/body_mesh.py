@@ -26,11 +26,11 @@ from rigidsym.models.body import (
     RigidBody,
     Solid,
 )
+from rigidsym.notes.figure.drawing import RED, Color
 
 Vector = NDArray[Any]  # (3,), or more than one of them: (n, 3)
-Color = tuple[int, int, int]
 BLUE, GOLD, GREY = (58, 110, 190), (226, 182, 74), (176, 182, 190)
-RED, BRONZE, HOLE = (204, 72, 58), (196, 146, 56), (52, 54, 60)
+BRONZE, HOLE = (196, 146, 56), (52, 54, 60)
 
 
 class Face(NamedTuple):
@@ -92,9 +92,9 @@ def numbers_of(body: RigidBody) -> Numbers | None:
     return None if lengths is None else lengths | dict.fromkeys({*values} - {*lengths}, sp.Float(1))
 
 
-def lengths_in(body: RigidBody | None) -> set[sp.Basic]:
+def lengths_in(body: RigidBody) -> set[sp.Basic]:
     """The constants that the shape of a body is made of; none if only its moments are known."""
-    return _constants(_described(body)) if body and _described(body) else set()
+    return _constants(_described(body)) if _described(body) else set()
 
 
 def _described(body: RigidBody) -> Any:

@@ -27,6 +27,8 @@ from rigidsym.notes.figure.scene import (
 )
 from rigidsym.system.records import NamedTuple
 
+Color = tuple[int, int, int]  # red, green, blue, of 255
+RED = (204, 72, 58)
 TYPE_SIZE = 0.15  # one em, in units of the drawing
 AXIS = 1.35  # lengths of the axes drawn
 NODE = 1.2
@@ -90,7 +92,7 @@ class Facet(NamedTuple):
     """A face of a body as it is seen."""
 
     points: tuple[Point, ...]
-    color: tuple[int, int, int]  # red, green, blue, of 255
+    color: Color
 
 
 class Drawing(NamedTuple):

@@ -10,14 +10,12 @@ from html import escape
 from math import hypot
 
 from rigidsym.formula.tree import Formula
-from rigidsym.notes.figure.drawing import TYPE_SIZE, Drawing, Label, Stroke
+from rigidsym.notes.figure.drawing import TYPE_SIZE, Color, Drawing, Label, Stroke
 from rigidsym.notes.figure.scene import Point
 from rigidsym.notes.formats.escape import cleaned
 from rigidsym.system.resources import environment
 
 _UNIT = 0.3865 / TYPE_SIZE  # cm: an em at 11 points
-
-Color = tuple[int, int, int]  # red, green, blue, of 255
 
 
 def _shapes(
