@@ -207,10 +207,13 @@ def indexed(symbol: Formula, shape: tuple[int, ...]) -> tuple[Formula, ...]:
     return tuple(replace(light, index=row(*own, number)) for number in numbers)
 
 
-def with_names(node: Any, names: Mapping[Formula, Formula]) -> Any:
-    """A formula with other names in place of some of its symbols; tuples of them, too."""
+def with_names(node: Any, names: Mapping[Any, Any]) -> Any:
+    """A tree of records with others in place of some of them, such as symbols; tuples, too."""
+    if not names:
+        return node
     if isinstance(node, tuple):
-        return tuple(with_names(part, names) for part in node)
-    if not isinstance(node, Formula) or node in names:
+        parts = [with_names(part, names) for part in node]
+        return type(node)(*parts) if hasattr(node, "_fields") else tuple(parts)
+    if not isinstance(node, Record) or node in names:
         return names.get(node, node)
     return replace(node, **{f.name: with_names(getattr(node, f.name), names) for f in fields(node)})

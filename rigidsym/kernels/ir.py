@@ -178,6 +178,7 @@ class Kernel(Record, kw_only=True):
     remarks: tuple[str, ...] = ()  # paragraphs
     unit: str = ""  # SI; "" for a pure number
     halves: tuple[Expression, ...] = ()  # of Euler angles: a₀ to a₃ of `conversions`
+    original: Kernel | None = None  # the same but for the order of outputs, and names of inputs
     __eq__, __hash__ = object.__eq__, object.__hash__
 
     def __post_init__(self) -> None:
@@ -186,6 +187,8 @@ class Kernel(Record, kw_only=True):
                 f"{self.name}: shape {self.shape} needs {prod(self.shape)} outputs, "
                 f"got {len(self.outputs)}"
             )
+        if self.original:  # which has been checked
+            return
         known: set[str] = set()
         lines: list[tuple[str, Expression | None]] = [(name, None) for name in self.components]
         lines += [*self.assignments, *(("", output) for output in self.outputs)]

@@ -274,6 +274,8 @@ class Step(Record, kw_only=True):
     vector_form: VectorForm | None = None  # where the coordinates form a vector
     recursion: Formula | None = None  # shown for the entries, if these are names of its parts
     words: str = ""  # a sentence in place of that of the quantity's reason
+    # entries that are the same in another order, and in other names: here the second for the first
+    original: tuple[sp.ImmutableMatrix, Mapping[sp.Basic, sp.Basic]] | None = None
 
     def __repr__(self) -> str:
         """One line, for a prompt; `Motion.text` shows the equation."""

@@ -9,7 +9,7 @@ assignments give the expression of the derivation.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence, Set
 from dataclasses import replace
 from functools import cached_property, lru_cache
 from typing import Any
@@ -17,6 +17,7 @@ from typing import Any
 import sympy as sp
 
 from rigidsym.algebra.stable_forms import stable_forms
+from rigidsym.formula.tree import with_names
 from rigidsym.kernels import ir
 from rigidsym.kernels.lowering.derivatives import Jacobian
 from rigidsym.kernels.lowering.graph import Graph, Weighted, write
@@ -27,6 +28,9 @@ from rigidsym.mechanics.derivation import Argument as Vector, Derivation, Step, 
 
 MARGIN = "singularity_margin"
 NO_CONVERSIONS = Converted()
+
+Pairs = tuple[tuple[sp.Expr, Any], ...]
+Given = tuple[Pairs, Pairs, tuple[sp.Expr, ...]]  # inputs with their names, definitions, entries
 
 
 def lower(
@@ -44,11 +48,13 @@ def lower(
     kernels = _Lowering(derivation, Names(reserved))
     # a tensor given in numbers takes no arguments, and is no function
     steps = (*derivation.steps, *derivation.functions.values())
-    found = kernels.of_steps([step for step in steps if step.quantity.inputs])
-    found += tuple(kernels.margin())
-    found += kernels.of_steps(tuple(derivatives))
-    found += kernels.of_steps(added.steps)
-    found += tuple(map(kernels.of_function, added.functions))
+    found = (
+        *kernels.of_steps([step for step in steps if step.quantity.inputs]),
+        *kernels.margin(),
+        *kernels.of_steps(tuple(derivatives)),
+        *kernels.of_steps(added.steps),
+        *map(kernels.of_function, added.functions),
+    )
     used = {argument.name for kernel in found for argument in kernel.arguments}
     body, is_top = derivation.body, derivation.about_fixed_point
     return ir.Program(
@@ -91,23 +97,33 @@ class _Lowering:
             )
         return self.arguments[vector.name]
 
-    def of_steps(self, steps: Sequence[Step]) -> tuple[ir.Kernel, ...]:
-        """The kernels of quantities."""
-        forms = self._stable(map(self._over_squares, step.expression.flat()) for step in steps)
-        return tuple(
-            self._kernel(
-                step.quantity.name,
-                [self._vectors[name] for name in step.quantity.inputs],
+    def of_steps(self, steps: Sequence[Step]) -> Iterator[ir.Kernel]:
+        """The kernels of quantities, which are those of the originals but for order and names."""
+        originals = [step.original or (step.expression, {}) for step in steps]
+        forms = self._stable(map(self._over_squares, entries.flat()) for entries, _ in originals)
+        for step, (original, others), entries in zip(steps, originals, forms, strict=True):
+            quantity = step.quantity
+            kernel = self._kernel(
+                quantity.name,
+                [self._vectors[name] for name in quantity.inputs],
                 entries,
                 shape=step.shape,
                 equation=step.number or None,
-                symbol=step.quantity.symbol.text,
-                definition=step.quantity.definition.text,
-                about=step.quantity.about,
-                unit=step.quantity.unit,
+                symbol=quantity.symbol.text,
+                definition=quantity.definition.text,
+                about=quantity.about,
+                unit=quantity.unit,
             )
-            for step, entries in zip(steps, forms, strict=True)
-        )
+            renamed = original.xreplace(others) if others else original
+            of_entries = dict(zip(renamed, kernel.outputs, strict=True))
+            outputs = tuple(of_entries[entry] for entry in step.expression)
+            if others or outputs != kernel.outputs:
+                names = {
+                    ir.Name(self._known[a]): ir.Name(self._known[b]) for a, b in others.items()
+                }
+                lines, outputs = with_names((kernel.assignments, outputs), names)
+                kernel = replace(kernel, assignments=lines, outputs=outputs, original=kernel)
+            yield kernel
 
     def of_function(self, function: ConversionFunction) -> ir.Kernel:
         """The kernel of a conversion: its values one by one, as they are written."""
@@ -151,7 +167,7 @@ class _Lowering:
         symbol = "√Σ minors²" if found.measure == "minors" else size
         kernel = self._kernel(MARGIN, inputs, [value], shape=(), symbol=symbol, about=about)
         coordinates, *constants = kernel.arguments
-        if all(kernel.used.isdisjoint(each.components) for each in constants):
+        if constants and all(kernel.used.isdisjoint(a.components) for a in constants):
             kernel = replace(kernel, arguments=(coordinates,))
         yield kernel
 
@@ -201,13 +217,19 @@ class _Lowering:
         """A kernel whose common subexpressions are shared, with its divisors guarded."""
         arguments = tuple(map(self._argument, vectors))
         inputs = tuple((s, self._known[s]) for vector in vectors for s in vector.symbols)
-        constants = tuple(c for a in arguments if a.name == "parameters" for c in a.components)
-        definitions = tuple(self._definitions.items())
-        graph, weighted = _shared(name, inputs, definitions, tuple(entries), constants)
-        names = self._names.copy()
-        return guarded(
-            _written(graph, weighted, names, name=name, arguments=arguments, **words), names
-        )
+        given = inputs, tuple(self._definitions.items()), tuple(entries)
+        return _lowered(name, arguments, given, frozenset(self._names.taken), **words)
+
+
+@lru_cache(maxsize=128)  # conventions that differ by the names of axes share them
+def _lowered(
+    name: str, arguments: tuple[ir.KernelArgument, ...], given: Given, taken: Set[str], **words: Any
+) -> ir.Kernel:
+    constants = tuple(c for a in arguments if a.name == "parameters" for c in a.components)
+    graph, weighted = _shared(name, given, constants)
+    names = Names(taken)
+    kernel = _written(graph, weighted, names, name=name, arguments=arguments, **words)
+    return guarded(kernel, names)
 
 
 def _written(graph: Graph, weighted: Sequence[Weighted], names: Names, **words: Any) -> ir.Kernel:
@@ -216,18 +238,13 @@ def _written(graph: Graph, weighted: Sequence[Weighted], names: Names, **words: 
 
 
 @lru_cache(maxsize=64)  # a page and a module share the same, and then name it in their languages
-def _shared(
-    name: str,
-    inputs: tuple[tuple[sp.Expr, str], ...],
-    definitions: tuple[tuple[sp.Expr, sp.Expr], ...],
-    entries: tuple[sp.Expr, ...],
-    constants: tuple[str, ...],
-) -> tuple[Graph, list[Weighted]]:
+def _shared(name: str, given: Given, constants: tuple[str, ...]) -> tuple[Graph, list[Weighted]]:
     """The entries as nodes of a graph, in which what they have in common is one node.
 
     They are factored anew if that saves a tenth of the operations and the bound on rounding gets no
     larger. Where quotients leave no bound, the error at operands of one may grow by an eighth.
     """
+    inputs, definitions, entries = given
     graph = Graph(name, dict(inputs), dict(definitions))
     weighted = list(map(graph.weighted, entries))
     roots = [node for _, node in weighted]

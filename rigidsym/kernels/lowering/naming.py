@@ -24,26 +24,26 @@ class Names:
     """Gives out names, each once, and never one of `taken` or a word of a language."""
 
     def __init__(self, taken: Iterable[str] = ()) -> None:
-        self._taken = {*WORDS, *taken}
+        self.taken = {*WORDS, *taken}
 
     def copy(self) -> Names:
-        return Names(self._taken)
+        return Names(self.taken)
 
     def fresh(self, wish: str) -> str:
         """The wish as an identifier, with underscores behind it where it is taken."""
         name = identifier(wish)
-        while name in self._taken:
+        while name in self.taken:
             name += "_"
-        self._taken.add(name)
+        self.taken.add(name)
         return name
 
     def wished(self, wish: str) -> str:
         """The wish, with a number behind it where it is taken."""
-        return self.fresh(wish) if wish not in self._taken else self.numbered(f"{wish}_")
+        return self.fresh(wish) if wish not in self.taken else self.numbered(f"{wish}_")
 
     def numbered(self, prefix: str) -> str:
         """The first of prefix0, prefix1, ... that is free."""
-        return self.fresh(next(n for k in count() if (n := f"{prefix}{k}") not in self._taken))
+        return self.fresh(next(n for k in count() if (n := f"{prefix}{k}") not in self.taken))
 
 
 def identifier(text: str) -> str:

@@ -62,11 +62,12 @@ def _function(kernel: Kernel) -> dict[str, object]:
     names = Names([*kernel.components, *(a.name for a in kernel.assignments), "out", "at"])
     vectors = [names.fresh(argument.name) for argument in kernel.arguments]
     places = [names.fresh(f"{vector}_at") for vector in vectors]
-    arguments = list(zip(vectors, places, kernel.arguments, strict=True))
+    arguments = tuple(zip(vectors, places, kernel.arguments, strict=True))
     returned = "values" if kernel.shape else "values[0]"
     for size in reversed(kernel.shape[1:]):
         returned = f"_rows({returned}, {size})"
-    about = remarks.about_kernel("javascript/function.txt.jinja", kernel, arguments=arguments)
+    template, source = "javascript/function.txt.jinja", kernel.original or kernel
+    about = remarks.about_kernel(template, source, arguments=arguments)
     lines = [
         f"const {name} = {vector}[{_placed(place, k)}];"
         for vector, place, argument in arguments

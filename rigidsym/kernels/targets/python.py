@@ -105,8 +105,9 @@ def about_function(kernel: Kernel) -> str:
         rows.append((a.name, _leading(a.shape), ", ".join(names) + units))
     unit = f"in {kernel.unit}" if kernel.unit else ""
     rows.append(("returns", _leading(kernel.shape), unit))
-    template = "python/function.txt.jinja"
-    return docstring(remarks.about_kernel(template, kernel, table=remarks.table(rows)), indent=4)
+    template, table = "python/function.txt.jinja", remarks.table(rows)
+    texts = remarks.about_kernel(template, kernel.original or kernel, table=table)
+    return docstring(texts, indent=4)
 
 
 def _leading(shape: Sequence[int]) -> str:

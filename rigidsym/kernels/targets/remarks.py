@@ -42,7 +42,7 @@ def paragraphs(template: str, **facts: object) -> list[Paragraph]:
 
 def about_module(template: str, program: Program, **facts: object) -> list[Paragraph]:
     """The paragraphs at the head of a file."""
-    kernels = program.kernels
+    kernels = [kernel.original or kernel for kernel in program.kernels]
     each = map(series_of, range(FIRST_SERIES, program.last + 1))
     return paragraphs(
         template,
@@ -57,6 +57,7 @@ def about_module(template: str, program: Program, **facts: object) -> list[Parag
     )
 
 
+@lru_cache(maxsize=256)
 def about_kernel(template: str, kernel: Kernel, **facts: object) -> list[Paragraph]:
     """The paragraphs on a function."""
     return paragraphs(

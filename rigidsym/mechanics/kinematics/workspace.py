@@ -303,7 +303,8 @@ class Renamed(Values):
         names = {omega[m]: omega[k] for omega in omegas for k, m in enumerate(moves)}
         expression = step.expression.xreplace(names) if names else step.expression
         rows, columns = (moves if n in entry.axes else slice(None) for n in ("rows", "columns"))
-        return replace(step, expression=expression[rows, columns])
+        original = step.expression, names
+        return replace(step, expression=expression[rows, columns], original=original)
 
 
 @lru_cache(maxsize=32)
