@@ -10,11 +10,11 @@ from collections.abc import Callable, Iterable, Sequence
 from enum import IntEnum
 from functools import lru_cache
 from itertools import pairwise
-from typing import ClassVar
+from typing import Any, ClassVar, Self
 
 from rigidsym.formula import tree
 from rigidsym.formula.notation import DEFAULT, Notation
-from rigidsym.system.records import NamedTuple, Record
+from rigidsym.system.records import NamedTuple
 
 DIVISOR = 50  # a divisor's brackets are as deep as so many others: 1/(1 + n²) is broken last
 BREAKS = "+−±=≤<⇔"  # signs that may begin a line
@@ -79,19 +79,24 @@ def atom(
     return Piece((Segment(text, width, 0),), width, binding, height)
 
 
-class Pen(Record):
+class Pen:
     """Writes formulas in one language; a subclass has a method named after each kind of node.
 
-    Pens are equal if they are of one language with the same choices, so that what one has written
-    is kept for all.
+    There is one pen of a language and a notation, so that what it has written is kept for all.
     """
 
-    notation: Notation = DEFAULT
+    notation: Notation
 
+    _pens: ClassVar[dict[tuple[type, Notation], Any]] = {}
     blank: ClassVar[float] = 0.0  # width of the blank between two chunks
     sign: ClassVar[Callable[..., Piece]]  # of a Sign; `is_binary` between two parts
     between: ClassVar[Callable[..., Piece]]  # the space between two factors
     around: ClassVar[Callable[..., Piece]]  # a piece in brackets of a kind
+
+    def __new__(cls, notation: Notation = DEFAULT) -> Self:
+        pen = cls._pens.setdefault((cls, notation), super().__new__(cls))
+        pen.notation = notation
+        return pen
 
     def write(self, formula: tree.Formula) -> Piece:
         """The formula in the notation of this pen."""

@@ -67,6 +67,7 @@ def in_processes(work: Callable[[T], R], items: Sequence[T]) -> Iterator[R]:
     from concurrent.futures.process import BrokenProcessPool, ProcessPoolExecutor
     from multiprocessing import active_children, get_context
 
+    gc.freeze()  # a search for cycles would copy the pages of all that the processes share
     waiting, lock = deque(range(1, len(items))), threading.Lock()
     futures: dict[int, Any] = {}
 

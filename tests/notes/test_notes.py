@@ -120,7 +120,7 @@ def test_what_idle_rates_leave_determined():
     ):
         places = [Place(coordinate=f, value=sp.S.Zero, period=2 * sp.pi) for f in fixed]
         at = SimpleNamespace(places=places, null_rates=sp.ImmutableMatrix(idle))
-        assert PointFacts(at, q).determined == expected, idle
+        assert [*PointFacts(at, tuple(q)).determined] == expected, idle
 
 
 def test_a_lecture_has_every_equation_and_leaves_out_what_an_audit_adds():

@@ -58,38 +58,16 @@ class PointFacts(Record):
         moved = self._moved_by(self.at.null_rates.tolist())
         return moved if self.varies and len(moved) < len(self.coordinates) else ()
 
-    @cached_property
-    def determined(self) -> list[sp.Expr]:
+    @property
+    def determined(self) -> tuple[sp.Expr, ...]:
         """The combinations that rates which turn nothing leave as they are, but for the fixed ones.
 
         They are those of the coordinates where such rates stay at the point: R is then the same
         all along. Where they leave it, only rates are determined, and the combinations are those
         of rates.
         """
-        null_rates = self.at.null_rates
-        if not all(entry.is_Rational for entry in null_rates):
-            return []
-        q, fixed = self.coordinates, [place.coordinate for place in self.at.places]
-        gradients = sp.Matrix(
-            len(fixed),
-            len(q),
-            [sp.Integer(f == by) if f in q else f.diff(by) for f in fixed for by in q],
-        )
-        if leaves := any(gradients * null_rates):
-            gradients = gradients[:0, :]
-        named = [by.diff(TIME) for by in q] if leaves else q
-        # A combination c·q is kept if c·n = 0 for every null vector n of the rates. Its factors
-        # become the smallest whole numbers, the first of them above zero. What is fixed comes
-        # first, and only what is independent of it remains.
-        kept = [(c / next(filter(None, c))).T for c in sp.Matrix(null_rates.T).nullspace()]
-        rows = sp.Matrix.vstack(gradients, *kept)
-        independent = [k for k in rows.T.rref()[1] if k >= gradients.rows]
-        combinations = []
-        for numbers in (rows.row(k).tolist()[0] for k in independent):
-            common = reduce(sp.Rational.gcd, filter(None, numbers))
-            parts = (n / common * by for n, by in zip(numbers, named, strict=True))
-            combinations.append(added(*parts))
-        return combinations
+        fixed = tuple(place.coordinate for place in self.at.places)
+        return _determined(self.at.null_rates, self.coordinates, fixed)
 
     @property
     def idle(self) -> list[list[sp.Expr]]:
@@ -114,6 +92,34 @@ class PointFacts(Record):
 
     def _moved_by(self, rates: Sequence[Sequence[sp.Expr]]) -> tuple[sp.Expr, ...]:
         return tuple(q for q, row in zip(self.coordinates, rates, strict=True) if any(row))
+
+
+@lru_cache(maxsize=32)  # the same in many conventions
+def _determined(
+    null_rates: sp.ImmutableMatrix, q: tuple[sp.Expr, ...], fixed: tuple[sp.Expr, ...]
+) -> tuple[sp.Expr, ...]:
+    if not all(entry.is_Rational for entry in null_rates):
+        return ()
+    gradients = sp.Matrix(
+        len(fixed),
+        len(q),
+        [sp.Integer(f == by) if f in q else f.diff(by) for f in fixed for by in q],
+    )
+    if leaves := any(gradients * null_rates):
+        gradients = gradients[:0, :]
+    named = [by.diff(TIME) for by in q] if leaves else q
+    # A combination c·q is kept if c·n = 0 for every null vector n of the rates. Its factors
+    # become the smallest whole numbers, the first of them above zero. What is fixed comes
+    # first, and only what is independent of it remains.
+    kept = [(c / next(filter(None, c))).T for c in sp.Matrix(null_rates.T).nullspace()]
+    rows = sp.Matrix.vstack(gradients, *kept)
+    independent = [k for k in rows.T.rref()[1] if k >= gradients.rows]
+    combinations = []
+    for numbers in (rows.row(k).tolist()[0] for k in independent):
+        common = reduce(sp.Rational.gcd, filter(None, numbers))
+        parts = (n / common * by for n, by in zip(numbers, named, strict=True))
+        combinations.append(added(*parts))
+    return tuple(combinations)
 
 
 class SingularFacts(Record):

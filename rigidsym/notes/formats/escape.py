@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from functools import cache
+from functools import cache, lru_cache
 from string import ascii_letters, digits
 
 from rigidsym.formula.latex_pen import GREEK_MACROS
@@ -34,10 +34,11 @@ _MISSING = set("ĦħĸĿŀŉŦŧſ")  # in the range of Latin letters, but not i
 _LIGATURES = re.compile(r"([-,'])(?=\1)")
 
 
+@lru_cache(maxsize=1 << 12)  # notes have most words in common
 def escape(text: str) -> str:
     """The text in LaTeX; a character that no font has appears as its code, [U+4E2D]."""
     characters = unicodedata.normalize("NFC", text)
-    return _LIGATURES.sub(r"\1{}", "".join(map(_character, characters)))
+    return _LIGATURES.sub(lambda found: f"{found[0]}{{}}", "".join(map(_character, characters)))
 
 
 @cache

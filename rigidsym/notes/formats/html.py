@@ -56,9 +56,9 @@ _MENDED = (
     (' scriptlevel="0"', ""),
     ('<mrow displaystyle="true">', '<mrow class="tall">'),
     ("<mo>′</mo>", '<mo class="prime">′</mo>'),  # browsers set it too high
-    # and a large bracket with an exponent in the size of a letter
-    (r"<msup>(<mo minsize[^>]*>.</mo>)", r'\1<msup><mspace height="1.1em"/>'),
 )
+# and a large bracket with an exponent in the size of a letter
+_RAISED = re.compile(r"<msup>(<mo minsize[^>]*>.</mo>)")
 
 
 @lru_cache(maxsize=1 << 12)  # a note prints a symbol in many places
@@ -69,7 +69,8 @@ def math(latex: str, *, is_display: bool = False, is_tall: bool = False) -> str:
     """
     text = str(_CONVERTER.convert_with_local_state(latex, displaystyle=is_display))
     for written, mended in _MENDED:
-        text = re.sub(written, mended, text)
+        text = text.replace(written, mended)
+    text = _RAISED.sub(r'\1<msup><mspace height="1.1em"/>', text)
     kind = ' class="tall"' if is_tall else ""
     source = escape_markup(" ".join(latex.split()))
     return text.replace("<math", f'<math alttext="{source}"{kind}', 1)
@@ -114,7 +115,8 @@ class HtmlPrinter(NotePrinter):
 
     def text(self, text: doc.Text) -> str:
         """No line may part a formula from the brackets and points beside it."""
-        return _WITH_POINTS.sub(r'<span class="whole">\g<0></span>', super().text(text))
+        written = super().text(text)
+        return _WITH_POINTS.sub(lambda whole: f'<span class="whole">{whole[0]}</span>', written)
 
     def formula(self, formula: Formula) -> str:
         """One too wide for a phone is cut before each sign outside all brackets."""
