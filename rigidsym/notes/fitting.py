@@ -12,20 +12,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from rigidsym.algebra.generators import rate_of
+from rigidsym.formula import tree
 from rigidsym.formula.display import PAGE, display
 from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import formula
-from rigidsym.formula.tree import (
-    PLUS,
-    Differential,
-    Formula,
-    Fraction,
-    Rate,
-    joined,
-    row,
-    transpose_of,
-)
 from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES, MOMENTUM_BODY
 from rigidsym.mechanics.quantities.kinematics import BODY, RATES, ROTATION, SPACE
@@ -39,14 +30,15 @@ _MOST_OF_ROTATION = 48  # a page of R itself, which the others are for
 _RATHER_SHORT = frozenset(  # than broken
     {"rotation_rate", "inertia_tensor_space", "angular_momentum_rotation", "angular_momentum"}
 )
-_IN_SHORT = {"angular_momentum_rotation": row(ROTATION, MOMENTUM_BODY)}
-_ADJUGATES, _INVERSES = dict[str, Formula](), dict[str, Formula]()  # of three rates, and of more
+_IN_SHORT = {"angular_momentum_rotation": tree.row(ROTATION, MOMENTUM_BODY)}
+_ADJUGATES = dict[str, tree.Formula]()  # of three rates
+_INVERSES = dict[str, tree.Formula]()  # of more
 for _frame in (SPACE, BODY):
     _matrix, _inverse = _frame.matrix, f"inverse_rate_matrix_{_frame.name}"
-    _acceleration = formula(r"#1\,\ddot{\mathbf{q}} + #3\,#2", _matrix, RATES, Rate(_matrix))
+    _acceleration = formula(r"#1\,\ddot{\mathbf{q}} + #3\,#2", _matrix, RATES, tree.Rate(_matrix))
     _IN_SHORT[f"angular_acceleration_{_frame.name}"] = _acceleration
     # the right inverse of least norm
-    _INVERSES[_inverse] = formula(r"#2\,(#1#2)^{-1}", _matrix, transpose_of(_matrix))
+    _INVERSES[_inverse] = formula(r"#2\,(#1#2)^{-1}", _matrix, tree.transpose_of(_matrix))
     _ADJUGATES[_inverse] = formula(r"\frac{1}{\det#1}\,\operatorname{adj}#1", _matrix)
 
 
@@ -92,7 +84,7 @@ def as_vectors(equation: Equation, step: Step, letters: Letters) -> Equation:
     return whole if fits else without_entries(equation, sides[-1:])
 
 
-def without_entries(equation: Equation, sides: Sequence[Formula] = ()) -> Equation:
+def without_entries(equation: Equation, sides: Sequence[tree.Formula] = ()) -> Equation:
     """Ended by these sides in place of its entries; where nothing is left, it is a definition."""
     return replace(
         equation,
@@ -104,7 +96,7 @@ def without_entries(equation: Equation, sides: Sequence[Formula] = ()) -> Equati
     )
 
 
-def _short_form(step: Step, derivation: Derivation, letters: Letters) -> Formula | None:
+def _short_form(step: Step, derivation: Derivation, letters: Letters) -> tree.Formula | None:
     """What a quantity is equal to, by other quantities, beside its definition."""
     name, model = step.quantity.name, derivation.model
     if name == "rotation_matrix" and model.turns:
@@ -112,10 +104,10 @@ def _short_form(step: Step, derivation: Derivation, letters: Letters) -> Formula
         return formula(r"\left(#1\right)^{\mathsf T}", whole) if model.passive else whole
     if name == "rotation_rate":  # φ̇ ∂R/∂φ + ..., which is what its entries come from
         rate = step.quantity.symbol
-        d = Differential("∂")
-        above = row(d, rate.of if isinstance(rate, Rate) else rate)
-        pairs = [(letters.name(rate_of(q)), row(d, letters.name(q))) for q in model.coordinates]
-        return joined([row(name, Fraction(above, below)) for name, below in pairs], PLUS)
+        whole = rate.of if isinstance(rate, tree.Rate) else rate
+        pairs = [(letters.name(rate_of(q)), letters.name(q)) for q in model.coordinates]
+        text = r"#2\,\frac{\partial #1}{\partial #3}"
+        return tree.joined([formula(text, whole, *pair) for pair in pairs], tree.PLUS)
     count = len(model.coordinates)
     is_free = count > 3 and not model.constraints
     inverses = _INVERSES if is_free else _ADJUGATES if count == 3 else {}

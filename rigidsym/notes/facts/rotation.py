@@ -8,21 +8,10 @@ from typing import Any
 
 import sympy as sp
 
+from rigidsym.formula import tree
 from rigidsym.formula.letters import Letters
+from rigidsym.formula.reader import formula
 from rigidsym.formula.scalars import formula_of
-from rigidsym.formula.tree import (
-    COMMA,
-    PLUS,
-    Apply,
-    Bracket,
-    Formula,
-    Numeral,
-    Symbol,
-    bracketed,
-    equal,
-    joined,
-    row,
-)
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.quantities.kinematics import SPACE
 from rigidsym.mechanics.quantities.table import is_quaternion
@@ -66,7 +55,7 @@ def facts_of_rotation(derivation: Derivation, letters: Letters) -> dict[str, Any
             "programs": q.names if is_quaternion(q.names, q.units) else (),
             # which the proofs make use of
             "conditions": [
-                equal(formula_of(moving, letters), formula_of(-number, letters))
+                tree.equal(formula_of(moving, letters), formula_of(-number, letters))
                 for number, moving in pairs
             ],
             # the components of v, the letters of a length and of its rate, if formulas hold them
@@ -131,7 +120,7 @@ class RotationFacts(Record):
         return self.name in _VECTORS
 
     @property
-    def product(self) -> Formula:
+    def product(self) -> tree.Formula:
         return product_of(self.model.turns, self.letters)
 
     @cached_property
@@ -182,12 +171,12 @@ class RotationFacts(Record):
         return next(q for q in self.model.coordinates if q not in self.model.vector)
 
     @property
-    def length(self) -> Formula | str:
+    def length(self) -> tree.Formula | str:
         """The letter of the length; nothing where it is 1."""
         return self.letters.names[self.letters.length.symbol] if self.letters.length else ""
 
     @cached_property
-    def sum(self) -> Formula | None:
+    def sum(self) -> tree.Formula | None:
         """Ω as a sum over the turns, if it can be read off."""
         is_sum = len(self.model.turns) > 1 and all(t.rate for t in self.model.turns)
         return sum_of_turns(self.model, self.letters) if is_sum else None
@@ -206,18 +195,18 @@ class RotationFacts(Record):
         return _carried(2) in axes_of_turns(self.model, self.letters)
 
 
-def product_of(turns: Iterable[Turn], letters: Letters) -> Formula:
+def product_of(turns: Iterable[Turn], letters: Letters) -> tree.Formula:
     """R_z(φ) R_[0, 3/5, 4/5](θ): each turn with the letter or the components of its axis."""
 
-    def axis_of(turn: Turn) -> Formula:
+    def axis_of(turn: Turn) -> tree.Formula:
         if not turn.components:
-            return Symbol(turn.axis)
-        return Bracket(joined([formula_of(c, letters) for c in turn.components], COMMA), "[]")
+            return tree.Symbol(turn.axis)
+        return tree.Bracket(
+            tree.joined([formula_of(c, letters) for c in turn.components], tree.COMMA), "[]"
+        )
 
-    factors = (
-        Apply(Symbol("R", "bold", index=axis_of(t)), formula_of(t.angle, letters)) for t in turns
-    )
-    return row(*factors)
+    pairs = ((axis_of(turn), formula_of(turn.angle, letters)) for turn in turns)
+    return tree.row(*(formula(r"\R_{#1}(#2)", *pair) for pair in pairs))
 
 
 def title_of(derivation: Derivation, letters: Letters) -> Text:
@@ -226,26 +215,25 @@ def title_of(derivation: Derivation, letters: Letters) -> Text:
     return with_symbols(derivation.title, turns) if turns else (derivation.title,)
 
 
-def axes_of_turns(model: RotationModel, letters: Letters) -> list[Formula]:
+def axes_of_turns(model: RotationModel, letters: Letters) -> list[tree.Formula]:
     """The unit vectors about which the turns are made, named after the figure: e_z, e_N, e_z′."""
     scene = scene_of(model, letters)
     rays = [scene.shown.named(arc.axis) for arc in scene.shown.arcs] if scene else []
     if not rays or not all(rays) or len(rays) != len(model.turns):
         return [_carried(k) for k in range(1, len(model.turns) + 1)]
-    return [Symbol("e", "bold", index=ray.name) for ray in rays if ray]
+    return [formula(r"\e_{#1}", ray.name) for ray in rays if ray]
 
 
-def _carried(k: int) -> Formula:
+def _carried(k: int) -> tree.Formula:
     """P_{k-1} n_k: the k-th axis, as the rotations before it carry it along."""
-    axis = Symbol("n", "bold", index=Numeral(str(k)))
-    return row(Symbol("P", "bold", index=Numeral(str(k - 1))), axis) if k > 1 else axis
+    return formula((rf"\P_{{{k - 1}}}\," if k > 1 else "") + rf"\n_{{{k}}}")
 
 
-def sum_of_turns(model: RotationModel, letters: Letters) -> Formula:
+def sum_of_turns(model: RotationModel, letters: Letters) -> tree.Formula:
     """Ω = φ̇ e_z + θ̇ e_N + ψ̇ e_z′; turns by constant angles add nothing."""
     terms = [
-        row(bracketed(formula_of(turn.rate, letters)), axis)
+        tree.row(tree.bracketed(formula_of(turn.rate, letters)), axis)
         for turn, axis in zip(model.turns, axes_of_turns(model, letters), strict=True)
         if turn.rate != 0
     ]
-    return equal(SPACE.omega, joined(terms, PLUS))
+    return tree.equal(SPACE.omega, tree.joined(terms, tree.PLUS))
