@@ -53,8 +53,9 @@ def _fill(result, block, arrays, shape, threads):
     """
     leading = result.shape[: result.ndim - len(shape)]
     # a block may be written before the next one is read
-    wide = [
-        np.broadcast_to(_unshared(a, result), (*leading, a.shape[-1])) for a in arrays
+    arrays = [_unshared(array, result) for array in arrays]
+    wide = [  # one row for all orientations stays one: what depends on it alone is a number
+        a if a.ndim == 1 else np.broadcast_to(a, (*leading, a.shape[-1])) for a in arrays
     ]
     longest = _longest(block, result.dtype, shape) // _LANES * _LANES
     if threads > 1:  # longer blocks, as many for each: they wait less for one another
@@ -64,7 +65,7 @@ def _fill(result, block, arrays, shape, threads):
     def work(places):
         with np.errstate(all="ignore"):
             for place in places:
-                vectors = [_columns(array[place]) for array in wide]
+                vectors = [_columns(a if a.ndim == 1 else a[place]) for a in wide]
                 _evaluate(result[place], block, vectors, shape)
 
     places = list(_places(leading, longest))

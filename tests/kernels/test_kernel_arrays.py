@@ -72,6 +72,20 @@ def test_columns_of_the_caller_are_read_where_they_are_and_are_not_written():
     assert_array_equal(columns, rows)
 
 
+def test_what_depends_on_one_row_for_all_orientations_is_computed_once_a_block():
+    sizes = []
+
+    def block(q, q_dot):
+        sizes.append((q.size, q_dot.size))
+        return q
+
+    row = np.arange(3.0)
+    rows = np.tile(row, (30_000, 1))
+    assert_array_equal(module()._apply(block, None, (3,), None, 1, q=rows, q_dot=row), rows)
+    assert len(sizes) > 2
+    assert {size for _, size in sizes} == {3}
+
+
 ENDS = """
 import atexit, os, warnings
 import numpy as np
