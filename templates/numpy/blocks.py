@@ -53,10 +53,10 @@ def _fill(result, block, arrays, shape, threads):
     """
     leading = result.shape[: result.ndim - len(shape)]
     # a block may be written before the next one is read
-    arrays = [_unshared(array, result) for array in arrays]
-    wide = [  # one row for all orientations stays one: what depends on it alone is a number
-        a if a.ndim == 1 else np.broadcast_to(a, (*leading, a.shape[-1])) for a in arrays
-    ]
+    wide = [_unshared(array, result) for array in arrays]
+    for k, array in enumerate(wide):
+        if array.ndim > 1:  # one row for all stays one, and what depends on it a number
+            wide[k] = np.broadcast_to(array, (*leading, array.shape[-1]))
     longest = _longest(block, result.dtype, shape) // _LANES * _LANES
     if threads > 1:  # longer blocks, as many for each: they wait less for one another
         rounds = -(-prod(leading) // (4 * longest * threads))

@@ -25,22 +25,14 @@ FEW = ("rotation_matrix", "angular_velocity_body", "rates_from_angular_velocity_
 
 
 @pytest.mark.parametrize("target", TARGETS)
-def test_the_files_of_the_lecture(target, golden):
+def test_the_files_of_the_lecture_and_the_lines_of_other_rotations(target, golden):
     """All quantities for NumPy, and those with and without a divisor for the others."""
     motion = derived("ZXZ") if target == "numpy" else derive("ZXZ", only=FEW)
-    for name, text in generate(motion, target).files.items():
-        text = text.replace(f"rigidsym {__version__};", "rigidsym *;")
-        golden(f"kernels/{name}.txt", text)
-
-
-def test_the_lean_files_of_the_lecture(golden):
-    for name, text in derive("ZXZ", only=FEW).kernels("c", **LEAN).files.items():
-        if name.endswith(".c"):
-            golden(f"kernels/lean_{name}.txt", text)
-
-
-@pytest.mark.parametrize("target", TARGETS)
-def test_each_target_prints_the_same_lines(target, golden):
+    files = dict(generate(motion, target).files)
+    lean = motion.kernels("c", **LEAN).files if target == "c" else {}
+    files |= {f"lean_{name}": text for name, text in lean.items() if name.endswith(".c")}
+    for name, text in files.items():
+        golden(f"kernels/{name}.txt", text.replace(f"rigidsym {__version__};", "rigidsym *;"))
     golden(f"kernels/lines_{target}.txt", "\n".join(of_rotations(target)) + "\n")
 
 
@@ -74,8 +66,6 @@ WORDS = [
     ("signed", "j1", "NULL"),
     ("def", "class", "None"),
 ]
-
-
 LOADED = [pytest.param(*p.values, marks=[*p.marks, pytest.mark.campaign]) for p in OTHERS]
 
 
