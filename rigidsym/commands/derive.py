@@ -83,7 +83,8 @@ def produce(specs: Iterable[DerivationSpec], options: Options) -> None:
     is_shown = len(wanted) == 1 and not (options["quiet"] or options["json"])
     width = min(shutil.get_terminal_size((88, 24)).columns, 120) if is_shown else 0
     missing: list[RigidsymError] = []
-    made = in_processes(partial(_made, width=width), wanted)
+    # what the first derivation imports and keeps takes less time than to wait for it
+    made = in_processes(partial(_made, width=width), wanted, first=0)
     for single, (files, warning, shown, paper) in zip(wanted, made, strict=True):
         written = write(single, files, out, force=options["force"])
         if isinstance(paper, bytes):

@@ -51,24 +51,24 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if sys.platform == "linux" else 1
 
 
-def in_processes(work: Callable[[T], R], items: Sequence[T]) -> Iterator[R]:
+def in_processes(work: Callable[[T], R], items: Sequence[T], *, first: int = 1) -> Iterator[R]:
     """The result of each item, in order; work, items, results and errors can be pickled.
 
-    The first item is done before this process is copied, so that the copies have all that it
+    The `first` items are done before this process is copied, so that the copies have all that they
     imported and kept for the next. Then it goes on from the front, and they begin at the end:
     neighbours are often alike, and a process that has done one does the next in less time.
     """
-    yield from map(work, items[:1])
+    yield from map(work, items[:first])
     # the threads of JAX are not copied, and a copy would wait for them
-    count = 1 if "jax" in sys.modules else min(cores(), len(items) - 1)
+    count = 1 if "jax" in sys.modules else min(cores(), len(items) - first)
     if count < 2:
-        yield from map(work, items[1:])
+        yield from map(work, items[first:])
         return
     from concurrent.futures.process import BrokenProcessPool, ProcessPoolExecutor
     from multiprocessing import active_children, get_context
 
     gc.freeze()  # a search for cycles would copy the pages of all that the processes share
-    waiting, lock = deque(range(1, len(items))), threading.Lock()
+    waiting, lock = deque(range(first, len(items))), threading.Lock()
     futures: dict[int, Any] = {}
 
     def hand_out(before: Any = None) -> None:
@@ -82,15 +82,15 @@ def in_processes(work: Callable[[T], R], items: Sequence[T]) -> Iterator[R]:
             future = futures[last] = pool.submit(work, items[last])
         future.add_done_callback(hand_out)
 
-    place = 1
+    place = first
     with ProcessPoolExecutor(count - 1, get_context("fork"), _obey_this_process) as pool:
         try:
             for _ in range(count - 1):
                 hand_out()
-            for place in range(1, len(items)):
+            for place in range(first, len(items)):
                 with lock:
                     own = waiting.popleft() if waiting else None  # this place
-                yield work(items[place]) if own else futures.pop(place).result()
+                yield work(items[place]) if own is not None else futures.pop(place).result()
         except BrokenProcessPool:  # the system ended a copy, for want of memory for instance
             yield from map(work, items[place:])
         except BaseException:  # an interrupt does not wait for results
