@@ -406,10 +406,7 @@ def check_ending(path: Path) -> None:
 
 
 def write_table(
-    path: Path,
-    names: Sequence[str],
-    rows: Iterable[Rows],
-    stream: BinaryIO | None = None,
+    path: Path, names: Sequence[str], rows: Iterable[Rows], stream: BinaryIO | None = None
 ) -> None:
     """Write batches of rows by the ending of a file, which is in place when it is complete.
 

@@ -59,8 +59,7 @@ def check_name(text: str | sp.Symbol) -> str:
         raise ExpressionError(f"expected a name of 1 to {_LONGEST} letters, got {len(name)}")
     if not _FORM.fullmatch(name):
         raise _invalid(
-            text,
-            "expected a letter (Latin or Greek), then letters, digits and single underscores",
+            text, "expected a letter (Latin or Greek), then letters, digits and single underscores"
         )
     if name in _TAKEN:
         raise _invalid(text, f"{name} is {_TAKEN[name]}")
