@@ -17,16 +17,7 @@ from rigidsym.formula.tree import equal
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.mass.bodies import in_numbers
 from rigidsym.mechanics.mass.moments import moments_of
-from rigidsym.models.body import (
-    UPRIGHT,
-    Composite,
-    Known,
-    Part,
-    Particle,
-    Particles,
-    RigidBody,
-    Solid,
-)
+from rigidsym.models import body as bodies
 from rigidsym.notes.document import Figure
 from rigidsym.notes.figure.body_drawing import body_drawing
 from rigidsym.notes.figure.body_mesh import lengths_in, numbers_of
@@ -34,14 +25,14 @@ from rigidsym.notes.template import figure_with
 from rigidsym.notes.words import number, unit_in_words
 from rigidsym.system.records import Record
 
-_KINDS = {Particles: "particles", Composite: "composite", Known: "measured"}
+_KINDS = {bodies.Particles: "particles", bodies.Composite: "composite", bodies.Known: "measured"}
 
 
 class MassFacts(Record):
     """The distribution of the mass, and the parameters of the body."""
 
     derivation: Derivation
-    body: RigidBody
+    body: bodies.RigidBody
     letters: Letters
 
     @cached_property
@@ -101,31 +92,31 @@ class MassFacts(Record):
         return [
             {
                 "of": part,
-                "name": what.title if isinstance(what, Solid) else _KINDS[type(what)],
+                "name": what.title if isinstance(what, bodies.Solid) else _KINDS[type(what)],
                 "mass": moments_of(what).mass,
-                "is_turned": part.turned != UPRIGHT,
+                "is_turned": part.turned != bodies.UPRIGHT,
             }
             for part, what in ((part, part.what) for part in self._parts)
         ]
 
     @property
-    def _parts(self) -> tuple[Part, ...]:
+    def _parts(self) -> tuple[bodies.Part, ...]:
         distribution = self.body.distribution
-        return tuple(distribution.parts) if isinstance(distribution, Composite) else ()
+        return tuple(distribution.parts) if isinstance(distribution, bodies.Composite) else ()
 
     @property
-    def particles(self) -> tuple[Particle, ...]:
+    def particles(self) -> tuple[bodies.Particle, ...]:
         distribution = self.body.distribution
-        return tuple(distribution.particles) if isinstance(distribution, Particles) else ()
+        return tuple(distribution.particles) if isinstance(distribution, bodies.Particles) else ()
 
     @property
-    def solids(self) -> list[tuple[str, Solid]]:
+    def solids(self) -> list[tuple[str, bodies.Solid]]:
         """The body, or the first part of each kind, with its name."""
         whole = self.body.distribution
         named = [("", whole), *((part.label, part.what) for part in self._parts)]
-        firsts: dict[str, tuple[str, Solid]] = {}
+        firsts: dict[str, tuple[str, bodies.Solid]] = {}
         for label, what in named:
-            if isinstance(what, Solid):
+            if isinstance(what, bodies.Solid):
                 firsts.setdefault(what.title, (label or what.title.lower(), what))
         return [*firsts.values()]
 

@@ -16,16 +16,7 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from rigidsym.algebra.evaluate import Floats, evaluate
-from rigidsym.models.body import (
-    HERE,
-    UPRIGHT,
-    Composite,
-    Distribution,
-    Known,
-    Particles,
-    RigidBody,
-    Solid,
-)
+from rigidsym.models import body as bodies
 from rigidsym.notes.figure.drawing import RED, Color
 
 Vector = NDArray[Any]  # (3,), or more than one of them: (n, 3)
@@ -58,7 +49,7 @@ _OCTAHEDRON = [  # its faces: signs of the corners on the axes, in counterclockw
 ]
 
 
-def own_shape(body: RigidBody | None) -> Shape:
+def own_shape(body: bodies.RigidBody | None) -> Shape:
     """The faces of a body, none if only its moments are known.
 
     Its centre of mass is at the origin, or the fixed point that is stated.
@@ -76,7 +67,7 @@ def own_shape(body: RigidBody | None) -> Shape:
     return tuple(Face(_SIZE / reach * (corners - centre), color) for corners, color in faces)
 
 
-def numbers_of(body: RigidBody) -> Numbers | None:
+def numbers_of(body: bodies.RigidBody) -> Numbers | None:
     """The parameters of a body with their values, or with others that give it a proper shape.
 
     None if only its moments are known.
@@ -92,21 +83,21 @@ def numbers_of(body: RigidBody) -> Numbers | None:
     return None if lengths is None else lengths | dict.fromkeys({*values} - {*lengths}, sp.Float(1))
 
 
-def lengths_in(body: RigidBody) -> set[sp.Basic]:
+def lengths_in(body: bodies.RigidBody) -> set[sp.Basic]:
     """The constants that the shape of a body is made of; none if only its moments are known."""
     return _constants(_described(body)) if _described(body) else set()
 
 
-def _described(body: RigidBody) -> Any:
+def _described(body: bodies.RigidBody) -> Any:
     return body.distribution or body.drawn
 
 
 def lengths_of(
-    what: Distribution, values: Mapping[sp.Symbol, float | None]
+    what: bodies.Distribution, values: Mapping[sp.Symbol, float | None]
 ) -> dict[sp.Symbol, sp.Float] | None:
     """The parameters with their values, or a suitable length if they have none."""
     numbers = {symbol: value for symbol, value in values.items() if value is not None}
-    solids = [leaf.what for leaf in _leaves(what) if isinstance(leaf.what, Solid)]
+    solids = [leaf.what for leaf in _leaves(what) if isinstance(leaf.what, bodies.Solid)]
     missing = sorted(_constants(what) - {*numbers}, key=str)
     lengths = _FEW_LENGTHS.get(len(missing), _LENGTHS[: len(missing)])
     if len(missing) > len(lengths):
@@ -121,7 +112,7 @@ def lengths_of(
     return None
 
 
-def meshed(what: Distribution, numbers: Numbers) -> Shape:
+def meshed(what: bodies.Distribution, numbers: Numbers) -> Shape:
     """The faces of what has mass, in its own axes, in metres."""
     sheets = [(*sheet, leaf.color) for leaf in _leaves(what) for sheet in _sheets(leaf, numbers)]
     if not sheets:
@@ -143,15 +134,15 @@ _Sheet = tuple[Vector, Callable[[Vector], Iterator[Vector]]]
 class _Leaf(NamedTuple):
     """Part of a body that is not composed, moved into the axes of the whole."""
 
-    what: Distribution
-    at: sp.ImmutableMatrix = HERE
-    turned: sp.ImmutableMatrix = UPRIGHT
+    what: bodies.Distribution
+    at: sp.ImmutableMatrix = bodies.HERE
+    turned: sp.ImmutableMatrix = bodies.UPRIGHT
     color: Color = BLUE
 
 
-def _leaves(what: Distribution, whole: _Leaf | None = None) -> Iterator[_Leaf]:
+def _leaves(what: bodies.Distribution, whole: _Leaf | None = None) -> Iterator[_Leaf]:
     whole = whole or _Leaf(what)
-    if not isinstance(what, Composite):
+    if not isinstance(what, bodies.Composite):
         yield whole
         return
     for part, tint in zip(what.parts, cycle(_PALETTE), strict=False):
@@ -161,15 +152,15 @@ def _leaves(what: Distribution, whole: _Leaf | None = None) -> Iterator[_Leaf]:
         yield from _leaves(part.what, _Leaf(part.what, at, swollen, color))
 
 
-def _constants(what: Distribution) -> set[sp.Basic]:
+def _constants(what: bodies.Distribution) -> set[sp.Basic]:
     """The symbols in lengths and positions."""
     symbols: set[sp.Basic] = set()
     for leaf in _leaves(what):
         symbols |= leaf.at.free_symbols | leaf.turned.free_symbols
         match leaf.what:
-            case Particles():
+            case bodies.Particles():
                 symbols |= {s for p in leaf.what.particles for s in p.position.free_symbols}
-            case Solid():
+            case bodies.Solid():
                 lengths = sp.Tuple(leaf.what.place, *(sp.Tuple(*ends) for ends in leaf.what.bounds))
                 symbols |= lengths.free_symbols - {*leaf.what.coordinates}
     return symbols
@@ -184,12 +175,12 @@ def _sheets(leaf: _Leaf, numbers: Numbers) -> Iterator[_Sheet]:
     at = _floats(leaf.at.xreplace(numbers))
     sheets: Iterable[_Sheet]
     match leaf.what:
-        case Particles():
+        case bodies.Particles():
             positions = (_floats(p.position.xreplace(numbers)) for p in leaf.what.particles)
             sheets = ((position, _octahedron) for position in positions)
-        case Solid():
+        case bodies.Solid():
             sheets = _of_solid(leaf.what, numbers)
-        case Known():
+        case bodies.Known():
             sheets = ()
     return ((at + points @ turned.T, faces) for points, faces in sheets)
 
@@ -201,7 +192,7 @@ def _octahedron(centre: Vector) -> Iterator[Vector]:
 # A solid
 
 
-def _map(solid: Solid, numbers: Numbers, *shares: Any) -> Vector:
+def _map(solid: bodies.Solid, numbers: Numbers, *shares: Any) -> Vector:
     """The points (..., 3) of a solid for coordinates that run from 0 to 1, in metres."""
     values: dict[sp.Expr, Any] = {}
     for symbol, share, pair in zip(solid.coordinates, shares, solid.bounds, strict=True):
@@ -211,7 +202,7 @@ def _map(solid: Solid, numbers: Numbers, *shares: Any) -> Vector:
     return np.stack(np.broadcast_arrays(*place, *shares)[:3], axis=-1)
 
 
-def _is_proper(solid: Solid, numbers: Numbers) -> bool:
+def _is_proper(solid: bodies.Solid, numbers: Numbers) -> bool:
     """Whether bounds are in order, and the map never turns inside out."""
     lengths = (sp.S(high - low).xreplace(numbers) for low, high in solid.bounds)
     if any(length.is_negative for length in lengths):
@@ -222,7 +213,7 @@ def _is_proper(solid: Solid, numbers: Numbers) -> bool:
     return len(solid.coordinates) < 3 or len({*_is_outward(solid, numbers, *shares).flat}) == 1
 
 
-def _is_outward(solid: Solid, numbers: Numbers, *shares: Any) -> Vector:
+def _is_outward(solid: bodies.Solid, numbers: Numbers, *shares: Any) -> Vector:
     """Whether the determinant of the map is positive."""
     here = _map(solid, numbers, *shares)
     steps = 1e-4 * np.eye(3)
@@ -230,7 +221,7 @@ def _is_outward(solid: Solid, numbers: Numbers, *shares: Any) -> Vector:
     return np.linalg.det(np.stack(moved, axis=-2) - here[..., None, :]) > 0
 
 
-def _of_solid(solid: Solid, numbers: Numbers) -> Iterator[_Sheet]:
+def _of_solid(solid: bodies.Solid, numbers: Numbers) -> Iterator[_Sheet]:
     """A line; both sides of a surface; or the surface of a volume, side by side of its box."""
     counts = [_divisions(solid, symbol) for symbol in solid.coordinates]
     if len(counts) == 1:
@@ -256,7 +247,7 @@ def _of_solid(solid: Solid, numbers: Numbers) -> Iterator[_Sheet]:
             yield from ((high[:, ::outward], tiles), (low[:, ::-outward], tiles))
 
 
-def _divisions(solid: Solid, symbol: sp.Symbol) -> int:
+def _divisions(solid: bodies.Solid, symbol: sp.Symbol) -> int:
     if any(wave.has(symbol) for wave in solid.place.atoms(sp.sin, sp.cos)):
         low, high = solid.bounds[solid.coordinates.index(symbol)]
         turns = (high - low) / (2 * sp.pi)
