@@ -7,7 +7,7 @@ recalled has none.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 from functools import cached_property
 from itertools import groupby
@@ -72,8 +72,7 @@ _WHERE_SHOWN = {  # what has no equation of its own in the lecture, and the one 
 class Composer:
     """What a template prints, for one derivation.
 
-    `module` is the file name of a kernel module and `functions` the quantities it evaluates; each
-    of their equations in an audit names its function.
+    `module` is the file name of a kernel module; the equations of an audit name their functions.
     """
 
     def __init__(
@@ -81,7 +80,6 @@ class Composer:
         derivation: Derivation,
         *,
         module: str | None = None,
-        functions: Sequence[str] = (),
         notation: Notation = DEFAULT,
         conversions: Conversions | None = None,
         is_audit: bool = True,
@@ -89,7 +87,7 @@ class Composer:
         self.derivation, self.moments = in_names(derivation)
         self.model = derivation.model
         self.module = module or ""
-        self.functions = tuple(functions)
+        self.functions = [s.quantity.name for s in derivation.steps if module and s.quantity.inputs]
         self.conversions = conversions
         self.letters = letters_of(derivation.arguments, notation, derivation.model)
         if derivation.body:

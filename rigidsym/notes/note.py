@@ -5,7 +5,6 @@ A lecture explains, and an audit shows every identity.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from rigidsym.errors import ModelError
@@ -54,27 +53,22 @@ def note(
     derivation: Derivation,
     *,
     module: str | None = None,
-    functions: Sequence[str] | None = None,
     notation: Notation = DEFAULT,
     conversions: Conversions | None = None,
     style: str = "audit",
 ) -> Note:
     """The note of a derivation, and of the conversions if they are given, in a style.
 
-    `module` is the file name of its kernel module, if there is one; `functions` are the quantities
-    that module evaluates, all of them by default. Each equation of an audit names its function.
-    Raises ModelError for a style without a template.
+    `module` is the file name of its kernel module, if there is one; then each equation of an audit
+    names its function. Raises ModelError for a style without a template.
     """
     resources.check_names(f"{template_of(check_style(style))}.md.jinja")
-    computed = [step.quantity.name for step in derivation.steps if step.quantity.inputs]
-    names = computed if functions is None else functions
     # composing draws figures, for which NumPy is imported; a style is checked without
     from rigidsym.notes.compose import Composer
 
     composer = Composer(
         derivation,
         module=module,
-        functions=names if module else (),
         notation=notation,
         conversions=conversions,
         is_audit=style == "audit",

@@ -78,11 +78,6 @@ def test_rotations_in_a_terminal(golden):
     golden(f"terminal/{motion.name}_80.txt", show(motion, width=80) + "\n")
 
 
-def test_only_the_functions_of_a_module_are_named():
-    document = note(derived("ZXZ"), module="m.py", functions=["rotation_matrix"]).document
-    assert [e.function for e in document.equations if e.function] == ["rotation_matrix(q)"]
-
-
 @pytest.mark.parametrize("style", STYLES)
 def test_an_unproved_step_shows_in_every_style_and_format(style):
     motion, theta = derived("ZXZ"), sp.Symbol("theta")

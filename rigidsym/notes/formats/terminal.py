@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from itertools import product
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
@@ -38,7 +38,6 @@ _OMEGA = {"Ω": SPACE.omega, "Ω′": BODY.omega}
 _INDENT = "  "
 _NO_BREAK = "\u00a0"
 
-Style = Callable[[str, Literal["heading", "dim"]], str]
 Spans = Iterable[Any]  # words, formulas, and what else has a text
 
 
@@ -46,17 +45,15 @@ def show(
     derivation: Derivation,
     *,
     width: int = _WIDTH,
-    style: Style = lambda words, _: words,
     notation: Notation = DEFAULT,
     conversions: Conversions | None = None,
 ) -> str:
     """The derivation as plain text, at most `width` columns wide where formulas allow.
 
-    `style` is given each heading and each aside, and returns it with the codes of the terminal;
     `conversions` adds a section on the unit quaternion and the matrix, and its proofs.
     """
     letters = letters_of(derivation.arguments, notation, derivation.model)
-    screen = _Screen(letters, width, style)
+    screen = _Screen(letters, width)
     screen.derivation(derivation, conversions)
     return screen.whole
 
@@ -66,7 +63,7 @@ def printed_step(step: Step, form: str, derivation: Derivation, notation: Notati
     arguments = derivation.arguments
     letters = letters_of(arguments, notation, derivation.model)
     if form == "text":
-        screen = _Screen(letters, _WIDTH, lambda words, _: words)
+        screen = _Screen(letters, _WIDTH)
         screen.step(step, arguments)
         return screen.whole
     equation = as_vectors(equation_of(step, arguments), step, letters)
@@ -76,10 +73,9 @@ def printed_step(step: Step, form: str, derivation: Derivation, notation: Notati
 class _Screen:
     """Lines of Unicode in one width, written from top to bottom."""
 
-    def __init__(self, letters: Letters, width: int, style: Style) -> None:
+    def __init__(self, letters: Letters, width: int) -> None:
         self.letters = letters
         self.width = width
-        self.style = style
         self.pen = UnicodePen(letters.notation)
         self.lines: list[str] = []
         self.defined: set[sp.Basic] = set()
@@ -105,12 +101,10 @@ class _Screen:
         """A heading, with an aside at the right margin, on its own line if there is no room."""
         heading = self.text(spans)
         room = self.width - columns(heading)
-        is_below = room - columns(aside) < len(_INDENT)
-        self.lines.append(self.style(heading, "heading"))
-        if aside and is_below:
-            self.lines.append(self.style(aside.rjust(self.width), "dim"))
-        elif aside:
-            self.lines[-1] += self.style(aside.rjust(room), "dim")
+        if aside and room - columns(aside) < len(_INDENT):
+            self.lines += [heading, aside.rjust(self.width)]
+        else:
+            self.lines.append(heading + (aside and aside.rjust(room)))
 
     def section(self, heading: str) -> None:
         self.line()
