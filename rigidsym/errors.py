@@ -1,7 +1,7 @@
 """Every exception a user may see. Each says what was wrong, where, and what was expected.
 
 Each class has its exit code of the command line: 1 if a derivation or a check failed, 2 for wrong
-usage, 3 for a file with wrong content, 4 if an outside tool is missing.
+usage, 3 for a file with wrong content, 4 if an outside tool is missing, 124 if the time is up.
 """
 
 from __future__ import annotations
@@ -71,8 +71,8 @@ class RigidsymError(Exception):
         return copyreg.__newobj__, (type(self), *self.args), vars(self)  # type: ignore[attr-defined]
 
 
-class LimitReached(RigidsymError):
-    """Work that was stopped because it took more time or memory than allowed."""
+class LimitReached(RigidsymError, exit_code=124):
+    """Work that was stopped because it took more time than allowed."""
 
 
 class AlgebraError(RigidsymError):

@@ -126,6 +126,14 @@ def test_products_of_numpy_arrays_are_those_of_their_entries(tmp_path):
         assert len(found_in(tmp_path, "a.py", text)) == count
 
 
+def test_binaries_with_the_suffix_of_a_program_are_no_source_files(tmp_path):
+    (tmp_path / "a.cpp").write_bytes(b"\x7fELF\0\0 cos(a)*sin(b)")
+    only = call("compare", str(tmp_path), cwd=tmp_path, status=2)
+    assert "no source files; looked for" in only.stderr
+    (tmp_path / "a.py").write_text(f"R = lambda s, c: {TURN}\n")
+    assert "1 formula in 1 file\n" in call("compare", str(tmp_path), cwd=tmp_path).stderr
+
+
 def run(*arguments):
     return CliRunner().invoke(commands, ["compare", *arguments])
 
@@ -420,8 +428,6 @@ CERTAIN |= {  # a program: the end of the verdict, and nothing if there is none
      "a.p.Y(sin(q.W())*a.p.X() + cos(q.W())*p.Y()); a.p.Z(p.Z()); return a; }"): None,
     ("g.cpp", "void f(double a) { q.W(cos(a/2)); q.X(sin(a/2)); q.Y(0); q.Z(0); }"):
     "a as angle (proved)",
-    ("k.cpp", "void f(float yaw, float pitch) { a = yaw/2; b = pitch/2; v.x = -sin(a)*sin(b); v.y "
-     "= cos(a)*sin(b); v.z = sin(a)*cos(b); w = cos(a)*cos(b); }"): "as first, second (proved)",
     ("p.py", "def f(self):\n    v, a = self.turn()\n    R = np.cos(a)*np.eye(3) + np.sin(a)*np.arr"
      "ay([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]]) + (1 - np.cos(a))*np.outer(v, "
      "v)\n"):
@@ -444,6 +450,7 @@ CERTAIN |= {  # a program: the end of the verdict, and nothing if there is none
     "with a, b as the angles about x, y, transposed (proved)",
     ("s.cc", "void f(M A, double b) { auto g = [&]() { d = 1; }; double c = cos(b), s = sin(b); "
      "v = A.row(0); R = Matrix3d(c, -s, 0, s, c, 0, 0, 0, 1); }"): "b as angle (proved)",
+    ("v.py", f"def f(a, eps):\n    return np.reshape({FLAT}, (3, 3)) + eps\n"): None,
     ("d.js", "const k = 180 / PI; function f(a, b, c, d) { return [atan2(2*(a*b + c*d), 1 - 2*(b*b"
      " + c*c))*k, asin(2*(a*c - d*b))*k, atan2(2*(a*d + b*c), 1 - 2*(c*c + d*d))*k]; }"):
     "up to the factor k (to nine digits at 20 points, not proved)",
@@ -624,6 +631,24 @@ WIDER = {
     "    return torch.stack((c, -s, z, s, c, z, z, z, o), -1).reshape(-1, 3, 3)\n",
     "f.cpp": "M f(double a, double b) { auto Rz = [](double t) { M R; R << cos(t), -sin(t), 0,"
     " sin(t), cos(t), 0, 0, 0, 1; return R; }; return Rz(b)*Rz(a); }",
+    "e.m": "function d = f(q, w)\n p = w(1); s = w(2); r = w(3);\n d = 0.5*[0 -p -s -r; p 0 r -s; "
+    "s -r 0 p; r s -p 0]*q;\nend",
+    "t.py": "def f(p, q):\n    w, x, y, z = p\n    return np.array([[w, -x, -y, -z], [x, w, -z, y],"
+    " [y, z, w, -x], [z, -y, x, w]]) @ np.array(q)\n",
+    "d.rs": "impl Mul for Q { fn mul(self, a: Q) -> Q { Q {\n"
+    " r: self.r*a.r - self.i*a.i - self.j*a.j - self.k*a.k,\n"
+    " i: self.r*a.i + self.i*a.r + self.j*a.k - self.k*a.j,\n"
+    " j: self.r*a.j - self.i*a.k + self.j*a.r + self.k*a.i,\n"
+    " k: self.r*a.k + self.i*a.j - self.j*a.i + self.k*a.r } } }",
+    "e.rs": "fn f(q: [f64; 4]) -> (f64, f64, f64) { let [w, x, y, z] = q;\n"
+    " ((2.0*(w*x + y*z)).atan2(1.0 - 2.0*(x*x + y*y)), (2.0*(w*y - z*x)).asin(),"
+    " (2.0*(w*z + x*y)).atan2(1.0 - 2.0*(y*y + z*z))) }",
+    "u.py": "def f(J, m, r):\n    return J + m*(r @ r*np.eye(3) - np.outer(r, r))\n",
+    "v.py": "def f(w, x, y, z, W, X, Y, Z):\n    return [w*W - x*X - y*Y - z*Z, "
+    "w*X + x*W + y*Z - z*Y, w*Y - x*Z + y*W + z*X, w*Z + x*Y - y*X + z*W]\n",
+    "w.py": "def f(w, x, y, z, X, Y, Z):\n"
+    "    a, b, c = 2*(y*Z - z*Y), 2*(z*X - x*Z), 2*(x*Y - y*X)\n"
+    "    return [X + w*a + y*c - z*b, Y + w*b + z*a - x*c, Z + w*c + x*b - y*a]\n",
     # in public programs, a local name of an inlined function is that of its argument
     "e.cpp": "struct V mk(float x, float y, float z) { struct V v; v.x = x; v.y = y; v.z = z;"
     " return v; }\nstruct V f(struct V v, float a, float b) { return mk(v.x + sin(a)*tan(b)*v.y"
@@ -631,11 +656,12 @@ WIDER = {
 }
 SAID = {
     "quaternion of x": "c.js c.cs a.js",
-    "euler_angles of xyz": "b.py d.js d.py o.cpp a.cpp",
-    "rotated_vector": "c.py e.py",
+    "euler_angles of xyz": "b.py d.js d.py o.cpp a.cpp e.rs",
+    "rotated_vector": "c.py e.py w.py",
     "quaternion of ZYX": "l.py p.m",
     "euler_angles of ZXZ": "g.py",
-    "quaternion_product": "b.cs e.cs a.c",
+    "quaternion_product": "b.cs",
+    "quaternion_product (proved)": "e.cs a.c t.py v.py d.rs",
     "rotation_matrix of quaternion": "h.py",
     "inverse_rate_matrix_body of xyz": "i.py",
     "angular_velocity_body of ZYX": "b.c",
@@ -644,11 +670,11 @@ SAID = {
     "euler_equations_torque": "m.py",
     "(proved); terms without p, q, r were not compared": "n.m",
     "; terms without": "o.py",
-    "rates_from_": "e.cpp",
+    "rates_from_": "e.cpp e.m",
     "equal to rotation_matrix of z": "a.py b.js a.rs a.m f.py b.rs j.py c.cpp d.c b.cpp d.cs q.py "
     "f.cpp",
     "rotation_vector": "p.py",
-    "equal to parallel_axis_theorem": "s.py",
+    "equal to parallel_axis_theorem": "s.py u.py",
 }
 
 

@@ -88,11 +88,7 @@ def _of_fitting_sizes(function: Callable[..., Any]) -> Callable[..., Any]:
             return function(*arguments)
         except (ValueError, TypeError, IndexError, AttributeError):
             parts = [p for a in arguments for p in (a if isinstance(a, list) else [a])]
-            sizes = [
-                "{}x{}".format(*p.shape) if isinstance(p, sp.MatrixBase) else "a number"
-                for p in parts
-                if not isinstance(p, str)
-            ]
+            sizes = [str(getattr(p, "shape", "a number")) for p in parts if not isinstance(p, str)]
             raise ExpressionError(f"sizes that do not fit: {' and '.join(sizes)}") from None
 
     return checked

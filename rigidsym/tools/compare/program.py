@@ -56,7 +56,7 @@ _Bounded = sp.Function("clamp", real=True)  # x of clamp(x, -1, 1): no other num
 
 def _unbounded(matrix: Any) -> Any:
     """The matrix without bounds of what has an arc sine or cosine."""
-    arcs = {f for f in matrix.atoms(sp.asin, sp.acos) if isinstance(f.args[0], _Bounded)}
+    arcs = matrix.atoms(sp.asin, sp.acos)
     return matrix.xreplace({f: f.func(_inner(f.args[0])) for f in arcs})
 
 
@@ -313,7 +313,6 @@ class _Run:
         self.inputs: set[str] = set()  # names that were read before anything was assigned
         self.definitions: dict[sp.Symbol, sp.Expr | None] = {}  # what symbols stand for, if read
         self.components: set[sp.Symbol] = set()  # of values that are not read, which are inputs
-        self.normalised: set[sp.Basic] = set()  # components that were divided by the length
         self.unread: dict[str, int] = {}  # lines of names without values
         self.squares: dict[sp.Symbol, sp.Symbol] = {}  # |v|² of names without values
         self.tensors: set[sp.Symbol] = set()  # names without values that are matrices
@@ -421,17 +420,14 @@ class _Run:
     def link(self, tree: Tree) -> None:
         """Two names may share one object: a reference, a view, or a copy in C#."""
         left, right = tree.parts
-        word = right.called if right.kind == "call" else right.word
-        is_view = right.kind == "index" or word in TYPES["views"]
         if right.kind == "call":
             right = right.parts[-1] if patterns.module.match(right.base) else right.owner or right
-        if right.kind not in ("name", "member", "index", "unary"):
-            return
         names = self.written(left), self.written(right)
-        places = self.path(left) or names[0], names[1]  # B[0, 1] = v[2] is a number
-        one, other = (isinstance(self.part(self.values, path), _Record) for path in places)
-        is_alias = {".cs": other, ".py": one and is_view}.get(self.program.suffix, False)
-        if all(names) and names[0] != names[1] and (is_alias or tree.is_alias):
+        place = self.path(left) or names[0]  # B[0, 1] = v[2] is a number
+        is_object = right.kind in ("name", "member", "index", "unary") and names[0] != names[1]
+        is_matrix = isinstance(self.part(self.values, place), _Record)
+        may_share = is_matrix and self.program.suffix in (".cs", ".py")
+        if is_object and all(names) and (may_share or tree.is_alias):
             self.links += [names, names[::-1]]
 
     def linked(self, path: Path) -> list[Path]:
@@ -443,8 +439,7 @@ class _Run:
         if tree.declared_type in self.program.arrays:
             return value
         self.refuse_if(not self.program.is_glm, tree)
-        value = _unflattened(value)
-        return value.T if isinstance(value, sp.MatrixBase) and value.rows == value.cols else value
+        return _unflattened(value).T
 
     def unpack(self, left: Tree, right: Tree) -> None:
         """w, x, y, z = q; c, s, t = cos(v); {x, y} = q."""
@@ -485,10 +480,6 @@ class _Run:
             value = value.whole()[0]
         if self.by_columns(path) and len(path) > 1 and isinstance(value, sp.MatrixBase):
             raise self.unreadable(left, "may be a column")
-        own = self.part(self.values, path)
-        meant = (own, *map(self.definitions.get, own.free_symbols)) if _is_scalar(own) else ()
-        if any(v is not None and v.has(*_INVERSE) for v in meant):  # an angle, in another unit then
-            self.emit(self.part(self.values, path[:-1]), [], path[:-1], is_final=False)
         # A matrix may be complete only after R = R*S.
         is_own = right is not None and re.search(rf"\b{path[0]}\b", right.text) is not None
         self.emit_at(path, is_final=not is_own)
@@ -534,12 +525,11 @@ class _Run:
             if is_unit and abs(complex(ratio) * 180 / math.pi - 1) < 1e-3:  # radians from degrees
                 return own
             symbols = ratio.free_symbols
-            is_part = own.free_symbols <= symbols and symbols.isdisjoint(self.normalised)
-            names = tuple((s, s.name) for s in symbols if is_part and is_length(1 / ratio))
+            is_old = not any(s.is_Dummy for s in symbols)  # as a component after its division is
+            names = tuple((s, s.name) for s in symbols if is_old and is_length(1 / ratio))
             if any(len(each) == 1 and len(each[0]) > 2 for each in grouped(names)):
                 symbol = self.symbol_for(path, None)
                 self.components.add(symbol)
-                self.normalised.add(symbol)
                 return symbol
             if ratio.free_symbols == {self.squares.get(own)}:
                 return own
@@ -595,17 +585,9 @@ class _Run:
         has_step = any(patterns.step.fullmatch(s.name) for s in symbols)
         return has_step and symbols.isdisjoint(self.definitions)
 
-    def become_unread(self, paths: Iterable[Path], line: int, *, is_new: bool = False) -> None:
-        """Names, and others for the same objects, get new symbols in place of their values.
-
-        Names that have not been used keep theirs, unless they are new.
-        """
-        used = (
-            path
-            for path in sorted(paths)
-            if is_new or self.part(self.values, path) is not None or path[0] in self.inputs
-        )
-        objects = [each for path in used for each in (path, *self.linked(path))]
+    def become_unread(self, paths: Iterable[Path], line: int) -> None:
+        """Names, and others for the same objects, get new symbols in place of their values."""
+        objects = [each for path in sorted(paths) for each in (path, *self.linked(path))]
         for each in objects:  # while all names have their values
             self.emit_at(each, is_final=False)
         for each in objects:
@@ -618,11 +600,9 @@ class _Run:
             self.put(each, self.symbol_for(each, None, line), line)
 
     def forget(self, tree: Tree) -> None:
-        """All names that are written to in a statement become unread, if they have been used."""
-        own = self.written_in([tree] if tree.kind == "assign" else [])
+        """All names that are written to in a statement become unread."""
         changing = [tree, *walk(tree.node, "assign", "call", "binary")]
-        self.become_unread(self.written_in(changing) - own, tree.line)
-        self.become_unread(own, tree.line, is_new=True)
+        self.become_unread(self.written_in(changing), tree.line)
 
     run_error = forget
 
@@ -662,7 +642,7 @@ class _Run:
         self.forget(tree)
         targets = tree.parts[0].targets if tree.parts else ()
         names = [(each.word,) for each in targets if each.kind == "name"]  # for x, y in ...
-        self.become_unread(names, tree.line, is_new=True)
+        self.become_unread(names, tree.line)
         for each in tree.parts:
             self.run(each)
         self.end = ""
@@ -715,7 +695,7 @@ class _Run:
         results = [each for each in nodes if each.is_reference]
         results = results if len(results) == 2 else [*nodes[1:]]
         angle = [self.tried(each) for each in nodes if each not in results]
-        self.become_unread(map(self.written, results), nodes[0].line, is_new=True)
+        self.become_unread(map(self.written, results), nodes[0].line)
         for left, word in zip(results, ("sin", "cos"), strict=True):
             self.store(left, called(word, angle))
 
@@ -758,10 +738,6 @@ class _Run:
                 self.add(_dotted(own), matrix, *lines, is_final=is_final)
             else:
                 self.emit(part, path=own, is_final=is_final)
-            if matrix is not None and matrix.shape == (3, 1) and _is_scalar(record.at("w")):
-                scalar, line = record["w"]
-                whole = sp.Matrix([scalar, *matrix])  # it may be a quaternion
-                self.add(f"w, {_dotted(own)}", whole, line, *lines, is_final=False)
         for kind, names in _groups(record):
             parts, lines = zip(*map(record.get, names), strict=True)
             values: list[Any] = [self.definitions.get(part, part) for part in parts]
@@ -917,10 +893,14 @@ class _Run:
             raise self.unreadable(tree, "is a division of whole numbers, which rounds")
         if sign in ("+", "-"):
             left, right = self.beside(left, right), self.beside(right, left)
+        elif sign == "@" and left == right:  # r @ r
+            return self.of_vectors("dot", [left, right])
         elif sign in ("*", "@") and (value := self.of_tensor(left, right)) is not None:
             return value
         else:
             left, right = (_unflattened(each) for each in (left, right))
+            if getattr(left, "shape", ()) == (4, 4):  # the matrix of a product, times q
+                right = self.vector(right, 4)
         return combined(self.operation(tree, sign, left, right), left, right)
 
     def is_whole(self, tree: Tree) -> bool:
@@ -1245,7 +1225,7 @@ class _Run:
         is_own = base in ("", "self", "this", "Self") and tree.called in self.program.functions
         if is_own:  # also if a library has a function of this name
             with suppress(ExpressionError):  # of a constructor
-                return self.inline(tree, tree.called, arguments)
+                return self.inline(tree)
         is_template = name == "T" and tree.owner is None and not self.program.is_formula
         meaning = "" if is_own else "wrapper" if is_template else CALLS.get(name, "")
         nodes, is_method = arguments, not patterns.module.match(base)
@@ -1384,8 +1364,9 @@ class _Run:
         matrix = _unflattened(rows(parts)) if is_flat else rows(parts)
         return matrix.T if by_columns and 1 not in matrix.shape else matrix
 
-    def inline(self, tree: Tree, name: str, nodes: Sequence[Tree]) -> Any:
+    def inline(self, tree: Tree) -> Any:
         """The value of a function of the same file."""
+        name, nodes = tree.called, tree.parts[1:]
         every = self.program.functions[name]
         counted = [t for t in every if len({*parameters(t.node)} - _OBJECTS) == len(nodes)]
         own = [each for each in counted if each.node != self.scope.tree.node]
@@ -1438,7 +1419,11 @@ def _groups(record: _Record) -> Iterator[tuple[int, list[str]]]:
 def _roles(name: str) -> list[tuple[int, str, str]]:
     """The groups to which a scalar may belong by its name, and its index in each."""
     matches = ((kind, pattern.fullmatch(name)) for kind, pattern in enumerate(patterns.scalars))
-    roles = [(k, m["stem"], m["index"].replace("_", "").lower()) for k, m in matches if m]
+    roles = [
+        (k, m["stem"] + "^" * m["index"].isupper(), m["index"].replace("_", "").lower())
+        for k, m in matches
+        if m
+    ]
     if stem := stem_of(name):  # a rate, and of which set: p, q, r are not beside phi, theta, psi
         sets = (str(kind) for kind, components in enumerate(_COMPLETE) if stem in components)
         roles += [(-1, of, name) for of in ("", *sets)]

@@ -560,12 +560,16 @@ def _of_vectors(
 def grouped(names: tuple[tuple[sp.Symbol, str], ...]) -> list[list[tuple[sp.Symbol, ...]]]:
     """Names in vectors, by each pattern; p, q, r are one, and other names are numbers."""
     groupings: list[list[tuple[sp.Symbol, ...]]] = []
+    rates_of = "(?:.*_)?([pqr])(_b(ody)?)?"  # but r, i, j, k are a quaternion
+    have_rates = any(match[1] == "q" for _, n in names if (match := re.fullmatch(rates_of, n)))
     for pattern in patterns.vectors:
         groups: dict[str, list[tuple[str, sp.Symbol]]] = {}
         for symbol, name in names:
             match = pattern.fullmatch(name)
-            stem, part = (match["stem"], match["part"].lower()) if match else (name, "")
-            if rates := re.fullmatch("(?:.*_)?([pqr])(_b(ody)?)?", name):
+            stem, part = (match["stem"], match["part"]) if match else (name, "")
+            if part.isupper():  # X, Y, Z beside x, y, z
+                stem, part = f"{stem}^", part.lower()
+            if have_rates and (rates := re.fullmatch(rates_of, name)):
                 stem, part = "p, q, r", rates[1].replace("r", "s")
             groups.setdefault(stem if part else name, []).append((part, symbol))
         for group in groups.values():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 from pathlib import Path
@@ -101,7 +102,7 @@ def _in_lines(unread: Sequence[tuple[str, int]]) -> str:
 
 
 def source_files(paths: Sequence[Path]) -> Iterator[Path]:
-    """The source files among the paths and below them, in order, without hidden folders.
+    """The source files among the paths and below them, in order, but no hidden and no binary ones.
 
     Raises RequestError for a file in another language, and if there are no source files.
     """
@@ -113,12 +114,19 @@ def source_files(paths: Sequence[Path]) -> Iterator[Path]:
         for path in paths
         for file in (sorted(path.rglob("*")) if path.is_dir() else [path])
         if not any(part.startswith(".") for part in file.relative_to(path).parts)
-        if file.suffix in SUFFIXES and file.is_file()
+        if file.suffix in SUFFIXES and file.is_file() and not _is_binary(file)
     ]
     if not files:
         where = ", ".join(map(str, paths))
         raise RequestError(f"{where}: no source files; looked for {', '.join(SUFFIXES)}")
     yield from dict.fromkeys(files)
+
+
+def _is_binary(file: Path) -> bool:
+    """Whether a file with the suffix of a program is none, as `file` tells it."""
+    with suppress(OSError), file.open("rb") as start:  # `search` says what cannot be opened
+        return b"\0" in start.read(1024)
+    return False
 
 
 def search(path: Path, expected: tuple[str, ...] = ()) -> Iterator[FormulaInFile]:
