@@ -133,7 +133,6 @@ class _Scope:
     now: dict[int, int] = field(default_factory=dict)
     places: dict[int, int] = field(default_factory=dict)  # of choices with other branches
     is_new: bool = True  # whether the last run took a new branch
-    formulas: list[Formula] = field(default_factory=list)
 
     def choice(self, node: Node, blocks: Sequence[Tree]) -> int:
         """The number of the branch."""
@@ -197,9 +196,10 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
     # A long file of short functions is read to its end; a long function may let a value grow.
     program.steps["read"] = -min(8 * text.count("\n"), 200 * len(functions))
     scopes = [_Scope(tree) for tree in (Tree(root), *_worth_reading(functions, suffix))]
+    found: list[Formula] = []
     for lost in syntax.damaged(root):  # by most errors, such as an unknown macro, no formula is
         if {*lost.text} & {*"(["} and _has_material(lost.text, ""):
-            scopes[0].formulas.append(_fault(lost.line, "there is a syntax error"))
+            found.append(_fault(lost.line, "there is a syntax error"))
             break
     # All scopes are run once before any is run again: a long file is not read to its end.
     for count in range(limits.most_runs):
@@ -214,13 +214,13 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
                 run.formulas.append(_fault(scope.tree.line, "expressions are nested too deeply"))
             named = {f.forms[:1] for f in run.formulas if f.name not in UNNAMED} - {()}
             own = (f for f in run.formulas if f.name not in UNNAMED or f.forms[:1] not in named)
-            scope.formulas += [replace(each, function=scope.tree.span) for each in own]
+            found += [replace(each, function=scope.tree.span) for each in own]
         if line := program.steps["end"]:  # in a later run, all has been read, with some branches
             reason = "it has too many branches" if count else "the file is too long"
-            scopes[-1].formulas.append(_fault(line, reason, is_end=not count))
+            found.append(_fault(line, reason, is_end=not count))
             break
     formulas: dict[Any, Formula] = {}
-    for formula in chain.from_iterable(scope.formulas for scope in scopes):
+    for formula in found:
         key = (formula.lines, formula.forms or formula.name)
         if key not in formulas or not formula.is_final:
             formulas[key] = formula
@@ -288,19 +288,13 @@ def formula_matrix(text: str) -> sp.ImmutableMatrix:
 
 
 def _assigned_value(text: str, suffix: str) -> Tree | None:
-    """The right-hand side, if the text or `x = text` is an assignment in a language."""
-    line = text.strip().rstrip(";")
+    """The right-hand side of `x = text`, where the text may begin with a name and a sign itself."""
+    line = re.sub(r"\A[^=({]*=", "", text).strip().rstrip(";")
     line = line if suffix == ".m" else line.replace("\n", " ")  # it ends a row in MATLAB only
     line = line.replace("^", "**") if suffix == ".py" else line  # ^ would bind less than +
-    # First as the value of a new name, which needs a type in C++, and then as an assignment itself.
-    for program in (f"{'auto ' * (suffix == '.cpp')}x = {line};", f"{line};"):
-        root = syntax.parsed(program, suffix)
-        value = next(walk(root, "assign"), None)
-        while value is not None and value.kind == "assign":
-            value = value.parts[1] if len(value.parts) > 1 else None
-        if value is not None and not root.has_error:
-            return value
-    return None
+    root = syntax.parsed(f"{'auto ' * (suffix == '.cpp')}x = {line};", suffix)
+    parts = [part for tree in islice(walk(root, "assign"), 1) for part in tree.parts[1:]]
+    return parts[0] if parts and not root.has_error else None
 
 
 class _Run:
@@ -423,10 +417,11 @@ class _Run:
         if right.kind == "call":
             right = right.parts[-1] if patterns.module.match(right.base) else right.owner or right
         names = self.written(left), self.written(right)
-        place = self.path(left) or names[0]  # B[0, 1] = v[2] is a number
+        places = self.path(left) or names[0], names[1]  # B[0, 1] = v[2] is a number
+        own, other = (self.part(self.values, path) for path in places)
         is_object = right.kind in ("name", "member", "index", "unary") and names[0] != names[1]
-        is_matrix = isinstance(self.part(self.values, place), _Record)
-        may_share = is_matrix and self.program.suffix in (".cs", ".py")
+        may_share = self.program.suffix in (".cs", ".py") and isinstance(own, _Record)
+        may_share &= own is not other  # one record follows both names
         if is_object and all(names) and (may_share or tree.is_alias):
             self.links += [names, names[::-1]]
 
@@ -474,8 +469,6 @@ class _Run:
         if _is_scalar(value):
             path = tuple(key for key in path if key != _ALL)  # of a batch
             value = self.renamed(path, value)
-        while path[-1] == _ALL and len(path) > 1:
-            path = path[:-1]
         if isinstance(value, _Record) and any(isinstance(key, slice) for key in path):
             value = value.whole()[0]
         if self.by_columns(path) and len(path) > 1 and isinstance(value, sp.MatrixBase):
@@ -850,8 +843,7 @@ class _Run:
         return rows([self.read(each) for each in tree.parts])
 
     def read_matrix(self, tree: Tree) -> Any:
-        lines = [as_matrix(self.read(row)) for row in tree.parts]
-        return rows(lines) if len(lines) != 1 else lines[0]
+        return called("stack", [self.read(row) for row in tree.parts])
 
     def read_row(self, tree: Tree) -> Any:
         return called("stack", [as_matrix(self.read(cell)).T for cell in tree.parts]).T

@@ -348,10 +348,8 @@ def declared(statement: Node) -> set[str]:
     """The names that a statement declares for its block alone."""
     if statement.type not in TYPES["local"]:
         return set()
-    inner = [c for c in statement.named_children if c.type == "variable_declaration"]  # C#
-    node = next(iter(inner), statement)
-    parts = [c for c in node.named_children if c.type == "variable_declarator"]
-    declarators = [*node.children_by_field_name("declarator"), *parts] or [node]
+    inner = [each for each in below([statement]) if each.type == "variable_declarator"]
+    declarators = [*statement.children_by_field_name("declarator"), *inner] or [statement]
     return {name for each in declarators for name in _names(each)}
 
 
