@@ -612,7 +612,7 @@ WIDER = {
     "j.m": "function a = f(w, I, t)\n a = inv(I)*(t - cross(w, I*w));\nend",
     "m.py": "def f(J, w, a):\n    return np.dot(J, a) + np.cross(w, np.dot(J, w))\n",
     "n.m": "function a = f(p, q, r, J, t, C)\n w = [p; q; r]; M = [t(2)*C.x; C.y; C.z];\n"
-    " a = C.Jinv*(M - [0 -r q; r 0 -p; -q p 0]*J*w);\nend",
+    " a = C.Jinv*(M - cross(w, J*w));\nend",
     "o.py": "def f(q1, q2, q3, q4, g, b, s):\n"
     "    qDot1 = 0.5*(-q2*g.x - q3*g.y - q4*g.z) - b*s[0]\n"
     "    qDot2 = 0.5*(q1*g.x + q3*g.z - q4*g.y) - b*s[1]\n"

@@ -754,8 +754,6 @@ class _Run:
         if (name, value) in self.emitted or self.is_full(min(lines)):
             return
         self.emitted.add((name, value))
-        numbers = {s: v for s, v in self.definitions.items() if v in (0, 1)}  # a name `zero`
-        value = value.applyfunc(lambda entry: numbers.get(entry, entry)) if numbers else value
         is_state = value.cols == 1 and _unflattened(value).shape in (value.shape, (4, 3))
         if is_state and 3 < value.rows <= limits.longest_state:  # angles and rates
             for k in range(value.rows - 2):
@@ -942,17 +940,11 @@ class _Run:
         return value
 
     def of_tensor(self, left: Any, right: Any) -> Any:
-        """I⁻¹ (... + w × I w), or C(w) I w; None for another product."""
-        if getattr(right, "shape", ()) != (3, 1):
-            return None
+        """I⁻¹ (... + w × I w); None for another product."""
         if self.is_moment(right) and _is_scalar(left):
             inverse = sp.Symbol(f"{1 / left}_inv", real=True) if 1 / left in self.tensors else left
             if inverse.is_Symbol and "inv" in inverse.name:
                 return self.tensor(inverse) * right
-        if getattr(left, "shape", ()) == (3, 3) and (left * right).is_zero_matrix:
-            for tensor in left.free_symbols - right.free_symbols:
-                self.tensors.add(tensor)
-                return left.xreplace({tensor: sp.S.One}) * self.tensor(tensor) * right
         return None
 
     def tensor(self, name: sp.Symbol) -> Any:
@@ -1266,10 +1258,9 @@ class _Run:
             return self.stacked(tree, is_new)
         values, whole = self.built(arguments)
         if patterns.built.search(f"{base}.{tree.called}"):
-            if whole is not None and len(values) > 4 and self.program.is_glm and name == "new":
-                return self.columns(tree, whole)
             if whole is not None:
-                return whole
+                is_glm = self.program.is_glm and len(values) > 4 and name == "new"
+                return self.columns(tree, whole) if is_glm else whole
             if len(values) == 2 and None not in values:  # float4(v, w)
                 return rows([entry for value in values for entry in as_matrix(value)])
         if self.program.is_formula and tree.owner is None:
