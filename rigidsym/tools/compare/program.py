@@ -1120,10 +1120,6 @@ class _Run:
         if start is None:
             self.inputs.add(path[0])
             start = sp.Symbol(path[0], real=True)
-        whole = self.part(self.values, path[:-1]) if path[-1] in [*"wxyz"] else None
-        is_list = isinstance(whole, _Record) and whole.keys() == {0, 1, 2, 3}
-        if is_list and self.program.suffix not in TYPES["swizzling"]:  # in which order nobody knows
-            return sp.Symbol(_dotted(path), real=True)
         return self.entry(tree, start, path[1:])
 
     def entry(self, tree: Tree, value: Any, keys: Path) -> Any:
@@ -1150,7 +1146,9 @@ class _Run:
             if others and 1 in value.shape:  # v(3, 1) of a column
                 key, others = next((k for k in keys if k not in (0, _ALL)), key), []
             lines = _lines(value.T if value.rows == 1 else value)
-            key = "xyzw".find(key.lower()) if isinstance(key, str) else key
+            is_known = len(lines) != 4 or self.program.suffix in TYPES["swizzling"]
+            order = "xyzw" if is_known else ""  # of a list of four, nobody knows it
+            key = order.find(key.lower()) if isinstance(key, str) else key
         elif key == _ALL and others:  # a column, or of a batch: q[:, 0]
             if isinstance(others[0], int) and value.is_Symbol:
                 value = self.part_of(value, f"@{others.pop(0) + self.first}")
@@ -1402,11 +1400,7 @@ def _groups(record: _Record) -> Iterator[tuple[int, list[str]]]:
 def _roles(name: str) -> list[tuple[int, str, str]]:
     """The groups to which a scalar may belong by its name, and its index in each."""
     matches = ((kind, pattern.fullmatch(name)) for kind, pattern in enumerate(patterns.scalars))
-    roles = [
-        (k, m["stem"] + "^" * m["index"].isupper(), m["index"].replace("_", "").lower())
-        for k, m in matches
-        if m
-    ]
+    roles = [(k, m["stem"], m["index"].replace("_", "")) for k, m in matches if m]
     if stem := stem_of(name):  # a rate, and of which set: p, q, r are not beside phi, theta, psi
         sets = (str(kind) for kind, components in enumerate(_COMPLETE) if stem in components)
         roles += [(-1, of, name) for of in ("", *sets)]
