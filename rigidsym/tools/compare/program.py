@@ -235,12 +235,9 @@ def _has_material(text: str, suffix: str) -> bool:
 
 
 def _worth_reading(functions: Sequence[Tree], suffix: str) -> list[Tree]:
-    """Functions that may hold a formula, in themselves or in functions that they call."""
+    """Functions that may hold a formula, in themselves or in a function that they call."""
     names = {tree.word for tree in functions if _has_material(tree.text, suffix)}
-    calls = {tree: {*re.findall(r"\w+(?=\s*\()", tree.text)} for tree in functions}
-    while new := {tree.word for tree in functions if names & calls[tree]} - names:
-        names |= new
-    return [tree for tree in functions if tree.word in names]
+    return [t for t in functions if names & {t.word, *re.findall(r"\w+(?=\s*\()", t.text)}]
 
 
 @lru_cache(maxsize=256)  # functions are run several times
@@ -473,6 +470,10 @@ class _Run:
             value = value.whole()[0]
         if self.by_columns(path) and len(path) > 1 and isinstance(value, sp.MatrixBase):
             raise self.unreadable(left, "may be a column")
+        own = self.part(self.values, path)
+        meant = (own, *map(self.definitions.get, own.free_symbols)) if _is_scalar(own) else ()
+        if any(v is not None and v.has(*_INVERSE) for v in meant):  # an angle, in another unit then
+            self.emit(self.part(self.values, path[:-1]), [], path[:-1], is_final=False)
         # A matrix may be complete only after R = R*S.
         is_own = right is not None and re.search(rf"\b{path[0]}\b", right.text) is not None
         self.emit_at(path, is_final=not is_own)
@@ -688,7 +689,6 @@ class _Run:
         results = [each for each in nodes if each.is_reference]
         results = results if len(results) == 2 else [*nodes[1:]]
         angle = [self.tried(each) for each in nodes if each not in results]
-        self.become_unread(map(self.written, results), nodes[0].line)
         for left, word in zip(results, ("sin", "cos"), strict=True):
             self.store(left, called(word, angle))
 
@@ -754,6 +754,8 @@ class _Run:
         if (name, value) in self.emitted or self.is_full(min(lines)):
             return
         self.emitted.add((name, value))
+        numbers = {s: v for s, v in self.definitions.items() if v in (0, 1)}  # a name `zero`
+        value = value.applyfunc(lambda entry: numbers.get(entry, entry)) if numbers else value
         is_state = value.cols == 1 and _unflattened(value).shape in (value.shape, (4, 3))
         if is_state and 3 < value.rows <= limits.longest_state:  # angles and rates
             for k in range(value.rows - 2):
@@ -889,7 +891,8 @@ class _Run:
             return value
         else:
             left, right = (_unflattened(each) for each in (left, right))
-            if getattr(left, "shape", ()) == (4, 4):  # the matrix of a product, times q
+            is_product = sign == "@" or self.program.product == "*"
+            if is_product and getattr(left, "shape", ()) == (4, 4):  # of a product, times q
                 right = self.vector(right, 4)
         return combined(self.operation(tree, sign, left, right), left, right)
 
