@@ -6,7 +6,7 @@ Formulas are composed in one notation: a dot for a rate, bold vectors, a prime f
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import fields, replace
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any, Protocol
 
@@ -62,7 +62,7 @@ class Notation(Record, kw_only=True):
 
 
 @lru_cache(maxsize=4096)
-def _applied(node: tree.Formula, notation: Notation) -> tree.Formula:
+def _applied(node: Any, notation: Notation) -> Any:
     match node:
         case tree.Symbol():
             return _symbol(node, notation)
@@ -76,17 +76,7 @@ def _applied(node: tree.Formula, notation: Notation) -> tree.Formula:
                 by = tree.Bracket(tree.Row((d, by.of, tree.Sign("/"), d, tree.Symbol("t"))))
             below = tree.Row((tree.Differential("∂"), by))
             return tree.Fraction(_applied(above, notation), below)
-    changed = {field.name: _within(getattr(node, field.name), notation) for field in fields(node)}
-    return replace(node, **changed)
-
-
-def _within(value: Any, notation: Notation) -> Any:
-    """The same of the children of a node, which are formulas or tuples of them."""
-    if isinstance(value, tree.Formula):
-        return _applied(value, notation)
-    if isinstance(value, tuple):
-        return tuple(_within(item, notation) for item in value)
-    return value
+    return tree.with_parts(node, lambda part: _applied(part, notation))
 
 
 def _symbol(symbol: tree.Symbol, notation: Notation) -> tree.Formula:

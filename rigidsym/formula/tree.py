@@ -6,7 +6,7 @@ the terms; the pens (LaTeX and Unicode) choose spaces and the sizes of brackets.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import fields, replace
 from itertools import product
 from typing import Any, Literal
@@ -211,9 +211,16 @@ def with_names(node: Any, names: Mapping[Any, Any]) -> Any:
     """A tree of records with others in place of some of them, such as symbols; tuples, too."""
     if not names:
         return node
+    if not isinstance(node, tuple) and node in names:
+        return names[node]
+    return with_parts(node, lambda part: with_names(part, names))
+
+
+def with_parts(node: Any, changed: Callable[[Any], Any]) -> Any:
+    """A record or a tuple with each of its parts changed; anything else as it is."""
     if isinstance(node, tuple):
-        parts = [with_names(part, names) for part in node]
+        parts = map(changed, node)
         return type(node)(*parts) if hasattr(node, "_fields") else tuple(parts)
-    if not isinstance(node, Record) or node in names:
-        return names.get(node, node)
-    return replace(node, **{f.name: with_names(getattr(node, f.name), names) for f in fields(node)})
+    if not isinstance(node, Record):
+        return node
+    return replace(node, **{f.name: changed(getattr(node, f.name)) for f in fields(node)})
