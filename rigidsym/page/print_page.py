@@ -76,7 +76,7 @@ def print_page(
     in_degrees = any(control["unit"] == "°" for control in controls)
     printer = printer_of(document)
     values = [_value(step, in_degrees=in_degrees) for step in functions.live]
-    factors = {value["name"]: value["factor"] for value in values}
+    factors = {value["quantity"].name: value["factor"] for value in values}
     factors |= {"first_integrals": 1} if functions.integrals else {}
     data: dict[str, Any] = {
         "scene": stage_of(model, letters),
@@ -163,9 +163,7 @@ def _value(step: Step, *, in_degrees: bool) -> dict[str, Any]:
     is_turned = in_degrees and quantity.unit == "rad/s"
     unit = "°/s" if is_turned else unit_in_words(quantity.unit) if quantity.unit else ""
     return {
-        "name": quantity.name,
-        "symbol": quantity.symbol,
-        "about": quantity.about,
+        "quantity": quantity,
         "unit": unit,
         "shape": step.expression.shape,
         "is_scalar": quantity.shape == "scalar",
