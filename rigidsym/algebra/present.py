@@ -88,11 +88,9 @@ class Presenter:
         rule = self._rules[place - len(self._generators)]
         return rule.function(sp.Add(*rule.angles))
 
-    def matrix(
-        self, matrix: RingMatrix, denominator: PolyElement | None = None
-    ) -> sp.ImmutableMatrix:
-        """The matrix, or the matrix divided by `denominator`, entry by entry."""
-        below = self.ring.one if denominator is None else denominator
+    def matrix(self, matrix: RingMatrix, divisor: PolyElement | None = None) -> sp.ImmutableMatrix:
+        """The matrix, or the matrix divided by `divisor`, entry by entry."""
+        below = self.ring.one if divisor is None else divisor
         entries = [self._over(entry, below) for entry in matrix.entries]
         return sp.ImmutableMatrix(*matrix.shape, entries, copy=False)
 

@@ -246,9 +246,7 @@ class Solver:
     def _roots_of_factor(self, factor: PolyElement) -> list[Root] | None:
         if self._is_never_zero(factor):
             return []
-        used = [
-            angle for angle in self._angles if any(m[angle.sine] or m[angle.cosine] for m in factor)
-        ]
+        used = [a for a in self._angles if any(m[a.sine] or m[a.cosine] for m in factor)]
         for angle in used:
             pairs = self._of_one(factor, angle) if len(used) == 1 else None
             pairs = self._of_sum(factor, angle) if pairs is None else pairs

@@ -390,15 +390,13 @@ _UNITS = {
 }
 
 
-def described(
-    declarations: Sequence[Parameter], *slots: tuple[sp.Expr, str]
-) -> tuple[Parameter, ...]:
+def described(known: Sequence[Parameter], *slots: tuple[sp.Expr, str]) -> tuple[Parameter, ...]:
     """The parameters of all expressions, in the order of their places.
 
-    `declarations` take precedence; otherwise, a symbol that is a whole expression is described by
+    Those `known` take precedence; otherwise, a symbol that is a whole expression is described by
     the words beside it.
     """
-    declared = {parameter.symbol: parameter for parameter in declarations}
+    declared = {parameter.symbol: parameter for parameter in known}
     parameters: dict[sp.Symbol, Parameter] = {}
     for expression, what in slots:
         for symbol in sorted(expression.free_symbols, key=str):

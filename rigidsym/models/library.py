@@ -186,9 +186,7 @@ def turned_by(text: str) -> sp.ImmutableMatrix:
     """
     if "(" not in text:
         raise ModelError(f'expected turns such as "z(pi/4) x(alpha)", got {text!r}')
-    turns = tuple(
-        _turn(*turn, lambda name: sp.Symbol(check_name(name))) for turn in parse_turns(text)
-    )
+    turns = tuple(_turn(*each, lambda n: sp.Symbol(check_name(n))) for each in parse_turns(text))
     if any(part.free_symbols for turn in turns for part in turn.components):
         raise ExpressionError(f"{text}: expected an axis with numbers as components")
     return product_of(turns)

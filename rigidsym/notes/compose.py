@@ -125,9 +125,7 @@ class Composer:
             subtitle="" if is_body_alone(self.derivation) else self.derivation.subject,
             letters=self.letters,
             sections=tuple(s for s in sections if s.title and s.blocks),
-            byline=tuple(
-                text_of(block.text) for block in byline if isinstance(block, doc.Paragraph)
-            ),
+            byline=tuple(text_of(b.text) for b in byline if isinstance(b, doc.Paragraph)),
             language=name.split("/")[0],
         )
 

@@ -75,10 +75,8 @@ def with_symbols(words: str, symbols: Mapping[str, Formula]) -> Text:
 @lru_cache(maxsize=64)
 def _any_of(texts: tuple[str, ...]) -> re.Pattern[str]:
     # A pattern takes the first alternative that matches: Ω′ has to come before Ω.
-    longest_first = sorted(texts, key=len, reverse=True)
-    patterns = (
-        rf"{t}(?=,| [+=]| about)" if t in _ALSO_WORDS else re.escape(t) for t in longest_first
-    )
+    longest = sorted(texts, key=len, reverse=True)
+    patterns = (rf"{t}(?=,| [+=]| about)" if t in _ALSO_WORDS else re.escape(t) for t in longest)
     return re.compile(r"(?<!\w)(" + "|".join(patterns) + r")(?!\w)")
 
 

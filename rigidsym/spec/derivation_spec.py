@@ -76,9 +76,7 @@ class DerivationSpec(Record, kw_only=True):
         """One specification per rotation; a title given to several rotations is dropped."""
         if len(self.models) == 1:
             return (self,)
-        return tuple(
-            replace(self, name=model.name, title=None, models=(model,)) for model in self.models
-        )
+        return tuple(replace(self, name=m.name, title=None, models=(m,)) for m in self.models)
 
     def to_data(self) -> dict[str, Any]:
         """The specification as plain data, which `derivation_file.read_record` reads back.

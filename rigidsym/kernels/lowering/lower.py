@@ -118,9 +118,8 @@ class _Lowering:
             of_entries = dict(zip(renamed, kernel.outputs, strict=True))
             outputs = tuple(of_entries[entry] for entry in step.expression)
             if others or outputs != kernel.outputs:
-                names = {
-                    ir.Name(self._known[a]): ir.Name(self._known[b]) for a, b in others.items()
-                }
+                pairs = ((self._known[a], self._known[b]) for a, b in others.items())
+                names = {ir.Name(one): ir.Name(other) for one, other in pairs}
                 lines, outputs = with_names((kernel.assignments, outputs), names)
                 kernel = replace(kernel, assignments=lines, outputs=outputs, original=kernel)
             yield kernel

@@ -320,9 +320,7 @@ def _gibbs_vector(q: Vector) -> dict[str, Any]:
 
     def back(_: NamedValues, quaternion: Vector) -> Vector:
         w, *vector = quaternion
-        return tuple(
-            part / Where(sp.Eq(w, 0), Where(sp.Eq(part, 0), sp.S.One, w), w) for part in vector
-        )
+        return tuple(x / Where(sp.Eq(w, 0), Where(sp.Eq(x, 0), sp.S.One, w), w) for x in vector)
 
     claims = (_equal(r"p_0\,\g = \p_v", _along(p[0], q), p[1:]),)
     return {"quaternion": p, "claims": claims, "back": back}

@@ -90,9 +90,7 @@ class Composition(Values):
     looked at; then dQ/dt = C(v) and d²Q/dt² = C(dv/dt) + C(v)². Its rates are the components of v.
     """
 
-    def __init__(
-        self, turn: Turn, conditions: Conditions, passive: bool, comes_first: bool
-    ) -> None:
+    def __init__(self, turn: Turn, conditions: Conditions, passive: bool, is_first: bool) -> None:
         rates, gains = sp.symbols("v_1:4"), sp.symbols("dv_1:4")
         angles = sorted(turn.angle.atoms(AppliedUndef), key=str)
         # An angle may be a combination of coordinates, θ = 2φ − ψ, so its rate is a sum of theirs.
@@ -118,7 +116,7 @@ class Composition(Values):
         # dQ/dt = C(v) Q, hence d²Q/dt² = (C(dv/dt) + C(v)²) Q, at Q = 1.
         any_rotation = (self.one, operator(v), operator(v_dot) + operator(v) @ operator(v))
         other = (any_rotation, v, v_dot, self.one, rates)
-        first, second = (own, other) if comes_first else (other, own)
+        first, second = (own, other) if is_first else (other, own)
         (a, a_dot, a_ddot), omega_1, alpha_1, matrix_1, rates_1 = first
         (b, b_dot, b_ddot), omega_2, alpha_2, matrix_2, rates_2 = second
         # The product rule for R = A B: Ṙ = Ȧ B + A Ḃ and R̈ = Ä B + 2 Ȧ Ḃ + A B̈. The spin and its
@@ -322,7 +320,7 @@ class Chain(Names, Workspace):
         """Each kind of turn before and behind any rotation."""
         kinds = kinds_of(self.model.turns, self.model)
         return tuple(
-            composed(turn, conditions, self.model.passive, comes_first)
+            composed(turn, conditions, self.model.passive, is_first)
             for turn, conditions in kinds
-            for comes_first in (True, False)
+            for is_first in (True, False)
         )

@@ -126,9 +126,7 @@ def solid(
         known = ", ".join(length.key for length in chosen.lengths)
         raise BodyError(f"{shape} has no {', '.join(sorted(unknown))}; it has {known}")
     # Missing lengths are symbols, by their usual letters.
-    by_key = {
-        length.key: lengths.get(length.key, sp.symbols(length.names)) for length in chosen.lengths
-    }
+    by_key = {each.key: lengths.get(each.key, sp.symbols(each.names)) for each in chosen.lengths}
     listed = ((k, e if isinstance(e, Sequence) else [e]) for k, e in by_key.items())
     values = [symbolic(e, key) for key, entries in listed for e in entries]
     total = sp.Symbol("M") if mass is None and density is None else mass

@@ -104,9 +104,7 @@ def arguments_of_flow(state: Sequence[Argument]) -> tuple[Argument, ...]:
         return tuple(chain.from_iterable(getattr(part, field) for part in state))
 
     words = f"the state: {', '.join(part.name for part in state)}"
-    fields: dict[str, Any] = {
-        field: joined(field) for field in ("symbols", "names", "notation", "units")
-    }
+    fields: dict[str, Any] = {f: joined(f) for f in ("symbols", "names", "notation", "units")}
     return time, Argument(name="y", words=words, **fields)
 
 

@@ -44,7 +44,7 @@ class MassFacts(Record):
         drawing, are_own = drawn
         of_all = {p.symbol: p.value for p in (*self.body.declared, *self.body.parameters)}
         numbers = numbers_of(self.body) or {}
-        chosen = [s for s in numbers if s in lengths_in(self.body) and of_all.get(s) is None]
+        free = [s for s in numbers if s in lengths_in(self.body) and of_all.get(s) is None]
         return figure_with(
             "en/body_figure",
             drawing,
@@ -53,9 +53,7 @@ class MassFacts(Record):
             are_own=are_own,
             is_fixed=self.body.fixed_point is not None,
             is_to_scale=self.body.distribution is not None,
-            lengths=[
-                equal(formula_of(s, self.letters), decimal(float(numbers[s]))) for s in chosen
-            ],
+            lengths=[equal(formula_of(s, self.letters), decimal(float(numbers[s]))) for s in free],
         )
 
     @property

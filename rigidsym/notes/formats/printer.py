@@ -38,10 +38,8 @@ class NotePrinter:
         self.pen = pen
         beside = self.beside_number or self.width
         self.displays = {
-            equation: display(
-                equation, document.letters, beside if equation.number else self.width, pen
-            )
-            for equation in document.displays
+            each: display(each, document.letters, beside if each.number else self.width, pen)
+            for each in document.displays
         }
 
     def placed(self) -> dict[str, Any]:

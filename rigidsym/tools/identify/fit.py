@@ -11,13 +11,7 @@ import numpy as np
 
 from rigidsym.system.records import Record
 from rigidsym.system.resources import environment
-from rigidsym.tools.identify.readings import (
-    RADIANS_PER_DEGREE,
-    VELOCITIES,
-    Reading,
-    Velocity,
-    distinct,
-)
+from rigidsym.tools.identify.readings import VELOCITIES, Reading, Velocity, distinct
 from rigidsym.tools.identify.samples import SLACK, Array, SampleError, Samples
 
 FLOOR = 1e-6  # the least tolerance, since data may have been in single precision
@@ -66,7 +60,7 @@ def tolerances(asked: float | None, block: Samples, scale: float) -> list[Tolera
     is_rounded = max(attitude, velocity) > FLOOR
     because = f"from {source}" if is_rounded else "for exact data"
     first = Tolerance(attitude, attitude, velocity, because)
-    turned = [3 * angles, 3 * angles * RADIANS_PER_DEGREE]
+    turned = [3 * angles, 3 * np.radians(angles)]
     extra = [each if each <= _MOST_FOR_ANGLES else 0.0 for each in turned]
     if not any(extra):
         return [first]

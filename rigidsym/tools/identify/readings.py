@@ -20,7 +20,6 @@ Frame = Literal["space", "body"]
 
 SEQUENCES = tuple("".join(axes) for axes in product("XYZ", repeat=3) if axes[1] not in axes[::2])
 ANGLE_NAMES = ("a1", "a2", "a3")
-RADIANS_PER_DEGREE = pi / 180
 _OTHER: dict[Frame, Frame] = {"space": "body", "body": "space"}
 _FACTORS = {"": 1.0, "rates in deg/s, Ω in rad/s": pi / 180, "rates in rad/s, Ω in deg/s": 180 / pi}
 
@@ -77,7 +76,7 @@ class Reading(Record, kw_only=True):
     @property
     def factor(self) -> float:
         """Radians of one unit of the angles."""
-        return RADIANS_PER_DEGREE if self.degrees else 1.0
+        return pi / 180 if self.degrees else 1.0
 
     @property
     def taken(self) -> str:
