@@ -22,10 +22,7 @@ from sympy.functions.elementary.hyperbolic import HyperbolicFunction, InverseHyp
 
 from rigidsym.algebra.generators import as_sine_cosine
 
-_SUMS: dict[str, Callable[..., Any]] = {
-    "Add": lambda *parts: sum(parts),
-    "Mul": lambda *parts: prod(parts),
-}
+_SUMS: dict[str, Callable[..., Any]] = {"Add": lambda *x: sum(x), "Mul": lambda *x: prod(x)}
 _LARGEST_EXPONENT = 10**5  # of exp, and angle of sin and cos: mpmath would need ever more digits
 
 

@@ -149,10 +149,8 @@ class _ScalarWalk:
                 argument = tree.bracketed(argument, _ARGUMENTS)
             return tree.FunctionCall(FUNCTIONS[node.func], argument)
         if is_application(node):
-            arguments = [self.expression(argument) for argument in node.args]
-            return tree.FunctionCall(
-                node.func.__name__, tree.Bracket(tree.joined(arguments, tree.Sign(",")))
-            )
+            inside = tree.joined([self.expression(part) for part in node.args], tree.COMMA)
+            return tree.FunctionCall(node.func.__name__, tree.Bracket(inside))
         return self.letters.name(node)
 
     def _product(self, node: sp.Expr) -> tree.Formula:

@@ -266,9 +266,8 @@ class Composer:
             written = [formula_of(moment, self.letters) for moment in moments]
             end = _DIAGONAL if len({*moments}) == 3 else Bracket(joined(written, COMMA))
             equation = replace(equation, sides=(*equation.sides, end), matrix=None, entries=())
-        return replace(
-            equation, sides=(*equation.sides, *textbook_form(name, self.derivation, self.letters))
-        )
+        more = textbook_form(name, self.derivation, self.letters)
+        return replace(equation, sides=(*equation.sides, *more))
 
     def _lead(self, step: Step) -> doc.Text:
         """How the quantity follows; a source is cited once, and the theory needs no other."""

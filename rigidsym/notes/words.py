@@ -33,9 +33,7 @@ _OF_BODIES = (
 _BY_LAGRANGE = r"\M\,\ddot\q + \h = \Q"
 _OF_MOTION = [formula(rf"\{letter}") for letter in ("M", "h", "Q", "Q = 0", "N'", "I'")]
 _OF_MOTION += map(formula, (_BY_LAGRANGE, r"\Om' = \W'\,\dot\q", "T", "V"))
-_OF_TURNS = tuple(
-    map(formula, (r"\mathbf{T}_k", r"\mathbf{n}_k", r"\theta_k", r"\mathbf{P}_0 = \mathbf{1}"))
-)
+_OF_TURNS = tuple(map(formula, (r"\T_k", r"\n_k", r"\theta_k", r"\P_0 = \1")))
 _SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 # Words of a sentence, unless a sign follows (a + i b), a comma or an axis (a about z).
 _ALSO_WORDS = ("a", "A", "I")

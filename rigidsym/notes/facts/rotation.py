@@ -201,9 +201,8 @@ def product_of(turns: Iterable[Turn], letters: Letters) -> tree.Formula:
     def axis_of(turn: Turn) -> tree.Formula:
         if not turn.components:
             return tree.Symbol(turn.axis)
-        return tree.Bracket(
-            tree.joined([formula_of(c, letters) for c in turn.components], tree.COMMA), "[]"
-        )
+        components = [formula_of(component, letters) for component in turn.components]
+        return tree.Bracket(tree.joined(components, tree.COMMA), "[]")
 
     pairs = ((axis_of(turn), formula_of(turn.angle, letters)) for turn in turns)
     return tree.row(*(formula(r"\R_{#1}(#2)", *pair) for pair in pairs))

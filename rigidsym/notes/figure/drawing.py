@@ -107,11 +107,8 @@ class Drawing(NamedTuple):
         """The lower left and the upper right corner of all that is drawn."""
         points = [point for shape in (*self.strokes, *self.body) for point in shape.points]
         for box in boxes(self.labels):
-            x, y = box.centre
-            points += [
-                (x - box.half_width, y - box.half_height),
-                (x + box.half_width, y + box.half_height),
-            ]
+            (x, y), dx, dy = box
+            points += [(x - dx, y - dy), (x + dx, y + dy)]
         xs, ys = zip(*points, strict=True)
         return (min(xs), min(ys)), (max(xs), max(ys))
 

@@ -88,10 +88,8 @@ class HtmlPrinter(NotePrinter):
 
     def __init__(self, document: doc.Document) -> None:
         super().__init__(document, WebPen(document.letters.notation))
-        self.math = {
-            equation: math(layout.text, is_display=True)
-            for equation, layout in self.displays.items()
-        }
+        displays = self.displays.items()
+        self.math = {equation: math(layout.text, is_display=True) for equation, layout in displays}
         self._blocks = resources.environment().get_template(BLOCKS).module
 
     @cached_property
