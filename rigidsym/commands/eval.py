@@ -34,11 +34,8 @@ def command(rotation: str, file: Path, **options: Any) -> None:
             sys.stdout.buffer if str(out) == "-" else out,
             columns=options["columns"] or None,
             given={s.name: float(value) for s, value in values.items()} | options["given"],
-            keep=options["keep"],
-            missing=options["missing"],
-            degrees=options["degrees"],
-            threads=options["threads"],
             progress=progress,
+            **{key: options[key] for key in ("keep", "missing", "degrees", "threads")},
         )
     summary = f"{result.path}: {counted(result.rows, 'row')}; {', '.join(result.columns)}"
     click.echo(summary, err=str(out) == "-")

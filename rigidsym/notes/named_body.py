@@ -150,6 +150,5 @@ def textbook_form(name: str, derivation: Derivation, letters: Letters) -> tuple[
     moments = [*inertia.diagonal()]
     if not all(moment.is_Atom for moment in moments):
         return ()
-    squares = zip(moments, (omega**2 for omega in OMEGA_BODY), strict=True)
-    whole = sp.Add(*(moment * square for moment, square in squares))
+    whole = sp.Add(*(i * omega**2 for i, omega in zip(moments, OMEGA_BODY, strict=True)))
     return (formula_of(sp.Mul(sp.Rational(1, 2), whole, evaluate=False), letters),)
