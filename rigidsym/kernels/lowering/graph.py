@@ -9,7 +9,7 @@ sums; terms with a plus come before terms with a minus.
 
 from __future__ import annotations
 
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from copy import copy
 from fractions import Fraction
@@ -184,7 +184,7 @@ class Graph:
 
     def _product(self, factors: Iterable[int]) -> int:
         """The product of nodes (~node divides); a node over itself goes away."""
-        counted: Counter[int] = Counter()
+        counted: dict[int, int] = defaultdict(int)
         for factor in factors:
             # ~n = −n − 1 has the other sign, so that the larger one of the two is the node.
             counted[max(factor, ~factor)] += 1 if factor >= 0 else -1
@@ -217,13 +217,12 @@ class Graph:
 
     def reachable(self, roots: Iterable[int]) -> set[int]:
         """The nodes that the roots are made of."""
-        reached: set[int] = set()
-        waiting = list(roots)
+        reached = {*roots}
+        waiting = [*reached]
         while waiting:
-            node = waiting.pop()
-            if node not in reached:
-                reached.add(node)
-                waiting.extend(self.parts(node))
+            parts = {*self.parts(waiting.pop())} - reached
+            reached |= parts
+            waiting += parts
         return reached
 
     def operations(self, node: int) -> int:
