@@ -246,6 +246,11 @@ def cross(ring: Ring, u: Row, v: Row) -> Row:
     )
 
 
+def square(vector: RingMatrix) -> RingMatrix:
+    """|v|², (1, 1)."""
+    return vector.T @ vector
+
+
 def hat(vector: RingMatrix) -> RingMatrix:
     """C(u), the matrix of u ×, over the ring (lecture, section 3.2)."""
     x, y, z = vector.entries

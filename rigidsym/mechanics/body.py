@@ -14,7 +14,7 @@ import sympy as sp
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import codec_for
-from rigidsym.algebra.matrix import RingMatrix, hat
+from rigidsym.algebra.matrix import RingMatrix, hat, square
 from rigidsym.algebra.present import agrees, half_form, half_of_squares, presenter_for, shortest_of
 from rigidsym.errors import QuantityError
 from rigidsym.formula.tree import Formula, with_names
@@ -120,10 +120,6 @@ class BodyValues(Values):
 
     # The body in its rotation, over the ring
 
-    @cached_property
-    def inertia(self) -> RingMatrix:
-        return self.codec.matrix(self.body.inertia)
-
     def trace(self, matrix: RingMatrix) -> PolyElement:
         return sum((matrix[k, k] for k in range(3)), self.codec.ring.zero)
 
@@ -159,9 +155,7 @@ class BodyValues(Values):
         sums = particles.sums_of_body(self.codec, self.body.mass, self.body.inertia)
         return sums.of_matrix(summand.scale(self.codec.encode(particles.MASS)))
 
-    @staticmethod
-    def square(vector: RingMatrix) -> RingMatrix:
-        return vector.T @ vector
+    square = staticmethod(square)
 
     def half_of_squares(self, vector: RingMatrix) -> sp.Expr:
         """½ M |v|², in the shortest form."""

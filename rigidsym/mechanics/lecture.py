@@ -14,7 +14,7 @@ from functools import cache, cached_property
 import sympy as sp
 
 from rigidsym.algebra.codec import codec_for
-from rigidsym.algebra.matrix import RingMatrix, hat, unhat
+from rigidsym.algebra.matrix import RingMatrix, hat, square, unhat
 from rigidsym.algebra.present import presenter_for
 from rigidsym.errors import ModelError
 from rigidsym.formula.reader import formula, sentence
@@ -116,9 +116,6 @@ class Equations:
         total, about_origin = self.sum_by(self.about_centre), self.sum_by(self.about_origin)
         mean_rate = dict(zip(_rates(_PLACE), [part / _WHOLE for part in _V], strict=True))
         about_any = self.sum_by(mean_rate)  # Σ m ẋ = v
-
-        def square(vector: RingMatrix) -> RingMatrix:
-            return vector.T @ vector
 
         def form(matrix: RingMatrix, vector: RingMatrix) -> RingMatrix:
             return vector.T @ matrix @ vector

@@ -76,10 +76,6 @@ class EulerEquations(Flow):
         return self.codec.column(OMEGA_BODY)
 
     @cached_property
-    def inertia(self) -> RingMatrix:
-        return self.codec.matrix(self.body.inertia)
-
-    @cached_property
     def torque(self) -> tuple[RingMatrix, sp.Expr]:
         """N′ as a numerator and its divisor."""
         given = self.codec.column(self._torque)

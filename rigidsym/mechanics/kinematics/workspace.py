@@ -68,6 +68,11 @@ class Workspace:
     def present(self) -> Presenter:
         return presenter_for(self.codec)
 
+    @cached_property
+    def inertia(self) -> RingMatrix:
+        assert self.body is not None
+        return self.codec.matrix(self.body.inertia)
+
     def scalar(self, element: PolyElement) -> RingMatrix:
         return RingMatrix.column(self.codec.ring, [element])
 
