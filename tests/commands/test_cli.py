@@ -145,6 +145,7 @@ def test_the_exit_code_does_not_need_streams_that_work(closed):
             {"numpy", "scipy", "polars", "trimesh", "tree_sitter", "sympy.combinatorics"},
         ),
         (["identify", "--angles", "1,2,3", "--matrix", "1,0,0,0,1,0,0,0,1"], {"sympy"}),
+        (["page", "ZXZ"], {"numpy"}),
     ],
 )
 def test_heavy_packages_are_imported_only_where_they_are_used(tmp_path, words, heavy):
