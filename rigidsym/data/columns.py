@@ -91,6 +91,7 @@ def is_unit(text: str, base: str = "") -> bool:
 
 # Names
 
+Names = tuple[str, ...]
 _BRACKETS = re.compile(r"\s*[\[(]\s*([^\])]*?)\s*[\])]")
 _TAIL = re.compile(r"(.+?)(?:\s*[,/:]\s*|[_ ])([^,:_ ]+)")
 _INDEX = re.compile(r"[\[(](\d+)[\])]")

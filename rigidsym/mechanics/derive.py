@@ -14,19 +14,12 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import replace
 from itertools import count
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
 from rigidsym.errors import QuantityError
-from rigidsym.mechanics.derivation import (
-    OF_RATES,
-    Consequence,
-    Derivation,
-    FirstIntegral,
-    Step,
-    sentence_of,
-)
+from rigidsym.mechanics.derivation import OF_RATES, Derivation, Step, sentence_of
 from rigidsym.mechanics.kinematics.chain import Chain, is_shorter
 from rigidsym.mechanics.kinematics.workspace import values_of
 from rigidsym.mechanics.quantities import check_quantity
@@ -102,8 +95,7 @@ def derive(
         steps += moving
     arguments, definer, is_driven = values.arguments, chain, False
     functions: dict[str, Step] = {}
-    consequences: tuple[Consequence, ...] = ()
-    integrals: tuple[FirstIntegral, ...] = ()
+    consequences, integrals = tuple[Any, ...](), tuple[Any, ...]()
     named = [step.expression for step in steps]
     if motion:
         forces, definer = motion.forces, motion.names or chain

@@ -17,17 +17,11 @@ from typing import Any, NamedTuple
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
+from rigidsym.algebra.generators import TIME
 from rigidsym.errors import ModelError, offer
 from rigidsym.models.body import BodyDescription, Parameter, RigidBody
 from rigidsym.models.library import rotation_from
-from rigidsym.models.rotation import (
-    OMEGA_BODY,
-    TIME,
-    RotationModel,
-    as_typed,
-    depends_on_time,
-    symbolic,
-)
+from rigidsym.models.rotation import OMEGA_BODY, RotationModel, as_typed, depends_on_time, symbolic
 from rigidsym.system.records import Record
 from rigidsym.text.expression import names_in, parse_expression
 from rigidsym.text.names import check_name

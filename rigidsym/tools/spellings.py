@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from itertools import product
 
+from rigidsym.data.columns import Names
 from rigidsym.system.files import table_beside
-
-Names = tuple[str, ...]
 
 _TABLES = table_beside(__file__, "spellings.toml")
 RATES, _ACCELERATIONS, _MATRICES = (

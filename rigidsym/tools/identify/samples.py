@@ -12,20 +12,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rigidsym.data.columns import COLUMNS, ColumnNames, counted, names_for
+from rigidsym.data.columns import COLUMNS, ColumnNames, Names, counted, names_for
 from rigidsym.data.tables import MOST_SHOWN, ArrayTable, Batch, Table, listed, names_of, open_table
 from rigidsym.errors import DataError
 from rigidsym.system.records import Record
 from rigidsym.tools.identify.readings import ANGLE_NAMES
-from rigidsym.tools.spellings import (
-    ANGLES,
-    MATRICES,
-    NAMED_QUATERNIONS,
-    OMEGAS,
-    QUATERNIONS,
-    RATES,
-    Names,
-)
+from rigidsym.tools.spellings import ANGLES, MATRICES, NAMED_QUATERNIONS, OMEGAS, QUATERNIONS, RATES
 
 Array = NDArray[np.float64]
 SLACK = 0.05  # how far M Mᵀ may be from 1, and |q| from 1, before data are refused
