@@ -53,7 +53,6 @@ def which_convention(rng: Random) -> Facts:
     return {
         "derivation": derivation,
         "sequence": sequence,
-        "matrix": derivation.rotation_matrix,
         "row": i + 1,
         "column": j + 1,
         "value": derivation.rotation_matrix[i, j],
