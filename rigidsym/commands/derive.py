@@ -83,7 +83,7 @@ def produce(specs: Iterable[DerivationSpec], options: Options) -> None:
     is_shown = len(wanted) == 1 and not (options["quiet"] or options["json"])
     width = min(shutil.get_terminal_size((88, 24)).columns, 120) if is_shown else 0
     missing: list[RigidsymError] = []
-    # what the first derivation imports and keeps takes less time than to wait for it
+    # to wait for the first derivation would take longer than to import the same beside it
     made = in_processes(partial(_made, width=width), wanted, first=0)
     for single, (files, warning, shown, paper) in zip(wanted, made, strict=True):
         written = write(single, files, out, force=options["force"])
@@ -106,7 +106,7 @@ def produce(specs: Iterable[DerivationSpec], options: Options) -> None:
 
 
 class _Printed(NamedTuple):
-    """What is printed of a rotation: all that a copy of this process hands over to it."""
+    """What is printed of a rotation. A copy of this process hands over no derivation."""
 
     files: Mapping[str, str]
     warning: str  # or nothing
@@ -115,7 +115,7 @@ class _Printed(NamedTuple):
 
 
 def _made(single: DerivationSpec, *, width: int) -> _Printed:
-    """All that is printed, with the derivation itself if it has a width on the screen."""
+    """The texts of a rotation; what is shown is the derivation if the screen has a width for it."""
     output = printed(single)
     steps, proofs = ", ".join(output.uncovered), output.proofs
     paper: bytes | RigidsymError | None = None

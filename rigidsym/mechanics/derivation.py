@@ -274,7 +274,7 @@ class Step(Record, kw_only=True):
     vector_form: VectorForm | None = None  # where the coordinates form a vector
     recursion: Formula | None = None  # shown for the entries, if these are names of its parts
     words: str = ""  # a sentence in place of that of the quantity's reason
-    # entries that are the same in another order, and in other names: here the second for the first
+    # The same entries in another order, and the names that replaced those of their components.
     original: tuple[sp.ImmutableMatrix, Mapping[sp.Basic, sp.Basic]] | None = None
 
     def __repr__(self) -> str:

@@ -98,7 +98,7 @@ class _Lowering:
         return self.arguments[vector.name]
 
     def of_steps(self, steps: Sequence[Step]) -> Iterator[ir.Kernel]:
-        """The kernels of quantities, which are those of the originals but for order and names."""
+        """The kernels of quantities: those of their originals, but for the order and the names."""
         originals = [step.original or (step.expression, {}) for step in steps]
         forms = self._stable(map(self._over_squares, entries.flat()) for entries, _ in originals)
         for step, (original, others), entries in zip(steps, originals, forms, strict=True):
