@@ -45,12 +45,7 @@ def record(
     `request` is the data that asked for it, from which `rigidsym check` derives it again. The
     record contains the `conversions`, if requested.
     """
-    names: Names = {  # for functions of time, the highest derivatives first to be replaced first
-        expression: sp.Symbol(name)
-        for argument in reversed(derivation.arguments)
-        for expression, name in zip(argument.symbols, argument.names, strict=True)
-    }
-    model = derivation.model
+    names, model = _names_of(derivation.arguments), derivation.model
     data = {
         "schema": SCHEMA,
         "schema_version": SCHEMA_VERSION,
@@ -75,6 +70,13 @@ def record(
         **({"conversions": conversions} if conversions else {}),
     }
     return dict(_plain(data, names))
+
+
+@lru_cache(maxsize=8)  # for conventions, which have most parts in common
+def _names_of(arguments: tuple[Argument, ...]) -> Names:
+    """The names of functions of time, the highest derivatives first to be replaced first."""
+    pairs = (zip(a.symbols, a.names, strict=True) for a in reversed(arguments))
+    return {expression: sp.Symbol(name) for each in pairs for expression, name in each}
 
 
 def _plain(data: Any, names: Names) -> Any:
