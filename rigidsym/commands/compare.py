@@ -22,7 +22,6 @@ from rigidsym.system.files import read_bytes
 from rigidsym.system.processes import in_processes
 from rigidsym.system.resources import environment
 from rigidsym.tools.compare.comparison import compare
-from rigidsym.tools.compare.quantities import symbols_in
 from rigidsym.tools.compare.search import disappointment, search, source_files
 from rigidsym.version import __version__
 
@@ -37,11 +36,6 @@ def command(context: click.Context, /, paths: tuple[Path, ...], **options: Any) 
     motion = _motion(options)
     if formula is not None:
         result = compare(formula, motion, options["quantity"])
-        (names, inside), angles = symbols_in(result.formula), options["angles"] or ()
-        others = [s for s in names if s in inside and s.name not in angles]
-        if angles and names and (others or not {*angles} & {s.name for s in names}):
-            there = ", ".join(map(str, others or names))
-            raise click.UsageError(f"--angles {','.join(angles)}: the formula has {there}")
         click.echo(result.text() if options["format"] == "text" else _json(result.record()))
         context.exit(not result.is_equal)
     if motion is not None:

@@ -14,6 +14,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import chain, islice
+from operator import itemgetter
 from pathlib import Path
 from tokenize import TokenError
 from typing import Any, BinaryIO, Literal, TypeAlias
@@ -369,7 +370,8 @@ class TextTable(Table):
                     fault += f"; a unit belongs to the name of its column, as in {name} [{unit}]"
                 faults.append((places[row], fault))
         if faults:
-            messages = [f"line {line}: {fault}" for line, fault in sorted(faults)]
+            faults.sort(key=itemgetter(0))
+            messages = [f"line {line}: {fault}" for line, fault in faults]
             raise DataError(listed(self.source, messages))
         return [values.to_numpy() for values in numbers], [text.to_numpy() for text in others]
 

@@ -91,10 +91,15 @@ def fits(label: Label, finding: FormulaInFile) -> bool:
 def matched(
     labels: list[Label], recognised: list[FormulaInFile]
 ) -> list[tuple[Label, FormulaInFile | None]]:
-    """Each label with its finding; of several that fit, the nearest pairs first."""
+    """Each label with its finding; of several, pairs that agree first, then the nearest ones."""
+
+    def is_other(i: int, j: int) -> bool:
+        comparison = recognised[j].comparison
+        return comparison is None or comparison.is_equal == labels[i].is_wrong
+
     places = ((i, j) for i in range(len(labels)) for j in range(len(recognised)))
     fitting = [(i, j) for i, j in places if fits(labels[i], recognised[j])]
-    fitting.sort(key=lambda pair: distance(labels[pair[0]], recognised[pair[1]]))
+    fitting.sort(key=lambda pair: (is_other(*pair), distance(labels[pair[0]], recognised[pair[1]])))
     pairs: dict[int, int] = {}
     for i, j in fitting:
         if i not in pairs and j not in pairs.values():

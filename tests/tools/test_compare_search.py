@@ -7,7 +7,10 @@ stand in; only the formula is theirs.
 from __future__ import annotations
 
 import json
+import operator
 import re
+import tomllib
+from contextlib import nullcontext
 from time import process_time
 
 import numpy as np
@@ -790,17 +793,20 @@ def test_a_file_that_is_not_compared_to_the_end_is_named(tmp_path):
 
 
 def test_angles_that_are_not_in_the_formula_are_an_error():
-    about = "--rotation", "ZYX", "--quantity", "rotation_matrix", "--formula"
     turn = "[cos(psi) -sin(psi) 0; sin(psi) cos(psi) 0; 0 0 1]"
     for angles, formula, there in (
-        ("a,b,c", turn, "psi"),
-        ("k,l,m", "[sin(b) sin(a) sin(d) sin(c)]", "a, b, c, d"),
-        ("psi,b,c", turn, ""),
-        ("a,b,c", "[1 0 0; 0 1 0; 0 0 1]", ""),
+        ("abc", turn, "psi"),
+        ("klm", "[sin(b) sin(a) sin(d) sin(c)]", "a, b, c, d"),
+        (("psi", "b", "c"), turn, ""),
+        ("abc", "[1 0 0; 0 1 0; 0 0 1]", ""),
     ):
-        done = run(*about, formula, "--angles", angles)
-        assert done.exit_code == (2 if there else 1)
-        assert (f"--angles {angles}: the formula has {there}\n" in done.output) == bool(there)
+        motion = rs.derive(rs.EulerAngles("ZYX", angles=tuple(angles)), "rotation_matrix")
+        with (
+            pytest.raises(ExpressionError, match=f": the formula has {there}$")
+            if there
+            else nullcontext()
+        ):
+            rs.compare(formula, motion, "rotation_matrix")
 
 
 LIMITS = {"most_formulas": 2, "most_steps": -30, "most_nodes": 20, "longest_file": 90}
@@ -1002,28 +1008,15 @@ def test_three_angles_are_right_close_or_unknown(entries, finding):
     assert finding in rs.compare(f"[{', '.join(entries)}]").text()
 
 
-def test_branches_and_bounds_of_angles_are_read(tmp_path):
-    branches = """
-void f(double w, double x, double y, double z) {
-  double s = 2*(w*y - z*x);
-  if (std::abs(s) >= 1) pitch = std::copysign(M_PI/2, s); else pitch = asin(s);
-  roll = atan2(2*(w*x + y*z), 1 - 2*(x*x + y*y));
-  yaw = atan2(2*(w*z + x*y), 1 - 2*(y*y + z*z));
-}
-void g(const Matrix& m, double *roll, double *pitch, double *yaw) {
-  if (pitch != nullptr) *pitch = -asin(clamp(m(2, 0), -1.0f, 1.0f));
-  if (fabs(m(2, 0)) < 0.999) { *roll = atan2(m(2, 1), m(2, 2)); *yaw = atan2(m(1, 0), m(0, 0)); }
-  else { *roll = 0; *yaw = atan2(-m(0, 1), m(1, 1)); }
-}
-void h(int order) {
-  switch (order) {
-    case 0: phi = atan2(-m12, m22); theta = asin(m02); psi = atan2(-m01, m00); break;
-    case 1: phi = atan2(m21, m11); theta = asin(-m01); psi = atan2(m02, m00); break;
-  }
-}
-"""
-    found = [str(each.comparison.found) for each in found_in(tmp_path, "a.cpp", branches)]
-    assert found == [f"euler_angles of {axes}" for axes in ("xyz", "xyz", "XYZ", "XZY")]
+TEXT = (ROOT / "tests/tools/compare_programs.toml").read_text()
+PROGRAMS = {each["name"]: each for each in tomllib.loads(TEXT)["program"]}
+
+
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_programs_of_the_table_are_read(tmp_path, name):
+    found = [str(each) for each in found_in(tmp_path, name, PROGRAMS[name]["text"])]
+    assert len(found) == len(PROGRAMS[name]["said"]), found
+    assert all(map(operator.contains, found, PROGRAMS[name]["said"])), found
 
 
 def test_a_fault_is_at_the_line_where_its_matrix_begins_and_counts_once(tmp_path):

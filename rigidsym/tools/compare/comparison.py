@@ -35,6 +35,7 @@ _NEAR = 0.5  # share of entries that must be right for a formula to be close to 
 _NEAREST = 16  # readings of which the wrong entries are repaired
 _MOST_OPERATIONS = 200  # of an entry in which each part is changed
 _MOST_ENTRIES = 3  # that may be wrong, each by one change
+_ANGLES = ["phi", "theta", "psi"]  # if nobody has chosen their names
 _WHOLE: tuple[tuple[str, str, Callable[[Any], Any]], ...] = (  # changes of all entries together
     ("transpose", "the formula is the transpose", lambda m: m.T),
     ("sign", "all signs are the other way round", lambda m: -m),
@@ -71,11 +72,7 @@ class Reading:
     @cached_property
     def values(self) -> Values:
         """Values of the names, and of all that was evaluated before."""
-        points = dict(self.goal.points)
-        return {
-            s: known.evaluated(sp.Matrix([meant]), points)[:, 0, 0]
-            for s, meant in self.names.items()
-        }
+        return known.named(self.names, dict(self.goal.points))
 
     def agrees(self, changed: sp.MatrixBase, wanted: Array) -> bool:
         numbers = self.goal.on_circle(known.evaluated(changed, self.values))
@@ -238,6 +235,11 @@ def compare(
         is_named = rotation.name != rotation.model.name or rotation.model.passive
         axes = None if is_named else rotation.model.request.get("sequence")  # ZYX
         goal = known.of_motion(rotation, quantity, axes or rotation.name)
+        chosen = rotation.model.request.get("angles", _ANGLES)
+        others = [n for n in map(str, known.symbols_in(matrix)[1]) if n not in chosen]
+        if others and chosen != _ANGLES:
+            there = ", ".join(sorted(others))
+            raise ExpressionError(f"angles {','.join(chosen)}: the formula has {there}")
     else:
         goal = known.target(rotation, quantity)
     angles = [*goal.coordinates]
@@ -324,6 +326,12 @@ def identified(
             words += " (passive)" * is_passive
             return replace(whole, formula=formula, repairs=(Repair(kind, words, changed),))
     comparison = None if only_equal else _close(formula, trials, asked, expected)
+    is_odd = comparison is None or "of twice the angles" in comparison.arrangement
+    is_of_vector = any(t.names and t.family[0].rotation in known.OF_VECTORS for t in trials)
+    is_odd &= is_of_vector and asked is None and not only_equal
+    for kind, words, changed in _everywhere(formula) if is_odd else ():
+        if (whole := identified(changed, only_equal=True)).found:
+            return replace(whole, formula=formula, repairs=(Repair(kind, words, changed),))
     parts = _parts(formula) if is_in_program and comparison is None else ()
     for w, part, others in parts:
         if (own := identified(part, only_equal=True)).found:
@@ -380,6 +388,23 @@ def _repaired(nearest: Sequence[Reading]) -> Comparison | None:
         comparisons.setdefault(repairs[-1].formula, _proved(reading, None, repairs))
     proved = [each for each in comparisons.values() if each.found]
     return replace(proved[0], others=tuple(proved[1 : 1 + _MOST_OTHERS])) if proved else None
+
+
+def _everywhere(formula: sp.ImmutableMatrix) -> Iterator[tuple[str, str, sp.ImmutableMatrix]]:
+    """(kind, words, changed formula): changes of a part that most entries have.
+
+    1 + cos θ in place of 1 − cos θ spoils all entries of Rodrigues' formula.
+    """
+    for part in sorted(formula.atoms(sp.sin, sp.cos, sp.Add, sp.Pow), key=str):
+        number, others = part.as_coeff_Add()
+        changes = [("sign", number - others)] * bool(number and others.count_ops() < 3)
+        changes += [("factor", k * part) for k in _SCALES if part.is_Pow]
+        angles = [k * part.args[0] for k in _SCALES if part.is_Function]
+        changes += [("half angle", part.func(angle)) for angle in angles]
+        is_common = sum(entry.has(part) for entry in formula) >= _MOST_ENTRIES
+        for kind, after in changes if is_common else ():
+            words = f"{part} should be {after} in all entries ({CHANGES[kind]})"
+            yield kind, words, formula.xreplace({part: after})
 
 
 def _changes(formula: sp.ImmutableMatrix) -> Iterator[tuple[str, str, sp.ImmutableMatrix]]:
@@ -459,7 +484,7 @@ def _decided(
     # finding, and no repair of entries is looked for.
     if known.is_mirror(formula):
         return Comparison(formula=formula, asked=asked, is_reflection=True)
-    for trial in trials if not known.are_angles(formula) else ():
+    for trial in (each for each in trials if not each.family[0].is_numeric):
         is_right: Any = trial.agreement.all(axis=(3, 4))
         for some in trial.readings(is_right[..., : known.NEAR_POINTS].all(axis=2)):
             # No change makes it right for all angles. The point of the smallest angles where the
@@ -480,7 +505,7 @@ def _proved(
     unknown = Comparison(formula=reading.formula, asked=asked)
     found, changed = reading.goal, repairs[-1].formula if repairs else reading.formula
     comparison = replace(unknown, found=found, names=reading.names, repairs=tuple(repairs))
-    if found.quantity == ANGLES:  # no expressions of the ring
+    if found.is_numeric:
         return comparison
     try:
         theirs = changed.xreplace(dict(reading.names))
@@ -562,13 +587,16 @@ def variants(
         for kind, changed in variants(half, names, turns, inside=inside):
             if kind == "index":
                 yield kind, half + changed
-    factors = e.args if e.is_Mul else ()
-    numbers = [1 / factor for factor in factors if factor.is_number]
+    factors, (number, others) = e.args if e.is_Mul else (), e.as_coeff_Add()
+    scales = (*_SCALES, *(1 / factor for factor in factors if factor.is_number))
     is_square = e.is_Pow and e.exp == 2
     changes: dict[str, list[sp.Expr]] = {
-        "sign": [-e],
+        "sign": [-e, *[number - others, others - number] * bool(number and others)],
         "index": [s for s in names if e.is_Symbol and s != e],
-        "half angle" if inside else "factor": [factor * e for factor in (*_SCALES, *numbers)],
+        "half angle" if inside else "factor": [
+            *(factor * e for factor in scales),
+            *(number + factor * others for factor in scales),
+        ],
         "term": [e - term for term in e.args if e.is_Add],
         "product": [e / factor for factor in factors if not factor.is_number],
         "sine and cosine": [_SWAPPED[e.func](*e.args)] if e.func in _SWAPPED else [],
@@ -580,5 +608,6 @@ def variants(
         changes["quadrant"] = [sp.atan2(sign * above, sign * below) for sign in (1, -1)]
     if not inside:
         changes["quotient"] = [e * turn**k for turn in turns for k in (2, -2)]
+        changes["quotient"] += [1 / e] * (e.is_Pow and abs(e.exp) == sp.S.Half)  # 1/s for s
         changes["product"] += [] if e.is_Add else [e * turn for turn in turns]
     yield from ((kind, changed) for kind in changes for changed in changes[kind])

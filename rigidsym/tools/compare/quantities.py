@@ -20,7 +20,7 @@ import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property, lru_cache, reduce
-from itertools import chain, combinations, permutations, product
+from itertools import chain, combinations, permutations, product, starmap
 from typing import Any
 
 import numpy as np
@@ -31,7 +31,7 @@ from sympy.core.function import AppliedUndef
 from rigidsym.algebra.evaluate import Floats, Unknown, evaluate
 from rigidsym.errors import ExpressionError
 from rigidsym.mechanics.body import BodyValues
-from rigidsym.mechanics.conversions.function import half_turn, product as product_of
+from rigidsym.mechanics.conversions.function import half_turn, outer_product, product as product_of
 from rigidsym.models.rotation import rotation_of
 from rigidsym.motion import Motion, derive
 from rigidsym.tools.compare.syntax import patterns
@@ -71,7 +71,9 @@ _SEQUENCES = {
 }
 _RATES = ("rate_matrix", "inverse_rate_matrix", "angular_velocity", "rates_from_angular_velocity")
 _OF_RATES = tuple(f"{name}_{frame}" for name in _RATES for frame in ("body", "space"))
-QUATERNION = "quaternion"  # of a product of turns
+QUATERNION = "quaternion"  # of turns, of an axis and an angle, or of a matrix
+OF_MATRIX = "a rotation matrix"  # in place of the name of a rotation
+OF_VECTORS = ("axis_angle", "rotation_vector", OF_MATRIX)
 ANGLES = "euler_angles"  # from a rotation matrix or a quaternion
 SHAPES: dict[tuple[int, int], tuple[str, ...]] = {  # of formulas, and what each may be
     (3, 3): ("rotation_matrix", *_OF_RATES[:4]),
@@ -120,7 +122,9 @@ _LAST = _ways(scalar_last=_scalar_last)
 _NEGATIVE = _ways(negative=_times(-1))
 _SCALES = {"twice": 2, "half": sp.S.Half, "four_times": 4, "a_quarter": sp.S.Half / 2}
 _SCALED = _ways(**{words: _times(factor) for words, factor in _SCALES.items()})
-_OF_QUATERNION_RATES = (_LAST, _SCALED, {**_ways(), "of the conjugate (passive)": _of_conjugate})
+_OF_QUATERNION_RATES = ({**_ways(), "of the conjugate (passive)": _of_conjugate}, _LAST, _SCALED)
+
+
 PASSIVE = "transposed (passive, the direction cosine matrix)"
 PASSIVE_OR_BY_COLUMNS = "transposed (passive, or stored by columns)"  # of numbers in a row
 _ORDERS = _ways(  # of the angles; the opposite ones are those of axes of space
@@ -130,10 +134,10 @@ _ORDERS = _ways(  # of the angles; the opposite ones are those of axes of space
 _WAYS: dict[str, tuple[Ways, ...]] = {
     "rotation_matrix": ({**_ways(), PASSIVE: lambda matrix, *_: matrix.T},),
     QUATERNION: (
-        _LAST,
         {**_ways(), "conjugated (passive)": _times(1, -1, -1, -1)},
+        _LAST,
         _NEGATIVE,
-        _ways(of_twice_the_angles=lambda m, q: m.xreplace({angle: 2 * angle for angle in q})),
+        _ways(of_twice_the_angles=lambda m, q: m.xreplace({a: 2 * a for a in q[3:] or q})),
     ),
     "quaternion_product": (
         _ways(the_first_conjugated=lambda m, a, _: _opposite(m, a[-3:])),
@@ -158,8 +162,14 @@ _WAYS: dict[str, tuple[Ways, ...]] = {
         {
             f"with the opposite sense of angle {' and '.join(angles)} (a convention or wrong signs)"
             * bool(angles): _times(*(-1 if k in angles else 1 for k in "123"))
-            for count in range(4)
+            for count in range(3)
             for angles in combinations("123", count)
+        }
+        # −α, −β, −γ are those of the inverse rotation backwards, except about two axes.
+        | {
+            "the second solution": lambda m, *_: sp.Matrix(
+                [m[0] + sp.pi, -m[1] if m.has(sp.acos) else sp.pi - m[1], m[2] + sp.pi]
+            )
         },
         {**_ways(), "transposed (passive)": lambda m, q: _opposite(m, q[1:])},
         _ORDERS,
@@ -210,6 +220,11 @@ class KnownQuantity:
         return {name: turns.get(s) for name, s in self.names.items() if s in q}
 
     @property
+    def is_numeric(self) -> bool:
+        """Whether it is no expression of a ring: an angle or a root of entries of R."""
+        return self.quantity == ANGLES or self.rotation == OF_MATRIX
+
+    @property
     def axes(self) -> str:
         """Those of the turns, as in "z y x"."""
         return " ".join(turn.axis for turn in self.motion.model.turns)
@@ -253,8 +268,11 @@ def values_of(family: Family) -> Array:
 def of_motion(motion: Motion, quantity: str, rotation: str) -> KnownQuantity:
     """A quantity of a derivation."""
     if quantity == QUATERNION:
-        turns = (half_turn(turn.direction, turn.angle) for turn in motion.model.turns)
-        matrix, uses = sp.Matrix(reduce(product_of, turns)), tuple("q")
+        q = motion.model.coordinates
+        length = sp.sqrt(sum(x**2 for x in q))
+        axis = (q[:3], q[3]) if q[3:] else (tuple(x / length for x in q), length)
+        turns = [(turn.direction, turn.angle) for turn in motion.model.turns] or [axis]
+        matrix, uses = sp.Matrix(reduce(product_of, starmap(half_turn, turns))), tuple("q")
     else:
         step = motion.step(quantity)
         matrix, uses = motion.spelled(step.expression), step.quantity.inputs
@@ -289,6 +307,8 @@ def families(formula: sp.MatrixBase) -> Iterator[Family]:
     if are_angles(formula):
         yield _of_angles()
         return
+    if formula.shape == (4, 1) and any(abs(p.exp) == sp.S.Half for p in formula.atoms(sp.Pow)):
+        yield _of_matrix()
     shape, count = formula.shape, min(len(formula.free_symbols), len(_SEQUENCES) + 1)
     yield from (law for law in _laws() if law[0].matrix.shape == shape)
     for quantity in SHAPES.get(shape, ()):
@@ -321,15 +341,16 @@ def _rotations(
 ) -> tuple[str, ...]:
     """The rotations whose quantity has as many names, and sines and cosines if this has."""
     is_matrix = quantity == "rotation_matrix"
+    axes = OF_VECTORS[: 2 * (count > 2)]
     if quantity == QUATERNION:
-        return _SEQUENCES.get(count, ()) if has_turns else ()
+        return (*_SEQUENCES.get(count, ()), *axes) if has_turns else ()
     if 4 in shape:
         return ("unit_quaternion",)
     if not has_turns:
         vectors = ("gibbs_vector", "modified_rodrigues")
         return (*vectors, *["quaternion"] * is_matrix, "unit_quaternion")
     angles = _SEQUENCES.get(count, ()) if is_matrix else _THREE
-    return (*angles, *("axis_angle", "rotation_vector")[: 2 * (count > 2)])
+    return (*angles, *axes)
 
 
 # Laws in vectors
@@ -417,6 +438,17 @@ def _of_angles() -> Family:
     return _family([goal.written(*_WAYS[ANGLES]) for goal in goals])
 
 
+@cache
+def _of_matrix() -> Family:
+    """q from R, by Shepperd's method: a column of 4 q qᵀ over twice its length."""
+    rotation = target("unit_quaternion", "rotation_matrix")
+    squares = outer_product(rotation.matrix)
+    columns = (squares[:, k] / (2 * sp.sqrt(squares[k, k])) for k in range(4))
+    ways = _WAYS[QUATERNION][:-1]
+    goal = replace(rotation, quantity=QUATERNION, rotation=OF_MATRIX)
+    return _family([replace(goal, matrix=sp.ImmutableMatrix(q)).written(*ways) for q in columns])
+
+
 def _angles(axes: str, r: sp.MatrixBase) -> sp.ImmutableMatrix:
     """The angles about axes of the body, XYZ, or of space, xyz."""
     if axes.islower():  # turns about axes of space are those about axes of the body, backwards
@@ -459,6 +491,8 @@ def meanings(formula: sp.MatrixBase, goal: KnownQuantity, *, is_asked: bool) -> 
     the opposite order, the first and the last angle have lost our names.
     """
     symbols, inside = symbols_in(formula)
+    if goal.rotation == OF_MATRIX:
+        return [*_of_entries(symbols, goal.motion.rotation_matrix)]
     own = {s: goal.names.get(s.name) or goal.names.get(f"{stem_of(s.name)}_dot") for s in symbols}
     if None not in own.values() and is_asked and goal.has_own_names:
         return [own]
@@ -656,6 +690,12 @@ def evaluated(matrix: sp.MatrixBase, values: Values) -> Array:
         raise ExpressionError(f"{error.part} is not understood here") from None
     entries = np.broadcast_arrays(*parts, np.empty(POINTS))[:-1]
     return np.stack(entries, axis=-1).reshape(*entries[0].shape, *matrix.shape)
+
+
+def named(names: Names, points: Values) -> Values:
+    """Values of the names in a formula by what they mean, beside those of the inputs."""
+    own = {s: evaluated(sp.Matrix([meant]), points)[:, 0, 0] for s, meant in names.items()}
+    return points | own
 
 
 def sample(formula: sp.MatrixBase) -> Values:

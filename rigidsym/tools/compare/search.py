@@ -150,7 +150,7 @@ def search(path: Path, expected: tuple[str, ...] = ()) -> Iterator[FormulaInFile
         of_functions.setdefault(finding.formula.function, []).append(finding)
     wrong = [each for each in found if each.comparison and each.comparison.is_wrong]
     for finding in found:
-        if finding in wrong and (part := _wrong_part(finding, wrong, text)):
+        if finding.comparison and (part := _wrong_part(finding, wrong, text)):
             yield FormulaInFile(path, replace(finding.formula, reason=f"it contains {part}"))
         else:
             remark = _remark(finding, of_functions[finding.formula.function], text)
@@ -158,9 +158,13 @@ def search(path: Path, expected: tuple[str, ...] = ()) -> Iterator[FormulaInFile
 
 
 def _wrong_part(finding: FormulaInFile, wrong: Sequence[FormulaInFile], text: str) -> str:
-    """Another wrong matrix in the statement of a wrong one, which is then the only fault."""
+    """Another wrong matrix in the statement of a wrong one, which is then the only fault.
+
+    Or a wrong vector whose components are names in a formula.
+    """
     own, depth, statement = finding.formula, 0, ""
-    for line in _lines(text)[own.line - 1 :]:
+    names = {symbol.name for form in own.forms for symbol in form.free_symbols}
+    for line in _lines(text)[own.line - 1 :] if finding in wrong else ():
         statement += line
         depth += sum((letter in "([{") - (letter in ")]}") for letter in line)
         if depth <= 0:
@@ -170,7 +174,8 @@ def _wrong_part(finding: FormulaInFile, wrong: Sequence[FormulaInFile], text: st
         is_other = formula.line < own.line and name != own.name
         if formula.function[0] and formula.function != own.function:
             name, end, is_other = formula.function[0], r"\s*\(", True
-        if is_other and re.search(rf"\b{re.escape(name)}{end}", statement):
+        is_inside = re.search(rf"\b{re.escape(name)}{end}", statement) is not None
+        if is_other and (is_inside or names >= {*name.split(", ")}):
             return f"{name}, which is wrong in line {formula.line}"
     return ""
 
