@@ -52,7 +52,7 @@ MOST_FLAT, FROM = 1.35, 10**4  # slowest over fastest size, from this size on
 FLAT = f" as a part of its time at {FROM:,} rows"
 LARGE = (("numpy", PEER, 3.0), ("c", HEYOKA, 1.0))  # times as fast, at large batches
 _TURN = 3e-4  # seconds of a turn: a short call is repeated until it lasts as long
-_PAIRS = 25  # turns of two sizes
+_PAIRS = 51  # turns of two sizes
 
 Array = NDArray[np.float64]
 Call = Callable[[], Any]
