@@ -52,6 +52,7 @@ _SECTIONS = (
     *("rotation", "angular_velocity", "rates", "angular_acceleration"),
     *("body", "inertia", "energy", "momentum", "motion"),
 )
+_CROSS_MATRIX = hat(sp.Matrix(sp.symbols("u_1:4")))
 _DIAGONAL = formula("(I'_{11}, I'_{22}, I'_{33})")
 _OF_JOINTS = "wHIfaN"  # letters of abbreviations, in sentences about them
 _MOST_PARTS = 40  # definitions, a page of them; a result that needs more is only defined
@@ -166,13 +167,13 @@ class Composer:
             "source_of_theory": lecture(),
             "shepperd": SHEPPERD,
             "first_figure": doc.FigureReference(1),
-            "cross_matrix": hat(sp.Matrix(sp.symbols("u_1:4"))),
+            "cross_matrix": _CROSS_MATRIX,
             "columns": self._columns() if self.conversions else [],
             "moments": [*self.moments] and [doc.said("here"), in_parts(self.moments, self.letters)],
             "abbreviations": lambda value: self._abbreviations(
                 derivation.definitions_in(value, self._defined)
             ),
-            "has_offset": any(step.expression.has(*OFFSET) for step in derivation.steps),
+            "has_offset": mass and any(step.expression.has(*OFFSET) for step in derivation.steps),
             "proofs": proofs,
             "are_proved": are_proved,
             "has_status": self.is_audit or not are_proved,
