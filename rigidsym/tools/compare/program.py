@@ -411,15 +411,16 @@ class _Run:
     def link(self, tree: Tree) -> None:
         """Two names may share one object: a reference, a view, or a copy in C#."""
         left, right = tree.parts
+        word = right.called if right.kind == "call" else right.word
+        is_view = right.kind == "index" or word in TYPES["views"]
         if right.kind == "call":
             right = right.parts[-1] if patterns.module.match(right.base) else right.owner or right
         names = self.written(left), self.written(right)
-        places = self.path(left) or names[0], names[1]  # B[0, 1] = v[2] is a number
-        own, other = (self.part(self.values, path) for path in places)
+        own = self.part(self.values, self.path(left) or names[0])  # B[0, 1] = v[2] is a number
+        may_share = is_view if self.program.suffix == ".py" else self.program.suffix == ".cs"
+        is_alias = tree.is_alias or (may_share and isinstance(own, _Record))
         is_object = right.kind in ("name", "member", "index", "unary") and names[0] != names[1]
-        may_share = self.program.suffix in (".cs", ".py") and isinstance(own, _Record)
-        may_share &= own is not other  # one record follows both names
-        if is_object and all(names) and (may_share or tree.is_alias):
+        if is_object and all(names) and is_alias:
             self.links += [names, names[::-1]]
 
     def linked(self, path: Path) -> list[Path]:
