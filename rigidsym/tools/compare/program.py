@@ -1124,6 +1124,10 @@ class _Run:
         if start is None:
             self.inputs.add(path[0])
             start = sp.Symbol(path[0], real=True)
+        whole = self.part(self.values, path[:-1]) if path[-1] in [*"wxyz"] else None
+        is_list = isinstance(whole, _Record) and whole.keys() == {0, 1, 2, 3}
+        if is_list and self.program.suffix not in TYPES["swizzling"]:  # in which order nobody knows
+            return sp.Symbol(_dotted(path), real=True)
         return self.entry(tree, start, path[1:])
 
     def entry(self, tree: Tree, value: Any, keys: Path) -> Any:
@@ -1150,9 +1154,7 @@ class _Run:
             if others and 1 in value.shape:  # v(3, 1) of a column
                 key, others = next((k for k in keys if k not in (0, _ALL)), key), []
             lines = _lines(value.T if value.rows == 1 else value)
-            is_known = len(lines) != 4 or self.program.suffix in TYPES["swizzling"]
-            order = "xyzw" if is_known else ""  # of a list of four, nobody knows it
-            key = order.find(key.lower()) if isinstance(key, str) else key
+            key = "xyzw".find(key.lower()) if isinstance(key, str) else key
         elif key == _ALL and others:  # a column, or of a batch: q[:, 0]
             if isinstance(others[0], int) and value.is_Symbol:
                 value = self.part_of(value, f"@{others.pop(0) + self.first}")
