@@ -16,12 +16,13 @@ from typing import NoReturn
 
 import click
 
-from rigidsym.commands.command import DECLARED, message
+from rigidsym.commands.command import message
 from rigidsym.errors import RigidsymError
+from rigidsym.system.files import table_beside
 from rigidsym.system.processes import rare_collections
 from rigidsym.version import __version__
 
-_SUMMARIES = {name: entry["summary"] for name, entry in DECLARED["commands"].items()}
+_SUMMARIES = table_beside(__file__, "commands.toml")
 _NUMERICAL = {"build", "identify", "inertia", "templates"}  # commands that do without SymPy
 
 

@@ -1,4 +1,4 @@
-"""Commands made of the tables in commands.toml, each with a time limit; messages.
+"""Commands made of the tables beside them, each with a time limit; messages.
 
 Nothing here imports NumPy or SymPy, so that `rigidsym --help` answers at once.
 """
@@ -18,8 +18,6 @@ from rigidsym.system.files import table_beside
 from rigidsym.system.processes import time_limit
 
 Options = Mapping[str, Any]  # the values of a command's options, by name
-
-DECLARED = table_beside(__file__, "commands.toml")
 
 
 def _between_commas(_context: object, _option: object, texts: Sequence[str]) -> tuple[str, ...]:
@@ -133,7 +131,7 @@ class _Command(click.Command):
         try:
             return super().parse_args(context, args)
         except click.NoSuchOption as error:
-            removed = DECLARED["removed"].items()
+            removed = table_beside(__file__, "removed_options.toml").items()
             old = (text for names, text in removed if error.option_name in names.split())
             if (substitute := next(old, None)) is None:
                 raise
@@ -146,17 +144,16 @@ class _Command(click.Command):
 
 
 def command(name: str, **choices: Sequence[str]) -> Callable[[Callable[..., Any]], click.Command]:
-    """Make a function the command of this name in commands.toml.
+    """Make a function the command of this name, as NAME.toml describes it.
 
     `choices` are the words that an option or argument may take, if only the code knows them.
     """
-    entry = DECLARED["commands"][name]
-    groups = [DECLARED["groups"][group] for group in entry.get("groups", ())]
+    entry, groups = table_beside(__file__, f"{name}.toml"), table_beside(__file__, "options.toml")
     tables: Iterable[Mapping[str, Any]] = (
         entry.get("arguments", {}),
-        *groups,
+        *(groups[group] for group in entry.get("groups", ())),
         entry.get("options", {}),
-        DECLARED["groups"]["every"],
+        groups["every"],
     )
     parameters = [_parameter(key, table[key], choices) for table in tables for key in table]
     return lambda function: _Command(

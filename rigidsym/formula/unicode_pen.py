@@ -24,8 +24,13 @@ _SPACED = "+−±=≤<∈⇔×"
 @lru_cache(maxsize=4096)
 def columns(text: str) -> int:
     """Columns of a terminal: accents above a letter take none, wide characters two."""
-    wide = sum(unicodedata.east_asian_width(character) in "WF" for character in text)
-    return len(text) + wide - sum(unicodedata.combining(character) > 0 for character in text)
+    return sum(map(_columns_of, text))
+
+
+@lru_cache(maxsize=512)
+def _columns_of(character: str) -> int:
+    is_wide = unicodedata.east_asian_width(character) in "WF"
+    return 1 + is_wide - (unicodedata.combining(character) > 0)
 
 
 class UnicodePen(Pen):
