@@ -732,6 +732,10 @@ class _Run:
                 self.add(_dotted(own), matrix, *lines, is_final=is_final)
             else:
                 self.emit(part, path=own, is_final=is_final)
+            scalar, line = record.get("w", (None, 0))
+            if matrix is not None and matrix.shape == (3, 1) and _is_scalar(scalar):
+                whole = sp.Matrix([scalar, *matrix])  # it may be a quaternion
+                self.add(f"w, {_dotted(own)}", whole, line, *lines, is_final=False)
         for kind, names in _groups(record):
             parts, lines = zip(*map(record.get, names), strict=True)
             values: list[Any] = [self.definitions.get(part, part) for part in parts]
@@ -944,11 +948,18 @@ class _Run:
         return value
 
     def of_tensor(self, left: Any, right: Any) -> Any:
-        """I⁻¹ (... + w × I w); None for another product."""
+        """I⁻¹ (... + w × I w), or C(w) I w; None for another product."""
+        if getattr(right, "shape", ()) != (3, 1):
+            return None
         if self.is_moment(right) and _is_scalar(left):
             inverse = sp.Symbol(f"{1 / left}_inv", real=True) if 1 / left in self.tensors else left
             if inverse.is_Symbol and "inv" in inverse.name:
                 return self.tensor(inverse) * right
+        # a name between C(w) and w is a tensor, or the product would be zero
+        if getattr(left, "shape", ()) == (3, 3) and (left * right).is_zero_matrix:
+            for tensor in left.free_symbols - right.free_symbols:
+                self.tensors.add(tensor)
+                return left.xreplace({tensor: sp.S.One}) * self.tensor(tensor) * right
         return None
 
     def tensor(self, name: sp.Symbol) -> Any:
