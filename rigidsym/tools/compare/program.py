@@ -771,6 +771,8 @@ class _Run:
         value = _unbounded(_unflattened(value))
         whole = _unbounded(self.expanded(value))
         whole = value if _size(whole) > limits.most_parts else whole
+        # v sin(|v|) is no quaternion: the length of v is not any angle about an axis v.
+        value = value.xreplace({s: v for s, v in self.definitions.items() if v and is_length(v)})
         symbols = whole.free_symbols | value.free_symbols
         inputs = whole.free_symbols - self.components
         unread = {s.name for s in inputs if self.definitions.get(s, s) is None}
