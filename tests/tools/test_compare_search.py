@@ -344,6 +344,7 @@ WHOLE = [  # divisions and matrices of whole numbers, which are rounded
         "1] = 0\n    return R\n",
     ),
 ]
+NAN = "; asin has no bounds: by rounding at a pole it may be NaN"
 CERTAIN = {("z.cpp", f"{OWN} {body} }}"): words for body, words in EXACT.items()}
 CERTAIN |= {  # a program: the end of the verdict, and nothing if there is none
     ("a.cpp", f"void f(double a) {{{ABOUT}"): "(proved)",
@@ -365,7 +366,7 @@ CERTAIN |= {  # a program: the end of the verdict, and nothing if there is none
     "not read: s in line 2",
     ("h.py", "def f(R):\n    M, n = R.T, R[:, 0]\n    return np.arctan2(M[1, 2], R[2, 2]), "
      "np.arcsin(-n[2]), np.arctan2(n[1], R[0, 0])\n"): "euler_angles of xyz (to nine digits at 20 "
-    "points, not proved)",
+    f"points, not proved){NAN}",
     ("i.py", "def f(w, x, y, z):\n    s = np.clip(2*(w*y - z*x), -0.99, 0.99)\n    return atan2("
      "2*(w*x + y*z), 1 - 2*(x*x + y*y)), np.arcsin(s), np.arctan2(2*(w*z + x*y), 1 - 2*(y*y + "
      "z*z))\n"): None,
@@ -393,7 +394,7 @@ CERTAIN |= {  # a program: the end of the verdict, and nothing if there is none
      "s, c, 0, 0, 0, 1), -1).reshape(a.shape + (3, 3))\n"): "a as angle (proved)",
     ("k.py", "def f(p, q):\n    a, u, b, v = p[0], p[1:4], q[0], q[1:4]\n    return np.r_[a*b - "
      "np.dot(u, v), a*v + b*u + np.cross(u, v)]\n"): "quaternion_product (proved)",
-    ("a.m", "e = [atan2d(R(3,2), R(3,3)); asind(-R(3,1)); atan2d(R(2,1), R(1,1))];"): "not proved)",
+    ("a.m", "e = [atan2d(R(3,2), R(3,3)); asind(-R(3,1)); atan2d(R(2,1), R(1,1))];"): NAN,
     ("b.m", f"function R = f(a)\n  R = reshape({FLAT}, 3, 3);\nend\n"): "a as angle (proved)",
     ("l.py", f"def f(a):\n    return np.reshape({FLAT}, (3, 3), 'F')\n"): None,
     ("m.py", f"def f(a):\n    a = degrees(a)\n    R = {FLAT}\n"): None,
@@ -444,7 +445,7 @@ CERTAIN |= {  # a program: the end of the verdict, and nothing if there is none
     ("v.py", f"def f(a, eps):\n    return np.reshape({FLAT}, (3, 3)) + eps\n"): None,
     ("d.js", "const k = 180 / PI; function f(a, b, c, d) { return [atan2(2*(a*b + c*d), 1 - 2*(b*b"
      " + c*c))*k, asin(2*(a*c - d*b))*k, atan2(2*(a*d + b*c), 1 - 2*(c*c + d*d))*k]; }"):
-    "up to the factor k (to nine digits at 20 points, not proved)",
+    f"up to the factor k (to nine digits at 20 points, not proved){NAN}",
 }  # fmt: skip
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import chain
 from typing import Any
 
@@ -25,7 +25,7 @@ from rigidsym.motion import Motion
 from rigidsym.system.resources import environment
 from rigidsym.tools.compare import quantities as known
 from rigidsym.tools.compare.language import spelled_out
-from rigidsym.tools.compare.program import formula_matrix, is_length
+from rigidsym.tools.compare.program import Formula, formula_matrix, is_length
 from rigidsym.tools.compare.quantities import ANGLES, Array, Family, KnownQuantity, Names, Values
 from rigidsym.tools.compare.syntax import CHANGES
 
@@ -36,6 +36,7 @@ _NEAREST = 16  # readings of which the wrong entries are repaired
 _MOST_OPERATIONS = 200  # of an entry in which each part is changed
 _MOST_ENTRIES = 3  # that may be wrong, each by one change
 _ANGLES = ["phi", "theta", "psi"]  # if nobody has chosen their names
+_alike: Callable[..., Any] = partial(np.isclose, rtol=0, atol=1e-3)
 _WHOLE: tuple[tuple[str, str, Callable[[Any], Any]], ...] = (  # changes of all entries together
     ("transpose", "the formula is the transpose", lambda m: m.T),
     ("sign", "all signs are the other way round", lambda m: -m),
@@ -123,6 +124,7 @@ class Comparison:
     repairs: tuple[Repair, ...] = ()
     is_proved: bool = False  # that the repaired formula is what was found
     counterexample: str = ""  # where the formula is wrong, if it is right for some angles only
+    branch: str = ""  # where another branch is wrong, or a remark on one that is right
     is_reflection: bool = False
     form: str = ""  # how a program writes it: transposed, or with a factor that is left out
     left_out: str = ""  # terms of a program that are not compared
@@ -496,6 +498,104 @@ def _decided(
             wrong = Comparison(formula=formula, asked=asked, counterexample=example)
             return replace(wrong, found=some.goal, names=some.names)
     return None
+
+
+# Branches at poles and for small angles
+
+
+def branch(regular: Comparison, own: Formula, each: Formula) -> Comparison | None:
+    """A formula beside the right one of another branch; None if it is not compared."""
+    goal, conditions = regular.found, each.conditions_beside(own)
+    if goal is None or not conditions or [f.shape for f in each.forms[:1]] != [goal.matrix.shape]:
+        return None
+    is_small, case = goal.rotation in known.OF_VECTORS[:2], replace(regular, formula=each.forms[0])
+    with suppress(ExpressionError):  # a name without a value
+        if is_small or goal.quantity == ANGLES:
+            return (_small_angles if is_small else _at_poles)(case, goal, conditions)
+    return None
+
+
+def domain(value: Any) -> str:
+    """A remark on arc sines and cosines of what no program has bounded."""
+    arcs = (f for f in value.atoms(sp.asin, sp.acos) if f.args[0].func.__name__ != "clamp")
+    return "".join(
+        f"{f.func} has no bounds: by rounding at a pole it may be NaN" for f in [*arcs][:1]
+    )
+
+
+def _truth(conditions: Sequence[sp.Expr], values: Values) -> NDArray[np.bool_]:
+    """Where all conditions hold, or nearly; raises ExpressionError if a name has no value."""
+    numbers = known.evaluated(sp.Matrix([*conditions]), {**values})
+    return np.asarray((numbers >= -1e-6).all(axis=(1, 2)))
+
+
+def _at_poles(case: Comparison, goal: KnownQuantity, conditions: Any) -> Comparison | None:
+    """Whether the angles of a branch belong to the rotations at the pole that it is made for.
+
+    At a pole, one of two angles may have any value. Two points beside it, almost at the same
+    rotation, tell how the other follows.
+    """
+    turn, names = known.target(goal.rotation, known.QUATERNION), case.names or {}
+
+    def at(*angles: Array) -> Values:
+        q = known.evaluated(turn.matrix, dict(zip(turn.inputs["q"], angles, strict=True)))[..., 0].T
+        q[1:] *= -1 if "transposed" in goal.arrangement else 1
+        return known.named(names, dict(zip(goal.inputs["q"], q, strict=True)))
+
+    def circle(matrix: sp.MatrixBase, values: Values) -> Array:
+        return goal.on_circle(known.evaluated(matrix, values)[..., 0])
+
+    first, last = known.TABLE[0, :2]
+    side = np.repeat([1, -1], known.POINTS // 2)
+    pole = (side + (len({*goal.rotation}) == 2)) * np.pi / 2  # of proper Euler angles 0 and π
+    here, turned = at(first, pole, last), at(first + 1, pole, last - 1)
+    sign = np.where(abs(sum(here[x] * turned[x] for x in goal.inputs["q"])) > 0.999, 1, -1)
+    beside, beyond = (at(first, pole - step * side, last) for step in (1e-7, -1e-7))
+    own, right = circle(case.formula, beside), circle(goal.matrix, beside)
+    same = circle(goal.matrix, at(first + 1, pole - 1e-7 * side, last - sign))
+    changes = np.round(np.angle(same / right))  # 1 and ±1, and 0 of the middle angle
+    free = int(np.abs(changes[0]).argmax())
+    shift = (own / right)[:, [free]] ** changes[:, [free]]
+    wanted = right * shift**changes
+    # Where both arguments of an arc tangent vanish, the values on both sides differ.
+    is_sure = _truth(conditions, beside) & _alike(own, circle(case.formula, beyond)).all(axis=1)
+    if _truth(conditions, known.named(names, dict(goal.points))).any() or not is_sure.any():
+        return None
+    is_wrong = is_sure & ~_alike(own, wanted).all(axis=1)
+    if not is_wrong.any():
+        # the conditions are false where an arc sine in all of them has no value
+        remarks = ["its branch at a pole is right", *set(map(domain, conditions))]
+        return replace(case, branch="; ".join(remarks) if all(remarks) else remarks[0])
+    angles = (np.angle(x[is_wrong.argmax()]).round(4) + 0.0 for x in (right, own, wanted))
+    words = "{} becomes {}, right is {}".format(*map(np.ndarray.tolist, angles))
+    return replace(case, branch="at a pole", counterexample=words)
+
+
+def _small_angles(case: Comparison, goal: KnownQuantity, conditions: Any) -> Comparison | None:
+    """To which order a polynomial agrees with the true function, by their powers along a line."""
+    q, count = goal.inputs["q"], known.POINTS
+
+    def at(size: Array) -> Values:
+        line = [n / 7 * size ** (not q[3:]) for n in (2, 3, 6)]
+        return known.named(case.names or {}, dict(zip(q, [*line, size], strict=False)))
+
+    is_there = _truth(conditions, at(np.repeat([1e-12, 1.0], count // 2)))
+    circle = at(np.exp(2j * np.pi * np.arange(count) / count) / 2)
+    scale = 2.0 ** np.arange(count).reshape(-1, 1, 1) / count
+    values = np.stack([known.evaluated(m, circle) for m in (case.formula, goal.matrix)])
+    own, true = (np.fft.fft(values, axis=1) * scale).round(9)
+    if not is_there[0] or is_there[-1] or own[count // 2 :].any():
+        return None
+    is_other = ~np.isclose(own, true, rtol=1e-3)[: count // 2]
+    # A series may end early, but has no other terms before.
+    is_wrong = is_other.cumsum(axis=0).astype(bool) & (own[: count // 2] != 0)
+    if not is_wrong.any():
+        order = np.append(is_other.any(axis=(1, 2)), True).argmax() - 1
+        return replace(case, branch=f"its branch for small angles agrees to order {order}")
+    k, i, j = np.argwhere(is_other & is_wrong.any(axis=0))[0]
+    words = f"along (2, 3, 6)x/7, the coefficient of x^{k} in entry ({i + 1}, {j + 1}) is "
+    words += f"{own[k, i, j].real:.4g}, right is {true[k, i, j].real:.4g}"
+    return replace(case, branch="for small angles", counterexample=words)
 
 
 def _proved(

@@ -14,9 +14,9 @@ import re
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from copy import deepcopy
+from copy import copy, deepcopy
 from dataclasses import dataclass, field, replace
-from functools import lru_cache, reduce
+from functools import lru_cache, partial, reduce
 from itertools import chain, islice, product, takewhile
 from typing import TYPE_CHECKING, Any
 
@@ -36,6 +36,7 @@ if TYPE_CHECKING:
 _AXES: dict[str, Any] = {"x": 0, "y": 1, "z": 2, "X": 0, "Y": 1, "Z": 2}
 _AXES |= {f"k{k}{axis}": axis.lower() for k in ("", "_") for axis in "WXYZ"}  # Order::kW
 _INVERSE = (sp.atan2, sp.asin, sp.acos, sp.atan)
+_magnitude = partial(sp.Abs, evaluate=False)  # whose evaluation takes long
 _OPPOSITE = str.maketrans("<>=!", "><!=")
 _SIGNS = {".*": "%", "./": "/", ".^": "**", "^": "**"}  # MATLAB
 _SIZES = (3, 4, 9, 16)  # of vectors and matrices that are built of numbers
@@ -109,11 +110,20 @@ class Formula:
     function: tuple[str, int, int] = ("", 0, 0)  # around it, with its first and last line
     is_final: bool = True  # not if what is not understood changes it: it may not be complete
     is_end: bool = False  # the reason holds for the rest of the file
+    conditions: frozenset[sp.Expr] = frozenset()  # of its branches; not negative if true
+    names: Mapping[sp.Expr, sp.Expr] = field(default_factory=dict)  # of inputs in the program
 
     @property
     def line(self) -> int:
         """Where it begins."""
         return min(self.lines)
+
+    def conditions_beside(self, other: Formula) -> list[sp.Expr]:
+        """Those of its branches that do not lead to another formula, in its own names."""
+        own = self.conditions - other.conditions
+        symbols = {s for c in own for s in c.free_symbols if not s.is_Dummy}
+        names = {s: sp.Symbol(_last(s.name), real=True) for s in symbols} | {**self.names}
+        return [c.xreplace(names) for c in own]
 
 
 def _fault(line: int, reason: str, name: str = "", *, is_end: bool = False) -> Formula:
@@ -222,6 +232,9 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
     formulas: dict[Any, Formula] = {}
     for formula in found:
         key = (formula.lines, formula.forms or formula.name)
+        if same := formulas.get(key):  # in runs with other branches
+            common = same.conditions & formula.conditions
+            formulas[key], formula = (replace(f, conditions=common) for f in (same, formula))
         if key not in formulas or not formula.is_final:
             formulas[key] = formula
     return sorted(formulas.values(), key=lambda each: each.line)
@@ -316,6 +329,7 @@ class _Run:
         self.emitted: set[Any] = set()
         self.results: list[Any] = []  # None for one that is not read
         self.end, self.depth = "", 0  # "return" or "break" after one
+        self.conditions: set[sp.Expr] = set()  # of the branches that were taken
 
     def unreadable(self, tree: Tree, reason: str = "is not understood") -> ExpressionError:
         text = re.sub(r"\s+", " ", tree.text[:1000])
@@ -621,7 +635,7 @@ class _Run:
     def run_if(self, tree: Tree) -> None:
         """if, #if, switch, and handlers of exceptions: each run takes one branch, or none."""
         self.program.steps["read"] += len(self.values) // limits.names_a_step
-        choice = self.scope.choice(tree.node, tree.parts)
+        choice = self.branch(tree, tree.parts)
         block = tree.parts[choice]
         self.run(block)
         for each in tree.parts[choice + 1 :] if block.is_one_of("falling") else ():
@@ -631,6 +645,37 @@ class _Run:
             self.emit(self.values, [])
 
     run_switch = run_if
+
+    def branch(self, tree: Tree, blocks: Sequence[Tree], condition: Tree | None = None) -> int:
+        """The number of the branch that this run takes: the first whose condition is true."""
+        choice = self.scope.choice(tree.node, blocks)
+        trees = [condition] if condition else [each.condition for each in blocks[: choice + 1]]
+        if self.inlined or len(self.conditions) > limits.most_conditions:
+            self.conditions, trees = {sp.Dummy()}, []  # too many to be worth the time
+        known = [(self.condition(each), k) for k, each in enumerate(trees) if each]
+        unknown = sp.Symbol(f"{tree.node.start_byte} {choice}")  # of a switch
+        self.conditions |= {c if k == choice else -c for c, k in known} or {unknown}
+        return choice
+
+    def condition(self, tree: Tree) -> sp.Expr:
+        """A number that is not negative if a condition is true, of a name if it is not read."""
+        tree = self.tests.get(tree.text, tree)
+        sign, parts = tree.word, tree.parts
+        if sign in ("!", "not", "~") and parts:
+            return -self.condition(parts[-1])
+        if sign in ("&&", "and", "||", "or") and len(parts) == 2:
+            one, other = map(self.condition, parts)
+            least = -1 if sign in ("&&", "and") else 1
+            return (one + other + least * _magnitude(one - other)) / 2
+        run, steps = copy(self), self.program.steps["read"]  # what is read here has no effect
+        run.formulas, run.inputs = [], {*self.inputs}
+        own, sign, number = run.sides(tree)
+        self.program.steps["read"] = steps
+        if not sign:
+            return sp.Symbol(str(tree.node.start_byte))
+        above = self.expanded(own) - number
+        equal = limits.near_equal - _magnitude(above)
+        return {">": above, "<": -above, "=": equal, "!": -equal}[sign]
 
     def run_loop(self, tree: Tree) -> None:
         """A loop may run many times or never: what changes in it is not read before and after."""
@@ -782,6 +827,7 @@ class _Run:
         forms = [language.spelled_out(m.xreplace(names), computed) for m in (whole, value)]
         places = tuple((_last(n), self.unread.get(n) or min(lines)) for n in sorted(unread))
         formula = Formula(lines=lines, name=_last(name), forms=tuple(dict.fromkeys(forms)))
+        formula = replace(formula, conditions=frozenset(self.conditions), names=names)
         self.formulas.append(replace(formula, unread=places, is_final=is_final, is_flat=is_flat))
 
     # Expressions
@@ -830,7 +876,7 @@ class _Run:
         return self.stacked(tree, by_columns=False) if is_joined else self.named(tree)
 
     def read_if(self, tree: Tree) -> Any:
-        return self.read(tree.parts[self.scope.choice(tree.node, tree.parts)])
+        return self.read(tree.parts[self.branch(tree, tree.parts)])
 
     def read_assign(self, tree: Tree) -> Any:
         """a = b inside an expression."""
@@ -1010,7 +1056,7 @@ class _Run:
                 is_other = other.free_symbols != {own} or other.has(*_INVERSE)
                 if is_other or abs(other.subs(own, 1e-3) - limit) < limits.near_limit:
                     return other
-        chosen = self.scope.choice(tree.node, trees)
+        chosen = self.branch(tree, trees, condition)
         return self.read(trees[chosen]) if values[chosen] is None else values[chosen]
 
     def sides(self, condition: Tree) -> tuple[Any, str, Any]:
@@ -1019,10 +1065,12 @@ class _Run:
         if condition.kind == "call" and condition.called == "isclose":
             sign, parts = "==", parts[1:3]
         values = [self.tried(each) for each in parts]
-        if re.fullmatch("[<>]=?|[=!]==?", sign) and all(map(_is_scalar, values)):
-            for own, other, signs in ((*values, "<>"), (*values[::-1], "><")):
-                if (number := self.expanded(other)).is_number:
-                    return own, sign[0].translate(str.maketrans("<>", signs)), number
+        if re.fullmatch("[<>]=?|[=!~]==?", sign) and all(map(_is_scalar, values)):
+            for own, other, signs in ((*values, "<>!"), (*values[::-1], "><!")):
+                small = [s for s in other.free_symbols if patterns.small.search(s.name)]
+                number = self.expanded(other).xreplace(dict.fromkeys(small, sp.Float(1e-6)))
+                if number.is_number:
+                    return own, sign[0].translate(str.maketrans("<>~", signs)), number
         return None, "", None
 
     def is_pole(self, own: sp.Expr, sign: str, number: sp.Expr, value: sp.Expr) -> bool:

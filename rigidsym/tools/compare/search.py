@@ -15,7 +15,7 @@ import sympy as sp
 from rigidsym.errors import ExpressionError, RequestError
 from rigidsym.models.rotation import RotationModel
 from rigidsym.tools.compare import quantities
-from rigidsym.tools.compare.comparison import Comparison, identified
+from rigidsym.tools.compare.comparison import Comparison, branch, domain, identified
 from rigidsym.tools.compare.program import UNNAMED, Formula, program_formulas
 from rigidsym.tools.compare.quantities import KnownQuantity, are_angles, are_body_rates
 from rigidsym.tools.compare.syntax import GRAMMARS, limits, patterns
@@ -140,7 +140,9 @@ def search(path: Path, expected: tuple[str, ...] = ()) -> Iterator[FormulaInFile
     try:
         with path.open(encoding="utf-8", errors="replace") as file:
             text = file.read(limits.longest_file + 1)
-        found.extend(_findings(path, text, expected))  # keeps what is before an error
+        program = [*formulas(text, path.suffix)]
+        found.extend(_findings(path, program, text, expected))  # keeps what is before an error
+        found = [*_with_branches(found, program, text)]
     except _FAILURES as error:
         reason = f"there was an error in reading it: {type(error).__name__}: {error}"
         whole = Formula(lines=(1,), name="", reason=reason)
@@ -154,7 +156,7 @@ def search(path: Path, expected: tuple[str, ...] = ()) -> Iterator[FormulaInFile
             yield FormulaInFile(path, replace(finding.formula, reason=f"it contains {part}"))
         else:
             remark = _remark(finding, of_functions[finding.formula.function], text)
-            yield replace(finding, remark=remark)
+            yield replace(finding, remark="; ".join(filter(None, (finding.remark, remark))))
 
 
 def _wrong_part(finding: FormulaInFile, wrong: Sequence[FormulaInFile], text: str) -> str:
@@ -234,10 +236,38 @@ def _order(finding: FormulaInFile) -> str:
     return axes if len(axes) == 3 else ""
 
 
-def _findings(path: Path, text: str, expected: tuple[str, ...]) -> Iterator[FormulaInFile]:
+def _with_branches(
+    found: Sequence[FormulaInFile], program: Sequence[Formula], text: str
+) -> Iterator[FormulaInFile]:
+    """Findings with remarks on the domain of arcs, and on branches for poles and small angles.
+
+    A branch that is wrong is a finding of its own. It may follow any of several right formulas.
+    """
+    right = [(f, f.formula, f.comparison) for f in found if f.comparison and f.comparison.is_equal]
+    remarks, wrong = dict[int, str](), dict[Any, FormulaInFile]()
+    for finding, own, regular in right:
+        inside = "".join(_lines(text)[max(0, own.function[1] - 1) : own.function[2] or None])
+        remarks[id(finding)] = "" if patterns.guard.search(inside) else domain(regular.formula)
+    for each in (formula for formula in program if formula.is_final):
+        beside = [r for r in right if (r[1].function, r[1].name) == (each.function, each.name)]
+        cases = [(id(f), branch(regular, own, each)) for f, own, regular in beside]
+        known = [(key, case) for key, case in cases if case]
+        for key, case in sorted(known, key=lambda c: c[1].is_wrong)[:1]:
+            remarks[key] = case.branch
+            if case.is_wrong:  # a branch of variables is also one of what they are copied to
+                wrong[each.function, case.formula] = FormulaInFile(found[0].path, each, case)
+    functions = {function for function, _ in wrong}
+    for finding in sorted([*found, *wrong.values()], key=lambda each: each.formula.line):
+        is_right = finding.formula.function not in functions
+        yield replace(finding, remark=remarks.get(id(finding), "") * is_right)
+
+
+def _findings(
+    path: Path, program: Sequence[Formula], text: str, expected: tuple[str, ...]
+) -> Iterator[FormulaInFile]:
     variants: dict[Any, list[Formula]] = {}
     latest: FormulaInFile | None = None
-    for formula in formulas(text, path.suffix):
+    for formula in program:
         variants.setdefault((formula.line, formula.name, formula.is_end), []).append(formula)
     effort, before = 0, set[Any]()  # for different formulas since the last known one
     for group in variants.values():
@@ -320,8 +350,10 @@ def _block(matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
     # not in most entries, the formula is left as it is.
     if matrix.has(sp.pi):
         scale = {s: s * 180 / sp.pi for s in matrix.free_symbols}
-        in_radians = matrix * sp.pi / 180 if are_angles(matrix) else matrix.xreplace(scale)
-        matrix = in_radians if in_radians.count(sp.pi) < matrix.count(sp.pi) else matrix
+        has_angles = matrix.shape == (3, 1) and matrix.has(sp.atan2, sp.asin, sp.acos, sp.atan)
+        in_radians = matrix * sp.pi / 180 if has_angles else matrix.xreplace(scale)
+        is_less = in_radians.count(sp.pi) < matrix.count(sp.pi) + has_angles  # 90 becomes π/2
+        matrix = in_radians if is_less else matrix
     step = next((s for s in matrix.free_symbols if patterns.step.fullmatch(s.name)), None)
     # Of q + (...)*dt, but not of g - w - (...)*dt. Derivatives of long expressions are expensive.
     if step is not None and not any(f.has(step) for f in matrix.atoms(sp.Function, sp.Pow)):

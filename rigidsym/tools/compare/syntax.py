@@ -92,6 +92,7 @@ class Tree:
     kind: str = "block"
     is_reference: bool = False  # &x, or an argument `out x`
     own: list[Tree] | None = None  # parts that are not those of the node
+    condition: Tree | None = None  # of a branch
 
     @property
     def line(self) -> int:
@@ -190,7 +191,7 @@ class Tree:
         return nodes[self.node.type == "struct_pattern" :]  # without its type
 
     def _branches(self) -> Iterator[Tree]:
-        """The blocks of which one is run, each without its condition; an empty one for none."""
+        """The blocks of which one is run; an empty one for none."""
         others = self.node.children_by_field_name("alternative")
         blocks = [self.node, *dict.fromkeys([*others, *_children(self.node, "branch")])]
         alternatives = {block.id for block in blocks[1:]}
@@ -203,7 +204,7 @@ class Tree:
             skipped = alternatives | {c.id for c in (condition, _part(block, "name")) if c}
             if constant is not False:
                 own = [tree_of(c) for c in _children(block) if c.id not in skipped]
-                yield Tree(block, own=own)
+                yield Tree(block, own=own, condition=condition and tree_of(condition))
             if constant or (block != self.node and condition is None):
                 return
         yield Tree(self.node, own=[])
