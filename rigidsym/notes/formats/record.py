@@ -34,7 +34,11 @@ SCHEMA_VERSION = 2
 # attributes of each class, "key=attribute" where their names differ
 _KEYS: Mapping[str, Sequence[str]] = table_beside(__file__, "record.toml")
 
-Names = dict[sp.Basic, sp.Basic]
+
+class Names(dict[sp.Basic, sp.Basic]):
+    """The name of each function of time; the same object for the same arguments."""
+
+    __hash__ = object.__hash__  # type: ignore[assignment]
 
 
 def record(
@@ -72,11 +76,10 @@ def record(
     return dict(_plain(data, names))
 
 
-@lru_cache(maxsize=8)  # for conventions, which have most parts in common
+@lru_cache(maxsize=8)
 def _names_of(arguments: tuple[Argument, ...]) -> Names:
-    """The names of functions of time, the highest derivatives first to be replaced first."""
     pairs = (zip(a.symbols, a.names, strict=True) for a in reversed(arguments))
-    return {expression: sp.Symbol(name) for each in pairs for expression, name in each}
+    return Names({expression: sp.Symbol(name) for each in pairs for expression, name in each})
 
 
 def _plain(data: Any, names: Names) -> Any:
@@ -126,13 +129,14 @@ class _Printer(StrPrinter):
 _PRINTER = _Printer({"order": None})
 
 
+@lru_cache(maxsize=1 << 13)  # conventions have most parts in common
 def _renamed(node: sp.Basic, names: Names) -> sp.Basic:
-    """The expression in its names, and not evaluated again; `names` grow by its parts."""
-    if node not in names:
-        parts = [_renamed(part, names) for part in node.args]
-        make = node._from_args if isinstance(node, sp.Add | sp.Mul) else lambda p: node.func(*p)
-        names[node] = make(parts) if parts else node
-    return names[node]
+    """The expression in its names, and not evaluated again."""
+    if node in names:
+        return names[node]
+    parts = [_renamed(part, names) for part in node.args]
+    make = node._from_args if isinstance(node, sp.Add | sp.Mul) else lambda p: node.func(*p)
+    return make(parts) if parts else node
 
 
 def _vector(column: sp.ImmutableMatrix | None) -> list[sp.Expr] | None:
