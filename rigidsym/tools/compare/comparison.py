@@ -518,9 +518,8 @@ def branch(regular: Comparison, own: Formula, each: Formula) -> Comparison | Non
 def domain(value: Any) -> str:
     """A remark on arc sines and cosines of what no program has bounded."""
     arcs = (f for f in value.atoms(sp.asin, sp.acos) if f.args[0].func.__name__ != "clamp")
-    return "".join(
-        f"{f.func} has no bounds: by rounding at a pole it may be NaN" for f in [*arcs][:1]
-    )
+    name = min((str(f.func) for f in arcs), default="")
+    return name and f"{name} has no bounds: by rounding at a pole it may be NaN"
 
 
 def _truth(conditions: Sequence[sp.Expr], values: Values) -> NDArray[np.bool_]:

@@ -997,14 +997,13 @@ class _Run:
 
     def of_tensor(self, left: Any, right: Any) -> Any:
         """I⁻¹ (... + w × I w), or C(w) I w; None for another product."""
-        if getattr(right, "shape", ()) != (3, 1):
-            return None
         if self.is_moment(right) and _is_scalar(left):
             inverse = sp.Symbol(f"{1 / left}_inv", real=True) if 1 / left in self.tensors else left
             if inverse.is_Symbol and "inv" in inverse.name:
                 return self.tensor(inverse) * right
         # a name between C(w) and w is a tensor, or the product would be zero
-        if getattr(left, "shape", ()) == (3, 3) and (left * right).is_zero_matrix:
+        shapes = [getattr(each, "shape", ()) for each in (left, right)]
+        if shapes == [(3, 3), (3, 1)] and (left * right).is_zero_matrix:
             for tensor in left.free_symbols - right.free_symbols:
                 self.tensors.add(tensor)
                 return left.xreplace({tensor: sp.S.One}) * self.tensor(tensor) * right
