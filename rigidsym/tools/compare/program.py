@@ -667,7 +667,7 @@ class _Run:
             one, other = map(self.condition, parts)
             least = -1 if sign in ("&&", "and") else 1
             return (one + other + least * _magnitude(one - other)) / 2
-        run, steps = copy(self), self.program.steps["read"]  # what is read here has no effect
+        run, steps = copy(self), self.program.steps["read"]  # a condition adds no formula or input
         run.formulas, run.inputs = [], {*self.inputs}
         own, sign, number = run.sides(tree)
         self.program.steps["read"] = steps
