@@ -75,6 +75,23 @@ class Reading:
         """Values of the names, and of all that was evaluated before."""
         return known.named(self.names, dict(self.goal.points))
 
+    @property
+    def keeps_scale(self) -> bool:
+        """Whether a formula that divides a vector by its length is the same for twice the vector.
+
+        On unit vectors, v/|v|² and v |v| are right, too.
+        """
+        rotation = self.goal.motion.model if self.goal.quantity in known.OF_DIRECTIONS else None
+        for condition in rotation.constraints if rotation else ():
+            own = {s for s, meant in self.names.items() if condition.has(meant)}
+            sums = self.formula.atoms(sp.Add)
+            if any(is_length(each) and each.free_symbols == own for each in sums):
+                values = {s: self.values[s] for s in self.names}
+                twice = values | {s: 2 * values[s] for s in own}
+                one, other = (known.evaluated(self.formula, each) for each in (values, twice))
+                return bool(known.near(self.goal.on_circle(other), self.goal.on_circle(one)).all())
+        return True
+
     def agrees(self, changed: sp.MatrixBase, wanted: Array) -> bool:
         numbers = self.goal.on_circle(known.evaluated(changed, self.values))
         return bool(known.near(numbers, wanted).all())
@@ -110,7 +127,9 @@ class _Trial:
         places = [(int(meaning), int(goal)) for meaning, goal in np.argwhere(where)]
         for meaning, goal in sorted(places, key=lambda place: (odd[place[0]], *place[::-1])):
             agreement = self.agreement[meaning, goal]
-            yield Reading(self.formula, self.family[goal], self.names[meaning], agreement)
+            reading = Reading(self.formula, self.family[goal], self.names[meaning], agreement)
+            if reading.keeps_scale:
+                yield reading
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -138,7 +157,7 @@ class Comparison:
         opposite = " and ".join(sorted(name for name, kind in odd if kind % 2))
         turned = " and ".join(sorted(name for name, kind in odd if kind > 1))
         own = {meant: name for name, meant in (self.names or {}).items()}
-        lengths = [x for x in own if is_length(x) or is_length(2 / x)]
+        lengths = [x for x, name in own.items() if name in self.supposed]
         words = (
             self.found.arrangement if self.found else "",
             opposite and f"with the opposite sense of {opposite} (a convention or wrong signs)",
@@ -147,6 +166,12 @@ class Comparison:
             self.form,
         )
         return ", ".join(filter(None, words))
+
+    @property
+    def supposed(self) -> set[sp.Symbol]:
+        """Names that are lengths if the formula is right."""
+        meant = (self.names or {}).items()
+        return {name for name, x in meant if is_length(x) or is_length(2 / x)}
 
     @property
     def is_equal(self) -> bool:
@@ -425,7 +450,16 @@ def _ways(formula: sp.ImmutableMatrix) -> Iterator[tuple[str, str, sp.ImmutableM
         yield "", "transposed", formula.T
     values = known.sample(formula)
     for symbol in values:
-        angles = [f.args[0] for f in formula.atoms(sp.sin, sp.cos, sp.tan) if f.has(symbol)]
+        functions = formula.atoms(sp.sin, sp.cos, sp.tan)
+        own = {f for f in functions if f.has(symbol)}
+        names = {s for f in own for s in f.free_symbols}
+        # A factor in one angle of a vector is one in all of them, and nowhere else.
+        if own and (
+            any(names & f.free_symbols for f in functions - own)
+            or formula.xreplace({f: sp.Dummy() for f in own}).has(symbol)
+        ):
+            continue
+        angles = [f.args[0] for f in own]
         # A factor of a whole matrix may be a vector that is not read.
         if scaled := sp.Matrix(angles or ([*formula] if formula.cols == 1 else [])):
             is_factor = not any((part / symbol).has(symbol) for part in scaled)
@@ -563,8 +597,10 @@ def _at_poles(case: Comparison, goal: KnownQuantity, conditions: Any) -> Compari
     is_wrong = is_sure & ~_alike(own, wanted).all(axis=1)
     if not is_wrong.any():
         # the conditions are false where an arc sine in all of them has no value
-        remarks = ["its branch at a pole is right", *set(map(domain, conditions))]
+        remarks = ["is right at a pole", *set(map(domain, conditions))]
         return replace(case, branch="; ".join(remarks) if all(remarks) else remarks[0])
+    if "opposite sense" in goal.arrangement:  # the other formula may be the wrong one
+        return None
     angles = (np.angle(x[is_wrong.argmax()]).round(4) + 0.0 for x in (right, own, wanted))
     words = "{} becomes {}, right is {}".format(*map(np.ndarray.tolist, angles))
     return replace(case, branch="at a pole", counterexample=words)
@@ -585,15 +621,19 @@ def _small_angles(case: Comparison, goal: KnownQuantity, conditions: Any) -> Com
     own, true = (np.fft.fft(values, axis=1) * scale).round(9)
     if not is_there[0] or is_there[-1] or own[count // 2 :].any():
         return None
+    if goal.quantity == known.QUATERNION and (own[0] * true[0]).real.sum() < 0:
+        own = -own  # the same rotation
     is_other = ~np.isclose(own, true, rtol=1e-3)[: count // 2]
-    # A series may end early, but has no other terms before.
-    is_wrong = is_other.cumsum(axis=0).astype(bool) & (own[: count // 2] != 0)
+    # A series may end early, in each of its parts, but not before its first term.
+    is_wrong = is_other & (own[: count // 2] != 0)
+    is_wrong[0] = is_other[0]
     if not is_wrong.any():
         order = np.append(is_other.any(axis=(1, 2)), True).argmax() - 1
-        return replace(case, branch=f"its branch for small angles agrees to order {order}")
-    k, i, j = np.argwhere(is_other & is_wrong.any(axis=0))[0]
-    words = f"along (2, 3, 6)x/7, the coefficient of x^{k} in entry ({i + 1}, {j + 1}) is "
-    words += f"{own[k, i, j].real:.4g}, right is {true[k, i, j].real:.4g}"
+        return replace(case, branch=f"agrees to order {order} for small angles")
+    k, i, j = np.argwhere(is_wrong)[0]
+    entry = f"({i + 1}, {j + 1})" if case.formula.cols > 1 else i + 1
+    words = f"along (2, 3, 6)x/7, the coefficient of x^{k} in entry {entry} is "
+    words += f"{own[k, i, j].real + 0:.4g}, right is {true[k, i, j].real + 0:.4g}"
     return replace(case, branch="for small angles", counterexample=words)
 
 

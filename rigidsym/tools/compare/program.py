@@ -112,6 +112,7 @@ class Formula:
     is_end: bool = False  # the reason holds for the rest of the file
     conditions: frozenset[sp.Expr] = frozenset()  # of its branches; not negative if true
     names: Mapping[sp.Expr, sp.Expr] = field(default_factory=dict)  # of inputs in the program
+    computed: frozenset[sp.Expr] = frozenset()  # names whose values are read
 
     @property
     def line(self) -> int:
@@ -535,12 +536,13 @@ class _Run:
                 return own
             symbols = ratio.free_symbols
             is_old = not any(s.is_Dummy for s in symbols)  # as a component after its division is
-            names = tuple((s, s.name) for s in symbols if is_old and is_length(1 / ratio))
+            is_root = (1 / ratio).is_Pow and is_length(1 / ratio)
+            names = tuple((s, s.name) for s in symbols if is_old and is_root)
             if any(len(each) == 1 and len(each[0]) > 2 for each in grouped(names)):
                 symbol = self.symbol_for(path, None)
                 self.components.add(symbol)
                 return symbol
-            if ratio.free_symbols == {self.squares.get(own)}:
+            if own in self.squares and ratio == 1 / sp.sqrt(self.squares[own]):
                 return own
         if isinstance(path[-1], int):
             return value
@@ -817,7 +819,10 @@ class _Run:
         whole = _unbounded(self.expanded(value))
         whole = value if _size(whole) > limits.most_parts else whole
         # v sin(|v|) is no quaternion: the length of v is not any angle about an axis v.
-        value = value.xreplace({s: v for s, v in self.definitions.items() if v and is_length(v)})
+        known, squares = {s: v for s, v in self.definitions.items() if v}, {*self.squares.values()}
+        value = value.xreplace(
+            {s: v for s, v in known.items() if is_length(v) or v.free_symbols & squares}
+        )
         symbols = whole.free_symbols | value.free_symbols
         inputs = whole.free_symbols - self.components
         unread = {s.name for s in inputs if self.definitions.get(s, s) is None}
@@ -828,6 +833,7 @@ class _Run:
         places = tuple((_last(n), self.unread.get(n) or min(lines)) for n in sorted(unread))
         formula = Formula(lines=lines, name=_last(name), forms=tuple(dict.fromkeys(forms)))
         formula = replace(formula, conditions=frozenset(self.conditions), names=names)
+        formula = replace(formula, computed=frozenset(names.get(s, s) for s in known))
         self.formulas.append(replace(formula, unread=places, is_final=is_final, is_flat=is_flat))
 
     # Expressions

@@ -75,6 +75,7 @@ QUATERNION = "quaternion"  # of turns, of an axis and an angle, or of a matrix
 OF_MATRIX = "a rotation matrix"  # in place of the name of a rotation
 OF_VECTORS = ("axis_angle", "rotation_vector", OF_MATRIX)
 ANGLES = "euler_angles"  # from a rotation matrix or a quaternion
+OF_DIRECTIONS = ("rotation_matrix", QUATERNION, ANGLES)  # not changed by the length of a vector
 SHAPES: dict[tuple[int, int], tuple[str, ...]] = {  # of formulas, and what each may be
     (3, 3): ("rotation_matrix", *_OF_RATES[:4]),
     (3, 1): _OF_RATES[4:],

@@ -253,7 +253,8 @@ def _with_branches(
         cases = [(id(f), branch(regular, own, each)) for f, own, regular in beside]
         known = [(key, case) for key, case in cases if case]
         for key, case in sorted(known, key=lambda c: c[1].is_wrong)[:1]:
-            remarks[key] = case.branch
+            said = f"its branch in line {each.line} {case.branch}"
+            remarks[key] = "; ".join(dict.fromkeys(filter(None, (remarks[key], said))))
             if case.is_wrong:  # a branch of variables is also one of what they are copied to
                 wrong[each.function, case.formula] = FormulaInFile(found[0].path, each, case)
     functions = {function for function, _ in wrong}
@@ -307,6 +308,8 @@ def _compared(
         except (ExpressionError, RecursionError) as error:  # a function without values
             return FormulaInFile(path, replace(formula, reason=str(error)))
         goal = comparison.found
+        if formula.computed & comparison.supposed:
+            continue
         if goal is not None and formula.is_flat and goal.arrangement == quantities.PASSIVE:
             goal = replace(goal, arrangement=quantities.PASSIVE_OR_BY_COLUMNS)
             comparison = replace(comparison, found=goal)
