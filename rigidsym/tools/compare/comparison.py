@@ -156,22 +156,22 @@ class Comparison:
         odd = [(str(name), known.oddness(meant)) for name, meant in (self.names or {}).items()]
         opposite = " and ".join(sorted(name for name, kind in odd if kind % 2))
         turned = " and ".join(sorted(name for name, kind in odd if kind > 1))
-        own = {meant: name for name, meant in (self.names or {}).items()}
-        lengths = [x for x, name in own.items() if name in self.supposed]
         words = (
             self.found.arrangement if self.found else "",
             opposite and f"with the opposite sense of {opposite} (a convention or wrong signs)",
             turned and f"with {turned} from another axis, a quarter or half turn away",
-            "".join(f"if {own.pop(x)} = {x.xreplace(own)}" for x in lengths),
+            "".join(f"if {name} = {length}" for name, length in self.supposed.items()),
             self.form,
         )
         return ", ".join(filter(None, words))
 
     @property
-    def supposed(self) -> set[sp.Symbol]:
-        """Names that are lengths if the formula is right."""
-        meant = (self.names or {}).items()
-        return {name for name, x in meant if is_length(x) or is_length(2 / x)}
+    def supposed(self) -> dict[sp.Symbol, sp.Expr]:
+        """Names that are lengths if the formula is right, and these lengths in its own names."""
+        names = self.names or {}
+        lengths = {name: x for name, x in names.items() if is_length(x) or is_length(2 / x)}
+        own = {x: name for name, x in names.items() if name not in lengths}
+        return {name: x.xreplace(own) for name, x in lengths.items()}
 
     @property
     def is_equal(self) -> bool:

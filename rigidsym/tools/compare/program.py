@@ -112,7 +112,7 @@ class Formula:
     is_end: bool = False  # the reason holds for the rest of the file
     conditions: frozenset[sp.Expr] = frozenset()  # of its branches; not negative if true
     names: Mapping[sp.Expr, sp.Expr] = field(default_factory=dict)  # of inputs in the program
-    computed: frozenset[sp.Expr] = frozenset()  # names whose values are read
+    computed: Mapping[sp.Expr, sp.Expr] = field(default_factory=dict)  # names and their values
 
     @property
     def line(self) -> int:
@@ -833,7 +833,8 @@ class _Run:
         places = tuple((_last(n), self.unread.get(n) or min(lines)) for n in sorted(unread))
         formula = Formula(lines=lines, name=_last(name), forms=tuple(dict.fromkeys(forms)))
         formula = replace(formula, conditions=frozenset(self.conditions), names=names)
-        formula = replace(formula, computed=frozenset(names.get(s, s) for s in known))
+        values = {names.get(s, s): self.expanded(v).xreplace(names) for s, v in known.items()}
+        formula = replace(formula, computed=values)
         self.formulas.append(replace(formula, unread=places, is_final=is_final, is_flat=is_flat))
 
     # Expressions

@@ -308,7 +308,7 @@ def _compared(
         except (ExpressionError, RecursionError) as error:  # a function without values
             return FormulaInFile(path, replace(formula, reason=str(error)))
         goal = comparison.found
-        if formula.computed & comparison.supposed:
+        if any(formula.computed.get(name, x) != x for name, x in comparison.supposed.items()):
             continue
         if goal is not None and formula.is_flat and goal.arrangement == quantities.PASSIVE:
             goal = replace(goal, arrangement=quantities.PASSIVE_OR_BY_COLUMNS)
