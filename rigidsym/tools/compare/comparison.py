@@ -27,7 +27,7 @@ from rigidsym.tools.compare import quantities as known
 from rigidsym.tools.compare.language import spelled_out
 from rigidsym.tools.compare.program import Formula, formula_matrix, is_length
 from rigidsym.tools.compare.quantities import ANGLES, Array, Family, KnownQuantity, Names, Values
-from rigidsym.tools.compare.syntax import CHANGES
+from rigidsym.tools.compare.syntax import CHANGES, REMARKS
 
 _MOST_REPAIRS = 2  # of a formula that nobody has named
 _MOST_OTHERS = 2  # quantities that are as near as the first
@@ -553,7 +553,7 @@ def domain(value: Any) -> str:
     """A remark on arc sines and cosines of what no program has bounded."""
     arcs = (f for f in value.atoms(sp.asin, sp.acos) if f.args[0].func.__name__ != "clamp")
     name = min((str(f.func) for f in arcs), default="")
-    return name and f"{name} has no bounds: by rounding at a pole it may be NaN"
+    return name and f"{name} {REMARKS['domain']}"
 
 
 def _truth(conditions: Sequence[sp.Expr], values: Values) -> NDArray[np.bool_]:

@@ -18,7 +18,7 @@ from rigidsym.tools.compare import quantities
 from rigidsym.tools.compare.comparison import Comparison, branch, domain, identified
 from rigidsym.tools.compare.program import UNNAMED, Formula, program_formulas
 from rigidsym.tools.compare.quantities import KnownQuantity, are_angles, are_body_rates
-from rigidsym.tools.compare.syntax import GRAMMARS, limits, patterns
+from rigidsym.tools.compare.syntax import GRAMMARS, REMARKS, limits, patterns
 
 SUFFIXES = tuple(GRAMMARS)
 _MOST_SYMBOLS = 13  # of the parallel-axis theorem
@@ -192,7 +192,7 @@ def _remark(finding: FormulaInFile, others: Sequence[FormulaInFile], text: str) 
         is_rate = patterns.derivative.search(name) is not None
         is_rate |= own not in UNNAMED and quantities.stem_of(own) != ""
         is_half = patterns.half.search("".join(_lines(text)[first - 1 : last])) is not None
-        return "as the rate of a quaternion it lacks the factor 1/2" * (is_rate and not is_half)
+        return REMARKS["rate"] * (is_rate and not is_half)
     (words, claims), own = _claims(finding.formula.function, text), _order(finding)
     is_certain = len(claims) == 1 and {*map(_order, others)} - {""} == {own}
     said = f"the {words} of {name} says {', '.join(claims.values())}"

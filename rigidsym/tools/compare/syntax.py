@@ -31,6 +31,7 @@ GRAMMARS, _KINDS, CALLS, SPELLINGS = (  # of a file, a type of node, a word, and
 )
 TYPES = {name: frozenset(types.split()) for name, types in _TABLES["types"].items()}
 CHANGES: dict[str, str] = _TABLES["changes"]
+REMARKS: dict[str, str] = _TABLES["remarks"]
 VIEWS: dict[str, str] = _TABLES["views"]
 patterns = SimpleNamespace(orders=[order for n in _TABLES["orders"].values() for order in n])
 limits = SimpleNamespace(**_TABLES["limits"])
