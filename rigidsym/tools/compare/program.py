@@ -833,8 +833,8 @@ class _Run:
         places = tuple((_last(n), self.unread.get(n) or min(lines)) for n in sorted(unread))
         formula = Formula(lines=lines, name=_last(name), forms=tuple(dict.fromkeys(forms)))
         formula = replace(formula, conditions=frozenset(self.conditions), names=names)
-        values = {names.get(s, s): self.expanded(v).xreplace(names) for s, v in known.items()}
-        formula = replace(formula, computed=values)
+        own = {s: self.expanded(known[s]).xreplace(names) for s in symbols & known.keys()}
+        formula = replace(formula, computed={names.get(s, s): value for s, value in own.items()})
         self.formulas.append(replace(formula, unread=places, is_final=is_final, is_flat=is_flat))
 
     # Expressions
