@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import replace
 from itertools import count
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import sympy as sp
 
@@ -29,6 +29,7 @@ from rigidsym.mechanics.singularities import singularities_of
 from rigidsym.models.rotation import RotationModel, depends_on_time
 
 if TYPE_CHECKING:
+    from rigidsym.mechanics.derivation import Consequence, FirstIntegral
     from rigidsym.mechanics.dynamics.flow import Flow
     from rigidsym.models.body import Body
     from rigidsym.models.forces import Forces
@@ -95,7 +96,8 @@ def derive(
         steps += moving
     arguments, definer, is_driven = values.arguments, chain, False
     functions: dict[str, Step] = {}
-    consequences, integrals = tuple[Any, ...](), tuple[Any, ...]()
+    consequences: tuple[Consequence, ...] = ()
+    integrals: tuple[FirstIntegral, ...] = ()
     named = [step.expression for step in steps]
     if motion:
         forces, definer = motion.forces, motion.names or chain

@@ -30,8 +30,7 @@ def render(program: Program, *, lean: str = "none") -> dict[str, str]:
     precisions = [p for p in PRECISIONS if lean in ("none", p.real)]
     facts = {"is_lean": is_lean, "has_floats": precisions[-1].suffix == "f", "tile": _TILE}
     about = _comment(remarks.about_module("c/header.txt.jinja", program, **facts))
-    sources = (kernel.original or kernel for kernel in program.kernels)
-    texts = (remarks.about_kernel("c/function.txt.jinja", kernel) for kernel in sources)
+    texts = (remarks.about_kernel("c/function.txt.jinja", kernel) for kernel in program.kernels)
     each = zip(program.kernels, map(_comment, texts), strict=True)
     header = _rendered(
         "c/header.h.jinja", program, about=about, each=each, is_lean=is_lean, precisions=precisions

@@ -66,8 +66,7 @@ def _function(kernel: Kernel) -> dict[str, object]:
     returned = "values" if kernel.shape else "values[0]"
     for size in reversed(kernel.shape[1:]):
         returned = f"_rows({returned}, {size})"
-    template, source = "javascript/function.txt.jinja", kernel.original or kernel
-    about = remarks.about_kernel(template, source, arguments=arguments)
+    about = remarks.about_kernel("javascript/function.txt.jinja", kernel, arguments=arguments)
     lines = [
         f"const {name} = {vector}[{_placed(place, k)}];"
         for vector, place, argument in arguments

@@ -105,8 +105,7 @@ def about_function(kernel: Kernel) -> str:
         rows.append((a.name, _leading(a.shape), ", ".join(names) + units))
     unit = f"in {kernel.unit}" if kernel.unit else ""
     rows.append(("returns", _leading(kernel.shape), unit))
-    template, table = "python/function.txt.jinja", remarks.table(rows)
-    texts = remarks.about_kernel(template, kernel.original or kernel, table=table)
+    texts = remarks.about_kernel("python/function.txt.jinja", kernel, table=remarks.table(rows))
     return docstring(texts, indent=4)
 
 

@@ -59,7 +59,8 @@ def about_module(template: str, program: Program, **facts: object) -> list[Parag
 
 @lru_cache(maxsize=256)
 def about_kernel(template: str, kernel: Kernel, **facts: object) -> list[Paragraph]:
-    """The paragraphs on a function."""
+    """The paragraphs on a function, the same for all that differ in names alone."""
+    kernel = kernel.original or kernel
     return paragraphs(
         template,
         kernel=kernel,
