@@ -446,7 +446,7 @@ class _Run:
         """mat3(...) of GLM, of which other libraries have rows, as arrays have."""
         if tree.declared_type in self.program.arrays:
             return value
-        self.refuse_if(not self.program.is_glm, tree)
+        self.refuse_if(not self.program.is_glm or _is_scalar(value), tree)
         return _unflattened(value).T
 
     def unpack(self, left: Tree, right: Tree) -> None:
@@ -1071,7 +1071,7 @@ class _Run:
         if condition.kind == "call" and condition.called == "isclose":
             sign, parts = "==", parts[1:3]
         values = [self.tried(each) for each in parts]
-        if re.fullmatch("[<>]=?|[=!~]==?", sign) and all(map(_is_scalar, values)):
+        if re.fullmatch("[<>]=?|[=!~]==?", sign) and [*map(_is_scalar, values)] == [True, True]:
             for own, other, signs in ((*values, "<>!"), (*values[::-1], "><!")):
                 small = [s for s in other.free_symbols if patterns.small.search(s.name)]
                 number = self.expanded(other).xreplace(dict.fromkeys(small, sp.Float(1e-6)))
