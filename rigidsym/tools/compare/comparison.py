@@ -483,10 +483,10 @@ def _parts(
         if len(w) != 3 or not all(e.has(*w) and e.is_polynomial(*w) for e in formula):
             continue
         others = formula.xreplace(dict.fromkeys(w, sp.S.Zero))
-        part = (formula - others).expand()
-        opposite = part.xreplace({s: -s for s in w})
-        if any(others) and (part - sign * opposite).expand().is_zero_matrix:
-            yield w, sp.ImmutableMatrix(part), others
+        parts = [m - others for m in (formula, formula.xreplace({s: -s for s in w}))]
+        own, opposite = (known.evaluated(part, known.sample(formula)) for part in parts)
+        if any(others) and known.near(own, sign * opposite).all():
+            yield w, sp.ImmutableMatrix(parts[0].expand()), others
 
 
 def _nearest(trials: Sequence[_Trial], least: float, expected: Sequence[str] = ()) -> list[Reading]:
