@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from itertools import chain
+from operator import itemgetter
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
@@ -116,12 +117,11 @@ def _searched(paths: Sequence[Path], options: Options) -> int:
 
 def _records(expected: str | None, is_active: bool, file: Path) -> list[dict[str, Any]]:
     """The formulas of a file: where they are, what they are, and whether that is a fault."""
-    axes = derive(expected, "rotation_matrix").model if expected is not None else None
-    records = []
-    order = (" ".join(turn.axis for turn in axes.turns),) if axes else ()
-    for formula in search(file, order):
+    records, model = [], expected is not None and derive(expected, "rotation_matrix").model
+    order = " ".join(turn.axis for turn in model.turns) if model else ""
+    for formula in search(file, (order,) if order else ()):
         record, comparison = formula.record(), formula.comparison
-        other = disappointment(comparison, axes, is_active=is_active) if comparison else ""
+        other = disappointment(comparison, order, is_active=is_active) if comparison else ""
         record |= {"unexpected": other or None, "is_unreadable": comparison is None}
         record |= {"is_failure": formula.is_failure, "is_end": formula.formula.is_end}
         record["text"] = f"{formula.text}; {other}" if other else formula.text
@@ -131,10 +131,9 @@ def _records(expected: str | None, is_active: bool, file: Path) -> list[dict[str
 
 
 _KEYS = ("path", "name", "formula", "unexpected")  # what a fault keeps if lines are added above it
-
-
-def _key(record: dict[str, Any]) -> list[Any]:
-    return [record[key] for key in _KEYS]
+_key = itemgetter(*_KEYS)
+_line = "{path}:{line}: {text}".format_map
+_json = partial(json.dumps, indent=1, ensure_ascii=False)
 
 
 def _faults(baseline: Path) -> list[dict[str, Any]]:
@@ -151,11 +150,3 @@ def _faults(baseline: Path) -> list[dict[str, Any]]:
     if is_old:
         raise DataError(f"{baseline}: made by an earlier version; write it again")
     return faults
-
-
-def _line(record: dict[str, Any]) -> str:
-    return "{path}:{line}: {text}".format_map(record)
-
-
-def _json(data: Any) -> str:
-    return json.dumps(data, indent=1, ensure_ascii=False)

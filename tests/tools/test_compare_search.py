@@ -85,7 +85,7 @@ PRODUCTS = {
 @pytest.mark.parametrize(("text", "read"), PRODUCTS.items(), ids=range(len(PRODUCTS)))
 def test_products_and_transposes_of_matrices_are_read_in_latex(text, read):
     found = rs.compare(text)
-    own = f"{found.found}, {found.found.arrangement}".strip(", ")
+    own = f"{found.found}, {found.arrangement}".strip(", ")
     assert (own, found.is_proved) == (read, True)
 
 
@@ -1015,8 +1015,10 @@ PROGRAMS = {each["name"]: each for each in tomllib.loads(TEXT)["program"]}
 
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_programs_of_the_table_are_read(tmp_path, name):
-    found = [str(each) for each in found_in(tmp_path, name, PROGRAMS[name]["text"])]
+    findings = found_in(tmp_path, name, PROGRAMS[name]["text"])
+    found = [str(each) for each in findings]
     assert len(found) == len(PROGRAMS[name]["said"]), found
+    assert all((each.record()["branch"] or "") in str(each) for each in findings)
     assert all(map(operator.contains, found, PROGRAMS[name]["said"])), found
 
 

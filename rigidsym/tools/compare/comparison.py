@@ -7,11 +7,12 @@ sign, a factor) before those of single entries.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+import re
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from itertools import chain
+from itertools import chain, permutations
 from typing import Any
 
 import numpy as np
@@ -26,23 +27,19 @@ from rigidsym.system.resources import environment
 from rigidsym.tools.compare import quantities as known
 from rigidsym.tools.compare.language import spelled_out
 from rigidsym.tools.compare.program import Formula, formula_matrix, is_length
-from rigidsym.tools.compare.quantities import ANGLES, Array, Family, KnownQuantity, Names, Values
-from rigidsym.tools.compare.syntax import CHANGES, REMARKS
+from rigidsym.tools.compare.quantities import (
+    ANGLES,
+    QUATERNION,
+    Array,
+    Family,
+    KnownQuantity,
+    Names,
+    Values,
+)
+from rigidsym.tools.compare.syntax import CHANGES, REMARKS, SHAPES, WAYS, WHOLE, limits, patterns
 
-_MOST_REPAIRS = 2  # of a formula that nobody has named
-_MOST_OTHERS = 2  # quantities that are as near as the first
-_NEAR = 0.5  # share of entries that must be right for a formula to be close to another
-_NEAREST = 16  # readings of which the wrong entries are repaired
-_MOST_OPERATIONS = 200  # of an entry in which each part is changed
-_MOST_ENTRIES = 3  # that may be wrong, each by one change
 _ANGLES = ["phi", "theta", "psi"]  # if nobody has chosen their names
 _alike: Callable[..., Any] = partial(np.isclose, rtol=0, atol=1e-3)
-_WHOLE: tuple[tuple[str, str, Callable[[Any], Any]], ...] = (  # changes of all entries together
-    ("transpose", "the formula is the transpose", lambda m: m.T),
-    ("sign", "all signs are the other way round", lambda m: -m),
-    ("factor", "a factor 2 is missing", lambda m: 2 * m),
-    ("factor", "a factor 1/2 is missing", lambda m: m / 2),
-)
 
 
 @dataclass(frozen=True)
@@ -65,10 +62,10 @@ class Reading:
     names: Names
     agreement: NDArray[np.bool_]  # where the formula is right: (points, rows, columns)
 
-    @property
-    def share(self) -> float:
-        """Of the entries that are right."""
-        return float(self.agreement.all(axis=0).mean())
+    @cached_property
+    def is_right(self) -> NDArray[np.bool_]:
+        """Of each entry."""
+        return np.asarray(self.agreement.all(axis=0))
 
     @cached_property
     def values(self) -> Values:
@@ -143,6 +140,8 @@ class Comparison:
     repairs: tuple[Repair, ...] = ()
     is_proved: bool = False  # that the repaired formula is what was found
     counterexample: str = ""  # where the formula is wrong, if it is right for some angles only
+    contradicts: tuple[int, ...] = ()  # lines of other branches, with the conjugate
+    place: tuple[int, int] | None = None  # of the entry that is wrong in a branch
     branch: str = ""  # where another branch is wrong, or a remark on one that is right
     is_reflection: bool = False
     form: str = ""  # how a program writes it: transposed, or with a factor that is left out
@@ -157,7 +156,7 @@ class Comparison:
         opposite = " and ".join(sorted(name for name, kind in odd if kind % 2))
         turned = " and ".join(sorted(name for name, kind in odd if kind > 1))
         words = (
-            self.found.arrangement if self.found else "",
+            *(WAYS[way] for way in (self.found.ways if self.found else ())),
             opposite and f"with the opposite sense of {opposite} (a convention or wrong signs)",
             turned and f"with {turned} from another axis, a quarter or half turn away",
             "".join(f"if {name} = {length}" for name, length in self.supposed.items()),
@@ -176,7 +175,7 @@ class Comparison:
     @property
     def is_equal(self) -> bool:
         """Whether the formula is right as it stands."""
-        return self.found is not None and not self.repairs and not self.counterexample
+        return bool(self.found) and not (self.repairs or self.counterexample or self.contradicts)
 
     @property
     def is_wrong(self) -> bool:
@@ -186,23 +185,19 @@ class Comparison:
     def record(self) -> dict[str, Any]:
         """The comparison as plain data for JSON."""
         found = self.found
-        return {
-            "formula": [[str(entry) for entry in row] for row in self.formula.tolist()],
-            "equal": self.is_equal,
-            "proved": self.is_proved,
-            "counterexample": self.counterexample or None,
-            "reflection": self.is_reflection,
-            "rotation": found and found.rotation,
-            "quantity": found and found.quantity,
-            "arrangement": self.arrangement,
-            "names": self._called(),
-            "others": [other.record() for other in self.others],
-            "repairs": [
-                {"kind": each.kind, "words": each.words, "entry": each.place and [*each.place]}
-                | {"after": each.after and str(each.after)}
-                for each in self.repairs
-            ],
-        }
+        facts: dict[str, Any] = {"equal": self.is_equal, "proved": self.is_proved}
+        facts |= {"counterexample": self.counterexample or None, "branch": self.branch or None}
+        facts |= {"reflection": self.is_reflection, "contradicts": [*self.contradicts]}
+        facts |= {"rotation": found and found.rotation, "quantity": found and found.quantity}
+        facts |= {"arrangement": self.arrangement, "names": self._called()}
+        facts |= {"others": [other.record() for other in self.others]}
+        repairs = [
+            {"kind": each.kind, "words": each.words, "entry": each.place and [*each.place]}
+            | {"after": each.after and str(each.after)}
+            for each in self.repairs
+        ]
+        formula = [[str(entry) for entry in row] for row in self.formula.tolist()]
+        return {"formula": formula, **facts, "repairs": repairs}
 
     def text(self) -> str:
         """The findings in sentences."""
@@ -213,17 +208,15 @@ class Comparison:
                 name = called.get(own) or known.stem_of(called.get(f"{own}_dot", ""))
                 calls += [(own, name, axis)] if name else []
         fixed = asked.coordinates.items() if asked and asked.has_own_names else ()
-        facts: dict[str, Any] = vars(self) | {
-            "arrangement": self.arrangement,
-            "fixed": [(own, own, axis) for own, axis in fixed],
-            "calls": calls if any(own != name for own, name, _ in calls) else [],
-            "others": [other.text() for other in self.others],
-            "points": known.POINTS,
-            "shape": in_words(self.formula.shape),
-            "expected": in_words(asked.matrix.shape if asked else self.formula.shape),
-            "names": sorted(map(str, self.formula.free_symbols)),
-        }
-        return str(environment().get_template("compare/comparison.txt.jinja").render(facts))
+        calls = calls if any(own != name for own, name, _ in calls) else []
+        shapes = self.formula.shape, asked.matrix.shape if asked else self.formula.shape
+        facts: dict[str, Any] = dict(zip(("shape", "expected"), map(in_words, shapes), strict=True))
+        facts |= {"arrangement": self.arrangement, "calls": calls, "points": known.POINTS}
+        facts |= {"fixed": [(own, own, axis) for own, axis in fixed]}
+        facts |= {"others": [other.text() for other in self.others]}
+        facts |= {"names": sorted(map(str, self.formula.free_symbols))}
+        template = environment().get_template("compare/comparison.txt.jinja")
+        return str(template.render(vars(self) | facts))
 
     def _called(self) -> dict[str, str]:
         """Names of the user by those of the quantity that was found."""
@@ -263,10 +256,9 @@ def compare(
         axes = None if is_named else rotation.model.request.get("sequence")  # ZYX
         goal = known.of_motion(rotation, quantity, axes or rotation.name)
         chosen = rotation.model.request.get("angles", _ANGLES)
-        others = [n for n in map(str, known.symbols_in(matrix)[1]) if n not in chosen]
+        others = ", ".join(sorted({*map(str, known.symbols_in(matrix)[1])} - {*chosen}))
         if others and chosen != _ANGLES:
-            there = ", ".join(sorted(others))
-            raise ExpressionError(f"angles {','.join(chosen)}: the formula has {there}")
+            raise ExpressionError(f"angles {','.join(chosen)}: the formula has {others}")
     else:
         goal = known.target(rotation, quantity)
     angles = [*goal.coordinates]
@@ -275,12 +267,11 @@ def compare(
 
 def _checked(formula: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
     """Raises ExpressionError if the formula cannot be a quantity of the catalogue."""
-    shape = in_words(formula.shape)
-    if formula.shape not in known.SHAPES:
-        read = f"{formula[0]} is {shape}" if len(formula) == 1 else f"the formula is {shape}"
+    shape, first = in_words(formula.shape), str(formula[0]) if len(formula) == 1 else "the formula"
+    if formula.shape not in SHAPES:
         raise ExpressionError(
-            f"{read}; expected a matrix of 3x3, 3x4, 4x3 or 4x4, or a vector of 3 or 4 entries, as "
-            "in [c -s 0; s c 0; 0 0 1]"
+            f"{first} is {shape}; expected a matrix of 3x3, 3x4, 4x3 or 4x4, or a vector of 3 or 4 "
+            "entries, as in [c -s 0; s c 0; 0 0 1]"
         )
     if not formula.free_symbols:
         raise ExpressionError(f"{shape} of numbers only; expected a formula with names of angles")
@@ -304,17 +295,17 @@ def as_matrix(formula: Any) -> sp.ImmutableMatrix:
 
 def _check_brackets(text: str) -> None:
     """Raises ExpressionError for a bracket without its other half."""
-    ends, stack = {"(": ")", "[": "]", "{": "}", "": "nothing"}, [("", "nothing")]
-    for column, letter in enumerate(text, 1):
-        this = f"{letter!r} at character {column}"
-        if letter in ends:
-            stack.append((letter, this))
-        elif letter in ends.values():
-            begin, other = stack.pop()
-            if ends[begin] != letter:
-                raise ExpressionError(f"{this} closes {other}")
-    if len(stack) > 1:
-        raise ExpressionError(f"{stack[-1][1]} is not closed")
+    rest, before = re.sub(r"[^][(){}]", " ", text), ""
+    while rest != before:  # pairs with nothing left between them
+        before, rest = rest, re.sub(r"\( *\)|\[ *\]|\{ *\}", lambda pair: " " * len(pair[0]), rest)
+    left = [f"{match[0]!r} at character {match.start() + 1}" for match in re.finditer(r"\S", rest)]
+    closing = next((k for k, place in enumerate(left) if place[1] in ")]}"), None)
+    if closing is not None:
+        raise ExpressionError(
+            f"{left[closing]} closes {left[closing - 1] if closing else 'nothing'}"
+        )
+    if left:
+        raise ExpressionError(f"{left[-1]} is not closed")
 
 
 def in_words(shape: tuple[int, int]) -> str:
@@ -343,48 +334,51 @@ def identified(
         for equal in trial.readings(trial.agreement.all(axis=(2, 3, 4))):
             return _proved(equal, asked)
         trials.append(trial)
-    unknown = Comparison(formula=formula, asked=asked)
-    changes = _ways(formula) if is_in_program else () if only_equal else _changes(formula)
-    for kind, words, changed in changes:
-        if (whole := identified(changed, asked, only_equal=True)).found:
-            if not kind:
-                return replace(whole, form=words)
-            is_passive = kind == "transpose" and whole.found.quantity == "rotation_matrix"
-            words += " (passive)" * is_passive
-            return replace(whole, formula=formula, repairs=(Repair(kind, words, changed),))
-    comparison = None if only_equal else _close(formula, trials, asked, expected)
-    is_odd = comparison is None or "of twice the angles" in comparison.arrangement
-    is_of_vector = any(t.names and t.family[0].rotation in known.OF_VECTORS for t in trials)
-    is_odd &= is_of_vector and asked is None and not only_equal
-    for kind, words, changed in _everywhere(formula) if is_odd else ():
+    for form, changed in _ways(formula) if is_in_program else ():
         if (whole := identified(changed, only_equal=True)).found:
-            return replace(whole, formula=formula, repairs=(Repair(kind, words, changed),))
-    parts = _parts(formula) if is_in_program and comparison is None else ()
-    for w, part, others in parts:
-        if (own := identified(part, only_equal=True)).found:
-            return replace(own, left_out=f"terms without {', '.join(map(str, w))}")
+            return replace(whole, form=form)
+    changes = () if is_in_program or only_equal else _changes(formula)
+    comparison = mended(formula, changes, asked)
+    if not only_equal:
+        comparison = comparison or _decided(formula, trials, asked)
+        comparison = comparison or _close(formula, trials, asked, expected)
+    for w, part, others in _parts(formula) if is_in_program and comparison is None else ():
+        if (whole := identified(part, only_equal=True)).found:
+            return replace(whole, left_out=f"terms without {w}")
         # The gyroscopic torque may have the wrong sign.
-        if not only_equal and (own := identified(others - part, only_equal=True)).found:
-            words = f"the terms with {', '.join(map(str, w))} should have the opposite sign"
-            return replace(own, formula=formula, repairs=(Repair("sign", words, others - part),))
-    return comparison or unknown
+        opposite = Repair(
+            "sign", f"the terms with {w} should have the opposite sign", others - part
+        )
+        if not only_equal and (mend := mended(formula, [opposite])):
+            return mend
+    return comparison or Comparison(formula=formula, asked=asked)
+
+
+def mended(
+    formula: sp.ImmutableMatrix, changes: Iterable[Repair], asked: KnownQuantity | None = None
+) -> Comparison | None:
+    """The comparison after the first change that makes a formula right."""
+    for change in (each for each in changes if each.formula != formula):
+        if (whole := identified(change.formula, asked, only_equal=True)).found:
+            return replace(whole, formula=formula, repairs=(change,))
+    return None
 
 
 def _close(
-    formula: sp.ImmutableMatrix,
-    trials: Sequence[_Trial],
-    asked: KnownQuantity | None,
-    expected: Sequence[str],
+    formula: sp.ImmutableMatrix, trials: Sequence[_Trial], asked: Any, expected: Sequence[str]
 ) -> Comparison | None:
-    """The quantity, or the one asked for, that a few changes of entries would make of a formula."""
-    if decided := _decided(formula, trials, asked):
-        return decided
+    """The quantity, or the one asked for, that a few changes would make of a formula."""
     if asked is None:
-        return _repaired(_nearest(trials, _NEAR, expected)[:_NEAREST])
-    own = identified(formula, only_equal=True)
-    if own.found:
-        repair = Repair("convention", f"this is {own.found}", formula)
-        return replace(own, asked=asked, repairs=(repair,))
+        comparison = _repaired(_nearest(trials, limits.least_right, expected)[: limits.nearest])
+        goals = [trial.family[0] for trial in trials if trial.names]
+        are_turns = (g.quantity == QUATERNION or g.rotation in known.OF_VECTORS for g in goals)
+        goal = comparison.found if comparison else None
+        if any(are_turns) and (goal is None or "twice_the_angles" in goal.ways):
+            comparison = mended(formula, _everywhere(formula)) or comparison
+        return comparison
+    if (other := identified(formula, only_equal=True)).found:
+        repair = Repair("convention", f"this is {other.found}", formula)
+        return replace(other, asked=asked, repairs=(repair,))
     for nearest in _nearest(trials, 0)[:1]:
         if repairs := entry_repairs(nearest):
             return _proved(nearest, asked, repairs)
@@ -398,56 +392,72 @@ def _repaired(nearest: Sequence[Reading]) -> Comparison | None:
     """
     candidates: list[tuple[bool, list[Repair], Reading]] = []
     for reading in nearest:
-        if candidates and reading.share < candidates[0][-1].share:
+        right = reading.is_right
+        if candidates and right.mean() < candidates[0][-1].is_right.mean():
             break
         repairs = entry_repairs(reading)
         is_small = all(repair.kind != "entry" for repair in repairs)
+        is_odd = any(known.oddness(meant) > 1 for meant in reading.names.values())
         # If all other entries are right, and these are many, one may be wrong in any way.
-        names = np.array([bool(entry.free_symbols) for entry in reading.formula])
-        is_right = reading.agreement.all(axis=0).ravel()
-        least = _MOST_ENTRIES if reading.formula.cols == 1 else 2 * _MOST_ENTRIES
-        is_rich = names[~is_right].all() and (names & is_right).sum() >= least
-        if repairs and len(repairs) <= (_MOST_REPAIRS if is_small else is_rich):
+        names = np.array(reading.formula.applyfunc(lambda entry: len(entry.free_symbols)), bool)
+        least = limits.most_wrong if reading.formula.cols == 1 else 2 * limits.most_wrong
+        is_rich = names[~right].all() and (names & right).sum() >= least
+        # Angles from other axes are so many conventions that one of them is near by chance.
+        most = limits.most_repairs - is_odd if is_small else is_rich
+        if repairs and len(repairs) <= most:
             candidates.append((is_small, repairs, reading))
     small = [each for each in candidates if each[0]]
     comparisons: dict[sp.ImmutableMatrix, Comparison] = {}
     for _, repairs, reading in small or candidates[:1]:
         comparisons.setdefault(repairs[-1].formula, _proved(reading, None, repairs))
     proved = [each for each in comparisons.values() if each.found]
-    return replace(proved[0], others=tuple(proved[1 : 1 + _MOST_OTHERS])) if proved else None
+    return replace(proved[0], others=tuple(proved[1 : 1 + limits.most_others])) if proved else None
 
 
-def _everywhere(formula: sp.ImmutableMatrix) -> Iterator[tuple[str, str, sp.ImmutableMatrix]]:
-    """(kind, words, changed formula): changes of a part that most entries have.
+def _everywhere(formula: sp.ImmutableMatrix) -> Iterator[Repair]:
+    """Changes of a part that most entries have, and of an angle in all its sines.
 
     1 + cos θ in place of 1 − cos θ spoils all entries of Rodrigues' formula.
     """
     for part in sorted(formula.atoms(sp.sin, sp.cos, sp.Add, sp.Pow), key=str):
-        number, others = part.as_coeff_Add()
-        changes = [("sign", number - others)] * bool(number and others.count_ops() < 3)
-        changes += [("factor", k * part) for k in _SCALES if part.is_Pow]
+        terms = part.args if part.is_Add else ()
+        changes = [("sign", part, part - 2 * term) for term in terms]
+        # of a square root, which has the exponent 1/2 in one entry and -1/2 in others
+        changes += [("factor", sp.sqrt(part), k * sp.sqrt(part)) for k in _SCALES if terms[2:]]
+        changes += [("factor", part, k * part) for k in _SCALES if part.is_Pow]
         angles = [k * part.args[0] for k in _SCALES if part.is_Function]
-        changes += [("half angle", part.func(angle)) for angle in angles]
-        is_common = sum(entry.has(part) for entry in formula) >= _MOST_ENTRIES
-        for kind, after in changes if is_common else ():
-            words = f"{part} should be {after} in all entries ({CHANGES[kind]})"
-            yield kind, words, formula.xreplace({part: after})
+        changes += [("half angle", part, part.func(angle)) for angle in angles]
+        is_common = sum(entry.has(part) for entry in formula) >= limits.most_wrong
+        for kind, before, after in changes if is_common else ():
+            words = f"{before} should be {after} in all entries ({CHANGES[kind]})"
+            after = after if before == part else after**2
+            yield Repair(kind, words, formula.xreplace({part: after}))
+    yield from (halved(formula, angle) for angle in known.symbols_in(formula)[0])
 
 
-def _changes(formula: sp.ImmutableMatrix) -> Iterator[tuple[str, str, sp.ImmutableMatrix]]:
-    """(kind, words, changed formula): changes of all entries together.
+def halved(formula: sp.ImmutableMatrix, *angles: sp.Symbol) -> Repair:
+    """The change of some angles into half of them, unless their names say that they are."""
+    halves = {a: a / 2 for a in angles if patterns.whole_angle.fullmatch(a.name)}
+    before, after = (", ".join(map(str, each)) for each in (halves, halves.values()))
+    words = f"{before} should be {after} in all entries ({CHANGES['half angle']})"
+    return Repair("half angle", words, formula.xreplace(halves))
+
+
+def _changes(formula: sp.ImmutableMatrix) -> Iterator[Repair]:
+    """Changes of all entries together.
 
     Angles are not changed as a whole: their conventions include transposes, orders and senses.
     """
-    for kind, words, change in _WHOLE if not known.are_angles(formula) else ():
+    for words, (kind, factor) in WHOLE.items() if not known.are_angles(formula) else ():
         if kind != "transpose" or formula.rows == formula.cols:
-            yield kind, words, change(formula)
+            changed = formula.T if kind == "transpose" else sp.Rational(factor) * formula
+            yield Repair(kind, words, changed)
 
 
-def _ways(formula: sp.ImmutableMatrix) -> Iterator[tuple[str, str, sp.ImmutableMatrix]]:
-    """("", words, formula): other ways of writing a formula, which a program may mean."""
+def _ways(formula: sp.ImmutableMatrix) -> Iterator[tuple[str, sp.ImmutableMatrix]]:
+    """(words, formula): other ways of writing a formula, which a program may mean."""
     if formula.shape == (3, 3):  # by columns, or for rows of rates
-        yield "", "transposed", formula.T
+        yield "transposed", formula.T
     values = known.sample(formula)
     for symbol in values:
         functions = formula.atoms(sp.sin, sp.cos, sp.tan)
@@ -465,13 +475,11 @@ def _ways(formula: sp.ImmutableMatrix) -> Iterator[tuple[str, str, sp.ImmutableM
             is_factor = not any((part / symbol).has(symbol) for part in scaled)
             twice = known.evaluated(scaled, {**values, symbol: 2 * values[symbol]})
             if is_factor or known.near(twice, 2 * known.evaluated(scaled, dict(values))).all():
-                yield "", f"up to the factor {symbol}", formula.xreplace({symbol: sp.S.One})
+                yield f"up to the factor {symbol}", formula.xreplace({symbol: sp.S.One})
 
 
-def _parts(
-    formula: sp.ImmutableMatrix,
-) -> Iterator[tuple[tuple[sp.Symbol, ...], sp.ImmutableMatrix, sp.ImmutableMatrix]]:
-    """(w, part, others): the terms with an angular velocity w, and those without.
+def _parts(formula: sp.ImmutableMatrix) -> Iterator[tuple[str, Any, sp.ImmutableMatrix]]:
+    """("p, q, r", part, others): the terms with an angular velocity, and those without.
 
     The others are torques in Euler's equations, and corrections in rates of a quaternion.
     """
@@ -486,7 +494,7 @@ def _parts(
         parts = [m - others for m in (formula, formula.xreplace({s: -s for s in w}))]
         own, opposite = (known.evaluated(part, known.sample(formula)) for part in parts)
         if any(others) and known.near(own, sign * opposite).all():
-            yield w, sp.ImmutableMatrix(parts[0].expand()), others
+            yield ", ".join(map(str, w)), sp.ImmutableMatrix(parts[0].expand()), others
 
 
 def _nearest(trials: Sequence[_Trial], least: float, expected: Sequence[str] = ()) -> list[Reading]:
@@ -494,20 +502,23 @@ def _nearest(trials: Sequence[_Trial], least: float, expected: Sequence[str] = (
     readings: list[Reading] = []
     for trial in trials:
         # With one angle, a mirror is as near as the rotation.
-        least_odd = 1 - 1 / len(trial.formula) if len(trial.formula.free_symbols) > 1 else 2
+        least_odd = 1 - 2 / len(trial.formula) if len(trial.formula.free_symbols) > 1 else 2
         odd = [any(known.oddness(x) > 1 for x in each.values()) for each in trial.names]
         share = trial.agreement.all(axis=2).mean(axis=(-2, -1))
-        # Angles from other axes are so many conventions that one of them is near by chance.
         readings += trial.readings(share >= np.where(odd, least_odd, least)[:, None])
         if trial.formula.shape == (3, 1):  # two of three entries exchanged: one is right
             for order in ([1, 0, 2], [2, 1, 0], [0, 2, 1]):
                 exchanged = trial.compared(trial.numbers[..., order, :])
                 readings += trial.readings(exchanged.all(axis=(2, 3, 4)))
 
-    def rank(each: Reading) -> tuple[float, int, int, bool]:
-        odd, words = sum(map(known.oddness, each.names.values())), each.goal.arrangement
-        is_other = each.goal.axes not in (expected or ["z y x"])
-        return -each.share, odd, len(words and words.split(", ")), is_other
+    def rank(each: Reading) -> tuple[Any, ...]:
+        odd = sum(map(known.oddness, each.names.values()))
+        return (
+            -each.is_right.mean(),
+            odd,
+            len(each.goal.ways),
+            each.goal.axes not in (expected or ["z y x"]),
+        )
 
     return sorted(readings, key=rank)
 
@@ -518,7 +529,7 @@ def _decided(
     """What is known without a look at single entries."""
     # The negative of a reflection may be the wanted rotation. If it is not, det = −1 is the
     # finding, and no repair of entries is looked for.
-    if known.is_mirror(formula):
+    if formula.shape == (3, 3) and known.is_mirror(formula):
         return Comparison(formula=formula, asked=asked, is_reflection=True)
     for trial in (each for each in trials if not each.family[0].is_numeric):
         is_right: Any = trial.agreement.all(axis=(3, 4))
@@ -568,11 +579,11 @@ def _at_poles(case: Comparison, goal: KnownQuantity, conditions: Any) -> Compari
     At a pole, one of two angles may have any value. Two points beside it, almost at the same
     rotation, tell how the other follows.
     """
-    turn, names = known.target(goal.rotation, known.QUATERNION), case.names or {}
+    turn, names = known.target(goal.rotation, QUATERNION), case.names or {}
 
     def at(*angles: Array) -> Values:
         q = known.evaluated(turn.matrix, dict(zip(turn.inputs["q"], angles, strict=True)))[..., 0].T
-        q[1:] *= -1 if "transposed" in goal.arrangement else 1
+        q[1:] *= -1 if "of_transpose" in goal.ways else 1
         return known.named(names, dict(zip(goal.inputs["q"], q, strict=True)))
 
     def circle(matrix: sp.MatrixBase, values: Values) -> Array:
@@ -591,19 +602,22 @@ def _at_poles(case: Comparison, goal: KnownQuantity, conditions: Any) -> Compari
     shift = (own / right)[:, [free]] ** changes[:, [free]]
     wanted = right * shift**changes
     # Where both arguments of an arc tangent vanish, the values on both sides differ.
-    is_sure = _truth(conditions, beside) & _alike(own, circle(case.formula, beyond)).all(axis=1)
-    if _truth(conditions, known.named(names, dict(goal.points))).any() or not is_sure.any():
-        return None
-    is_wrong = is_sure & ~_alike(own, wanted).all(axis=1)
-    if not is_wrong.any():
+    is_sure, elsewhere = _alike(own, circle(case.formula, beyond)), dict(goal.points)
+    is_there = _truth(conditions, beside) & ~_truth(conditions, known.named(names, elsewhere)).any()
+    is_odd = (changes == 0) & is_sure & ~_alike(own, right)  # the middle angle, whatever the others
+    is_sure = is_sure.all(axis=1)
+    is_wrong = is_there & (is_odd.any(axis=1) | is_sure & ~_alike(own, wanted).all(axis=1))
+    if not is_wrong.any() and (is_sure & is_there).any():
         # the conditions are false where an arc sine in all of them has no value
-        remarks = ["is right at a pole", *set(map(domain, conditions))]
+        remarks = ["is right at a pole (gimbal lock)", *set(map(domain, conditions))]
         return replace(case, branch="; ".join(remarks) if all(remarks) else remarks[0])
-    if "opposite sense" in goal.arrangement:  # the other formula may be the wrong one
+    if not is_wrong.any() or {*known.SENSES} & {*goal.ways}:  # or the other formula is wrong
         return None
-    angles = (np.angle(x[is_wrong.argmax()]).round(4) + 0.0 for x in (right, own, wanted))
-    words = "{} becomes {}, right is {}".format(*map(np.ndarray.tolist, angles))
-    return replace(case, branch="at a pole", counterexample=words)
+    k = is_wrong.argmax()
+    place = (int(_alike(own, wanted)[k].argmin()) + 1, 1)
+    angles = (tuple((np.angle(x[k]).round(4) + 0.0).tolist()) for x in (right, own, wanted))
+    words = "for the rotation by {} it gives {}, right is {}".format(*angles)
+    return replace(case, branch="at a pole (gimbal lock)", counterexample=words, place=place)
 
 
 def _small_angles(case: Comparison, goal: KnownQuantity, conditions: Any) -> Comparison | None:
@@ -621,7 +635,7 @@ def _small_angles(case: Comparison, goal: KnownQuantity, conditions: Any) -> Com
     own, true = (np.fft.fft(values, axis=1) * scale).round(9)
     if not is_there[0] or is_there[-1] or own[count // 2 :].any():
         return None
-    if goal.quantity == known.QUATERNION and (own[0] * true[0]).real.sum() < 0:
+    if goal.quantity == QUATERNION and (own[0] * true[0]).real.sum() < 0:
         own = -own  # the same rotation
     is_other = ~np.isclose(own, true, rtol=1e-3)[: count // 2]
     # A series may end early, in each of its parts, but not before its first term.
@@ -630,11 +644,13 @@ def _small_angles(case: Comparison, goal: KnownQuantity, conditions: Any) -> Com
     if not is_wrong.any():
         order = np.append(is_other.any(axis=(1, 2)), True).argmax() - 1
         return replace(case, branch=f"agrees to order {order} for small angles")
-    k, i, j = np.argwhere(is_wrong)[0]
-    entry = f"({i + 1}, {j + 1})" if case.formula.cols > 1 else i + 1
-    words = f"along (2, 3, 6)x/7, the coefficient of x^{k} in entry {entry} is "
-    words += f"{own[k, i, j].real + 0:.4g}, right is {true[k, i, j].real + 0:.4g}"
-    return replace(case, branch="for small angles", counterexample=words)
+    k, i, j = map(int, np.argwhere(is_wrong)[0])
+    place = (i + 1, j + 1)
+    terms = (f"{x[k, i, j].real + 0:.4g}" + f"*x^{k}" * bool(k) for x in (own, true))
+    line = "axis (2, 3, 6)/7 and the angle x" if q[3:] else "vector (2, 3, 6)*x/7"
+    entry = place if case.formula.cols > 1 else i + 1
+    words = "with the {}, entry {} has the term {}, right is {}".format(line, entry, *terms)
+    return replace(case, branch="for small angles", counterexample=words, place=place)
 
 
 def _proved(
@@ -663,7 +679,7 @@ def entry_repairs(reading: Reading) -> list[Repair]:
     formula, changed, goal = reading.formula, reading.formula.as_mutable(), reading.goal
     if formula.shape != goal.matrix.shape:
         return []
-    wrong = [(int(i), int(j)) for i, j in np.argwhere(~reading.agreement.all(axis=0))]
+    wrong = [(int(i), int(j)) for i, j in np.argwhere(~reading.is_right)]
     places = [(i + 1, j + 1) for i, j in wrong]  # counted from 1, as people do
     called = places if formula.cols > 1 else [row for row, _ in places]
     # Two exchanged entries are one mistake, not two.
@@ -673,17 +689,15 @@ def entry_repairs(reading: Reading) -> list[Repair]:
         if reading.agrees(changed, goal.values):
             words, fixed = "entries {} and {} are exchanged".format(*called), changed.as_immutable()
             return [Repair("exchange", words, fixed, places[0])]
-    if len(wrong) > min(_MOST_ENTRIES, max(1, len(formula) // 3)):
+    if len(wrong) > min(limits.most_wrong, max(1, len(formula) // 3)):
         return []
     repairs: list[Repair] = []
     changed = formula.as_mutable()
     for entry, place, where in zip(wrong, places, called, strict=True):
         kind, changed[entry] = _entry(reading, entry)
-        after = changed[entry]
-        words = f"entry {where}: {formula[entry]} should be {after}"
+        words = f"entry {where}: {formula[entry]} should be {changed[entry]}"
         words += f" ({CHANGES[kind]})" if kind in CHANGES else ""
-        fixed = changed.as_immutable()
-        repairs.append(Repair(kind, words, fixed, place, after))
+        repairs.append(Repair(kind, words, changed.as_immutable(), place, changed[entry]))
     return repairs
 
 
@@ -691,7 +705,7 @@ def _entry(reading: Reading, place: tuple[int, int]) -> tuple[str, sp.Expr]:
     """The smallest change of an entry; the entry of the target if no small one is enough."""
     goal, before = reading.goal, reading.formula[place]
     wanted = goal.values[:, [place[0]], [place[1]]][:, None]
-    is_short = before.count_ops() <= _MOST_OPERATIONS
+    is_short = before.count_ops() <= limits.most_operations
     turns = sorted(reading.formula.atoms(*_SWAPPED), key=str)
     changes = set(variants(before, [*reading.names], turns)) if is_short else set()
     kinds = [*CHANGES]
@@ -701,11 +715,11 @@ def _entry(reading: Reading, place: tuple[int, int]) -> tuple[str, sp.Expr]:
             if reading.agrees(sp.Matrix([[after]]), wanted):
                 return kind, after
     # No single change is enough: the entry of the goal is written in the names of the formula.
-    back = {meant: symbol for symbol, meant in reading.names.items()}
-    return "entry", goal.matrix[place].xreplace(back)
+    return "entry", goal.matrix[place].xreplace({m: s for s, m in reading.names.items()})
 
 
 _SWAPPED = {sp.sin: sp.cos, sp.cos: sp.sin}
+_OTHERS = {**_SWAPPED, sp.asin: sp.acos, sp.acos: sp.asin}
 _SCALES = (sp.Rational(1, 2), sp.Integer(2))
 
 
@@ -722,31 +736,33 @@ def variants(
             if e.is_Pow and e.exp == 2:  # x y, mistyped as x x: one of two equal factors
                 yield kind, part * changed
     if e.is_Mul and e.args[0].is_even:  # two equal terms that have become one
-        half = e / 2
-        for kind, changed in variants(half, names, turns, inside=inside):
-            if kind == "index":
-                yield kind, half + changed
+        half = variants(e / 2, names, turns, inside=inside)
+        yield from ((kind, e / 2 + changed) for kind, changed in half if kind == "index")
+    if e.is_Mul and e.has(sp.Abs):  # √(2 x²), of x² + y²
+        yield from ((kind, sp.sqrt(changed)) for kind, changed in variants(e**2, names, turns))
     factors, (number, others) = e.args if e.is_Mul else (), e.as_coeff_Add()
     scales = (*_SCALES, *(1 / factor for factor in factors if factor.is_number))
-    is_square = e.is_Pow and e.exp == 2
+    sums, is_square = ((e, 0), (others, number)), e.is_Pow and e.exp == 2
+    are_squares = e.is_Add and all(term.as_coeff_Mul()[1].is_Pow for term in e.args)
     changes: dict[str, list[sp.Expr]] = {
         "sign": [-e, *[number - others, others - number] * bool(number and others)],
         "index": [s for s in names if e.is_Symbol and s != e],
-        "half angle" if inside else "factor": [
-            *(factor * e for factor in scales),
-            *(number + factor * others for factor in scales),
-        ],
+        # y² - z² that has become y² - y², and cos θ sin θ/cos θ
+        "cancelled": [e + a**2 - b**2 for a, b in permutations(names, 2) if are_squares],
+        "half angle" if inside else "factor": [k * x + y for k in scales for x, y in sums],
         "term": [e - term for term in e.args if e.is_Add],
         "product": [e / factor for factor in factors if not factor.is_number],
-        "sine and cosine": [_SWAPPED[e.func](*e.args)] if e.func in _SWAPPED else [],
+        "sine and cosine": [_OTHERS[e.func](*e.args)] if e.func in _OTHERS else [],
         "arguments": [sp.atan2(*e.args[::-1])] if e.func == sp.atan2 else [],
         "square": [e.base] if is_square else [e**2] * bool(e.is_Function or e.is_Symbol),
     }
-    if e.func == sp.atan:
+    if e.func == sp.atan:  # or atan2, if the second argument is positive
         above, below = e.args[0].as_numer_denom()
+        yield from variants(sp.atan2(above, below, evaluate=False), names, turns)
         changes["quadrant"] = [sp.atan2(sign * above, sign * below) for sign in (1, -1)]
     if not inside:
         changes["quotient"] = [e * turn**k for turn in turns for k in (2, -2)]
+        changes["cancelled"] += [e * turn / _SWAPPED[turn.func](*turn.args) for turn in turns]
         changes["quotient"] += [1 / e] * (e.is_Pow and abs(e.exp) == sp.S.Half)  # 1/s for s
         changes["product"] += [] if e.is_Add else [e * turn for turn in turns]
     yield from ((kind, changed) for kind in changes for changed in changes[kind])

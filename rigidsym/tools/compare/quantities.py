@@ -20,7 +20,7 @@ import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property, lru_cache, reduce
-from itertools import chain, combinations, permutations, product, starmap
+from itertools import chain, permutations, product, starmap
 from typing import Any
 
 import numpy as np
@@ -34,33 +34,25 @@ from rigidsym.mechanics.body import BodyValues
 from rigidsym.mechanics.conversions.function import half_turn, outer_product, product as product_of
 from rigidsym.models.rotation import rotation_of
 from rigidsym.motion import Motion, derive
-from rigidsym.tools.compare.syntax import patterns
+from rigidsym.tools.compare.syntax import SHAPES, limits, patterns
 
 Array = NDArray[Any]
 Values = dict[sp.Expr, Any]  # of expressions, at all points
 Names = Mapping[sp.Symbol, sp.Expr]  # of a formula, and what they mean
 
 NEAR_POINTS, POINTS = 4, 20  # with all angles in the first quadrant, and in all
-_TOLERANCE = 1e-9  # of numbers of order one, in double precision
 _FLOATS = Floats(np)
 
 
-def _points() -> Array:
-    """Values of each component of each argument, in all quadrants and of several turns.
-
-    They keep a distance of 0.2 from multiples of π/2: rates grow where a sine or a cosine is small,
-    and digits are lost. The last argument holds constants such as masses, which are positive.
-    """
-    random = np.random.default_rng(1775)
-    points = random.uniform(0.2, 1.3, (5, 64, POINTS))
-    quadrants = random.integers(-6, 7, points.shape)
-    quadrants[..., :NEAR_POINTS] = quadrants[-1] = 0
-    return points + quadrants * np.pi / 2
-
-
-TABLE = _points()
-AXES = [a + b + c for a, b, c in product("XYZ", repeat=3) if a != b != c]
-_THREE = (*AXES, *(axes.lower() for axes in AXES))
+# Values of each component of each argument, in all quadrants and of several turns. They keep a
+# distance of 0.2 from multiples of π/2: rates grow where a sine or a cosine is small, and digits
+# are lost. The last argument holds constants such as masses, which are positive.
+_random = np.random.default_rng(1775)
+TABLE: Array = _random.uniform(0.2, 1.3, (5, 64, POINTS))
+_quadrants = _random.integers(-6, 7, TABLE.shape)
+_quadrants[..., :NEAR_POINTS] = _quadrants[-1] = 0
+TABLE += _quadrants * np.pi / 2
+_THREE = tuple(a + b + c for s in ("XYZ", "xyz") for a, b, c in product(s, repeat=3) if a != b != c)
 # Rotations whose angles nobody has named. Roll, pitch and yaw often have our names in another
 # order. In proper Euler angles, such as ZXZ, exchanged names are a mistake.
 _AXES_ONLY = re.compile(r"(?!.*(.).*\1)([XYZ]{3}|[xyz]{3}|[123]{3})")
@@ -69,27 +61,20 @@ _SEQUENCES = {
     2: tuple(f"{a}(first) {b}(second)" for a, b in permutations("xyz", 2)),
     3: _THREE,
 }
-_RATES = ("rate_matrix", "inverse_rate_matrix", "angular_velocity", "rates_from_angular_velocity")
-_OF_RATES = tuple(f"{name}_{frame}" for name in _RATES for frame in ("body", "space"))
+_OF_RATES = (*SHAPES[3, 3][1:], *SHAPES[3, 1])
 QUATERNION = "quaternion"  # of turns, of an axis and an angle, or of a matrix
 OF_MATRIX = "a rotation matrix"  # in place of the name of a rotation
 OF_VECTORS = ("axis_angle", "rotation_vector", OF_MATRIX)
 ANGLES = "euler_angles"  # from a rotation matrix or a quaternion
 OF_DIRECTIONS = ("rotation_matrix", QUATERNION, ANGLES)  # not changed by the length of a vector
-SHAPES: dict[tuple[int, int], tuple[str, ...]] = {  # of formulas, and what each may be
-    (3, 3): ("rotation_matrix", *_OF_RATES[:4]),
-    (3, 1): _OF_RATES[4:],
-    (4, 1): (QUATERNION, *_OF_RATES[6:]),
-    (4, 3): _OF_RATES[2:4],
-    (3, 4): _OF_RATES[:2],
-}
 
 
 # Ways of writing a quantity: changes of its matrix, in the vectors of its inputs
 
 Way = Callable[..., sp.Matrix]
-Ways = dict[str, Way]  # by the words for them
+Ways = dict[str, Way]  # by name; the words for them are in `nodes.toml`
 _NONE = sp.zeros(3, 1)
+_ENTRIES = sp.Matrix(3, 3, sp.symbols("R_1:4_1:4", real=True))
 _CONJUGATE = sp.diag(1, -1, -1, -1)
 
 
@@ -113,66 +98,56 @@ def _of_conjugate(matrix: sp.Matrix, q: Sequence[sp.Expr], *_: Sequence[sp.Expr]
 
 
 def _ways(**ways: Way) -> Ways:
-    """By their words; plainly is the first."""
-    return {"": lambda matrix, *_: matrix} | {
-        words.replace("_", " "): way for words, way in ways.items()
-    }
+    """By name; plainly is the first."""
+    return {"": lambda matrix, *_: matrix} | ways
 
 
 _LAST = _ways(scalar_last=_scalar_last)
 _NEGATIVE = _ways(negative=_times(-1))
-_SCALES = {"twice": 2, "half": sp.S.Half, "four_times": 4, "a_quarter": sp.S.Half / 2}
-_SCALED = _ways(**{words: _times(factor) for words, factor in _SCALES.items()})
-_OF_QUATERNION_RATES = ({**_ways(), "of the conjugate (passive)": _of_conjugate}, _LAST, _SCALED)
-
-
-PASSIVE = "transposed (passive, the direction cosine matrix)"
-PASSIVE_OR_BY_COLUMNS = "transposed (passive, or stored by columns)"  # of numbers in a row
+_FACTORS = {"twice": 2, "half": sp.S.Half, "four_times": 4, "a_quarter": sp.S.Half / 2}
+_SCALED = _ways(**{name: _times(factor) for name, factor in _FACTORS.items()})
+_OF_QUATERNION_RATES = (_ways(of_the_conjugate=_of_conjugate), _LAST, _SCALED)
 _ORDERS = _ways(  # of the angles; the opposite ones are those of axes of space
-    the_angles_in_the_order_1_3_2=lambda m, *_: m.extract([0, 2, 1], [0]),
-    the_angles_in_the_order_2_1_3=lambda m, *_: m.extract([1, 0, 2], [0]),
+    order_132=lambda m, *_: m.extract([0, 2, 1], [0]),
+    order_213=lambda m, *_: m.extract([1, 0, 2], [0]),
 )
+SENSES = tuple(f"opposite_{angles}" for angles in ("1", "2", "3", "12", "13", "23"))
 _WAYS: dict[str, tuple[Ways, ...]] = {
-    "rotation_matrix": ({**_ways(), PASSIVE: lambda matrix, *_: matrix.T},),
+    "rotation_matrix": (_ways(transposed=lambda m, *_: m.T),),
     QUATERNION: (
-        {**_ways(), "conjugated (passive)": _times(1, -1, -1, -1)},
+        _ways(conjugated=_times(1, -1, -1, -1)),
         _LAST,
         _NEGATIVE,
-        _ways(of_twice_the_angles=lambda m, q: m.xreplace({a: 2 * a for a in q[3:] or q})),
+        _ways(twice_the_angles=lambda m, q: m.xreplace({a: 2 * a for a in q[3:] or q})),
     ),
     "quaternion_product": (
-        _ways(the_first_conjugated=lambda m, a, _: _opposite(m, a[-3:])),
-        _ways(the_second_conjugated=lambda m, _, b: _opposite(m, b[-3:])),
-        _ways(over_the_square_of_the_second=lambda m, _, b: m / sum(x**2 for x in b)),
+        _ways(first_conjugated=lambda m, a, _: _opposite(m, a[-3:])),
+        _ways(second_conjugated=lambda m, _, b: _opposite(m, b[-3:])),
+        _ways(over_the_square=lambda m, _, b: m / sum(x**2 for x in b)),
         _NEGATIVE,  # the same rotation
         _LAST,
     ),
     "quaternion_rate_operator": (
-        _ways(transposed=lambda matrix, *_: matrix.T),
-        _ways(on_the_other_side=lambda m, _: _CONJUGATE * m.T * _CONJUGATE),
+        _ways(transposed_operator=lambda m, *_: m.T),
+        _ways(other_side=lambda m, _: _CONJUGATE * m.T * _CONJUGATE),
     ),
     "rotated_vector": (
         _ways(by_the_inverse=lambda m, q, _: _opposite(m, q[1:])),
         {
-            words: lambda m, q, v, k=k: m + k * (sum(x**2 for x in q) - 1) * sp.Matrix(v)
-            for k, words in enumerate(("", "times |q|²", "of a unit quaternion"), -1)
+            name: lambda m, q, v, k=k: m + k * (sum(x**2 for x in q) - 1) * sp.Matrix(v)
+            for k, name in enumerate(("", "times_square", "of_unit_quaternion"), -1)
         },
     ),
-    "parallel_axis_theorem": (_ways(to_the_centre_of_mass=lambda m, *v: _opposite(m, v[0])),),
+    "parallel_axis_theorem": (_ways(to_the_centre=lambda m, *v: _opposite(m, v[0])),),
     ANGLES: (
-        {
-            f"with the opposite sense of angle {' and '.join(angles)} (a convention or wrong signs)"
-            * bool(angles): _times(*(-1 if k in angles else 1 for k in "123"))
-            for count in range(3)
-            for angles in combinations("123", count)
-        }
-        # −α, −β, −γ are those of the inverse rotation backwards, except about two axes.
-        | {
-            "the second solution": lambda m, *_: sp.Matrix(
+        _ways(
+            # −α, −β, −γ are those of the inverse rotation backwards, except about two axes.
+            **{sense: _times(*(-1 if k in sense else 1 for k in "123")) for sense in SENSES},
+            second_solution=lambda m, *_: sp.Matrix(
                 [m[0] + sp.pi, -m[1] if m.has(sp.acos) else sp.pi - m[1], m[2] + sp.pi]
-            )
-        },
-        {**_ways(), "transposed (passive)": lambda m, q: _opposite(m, q[1:])},
+            ),
+        ),
+        _ways(of_transpose=lambda m, q: _opposite(m, q[1:])),
         _ORDERS,
     ),
 }
@@ -184,7 +159,7 @@ class KnownQuantity:
 
     quantity: str
     rotation: str = ""  # as it was asked for: "ZYX"; "" for a law
-    arrangement: str = ""  # "transposed", "scalar last", "twice"
+    ways: tuple[str, ...] = ()  # in which it is written: "transposed", "scalar_last", "twice"
     matrix: sp.ImmutableMatrix
     motion: Motion  # in whose ring equality is decided
     inputs: Mapping[str, tuple[sp.Expr, ...]]  # the symbols of each argument that it depends on
@@ -192,9 +167,12 @@ class KnownQuantity:
 
     @property
     def points(self) -> Values:
-        """Values of all inputs, and of all that was evaluated before."""
+        """Values of all inputs, of the entries of R, and of all that was evaluated before."""
         conditions = self.motion.model.constraints if self.rotation else ()
-        return _values_of(tuple(self.inputs.items()), conditions)
+        values = _values_of(tuple(self.inputs.items()), conditions)
+        if self.rotation == OF_MATRIX and _ENTRIES[0] not in values:
+            values |= named(dict(zip(_ENTRIES, self.motion.rotation_matrix, strict=True)), values)
+        return values
 
     @cached_property
     def values(self) -> Array:
@@ -236,11 +214,11 @@ class KnownQuantity:
     def written(self, *ways: Ways) -> list[KnownQuantity]:
         """The quantity in each combination of ways, as it is first."""
         inputs, goals = tuple(self.inputs.values()), []
-        for words in product(*ways):
-            changes = (table[word] for table, word in zip(ways, words, strict=True))
+        for names in product(*ways):
+            changes = (table[name] for table, name in zip(ways, names, strict=True))
             matrix = reduce(lambda m, way: way(m, *inputs), changes, sp.Matrix(self.matrix))
-            arrangement = ", ".join(filter(None, (self.arrangement, *words)))
-            goals.append(replace(self, arrangement=arrangement, matrix=sp.ImmutableMatrix(matrix)))
+            own = (*self.ways, *filter(None, names))
+            goals.append(replace(self, ways=own, matrix=sp.ImmutableMatrix(matrix)))
         return goals
 
     def in_orders(self) -> list[KnownQuantity]:
@@ -251,10 +229,8 @@ class KnownQuantity:
         has_order = self.quantity in _OF_RATES and not self.quantity.startswith("angular")
         if not has_order or self.has_own_names:
             return [self]
-        is_matrix = self.quantity.startswith("rate_matrix")
-        step = (1, -1) if is_matrix else (-1, 1)
-        turned = _ways(the_rates_in_the_order_3_2_1=lambda m, *_: m[:: step[0], :: step[1]])
-        return self.written(turned)
+        step = 1 if self.quantity.startswith("rate_matrix") else -1
+        return self.written(_ways(rates_321=lambda m, *_: m[::step, ::-step]))
 
 
 Family = tuple[KnownQuantity, ...]  # of the same inputs and shape, compared in one step
@@ -348,10 +324,13 @@ def _rotations(
     if 4 in shape:
         return ("unit_quaternion",)
     if not has_turns:
-        vectors = ("gibbs_vector", "modified_rodrigues")
-        return (*vectors, *["quaternion"] * is_matrix, "unit_quaternion")
-    angles = _SEQUENCES.get(count, ()) if is_matrix else _THREE
-    return (*angles, *axes)
+        return (
+            "gibbs_vector",
+            "modified_rodrigues",
+            *["quaternion"] * is_matrix,
+            "unit_quaternion",
+        )
+    return (*(_SEQUENCES.get(count, ()) if is_matrix else _THREE), *axes)
 
 
 # Laws in vectors
@@ -388,9 +367,8 @@ def _steiner(mass: sp.Matrix, d: sp.Matrix, i: sp.Matrix) -> sp.Matrix:
 
 _PRODUCT, _STEINER = "quaternion_product", "parallel_axis_theorem"
 _ACCELERATION, _TORQUE = "euler_equations_acceleration", "euler_equations_torque"
-_WITH_INVERSE = f"{_ACCELERATION}, if one matrix is the inverse of the other"
-_Law = tuple[str, tuple[int, ...], Callable[..., sp.Matrix]]
-_LAWS: tuple[_Law, ...] = (  # entries of each vector, and the value
+_WITH_INVERSE = f"{_ACCELERATION} with_inverse"
+_LAWS: tuple[tuple[str, tuple[int, ...], Way], ...] = (  # entries of each vector, and the value
     *((_PRODUCT, sizes, _product) for sizes in ((4, 4), (4, 3), (3, 4))),
     ("quaternion_rate_operator", (3,), _rate_operator),
     ("rotated_vector", (4, 3), lambda q, v: rotation_of([*q]) * v),
@@ -410,15 +388,18 @@ def _laws() -> tuple[Family, ...]:
     motion = target("quaternion", "rotation_matrix").motion  # a ring without conditions
     laws = []
     for title, sizes, value in _LAWS:
-        name, _, condition = title.partition(", ")
+        name, _, condition = title.partition(" ")
         letters = zip("abcd", sizes, strict=False)
         vectors = {c: sp.symbols(f"{c}_:{size}", real=True) for c, size in letters}
         matrix = value(*map(sp.Matrix, vectors.values())).as_immutable()
         law = KnownQuantity(
-            quantity=name, arrangement=condition, matrix=matrix, motion=motion, inputs=vectors
+            quantity=name,
+            ways=(condition,) * bool(condition),
+            matrix=matrix,
+            motion=motion,
+            inputs=vectors,
         )
-        ways = () if condition else _WAYS.get(name, ())
-        laws.append(tuple(law.written(*ways)))
+        laws.append(tuple(law.written(*(() if condition else _WAYS.get(name, ())))))
     return tuple(laws)
 
 
@@ -443,7 +424,7 @@ def _of_angles() -> Family:
 def _of_matrix() -> Family:
     """q from R, by Shepperd's method: a column of 4 q qᵀ over twice its length."""
     rotation = target("unit_quaternion", "rotation_matrix")
-    squares = outer_product(rotation.matrix)
+    squares = outer_product(_ENTRIES)
     columns = (squares[:, k] / (2 * sp.sqrt(squares[k, k])) for k in range(4))
     ways = _WAYS[QUATERNION][:-1]
     goal = replace(rotation, quantity=QUATERNION, rotation=OF_MATRIX)
@@ -493,7 +474,7 @@ def meanings(formula: sp.MatrixBase, goal: KnownQuantity, *, is_asked: bool) -> 
     """
     symbols, inside = symbols_in(formula)
     if goal.rotation == OF_MATRIX:
-        return [*_of_entries(symbols, goal.motion.rotation_matrix)]
+        return [*_of_entries(symbols, _ENTRIES)]
     own = {s: goal.names.get(s.name) or goal.names.get(f"{stem_of(s.name)}_dot") for s in symbols}
     if None not in own.values() and is_asked and goal.has_own_names:
         return [own]
@@ -510,7 +491,7 @@ def meanings(formula: sp.MatrixBase, goal: KnownQuantity, *, is_asked: bool) -> 
     names: list[Names] = [own] * (None not in own.values()) + [*of_names]
     if goal.quantity == ANGLES:
         names += _of_entries(symbols, goal.motion.rotation_matrix)
-    if is_asked and goal.arrangement:
+    if is_asked and goal.ways:
         kept = {(s, own[s]) for s in symbols if own[s] in goal.inputs["q"][::2]}
         names = [each for each in names if not kept & {*each.items()}]
     if is_asked or not turns or goal.quantity not in (QUATERNION, "rotation_matrix"):
@@ -644,9 +625,8 @@ def _of_entries(symbols: Sequence[sp.Symbol], rotation: sp.MatrixBase) -> Iterat
         if len(matches) == len(symbols) and len({match["stem"] for match in matches}) == 1:
             name, (i, _), (j, _) = matches[0][0], matches[0].span("row"), matches[0].span("column")
             yield {
-                sp.Symbol(name[:i] + row + name[i + 1 : j] + column, real=True): rotation[k, n]
-                for k, row in enumerate(rows)
-                for n, column in enumerate(columns)
+                sp.Symbol(name[:i] + row + name[i + 1 : j] + column, real=True): entry
+                for (row, column), entry in zip(product(rows, columns), rotation, strict=True)
             }
     flat = [match for s in symbols if (match := re.fullmatch(r"(.*?)_(\d+)", s.name))]
     if len(flat) == len(symbols) and len({match[1] for match in flat}) == 1:
@@ -709,13 +689,11 @@ def near(one: Array, other: Array) -> NDArray[np.bool_]:
     with np.errstate(all="ignore"):
         # The error is absolute for small numbers: entries that are zero by cancellation have no
         # digits.
-        return np.asarray(np.abs(one - other) <= _TOLERANCE * np.maximum(1, np.abs(other)))
+        return np.asarray(np.abs(one - other) <= limits.tolerance * np.maximum(1, np.abs(other)))
 
 
 def is_mirror(matrix: sp.MatrixBase) -> bool:
     """Whether a 3x3 matrix is a reflection at all points: orthogonal, with det = −1."""
-    if matrix.shape != (3, 3):
-        return False
     values = evaluated(matrix, sample(matrix))
     with np.errstate(all="ignore"):
         is_orthogonal = near(values @ values.transpose(0, 2, 1), np.eye(3)).all()

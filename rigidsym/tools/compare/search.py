@@ -13,24 +13,17 @@ from typing import Any
 import sympy as sp
 
 from rigidsym.errors import ExpressionError, RequestError
-from rigidsym.models.rotation import RotationModel
+from rigidsym.system.resources import environment
 from rigidsym.tools.compare import quantities
-from rigidsym.tools.compare.comparison import Comparison, branch, domain, identified
+from rigidsym.tools.compare.comparison import Comparison, branch, domain, halved, identified, mended
 from rigidsym.tools.compare.program import UNNAMED, Formula, program_formulas
 from rigidsym.tools.compare.quantities import KnownQuantity, are_angles, are_body_rates
 from rigidsym.tools.compare.syntax import GRAMMARS, REMARKS, limits, patterns
 
-SUFFIXES = tuple(GRAMMARS)
-_MOST_SYMBOLS = 13  # of the parallel-axis theorem
-_NEAR_LINES = 12  # between the components of a vector and the vector
-_MOST_EFFORT, _EFFORT = 250, 10  # of unknown formulas in a row, and of one with sines: 0.3 s
-_LONGEST_COMMENT = 40  # lines above a function
-_AXES = str.maketrans("123", "xyz")
 _TRIGONOMETRIC = (sp.sin, sp.cos, sp.tan)
-_FAILURES = (  # of SymPy or the file system, or by a defect of ours: other files are still read
-    *(ArithmeticError, AssertionError, AttributeError, LookupError, MemoryError),
-    *(OSError, RuntimeError, TypeError, ValueError),
-)
+# of SymPy or the file system, or by a defect of ours: other files are still read
+_FAILURES: tuple[type[Exception], ...] = (ArithmeticError, AssertionError, AttributeError)
+_FAILURES += (LookupError, MemoryError, OSError, RuntimeError, TypeError, ValueError)
 
 # programs repeat themselves
 _identified = lru_cache(maxsize=1024)(partial(identified, is_in_program=True))
@@ -55,7 +48,8 @@ class FormulaInFile:
     @property
     def line(self) -> int:
         """Where the first wrong entry is assigned, or else where the formula begins."""
-        places = [r.place for r in self.comparison.repairs if r.place] if self.comparison else []
+        faults: list[Any] = [*self.comparison.repairs, self.comparison] if self.comparison else []
+        places = [each.place for each in faults if each.place]
         own, columns = self.formula.lines, self.formula.forms[0].cols if places else 0
         if not places or len(own) != len(self.formula.forms[0]):
             return self.formula.line
@@ -67,16 +61,8 @@ class FormulaInFile:
     @property
     def text(self) -> str:
         """The finding without its place; other readings have lines of their own."""
-        name = f"{self.formula.name}: " if self.formula.name else ""
-        what = "compared from here on" if self.formula.is_end else "read"
-        reason = f"not {what}, since {self.formula.reason}"
-        text = self.comparison.text() if self.comparison else reason
-        first, *others = text.split("\n")
-        first += "; in one of several branches" * self.is_case
-        if self.formula.unread and self.comparison:
-            first += f"; not read: {_in_lines(self.formula.unread)}"
-        first += f"; {self.remark}" * bool(self.remark)
-        return "\n".join([name + first, *others])
+        template = environment().get_template("compare/finding.txt.jinja")
+        return str(template.render(finding=self, unread=_in_lines(self.formula.unread)))
 
     def repeats(self, other: FormulaInFile) -> bool:
         """Whether this vector, or its components, have been found just before."""
@@ -85,10 +71,9 @@ class FormulaInFile:
         own, others = self.comparison.formula, other.comparison.formula
         if sorted(self.formula.lines) == sorted(other.formula.lines):
             return bool(own == others)
-        is_near = self.formula.line - other.formula.line <= _NEAR_LINES
-        is_near &= self.formula.function == other.formula.function
-        has_parts = ", " in self.formula.name + other.formula.name
-        return has_parts and is_near and {*own} == {*others}
+        is_near = self.formula.line - other.formula.line <= limits.near_lines
+        is_part = is_near and ", " in self.formula.name + other.formula.name
+        return is_part and self.formula.function == other.formula.function and {*own} == {*others}
 
     def record(self) -> dict[str, Any]:
         """For JSON."""
@@ -107,18 +92,18 @@ def source_files(paths: Sequence[Path]) -> Iterator[Path]:
     Raises RequestError for a file in another language, and if there are no source files.
     """
     for path in paths:
-        if not path.is_dir() and not (path.is_file() and path.suffix in SUFFIXES):
-            raise RequestError(f"{path}: expected a folder, or a file {', '.join(SUFFIXES)}")
+        if not path.is_dir() and not (path.is_file() and path.suffix in GRAMMARS):
+            raise RequestError(f"{path}: expected a folder, or a file {', '.join(GRAMMARS)}")
     files = [
         file
         for path in paths
         for file in (sorted(path.rglob("*")) if path.is_dir() else [path])
         if not any(part.startswith(".") for part in file.relative_to(path).parts)
-        if file.suffix in SUFFIXES and file.is_file() and not _is_binary(file)
+        if file.suffix in GRAMMARS and file.is_file() and not _is_binary(file)
     ]
     if not files:
         where = ", ".join(map(str, paths))
-        raise RequestError(f"{where}: no source files; looked for {', '.join(SUFFIXES)}")
+        raise RequestError(f"{where}: no source files; looked for {', '.join(GRAMMARS)}")
     yield from dict.fromkeys(files)
 
 
@@ -135,8 +120,7 @@ def search(path: Path, expected: tuple[str, ...] = ()) -> Iterator[FormulaInFile
     Of several rotations close to one, that about the `expected` axes, such as "z y x", or those
     that its function names, is preferred. If reading fails, the last one says so.
     """
-    found: list[FormulaInFile] = []
-    text = ""
+    found, text = list[FormulaInFile](), ""
     try:
         with path.open(encoding="utf-8", errors="replace") as file:
             text = file.read(limits.longest_file + 1)
@@ -147,15 +131,13 @@ def search(path: Path, expected: tuple[str, ...] = ()) -> Iterator[FormulaInFile
         reason = f"there was an error in reading it: {type(error).__name__}: {error}"
         whole = Formula(lines=(1,), name="", reason=reason)
         found.append(FormulaInFile(path, whole, is_failure=True))
-    of_functions: dict[tuple[str, int, int], list[FormulaInFile]] = {}
-    for finding in found:
-        of_functions.setdefault(finding.formula.function, []).append(finding)
     wrong = [each for each in found if each.comparison and each.comparison.is_wrong]
     for finding in found:
         if finding.comparison and (part := _wrong_part(finding, wrong, text)):
             yield FormulaInFile(path, replace(finding.formula, reason=f"it contains {part}"))
         else:
-            remark = _remark(finding, of_functions[finding.formula.function], text)
+            own = [each for each in found if each.formula.function == finding.formula.function]
+            remark = _remark(finding, own, text)
             yield replace(finding, remark="; ".join(filter(None, (finding.remark, remark))))
 
 
@@ -185,6 +167,8 @@ def _wrong_part(finding: FormulaInFile, wrong: Sequence[FormulaInFile], text: st
 def _remark(finding: FormulaInFile, others: Sequence[FormulaInFile], text: str) -> str:
     """How the name of a function or its comment differ from what its formulas are."""
     (name, first, last), goal = finding.formula.function, finding.goal
+    if _is_misplaced(finding, text):
+        return REMARKS["scalar_first"]
     if goal is None or not name:
         return ""
     if goal.quantity == "quaternion_product" and [*map(len, goal.inputs.values())] != [4, 4]:
@@ -199,6 +183,12 @@ def _remark(finding: FormulaInFile, others: Sequence[FormulaInFile], text: str) 
     return f"{said}, the formula is {goal.rotation}" * (is_certain and own not in claims)
 
 
+def _is_misplaced(finding: FormulaInFile, text: str) -> bool:
+    """Whether a constructor that takes the scalar of a quaternion first gets it last."""
+    is_last = finding.goal is not None and "scalar_last" in finding.goal.ways
+    return is_last and bool(patterns.scalar_first.search(_lines(text)[finding.formula.line - 1]))
+
+
 @lru_cache(maxsize=1)
 def _lines(text: str) -> list[str]:
     return text.splitlines(keepends=True)
@@ -211,7 +201,9 @@ def _claims(function: tuple[str, int, int], text: str) -> tuple[str, dict[str, s
     if not name:
         return "", {}
     lines = _lines(text)
-    above = patterns.comment.search("".join(lines[max(0, first - _LONGEST_COMMENT) : first - 1]))
+    above = patterns.comment.search(
+        "".join(lines[max(0, first - limits.longest_comment) : first - 1])
+    )
     inside = patterns.docstring.match("".join(lines[first - 1 : last]))
     comment = (above[1] if above else "") + (inside[0] if inside else "")
     for words, said in (("name", name), ("comment", comment)):
@@ -225,7 +217,7 @@ def _both(order: str) -> str:
 
     ZYX may mean turns about axes of the body, or about those of space, whose product is reversed.
     """
-    axes = "".join(re.findall("[xyz]", order.lower().translate(_AXES)))
+    axes = "".join(re.findall("[xyz]", order.lower().translate(str.maketrans("123", "xyz"))))
     return min(axes, axes[::-1])
 
 
@@ -236,31 +228,47 @@ def _order(finding: FormulaInFile) -> str:
     return axes if len(axes) == 3 else ""
 
 
+def _are_conjugate(one: Comparison, other: Comparison) -> bool:
+    """Whether one of two quaternions of a matrix is that of its transpose."""
+    goals = [each.found for each in (one, other) if each.found]
+    is_conjugated = {"conjugated" in goal.ways for goal in goals}
+    are_cases = {goal.rotation for goal in goals} == {quantities.OF_MATRIX}
+    return are_cases and len(is_conjugated) == 2 - (one.names != other.names)
+
+
 def _with_branches(
     found: Sequence[FormulaInFile], program: Sequence[Formula], text: str
 ) -> Iterator[FormulaInFile]:
     """Findings with remarks on the domain of arcs, and on branches for poles and small angles.
 
-    A branch that is wrong is a finding of its own. It may follow any of several right formulas.
+    A branch that is wrong is a finding of its own. It may follow any of several right formulas. One
+    case of Shepperd's method is wrong if two others or more give the conjugate.
     """
     right = [(f, f.formula, f.comparison) for f in found if f.comparison and f.comparison.is_equal]
     remarks, wrong = dict[int, str](), dict[Any, FormulaInFile]()
+    verdicts = {id(finding): finding.comparison for finding in found}
     for finding, own, regular in right:
+        cases = [r for r in right if (r[1].function, r[1].name) == (own.function, own.name)]
+        others = [each.line for each, _, case in cases if _are_conjugate(regular, case)]
+        if len(others) == len(cases) - 1 > 1:
+            verdicts[id(finding)] = replace(regular, contradicts=tuple(others))
         inside = "".join(_lines(text)[max(0, own.function[1] - 1) : own.function[2] or None])
         remarks[id(finding)] = "" if patterns.guard.search(inside) else domain(regular.formula)
     for each in (formula for formula in program if formula.is_final):
         beside = [r for r in right if (r[1].function, r[1].name) == (each.function, each.name)]
-        cases = [(id(f), branch(regular, own, each)) for f, own, regular in beside]
-        known = [(key, case) for key, case in cases if case]
-        for key, case in sorted(known, key=lambda c: c[1].is_wrong)[:1]:
-            said = f"its branch in line {each.line} {case.branch}"
+        branches = [(id(f), branch(regular, own, each)) for f, own, regular in beside]
+        for key, case in sorted(((k, c) for k, c in branches if c), key=lambda c: c[1].is_wrong)[
+            :1
+        ]:
+            said = f"the branch in line {each.line} {case.branch}"
             remarks[key] = "; ".join(dict.fromkeys(filter(None, (remarks[key], said))))
             if case.is_wrong:  # a branch of variables is also one of what they are copied to
                 wrong[each.function, case.formula] = FormulaInFile(found[0].path, each, case)
     functions = {function for function, _ in wrong}
     for finding in sorted([*found, *wrong.values()], key=lambda each: each.formula.line):
-        is_right = finding.formula.function not in functions
-        yield replace(finding, remark=remarks.get(id(finding), "") * is_right)
+        remark = remarks.get(id(finding), "") * (finding.formula.function not in functions)
+        verdict = verdicts.get(id(finding), finding.comparison)
+        yield replace(finding, remark=remark, comparison=verdict)
 
 
 def _findings(
@@ -272,7 +280,7 @@ def _findings(
         variants.setdefault((formula.line, formula.name, formula.is_end), []).append(formula)
     effort, before = 0, set[Any]()  # for different formulas since the last known one
     for group in variants.values():
-        if effort > _MOST_EFFORT:
+        if effort > limits.most_effort:
             reason = "the formulas before it resemble no known one"
             yield FormulaInFile(path, replace(group[0], name="", reason=reason, is_end=True))
             return
@@ -282,23 +290,42 @@ def _findings(
         order = expected or tuple(map(" ".join, named))
         findings = [_compared(path, each, order, is_case=is_case) for each in group]
         readable = [each for each in findings if each and each.comparison]
+        if is_case and not readable:  # a fault that all branches share
+            fullest = max(group, key=lambda each: sum(map(_is_formula, *each.forms[:1])))
+            regular = _compared(path, fullest, order)
+            readable = [regular] if regular and _is_shared(regular.comparison, group) else []
         for finding in [*readable, *filter(None, findings)][:1]:
-            if latest is None or not finding.repeats(latest):  # a fault counts once
+            # a fault counts once
+            if not (latest and finding.repeats(latest)) or _is_misplaced(finding, text):
                 yield finding
             latest = finding if finding.comparison else latest
         new = {form for each in group for form in each.forms if _may_be_known(form)} - before
         before |= new
-        effort += sum(_EFFORT if form.has(*_TRIGONOMETRIC) else 1 for form in new)
+        effort += sum(limits.effort if form.has(*_TRIGONOMETRIC) else 1 for form in new)
         effort *= not readable
 
 
+def _is_formula(entry: sp.Expr) -> bool:
+    """Not a number, as at a pole, nor a name that is not read."""
+    return not (entry.is_number or entry.is_Symbol)
+
+
+def _is_shared(comparison: Comparison | None, branches: Sequence[Formula]) -> bool:
+    """Whether the wrong entries of a formula are those of all branches that have formulas there."""
+    if comparison is None or not comparison.repairs:
+        return False
+    before, after = comparison.formula, comparison.repairs[-1].formula
+    wrong = [k for k, entry in enumerate(before) if entry != after[k]]
+    others = [each for b in branches for each in b.forms if each.shape == before.shape]
+    return all(own[k] == before[k] or not _is_formula(own[k]) for own in others for k in wrong)
+
+
 def _compared(
-    path: Path, formula: Formula, expected: tuple[str, ...], *, is_case: bool
+    path: Path, formula: Formula, expected: tuple[str, ...], *, is_case: bool = False
 ) -> FormulaInFile | None:
     for form in formula.forms:  # a long value may be an angle
         if patterns.angles_name.fullmatch(formula.name) and are_body_rates(form):
-            asked = quantities.target("xyz", "rates_from_angular_velocity_body")
-            comparison = Comparison(formula=form, asked=asked, are_body_rates=True)
+            comparison = Comparison(formula=form, asked=None, are_body_rates=True)
             return FormulaInFile(path, formula, comparison)
         if not _may_be_known(form):
             continue
@@ -310,9 +337,11 @@ def _compared(
         goal = comparison.found
         if any(formula.computed.get(name, x) != x for name, x in comparison.supposed.items()):
             continue
-        if goal is not None and formula.is_flat and goal.arrangement == quantities.PASSIVE:
-            goal = replace(goal, arrangement=quantities.PASSIVE_OR_BY_COLUMNS)
-            comparison = replace(comparison, found=goal)
+        is_twice = goal is not None and "twice_the_angles" in goal.ways and goal.motion.model.turns
+        if is_twice and form.free_symbols <= {*formula.names.values()}:  # no sines from elsewhere
+            comparison = mended(form, [halved(form, *quantities.symbols_in(form)[0])]) or comparison
+        if goal is not None and formula.is_flat and goal.ways == ("transposed",):
+            comparison = replace(comparison, found=replace(goal, ways=("by_columns",)))
         if goal is not None or comparison.is_reflection:
             return FormulaInFile(path, formula, comparison, is_case)
     if formula.unread and any(map(_may_be_known, formula.forms)):
@@ -328,22 +357,18 @@ def formulas(text: str, suffix: str) -> Iterator[Formula]:
             yield replace(formula, forms=forms)
 
 
-def disappointment(
-    comparison: Comparison, expected: RotationModel | None, *, is_active: bool
-) -> str:
+def disappointment(comparison: Comparison, expected: str, *, is_active: bool) -> str:
     """How a formula that is right differs from what a user expects; "" if it does not."""
     known = comparison.found
     if known is None or comparison.repairs:
         return ""
-    if is_active and quantities.PASSIVE in comparison.arrangement:
+    if is_active and "transposed" in known.ways:
         return "expected an active rotation matrix, which takes body to space components"
-    if known.quantity == quantities.ANGLES and "transposed" not in known.arrangement:
+    if known.quantity == quantities.ANGLES and "of_transpose" not in known.ways:
         known = quantities.target(known.rotation, "rotation_matrix")
-    model = known.motion.model
-    if expected is None or len(model.turns) != len(expected.turns):
+    if len(known.axes) != len(expected) or known.axes == expected:
         return ""
-    wanted, axes = (" ".join(turn.axis for turn in each.turns) for each in (expected, model))
-    return f"expected the axes {wanted} in the product of rotations, not {axes}" * (wanted != axes)
+    return f"expected the axes {expected} in the product of rotations, not {known.axes}"
 
 
 def _block(matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
@@ -371,7 +396,7 @@ def _block(matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
 
 def _may_be_known(matrix: sp.ImmutableMatrix) -> bool:
     """Whether it is worth comparing: sines and cosines, or products of four or more names."""
-    if not 0 < len(matrix.free_symbols) <= _MOST_SYMBOLS * (1 + (matrix.cols == 1)):
+    if not 0 < len(matrix.free_symbols) <= limits.most_symbols * (1 + (matrix.cols == 1)):
         return False
     if are_angles(matrix) or are_body_rates(matrix):
         return True

@@ -30,9 +30,9 @@ GRAMMARS, _KINDS, CALLS, SPELLINGS = (  # of a file, a type of node, a word, and
     for title in ("grammars", "kinds", "words", "functions")
 )
 TYPES = {name: frozenset(types.split()) for name, types in _TABLES["types"].items()}
-CHANGES: dict[str, str] = _TABLES["changes"]
-REMARKS: dict[str, str] = _TABLES["remarks"]
-VIEWS: dict[str, str] = _TABLES["views"]
+_TITLES = ("changes", "remarks", "views", "ways", "whole")
+CHANGES, REMARKS, VIEWS, WAYS, WHOLE = (_TABLES[title] for title in _TITLES)
+SHAPES = {(int(s[0]), int(s[2])): names.split() for s, names in _TABLES["shapes"].items()}
 patterns = SimpleNamespace(orders=[order for n in _TABLES["orders"].values() for order in n])
 limits = SimpleNamespace(**_TABLES["limits"])
 for _name, _form in _TABLES["patterns"].items():
