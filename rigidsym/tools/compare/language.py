@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Collection
-from functools import reduce, wraps
+from functools import partial, reduce, wraps
 from typing import Any
 
 import sympy as sp
@@ -15,7 +15,9 @@ import sympy as sp
 from rigidsym.errors import ExpressionError, offer
 from rigidsym.models.rotation import hat
 from rigidsym.text.bounds import FUNCTIONS, Sized, apply, longest_number, operate
-from rigidsym.tools.compare.syntax import SPELLINGS, limits, patterns
+from rigidsym.tools.compare.syntax import NUMBERS, SPELLINGS, limits, patterns
+
+magnitude = partial(sp.Abs, evaluate=False)  # whose evaluation takes long
 
 
 def as_matrix(value: Any) -> sp.ImmutableMatrix:
@@ -58,7 +60,7 @@ OF_MATRICES: dict[str, Callable[..., Any]] = {
     "inv": lambda matrix: combined("**", matrix, sp.S.NegativeOne),
 }
 _IN_DEGREES = {f"{name}d": name for name in FUNCTIONS if re.fullmatch("a?(sin|cos|tan2?)", name)}
-OF_NUMBERS = {*FUNCTIONS, *_IN_DEGREES, "pow", "sq", "hypot", "deg2rad", "rad2deg"}
+OF_NUMBERS = {*FUNCTIONS, *_IN_DEGREES, *SPELLINGS.values(), "deg2rad", "rad2deg"}
 
 
 def function_word(name: str) -> str:
@@ -67,16 +69,12 @@ def function_word(name: str) -> str:
         return ("a" if match[1] else "") + match[2].lower()
     match = patterns.angle_units.fullmatch(name)
     if match and (match[1] or match[3] or name in ("radians", "degrees")):
-        unit = (match[3] or match[2]).lower()
-        return "deg2rad" if unit == "rad" else "rad2deg"
+        return "deg2rad" if (match[3] or match[2]).lower() == "rad" else "rad2deg"
     return SPELLINGS.get(name, name)
 
 
 _SHORT = {"c": "cos", "s": "sin", "t": "tan", "C": "cos", "S": "sin", "T": "tan"}
-CONSTANTS = dict.fromkeys(("pi", "M_PI", "PI", "Pi"), sp.pi)
-CONSTANTS |= dict.fromkeys(("M_PI_2", "HALF_PI"), sp.pi / 2)
-CONSTANTS |= dict.fromkeys(("DEG_TO_RAD", "DEG2RAD"), sp.pi / 180)
-CONSTANTS |= dict.fromkeys(("RAD_TO_DEG", "RAD2DEG"), 180 / sp.pi)
+CONSTANTS = {word: sp.sympify(value) for word, value in NUMBERS.items()}
 
 
 def _of_fitting_sizes(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -87,9 +85,7 @@ def _of_fitting_sizes(function: Callable[..., Any]) -> Callable[..., Any]:
         try:
             return function(*arguments)
         except (ValueError, TypeError, IndexError, AttributeError):
-            parts = [p for a in arguments for p in (a if isinstance(a, list) else [a])]
-            sizes = [str(getattr(p, "shape", "a number")) for p in parts if not isinstance(p, str)]
-            raise ExpressionError(f"sizes that do not fit: {' and '.join(sizes)}") from None
+            raise ExpressionError("sizes of matrices that do not fit") from None
 
     return checked
 
@@ -135,13 +131,18 @@ def called(name: str, values: list[Any]) -> Any:
     if name in ("pow", "sq"):
         return combined("**", values[0], values[1] if name == "pow" else sp.Integer(2))
     if name == "hypot":
-        return called("sqrt", [combined("+", *(called("sq", [value]) for value in values))])
+        squares = (called("sq", [value]) for value in values)
+        return called("sqrt", [reduce(partial(combined, "+"), squares)])
+    if name == "copysign":
+        return combined("*", called("abs", values[:1]), called("sign", values[1:]))
+    is_matrix = any(isinstance(value, sp.MatrixBase) for value in values)
+    if name == "sign" and not is_matrix and values[0] != 0:
+        return values[0] / magnitude(values[0])
     if name in OF_MATRICES:
         return _bounded(OF_MATRICES[name](*values))
     if name not in FUNCTIONS:
         hint = offer(name, [*FUNCTIONS, *OF_MATRICES])
         raise ExpressionError(f"{name!r} is not a function; {hint}")
-    is_matrix = any(isinstance(value, sp.MatrixBase) for value in values)
     if is_matrix and len(values) == 1:  # of each entry
         return values[0].applyfunc(lambda entry: called(name, [entry]))
     if len(values) != 1 + (name == "atan2") or is_matrix:

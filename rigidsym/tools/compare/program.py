@@ -16,9 +16,9 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from copy import copy, deepcopy
 from dataclasses import dataclass, field, replace
-from functools import lru_cache, partial, reduce
+from functools import lru_cache, reduce
 from itertools import chain, islice, product, takewhile
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import sympy as sp
 
@@ -28,15 +28,11 @@ from rigidsym.tools.compare import language, syntax
 from rigidsym.tools.compare.language import as_matrix, called, combined, function_word, rows
 from rigidsym.tools.compare.latex import python_of
 from rigidsym.tools.compare.quantities import are_angles, grouped, stem_of
-from rigidsym.tools.compare.syntax import CALLS, TYPES, Tree, limits, parameters, patterns, walk
-
-if TYPE_CHECKING:
-    from tree_sitter import Node
+from rigidsym.tools.compare.syntax import CALLS, TYPES, Tree, limits, patterns, walk
 
 _AXES: dict[str, Any] = {"x": 0, "y": 1, "z": 2, "X": 0, "Y": 1, "Z": 2}
 _AXES |= {f"k{k}{axis}": axis.lower() for k in ("", "_") for axis in "WXYZ"}  # Order::kW
 _INVERSE = (sp.atan2, sp.asin, sp.acos, sp.atan)
-_magnitude = partial(sp.Abs, evaluate=False)  # whose evaluation takes long
 _OPPOSITE = str.maketrans("<>=!", "><!=")
 _SIGNS = {".*": "%", "./": "/", ".^": "**", "^": "**"}  # MATLAB
 _SIZES = (3, 4, 9, 16)  # of vectors and matrices that are built of numbers
@@ -57,8 +53,7 @@ _Bounded = sp.Function("clamp", real=True)  # x of clamp(x, -1, 1): no other num
 
 def _unbounded(matrix: Any) -> Any:
     """The matrix without bounds of what has an arc sine or cosine."""
-    arcs = matrix.atoms(sp.asin, sp.acos)
-    return matrix.xreplace({f: f.func(_inner(f.args[0])) for f in arcs})
+    return matrix.xreplace({f: f.func(_inner(f.args[0])) for f in matrix.atoms(sp.asin, sp.acos)})
 
 
 def _inner(value: Any) -> Any:
@@ -108,6 +103,7 @@ class Formula:
     is_flat: bool = False  # nine or sixteen numbers in a row, by rows or by columns
     unread: tuple[tuple[str, int], ...] = ()  # names in it whose values are not read, and lines
     function: tuple[str, int, int] = ("", 0, 0)  # around it, with its first and last line
+    is_returned: bool = False
     is_final: bool = True  # not if what is not understood changes it: it may not be complete
     is_end: bool = False  # the reason holds for the rest of the file
     conditions: frozenset[sp.Expr] = frozenset()  # of its branches; not negative if true
@@ -145,17 +141,17 @@ class _Scope:
     places: dict[int, int] = field(default_factory=dict)  # of choices with other branches
     is_new: bool = True  # whether the last run took a new branch
 
-    def choice(self, node: Node, blocks: Sequence[Tree]) -> int:
+    def choice(self, tree: Tree, blocks: Sequence[Tree]) -> int:
         """The number of the branch."""
-        if node.id not in self.now:
-            free = [k for k in range(len(blocks)) if (node.id, k) not in self.taken]
+        if tree.node.id not in self.now:
+            free = [k for k in range(len(blocks)) if (tree.node.id, k) not in self.taken]
             within = (k for k, b in enumerate(blocks) if any(map(b.covers, self.places.values())))
-            self.now[node.id] = free[-1] if free else next(within, len(blocks) - 1)
+            self.now[tree.node.id] = free[-1] if free else next(within, len(blocks) - 1)
             self.is_new |= bool(free)
-            self.taken.add((node.id, self.now[node.id]))
-            self.places.pop(node.id, None)
-            self.places |= {node.id: node.start_byte} if len(free) > 1 else {}
-        return self.now[node.id]
+            self.taken.add((tree.node.id, self.now[tree.node.id]))
+            self.places.pop(tree.node.id, None)
+            self.places |= {tree.node.id: tree.node.start_byte} if len(free) > 1 else {}
+        return self.now[tree.node.id]
 
 
 @dataclass(frozen=True)
@@ -207,11 +203,9 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
     # A long file of short functions is read to its end; a long function may let a value grow.
     program.steps["read"] = -min(8 * text.count("\n"), 200 * len(functions))
     scopes = [_Scope(tree) for tree in (Tree(root), *_worth_reading(functions, suffix))]
-    found: list[Formula] = []
-    for lost in syntax.damaged(root):  # by most errors, such as an unknown macro, no formula is
-        if {*lost.text} & {*"(["} and _has_material(lost.text, ""):
-            found.append(_fault(lost.line, "there is a syntax error"))
-            break
+    # by most errors, such as an unknown macro, no formula is lost
+    lost = (t for t in syntax.damaged(root) if {*t.text} & {*"(["} and _has_material(t.text, ""))
+    found = [_fault(each.line, "there is a syntax error") for each in islice(lost, 1)]
     # All scopes are run once before any is run again: a long file is not read to its end.
     for count in range(limits.most_runs):
         for scope in scopes:
@@ -223,9 +217,12 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
                 run.run_scope()
             except RecursionError:  # SymPy, in a sum that a program nests in itself
                 run.formulas.append(_fault(scope.tree.line, "expressions are nested too deeply"))
+            tree, last = scope.tree, int(scope.tree.node.end_point[0]) + 1
+            span = (tree.word, tree.line, last) if tree.kind == "function" else ("", 0, 0)
             named = {f.forms[:1] for f in run.formulas if f.name not in UNNAMED} - {()}
-            own = (f for f in run.formulas if f.name not in UNNAMED or f.forms[:1] not in named)
-            found += [replace(each, function=scope.tree.span) for each in own]
+            returned = {f.forms[:1] for f in run.formulas if f.name == _RETURNED}
+            own = [f for f in run.formulas if f.name not in UNNAMED or f.forms[:1] not in named]
+            found += [replace(f, function=span, is_returned=f.forms[:1] in returned) for f in own]
         if line := program.steps["end"]:  # in a later run, all has been read, with some branches
             reason = "it has too many branches" if count else "the file is too long"
             found.append(_fault(line, reason, is_end=not count))
@@ -294,8 +291,7 @@ def formula_matrix(text: str) -> sp.ImmutableMatrix:
     if missing := re.search(r"[)\]]\s*(\w+)", text):
         expected = f"expected an operator such as * between {text[: missing.start(1)].strip()!r}"
         raise ExpressionError(f"{expected} and {missing[1]!r}", column=missing.start(1) + 1)
-    text = text if len(text) < 200 else f"{text[:200]}..."
-    raise ExpressionError(f"not a formula in Python, C, MATLAB or LaTeX: {text}")
+    raise ExpressionError(f"not a formula in Python, C, MATLAB or LaTeX: {text[:200]}")
 
 
 def _assigned_value(text: str, suffix: str) -> Tree | None:
@@ -322,7 +318,7 @@ class _Run:
         self.squares: dict[sp.Symbol, sp.Symbol] = {}  # |v|² of names without values
         self.tensors: set[sp.Symbol] = set()  # names without values that are matrices
         own = set() if program.suffix in TYPES["real"] else syntax.integers(scope.tree.text)
-        self.integers = own | ({*program.integers} - {*parameters(scope.tree.node)})
+        self.integers = own | ({*program.integers} - {*scope.tree.parameters})
         self.untracked: set[Path] = set()
         self.links: list[tuple[Path, Path]] = []  # names that may be the same object
         self.tests: dict[str, Tree] = {}  # a comparison by the name that it is given
@@ -355,9 +351,9 @@ class _Run:
         """Run a function, or the whole file, and collect the formulas in it."""
         scope = self.scope.tree
         self.untracked = self.written_in(_late(scope, self.program.suffix == ".py"))
-        if scope.kind == "function":
-            self.inputs |= set(parameters(scope.node))
+        self.inputs |= {*scope.parameters}
         for each in scope.parts if scope.kind == "function" else [scope]:
+            self.end = ""  # also before the results of MATLAB
             self.run(each)
         if not self.end:
             self.emit(self.values)
@@ -452,17 +448,15 @@ class _Run:
     def unpack(self, left: Tree, right: Tree) -> None:
         """w, x, y, z = q; c, s, t = cos(v); {x, y} = q."""
         keys: Sequence[Any] = left.keys if left.kind == "record" else range(len(left.parts))
-        if right.kind == "call" and CALLS.get(right.called) == "parts":  # in which no row is read
-            right = right.parts[1] if patterns.module.match(right.base) else right.owner or right
         parts: list[Any] = [None] * len(keys)
         if right.kind == left.kind == "list" and len(right.parts) == len(keys):
             parts = [*map(self.tried, right.parts)]  # vectors too, as in a, v = q[0], q[1:]
         elif isinstance(value := self.tried(right), sp.MatrixBase) and len(value) == len(keys):
             parts = [*value]
-        elif value is not None and (
-            left.kind == "record" or value.is_Function or patterns.turns.match(str(value))
-        ):
-            parts = [self.component(value, key) for key in keys]
+        elif value is not None:
+            is_input = value.is_Symbol and left.kind != "record" and not self.inlined
+            is_input &= not patterns.turns.match(str(value))
+            parts = parts if is_input else [self.component(value, key) for key in keys]
         for target, part in zip(left.parts, parts, strict=True):
             if part is not None:
                 self.store(target, part)
@@ -482,8 +476,6 @@ class _Run:
         if _is_scalar(value):
             path = tuple(key for key in path if key != _ALL)  # of a batch
             value = self.renamed(path, value)
-        if isinstance(value, _Record) and any(isinstance(key, slice) for key in path):
-            value = value.whole()[0]
         if self.by_columns(path) and len(path) > 1 and isinstance(value, sp.MatrixBase):
             raise self.unreadable(left, "may be a column")
         own = self.part(self.values, path)
@@ -534,16 +526,13 @@ class _Run:
             is_unit = ratio.is_number and ratio.is_finite
             if is_unit and abs(complex(ratio) * 180 / math.pi - 1) < 1e-3:  # radians from degrees
                 return own
-            symbols = ratio.free_symbols
-            is_old = not any(s.is_Dummy for s in symbols)  # as a component after its division is
+            # a component is a new name after its division
+            is_old = not any(s.is_Dummy for s in ratio.free_symbols)
             is_root = (1 / ratio).is_Pow and is_length(1 / ratio)
-            names = tuple((s, s.name) for s in symbols if is_old and is_root)
+            names = tuple((s, s.name) for s in ratio.free_symbols if is_old and is_root)
             if any(len(each) == 1 and len(each[0]) > 2 for each in grouped(names)):
-                symbol = self.symbol_for(path, None)
-                self.components.add(symbol)
+                self.components.add(symbol := self.symbol_for(path, None))
                 return symbol
-            if own in self.squares and ratio == 1 / sp.sqrt(self.squares[own]):
-                return own
         if isinstance(path[-1], int):
             return value
         functions = value.atoms(sp.Function) - value.atoms(sp.sin, sp.cos, sp.tan)
@@ -564,8 +553,7 @@ class _Run:
     def expanded(self, value: Any) -> Any:
         """An expression or a matrix with long values for their symbols."""
         for _ in range(limits.long_in_long):
-            defined = ((s, self.definitions.get(s)) for s in value.free_symbols)
-            parts = {s: v for s, v in defined if v is not None}
+            parts = {s: v for s in value.free_symbols if (v := self.definitions.get(s)) is not None}
             if not parts or _size(value) > limits.most_parts:
                 break
             value = value.xreplace(parts)
@@ -592,9 +580,8 @@ class _Run:
 
     def is_step(self, change: sp.Expr) -> bool:
         """Whether inputs are multiplied by a step of time."""
-        symbols = change.free_symbols
-        has_step = any(patterns.step.fullmatch(s.name) for s in symbols)
-        return has_step and symbols.isdisjoint(self.definitions)
+        has_step = any(patterns.step.fullmatch(s.name) for s in change.free_symbols)
+        return has_step and change.free_symbols.isdisjoint(self.definitions)
 
     def become_unread(self, paths: Iterable[Path], line: int) -> None:
         """Names, and others for the same objects, get new symbols in place of their values."""
@@ -637,10 +624,11 @@ class _Run:
     def run_if(self, tree: Tree) -> None:
         """if, #if, switch, and handlers of exceptions: each run takes one branch, or none."""
         self.program.steps["read"] += len(self.values) // limits.names_a_step
-        choice = self.branch(tree, tree.parts)
-        block = tree.parts[choice]
+        blocks = [each for each in tree.parts if not self.is_bound(each)]
+        choice = self.branch(tree, blocks) if len(blocks) > 1 else 0
+        block = blocks[choice]
         self.run(block)
-        for each in tree.parts[choice + 1 :] if block.is_one_of("falling") else ():
+        for each in blocks[choice + 1 :] if block.is_one_of("falling") else ():
             self.run(each)  # until a break
         self.end = "" if tree.kind == "switch" and self.end == "break" else self.end
         if block.parts:
@@ -648,9 +636,20 @@ class _Run:
 
     run_switch = run_if
 
+    def is_bound(self, block: Tree) -> bool:
+        """Whether a branch is no other case: if (x > 1) x = 1, which is done here."""
+        condition, only = block.condition, block
+        while only.kind == "block" and len(only.parts) == 1:
+            only = only.parts[0]
+        is_one = only.kind == "assign" and patterns.one.fullmatch(only.parts[-1].text)
+        value = self.without_branch(condition, only.parts[::-1]) if condition and is_one else None
+        if is_bound := isinstance(value, _Bounded):
+            self.store(only.parts[0], value)
+        return is_bound
+
     def branch(self, tree: Tree, blocks: Sequence[Tree], condition: Tree | None = None) -> int:
         """The number of the branch that this run takes: the first whose condition is true."""
-        choice = self.scope.choice(tree.node, blocks)
+        choice = self.scope.choice(tree, blocks)
         trees = [condition] if condition else [each.condition for each in blocks[: choice + 1]]
         if self.inlined or len(self.conditions) > limits.most_conditions:
             self.conditions, trees = {sp.Dummy()}, []  # too many to be worth the time
@@ -668,7 +667,7 @@ class _Run:
         if sign in ("&&", "and", "||", "or") and len(parts) == 2:
             one, other = map(self.condition, parts)
             least = -1 if sign in ("&&", "and") else 1
-            return (one + other + least * _magnitude(one - other)) / 2
+            return (one + other + least * language.magnitude(one - other)) / 2
         run, steps = copy(self), self.program.steps["read"]  # a condition adds no formula or input
         run.formulas, run.inputs = [], {*self.inputs}
         own, sign, number = run.sides(tree)
@@ -676,15 +675,14 @@ class _Run:
         if not sign:
             return sp.Symbol(str(tree.node.start_byte))
         above = self.expanded(own) - number
-        equal = limits.near_equal - _magnitude(above)
+        equal = limits.near_equal - language.magnitude(above)
         return {">": above, "<": -above, "=": equal, "!": -equal}[sign]
 
     def run_loop(self, tree: Tree) -> None:
         """A loop may run many times or never: what changes in it is not read before and after."""
         self.forget(tree)
         targets = tree.parts[0].targets if tree.parts else ()
-        names = [(each.word,) for each in targets if each.kind == "name"]  # for x, y in ...
-        self.become_unread(names, tree.line)
+        self.become_unread([(t.word,) for t in targets if t.kind == "name"], tree.line)  # for x in
         for each in tree.parts:
             self.run(each)
         self.end = ""
@@ -697,8 +695,10 @@ class _Run:
         for value in tree.parts:
             self.results.append(result := self.tried(value))
             if result is not None and not self.path(value):
-                self.add(_RETURNED, result, value.line)
-            elif result is None and patterns.may_be_matrix.search(value.text):
+                own = [self.values.get(each.word, (None, value.line))[1] for each in value.parts]
+                lines = own if self.first and len(own) == len(as_matrix(result)) else [value.line]
+                self.add(_RETURNED, result, *lines)
+            elif result is None and not self.first and patterns.may_be_matrix.search(value.text):
                 self.formulas.append(_fault(value.line, self.reason, _RETURNED))
         self.run_raise(tree)
 
@@ -791,8 +791,7 @@ class _Run:
             # At a pole, an angle is a number: this is no formula, but another case of one.
             are_angles = all(value.has(*_INVERSE) or value.is_number for value in values)
             is_angle = patterns.angles_name.fullmatch(names[0])
-            is_change = is_angle and all(map(self.is_step, values))
-            if kind > -2 or are_angles or is_change:
+            if kind > -2 or are_angles or (is_angle and all(map(self.is_step, values))):
                 stem = _dotted(path) or re.sub(r"\d+$", "", names[0])
                 name = ", ".join(names) if len(names) < 9 else stem
                 self.add(name, sp.Matrix(values), *lines, is_final=is_final)
@@ -806,8 +805,6 @@ class _Run:
         if (name, value) in self.emitted or self.is_full(min(lines)):
             return
         self.emitted.add((name, value))
-        numbers = {s: v for s, v in self.definitions.items() if v in (0, 1)}  # a name `zero`
-        value = value.applyfunc(lambda entry: numbers.get(entry, entry)) if numbers else value
         is_state = value.cols == 1 and _unflattened(value).shape in (value.shape, (4, 3))
         if is_state and 3 < value.rows <= limits.longest_state:  # angles and rates
             for k in range(value.rows - 2):
@@ -818,24 +815,34 @@ class _Run:
         value = _unbounded(_unflattened(value))
         whole = _unbounded(self.expanded(value))
         whole = value if _size(whole) > limits.most_parts else whole
-        # v sin(|v|) is no quaternion: the length of v is not any angle about an axis v.
-        known, squares = {s: v for s, v in self.definitions.items() if v}, {*self.squares.values()}
-        value = value.xreplace(
-            {s: v for s, v in known.items() if is_length(v) or v.free_symbols & squares}
-        )
+        # v sin(|v|) is no quaternion: the length of v is not any angle about an axis v. A name
+        # `zero` is the number.
+        known = {s: v for s, v in self.definitions.items() if v is not None}
+        plain = {sp.S.Zero, sp.S.One, *self.squares.values()}
+        lengths = {s: v for s, v in known.items() if is_length(v) or {v, *v.free_symbols} & plain}
+        value = value.xreplace(lengths)
         symbols = whole.free_symbols | value.free_symbols
         inputs = whole.free_symbols - self.components
         unread = {s.name for s in inputs if self.definitions.get(s, s) is None}
         names = _short_names(symbols - {*self.squares.values()})
-        names |= {s: _square(v, names, self.first) for v, s in self.squares.items()}
+        names |= {s: self.square(v, names) for v, s in self.squares.items()}
         computed = [names.get(s, s) for s in self.definitions]
         forms = [language.spelled_out(m.xreplace(names), computed) for m in (whole, value)]
         places = tuple((_last(n), self.unread.get(n) or min(lines)) for n in sorted(unread))
-        formula = Formula(lines=lines, name=_last(name), forms=tuple(dict.fromkeys(forms)))
-        formula = replace(formula, conditions=frozenset(self.conditions), names=names)
         own = {s: self.expanded(known[s]).xreplace(names) for s in symbols & known.keys()}
+        formula = Formula(lines=lines, name=_last(name), forms=tuple(dict.fromkeys(forms)))
+        formula = replace(formula, unread=places, is_final=is_final, is_flat=is_flat, names=names)
         formula = replace(formula, computed={names.get(s, s): value for s, value in own.items()})
-        self.formulas.append(replace(formula, unread=places, is_final=is_final, is_flat=is_flat))
+        self.formulas.append(replace(formula, conditions=frozenset(self.conditions)))
+
+    def square(self, vector: sp.Symbol, names: Mapping[sp.Expr, sp.Expr]) -> sp.Expr:
+        """|v|² of a vector, or of a quaternion if a formula has its fourth component."""
+        used = {symbol.name for symbol in names}
+        has_letters = any(f"{vector}.{letter}" in used for letter in "xyzw")
+        keys = [*"xyzw"] if has_letters else range(self.first, 4 + self.first)
+        symbols = [sp.Symbol(f"{vector}.{key}", real=True) for key in keys]
+        symbols = symbols[: 3 + (symbols[3].name in used)]
+        return sum(names.get(s, sp.Symbol(_last(s.name), real=True)) ** 2 for s in symbols)
 
     # Expressions
 
@@ -893,7 +900,7 @@ class _Run:
     def read_list(self, tree: Tree) -> Any:
         self.refuse_if(not 0 < len(tree.parts) <= limits.longest_list, tree)
         values = [self.read(each) for each in tree.parts]
-        return values[0] if tree.node.type == "argument_list" and len(values) == 1 else rows(values)
+        return values[0] if tree.is_one_of("lone") and len(values) == 1 else rows(values)
 
     def read_record(self, tree: Tree) -> Any:
         """{w: a, x: b, y: c, z: d} of JavaScript, and Quaternion { x: a, ... } of Rust."""
@@ -903,7 +910,16 @@ class _Run:
         return rows([self.read(each) for each in tree.parts])
 
     def read_matrix(self, tree: Tree) -> Any:
-        return called("stack", [self.read(row) for row in tree.parts])
+        return called("stack", self.beside_scalar([self.read(row) for row in tree.parts]))
+
+    def beside_scalar(self, parts: list[Any]) -> list[Any]:
+        """(cos a/2, v sin a/2), where v is a name: beside the cosine of a, v may be a number."""
+        entries = [as_matrix(part)[0] for part in parts if len(as_matrix(part)) == 1]
+        for k, w in enumerate(entries if len(entries) == len(parts) == 2 else ()):
+            is_half = isinstance(w, sp.cos) and w.args[0].as_coeff_Mul()[0] != 1
+            if is_half and not entries[1 - k].is_Function:
+                parts[1 - k] = as_matrix(self.vector(entries[1 - k]))
+        return parts
 
     def read_row(self, tree: Tree) -> Any:
         return called("stack", [as_matrix(self.read(cell)).T for cell in tree.parts]).T
@@ -923,8 +939,9 @@ class _Run:
             return called(tree.word.lower(), [self.read(tree.parts[0])])
         if CALLS.get(tree.word) == "unit" and re.search("mat|rot", tree.text, re.IGNORECASE):
             return sp.ImmutableMatrix(sp.eye(3 if "3" in tree.text else 4))
-        is_transposed = tree.word == "T" and tree.parts
-        return self.read_transposed(tree) if is_transposed else self.named(tree)
+        return (
+            self.named(tree) if tree.word != "T" or not tree.parts else self.read_transposed(tree)
+        )
 
     def read_unary(self, tree: Tree) -> Any:
         if tree.word not in ("+", "-"):
@@ -1039,34 +1056,38 @@ class _Run:
         return product
 
     def read_choose(self, tree: Tree) -> Any:
-        constant = tree.parts[0].constant
-        if constant is None:
-            return self.chosen(tree, tree.parts[0], tree.parts[1:])
-        return self.read(tree.parts[1 if constant else 2])
+        return self.chosen(tree, tree.parts[0], tree.parts[1:])
 
     def chosen(self, tree: Tree, condition: Tree, trees: Sequence[Tree]) -> Any:
-        """One of two values: a number that belongs to a pole or is a bound is left out."""
+        """One of two values."""
+        if condition.constant is not None:
+            return self.read(trees[not condition.constant])
+        if (value := self.without_branch(condition, trees)) is not None:
+            return value
+        return self.read(trees[self.branch(tree, trees, condition)])
+
+    def without_branch(self, condition: Tree, trees: Sequence[Tree]) -> Any:
+        """One of two values, if the other is a number that belongs to a pole or is a bound."""
         values = [self.tried(each) for each in trees]
         fixed = [_is_scalar(value) and value.is_number for value in values]
-        condition = self.tests.get(condition.text, condition)
         is_one = sum(fixed) == 1 and None not in values
         own, sign, number = self.sides(condition) if is_one else (None, "", None)
         if sign:
             other, limit = (values[fixed.index(is_fixed)] for is_fixed in (False, True))
             if not fixed[0]:  # the number is the value if the condition is false
                 sign = sign.translate(_OPPOSITE)
-            if own == _inner(other) and sign in "<>":
-                if limit == {">": 1, "<": -1}[sign] and abs(number - limit) < 0.01:
-                    return _Bounded(own)
-            elif self.is_pole(own, sign, number, other):
+            is_bound = limit == {">": 1, "<": -1}.get(sign) and abs(number - limit) < 0.01
+            if is_bound and _inner(own) == _inner(other):
+                return _Bounded(_inner(own))
+            if self.is_pole(own, sign, number, other):
                 is_other = other.free_symbols != {own} or other.has(*_INVERSE)
                 if is_other or abs(other.subs(own, 1e-3) - limit) < limits.near_limit:
                     return other
-        chosen = self.branch(tree, trees, condition)
-        return self.read(trees[chosen]) if values[chosen] is None else values[chosen]
+        return None
 
     def sides(self, condition: Tree) -> tuple[Any, str, Any]:
         """An expression, one of = ! < >, and a number; no sign for another condition."""
+        condition = self.tests.get(condition.text, condition)
         sign, parts = condition.word, condition.parts
         if condition.kind == "call" and condition.called == "isclose":
             sign, parts = "==", parts[1:3]
@@ -1129,8 +1150,7 @@ class _Run:
         if name in ("row", "col") and len(nodes) == 1 and owner:
             place = self.index(nodes[0])
             return (*owner, *((place, _ALL) if name == "row" else (_ALL, place)))
-        is_entry = len(nodes) == 2 and len(word) == 1  # t(1, 2), but not T(2)
-        is_known = word in _WORDS and not is_entry
+        is_known = word in _WORDS and (len(nodes) != 2 or len(word) > 1)  # T(2), but not t(1, 2)
         is_own = word in self.program.functions and not self.first
         if is_own or (is_known and self.part(self.values, (*owner, name)) is None):
             return ()
@@ -1243,11 +1263,11 @@ class _Run:
         whole = value if value.is_Symbol else self.expanded(value)
         names = whole.free_symbols - ({*self.squares.values()} - value.free_symbols)
         names = {name for name in value.free_symbols if name.name in stems} or names
-        vector: Any = next(iter(names), None)
-        is_one = len(names) == 1 and not names & self.components
-        if not is_one or not (value.is_Function or vector not in (value / vector).free_symbols):
+        factors = [name for name in names if name not in (value / name).free_symbols]
+        vectors = [*names] if value.is_Function else factors  # f(v), or a v
+        if len(vectors) != 1 or {*vectors} & self.components:
             return None
-        return value.xreplace({vector: self.part_of(vector, key)})
+        return value.xreplace({vectors[0]: self.part_of(vectors[0], key)})
 
     def part_of(self, whole: sp.Symbol, key: int | str) -> sp.Symbol:
         """An entry of a name without a value, its transpose R.T, or its column R.@0.
@@ -1284,7 +1304,7 @@ class _Run:
         is_template = name == "T" and tree.owner is None and not self.program.is_formula
         meaning = "" if is_own else "wrapper" if is_template else CALLS.get(name, "")
         nodes, is_method = arguments, not patterns.module.match(base)
-        fewest = 1 + name.startswith(("pow", "atan2"))
+        fewest = 1 + name.startswith(("pow", "atan2", "copysign"))
         is_short = name in language.OF_NUMBERS and len(nodes) < fewest
         is_first = is_short or (is_method and meaning in TYPES["of_objects"]) or base == "?"
         if tree.owner is not None and is_first:
@@ -1301,13 +1321,11 @@ class _Run:
             case "number" if not arguments and self.program.suffix == ".rs":  # T::zero()
                 return sp.Integer("one" in name)
             case "like" if arguments:  # ones_like(a)
-                own, number = self.read(nodes[0]), sp.Integer("one" in name)
-                return own.applyfunc(lambda _: number) if isinstance(own, sp.MatrixBase) else number
+                return as_matrix(self.read(nodes[0])).applyfunc(lambda _: sp.Integer("one" in name))
             case "wrapper" if is_listed:
                 return self.read(nodes[0])
             case "same" if nodes:
-                if "order=" in tree.options or any(t.text[1:-1] == "F" for t in arguments):
-                    raise self.unreadable(tree)  # by columns
+                self.refuse_if(re.search("order=|[\"']F[\"']", tree.text), tree)  # by columns
                 value = self.read(nodes[0])
                 is_square = re.search(r"\b([34]), *\1\b", tree.text[-12:]) is not None
                 is_by_columns = self.first and name == "reshape" and 1 in as_matrix(value).shape
@@ -1332,8 +1350,8 @@ class _Run:
             if whole is not None:
                 is_glm = self.program.is_glm and len(values) > 4 and name == "new"
                 return self.columns(tree, whole) if is_glm else whole
-            if len(values) == 2 and None not in values:  # float4(v, w)
-                return rows([entry for value in values for entry in as_matrix(value)])
+            if len(values) == 2:  # float4(v, w)
+                return self.stacked(tree, by_columns=False)
         if self.program.is_formula and tree.owner is None:
             return called(name, values)  # with an error that offers other names
         # The arguments of what is not understood, or all together, may be formulas of their own.
@@ -1367,14 +1385,13 @@ class _Run:
             return called("sqrt", [self.of_vectors("dot", values)])
         values = [*values, *values] if meaning == "dot" and len(values) == 1 else values
         if meaning == "dot" and values[0] == values[-1] and isinstance(values[0], sp.Symbol):
-            symbol = sp.Dummy(f"{values[0]}²", positive=True)
-            return self.squares.setdefault(values[0], symbol)
+            return self.squares.setdefault(values[0], sp.Dummy(f"{values[0]}²", positive=True))
         if meaning == "inv":
             return combined("**", _unflattened(values[0]), sp.S.NegativeOne)
         if meaning == "T":
             return self.transposed(values[0])
-        if (meaning, len(values)) == ("dot", 2) and (of_tensor := self.of_tensor(*values)):
-            return of_tensor
+        if meaning == "trace" and isinstance(values[0], sp.Symbol):
+            values = [self.tensor(values[0])]
         if meaning == "cross" and len(values) > 1:
             values = [values[0], self.moment(values[1], values[0])]
         if meaning in ("cross", "dot", "C", "outer"):
@@ -1402,7 +1419,7 @@ class _Run:
         by_columns |= bool(patterns.by_columns.search(tree.called)) ^ axis.endswith(("=1", "=-1"))
         if len(nodes) == 1 and nodes[0].kind in ("list", "matrix"):
             nodes = nodes[0].parts
-        parts = [as_matrix(self.read(each)) for each in nodes]
+        parts = self.beside_scalar([as_matrix(self.read(each)) for each in nodes])
         are_numbers = all(len(each) == 1 for each in parts)
         if tree.kind == "index" and are_numbers and any(each[0].is_Symbol for each in parts):
             raise self.unreadable(tree, "may be of numbers or of vectors")
@@ -1422,7 +1439,7 @@ class _Run:
         """The value of a function of the same file."""
         name, nodes = tree.called, tree.parts[1:]
         every = self.program.functions[name]
-        counted = [t for t in every if len({*parameters(t.node)} - _OBJECTS) == len(nodes)]
+        counted = [t for t in every if len({*t.parameters} - _OBJECTS) == len(nodes)]
         own = [each for each in counted if each.node != self.scope.tree.node]
         is_one = len(own) == 1
         if len(every) > 1:  # the count of arguments tells which is called, in some languages
@@ -1431,11 +1448,10 @@ class _Run:
         self.refuse_if(not is_one or self.inlined >= limits.inlined, tree)
         around = own[0].around
         is_known = around.start_byte <= tree.node.start_byte < around.end_byte
-        if not tree.base and (not is_known or name in self.inputs):  # of another file
-            raise self.unreadable(tree)
+        self.refuse_if(not tree.base and (not is_known or name in self.inputs), tree)  # another's
         scope = replace(self.scope, tree=own[0])
         inner = _Run(self.program, scope, self.inlined + 1)
-        names = [name for name in parameters(own[0].node) if name not in _OBJECTS]
+        names = [name for name in own[0].parameters if name not in _OBJECTS]
         for each, node in zip(names, nodes, strict=True):
             inner.put((each,), self.read(node), 0)
         inner.run_scope()
@@ -1520,16 +1536,6 @@ def _unflattened(value: Any) -> Any:
         return value
     is_padded = len(value) == 12 and not any(value[3::4])  # rows of four with a zero at the end
     return sp.ImmutableMatrix(value.reshape(*((3, 4) if is_padded else _FLAT[len(value)])))
-
-
-def _square(vector: sp.Symbol, names: Mapping[sp.Expr, sp.Expr], first: int) -> sp.Expr:
-    """|v|² of a vector, or of a quaternion if a formula has its fourth component."""
-    used = {symbol.name for symbol in names}
-    has_letters = any(f"{vector}.{letter}" in used for letter in "xyzw")
-    keys = [*"xyzw"] if has_letters else range(first, 4 + first)
-    symbols = [sp.Symbol(f"{vector}.{key}", real=True) for key in keys]
-    symbols = symbols[: 3 + (symbols[3].name in used)]
-    return sum(names.get(s, sp.Symbol(_last(s.name), real=True)) ** 2 for s in symbols)
 
 
 def _is_scalar(value: Any) -> bool:

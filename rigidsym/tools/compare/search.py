@@ -255,7 +255,10 @@ def _with_branches(
         inside = "".join(_lines(text)[max(0, own.function[1] - 1) : own.function[2] or None])
         remarks[id(finding)] = "" if patterns.guard.search(inside) else domain(regular.formula)
     for each in (formula for formula in program if formula.is_final):
-        beside = [r for r in right if (r[1].function, r[1].name) == (each.function, each.name)]
+        beside = [r for r in right if r[1].function == each.function]
+        beside = [
+            r for r in beside if r[1].name == each.name or r[1].is_returned & each.is_returned
+        ]
         branches = [(id(f), branch(regular, own, each)) for f, own, regular in beside]
         for key, case in sorted(((k, c) for k, c in branches if c), key=lambda c: c[1].is_wrong)[
             :1
@@ -306,8 +309,8 @@ def _findings(
 
 
 def _is_formula(entry: sp.Expr) -> bool:
-    """Not a number, as at a pole, nor a name that is not read."""
-    return not (entry.is_number or entry.is_Symbol)
+    """Not a number or its sign, as at a pole, nor a name that is not read."""
+    return not ((entry**2).is_number or entry.is_Symbol)
 
 
 def _is_shared(comparison: Comparison | None, branches: Sequence[Formula]) -> bool:
@@ -377,7 +380,8 @@ def _block(matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
     # π mostly converts degrees. With names, or angles, in the other unit it cancels; if it does
     # not in most entries, the formula is left as it is.
     if matrix.has(sp.pi):
-        scale = {s: s * 180 / sp.pi for s in matrix.free_symbols}
+        inside = {s for f in matrix.atoms(*_TRIGONOMETRIC) for s in f.free_symbols if f.has(sp.pi)}
+        scale = {s: s * 180 / sp.pi for s in inside or matrix.free_symbols}
         has_angles = matrix.shape == (3, 1) and matrix.has(sp.atan2, sp.asin, sp.acos, sp.atan)
         in_radians = matrix * sp.pi / 180 if has_angles else matrix.xreplace(scale)
         is_less = in_radians.count(sp.pi) < matrix.count(sp.pi) + has_angles  # 90 becomes π/2

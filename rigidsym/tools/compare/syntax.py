@@ -25,9 +25,9 @@ if TYPE_CHECKING:
     from tree_sitter import Node
 
 _TABLES: dict[str, dict[str, Any]] = table_beside(__file__, "nodes.toml")
-GRAMMARS, _KINDS, CALLS, SPELLINGS = (  # of a file, a type of node, a word, and a function
+GRAMMARS, _KINDS, CALLS, SPELLINGS, NUMBERS = (  # of files, types of nodes, words, and names
     {word: name for name, words in _TABLES[title].items() for word in words.split()}
-    for title in ("grammars", "kinds", "words", "functions")
+    for title in ("grammars", "kinds", "words", "functions", "constants")
 )
 TYPES = {name: frozenset(types.split()) for name, types in _TABLES["types"].items()}
 _TITLES = ("changes", "remarks", "views", "ways", "whole")
@@ -100,12 +100,6 @@ class Tree:
         return int(self.node.start_point[0]) + 1
 
     @cached_property
-    def span(self) -> tuple[str, int, int]:
-        """The name of a function, with its first and last line."""
-        last = int(self.node.end_point[0]) + 1
-        return (self.word, self.line, last) if self.kind == "function" else ("", 0, 0)
-
-    @cached_property
     def text(self) -> str:
         return _text(self.node)
 
@@ -155,7 +149,8 @@ class Tree:
             case "member" if not parts:  # no object, if there is only a name
                 nodes = nodes[:-1]
             case "function":
-                return [*map(self._with_result, parts or _children(node, "body"))]
+                own = [*(parts or _children(node, "body")), *_children(node, "results")]
+                return [*map(self._with_result, own)]
             case "assign" if len(parts) == 1 and node.type == "variable_declarator":  # C#
                 nodes = _children(node)[:2]
             case "record":  # the values
@@ -177,7 +172,7 @@ class Tree:
         return Tree(node, "member") if _part(node, "object") else tree_of(nodes[0])  # of Java
 
     def _with_result(self, node: Node) -> Tree:
-        """The body of a function, whose value is its last expression in Rust, and of an arrow."""
+        """The body of a function, or its value: the last one in Rust, and the outputs of MATLAB."""
         body = tree_of(node)
         if body.kind != "block":
             return Tree(node, "return", own=[body])
@@ -277,6 +272,15 @@ class Tree:
         """The parts of a tuple on the left, or the only one."""
         return self.parts if self.kind in ("list", "record") else [self]
 
+    @cached_property
+    def parameters(self) -> list[str]:
+        """The names of the parameters of a function."""
+        nodes = below(self.node.named_children if self.kind == "function" else [])
+        outer = next((n for n in nodes if n.type in TYPES["parameters"]), None)
+        outer = _part(self.node, "parameter") or outer
+        declarators = _children(outer) or [outer] if outer is not None else []
+        return [name for each in declarators for name in _names(each)[:1]]
+
     def is_one_of(self, types: str) -> bool:
         return self.node.type in TYPES[types]
 
@@ -337,15 +341,6 @@ def damaged(root: Node) -> Iterator[Tree]:
             yield Tree(node)
 
 
-def parameters(function: Node) -> list[str]:
-    """The names of the parameters of a function."""
-    types = TYPES["parameters"]
-    outer = next((each for each in below(function.named_children) if each.type in types), None)
-    outer = _part(function, "parameter") or outer
-    declarators = _children(outer) or [outer] if outer is not None else []
-    return [name for each in declarators for name in _names(each)[:1]]
-
-
 def declared(statement: Node) -> set[str]:
     """The names that a statement declares for its block alone."""
     if statement.type not in TYPES["local"]:
@@ -361,6 +356,5 @@ def integers(text: str) -> set[str]:
     kind = f"(?<!\\w)(?:{patterns.integer.pattern})"  # and no sentence with the word `long`
     after = r"[\s&*]+(?=(\w+\s*[=,;:)[][^;(){}]*))"  # up to the next type
     own = rf"{kind}{after}|(\w+) *: *&?(?:mut )?{kind}(?= *[=,;)])"
-    declarations = re.finditer(own, text)
-    lists = (match[2] or match[1] for match in declarations)
+    lists = (match[2] or match[1] for match in re.finditer(own, text))
     return {name for each in lists for name in re.findall(r"(?:^|,)[\s&*]*(\w+)", each)}
