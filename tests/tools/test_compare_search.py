@@ -393,7 +393,7 @@ CERTAIN |= {  # a program: the end of the verdict, and nothing if there is none
     ("s.py", "def f(a):\n    s, c = torch.sin(a), torch.cos(a)\n    return torch.stack((c, -s, 0, "
      "s, c, 0, 0, 0, 1), -1).reshape(a.shape + (3, 3))\n"): "a as angle (proved)",
     ("k.py", "def f(p, q):\n    a, u, b, v = p[0], p[1:4], q[0], q[1:4]\n    return np.r_[a*b - "
-     "np.dot(u, v), a*v + b*u + np.cross(u, v)]\n"): "quaternion_product (proved)",
+     "np.dot(u, v), a*v + b*u + np.cross(u, v)]\n"): "quaternion_product p times q (proved)",
     ("a.m", "e = [atan2d(R(3,2), R(3,3)); asind(-R(3,1)); atan2d(R(2,1), R(1,1))];"): NAN,
     ("b.m", f"function R = f(a)\n  R = reshape({FLAT}, 3, 3);\nend\n"): "a as angle (proved)",
     ("l.py", f"def f(a):\n    return np.reshape({FLAT}, (3, 3), 'F')\n"): None,
@@ -642,7 +642,7 @@ SAID = {
     "quaternion of ZYX": "l.py p.m",
     "euler_angles of ZXZ": "g.py",
     "quaternion_product": "b.cs",
-    "quaternion_product (proved)": "e.cs a.c v.py d.rs",
+    " times ": "e.cs a.c v.py d.rs",
     "rotation_matrix of quaternion": "h.py",
     "inverse_rate_matrix_body of xyz": "i.py",
     "angular_velocity_body of ZYX": "b.c",
@@ -963,7 +963,7 @@ def test_a_rate_of_a_quaternion_without_the_factor_one_half_is_named(tmp_path):
         assert len(said) == is_said
     returned = text.replace("d = [", "return [").format(name="times", half="")
     (found,) = found_in(tmp_path, "a.py", returned)
-    assert str(found).endswith("equal to quaternion_product (proved)")
+    assert str(found).endswith("equal to quaternion_product q times w (proved)")
 
 
 # Euler angles from a matrix or a quaternion
@@ -1073,7 +1073,7 @@ def test_a_vector_is_found_once_beside_its_components_and_up_to_a_factor(tmp_pat
     twice = found_in(tmp_path, "a.py", text.replace("    return", "    print") + text)
     assert [each.formula.line for each in twice] == [2, 8]  # in two functions
     (found,) = found_in(tmp_path, "a.py", text)
-    assert "quaternion_product, up to the factor f (proved)" in str(found)
+    assert "quaternion_product q times g, up to the factor f (proved)" in str(found)
     steps = """def f(self, p, q, r, dt):
     phi, theta = self.phi, self.theta
     self.phi += (p + tan(theta)*(q*sin(phi) + r*cos(phi)))*dt

@@ -13,6 +13,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from itertools import chain, permutations
+from posixpath import commonprefix
 from typing import Any
 
 import numpy as np
@@ -27,15 +28,7 @@ from rigidsym.system.resources import environment
 from rigidsym.tools.compare import quantities as known
 from rigidsym.tools.compare.language import spelled_out
 from rigidsym.tools.compare.program import Formula, formula_matrix, is_length
-from rigidsym.tools.compare.quantities import (
-    ANGLES,
-    QUATERNION,
-    Array,
-    Family,
-    KnownQuantity,
-    Names,
-    Values,
-)
+from rigidsym.tools.compare.quantities import ANGLES, QUATERNION, Array, KnownQuantity, Names
 from rigidsym.tools.compare.syntax import CHANGES, REMARKS, SHAPES, WAYS, WHOLE, limits, patterns
 
 _ANGLES = ["phi", "theta", "psi"]  # if nobody has chosen their names
@@ -68,7 +61,7 @@ class Reading:
         return np.asarray(self.agreement.all(axis=0))
 
     @cached_property
-    def values(self) -> Values:
+    def values(self) -> known.Values:
         """Values of the names, and of all that was evaluated before."""
         return known.named(self.names, dict(self.goal.points))
 
@@ -97,14 +90,14 @@ class Reading:
 class _Trial:
     """A formula under all meanings of its names, beside all quantities of a family."""
 
-    def __init__(self, formula: sp.ImmutableMatrix, family: Family, *, is_asked: bool) -> None:
+    def __init__(self, formula: sp.ImmutableMatrix, family: Any, *, is_asked: bool) -> None:
         goal = family[0]
         self.formula, self.family, self.wanted = formula, family, known.values_of(family)
         self.names = known.meanings(formula, goal, is_asked=is_asked)
         # (meanings, points, rows, columns)
         self.numbers = np.empty((0, known.POINTS, *formula.shape))
         if self.names:
-            points, values = dict(goal.points), Values()
+            points, values = dict(goal.points), known.Values()
             for symbol in formula.free_symbols:
                 meant = sp.Matrix([each[symbol] for each in self.names])
                 values[symbol] = known.evaluated(meant, points)[..., 0].T
@@ -203,20 +196,23 @@ class Comparison:
         """The findings in sentences."""
         asked, found, called = self.asked, self.found, self._called()
         calls = []  # the names of coordinates: ours, the user's, and the axis of the turn
-        if found and found.rotation and found.quantity != ANGLES:
+        if found and found.rotation:
             for own, axis in found.coordinates.items():
                 name = called.get(own) or known.stem_of(called.get(f"{own}_dot", ""))
                 calls += [(own, name, axis)] if name else []
+        product = found.inputs.values() if found and found.quantity == "quaternion_product" else ()
+        factors = [[called.get(str(s), "") for s in vector] for vector in product]
         fixed = asked.coordinates.items() if asked and asked.has_own_names else ()
-        calls = calls if any(own != name for own, name, _ in calls) else []
-        shapes = self.formula.shape, asked.matrix.shape if asked else self.formula.shape
-        facts: dict[str, Any] = dict(zip(("shape", "expected"), map(in_words, shapes), strict=True))
-        facts |= {"arrangement": self.arrangement, "calls": calls, "points": known.POINTS}
-        facts |= {"fixed": [(own, own, axis) for own, axis in fixed]}
-        facts |= {"others": [other.text() for other in self.others]}
+        # w of q_w needs no words
+        calls = calls if any(not n.endswith(own) or (a and own != n) for own, n, a in calls) else []
+        facts: dict[str, Any] = {"arrangement": self.arrangement, "calls": calls}
+        facts |= {"others": [each.text() for each in self.others]}
+        facts |= {"factors": [commonprefix(n).rstrip("_") or f"({', '.join(n)})" for n in factors]}
         facts |= {"names": sorted(map(str, self.formula.free_symbols))}
+        facts |= {"fixed": [(own, own, axis) for own, axis in fixed]}
+        shapes = (in_words(each.shape) for each in (self.formula, asked and asked.matrix) if each)
         template = environment().get_template("compare/comparison.txt.jinja")
-        return str(template.render(vars(self) | facts))
+        return str(template.render(vars(self) | facts, points=known.POINTS, shapes=[*shapes]))
 
     def _called(self) -> dict[str, str]:
         """Names of the user by those of the quantity that was found."""
@@ -301,9 +297,8 @@ def _check_brackets(text: str) -> None:
     left = [f"{match[0]!r} at character {match.start() + 1}" for match in re.finditer(r"\S", rest)]
     closing = next((k for k, place in enumerate(left) if place[1] in ")]}"), None)
     if closing is not None:
-        raise ExpressionError(
-            f"{left[closing]} closes {left[closing - 1] if closing else 'nothing'}"
-        )
+        outer = left[closing - 1] if closing else "nothing"
+        raise ExpressionError(f"{left[closing]} closes {outer}")
     if left:
         raise ExpressionError(f"{left[-1]} is not closed")
 
@@ -346,10 +341,9 @@ def identified(
         if (whole := identified(part, only_equal=True)).found:
             return replace(whole, left_out=f"terms without {w}")
         # The gyroscopic torque may have the wrong sign.
-        opposite = Repair(
-            "sign", f"the terms with {w} should have the opposite sign", others - part
-        )
-        if not only_equal and (mend := mended(formula, [opposite])):
+        words = f"the terms with {w} should have the opposite sign"
+        opposite = [Repair("sign", words, others - part)]
+        if not only_equal and (mend := mended(formula, opposite)):
             return mend
     return comparison or Comparison(formula=formula, asked=asked)
 
@@ -505,6 +499,7 @@ def _nearest(trials: Sequence[_Trial], least: float, expected: Sequence[str] = (
         least_odd = 1 - 2 / len(trial.formula) if len(trial.formula.free_symbols) > 1 else 2
         odd = [any(known.oddness(x) > 1 for x in each.values()) for each in trial.names]
         share = trial.agreement.all(axis=2).mean(axis=(-2, -1))
+        share[[*map(known.has_other_scalar, trial.names)]] = -1  # only if equal
         readings += trial.readings(share >= np.where(odd, least_odd, least)[:, None])
         if trial.formula.shape == (3, 1):  # two of three entries exchanged: one is right
             for order in ([1, 0, 2], [2, 1, 0], [0, 2, 1]):
@@ -567,7 +562,7 @@ def domain(value: Any) -> str:
     return name and f"{name} {REMARKS['domain']}"
 
 
-def _truth(conditions: Sequence[sp.Expr], values: Values) -> NDArray[np.bool_]:
+def _truth(conditions: Sequence[sp.Expr], values: known.Values) -> NDArray[np.bool_]:
     """Where all conditions hold, or nearly; raises ExpressionError if a name has no value."""
     numbers = known.evaluated(sp.Matrix([*conditions]), {**values})
     return np.asarray((numbers >= -1e-6).all(axis=(1, 2)))
@@ -581,12 +576,12 @@ def _at_poles(case: Comparison, goal: KnownQuantity, conditions: Any) -> Compari
     """
     turn, names = known.target(goal.rotation, QUATERNION), case.names or {}
 
-    def at(*angles: Array) -> Values:
+    def at(*angles: Array) -> known.Values:
         q = known.evaluated(turn.matrix, dict(zip(turn.inputs["q"], angles, strict=True)))[..., 0].T
         q[1:] *= -1 if "of_transpose" in goal.ways else 1
         return known.named(names, dict(zip(goal.inputs["q"], q, strict=True)))
 
-    def circle(matrix: sp.MatrixBase, values: Values) -> Array:
+    def circle(matrix: sp.MatrixBase, values: known.Values) -> Array:
         return goal.on_circle(known.evaluated(matrix, values)[..., 0])
 
     first, last = known.TABLE[0, :2]
@@ -624,7 +619,7 @@ def _small_angles(case: Comparison, goal: KnownQuantity, conditions: Any) -> Com
     """To which order a polynomial agrees with the true function, by their powers along a line."""
     q, count = goal.inputs["q"], known.POINTS
 
-    def at(size: Array) -> Values:
+    def at(size: Array) -> known.Values:
         line = [n / 7 * size ** (not q[3:]) for n in (2, 3, 6)]
         return known.named(case.names or {}, dict(zip(q, [*line, size], strict=False)))
 
@@ -708,8 +703,7 @@ def _entry(reading: Reading, place: tuple[int, int]) -> tuple[str, sp.Expr]:
     is_short = before.count_ops() <= limits.most_operations
     turns = sorted(reading.formula.atoms(*_SWAPPED), key=str)
     changes = set(variants(before, [*reading.names], turns)) if is_short else set()
-    kinds = [*CHANGES]
-    least = sorted(changes, key=lambda v: (kinds.index(v[0]), v[1].count_ops(), str(v[1])))
+    least = sorted(changes, key=lambda v: ([*CHANGES].index(v[0]), v[1].count_ops(), str(v[1])))
     for kind, after in least:
         with suppress(ExpressionError):  # a change without real values, such as 1/0, is no repair
             if reading.agrees(sp.Matrix([[after]]), wanted):

@@ -324,12 +324,8 @@ def _rotations(
     if 4 in shape:
         return ("unit_quaternion",)
     if not has_turns:
-        return (
-            "gibbs_vector",
-            "modified_rodrigues",
-            *["quaternion"] * is_matrix,
-            "unit_quaternion",
-        )
+        others = ("quaternion", "unit_quaternion")[1 - is_matrix :]
+        return ("gibbs_vector", "modified_rodrigues", *others)
     return (*(_SEQUENCES.get(count, ()) if is_matrix else _THREE), *axes)
 
 
@@ -489,6 +485,8 @@ def meanings(formula: sp.MatrixBase, goal: KnownQuantity, *, is_asked: bool) -> 
     is_free = bool(goal.rotation) and not goal.motion.model.constraints
     of_names = _of_turns(inside, goal, symbols) if turns else _of_vectors(words, vectors, is_free)
     names: list[Names] = [own] * (None not in own.values()) + [*of_names]
+    if goal.quantity != "rotation_matrix":
+        names = [each for each in names if not has_other_scalar(each)]
     if goal.quantity == ANGLES:
         names += _of_entries(symbols, goal.motion.rotation_matrix)
     if is_asked and goal.ways:
@@ -613,9 +611,17 @@ def grouped(names: tuple[tuple[sp.Symbol, str], ...]) -> list[list[tuple[sp.Symb
 
 
 def _scalar_first(vector: tuple[sp.Symbol, ...]) -> list[tuple[sp.Symbol, ...]]:
-    """A quaternion with the scalar first, last, or in a component x of four."""
-    orders = [vector, vector[-1:] + vector[:-1], vector[1:] + vector[:1]]
-    return orders[: 3 if len(vector) == 4 else 1]
+    """A quaternion with the scalar first; that of numbers may be the last, that of letters x."""
+    stems = sorted({re.sub(r"[\d_]+$", "", symbol.name) for symbol in vector})
+    letters = "".join(stem[-1:] for stem in stems)
+    others = {"wxyz": 1, "abcd": -1} if len(stems) > 1 else {letters: -1}
+    k = others.get(letters, 0) if len(vector) == 4 else 0
+    return [vector, vector[k:] + vector[:k]][: 1 + abs(k)]
+
+
+def has_other_scalar(names: Names) -> bool:
+    """Whether a component w is not the scalar: float4 of CUDA may hold w, x, y, z in x, y, z, w."""
+    return any(s.name[-1:] == "w" and str(meant)[0] in "xyz" for s, meant in names.items())
 
 
 def _of_entries(symbols: Sequence[sp.Symbol], rotation: sp.MatrixBase) -> Iterator[Names]:

@@ -201,15 +201,23 @@ def _claims(function: tuple[str, int, int], text: str) -> tuple[str, dict[str, s
     if not name:
         return "", {}
     lines = _lines(text)
-    above = patterns.comment.search(
-        "".join(lines[max(0, first - limits.longest_comment) : first - 1])
-    )
+    before = lines[max(0, first - limits.longest_comment) : first - 1]
+    above = patterns.comment.search("".join(before))
     inside = patterns.docstring.match("".join(lines[first - 1 : last]))
     comment = (above[1] if above else "") + (inside[0] if inside else "")
     for words, said in (("name", name), ("comment", comment)):
-        if claims := {_both(match[0]): match[0] for match in patterns.order.finditer(said)}:
+        own = patterns.reference.sub("", said)
+        if claims := {_both(match[0]): match[0] for match in patterns.order.finditer(own)}:
             return words, claims
     return "", {}
+
+
+def _expected(formula: Formula, text: str) -> list[str]:
+    """Axes as in "z y x" of the label of a branch, or of words on the function."""
+    lines = _lines(text)[max(0, formula.function[1] - 1) : formula.line]
+    labels = patterns.order.findall("".join(patterns.label.findall("".join(lines))[-1:]).lower())
+    named = [order for own in _claims(formula.function, text)[1] for order in (own, own[::-1])]
+    return [*map(" ".join, labels or named)]
 
 
 def _both(order: str) -> str:
@@ -260,9 +268,8 @@ def _with_branches(
             r for r in beside if r[1].name == each.name or r[1].is_returned & each.is_returned
         ]
         branches = [(id(f), branch(regular, own, each)) for f, own, regular in beside]
-        for key, case in sorted(((k, c) for k, c in branches if c), key=lambda c: c[1].is_wrong)[
-            :1
-        ]:
+        judged = sorted(((k, c) for k, c in branches if c), key=lambda c: c[1].is_wrong)
+        for key, case in judged[:1]:
             said = f"the branch in line {each.line} {case.branch}"
             remarks[key] = "; ".join(dict.fromkeys(filter(None, (remarks[key], said))))
             if case.is_wrong:  # a branch of variables is also one of what they are copied to
@@ -289,8 +296,7 @@ def _findings(
             return
         # A formula with the values of all branches may be no quantity, while one branch is.
         is_case = len({each.forms for each in group if each.forms}) > 1
-        named = [order for own in _claims(group[0].function, text)[1] for order in (own, own[::-1])]
-        order = expected or tuple(map(" ".join, named))
+        order = expected or tuple(_expected(group[0], text))
         findings = [_compared(path, each, order, is_case=is_case) for each in group]
         readable = [each for each in findings if each and each.comparison]
         if is_case and not readable:  # a fault that all branches share
@@ -356,8 +362,10 @@ def formulas(text: str, suffix: str) -> Iterator[Formula]:
     """The matrices and vectors that may be one of kinematics, and those that cannot be read."""
     for formula in program_formulas(text, suffix):
         forms = tuple(m for m in map(_block, formula.forms) if len(m.free_symbols))
+        is_returned = patterns.constructed.match("".join(_lines(text)[formula.line - 1 :][:1]))
+        name = UNNAMED[0] if formula.name == UNNAMED[1] and is_returned else formula.name
         if forms or formula.reason:
-            yield replace(formula, forms=forms)
+            yield replace(formula, forms=forms, name=name)
 
 
 def disappointment(comparison: Comparison, expected: str, *, is_active: bool) -> str:
