@@ -29,7 +29,6 @@ from rigidsym.mechanics.singularities import singularities_of
 from rigidsym.models.rotation import RotationModel, depends_on_time
 
 if TYPE_CHECKING:
-    from rigidsym.mechanics.derivation import Consequence, FirstIntegral
     from rigidsym.mechanics.dynamics.flow import Flow
     from rigidsym.models.body import Body
     from rigidsym.models.forces import Forces
@@ -95,20 +94,15 @@ def derive(
         values, moving, motion = steps_of_body(model, body, forces, only, chain)
         steps += moving
     arguments, definer, is_driven = values.arguments, chain, False
-    functions: dict[str, Step] = {}
-    consequences: tuple[Consequence, ...] = ()
-    integrals: tuple[FirstIntegral, ...] = ()
+    functions = {**motion.functions(only)} if motion else {}
+    has_potential = not only or "effective_potential" in only
     named = [step.expression for step in steps]
     if motion:
         forces, definer = motion.forces, motion.names or chain
         is_driven = forces.depend_on_time
         arguments = arguments | {argument.name: argument for argument in motion.added}
-        functions = {**motion.functions(only)}
-        if not only or "effective_potential" in only:
-            consequences = tuple(motion.consequences())
-        integrals = motion.first_integrals
         named += [step.expression for step in functions.values()]
-        named += [sp.Matrix([integral.expression]) for integral in integrals]
+        named += [sp.Matrix([integral.expression]) for integral in motion.first_integrals]
     definitions = definer.definitions_of(named) if definer else ()
     constants = {*arguments["parameters"].symbols} if "parameters" in arguments else set()
     for symbol, expression in definitions:
@@ -136,6 +130,6 @@ def derive(
         about_fixed_point=values.has_fixed_point,
         forces=forces,
         definitions=definitions,
-        first_integrals=integrals,
-        consequences=consequences,
+        first_integrals=motion.first_integrals if motion else (),
+        consequences=tuple(motion.consequences()) if motion and has_potential else (),
     )

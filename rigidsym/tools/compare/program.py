@@ -168,6 +168,7 @@ class _Program:
     is_formula: bool = False  # a formula on its own, with the functions of `language`
     steps: Counter[str] = field(default_factory=Counter)  # expressions that were read
     integers: Collection[str] = ()  # members and names of the whole file
+    written: dict[Any, Path] = field(default_factory=dict)  # what assignments write to, by node
 
 
 def program_formulas(text: str, suffix: str) -> list[Formula]:
@@ -599,8 +600,7 @@ class _Run:
 
     def forget(self, tree: Tree) -> None:
         """All names that are written to in a statement become unread."""
-        changing = [tree, *walk(tree.node, "assign", "call", "binary")]
-        self.become_unread(self.written_in(changing), tree.line)
+        self.become_unread(self.written_in(tree.changes), tree.line)
 
     run_error = forget
 
@@ -617,9 +617,12 @@ class _Run:
 
     def written(self, left: Tree) -> Path:
         """The name that an assignment writes to, also through parts that are not understood."""
-        while not (path := self.path(left)) and left.parts:
-            left = left.parts[0]
-        return tuple(takewhile(lambda key: isinstance(key, str), path))
+        key, known = (left.node.id, left.kind), self.program.written
+        if key not in known:
+            while not (path := self.path(left)) and left.parts:
+                left = left.parts[0]
+            known[key] = tuple(takewhile(lambda each: isinstance(each, str), path))
+        return known[key]
 
     def run_if(self, tree: Tree) -> None:
         """if, #if, switch, and handlers of exceptions: each run takes one branch, or none."""

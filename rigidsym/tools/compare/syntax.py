@@ -104,6 +104,11 @@ class Tree:
         return _text(self.node)
 
     @cached_property
+    def changes(self) -> list[Tree]:
+        """What may change a name: assignments, calls and streams, also the whole."""
+        return [self, *walk(self.node, "assign", "call", "binary")]
+
+    @cached_property
     def word(self) -> str:
         """The name of a name, a member or a function, or an operator."""
         node: Node | None = self.node
