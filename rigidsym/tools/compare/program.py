@@ -141,17 +141,19 @@ class _Scope:
     places: dict[int, int] = field(default_factory=dict)  # of choices with other branches
     is_new: bool = True  # whether the last run took a new branch
 
-    def choice(self, tree: Tree, blocks: Sequence[Tree]) -> int:
-        """The number of the branch."""
-        if tree.node.id not in self.now:
-            free = [k for k in range(len(blocks)) if (tree.node.id, k) not in self.taken]
-            within = (k for k, b in enumerate(blocks) if any(map(b.covers, self.places.values())))
-            self.now[tree.node.id] = free[-1] if free else next(within, len(blocks) - 1)
-            self.is_new |= bool(free)
-            self.taken.add((tree.node.id, self.now[tree.node.id]))
-            self.places.pop(tree.node.id, None)
-            self.places |= {tree.node.id: tree.node.start_byte} if len(free) > 1 else {}
-        return self.now[tree.node.id]
+    def choice(self, tree: Tree, blocks: Sequence[Tree], possible: Sequence[int]) -> int:
+        """The number of the branch, one of those that are possible."""
+        own = tree.node.id
+        if own not in self.now:
+            free = [k for k in range(len(blocks)) if (own, k) not in self.taken]
+            new = [k for k in possible if k in free]
+            open_ = (k for k in possible if any(map(blocks[k].covers, self.places.values())))
+            self.now[own] = new[-1] if new else next(open_, possible[-1])
+            self.is_new |= bool(new)
+            self.taken.add((own, self.now[own]))
+            self.places.pop(own, None)
+            self.places |= {own: tree.node.start_byte} if len(free) > len(new[:1]) else {}
+        return self.now[own]
 
 
 @dataclass(frozen=True)
@@ -645,21 +647,28 @@ class _Run:
         while only.kind == "block" and len(only.parts) == 1:
             only = only.parts[0]
         is_one = only.kind == "assign" and patterns.one.fullmatch(only.parts[-1].text)
-        value = self.without_branch(condition, only.parts[::-1]) if condition and is_one else None
+        value = self.bounded_value(condition, only.parts[::-1]) if condition and is_one else None
         if is_bound := isinstance(value, _Bounded):
             self.store(only.parts[0], value)
         return is_bound
 
     def branch(self, tree: Tree, blocks: Sequence[Tree], condition: Tree | None = None) -> int:
         """The number of the branch that this run takes: the first whose condition is true."""
-        choice = self.scope.choice(tree, blocks)
-        trees = [condition] if condition else [each.condition for each in blocks[: choice + 1]]
+        trees = [condition] if condition else [each.condition for each in blocks]
         if self.inlined or len(self.conditions) > limits.most_conditions:
             self.conditions, trees = {sp.Dummy()}, []  # too many to be worth the time
         known = [(self.condition(each), k) for k, each in enumerate(trees) if each]
+        needed = [{c if n == k else -c for c, n in known if n <= k} for k in range(len(blocks))]
+        possible = [k for k, own in enumerate(needed) if not self.is_false(own)]
+        choice = self.scope.choice(tree, blocks, possible or [*range(len(blocks))])
         unknown = sp.Symbol(f"{tree.node.start_byte} {choice}")  # of a switch
-        self.conditions |= {c if k == choice else -c for c, k in known} or {unknown}
+        self.conditions |= needed[choice] or {unknown}
         return choice
+
+    def is_false(self, conditions: Iterable[sp.Expr]) -> bool:
+        """Whether one of them contradicts a condition of the branches that were taken."""
+        sums = (one + other for one in conditions for other in self.conditions)
+        return any(each.is_number and each < limits.near_equal for each in sums)
 
     def condition(self, tree: Tree) -> sp.Expr:
         """A number that is not negative if a condition is true, of a name if it is not read."""
@@ -1065,12 +1074,12 @@ class _Run:
         """One of two values."""
         if condition.constant is not None:
             return self.read(trees[not condition.constant])
-        if (value := self.without_branch(condition, trees)) is not None:
+        if (value := self.bounded_value(condition, trees)) is not None:
             return value
         return self.read(trees[self.branch(tree, trees, condition)])
 
-    def without_branch(self, condition: Tree, trees: Sequence[Tree]) -> Any:
-        """One of two values, if the other is a number that belongs to a pole or is a bound."""
+    def bounded_value(self, condition: Tree, trees: Sequence[Tree]) -> Any:
+        """One of two values, if the other is a bound of it."""
         values = [self.tried(each) for each in trees]
         fixed = [_is_scalar(value) and value.is_number for value in values]
         is_one = sum(fixed) == 1 and None not in values
@@ -1082,10 +1091,6 @@ class _Run:
             is_bound = limit == {">": 1, "<": -1}.get(sign) and abs(number - limit) < 0.01
             if is_bound and _inner(own) == _inner(other):
                 return _Bounded(_inner(own))
-            if self.is_pole(own, sign, number, other):
-                is_other = other.free_symbols != {own} or other.has(*_INVERSE)
-                if is_other or abs(other.subs(own, 1e-3) - limit) < limits.near_limit:
-                    return other
         return None
 
     def sides(self, condition: Tree) -> tuple[Any, str, Any]:
@@ -1102,14 +1107,6 @@ class _Run:
                 if number.is_number:
                     return own, sign[0].translate(str.maketrans("<>~", signs)), number
         return None, "", None
-
-    def is_pole(self, own: sp.Expr, sign: str, number: sp.Expr, value: sp.Expr) -> bool:
-        """Whether a value, of the same vector or matrix, has a pole where it is replaced."""
-        is_near = sign == "=" or (sign == ">" and number > 0.4) or (sign == "<" and number < 0.1)
-        whole, own = self.expanded(value), self.expanded(own)
-        names = [{patterns.indices.sub("", s.name) for s in x.free_symbols} for x in (whole, own)]
-        has_power = any(power.exp.is_negative for power in whole.atoms(sp.Pow))
-        return is_near and (has_power or whole.has(*_INVERSE)) and bool(names[0] & names[1])
 
     # Names, members and indices
 
