@@ -73,6 +73,7 @@ def function_word(name: str) -> str:
     return SPELLINGS.get(name, name)
 
 
+_POWERS = {"pow": None, "sq": sp.Integer(2), "rsqrt": -sp.S.Half}
 _SHORT = {"c": "cos", "s": "sin", "t": "tan", "C": "cos", "S": "sin", "T": "tan"}
 CONSTANTS = {word: sp.sympify(value) for word, value in NUMBERS.items()}
 
@@ -128,11 +129,10 @@ def called(name: str, values: list[Any]) -> Any:
         return called("rad2deg", [value]) if is_inverse else value
     if name in ("deg2rad", "rad2deg"):
         return combined("*", sp.pi / 180 if name == "deg2rad" else 180 / sp.pi, *values)
-    if name in ("pow", "sq"):
-        return combined("**", values[0], values[1] if name == "pow" else sp.Integer(2))
+    if name in _POWERS:
+        return combined("**", values[0], _POWERS[name] or values[1])
     if name == "hypot":
-        squares = (called("sq", [value]) for value in values)
-        return called("sqrt", [reduce(partial(combined, "+"), squares)])
+        return called("sqrt", [reduce(partial(combined, "+"), (called("sq", [v]) for v in values))])
     if name == "copysign":
         return combined("*", called("abs", values[:1]), called("sign", values[1:]))
     is_matrix = any(isinstance(value, sp.MatrixBase) for value in values)

@@ -41,7 +41,6 @@ _WORDS = {*language.OF_NUMBERS, *language.OF_MATRICES, *CALLS}  # functions, if 
 _RETURNED, _ARGUMENT = UNNAMED = ("returned", "argument")  # in place of a name
 _ALL = slice(None)
 _OBJECTS = {"self", "this"}
-_FROM_ONE = ["1", "2", "3"]
 
 _COMPLETE = {frozenset(order.split()): order.split() for order in patterns.orders}
 
@@ -79,7 +78,7 @@ class _Record(dict[Any, tuple[Any, int]]):
         keys = {str(key).lower(): key for key in self if key is not None}
         order = _COMPLETE.get(frozenset(keys)) or [str(k) for k in range(len(keys))]
         parts = [self[keys[name]] for name in order if name in keys]
-        is_from_one = order == _FROM_ONE
+        is_from_one = order == [*"123"]
         if all(isinstance(part, _Record) for part, _ in parts):
             wholes = [part.whole(is_row=is_from_one) for part, _ in parts]
         else:
@@ -821,7 +820,9 @@ class _Run:
         if is_state and 3 < value.rows <= limits.longest_state:  # angles and rates
             for k in range(value.rows - 2):
                 part = value[k : k + 3, :]
-                if len(value) > 4 or are_angles(part):
+                # (R v, 1) has a fourth coordinate
+                is_sum = not k and value[3].is_Atom and all(entry.is_Add for entry in part)
+                if len(value) > 4 or is_sum or are_angles(part):
                     self.add(f"{name}[{k}:{k + 3}]", part, min(lines), is_final=is_final)
         is_flat = value.shape != _unflattened(value).shape
         value = _unbounded(_unflattened(value))
@@ -951,14 +952,12 @@ class _Run:
             return called(tree.word.lower(), [self.read(tree.parts[0])])
         if CALLS.get(tree.word) == "unit" and re.search("mat|rot", tree.text, re.IGNORECASE):
             return sp.ImmutableMatrix(sp.eye(3 if "3" in tree.text else 4))
-        return (
-            self.named(tree) if tree.word != "T" or not tree.parts else self.read_transposed(tree)
-        )
+        is_transpose = tree.word == "T" and tree.parts
+        return self.read_transposed(tree) if is_transpose else self.named(tree)
 
     def read_unary(self, tree: Tree) -> Any:
-        if tree.word not in ("+", "-"):
-            return self.named(tree)
-        return self.read(tree.parts[-1]) * (1 if tree.word == "+" else -1)
+        sign = {"+": 1, "-": -1}.get(tree.word)
+        return sign * self.read(tree.parts[-1]) if sign else self.named(tree)
 
     def read_binary(self, tree: Tree) -> Any:
         self.refuse_if(len(tree.parts) != 2, tree)
@@ -1304,8 +1303,7 @@ class _Run:
         is_template = name == "T" and tree.owner is None and not self.program.is_formula
         meaning = "" if is_own else "wrapper" if is_template else CALLS.get(name, "")
         nodes, is_method = arguments, not patterns.module.match(base)
-        fewest = 1 + name.startswith(("pow", "atan2", "copysign"))
-        is_short = name in language.OF_NUMBERS and len(nodes) < fewest
+        is_short = name in language.OF_NUMBERS and len(nodes) <= (name in TYPES["of_two"])
         is_first = is_short or (is_method and meaning in TYPES["of_objects"]) or base == "?"
         if tree.owner is not None and is_first:
             nodes = [tree.owner, *nodes]
@@ -1314,7 +1312,6 @@ class _Run:
             # SymPy takes a long argument apart, which costs as much as several expressions.
             self.program.steps["read"] += sum(3 * n for n in map(_size, values) if n > 12)
             return called(name, values)
-        is_listed = bool(nodes) and (len(nodes) == 1 or nodes[0].kind in ("list", "matrix"))
         match meaning:
             case "pair" if len(nodes) == 1:
                 return rows([called(each, [self.read(nodes[0])]) for each in ("sin", "cos")])
@@ -1322,7 +1319,7 @@ class _Run:
                 return sp.Integer("one" in name)
             case "like" if arguments:  # ones_like(a)
                 return as_matrix(self.read(nodes[0])).applyfunc(lambda _: sp.Integer("one" in name))
-            case "wrapper" if is_listed:
+            case "wrapper" if nodes and (len(nodes) == 1 or nodes[0].kind in ("list", "matrix")):
                 return self.read(nodes[0])
             case "same" if nodes:
                 self.refuse_if(re.search("order=|[\"']F[\"']", tree.text), tree)  # by columns
@@ -1335,7 +1332,9 @@ class _Run:
                 return self.filled(tree)
             case "clamp" | "least" if len(nodes) > 1:
                 return self.bounded(tree, meaning, [self.read(each) for each in nodes])
-            case "fused" if len(arguments) == 2 and is_method:
+            case "cosine" if self.read(nodes[0]) == called("sin", [a := self.read(nodes[-1])]):
+                return called("cos", [a])  # cosFromSin(sin(a), a)
+            case "fused" | "fma" if [len(nodes), name != "mul_add"] == [3, len(arguments) == 3]:
                 return combined("+", combined("*", *map(self.read, nodes[:2])), self.read(nodes[2]))
             case "where" if len(nodes) == 3:
                 return self.chosen(tree, nodes[0], nodes[1:])
@@ -1479,9 +1478,10 @@ def _groups(record: _Record) -> Iterator[tuple[int, list[str]]]:
         if isinstance(name, str) and _is_scalar(value):
             for kind, stem, index in _roles(name):
                 groups.setdefault((kind, stem), {})[index] = name
-    for (kind, _), members in groups.items():
+    for (kind, stem), members in groups.items():
         order = _COMPLETE.get(frozenset(members)) if kind != -1 else [*members][:4]
-        if order is not None and len(order) > 2:
+        is_row = kind == 2 and len(groups.get((0, re.sub(r"_?\d_?$", "", stem)), ())) > 8
+        if order is not None and len(order) > 2 and not is_row:  # m00, m01, m02 is no vector
             yield kind, [members[index] for index in order]
 
 
@@ -1518,12 +1518,14 @@ def _last(name: str) -> str:
     return re.findall(r"[^.]*(?:\.[A-Za-z]?\d?\d?)*$", own)[0].replace(".", "_")
 
 
-def _short_names(symbols: Iterable[sp.Symbol]) -> dict[sp.Expr, sp.Expr]:
+def _short_names(symbols: Collection[sp.Symbol]) -> dict[sp.Expr, sp.Expr]:
     """Short names for symbols of paths, and for the symbols of later values of a name."""
     names: dict[str, sp.Symbol] = {}
+    plain = {symbol.name for symbol in symbols}
+    shared = {of for of in ("self.", "this.") for n in {*"wxyz"} & plain if of + n in plain}
     for symbol in sorted(symbols, key=lambda s: (s.is_Dummy, s.name.count("."), s.sort_key())):
-        name = _last(symbol.name)
-        name = symbol.name.replace(".", "_") if name in names else name
+        name, long = _last(symbol.name), symbol.name.replace(".", "_")
+        name = long if name in names or symbol.name[:-1] in shared else name  # also this.w
         while name in names:
             name += "_new"
         names[name] = symbol
