@@ -6,7 +6,6 @@ import json
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
-from itertools import chain
 from operator import itemgetter
 from pathlib import Path
 from typing import Any
@@ -51,9 +50,7 @@ def _motion(options: Options) -> Motion | str | None:
     if rotation is None or quantity is None:
         if rotation or quantity or spelling:
             raise click.UsageError(
-                "a formula is compared with --quantity NAME of --rotation ROTATION, such as "
-                "--rotation ZYX --quantity rotation_matrix; without both, all known "
-                "quantities are tried"
+                "a formula is compared with --quantity NAME of --rotation ROTATION, or without both"
             )
         return None
     spec = read(rotation, **spelling)
@@ -72,26 +69,31 @@ def _searched(paths: Sequence[Path], options: Options) -> int:
     records: list[dict[str, Any]] = []
     unreadable, cut, has_failed = 0, 0, False
     work = partial(_records, options["expect"], options["expect_active"])
-    for record in chain.from_iterable(in_processes(work, files)):
-        is_failure, is_end = record.pop("is_failure"), record.pop("is_end")
-        has_failed |= is_failure
-        cut += is_end
-        if record.pop("is_unreadable"):
-            unreadable += not is_end
-            if options["why"] or is_failure or is_end:
-                message(_line(record))
-            continue
-        same = [each for each in accepted if record["fault"] and _key(each) == _key(record)]
-        record["accepted"] = bool(same)
-        for old in same[:1]:  # a copy of an accepted fault is another fault
-            accepted.remove(old)
-        records.append(record)
-        if options["format"] == "text" and not record["accepted"]:
-            click.echo(_line(record))
+    done = 0
+    try:
+        for done, own in enumerate(in_processes(work, files), 1):  # noqa: B007
+            for record in own:
+                is_failure, is_end = record.pop("is_failure"), record.pop("is_end")
+                has_failed |= is_failure
+                cut += is_end
+                if record.pop("is_unreadable"):
+                    unreadable += not is_end
+                    if options["why"] or is_failure or is_end:
+                        message(_line(record))
+                    continue
+                same = [each for each in accepted if record["fault"] and _key(each) == _key(record)]
+                record["accepted"] = bool(same)
+                for old in same[:1]:  # a copy of an accepted fault is another fault
+                    accepted.remove(old)
+                records.append(record)
+                if options["format"] == "text" and not record["accepted"]:
+                    click.echo(_line(record))
+    finally:  # also if the time is up
+        if options["format"] == "json":
+            left = [{"path": str(p), "fault": False, "text": "not compared"} for p in files[done:]]
+            click.echo(_json([*records, *left]))
     faults = [record for record in records if record["fault"] and not record["accepted"]]
-    if options["format"] == "json":
-        click.echo(_json(records))
-    elif options["format"] != "text":
+    if options["format"] in ("sarif", "github"):
         here = Path.cwd()
         for record in faults:  # GitHub expects paths below this folder, if they are
             path = Path(record["path"])

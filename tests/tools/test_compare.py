@@ -181,7 +181,7 @@ def test_the_finding_is_said_in_one_sentence():
     end = "and no single change makes it one"
     for found, sentence in (
         (rs.compare(matrix), "equal to rotation_matrix of ZYX (proved)"),
-        (rs.compare(matrix.T), "transposed (passive, the direction cosine matrix)"),
+        (rs.compare(matrix.T), "transposed (passive, for row vectors, or by columns)"),
         (rs.compare(unknown), f"not a known quantity, {end}"),
         (rs.compare(unknown, "ZYX", "rotation_matrix"), f"not rotation_matrix of ZYX, {end}"),
         (rs.compare(matrix.T, "xyx", "rotation_matrix"), "this is rotation_matrix of ZYX, tr"),

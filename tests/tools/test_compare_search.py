@@ -11,7 +11,7 @@ import operator
 import re
 import tomllib
 from contextlib import nullcontext
-from time import process_time
+from time import process_time, sleep
 
 import numpy as np
 import pytest
@@ -76,7 +76,7 @@ RATES = r"\begin{pmatrix}\dot\phi\\ \dot\theta\\ \dot\psi\end{pmatrix}"
 TO_BODY = r"1&0&-s_\theta\\0&c_\phi&s_\phi c_\theta\\0&-s_\phi&c_\phi c_\theta"
 PRODUCTS = {
     rf"\mathbf{{A}} = \left({ABOUT_Z}{ABOUT_X}\right)^\top.": "rotation_matrix of z(first) "
-    "x(second), transposed (passive, the direction cosine matrix)",
+    "x(second), transposed (passive, for row vectors, or by columns)",
     rf"{RATES} = \left[\begin{{array}}{{ccc}}{TO_BODY}\end{{array}}\right] {RATES}": "angular_"
     "velocity_body of ZYX",
 }
@@ -356,7 +356,7 @@ CERTAIN |= {  # a program: the end of the verdict, and nothing if there is none
      " [0, 0, 1]]; }"): None,
     ("b.py", POLES.format(f"near, {X}, 0", Y)): "branches",
     ("c.py", POLES.format(f"near, 0, {X}", f"{Y} if abs(np.cos(b)) < 1e-6 else 0")): None,
-    ("d.py", BATCH.format(0, 0, 0)): "cosine matrix) (proved)",
+    ("d.py", BATCH.format(0, 0, 0)): "by columns) (proved)",
     ("e.py", BATCH.format(1, 1, 1)): None,
     ("f.py", "def f(R):\n    a, b, c = torch.unbind(R, -1)\n    return torch.atan2(c[1], c[2]), "
      "torch.asin(-c[0]), torch.atan2(b[0], a[0])\n"): None,
@@ -801,11 +801,8 @@ def test_angles_that_are_not_in_the_formula_are_an_error():
         ("abc", "[1 0 0; 0 1 0; 0 0 1]", ""),
     ):
         motion = rs.derive(rs.EulerAngles("ZYX", angles=tuple(angles)), "rotation_matrix")
-        with (
-            pytest.raises(ExpressionError, match=f": the formula has {there}$")
-            if there
-            else nullcontext()
-        ):
+        error = pytest.raises(ExpressionError, match=f": the formula has {there}$")
+        with error if there else nullcontext():
             rs.compare(formula, motion, "rotation_matrix")
 
 
@@ -836,6 +833,10 @@ def test_a_failure_in_one_file_does_not_end_the_search(tmp_path, monkeypatch):
     done = run(str(tmp_path))
     assert "b.py:1: not read, since there was an error in reading it: KeyError: 0" in done.stderr
     assert (done.exit_code, done.stdout.count("(proved)")) == (3, 2)
+    slow = lambda text, end: sleep(30 * ("c.py" in text)) or program_formulas(text, end)  # noqa: E731
+    monkeypatch.setattr(rigidsym.tools.compare.search, "program_formulas", slow)
+    done = run(str(tmp_path), "--format", "json", "--timeout", "1")
+    assert "not compared" in json.loads(done.stdout)[-1]["text"], done.exception
 
 
 @pytest.mark.parametrize(

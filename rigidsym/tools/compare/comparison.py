@@ -452,6 +452,10 @@ def _ways(formula: sp.ImmutableMatrix) -> Iterator[tuple[str, sp.ImmutableMatrix
     """(words, formula): other ways of writing a formula, which a program may mean."""
     if formula.shape == (3, 3):  # by columns, or for rows of rates
         yield "transposed", formula.T
+    numbers = [e.as_independent(*e.free_symbols, as_Add=True)[0] for e in formula]
+    if formula.shape == (3, 1) and any(numbers):  # the declination, or gravity
+        entries = " and ".join(str(k) for k, number in enumerate(numbers, 1) if number)
+        yield f"without the number added in entry {entries}", formula - sp.Matrix(numbers)
     values = known.sample(formula)
     for symbol in values:
         functions = formula.atoms(sp.sin, sp.cos, sp.tan)
@@ -589,19 +593,22 @@ def _at_poles(case: Comparison, goal: KnownQuantity, conditions: Any) -> Compari
     pole = (side + (len({*goal.rotation}) == 2)) * np.pi / 2  # of proper Euler angles 0 and π
     here, turned = at(first, pole, last), at(first + 1, pole, last - 1)
     sign = np.where(abs(sum(here[x] * turned[x] for x in goal.inputs["q"])) > 0.999, 1, -1)
-    beside, beyond = (at(first, pole - step * side, last) for step in (1e-7, -1e-7))
+    beside, elsewhere = at(first, pole - 1e-7 * side, last), dict(goal.points)
+    is_there = _truth(conditions, beside) & ~_truth(conditions, known.named(names, elsewhere)).any()
     own, right = circle(case.formula, beside), circle(goal.matrix, beside)
     same = circle(goal.matrix, at(first + 1, pole - 1e-7 * side, last - sign))
     changes = np.round(np.angle(same / right))  # 1 and ±1, and 0 of the middle angle
-    free = int(np.abs(changes[0]).argmax())
+    # Where both arguments of an arc tangent vanish, rounding decides. If two angles are so, as in
+    # the formula beside the poles, they are not compared; one that is so makes the sum wrong.
+    squares = [[a.args[0] ** 2 + a.args[1] ** 2 for a in e.atoms(sp.atan2)] for e in case.formula]
+    sizes = known.evaluated(sp.Matrix([sp.Mul(*each) for each in squares]), beside)[..., 0]
+    is_any = ~(sizes > 1e-9) | np.isnan(own)
+    free = int((abs(changes[0]) - is_any[is_there].any(axis=0) / 2).argmax())
     shift = (own / right)[:, [free]] ** changes[:, [free]]
     wanted = right * shift**changes
-    # Where both arguments of an arc tangent vanish, the values on both sides differ.
-    is_sure, elsewhere = _alike(own, circle(case.formula, beyond)), dict(goal.points)
-    is_there = _truth(conditions, beside) & ~_truth(conditions, known.named(names, elsewhere)).any()
-    is_odd = (changes == 0) & is_sure & ~_alike(own, right)  # the middle angle, whatever the others
-    is_sure = is_sure.all(axis=1)
-    is_wrong = is_there & (is_odd.any(axis=1) | is_sure & ~_alike(own, wanted).all(axis=1))
+    is_odd = (changes == 0) & ~is_any & ~_alike(own, right)  # the middle angle, whatever the others
+    is_sure, is_off = is_any.sum(axis=1) < 2, is_any | ~_alike(own, wanted)
+    is_wrong = is_there & (is_odd.any(axis=1) | is_sure & is_off.any(axis=1))
     if not is_wrong.any() and (is_sure & is_there).any():
         # the conditions are false where an arc sine in all of them has no value
         remarks = ["is right at a pole (gimbal lock)", *set(map(domain, conditions))]
@@ -609,9 +616,11 @@ def _at_poles(case: Comparison, goal: KnownQuantity, conditions: Any) -> Compari
     if not is_wrong.any() or {*known.SENSES} & {*goal.ways}:  # or the other formula is wrong
         return None
     k = is_wrong.argmax()
-    place = (int(_alike(own, wanted)[k].argmin()) + 1, 1)
-    angles = (tuple((np.angle(x[k]).round(4) + 0.0).tolist()) for x in (right, own, wanted))
-    words = "for the rotation by {} it gives {}, right is {}".format(*angles)
+    place = (int(is_off[k].argmax()) + 1, 1)
+    angles = np.round(np.angle([right[k], own[k], wanted[k]]), 4) + 0.0
+    angles[1 : 3 - is_sure[k], is_any[k]] = np.nan
+    words = "for the rotation by {} it gives {}, right is {}".format(*map(tuple, angles.tolist()))
+    words = words.replace("nan", "any")
     return replace(case, branch="at a pole (gimbal lock)", counterexample=words, place=place)
 
 

@@ -257,12 +257,10 @@ def of_motion(motion: Motion, quantity: str, rotation: str) -> KnownQuantity:
     symbols = {symbol for vector in arguments.values() for symbol in vector}
     constants = matrix.free_symbols - symbols - {s for q in symbols for s in q.args}
     inputs = {name: arguments[name] for name in arguments if name in uses}
+    inputs |= {"constants": tuple(sorted(constants, key=str))} if constants else {}
+    own = sp.ImmutableMatrix(matrix)
     return KnownQuantity(
-        quantity=quantity,
-        rotation=rotation,
-        matrix=sp.ImmutableMatrix(matrix),
-        motion=motion,
-        inputs=inputs | ({"constants": tuple(sorted(constants, key=str))} if constants else {}),
+        quantity=quantity, rotation=rotation, matrix=own, motion=motion, inputs=inputs
     )
 
 
@@ -381,20 +379,16 @@ _LAWS: tuple[tuple[str, tuple[int, ...], Way], ...] = (  # entries of each vecto
 
 @cache
 def _laws() -> tuple[Family, ...]:
-    motion = target("quaternion", "rotation_matrix").motion  # a ring without conditions
+    # a ring without conditions
+    any_law = replace(target("quaternion", "rotation_matrix"), rotation="")
     laws = []
     for title, sizes, value in _LAWS:
         name, _, condition = title.partition(" ")
         letters = zip("abcd", sizes, strict=False)
         vectors = {c: sp.symbols(f"{c}_:{size}", real=True) for c, size in letters}
         matrix = value(*map(sp.Matrix, vectors.values())).as_immutable()
-        law = KnownQuantity(
-            quantity=name,
-            ways=(condition,) * bool(condition),
-            matrix=matrix,
-            motion=motion,
-            inputs=vectors,
-        )
+        ways = (condition,) * bool(condition)
+        law = replace(any_law, quantity=name, ways=ways, matrix=matrix, inputs=vectors)
         laws.append(tuple(law.written(*(() if condition else _WAYS.get(name, ())))))
     return tuple(laws)
 
@@ -422,7 +416,7 @@ def _of_matrix() -> Family:
     rotation = target("unit_quaternion", "rotation_matrix")
     squares = outer_product(_ENTRIES)
     columns = (squares[:, k] / (2 * sp.sqrt(squares[k, k])) for k in range(4))
-    ways = _WAYS[QUATERNION][:-1]
+    ways = (_ways(by_columns=_times(1, -1, -1, -1)), *_WAYS[QUATERNION][1:-1])
     goal = replace(rotation, quantity=QUATERNION, rotation=OF_MATRIX)
     return _family([replace(goal, matrix=sp.ImmutableMatrix(q)).written(*ways) for q in columns])
 
@@ -613,10 +607,9 @@ def grouped(names: tuple[tuple[sp.Symbol, str], ...]) -> list[list[tuple[sp.Symb
 def _scalar_first(vector: tuple[sp.Symbol, ...]) -> list[tuple[sp.Symbol, ...]]:
     """A quaternion with the scalar first; that of numbers may be the last, that of letters x."""
     stems = sorted({re.sub(r"[\d_]+$", "", symbol.name) for symbol in vector})
-    letters = "".join(stem[-1:] for stem in stems)
-    others = {"wxyz": 1, "abcd": -1} if len(stems) > 1 else {letters: -1}
-    k = others.get(letters, 0) if len(vector) == 4 else 0
-    return [vector, vector[k:] + vector[:k]][: 1 + abs(k)]
+    others = {"wxyz": 1, "abcd": -1} if len(stems) > 1 else {stems[0][-1:]: -1}
+    k = others.get("".join(stem[-1:] for stem in stems), 0)
+    return [vector, vector[k:] + vector[:k]][: 1 + abs(k) * (len(vector) == 4)]
 
 
 def has_other_scalar(names: Names) -> bool:

@@ -239,7 +239,7 @@ def _order(finding: FormulaInFile) -> str:
 def _are_conjugate(one: Comparison, other: Comparison) -> bool:
     """Whether one of two quaternions of a matrix is that of its transpose."""
     goals = [each.found for each in (one, other) if each.found]
-    is_conjugated = {"conjugated" in goal.ways for goal in goals}
+    is_conjugated = {"by_columns" in goal.ways for goal in goals}
     are_cases = {goal.rotation for goal in goals} == {quantities.OF_MATRIX}
     return are_cases and len(is_conjugated) == 2 - (one.names != other.names)
 
