@@ -337,13 +337,13 @@ def identified(
     if not only_equal:
         comparison = comparison or _decided(formula, trials, asked)
         comparison = comparison or _close(formula, trials, asked, expected)
-    for w, part, others in _parts(formula) if is_in_program and comparison is None else ():
+    for w, part, changed in _parts(formula) if is_in_program and comparison is None else ():
         if (whole := identified(part, only_equal=True)).found:
             return replace(whole, left_out=f"terms without {w}")
         # The gyroscopic torque may have the wrong sign.
-        words = f"the terms with {w} should have the opposite sign"
-        opposite = [Repair("sign", words, others - part)]
-        if not only_equal and (mend := mended(formula, opposite)):
+        products = "products of" if formula.cols == 3 else "terms with"
+        words = f"the {products} {w} should have the opposite sign"
+        if not only_equal and (mend := mended(formula, [Repair("sign", words, changed)])):
             return mend
     return comparison or Comparison(formula=formula, asked=asked)
 
@@ -462,10 +462,8 @@ def _ways(formula: sp.ImmutableMatrix) -> Iterator[tuple[str, sp.ImmutableMatrix
         own = {f for f in functions if f.has(symbol)}
         names = {s for f in own for s in f.free_symbols}
         # A factor in one angle of a vector is one in all of them, and nowhere else.
-        if own and (
-            any(names & f.free_symbols for f in functions - own)
-            or formula.xreplace({f: sp.Dummy() for f in own}).has(symbol)
-        ):
+        rest = formula.xreplace({f: sp.Dummy() for f in own})
+        if own and (rest.has(symbol) or any(names & f.free_symbols for f in functions - own)):
             continue
         angles = [f.args[0] for f in own]
         # A factor of a whole matrix may be a vector that is not read.
@@ -477,11 +475,11 @@ def _ways(formula: sp.ImmutableMatrix) -> Iterator[tuple[str, sp.ImmutableMatrix
 
 
 def _parts(formula: sp.ImmutableMatrix) -> Iterator[tuple[str, Any, sp.ImmutableMatrix]]:
-    """("p, q, r", part, others): the terms with an angular velocity, and those without.
+    """("p, q, r", part, changed): the terms with an angular velocity, and their sign changed.
 
     The others are torques in Euler's equations, and corrections in rates of a quaternion.
     """
-    if formula.shape not in ((3, 1), (4, 1)) or formula.has(sp.Function):
+    if formula.shape not in ((3, 1), (4, 1), (3, 3)) or formula.has(sp.Function):
         return
     sign = 1 if formula.rows == 3 else -1  # of what is quadratic in ω, or linear
     names = tuple((s, s.name) for s in sorted(formula.free_symbols, key=str))
@@ -492,7 +490,10 @@ def _parts(formula: sp.ImmutableMatrix) -> Iterator[tuple[str, Any, sp.Immutable
         parts = [m - others for m in (formula, formula.xreplace({s: -s for s in w}))]
         own, opposite = (known.evaluated(part, known.sample(formula)) for part in parts)
         if any(others) and known.near(own, sign * opposite).all():
-            yield ", ".join(map(str, w)), sp.ImmutableMatrix(parts[0].expand()), others
+            part = sp.ImmutableMatrix(parts[0].expand())
+            # In m (d² 1 − d dᵀ), whose trace is 2 m d², only d dᵀ may have the wrong sign.
+            double = part.trace() / 2 * sp.eye(3) if formula.cols == 3 else sp.zeros(*part.shape)
+            yield ", ".join(map(str, w)), part, others + double - part
 
 
 def _nearest(trials: Sequence[_Trial], least: float, expected: Sequence[str] = ()) -> list[Reading]:

@@ -1392,7 +1392,7 @@ class _Run:
         if meaning == "trace" and isinstance(values[0], sp.Symbol):
             values = [self.tensor(values[0])]
         if meaning == "cross" and len(values) > 1:
-            values = [values[0], self.moment(values[1], values[0])]
+            values = [self.moment(values[0], values[1]), self.moment(values[1], values[0])]
         if meaning in ("cross", "dot", "C", "outer"):
             count = 4 if any(getattr(v, "shape", ()) == (4, 4) for v in values) else 3
             values = [self.vector(value, count) for value in values]

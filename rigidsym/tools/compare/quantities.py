@@ -568,7 +568,8 @@ def _of_vectors(
 def grouped(names: tuple[tuple[sp.Symbol, str], ...]) -> list[list[tuple[sp.Symbol, ...]]]:
     """Names in vectors, by each pattern; p, q, r are one, and other names are numbers."""
     groupings: list[list[tuple[sp.Symbol, ...]]] = []
-    rates_of = "(?:.*_)?([pqr])(_b(ody)?)?"  # but r, i, j, k are a quaternion
+    # but r, i, j, k are a quaternion; torques in flight mechanics are L, M, N
+    rates_of = "(?:.*_)?([pqrLMN])(_b(ody)?)?"
     have_rates = any(match[1] == "q" for _, n in names if (match := re.fullmatch(rates_of, n)))
     for pattern in patterns.vectors:
         groups: dict[str, list[tuple[str, sp.Symbol]]] = {}
@@ -578,7 +579,7 @@ def grouped(names: tuple[tuple[sp.Symbol, str], ...]) -> list[list[tuple[sp.Symb
             if part.isupper():  # X, Y, Z beside x, y, z
                 stem, part = f"{stem}^", part.lower()
             if have_rates and (rates := re.fullmatch(rates_of, name)):
-                stem, part = "p, q, r", rates[1].replace("r", "s")
+                stem, part = "LMN" if rates[1] < "a" else "pqr", rates[1].replace("r", "s")
             groups.setdefault(stem if part else name, []).append((part, symbol))
         for group in groups.values():
             parts = dict(group)
