@@ -73,7 +73,7 @@ def function_word(name: str) -> str:
     return SPELLINGS.get(name, name)
 
 
-_POWERS = {"pow": None, "sq": sp.Integer(2), "rsqrt": -sp.S.Half}
+_POWERS = {"pow": None, "sq": sp.Integer(2), "rsqrt": -sp.S.Half, "recip": sp.S.NegativeOne}
 _SHORT = {"c": "cos", "s": "sin", "t": "tan", "C": "cos", "S": "sin", "T": "tan"}
 CONSTANTS = {word: sp.sympify(value) for word, value in NUMBERS.items()}
 

@@ -276,10 +276,8 @@ def formula_matrix(text: str) -> sp.ImmutableMatrix:
 
     Raises ExpressionError for a text in none of these languages, and for one that is too long.
     """
-    if len(text) > limits.most_characters:
-        raise ExpressionError(
-            f"a formula of {len(text)} characters; expected at most {limits.most_characters}"
-        )
+    if len(text) > (most := limits.most_characters):
+        raise ExpressionError(f"a formula of {len(text)} characters; expected at most {most}")
     if re.search(r"\\[A-Za-z]", text):
         text = python_of(text)
     is_numpy = bool(re.search(r"\b(?:np|numpy|jnp)\.(?:array|asarray)\b", text))
@@ -722,13 +720,14 @@ class _Run:
         name, nodes, meaning = tree.called, tree.parts[1:], CALLS.get(tree.called)
         target = tree.owner or (nodes[-1] if nodes and meaning else Tree(tree.node, "this"))
         is_static, value = "::" in tree.parts[0].text, None  # of a type, not of an object
+        is_member = tree.owner is not None and name in [*"WXYZ"] and len(nodes) == 1
         if re.search("sin_?cos", name, re.IGNORECASE) and len(nodes) == 3:
             self.sine_and_cosine(nodes)
             return
         if meaning == "set_unit":
             value = sp.ImmutableMatrix(sp.eye(4))
-        elif tree.owner is not None and name in [*"WXYZ"] and len(nodes) == 1:  # v.X(a)
-            target, value = tree.parts[0], self.read(nodes[0])
+        elif is_member or (name.startswith("set") and self.path(tree)):  # v.X(a), v.setX(a)
+            target, value = tree.parts[0] if is_member else tree, self.read(nodes[-1])
         elif re.search("scale$", name, re.IGNORECASE) and len(nodes) == 3:  # m33Scale(k, A, B)
             factor, matrix = map(self.tried, nodes[:2])
             if _is_scalar(factor) and isinstance(matrix, sp.MatrixBase):
@@ -737,10 +736,9 @@ class _Run:
             value = self.built(nodes)[1]
         if value is not None:
             self.store(target, value)
-            return
-        if is_static or patterns.may_be_matrix.search(tree.text):
+        elif is_static or patterns.may_be_matrix.search(tree.text):
             self.tried(tree)
-        if not (is_static or patterns.harmless.search(f"{tree.base}.{name}")):
+        if value is None and not (is_static or patterns.harmless.search(f"{tree.base}.{name}")):
             self.become_unread(self.reached(tree), tree.line)
 
     def sine_and_cosine(self, nodes: Sequence[Tree]) -> None:
@@ -899,8 +897,8 @@ class _Run:
         return value
 
     def read_index(self, tree: Tree) -> Any:
-        is_joined = tree.parts[0].word in ("r_", "c_")  # np.r_[w, v]
-        return self.stacked(tree, by_columns=False) if is_joined else self.named(tree)
+        # np.r_[w, v]
+        return self.stacked(tree) if tree.parts[0].word in ("r_", "c_") else self.named(tree)
 
     def read_if(self, tree: Tree) -> Any:
         return self.read(tree.parts[self.branch(tree, tree.parts)])
@@ -1111,7 +1109,8 @@ class _Run:
 
     def path(self, tree: Tree) -> Path:
         """The path of R[0][1], q.w(), m.at(0, 1), state["phi"], self.phi or *p; () for others."""
-        is_long = tree.node.end_byte - tree.node.start_byte > limits.longest_place
+        is_setter = tree.kind == "call" and tree.called.startswith("set")  # whose value may be long
+        is_long = tree.node.end_byte - tree.node.start_byte > limits.longest_place and not is_setter
         if tree.kind == "this":
             return ("this",)
         if is_long or (tree.is_reference and self.program.is_formula):  # a + * b
@@ -1138,14 +1137,17 @@ class _Run:
         owner = self.path(tree.owner) if tree.owner else ()
         if tree.owner and not owner:  # (a*b).sum(-1)
             return ()
-        if not nodes:
+        if len(nodes) == name.startswith("set"):  # q.w(), R.get01(), v.setX(a)
             match = patterns.getter.fullmatch(name)
             if name == "get" and owner and patterns.angle.fullmatch(str(owner[-1])):  # yaw.get()
                 return owner
-            own = name if name in [*"WXYZ"] else match and match[1].lower()
+            own = name if name in [*"WXYZ"] else match and match[1].lower().replace("scalar", "w")
+            owner = owner or ("this",)
+            if own and own.isdigit():
+                return (*owner, *map(int, own))
             return _below(owner, own) if own else ()
-        if CALLS.get(name) == "entry":
-            return self.indexed(owner, nodes)
+        if CALLS.get(name) == "entry" or (name, len(nodes)) == ("set", 2):  # q.set(0, a)
+            return self.indexed(owner, nodes[:1] if name == "set" else nodes)
         if name in ("row", "col") and len(nodes) == 1 and owner:
             place = self.index(nodes[0])
             return (*owner, *((place, _ALL) if name == "row" else (_ALL, place)))
@@ -1350,7 +1352,7 @@ class _Run:
                 is_glm = self.program.is_glm and len(values) > 4 and name == "new"
                 return self.columns(tree, whole) if is_glm else whole
             if len(values) == 2:  # float4(v, w)
-                return self.stacked(tree, by_columns=False)
+                return self.stacked(tree)
         if self.program.is_formula and tree.owner is None:
             return called(name, values)  # with an error that offers other names
         # The arguments of what is not understood, or all together, may be formulas of their own.
@@ -1410,7 +1412,7 @@ class _Run:
         self.refuse_if(is_vector or not {*sizes} <= {3, 4}, tree)
         return sp.ImmutableMatrix((sp.zeros if is_zero else sp.eye)(sizes[0], sizes[-1]))
 
-    def stacked(self, tree: Tree, by_columns: bool) -> Any:
+    def stacked(self, tree: Tree, by_columns: bool = False) -> Any:
         axis, nodes = tree.options, tree.parts[1:]
         if len(nodes) == 2 and nodes[0].kind == "list" and re.fullmatch(r"-?\d", nodes[1].text):
             axis, nodes = f"axis={nodes[1].text}", nodes[:1]
@@ -1419,9 +1421,8 @@ class _Run:
         if len(nodes) == 1 and nodes[0].kind in ("list", "matrix"):
             nodes = nodes[0].parts
         parts = self.beside_scalar([as_matrix(self.read(each)) for each in nodes])
-        are_numbers = all(len(each) == 1 for each in parts)
-        if tree.kind == "index" and are_numbers and any(each[0].is_Symbol for each in parts):
-            raise self.unreadable(tree, "may be of numbers or of vectors")
+        is_open = all(len(each) == 1 for each in parts) and any(e[0].is_Symbol for e in parts)
+        self.refuse_if(tree.kind == "index" and is_open, tree, "may be of numbers or of vectors")
         # Of a batch, 1 is the axis of rows.
         own = [self.tests.get(each.text, each) for each in nodes if axis.endswith("=1")]
         if any(each.kind == "call" and patterns.other_axis.search(each.text) for each in own):
@@ -1514,7 +1515,7 @@ def _dotted(path: Path) -> str:
 
 def _last(name: str) -> str:
     """A short name of a path: phi for state.phi, q_w for q.w, R_0_1 for self.R.0.1."""
-    own = re.sub(r"^(?:self|this)\.(?!\d+(?:\.|$))|@", "", name)
+    own = re.sub(r"^(?:self|this)\.(?!\d+(?:\.|$))|@|(?<=\d\d)_$", "", name)
     return re.findall(r"[^.]*(?:\.[A-Za-z]?\d?\d?)*$", own)[0].replace(".", "_")
 
 
