@@ -314,6 +314,7 @@ class _Run:
         self.inputs: set[str] = set()  # names that were read before anything was assigned
         self.definitions: dict[sp.Symbol, sp.Expr | None] = {}  # what symbols stand for, if read
         self.components: set[sp.Symbol] = set()  # of values that are not read, which are inputs
+        self.divided: dict[sp.Symbol, tuple[Any, set[Any]]] = {}  # x/|v| of x, and x, y, z
         self.unread: dict[str, int] = {}  # lines of names without values
         self.squares: dict[sp.Symbol, sp.Symbol] = {}  # |v|² of names without values
         self.tensors: set[sp.Symbol] = set()  # names without values that are matrices
@@ -326,7 +327,8 @@ class _Run:
         self.emitted: set[Any] = set()
         self.results: list[Any] = []  # None for one that is not read
         self.end, self.depth = "", 0  # "return" or "break" after one
-        self.conditions: set[sp.Expr] = set()  # of the branches that were taken
+        # of the branches that were taken: x - 1 by x, the least of numbers
+        self.conditions: dict[sp.Expr, sp.Expr] = {}
 
     def unreadable(self, tree: Tree, reason: str = "is not understood") -> ExpressionError:
         text = re.sub(r"\s+", " ", tree.text[:1000])
@@ -455,7 +457,7 @@ class _Run:
             parts = [*value]
         elif value is not None:
             is_input = value.is_Symbol and left.kind != "record" and not self.inlined
-            is_input &= not patterns.turns.match(str(value))
+            is_input &= not (value in self.definitions or patterns.turns.match(str(value)))
             parts = parts if is_input else [self.component(value, key) for key in keys]
         for target, part in zip(left.parts, parts, strict=True):
             if part is not None:
@@ -464,7 +466,8 @@ class _Run:
                 symbol = self.symbol_for(path, None, target.line)
                 self.put(path, symbol, target.line)
                 # Of three, each may be a row or a column of a matrix: it has no parts.
-                self.components |= {symbol} if len(keys) > 2 else set()
+                is_given = right.kind == "call" and right.called not in self.program.functions
+                self.components |= {symbol} if len(keys) > 2 and is_given else set()
 
     def store(self, left: Tree, value: Any, right: Tree | None = None) -> None:
         """An assignment to a name, a member, or an entry."""
@@ -530,9 +533,12 @@ class _Run:
             is_old = not any(s.is_Dummy for s in ratio.free_symbols)
             is_root = (1 / ratio).is_Pow and is_length(1 / ratio)
             names = tuple((s, s.name) for s in ratio.free_symbols if is_old and is_root)
-            if any(len(each) == 1 and len(each[0]) > 2 for each in grouped(names)):
-                self.components.add(symbol := self.symbol_for(path, None))
-                return symbol
+            firsts = {own, self.part_of(own, self.first) if own.is_Symbol else own}
+            for vector in (each for each in grouped(names) if len(each) == 1):
+                if len(vector[0]) > 2 and firsts & {*vector[0]}:
+                    self.components.add(symbol := self.symbol_for(path, None))
+                    self.divided[symbol] = value, {*vector[0]}
+                    return symbol
         if isinstance(path[-1], int):
             return value
         functions = value.atoms(sp.Function) - value.atoms(sp.sin, sp.cos, sp.tan)
@@ -653,19 +659,22 @@ class _Run:
         """The number of the branch that this run takes: the first whose condition is true."""
         trees = [condition] if condition else [each.condition for each in blocks]
         if self.inlined or len(self.conditions) > limits.most_conditions:
-            self.conditions, trees = {sp.Dummy()}, []  # too many to be worth the time
+            self.conditions, trees = {sp.Dummy(): sp.S.Zero}, []  # too many to be worth the time
         known = [(self.condition(each), k) for k, each in enumerate(trees) if each]
-        needed = [{c if n == k else -c for c, n in known if n <= k} for k in range(len(blocks))]
-        possible = [k for k, own in enumerate(needed) if not self.is_false(own)]
+        own = [[c if n == k else -c for c, n in known if n <= k] for k in range(len(blocks))]
+        place = tree.node.start_byte  # a name for the branch of a switch
+        named = [each or [sp.Symbol(f"{place} {k}")] for k, each in enumerate(own)]
+        needed = [[c.as_coeff_Add() for c in each] for each in named]
+        least = self.conditions  # a branch is impossible if a sum of two conditions is negative
+        possible = [
+            k
+            for k, each in enumerate(needed)
+            if all(n + least.get(-rest, sp.oo) >= limits.near_equal for n, rest in each)
+        ]
         choice = self.scope.choice(tree, blocks, possible or [*range(len(blocks))])
-        unknown = sp.Symbol(f"{tree.node.start_byte} {choice}")  # of a switch
-        self.conditions |= needed[choice] or {unknown}
+        for number, rest in needed[choice]:
+            least[rest] = min(number, least.get(rest, number))
         return choice
-
-    def is_false(self, conditions: Iterable[sp.Expr]) -> bool:
-        """Whether one of them contradicts a condition of the branches that were taken."""
-        sums = (one + other for one in conditions for other in self.conditions)
-        return any(each.is_number and each < limits.near_equal for each in sums)
 
     def condition(self, tree: Tree) -> sp.Expr:
         """A number that is not negative if a condition is true, of a name if it is not read."""
@@ -825,6 +834,10 @@ class _Run:
         is_flat = value.shape != _unflattened(value).shape
         value = _unbounded(_unflattened(value))
         whole = _unbounded(self.expanded(value))
+        # Of a vector that is not divided as a whole, components are what they are.
+        used = whole.free_symbols
+        if partly := {s: v for s, (v, own) in self.divided.items() if s in used and own & used}:
+            value = whole = self.expanded(whole.xreplace(partly))
         whole = value if _size(whole) > limits.most_parts else whole
         # v sin(|v|) is no quaternion: the length of v is not any angle about an axis v. A name
         # `zero` is the number.
@@ -844,7 +857,8 @@ class _Run:
         formula = Formula(lines=lines, name=_last(name), forms=tuple(dict.fromkeys(forms)))
         formula = replace(formula, unread=places, is_final=is_final, is_flat=is_flat, names=names)
         formula = replace(formula, computed={names.get(s, s): value for s, value in own.items()})
-        self.formulas.append(replace(formula, conditions=frozenset(self.conditions)))
+        conditions = frozenset(rest + number for rest, number in self.conditions.items())
+        self.formulas.append(replace(formula, conditions=conditions))
 
     def square(self, vector: sp.Symbol, names: Mapping[sp.Expr, sp.Expr]) -> sp.Expr:
         """|v|² of a vector, or of a quaternion if a formula has its fourth component."""
