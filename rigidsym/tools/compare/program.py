@@ -33,7 +33,6 @@ from rigidsym.tools.compare.syntax import CALLS, TYPES, Tree, limits, patterns, 
 _AXES: dict[str, Any] = {"x": 0, "y": 1, "z": 2, "X": 0, "Y": 1, "Z": 2}
 _AXES |= {f"k{k}{axis}": axis.lower() for k in ("", "_") for axis in "WXYZ"}  # Order::kW
 _INVERSE = (sp.atan2, sp.asin, sp.acos, sp.atan)
-_OPPOSITE = str.maketrans("<>=!", "><!=")
 _SIGNS = {".*": "%", "./": "/", ".^": "**", "^": "**"}  # MATLAB
 _SIZES = (3, 4, 9, 16)  # of vectors and matrices that are built of numbers
 _FLAT = {9: (3, 3), 12: (4, 3), 16: (4, 4)}
@@ -534,11 +533,11 @@ class _Run:
             is_root = (1 / ratio).is_Pow and is_length(1 / ratio)
             names = tuple((s, s.name) for s in ratio.free_symbols if is_old and is_root)
             firsts = {own, self.part_of(own, self.first) if own.is_Symbol else own}
-            for vector in (each for each in grouped(names) if len(each) == 1):
-                if len(vector[0]) > 2 and firsts & {*vector[0]}:
-                    self.components.add(symbol := self.symbol_for(path, None))
-                    self.divided[symbol] = value, {*vector[0]}
-                    return symbol
+            groups = (each[0] for each in grouped(names) if len(each) == 1)
+            for vector in (each for each in groups if len(each) > 2 and firsts & {*each}):
+                self.components.add(symbol := self.symbol_for(path, None))
+                self.divided[symbol] = value, {*vector}
+                return symbol
         if isinstance(path[-1], int):
             return value
         functions = value.atoms(sp.Function) - value.atoms(sp.sin, sp.cos, sp.tan)
@@ -635,8 +634,7 @@ class _Run:
         blocks = [each for each in tree.parts if not self.is_bound(each)]
         choice = self.branch(tree, blocks) if len(blocks) > 1 else 0
         block = blocks[choice]
-        self.run(block)
-        for each in blocks[choice + 1 :] if block.is_one_of("falling") else ():
+        for each in blocks[choice : None if block.is_one_of("falling") else choice + 1]:
             self.run(each)  # until a break
         self.end = "" if tree.kind == "switch" and self.end == "break" else self.end
         if block.parts:
@@ -651,9 +649,9 @@ class _Run:
             only = only.parts[0]
         is_one = only.kind == "assign" and patterns.one.fullmatch(only.parts[-1].text)
         value = self.bounded_value(condition, only.parts[::-1]) if condition and is_one else None
-        if is_bound := isinstance(value, _Bounded):
+        if value is not None:
             self.store(only.parts[0], value)
-        return is_bound
+        return value is not None
 
     def branch(self, tree: Tree, blocks: Sequence[Tree], condition: Tree | None = None) -> int:
         """The number of the branch that this run takes: the first whose condition is true."""
@@ -661,19 +659,15 @@ class _Run:
         if self.inlined or len(self.conditions) > limits.most_conditions:
             self.conditions, trees = {sp.Dummy(): sp.S.Zero}, []  # too many to be worth the time
         known = [(self.condition(each), k) for k, each in enumerate(trees) if each]
-        own = [[c if n == k else -c for c, n in known if n <= k] for k in range(len(blocks))]
-        place = tree.node.start_byte  # a name for the branch of a switch
-        named = [each or [sp.Symbol(f"{place} {k}")] for k, each in enumerate(own)]
+        ways, place = [*range(len(blocks))], tree.node.start_byte
+        own = [[c if n == k else -c for c, n in known if n <= k] for k in ways]
+        named = [own[k] or [sp.Symbol(f"{place} {k}")] for k in ways]  # also those of a switch
         needed = [[c.as_coeff_Add() for c in each] for each in named]
-        least = self.conditions  # a branch is impossible if a sum of two conditions is negative
-        possible = [
-            k
-            for k, each in enumerate(needed)
-            if all(n + least.get(-rest, sp.oo) >= limits.near_equal for n, rest in each)
-        ]
-        choice = self.scope.choice(tree, blocks, possible or [*range(len(blocks))])
-        for number, rest in needed[choice]:
-            least[rest] = min(number, least.get(rest, number))
+        # a branch is impossible if a sum of two conditions is negative
+        least, no = self.conditions, limits.near_equal
+        possible = [k for k in ways if all(n + least.get(-x, sp.oo) > no for n, x in needed[k])]
+        choice = self.scope.choice(tree, blocks, possible or ways)
+        least |= {x: min(n, least.get(x, n)) for n, x in needed[choice]}
         return choice
 
     def condition(self, tree: Tree) -> sp.Expr:
@@ -857,8 +851,9 @@ class _Run:
         formula = Formula(lines=lines, name=_last(name), forms=tuple(dict.fromkeys(forms)))
         formula = replace(formula, unread=places, is_final=is_final, is_flat=is_flat, names=names)
         formula = replace(formula, computed={names.get(s, s): value for s, value in own.items()})
-        conditions = frozenset(rest + number for rest, number in self.conditions.items())
-        self.formulas.append(replace(formula, conditions=conditions))
+        self.formulas.append(
+            replace(formula, conditions=frozenset(map(sum, self.conditions.items())))
+        )
 
     def square(self, vector: sp.Symbol, names: Mapping[sp.Expr, sp.Expr]) -> sp.Expr:
         """|v|² of a vector, or of a quaternion if a formula has its fourth component."""
@@ -1085,22 +1080,17 @@ class _Run:
         """One of two values."""
         if condition.constant is not None:
             return self.read(trees[not condition.constant])
-        if (value := self.bounded_value(condition, trees)) is not None:
-            return value
-        return self.read(trees[self.branch(tree, trees, condition)])
+        value = self.bounded_value(condition, trees)
+        return self.read(trees[self.branch(tree, trees, condition)]) if value is None else value
 
     def bounded_value(self, condition: Tree, trees: Sequence[Tree]) -> Any:
         """One of two values, if the other is a bound of it."""
-        values = [self.tried(each) for each in trees]
-        fixed = [_is_scalar(value) and value.is_number for value in values]
-        is_one = sum(fixed) == 1 and None not in values
-        own, sign, number = self.sides(condition) if is_one else (None, "", None)
-        if sign:
-            other, limit = (values[fixed.index(is_fixed)] for is_fixed in (False, True))
-            if not fixed[0]:  # the number is the value if the condition is false
-                sign = sign.translate(_OPPOSITE)
-            is_bound = limit == {">": 1, "<": -1}.get(sign) and abs(number - limit) < 0.01
-            if is_bound and _inner(own) == _inner(other):
+        own, sign, number = self.sides(condition)
+        one, two = map(self.tried, trees) if sign else (None, None)
+        bound = {">": 1, "<": -1}.get(sign, math.nan)  # the value if the condition is true
+        for limit, other, side in ((one, two, 1), (two, one, -1)):
+            is_limit = limit == side * bound and abs(number - limit) < 0.01
+            if is_limit and _inner(own) == _inner(other):
                 return _Bounded(_inner(own))
         return None
 
