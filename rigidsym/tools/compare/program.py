@@ -33,7 +33,6 @@ from rigidsym.tools.compare.syntax import CALLS, TYPES, Tree, limits, patterns, 
 _AXES: dict[str, Any] = {"x": 0, "y": 1, "z": 2, "X": 0, "Y": 1, "Z": 2}
 _AXES |= {f"k{k}{axis}": axis.lower() for k in ("", "_") for axis in "WXYZ"}  # Order::kW
 _INVERSE = (sp.atan2, sp.asin, sp.acos, sp.atan)
-_SIGNS = {".*": "%", "./": "/", ".^": "**", "^": "**"}  # MATLAB
 _SIZES = (3, 4, 9, 16)  # of vectors and matrices that are built of numbers
 _FLAT = {9: (3, 3), 12: (4, 3), 16: (4, 4)}
 _WORDS = {*language.OF_NUMBERS, *language.OF_MATRICES, *CALLS}  # functions, if nothing else
@@ -851,9 +850,8 @@ class _Run:
         formula = Formula(lines=lines, name=_last(name), forms=tuple(dict.fromkeys(forms)))
         formula = replace(formula, unread=places, is_final=is_final, is_flat=is_flat, names=names)
         formula = replace(formula, computed={names.get(s, s): value for s, value in own.items()})
-        self.formulas.append(
-            replace(formula, conditions=frozenset(map(sum, self.conditions.items())))
-        )
+        conditions = frozenset(map(sum, self.conditions.items()))
+        self.formulas.append(replace(formula, conditions=conditions))
 
     def square(self, vector: sp.Symbol, names: Mapping[sp.Expr, sp.Expr]) -> sp.Expr:
         """|v|² of a vector, or of a quaternion if a formula has its fourth component."""
@@ -1064,7 +1062,7 @@ class _Run:
         return value if None in parts else rows(parts)
 
     def operation(self, tree: Tree, sign: str, *sides: Any) -> str:
-        sign = _SIGNS.get(sign, sign) if self.first else sign
+        sign = {".*": "%", "./": "/", ".^": "**", "^": "**"}.get(sign, sign) if self.first else sign
         self.refuse_if(sign not in [*"+-*/@", "**", "%" if self.first else "*"], tree)
         if sign != "*" or not all(isinstance(side, sp.MatrixBase) for side in sides):
             return sign
@@ -1073,11 +1071,9 @@ class _Run:
         self.refuse_if(not product, tree, "is a product of matrices or of their entries")
         return product
 
-    def read_choose(self, tree: Tree) -> Any:
-        return self.chosen(tree, tree.parts[0], tree.parts[1:])
-
-    def chosen(self, tree: Tree, condition: Tree, trees: Sequence[Tree]) -> Any:
+    def read_choose(self, tree: Tree, parts: Sequence[Tree] = ()) -> Any:
         """One of two values."""
+        condition, *trees = parts or tree.parts
         if condition.constant is not None:
             return self.read(trees[not condition.constant])
         value = self.bounded_value(condition, trees)
@@ -1343,7 +1339,7 @@ class _Run:
             case "fused" | "fma" if [len(nodes), name != "mul_add"] == [3, len(arguments) == 3]:
                 return combined("+", combined("*", *map(self.read, nodes[:2])), self.read(nodes[2]))
             case "where" if len(nodes) == 3:
-                return self.chosen(tree, nodes[0], nodes[1:])
+                return self.read_choose(tree, nodes)
             case _ if meaning in TYPES["of_vectors"] and nodes:
                 return self.of_vectors(meaning, [self.read(each) for each in nodes])
         is_new = self.program.suffix == ".rs" and name == "new" and len(arguments) in (3, 4)
