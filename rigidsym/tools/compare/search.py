@@ -300,7 +300,7 @@ def _findings(
         findings = [_compared(path, each, order, is_case=is_case) for each in group]
         readable = [each for each in findings if each and each.comparison]
         if is_case and not readable:  # a fault that all branches share
-            fullest = max(group, key=lambda each: sum(map(_is_formula, *each.forms[:1])))
+            fullest = max(group, key=lambda each: sum(map(_is_formula, [*each.forms, ()][0])))
             regular = _compared(path, fullest, order)
             readable = [regular] if regular and _is_shared(regular.comparison, group) else []
         for finding in [*readable, *filter(None, findings)][:1]:
