@@ -124,9 +124,8 @@ def called(name: str, values: list[Any]) -> Any:
     if len(values) == 1 and not isinstance(values[0], sp.MatrixBase):
         name = _SHORT.get(name, name)
     if own := _IN_DEGREES.get(name):
-        is_inverse = own.startswith("a")
-        value = called(own, values if is_inverse else [called("deg2rad", values)])
-        return called("rad2deg", [value]) if is_inverse else value
+        steps = (own, "rad2deg") if own.startswith("a") else ("deg2rad", own)
+        return called(steps[1], [called(steps[0], values)])
     if name in ("deg2rad", "rad2deg"):
         return combined("*", sp.pi / 180 if name == "deg2rad" else 180 / sp.pi, *values)
     if name in _POWERS:

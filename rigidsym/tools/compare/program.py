@@ -397,9 +397,10 @@ class _Run:
         """a = b, a += b, and a, b = c."""
         left, *values = tree.parts
         sign = re.fullmatch(r"([-+*/@]+)=?", tree.word)
+        is_other = tree.word.endswith("=") and tree.word not in ("=", ":=")  # %=, ??=
         if sign and values:
             self.update(tree, sign[1])
-        elif tree.word.endswith("=") and tree.word not in ("=", ":="):  # %=, ??=
+        elif is_other or (not values and (sign or tree.node.type == "assignment_expression")):
             raise self.unreadable(tree)
         elif values and left.targets != [left]:
             self.unpack(left, values[0])
@@ -416,8 +417,6 @@ class _Run:
                 self.store(left, value, right=values[0])
             finally:
                 self.link(tree)
-        elif sign or tree.node.type == "assignment_expression":
-            raise self.unreadable(tree)
 
     def link(self, tree: Tree) -> None:
         """Two names may share one object: a reference, a view, or a copy in C#."""
@@ -1149,8 +1148,7 @@ class _Run:
         if CALLS.get(name) == "entry" or (name, len(nodes)) == ("set", 2):  # q.set(0, a)
             return self.indexed(owner, nodes[:1] if name == "set" else nodes)
         if name in ("row", "col") and len(nodes) == 1 and owner:
-            place = self.index(nodes[0])
-            return (*owner, *((place, _ALL) if name == "row" else (_ALL, place)))
+            return (*owner, *(self.index(nodes[0]), _ALL)[:: 1 if name == "row" else -1])
         is_known = word in _WORDS and (len(nodes) != 2 or len(word) > 1)  # T(2), but not t(1, 2)
         is_own = word in self.program.functions and not self.first
         if is_own or (is_known and self.part(self.values, (*owner, name)) is None):

@@ -308,6 +308,9 @@ def tree_of(node: Node) -> Tree:
         is_reference |= node.type in TYPES["reference"]
         if node.type in TYPES["cast"] and patterns.integer.fullmatch(_text(_part(node, "type"))):
             return Tree(node, "cast")  # (int)a is another number
+        if node.type == "declaration_expression" and "*" in _text(node):  # f(a * b) of C#
+            own = [tree_of(each) for each in below([node]) if each.type == "identifier"]
+            return Tree(node.named_children[0], "binary", own=own)
         inner = _part(node, "value declarator") or next(iter(_children(node)[-1:]), None)
         if inner is None:
             return Tree(node)
