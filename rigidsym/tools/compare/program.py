@@ -448,13 +448,14 @@ class _Run:
         """w, x, y, z = q; c, s, t = cos(v); {x, y} = q."""
         keys: Sequence[Any] = left.keys if left.kind == "record" else range(len(left.parts))
         parts: list[Any] = [None] * len(keys)
+        value: Any = None
         if right.kind == left.kind == "list" and len(right.parts) == len(keys):
             parts = [*map(self.tried, right.parts)]  # vectors too, as in a, v = q[0], q[1:]
         elif isinstance(value := self.tried(right), sp.MatrixBase) and len(value) == len(keys):
             parts = [*value]
         elif value is not None:
             is_input = value.is_Symbol and left.kind != "record" and not self.inlined
-            is_input &= not (value in self.definitions or patterns.turns.match(str(value)))
+            is_input &= not patterns.turns.match(str(value))
             parts = parts if is_input else [self.component(value, key) for key in keys]
         for target, part in zip(left.parts, parts, strict=True):
             if part is not None:
@@ -463,7 +464,7 @@ class _Run:
                 symbol = self.symbol_for(path, None, target.line)
                 self.put(path, symbol, target.line)
                 # Of three, each may be a row or a column of a matrix: it has no parts.
-                is_given = right.kind == "call" and right.called not in self.program.functions
+                is_given = value not in self.definitions and (value or right.kind != "binary")
                 self.components |= {symbol} if len(keys) > 2 and is_given else set()
 
     def store(self, left: Tree, value: Any, right: Tree | None = None) -> None:
@@ -657,12 +658,12 @@ class _Run:
         if self.inlined or len(self.conditions) > limits.most_conditions:
             self.conditions, trees = {sp.Dummy(): sp.S.Zero}, []  # too many to be worth the time
         known = [(self.condition(each), k) for k, each in enumerate(trees) if each]
-        ways, place = [*range(len(blocks))], tree.node.start_byte
+        ways, least, no = [*range(len(blocks))], self.conditions, limits.near_equal
         own = [[c if n == k else -c for c, n in known if n <= k] for k in ways]
-        named = [own[k] or [sp.Symbol(f"{place} {k}")] for k in ways]  # also those of a switch
+        # also the branches of a switch have names
+        named = [own[k] or [sp.Symbol(f"{tree.node.start_byte} {k}")] for k in ways]
         needed = [[c.as_coeff_Add() for c in each] for each in named]
         # a branch is impossible if a sum of two conditions is negative
-        least, no = self.conditions, limits.near_equal
         possible = [k for k in ways if all(n + least.get(-x, sp.oo) > no for n, x in needed[k])]
         choice = self.scope.choice(tree, blocks, possible or ways)
         least |= {x: min(n, least.get(x, n)) for n, x in needed[choice]}
