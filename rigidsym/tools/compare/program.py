@@ -221,7 +221,7 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
             span = (tree.word, tree.line, last) if tree.kind == "function" else ("", 0, 0)
             named = {f.forms[:1] for f in run.formulas if f.name not in UNNAMED} - {()}
             returned = {f.forms[:1] for f in run.formulas if f.name == _RETURNED}
-            own = [f for f in run.formulas if f.name not in UNNAMED or f.forms[:1] not in named]
+            own = [f for f in run.kept() if f.name not in UNNAMED or f.forms[:1] not in named]
             found += [replace(f, function=span, is_returned=f.forms[:1] in returned) for f in own]
         if line := program.steps["end"]:  # in a later run, all has been read, with some branches
             reason = "it has too many branches" if count else "the file is too long"
@@ -832,16 +832,17 @@ class _Run:
         if partly := {s: v for s, (v, own) in self.divided.items() if s in used and own & used}:
             value = whole = self.expanded(whole.xreplace(partly))
         whole = value if _size(whole) > limits.most_parts else whole
-        # v sin(|v|) is no quaternion: the length of v is not any angle about an axis v. A name
-        # `zero` is the number.
+        # v sin(|v|) is no quaternion: the length of v is not any angle about an axis v. An entry
+        # that is a name `zero` is the number.
         known = {s: v for s, v in self.definitions.items() if v is not None}
-        plain = {sp.S.Zero, sp.S.One, *self.squares.values()}
-        lengths = {s: v for s, v in known.items() if is_length(v) or {v, *v.free_symbols} & plain}
+        squares = {*self.squares.values()}
+        lengths = {s: v for s, v in known.items() if is_length(v) or v.free_symbols & squares}
         value = value.xreplace(lengths)
+        value = value.applyfunc(lambda e: known[e] if known.get(e) in (0, 1) else e)
         symbols = whole.free_symbols | value.free_symbols
         inputs = whole.free_symbols - self.components
         unread = {s.name for s in inputs if self.definitions.get(s, s) is None}
-        names = _short_names(symbols - {*self.squares.values()})
+        names = _short_names(symbols - squares)
         names |= {s: self.square(v, names) for v, s in self.squares.items()}
         computed = [names.get(s, s) for s in self.definitions]
         forms = [language.spelled_out(m.xreplace(names), computed) for m in (whole, value)]
@@ -852,6 +853,13 @@ class _Run:
         formula = replace(formula, computed={names.get(s, s): value for s, value in own.items()})
         conditions = frozenset(map(sum, self.conditions.items()))
         self.formulas.append(replace(formula, conditions=conditions))
+
+    def kept(self) -> Iterator[Formula]:
+        """The formulas; one whose names get other values is no case of its function."""
+        for each in self.formulas:
+            places = [*zip(each.name.split(", "), each.lines, strict=False)]
+            is_changed = any(self.values.get(n, (None, line))[1] != line for n, line in places)
+            yield replace(each, conditions=frozenset()) if is_changed and places[1:] else each
 
     def square(self, vector: sp.Symbol, names: Mapping[sp.Expr, sp.Expr]) -> sp.Expr:
         """|v|² of a vector, or of a quaternion if a formula has its fourth component."""
