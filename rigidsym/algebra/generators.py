@@ -369,5 +369,4 @@ def _kind(expression: sp.Expr) -> Kind:
         raise not_exact(expression)
     if isinstance(expression, sp.Function | sp.Pow) and not expression.has(sp.zoo, sp.nan, sp.oo):
         return Kind.OPAQUE
-    name = type(expression).__name__
-    raise AlgebraError(f"{in_names(expression)} ({name}) is not in the ring")
+    raise AlgebraError(f"{in_names(expression)} ({type(expression).__name__}) is not in the ring")

@@ -306,8 +306,7 @@ def half_form(present: Presenter, matrix: RingMatrix, vector: RingMatrix) -> sp.
     terms = [half_of_squares(present, *group) for group in by_weight.items()]
     for j, k in combinations(range(3), 2):
         if matrix[j, k]:
-            products = [matrix[j, k], entries[j], entries[k]]
-            terms.append(sp.Mul(*map(present.element, products)))
+            terms.append(sp.Mul(*map(present.element, [matrix[j, k], entries[j], entries[k]])))
     form = sp.Add(*terms)
     if not agrees(present, 2 * form, (vector.T @ matrix @ vector)[0, 0]):
         raise AlgebraError(f"the form {form} differs from its normal form")

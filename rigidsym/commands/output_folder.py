@@ -75,8 +75,7 @@ def write(spec: DerivationSpec, files: Mapping[str, str], out: Path, *, force: b
     if before.models != spec.models:
         message(remark("replacing_rotation", folder=folder))
     elif gone:
-        names = ", ".join(path.name for path in gone)
-        message(remark("removing_files", names=names, folder=folder))
+        message(remark("removing_files", names=", ".join(p.name for p in gone), folder=folder))
     for path in gone:
         path.unlink()
     return [write_text(path, text) for path, text in new.items()]

@@ -441,8 +441,7 @@ def _frames(names: Sequence[str], rows: Iterable[Rows]) -> Iterator[Any]:
     empty: Rows = (np.empty((0, len(names))), ())
     rows = iter(rows)
     for table, kept in chain([next(rows, empty)], rows):
-        columns = [*kept, *table.T]
-        yield pl.DataFrame([pl.Series(n, c) for n, c in zip(names, columns, strict=True)])
+        yield pl.DataFrame([*map(pl.Series, names, [*kept, *table.T])])
 
 
 def _write_text(file: BinaryIO, names: Sequence[str], rows: Iterable[Rows]) -> None:

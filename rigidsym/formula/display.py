@@ -198,8 +198,7 @@ def _indented(line: Segment) -> str:
 def broken(formula: Formula, width: float, pen: LatexPen) -> list[Segment]:
     """The lines of a formula; those after the first are indented, see `widest`."""
     for indents in range(1, _MOST_INDENTS):  # its lines are to fit with their indents
-        room = width - indents * QUAD
-        lines = break_lines(pen.write(formula), room, QUAD)
+        lines = break_lines(pen.write(formula), width - indents * QUAD, QUAD)
         if widest(lines) <= width:
             break
     return lines

@@ -156,8 +156,7 @@ class _TexReader:
             case tree.Big():
                 return replace(base, above=script) if mark == "^" else replace(base, below=script)
             case _ if mark == "^":
-                is_transpose = script == tree.Symbol("T")
-                return tree.Power(base, tree.TRANSPOSE if is_transpose else script)
+                return tree.Power(base, tree.TRANSPOSE if script == tree.Symbol("T") else script)
             case tree.Symbol():
                 return tree.Symbol(base.letter, base.face, base.dots, base.prime, script)
         return tree.Indexed(base, script)
