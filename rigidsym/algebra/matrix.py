@@ -51,8 +51,7 @@ class RingMatrix:
 
     @property
     def T(self) -> RingMatrix:
-        rows = tuple(zip(*self.rows, strict=True))
-        return RingMatrix(self.ring, rows, (_transposed, (self,)))
+        return RingMatrix(self.ring, tuple(zip(*self.rows, strict=True)), (_transposed, (self,)))
 
     @property
     def entries(self) -> Row:

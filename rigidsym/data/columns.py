@@ -167,8 +167,7 @@ class ColumnNames:
 
     def unit(self, column: int) -> str:
         """The unit that the name of a column states; empty without one."""
-        stated = unit_in(self.names[column])
-        return stated or next(filter(None, self._others[column].values()), "")
+        return unit_in(self.names[column]) or next(filter(None, self._others[column].values()), "")
 
     def factor(self, column: int, expected: str) -> float | None:
         """The factor from the unit in its name to the expected one; None without a unit.

@@ -466,8 +466,9 @@ def _ways(formula: sp.ImmutableMatrix) -> Iterator[tuple[str, sp.ImmutableMatrix
         if own and (rest.has(symbol) or any(names & f.free_symbols for f in functions - own)):
             continue
         angles = [f.args[0] for f in own]
-        # A factor of a whole matrix may be a vector that is not read.
-        if scaled := sp.Matrix(angles or ([*formula] if formula.cols == 1 else [])):
+        # A factor of a whole matrix may be a vector that is not read, unless it is called a scale.
+        is_open = formula.cols == 1 or patterns.scale.fullmatch(symbol.name)
+        if scaled := sp.Matrix(angles or [*formula] * bool(is_open)):
             is_factor = not any((part / symbol).has(symbol) for part in scaled)
             twice = known.evaluated(scaled, {**values, symbol: 2 * values[symbol]})
             if is_factor or known.near(twice, 2 * known.evaluated(scaled, dict(values))).all():

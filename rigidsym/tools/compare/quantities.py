@@ -136,7 +136,8 @@ _WAYS: dict[str, tuple[Ways, ...]] = {
         {
             name: lambda m, q, v, k=k: m + k * (sum(x**2 for x in q) - 1) * sp.Matrix(v)
             for k, name in enumerate(("", "times_square", "of_unit_quaternion"), -1)
-        },
+        }
+        | {"of_any_length": lambda m, q, _: m / sum(x**2 for x in q)},
     ),
     "parallel_axis_theorem": (_ways(to_the_centre=lambda m, *v: _opposite(m, v[0])),),
     ANGLES: (
