@@ -50,7 +50,7 @@ def _motion(options: Options) -> Motion | str | None:
     if rotation is None or quantity is None:
         if rotation or quantity or spelling:
             raise click.UsageError(
-                "a formula is compared with --quantity NAME of --rotation ROTATION, or without both"
+                "a formula is compared with --quantity NAME of --rotation NAME, or without either"
             )
         return None
     spec = read(rotation, **spelling)
@@ -71,7 +71,7 @@ def _searched(paths: Sequence[Path], options: Options) -> int:
     work = partial(_records, options["expect"], options["expect_active"])
     done = 0
     try:
-        for done, own in enumerate(in_processes(work, files), 1):  # noqa: B007
+        for done, own in enumerate(in_processes(work, files), 1):  # noqa: B007 (below)
             for record in own:
                 is_failure, is_end = record.pop("is_failure"), record.pop("is_end")
                 has_failed |= is_failure

@@ -441,7 +441,7 @@ def _frames(names: Sequence[str], rows: Iterable[Rows]) -> Iterator[Any]:
     empty: Rows = (np.empty((0, len(names))), ())
     rows = iter(rows)
     for table, kept in chain([next(rows, empty)], rows):
-        yield pl.DataFrame([*map(pl.Series, names, [*kept, *table.T])])
+        yield pl.DataFrame([pl.Series(n, c) for n, c in zip(names, [*kept, *table.T], strict=True)])
 
 
 def _write_text(file: BinaryIO, names: Sequence[str], rows: Iterable[Rows]) -> None:

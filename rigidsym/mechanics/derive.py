@@ -95,7 +95,7 @@ def derive(
         steps += moving
     arguments, definer, is_driven = values.arguments, chain, False
     functions = {**motion.functions(only)} if motion else {}
-    has_potential = not only or "effective_potential" in only
+    has_consequences = not only or "effective_potential" in only
     named = [step.expression for step in steps]
     if motion:
         forces, definer = motion.forces, motion.names or chain
@@ -131,5 +131,5 @@ def derive(
         forces=forces,
         definitions=definitions,
         first_integrals=motion.first_integrals if motion else (),
-        consequences=tuple(motion.consequences()) if motion and has_potential else (),
+        consequences=tuple(motion.consequences()) if motion and has_consequences else (),
     )

@@ -113,7 +113,8 @@ class HtmlPrinter(NotePrinter):
 
     def text(self, text: doc.Text) -> str:
         """No line may part a formula from the brackets and points beside it."""
-        written = super().text(text)  # a function takes half the time of a template below
+        written = super().text(text)
+        # A function takes half the time of a template such as r"<span>\g<0></span>".
         return _WITH_POINTS.sub(lambda whole: f'<span class="whole">{whole[0]}</span>', written)
 
     def formula(self, formula: Formula) -> str:

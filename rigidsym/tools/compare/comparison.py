@@ -7,7 +7,6 @@ sign, a factor) before those of single entries.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -291,16 +290,17 @@ def as_matrix(formula: Any) -> sp.ImmutableMatrix:
 
 def _check_brackets(text: str) -> None:
     """Raises ExpressionError for a bracket without its other half."""
-    rest, before = re.sub(r"[^][(){}]", " ", text), ""
-    while rest != before:  # pairs with nothing left between them
-        before, rest = rest, re.sub(r"\( *\)|\[ *\]|\{ *\}", lambda pair: " " * len(pair[0]), rest)
-    left = [f"{match[0]!r} at character {match.start() + 1}" for match in re.finditer(r"\S", rest)]
-    closing = next((k for k, place in enumerate(left) if place[1] in ")]}"), None)
-    if closing is not None:
-        outer = left[closing - 1] if closing else "nothing"
-        raise ExpressionError(f"{left[closing]} closes {outer}")
-    if left:
-        raise ExpressionError(f"{left[-1]} is not closed")
+    ends, stack = {"(": ")", "[": "]", "{": "}", "": "nothing"}, [("", "nothing")]
+    for column, letter in enumerate(text, 1):
+        this = f"{letter!r} at character {column}"
+        if letter in ends:
+            stack.append((letter, this))
+        elif letter in ends.values():
+            begin, other = stack.pop()
+            if ends[begin] != letter:
+                raise ExpressionError(f"{this} closes {other}")
+    if len(stack) > 1:
+        raise ExpressionError(f"{stack[-1][1]} is not closed")
 
 
 def in_words(shape: tuple[int, int]) -> str:
@@ -514,12 +514,8 @@ def _nearest(trials: Sequence[_Trial], least: float, expected: Sequence[str] = (
 
     def rank(each: Reading) -> tuple[Any, ...]:
         odd = sum(map(known.oddness, each.names.values()))
-        return (
-            -each.is_right.mean(),
-            odd,
-            len(each.goal.ways),
-            each.goal.axes not in (expected or ["z y x"]),
-        )
+        is_other = each.goal.axes not in (expected or ["z y x"])
+        return -each.is_right.mean(), odd, len(each.goal.ways), is_other
 
     return sorted(readings, key=rank)
 
@@ -714,7 +710,8 @@ def _entry(reading: Reading, place: tuple[int, int]) -> tuple[str, sp.Expr]:
     is_short = before.count_ops() <= limits.most_operations
     turns = sorted(reading.formula.atoms(*_SWAPPED), key=str)
     changes = set(variants(before, [*reading.names], turns)) if is_short else set()
-    least = sorted(changes, key=lambda v: ([*CHANGES].index(v[0]), v[1].count_ops(), str(v[1])))
+    kinds = [*CHANGES]
+    least = sorted(changes, key=lambda v: (kinds.index(v[0]), v[1].count_ops(), str(v[1])))
     for kind, after in least:
         with suppress(ExpressionError):  # a change without real values, such as 1/0, is no repair
             if reading.agrees(sp.Matrix([[after]]), wanted):

@@ -86,7 +86,9 @@ def _of_fitting_sizes(function: Callable[..., Any]) -> Callable[..., Any]:
         try:
             return function(*arguments)
         except (ValueError, TypeError, IndexError, AttributeError):
-            raise ExpressionError("sizes of matrices that do not fit") from None
+            parts = [p for a in arguments for p in (a if isinstance(a, list) else [a])]
+            sizes = [str(getattr(p, "shape", "a number")) for p in parts if not isinstance(p, str)]
+            raise ExpressionError(f"sizes that do not fit: {' and '.join(sizes)}") from None
 
     return checked
 

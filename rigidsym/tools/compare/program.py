@@ -100,7 +100,7 @@ class Formula:
     is_flat: bool = False  # nine or sixteen numbers in a row, by rows or by columns
     unread: tuple[tuple[str, int], ...] = ()  # names in it whose values are not read, and lines
     function: tuple[str, int, int] = ("", 0, 0)  # around it, with its first and last line
-    is_returned: bool = False
+    is_returned: bool = False  # whether its function returns it
     is_final: bool = True  # not if what is not understood changes it: it may not be complete
     is_end: bool = False  # the reason holds for the rest of the file
     conditions: frozenset[sp.Expr] = frozenset()  # of its branches; not negative if true
@@ -139,7 +139,7 @@ class _Scope:
     is_new: bool = True  # whether the last run took a new branch
 
     def choice(self, tree: Tree, blocks: Sequence[Tree], possible: Sequence[int]) -> int:
-        """The number of the branch, one of those that are possible."""
+        """The number of a possible branch."""
         own = tree.node.id
         if own not in self.now:
             free = [k for k in range(len(blocks)) if (own, k) not in self.taken]
@@ -221,7 +221,7 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
             span = (tree.word, tree.line, last) if tree.kind == "function" else ("", 0, 0)
             named = {f.forms[:1] for f in run.formulas if f.name not in UNNAMED} - {()}
             returned = {f.forms[:1] for f in run.formulas if f.name == _RETURNED}
-            own = [f for f in run.kept() if f.name not in UNNAMED or f.forms[:1] not in named]
+            own = [f for f in run.cases() if f.name not in UNNAMED or f.forms[:1] not in named]
             found += [replace(f, function=span, is_returned=f.forms[:1] in returned) for f in own]
         if line := program.steps["end"]:  # in a later run, all has been read, with some branches
             reason = "it has too many branches" if count else "the file is too long"
@@ -854,7 +854,7 @@ class _Run:
         conditions = frozenset(map(sum, self.conditions.items()))
         self.formulas.append(replace(formula, conditions=conditions))
 
-    def kept(self) -> Iterator[Formula]:
+    def cases(self) -> Iterator[Formula]:
         """The formulas; one whose names get other values is no case of its function."""
         for each in self.formulas:
             places = [*zip(each.name.split(", "), each.lines, strict=False)]

@@ -607,7 +607,7 @@ def grouped(names: tuple[tuple[sp.Symbol, str], ...]) -> list[list[tuple[sp.Symb
 
 
 def _scalar_first(vector: tuple[sp.Symbol, ...]) -> list[tuple[sp.Symbol, ...]]:
-    """A quaternion with the scalar first; that of numbers may be the last, that of letters x."""
+    """Orders with the scalar first, which may be the last of four numbers, or x of letters."""
     stems = sorted({re.sub(r"[\d_]+$", "", symbol.name) for symbol in vector})
     others = {"wxyz": 1, "abcd": -1} if len(stems) > 1 else {stems[0][-1:]: -1}
     k = others.get("".join(stem[-1:] for stem in stems), 0)

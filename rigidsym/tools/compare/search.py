@@ -237,7 +237,7 @@ def _order(finding: FormulaInFile) -> str:
 
 
 def _are_conjugate(one: Comparison, other: Comparison) -> bool:
-    """Whether one of two quaternions of a matrix is that of its transpose."""
+    """Whether two quaternions from the same matrix are conjugates of one another."""
     goals = [each.found for each in (one, other) if each.found]
     is_conjugated = {"by_columns" in goal.ways for goal in goals}
     are_cases = {goal.rotation for goal in goals} == {quantities.OF_MATRIX}
@@ -362,9 +362,10 @@ def formulas(text: str, suffix: str) -> Iterator[Formula]:
     """The matrices and vectors that may be one of kinematics, and those that cannot be read."""
     for formula in program_formulas(text, suffix):
         forms = tuple(m for m in map(_block, formula.forms) if len(m.free_symbols))
-        is_returned = patterns.constructed.match("".join(_lines(text)[formula.line - 1 :][:1]))
-        name = UNNAMED[0] if formula.name == UNNAMED[1] and is_returned else formula.name
+        line = "".join(_lines(text)[formula.line - 1 : formula.line])
+        is_returned = formula.name == UNNAMED[1] and patterns.constructed.match(line)
         if forms or formula.reason:
+            name = UNNAMED[0] if is_returned else formula.name
             yield replace(formula, forms=forms, name=name)
 
 
