@@ -19,7 +19,6 @@ def command(source: str, **options: Any) -> None:
     """Write an interactive page for a browser: the note, and a figure with sliders."""
     out = options["out"]
     for single in applied(options, integrated(read(source, **of_rotation(options)))).singles():
-        asked = replace(single, kernels=(), note=(PAGE,))
-        output = printed(with_existing_files(asked, out))
+        output = printed(with_existing_files(replace(single, kernels=(), note=(PAGE,)), out))
         write(output.spec, output.files, out, force=options["force"])
         click.echo(out / single.name / page_name(single.name))

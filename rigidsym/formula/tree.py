@@ -164,8 +164,7 @@ def row(*parts: Formula) -> Formula:
 
 def joined(parts: tuple[Formula, ...] | list[Formula], sign: Formula) -> Formula:
     """The parts with a sign between each two."""
-    mixed = [item for part in parts for item in (sign, part)]
-    return row(*mixed[1:])
+    return row(*[item for part in parts for item in (sign, part)][1:])
 
 
 def equal(*sides: Formula) -> Formula:

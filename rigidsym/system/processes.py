@@ -151,7 +151,8 @@ def time_limit(seconds: float) -> Iterator[None]:
         return
 
     def stop(_signal: int, _frame: FrameType | None) -> None:
-        raise _TimeIsUp
+        if not isinstance(sys.exc_info()[1], _TimeIsUp):  # what the work does at its end is done
+            raise _TimeIsUp
 
     handler = signal.signal(signal.SIGALRM, stop)
     # Python drops what is raised inside a finalizer: the next tick stops the work then.

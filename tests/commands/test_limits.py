@@ -28,9 +28,17 @@ from rigidsym.system import processes
 from rigidsym.system.processes import in_processes, rare_collections, time_limit
 
 
-def test_a_time_limit_holds_in_python():
-    with pytest.raises(LimitReached, match=r"stopped after 0\.05 s"), time_limit(0.05):
-        sleep(60)
+def test_a_time_limit_holds_in_python(monkeypatch):
+    def work():
+        with time_limit(0.05), ExitStack() as stack:
+            stack.callback(lambda: ended.append(sleep(0.1)))  # to its end, also at the next tick
+            sleep(60)
+
+    ended: list[None] = []
+    monkeypatch.setattr(processes, "_TICK", 0.01)
+    with pytest.raises(LimitReached, match=r"stopped after 0\.05 s"):
+        work()
+    assert ended
     with pytest.raises(LimitReached):
         rs.derive("z(a) x(b) z(c) x(d) z(e) x(f) z(g) x(h)", timeout=0.01)
     with pytest.raises(RequestError, match="expected a positive number of seconds"):

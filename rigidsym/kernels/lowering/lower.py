@@ -227,8 +227,7 @@ def _lowered(
     constants = tuple(c for a in arguments if a.name == "parameters" for c in a.components)
     graph, weighted = _shared(name, given, constants)
     names = Names(taken)
-    kernel = _written(graph, weighted, names, name=name, arguments=arguments, **words)
-    return guarded(kernel, names)
+    return guarded(_written(graph, weighted, names, name=name, arguments=arguments, **words), names)
 
 
 def _written(graph: Graph, weighted: Sequence[Weighted], names: Names, **words: Any) -> ir.Kernel:

@@ -236,8 +236,7 @@ def guarded(kernel: ir.Kernel, names: Names) -> ir.Kernel:
         return kernel
     guard = _Guard(names)
     for assignment in kernel.assignments:
-        value = guard.expression(assignment.value)
-        guard.assign(assignment.name, value)
+        guard.assign(assignment.name, guard.expression(assignment.value))
     outputs = tuple(map(guard.expression, kernel.outputs))
     return replace(kernel, assignments=tuple(guard.assignments), outputs=outputs)
 

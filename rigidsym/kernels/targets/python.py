@@ -78,8 +78,7 @@ def module_text(
     components = []
     for argument in program.arguments:
         quoted = [f'"{name}"' for name in argument.components]
-        line = f'    "{argument.name}": {tuple_of(quoted)},'
-        components.append(broken(line, WIDTH, " " * 8))
+        components.append(broken(f'    "{argument.name}": {tuple_of(quoted)},', WIDTH, " " * 8))
     facts |= {"about": about, "names": sorted(names), "components": components}
     facts |= {"signature": signature, "about_function": about_function}
     return resources.environment().get_template(template).render(program=program, **facts)

@@ -110,7 +110,9 @@ def _product(text: str, parts: list[str]) -> str:
             return factor[0]
         return factor
 
-    for token in reversed(_TOKEN.findall(text)):
+    tokens = ["", *_TOKEN.findall(text)]
+    for place in range(len(tokens) - 1, 0, -1):
+        before, token = tokens[place - 1 : place + 1]
         function = function_word(token[1:]) if token[0] == "\\" else ""
         if token == "^":
             power = taken(is_digit=True)
@@ -121,7 +123,8 @@ def _product(text: str, parts: list[str]) -> str:
         elif token in (r"\frac", r"\tfrac", r"\dfrac"):
             factor = f"({taken(is_digit=True)}/{taken(is_digit=True)})"
         elif function in FUNCTIONS:
-            if power == "(-1)":  # sin⁻¹ is the inverse function, although sin² is a power
+            # sin⁻¹ is the inverse function, although sin² is a power
+            if power == "(-1)" and tokens[place + 1] == "^":
                 function, power = f"a{function}", ""
             argument = taken(is_digit=function == "sqrt")
             is_factor = function != "sqrt" and stack and stack[-1] not in _SIGNS
@@ -132,7 +135,9 @@ def _product(text: str, parts: list[str]) -> str:
             factor = "λ" if token == '"lambda"' else token.strip('"')  # a keyword of Python
         else:
             raise ExpressionError(f"unexpected {token!r} in LaTeX")
-        if power:
+        # in \sin(a)^2, the power is that of the sine
+        is_argument = token[-1] >= chr(_FIRST) and function_word(before[1:]) in FUNCTIONS
+        if power and not is_argument:
             factor = f"({factor}).T" if power.strip("()") == "T" else f"{factor}**({power})"
             power = ""
         stack.append(factor)
