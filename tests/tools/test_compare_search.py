@@ -28,7 +28,7 @@ from rigidsym.tools.compare.comparison import identified
 from rigidsym.tools.compare.program import formula_matrix, program_formulas
 from rigidsym.tools.compare.quantities import _angles, target
 from rigidsym.tools.compare.search import formulas, search, source_files
-from rigidsym.tools.compare.syntax import limits, patterns
+from rigidsym.tools.compare.syntax import GRAMMARS, limits, patterns
 
 W_BODY = "[[1, 0, -sin(b)], [0, cos(a), sin(a)*cos(b)], [0, -sin(a), cos(a)*cos(b)]]"
 
@@ -484,6 +484,11 @@ def test_the_time_for_a_file_is_bounded(tmp_path, name):
     start = process_time()
     assert found_in(tmp_path, name, LARGE[name]) == []
     assert process_time() - start < 10
+
+
+def test_a_hook_runs_for_the_files_of_every_language():
+    hook = re.search(r"files: (.*)", (ROOT / ".pre-commit-hooks.yaml").read_text())[1]
+    assert all(re.search(hook, f"a{ending}") for ending in GRAMMARS)
 
 
 def test_every_pattern_that_is_used_is_in_the_table_and_the_other_way_round():
