@@ -273,7 +273,6 @@ def _evaluation(values: Sequence[Any], number: Any) -> Callable[[PolyElement], A
     @lru_cache(maxsize=1 << 14)
     def term(powers: Monomial, coefficient: Any) -> Any:
         weight = number(int(coefficient.numerator)) / int(coefficient.denominator)
-        factors = (value**n for value, n in zip(values, powers, strict=True) if n)
-        return prod(factors, start=weight)
+        return prod((value**n for value, n in zip(values, powers, strict=True) if n), start=weight)
 
     return lambda element: sum(starmap(term, element.items()), number(0))

@@ -31,8 +31,7 @@ def command(
         click.echo(f"{place}  {section.title}")
     for document in documents:
         for ending in _ENDINGS:
-            path = folder / f"{document.name}.{ending}"
-            click.echo(write_text(path, render(document, ending)))
+            click.echo(write_text(folder / f"{document.name}.{ending}", render(document, ending)))
     for document in documents if pdf else ():
         path = folder / f"{document.name}.pdf"
         click.echo(write_bytes(path, typeset(render(document, "tex")).pdf))

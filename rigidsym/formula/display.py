@@ -103,8 +103,7 @@ def _forms(equation: Equation, letters: Letters, width: float, pen: LatexPen) ->
     yield Display(whole.text, whole.width)
     head, *values = sides
     if values:
-        heads = [head, *[NOTHING] * (len(values) - 1)]
-        yield _listing(heads, values, width, pen, is_high=True)
+        yield _listing([head, *[NOTHING] * (len(values) - 1)], values, width, pen, is_high=True)
 
 
 def _matrix_forms(

@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Collection
 from functools import partial, reduce, wraps
+from itertools import chain
 from typing import Any
 
 import sympy as sp
@@ -55,7 +56,7 @@ OF_MATRICES: dict[str, Callable[..., Any]] = {
     "dot": lambda a, b: a.dot(b) if 1 in a.shape else a * b,
     "cross": lambda a, b: a.cross(b),
     "outer": lambda a, b: a * b.T,
-    "diag": lambda *entries: sp.diag(*entries),
+    "diag": lambda *parts: sp.diag(*chain.from_iterable(map(as_matrix, parts))),
     "trace": lambda matrix: matrix.trace(),
     "inv": lambda matrix: combined("**", matrix, sp.S.NegativeOne),
 }

@@ -1403,8 +1403,10 @@ class _Run:
         if meaning == "cross" and len(values) > 1:
             values = [self.moment(values[0], values[1]), self.moment(values[1], values[0])]
         if meaning in ("cross", "dot", "C", "outer"):
-            count = 4 if any(getattr(v, "shape", ()) == (4, 4) for v in values) else 3
-            values = [self.vector(value, count) for value in values]
+            names = [_last(str(s)) for s in values[0].free_symbols] if meaning == "outer" else ()
+            is_long = any(getattr(v, "shape", ()) == (4, 4) for v in values)
+            is_long |= any(map(patterns.quaternion.fullmatch, names))
+            values = [self.vector(value, 3 + is_long) for value in values]
         if meaning == "dot" and any(as_matrix(value).cols > 1 for value in values):
             return combined("@", *map(_unflattened, values))
         return called(meaning, [as_matrix(value) for value in values])
