@@ -976,6 +976,10 @@ class _Run:
         self.refuse_if(len(tree.parts) != 2, tree)
         left, right = map(self.read, tree.parts)
         sign = tree.word
+        if sign in ("^", ".^") and tree.node.named_children[0].type == "unary_operator":
+            # -x^2, which the grammar of MATLAB takes for (-x)^2
+            number = -1 if tree.parts[0].word == "-" else 1
+            return number * combined("**", number * left, right)
         if sign == "\\" and self.first:  # I \ v
             left, sign = self.of_vectors("inv", [left]), "*"
         is_turn = sign == "%" and _is_scalar(right) and (right / sp.pi).is_number
@@ -991,11 +995,25 @@ class _Run:
         elif sign in ("*", "@") and (value := self.of_tensor(left, right)) is not None:
             return value
         else:
+            is_open = sign in ("*", "@") and self.is_open(tree.parts[0], sign, left, right)
+            self.refuse_if(is_open, tree, "may be a product of matrices or of quaternions")
             left, right = (_unflattened(each) for each in (left, right))
             is_product = sign == "@" or self.program.product == "*"
             if is_product and getattr(left, "shape", ()) == (4, 4):  # of a product, times q
                 right = self.vector(right, 4)
         return combined(self.operation(tree, sign, left, right), left, right)
+
+    def is_open(self, first: Tree, sign: str, *sides: Any) -> bool:
+        """Whether a name without a value may be a matrix or a quaternion: C P Cᵀ, q (w, x, y, z)."""
+        shapes = [getattr(side, "shape", ()) for side in sides]
+        if (4, 1) in shapes:
+            names = [_last(side.name) for side in sides if isinstance(side, sp.Symbol)]
+            return any(map(patterns.quaternion.fullmatch, names))
+        if () in shapes or first.kind != "binary" or first.word not in ("*", "@"):
+            return False
+        outer, middle = map(self.tried, first.parts)
+        is_matrix = sign == "@" or first.parts[1].word[:1].isupper()
+        return is_matrix and isinstance(outer, sp.MatrixBase) and isinstance(middle, sp.Symbol)
 
     def is_whole(self, tree: Tree) -> bool:
         """Whether an expression is a whole number by its digits and the types of its names."""
@@ -1533,9 +1551,11 @@ def _short_names(symbols: Collection[sp.Symbol]) -> dict[sp.Expr, sp.Expr]:
     names: dict[str, sp.Symbol] = {}
     plain = {symbol.name for symbol in symbols}
     shared = {of for of in ("self.", "this.") for n in {*"wxyz"} & plain if of + n in plain}
+    count = Counter(_last(name) for name in plain if "." in name)
     for symbol in sorted(symbols, key=lambda s: (s.is_Dummy, s.name.count("."), s.sort_key())):
         name, long = _last(symbol.name), symbol.name.replace(".", "_")
-        name = long if name in names or symbol.name[:-1] in shared else name  # also this.w
+        is_long = name in names or count[name] > 1 or symbol.name[:-1] in shared  # also this.w
+        name = long if is_long else name
         while name in names:
             name += "_new"
         names[name] = symbol

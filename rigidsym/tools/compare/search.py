@@ -236,12 +236,14 @@ def _order(finding: FormulaInFile) -> str:
     return axes if len(axes) == 3 else ""
 
 
-def _are_conjugate(one: Comparison, other: Comparison) -> bool:
-    """Whether two quaternions from the same matrix are conjugates of one another."""
-    goals = [each.found for each in (one, other) if each.found]
-    is_conjugated = {"by_columns" in goal.ways for goal in goals}
-    are_cases = {goal.rotation for goal in goals} == {quantities.OF_MATRIX}
-    return are_cases and len(is_conjugated) == 2 - (one.names != other.names)
+def _contradiction(one: Comparison, other: Comparison) -> str:
+    """How two quaternions from the same matrix contradict one another; "" if they do not."""
+    ways = [{*each.found.ways} for each in (one, other) if each.found]
+    if {each.found and each.found.rotation for each in (one, other)} != {quantities.OF_MATRIX}:
+        return ""
+    if len({"by_columns" in own for own in ways}) == 2 - (one.names != other.names):
+        return REMARKS["conjugate"]
+    return REMARKS["scalar"] * (len({"scalar_last" in own for own in ways}) == 2)
 
 
 def _with_branches(
@@ -250,16 +252,17 @@ def _with_branches(
     """Findings with remarks on the domain of arcs, and on branches for poles and small angles.
 
     A branch that is wrong is a finding of its own. It may follow any of several right formulas. One
-    case of Shepperd's method is wrong if two others or more give the conjugate.
+    case of Shepperd's method is wrong if it contradicts two others or more.
     """
     right = [(f, f.formula, f.comparison) for f in found if f.comparison and f.comparison.is_equal]
     remarks, wrong = dict[int, str](), dict[Any, FormulaInFile]()
     verdicts = {id(finding): finding.comparison for finding in found}
     for finding, own, regular in right:
         cases = [r for r in right if (r[1].function, r[1].name) == (own.function, own.name)]
-        others = [each.line for each, _, case in cases if _are_conjugate(regular, case)]
+        others = {f.line: said for f, _, c in cases if (said := _contradiction(regular, c))}
         if len(others) == len(cases) - 1 > 1:
-            verdicts[id(finding)] = replace(regular, contradicts=tuple(others))
+            said = next(iter(others.values()))
+            verdicts[id(finding)] = replace(regular, contradicts=tuple(others), branch=said)
         inside = "".join(_lines(text)[max(0, own.function[1] - 1) : own.function[2] or None])
         remarks[id(finding)] = "" if patterns.guard.search(inside) else domain(regular.formula)
     for each in (formula for formula in program if formula.is_final):
