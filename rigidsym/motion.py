@@ -143,8 +143,7 @@ class Motion(Derivation, kw_only=True):
         """
         from rigidsym.page.print_page import print_page
 
-        note = self.note(with_kernels=with_kernels)
-        return print_page(self, note.document, start or {})
+        return print_page(self, self.note(with_kernels=with_kernels).document, start or {})
 
     def with_notation(self, **choices: Any) -> Motion:
         """The same motion in another notation: `rates`, `vectors`, `angular_velocity`, as in

@@ -65,8 +65,7 @@ def output_of(spec: DerivationSpec) -> Output:
     """Stages 2 and 3 for the specification of one rotation."""
     motion = motion_of(spec)
     conversions = motion.conversions if spec.conversions else None
-    data = record(motion, spec.to_data(), conversions)
-    files = _with_record(data, dict(_printed(motion, spec)))
+    files = _with_record(record(motion, spec.to_data(), conversions), dict(_printed(motion, spec)))
     return Output(spec=spec, motion=motion, conversions=conversions, files=files)
 
 

@@ -67,8 +67,7 @@ class Equations:
         model = parametrised("unit_quaternion")
         moving = [*model.coordinates, *_PLACE, *_CENTRE]
         fixed = [MASS, _WHOLE, *IN_BODY, *_OMEGA, *_U, *_V, *_W, *_LINE, *_TENSOR]
-        unit = sum(part**2 for part in _LINE) - 1
-        constraints = (*model.constraints, unit)
+        constraints = (*model.constraints, sum(part**2 for part in _LINE) - 1)
         self.codec = codec_for(
             [*moving, *_rates(moving), *fixed, *model.matrix], constraints=constraints, order=1
         )

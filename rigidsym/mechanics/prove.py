@@ -133,8 +133,7 @@ class Prover:
         """The proof that quotients are zero, and that none of their divisors is."""
         # A quotient vanishes if its numerator does and its denominator does not.
         numerators = RingMatrix.column(self.codec.ring, (q.numerator for q in quotients))
-        divisors = dict.fromkeys(q.denominator for q in quotients)
-        return self.vanishes(numerators, claim, *divisors)
+        return self.vanishes(numerators, claim, *dict.fromkeys(q.denominator for q in quotients))
 
     def is_root(
         self,
@@ -166,5 +165,4 @@ class Prover:
                 # between the rates hold as well.
                 values[sp.diff(coordinate, TIME, order)] = sp.diff(value, TIME, order)
         given = [gen.expression for gen in self.codec.ring.generators if gen.expression.is_Symbol]
-        inputs = [*pullback.coordinates, *given]
-        return codec_for(inputs, constraints=pullback.constraints), values
+        return codec_for([*pullback.coordinates, *given], constraints=pullback.constraints), values

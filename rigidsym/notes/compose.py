@@ -351,8 +351,7 @@ class Composer:
 
 def _check_derived(name: str, names: Collection[str]) -> None:
     if name not in names:
-        near = offer(name, names)
-        raise TemplateRuntimeError(f"nothing is derived by the name {name!r}; {near}")
+        raise TemplateRuntimeError(f"nothing is derived by the name {name!r}; {offer(name, names)}")
 
 
 def _call(step: Step) -> str:

@@ -191,8 +191,7 @@ class _Reader:
 
     def text(self, words: str) -> doc.Text:
         """The spans of a line, in which neighbouring words are one span."""
-        line = " ".join(part.strip() for part in words.splitlines())
-        words, *parts = _STYLED.split(line)
+        words, *parts = _STYLED.split(" ".join(part.strip() for part in words.splitlines()))
         spans: list[doc.Span] = [words]
         for strong, emphasis, mark, words in zip(*[iter(parts)] * 4, strict=True):
             style = "strong" if strong else "emphasis"

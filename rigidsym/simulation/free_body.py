@@ -103,8 +103,7 @@ def _near(n: float, amplitude: Array, m: float) -> Array:
 
 def _frames(momentum: Array, c: int) -> Array:
     """Rows x, y, z of frames with z along the momentum and the axis c in the half-plane x > 0."""
-    axis = np.eye(3)[c]
-    y = np.cross(momentum, axis)
+    y = np.cross(momentum, np.eye(3)[c])
     y /= np.linalg.norm(y, axis=1)[:, None]
     return np.stack([np.cross(y, momentum), y, momentum], axis=1)
 

@@ -52,8 +52,7 @@ def parse_expression(text: str, names: Mapping[str, sp.Expr]) -> sp.Expr:
     )
     try:
         # One line in brackets, since Python takes a space before an expression for an indent.
-        tree = ast.parse(f"({plain})", mode="eval")
-        return _Reader(text, names).read(tree.body).expression
+        return _Reader(text, names).read(ast.parse(f"({plain})", mode="eval").body).expression
     except (RecursionError, MemoryError):
         raise ExpressionError(
             "operations are nested too deeply; expected a shorter expression"

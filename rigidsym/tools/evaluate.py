@@ -135,8 +135,7 @@ def _values(
     for each, part in zip(free, parts, strict=True):
         vectors[each.name] = each.rows(part)
         if each is _MATRIX:
-            matrices = replace(batch, table=part)
-            samples_of(table, _ENTRIES, matrices, drops_missing=True).check(SLACK)
+            samples_of(table, _ENTRIES, replace(batch, table=part), drops_missing=True).check(SLACK)
     values = []
     for name, arguments in calls.arguments.items():
         function = getattr(calls.module, name)

@@ -103,8 +103,7 @@ class TreeEquations(LagrangeForm):
         acting = [*self.gradient, *forces.generalised.values(), *forces.torque]
         rates = [sp.diff(q, TIME) for q in model.coordinates]
         entries = [forces.potential, *acting, *rates, *OMEGA_BODY]
-        codec = codec_for([e for e in entries if e != 0], order=1)
-        super().__init__(model, body, forces, codec)
+        super().__init__(model, body, forces, codec_for([e for e in entries if e != 0], order=1))
         self.joints = self._joints()
         self.particles = [
             self._particle(str(k), sp.ImmutableMatrix(part.velocity), part.inertia[0])

@@ -141,8 +141,7 @@ class Composition(Values):
 
 
 def _beside(left: RingMatrix, right: RingMatrix) -> RingMatrix:
-    rows = (a + b for a, b in zip(left.rows, right.rows, strict=True))
-    return RingMatrix(left.ring, tuple(rows))
+    return RingMatrix(left.ring, tuple((a + b for a, b in zip(left.rows, right.rows, strict=True))))
 
 
 @cache

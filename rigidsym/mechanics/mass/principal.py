@@ -44,8 +44,7 @@ def principal_of(inertia: sp.ImmutableMatrix) -> Principal | None:
             reasons=({0: "diagonal_sphere", 1: "diagonal_symmetric", 3: "diagonal"}[len(single)],),
             axis=_LETTERS[single[0]] if single else "",
         )
-    apart = (k for k, unit in enumerate(_BASIS) if inertia * unit == inertia[k, k] * unit)
-    k = next(apart, None)
+    k = next((k for k, unit in enumerate(_BASIS) if inertia * unit == inertia[k, k] * unit), None)
     return None if k is None else _about(inertia, k)
 
 

@@ -55,8 +55,7 @@ def body_drawing(derivation: Derivation) -> tuple[Drawing, bool] | None:
     ]
     parts = [_Part(face.corners, face.color, unit(area_of(face.corners))) for face in shape]
     parts += [_Part(line, None, line[0]) for line in ends]
-    drawing = Drawing(tuple(lines), labelled(named, lines), body=tuple(_seen(parts)))
-    return drawing, is_principal
+    return Drawing(tuple(lines), labelled(named, lines), body=tuple(_seen(parts))), is_principal
 
 
 def _principal_axes(derivation: Derivation) -> Vector:

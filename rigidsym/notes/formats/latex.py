@@ -73,8 +73,7 @@ class _LatexPrinter(NotePrinter):
 
     def code(self, text: str) -> str:
         """A line may end within: names in it are long, and no word of them has a hyphen."""
-        typed = _typed(text)
-        return typed.replace(r"\_", r"\_\allowbreak ").replace("(", r"(\allowbreak ")
+        return _typed(text).replace(r"\_", r"\_\allowbreak ").replace("(", r"(\allowbreak ")
 
     def paragraph(self, block: doc.Paragraph) -> str:
         # no empty line: a display that follows belongs to the paragraph
@@ -90,8 +89,7 @@ class _LatexPrinter(NotePrinter):
         return f"\\begin{{itemize}}\\setlength{{\\itemsep}}{{0pt}}\n{items}\n\\end{{itemize}}"
 
     def equationrow(self, block: doc.EquationRow) -> str:
-        row = pack(block.equations, self.document.letters, _LINE, self.pen)
-        return f"\\[\n{row}\n\\]"
+        return f"\\[\n{pack(block.equations, self.document.letters, _LINE, self.pen)}\n\\]"
 
     def equation(self, equation: doc.Equation) -> str:
         layout, label = self.displays[equation], self.label(equation.label)

@@ -52,8 +52,7 @@ def show(
 
     `conversions` adds a section on the unit quaternion and the matrix, and its proofs.
     """
-    letters = letters_of(derivation.arguments, notation, derivation.model)
-    screen = _Screen(letters, width)
+    screen = _Screen(letters_of(derivation.arguments, notation, derivation.model), width)
     screen.derivation(derivation, conversions)
     return screen.whole
 

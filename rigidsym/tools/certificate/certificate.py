@@ -391,8 +391,7 @@ class _Section:
         parts = (f"(squares {self.name(name)})" for name in sorted(_names(("", *angles))))
         self.facts_of_sums = [*dict.fromkeys((*self.facts, *parts))]
         for k, divisor in enumerate(_divisors(self.trees_of_rotation)):
-            text = self.real(divisor)
-            yield f"Hypothesis nonzero_{k} : forall t, {text} <> 0."
+            yield f"Hypothesis nonzero_{k} : forall t, {self.real(divisor)} <> 0."
             self.known.append(f"(nonzero_{k} t)")
             self.apart.add(self.summands(divisor))
 

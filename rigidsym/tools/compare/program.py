@@ -965,8 +965,7 @@ class _Run:
             return called(tree.word.lower(), [self.read(tree.parts[0])])
         if CALLS.get(tree.word) == "unit" and re.search("mat|rot", tree.text, re.IGNORECASE):
             return sp.ImmutableMatrix(sp.eye(3 if "3" in tree.text else 4))
-        is_transpose = tree.word == "T" and tree.parts
-        return self.read_transposed(tree) if is_transpose else self.named(tree)
+        return self.read_transposed(tree) if tree.word == "T" and tree.parts else self.named(tree)
 
     def read_unary(self, tree: Tree) -> Any:
         sign = {"+": 1, "-": -1}.get(tree.word)
@@ -976,10 +975,9 @@ class _Run:
         self.refuse_if(len(tree.parts) != 2, tree)
         left, right = map(self.read, tree.parts)
         sign = tree.word
-        if sign in ("^", ".^") and tree.node.named_children[0].type == "unary_operator":
-            # -x^2, which the grammar of MATLAB takes for (-x)^2
-            number = -1 if tree.parts[0].word == "-" else 1
-            return number * combined("**", number * left, right)
+        is_negative = sign in ("^", ".^") and tree.parts[0].word == "-"
+        if is_negative and tree.node.named_children[0].type == "unary_operator":
+            return -combined("**", -left, right)  # -x^2, for the grammar of MATLAB (-x)^2
         if sign == "\\" and self.first:  # I \ v
             left, sign = self.of_vectors("inv", [left]), "*"
         is_turn = sign == "%" and _is_scalar(right) and (right / sp.pi).is_number
@@ -1004,7 +1002,7 @@ class _Run:
         return combined(self.operation(tree, sign, left, right), left, right)
 
     def is_open(self, first: Tree, sign: str, *sides: Any) -> bool:
-        """Whether a name without a value may be a matrix or a quaternion: C P Cᵀ, q (w, x, y, z)."""
+        """Whether a name without a value may be a matrix or a quaternion: C P Cᵀ, q r."""
         shapes = [getattr(side, "shape", ()) for side in sides]
         if (4, 1) in shapes:
             names = [_last(side.name) for side in sides if isinstance(side, sp.Symbol)]
