@@ -465,7 +465,7 @@ def _ways(formula: sp.ImmutableMatrix) -> Iterator[tuple[str, sp.ImmutableMatrix
         rest = formula.xreplace({f: sp.Dummy() for f in own})
         if own and (rest.has(symbol) or any(names & f.free_symbols for f in functions - own)):
             continue
-        angles = [f.args[0] for f in own]
+        angles = [f.args[0] for f in own if f.args[0] != symbol]  # which is no factor of itself
         # A factor of a whole matrix may be a vector that is not read, unless it is called a scale.
         is_open = formula.cols == 1 or patterns.scale.fullmatch(symbol.name)
         if scaled := sp.Matrix(angles or [*formula] * bool(is_open)):

@@ -77,6 +77,14 @@ def function_word(name: str) -> str:
 _POWERS = {"pow": None, "sq": sp.Integer(2), "rsqrt": -sp.S.Half, "recip": sp.S.NegativeOne}
 _SHORT = {"c": "cos", "s": "sin", "t": "tan", "C": "cos", "S": "sin", "T": "tan"}
 CONSTANTS = {word: sp.sympify(value) for word, value in NUMBERS.items()}
+_OF_TURNS = {float(value): value for value in CONSTANTS.values()}  # 57.29578 is 180/π
+
+
+def number(text: str) -> sp.Expr:
+    """A decimal number, or a multiple of π that it rounds to four digits or more."""
+    value = sp.Rational(text)
+    near = (v for x, v in _OF_TURNS.items() if abs(float(value) / x - 1) < limits.near_turn)
+    return next(near, value) if "." in text else value
 
 
 def _of_fitting_sizes(function: Callable[..., Any]) -> Callable[..., Any]:

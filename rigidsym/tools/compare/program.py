@@ -494,7 +494,8 @@ class _Run:
     def put(self, path: Path, value: Any, line: int) -> None:
         place = next((n for n, key in enumerate(path) if isinstance(key, slice)), None)
         if place is not None:
-            whole, start = as_matrix(value), path[place].start or 0
+            value = value.whole()[0] if isinstance(value, _Record) else value
+            whole, start = as_matrix(sp.nan if value is None else value), path[place].start or 0
             parts = _lines(whole)
             if len(whole) == 1 or path[place].stop not in (None, start + len(parts)):
                 raise ExpressionError("a block of another size")
@@ -791,18 +792,21 @@ class _Run:
             else:
                 self.emit(part, path=own, is_final=is_final)
             scalar, line = record.get("w", (None, 0))
-            if matrix is not None and matrix.shape == (3, 1) and _is_scalar(scalar):
+            is_vector = matrix is not None and matrix.shape == (3, 1) and not are_angles(matrix)
+            if is_vector and _is_scalar(scalar):
                 whole = sp.Matrix([scalar, *matrix])  # it may be a quaternion
-                self.add(f"w, {_dotted(own)}", whole, line, *lines, is_final=False)
+                is_one = bool(path) and key in ("v", "vec", "imag")
+                name = _dotted(path) if is_one else f"w, {_dotted(own)}"
+                self.add(name, whole, line, *lines, is_final=is_final and is_one)
         for kind, names in _groups(record):
             parts, lines = zip(*map(record.get, names), strict=True)
             values: list[Any] = [self.definitions.get(part, part) for part in parts]
             if None in values:
                 continue
             # At a pole, an angle is a number: this is no formula, but another case of one.
-            are_angles = all(value.has(*_INVERSE) or value.is_number for value in values)
+            all_angles = all(value.has(*_INVERSE) or value.is_number for value in values)
             is_angle = patterns.angles_name.fullmatch(names[0])
-            if kind > -2 or are_angles or (is_angle and all(map(self.is_step, values))):
+            if kind > -2 or all_angles or (is_angle and all(map(self.is_step, values))):
                 stem = _dotted(path) or re.sub(r"\d+$", "", names[0])
                 name = ", ".join(names) if len(names) < 9 else stem
                 self.add(name, sp.Matrix(values), *lines, is_final=is_final)
@@ -823,7 +827,9 @@ class _Run:
                 # (R v, 1) has a fourth coordinate
                 is_sum = not k and value[3].is_Atom and all(entry.is_Add for entry in part)
                 if len(value) > 4 or is_sum or are_angles(part):
-                    self.add(f"{name}[{k}:{k + 3}]", part, min(lines), is_final=is_final)
+                    is_known = not any(entry.is_Symbol for entry in value[:k])  # to be one number
+                    own = f"{name}[{k}:{k + 3}]" if is_known else f"part of {name}"
+                    self.add(own, part, min(lines), is_final=is_final)
         is_flat = value.shape != _unflattened(value).shape
         value = _unbounded(_unflattened(value))
         whole = _unbounded(self.expanded(value))
@@ -905,7 +911,7 @@ class _Run:
             text = digits[2].replace("_", "")
             text = text if text.isdigit() else repr(float(text))
             self.refuse_if(text == "inf" or len(text) > limits.longest_number, tree)
-            return sp.Rational(digits[1] + text)
+            return language.number(digits[1] + text)
         is_rust = tree.parts and self.program.suffix == ".rs"
         value = self.run_block(tree, is_value=True) if is_rust else self.named(tree)
         self.refuse_if(value is None, tree)
@@ -1258,7 +1264,8 @@ class _Run:
         key, *others = keys
         letters = "xyz" if key in ("vec", "imag", "v") else key
         if isinstance(letters, str) and re.fullmatch("[xyzw]{2,4}", letters):
-            return rows([self.entry(tree, value, (letter,)) for letter in letters])
+            parts = rows([self.entry(tree, value, (letter,)) for letter in letters])
+            return self.entry(tree, parts, tuple(others))
         lines: list[Any] = []
         if isinstance(value, sp.MatrixBase):
             value = _unflattened(value) if others else value
@@ -1361,6 +1368,11 @@ class _Run:
                 return called("cos", [a])  # cosFromSin(sin(a), a)
             case "fused" | "fma" if [len(nodes), name != "mul_add"] == [3, len(arguments) == 3]:
                 return combined("+", combined("*", *map(self.read, nodes[:2])), self.read(nodes[2]))
+            case "solve" if len(nodes) == 2:
+                left, right = map(self.read, nodes)
+                left = self.of_vectors("inv", [left])
+                product = self.of_tensor(left, right)
+                return combined("*", left, right) if product is None else product
             case "where" if len(nodes) == 3:
                 return self.read_choose(tree, nodes)
             case _ if meaning in TYPES["of_vectors"] and nodes:

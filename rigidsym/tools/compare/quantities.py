@@ -417,9 +417,12 @@ def _of_matrix() -> Family:
     rotation = target("unit_quaternion", "rotation_matrix")
     squares = outer_product(_ENTRIES)
     columns = (squares[:, k] / (2 * sp.sqrt(squares[k, k])) for k in range(4))
-    ways = (_ways(by_columns=_times(1, -1, -1, -1)), *_WAYS[QUATERNION][1:-1])
     goal = replace(rotation, quantity=QUATERNION, rotation=OF_MATRIX)
-    return _family([replace(goal, matrix=sp.ImmutableMatrix(q)).written(*ways) for q in columns])
+    goals = [replace(goal, matrix=sp.ImmutableMatrix(column)) for column in columns]
+    # of the conjugate q* and of -q*, the component with the root is positive
+    others, signs = _WAYS[QUATERNION][1:-1], [1, -1, -1, -1]
+    ways = [_ways(by_columns=_times(sign, -sign, -sign, -sign)) for sign in signs]
+    return _family([g.written(way, *others) for g, way in zip(goals, ways, strict=True)])
 
 
 def _angles(axes: str, r: sp.MatrixBase) -> sp.ImmutableMatrix:
@@ -453,7 +456,7 @@ def stem_of(name: str) -> str:
     return match["behind"] or match["before"] + (match["index"] or "") if match else ""
 
 
-_INDICES = (("abc", "xyz"), ("012", "012"), ("123", "123"))  # of rows and columns
+_INDICES = (("abc", "xyz"), ("012", "012"), ("123", "123"), ("xyz", "xyz"))  # of rows and columns
 
 
 def meanings(formula: sp.MatrixBase, goal: KnownQuantity, *, is_asked: bool) -> list[Names]:
