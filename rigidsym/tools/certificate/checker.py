@@ -511,7 +511,8 @@ def verify(content: Mapping[str, Any]) -> tuple[list[str], dict[str, str]]:
         laws |= record.of_body() if "body" in content else {}
         laws |= record.of_motion() if "motion" in content else {}
     except Unproved as error:
-        reasons |= {} if proved else {"R is a rotation": str(error)}
+        lack = str(error)
+        reasons |= {} if proved else {"R is a rotation": lack}
     for name, claim in claims_in(content).items():
         try:
             refuse_unless(name in laws, lack, Unproved)
