@@ -828,8 +828,8 @@ class _Run:
                 is_sum = not k and value[3].is_Atom and all(entry.is_Add for entry in part)
                 if len(value) > 4 or is_sum or are_angles(part):
                     is_known = not any(entry.is_Symbol for entry in value[:k])  # to be one number
-                    own = f"{name}[{k}:{k + 3}]" if is_known else f"part of {name}"
-                    self.add(own, part, min(lines), is_final=is_final)
+                    place = f"{name}[{k}:{k + 3}]" if is_known else f"part of {name}"
+                    self.add(place, part, min(lines), is_final=is_final)
         is_flat = value.shape != _unflattened(value).shape
         value = _unbounded(_unflattened(value))
         whole = _unbounded(self.expanded(value))
