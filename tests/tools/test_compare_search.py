@@ -304,11 +304,6 @@ ABOUT = (
 ABOUT_JS = (
     "function f(a) { let c = Math.cos(a), s = k(1)*Math.sin(a); let R = [[c, -s, 0], [s, c, 0],"
 )
-POLES = (
-    "def f(R):\n    b = -np.arcsin(R[2, 0])\n    near = np.isclose(np.cos(b), 0, 1e-6)\n"
-    "    return np.where({}), b, {}\n"
-)
-X, Y = "np.arctan2(R[2, 1], R[2, 2])", "np.arctan2(R[1, 0], R[0, 0])"
 BATCH = (
     "def f(a):\n    c, s = torch.cos(a), torch.sin(a)\n    r = torch.stack([c, -s, 0*c], {})\n"
     "    return torch.stack([r, torch.stack([s, c, 0*c], {}), torch.stack([0*c, 0*c, 1], {})], 1)\n"
@@ -355,8 +350,9 @@ CERTAIN |= {  # a program: the end of the verdict, and nothing if there is none
     ("a.js", f"function k(a) {{ return 1; }} {ABOUT_JS} [0, 0, 1]]; }}"): "(proved)",
     ("b.js", f"function k(a) {{ return 1; }} function k(a, b) {{ return -1; }} {ABOUT_JS}"
      " [0, 0, 1]]; }"): None,
-    ("b.py", POLES.format(f"near, {X}, 0", Y)): "branches",
-    ("c.py", POLES.format(f"near, 0, {X}", f"{Y} if abs(np.cos(b)) < 1e-6 else 0")): None,
+    ("c.py", "def f(R):\n    b = -np.arcsin(R[2, 0])\n    near = np.isclose(np.cos(b), 0, 1e-6)\n"
+     "    return np.where(near, 0, np.arctan2(R[2, 1], R[2, 2])), b, np.arctan2(R[1, 0], R[0, 0]) "
+     "if abs(np.cos(b)) < 1e-6 else 0\n"): None,
     ("d.py", BATCH.format(0, 0, 0)): "by columns) (proved)",
     ("e.py", BATCH.format(1, 1, 1)): None,
     ("f.py", "def f(R):\n    a, b, c = torch.unbind(R, -1)\n    return torch.atan2(c[1], c[2]), "

@@ -7,10 +7,10 @@ sign, a factor) before those of single entries.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import cached_property
 from itertools import chain, permutations
 from posixpath import commonprefix
 from typing import Any
@@ -31,7 +31,6 @@ from rigidsym.tools.compare.quantities import ANGLES, QUATERNION, Array, KnownQu
 from rigidsym.tools.compare.syntax import CHANGES, REMARKS, SHAPES, WAYS, WHOLE, limits, patterns
 
 _ANGLES = ["phi", "theta", "psi"]  # if nobody has chosen their names
-_alike: Callable[..., Any] = partial(np.isclose, rtol=0, atol=1e-3)
 
 
 @dataclass(frozen=True)
@@ -77,13 +76,12 @@ class Reading:
             if any(is_length(each) and each.free_symbols == own for each in sums):
                 values = {s: self.values[s] for s in self.names}
                 twice = values | {s: 2 * values[s] for s in own}
-                one, other = (known.evaluated(self.formula, each) for each in (values, twice))
-                return bool(known.near(self.goal.on_circle(other), self.goal.on_circle(one)).all())
+                one, other = (self.goal.numbers(self.formula, each) for each in (values, twice))
+                return bool(known.near(other, one).all())
         return True
 
     def agrees(self, changed: sp.MatrixBase, wanted: Array) -> bool:
-        numbers = self.goal.on_circle(known.evaluated(changed, self.values))
-        return bool(known.near(numbers, wanted).all())
+        return bool(known.near(self.goal.numbers(changed, self.values), wanted).all())
 
 
 class _Trial:
@@ -100,7 +98,7 @@ class _Trial:
             for symbol in formula.free_symbols:
                 meant = sp.Matrix([each[symbol] for each in self.names])
                 values[symbol] = known.evaluated(meant, points)[..., 0].T
-            numbers = goal.on_circle(known.evaluated(formula, values))
+            numbers = goal.numbers(formula, values)
             self.numbers = np.broadcast_to(numbers, (len(self.names), *numbers.shape[-3:]))
         self.agreement = self.compared(self.numbers)
 
@@ -205,9 +203,7 @@ class Comparison:
         # w of q_w needs no words
         calls = calls if any(not n.endswith(own) or (a and own != n) for own, n, a in calls) else []
         facts: dict[str, Any] = {"arrangement": self.arrangement, "calls": calls}
-        facts |= {"others": [each.text() for each in self.others]}
         facts |= {"factors": [commonprefix(n).rstrip("_") or f"({', '.join(n)})" for n in factors]}
-        facts |= {"names": sorted(map(str, self.formula.free_symbols))}
         facts |= {"fixed": [(own, own, axis) for own, axis in fixed]}
         shapes = (in_words(each.shape) for each in (self.formula, asked and asked.matrix) if each)
         template = environment().get_template("compare/comparison.txt.jinja")
@@ -547,13 +543,17 @@ def _decided(
 
 def branch(regular: Comparison, own: Formula, each: Formula) -> Comparison | None:
     """A formula beside the right one of another branch; None if it is not compared."""
-    goal, conditions = regular.found, each.conditions_beside(own)
-    if goal is None or not conditions or [f.shape for f in each.forms[:1]] != [goal.matrix.shape]:
+    goal, runs, names = regular.found, each.conditions_beside(own), {*(regular.names or {})}
+    if goal is None or [f.shape for f in each.forms[:1]] != [goal.matrix.shape]:
         return None
     is_small, case = goal.rotation in known.OF_VECTORS[:2], replace(regular, formula=each.forms[0])
+    # Runs without conditions that are not read, such as a flag. If there are others, at least the
+    # conditions of all runs hold.
+    certain = [run for run in runs if all(c.free_symbols <= names for c in run)]
+    least = certain if len(certain) == len(runs) else [frozenset.intersection(*runs)]
     with suppress(ExpressionError):  # a name without a value
-        if is_small or goal.quantity == ANGLES:
-            return (_small_angles if is_small else _at_poles)(case, goal, conditions)
+        if all(runs) and all(least) and (is_small or goal.quantity == ANGLES):
+            return (_small_angles if is_small else _at_poles)(case, goal, least, certain)
     return None
 
 
@@ -564,17 +564,17 @@ def domain(value: Any) -> str:
     return name and f"{name} {REMARKS['domain']}"
 
 
-def _truth(conditions: Sequence[sp.Expr], values: known.Values) -> NDArray[np.bool_]:
-    """Where all conditions hold, or nearly; raises ExpressionError if a name has no value."""
-    numbers = known.evaluated(sp.Matrix([*conditions]), {**values})
-    return np.asarray((numbers >= -1e-6).all(axis=(1, 2)))
+def _truth(runs: Sequence[frozenset[sp.Expr]], values: known.Values) -> NDArray[np.bool_]:
+    """Where all conditions of a run hold, or nearly; raises ExpressionError for other names."""
+    numbers = (known.evaluated(sp.Matrix([[*run]]), {**values}) for run in runs)
+    return np.any([(each >= -1e-6).all(axis=(1, 2)) for each in numbers], axis=0)
 
 
-def _at_poles(case: Comparison, goal: KnownQuantity, conditions: Any) -> Comparison | None:
-    """Whether the angles of a branch belong to the rotations at the pole that it is made for.
+def _at_poles(case: Comparison, goal: KnownQuantity, runs: Any, certain: Any) -> Comparison | None:
+    """Whether the angles of a branch belong to the rotations for which it is taken.
 
-    At a pole, one of two angles may have any value. Two points beside it, almost at the same
-    rotation, tell how the other follows.
+    Far from a pole, they are those of the formula beside it. At a pole, one of two angles may have
+    any value. Two points beside it, almost at the same rotation, tell how the other follows.
     """
     turn, names = known.target(goal.rotation, QUATERNION), case.names or {}
 
@@ -583,46 +583,49 @@ def _at_poles(case: Comparison, goal: KnownQuantity, conditions: Any) -> Compari
         q[1:] *= -1 if "of_transpose" in goal.ways else 1
         return known.named(names, dict(zip(goal.inputs["q"], q, strict=True)))
 
-    def circle(matrix: sp.MatrixBase, values: known.Values) -> Array:
-        return goal.on_circle(known.evaluated(matrix, values)[..., 0])
-
     first, last = known.TABLE[0, :2]
     side = np.repeat([1, -1], known.POINTS // 2)
     pole = (side + (len({*goal.rotation}) == 2)) * np.pi / 2  # of proper Euler angles 0 and π
-    here, turned = at(first, pole, last), at(first + 1, pole, last - 1)
-    sign = np.where(abs(sum(here[x] * turned[x] for x in goal.inputs["q"])) > 0.999, 1, -1)
-    beside, elsewhere = at(first, pole - 1e-7 * side, last), dict(goal.points)
-    is_there = _truth(conditions, beside) & ~_truth(conditions, known.named(names, elsewhere)).any()
-    own, right = circle(case.formula, beside), circle(goal.matrix, beside)
-    same = circle(goal.matrix, at(first + 1, pole - 1e-7 * side, last - sign))
-    changes = np.round(np.angle(same / right))  # 1 and ±1, and 0 of the middle angle
+    distance = np.tile(np.linspace(1.25, 0.25, known.POINTS // 2), 2)  # a pole ends at 14°
+    exact, turned = at(first, pole, last), at(first + 1, pole, last - 1)
+    sign = np.where(abs(sum(exact[x] * turned[x] for x in goal.inputs["q"])) > 0.999, 1, -1)
+    beside, far = at(first, pole - 1e-7 * side, last), at(first, pole - side * distance, last)
+    is_beside = _truth(runs, beside) & ~_truth(runs, far).any()
+    is_there = is_far if (is_far := _truth(certain, far)).any() else is_beside
+    here = far if is_far.any() else beside
+    own, right = (goal.numbers(m, here)[..., 0] for m in (case.formula, goal.matrix))
+    same = goal.numbers(goal.matrix, at(first + 1, pole - 1e-7 * side, last - sign))[..., 0]
+    # 1 and ±1, and 0 of the middle angle
+    changes = np.round(np.angle(same / right)) * (here is beside)
     # Where both arguments of an arc tangent vanish, rounding decides. If two angles are so, as in
     # the formula beside the poles, they are not compared; one that is so makes the sum wrong.
     squares = [[a.args[0] ** 2 + a.args[1] ** 2 for a in e.atoms(sp.atan2)] for e in case.formula]
-    sizes = known.evaluated(sp.Matrix([sp.Mul(*each) for each in squares]), beside)[..., 0]
+    sizes = known.evaluated(sp.Matrix([sp.Mul(*each) for each in squares]), here)[..., 0]
     is_any = ~(sizes > 1e-9) | np.isnan(own)
     free = int((abs(changes[0]) - is_any[is_there].any(axis=0) / 2).argmax())
     shift = (own / right)[:, [free]] ** changes[:, [free]]
     wanted = right * shift**changes
-    is_odd = (changes == 0) & ~is_any & ~_alike(own, right)  # the middle angle, whatever the others
-    is_sure, is_off = is_any.sum(axis=1) < 2, is_any | ~_alike(own, wanted)
+    # the middle angle, whatever the others
+    is_odd = (changes == 0) & ~is_any & (abs(own - right) > 1e-3)
+    is_sure, is_off = is_any.sum(axis=1) < 2, is_any | (abs(own - wanted) > 1e-3)
     is_wrong = is_there & (is_odd.any(axis=1) | is_sure & is_off.any(axis=1))
-    if not is_wrong.any() and (is_sure & is_there).any():
+    if not is_wrong.any() and (is_sure & is_beside).any():
         # the conditions are false where an arc sine in all of them has no value
-        remarks = ["is right at a pole (gimbal lock)", *set(map(domain, conditions))]
+        remarks = ["is right at a pole (gimbal lock)", *{domain(c) for run in runs for c in run}]
         return replace(case, branch="; ".join(remarks) if all(remarks) else remarks[0])
-    if not is_wrong.any() or {*known.SENSES} & {*goal.ways}:  # or the other formula is wrong
+    if not is_wrong.any():
         return None
     k = is_wrong.argmax()
     place = (int(is_off[k].argmax()) + 1, 1)
     angles = np.round(np.angle([right[k], own[k], wanted[k]]), 4) + 0.0
     angles[1 : 3 - is_sure[k], is_any[k]] = np.nan
     words = "for the rotation by {} it gives {}, right is {}".format(*map(tuple, angles.tolist()))
-    words = words.replace("nan", "any")
-    return replace(case, branch="at a pole (gimbal lock)", counterexample=words, place=place)
+    words += " if the other formula is right" * ("opposite" in "".join(goal.ways))
+    where = "at a pole (gimbal lock)" if here is beside else "far from the poles"
+    return replace(case, branch=where, counterexample=words.replace("nan", "any"), place=place)
 
 
-def _small_angles(case: Comparison, goal: KnownQuantity, conditions: Any) -> Comparison | None:
+def _small_angles(case: Comparison, goal: KnownQuantity, runs: Any, _: Any) -> Comparison | None:
     """To which order a polynomial agrees with the true function, by their powers along a line."""
     q, count = goal.inputs["q"], known.POINTS
 
@@ -630,7 +633,7 @@ def _small_angles(case: Comparison, goal: KnownQuantity, conditions: Any) -> Com
         line = [n / 7 * size ** (not q[3:]) for n in (2, 3, 6)]
         return known.named(case.names or {}, dict(zip(q, [*line, size], strict=False)))
 
-    is_there = _truth(conditions, at(np.repeat([1e-12, 1.0], count // 2)))
+    is_there = _truth(runs, at(np.repeat([1e-12, 1.0], count // 2)))
     circle = at(np.exp(2j * np.pi * np.arange(count) / count) / 2)
     scale = 2.0 ** np.arange(count).reshape(-1, 1, 1) / count
     values = np.stack([known.evaluated(m, circle) for m in (case.formula, goal.matrix)])

@@ -103,7 +103,8 @@ class Formula:
     is_returned: bool = False  # whether its function returns it
     is_final: bool = True  # not if what is not understood changes it: it may not be complete
     is_end: bool = False  # the reason holds for the rest of the file
-    conditions: frozenset[sp.Expr] = frozenset()  # of its branches; not negative if true
+    # of the branches that lead to it, in each run; not negative if true
+    conditions: frozenset[frozenset[sp.Expr]] = frozenset({frozenset()})
     names: Mapping[sp.Expr, sp.Expr] = field(default_factory=dict)  # of inputs in the program
     computed: Mapping[sp.Expr, sp.Expr] = field(default_factory=dict)  # names and their values
 
@@ -112,12 +113,12 @@ class Formula:
         """Where it begins."""
         return min(self.lines)
 
-    def conditions_beside(self, other: Formula) -> list[sp.Expr]:
-        """Those of its branches that do not lead to another formula, in its own names."""
-        own = self.conditions - other.conditions
-        symbols = {s for c in own for s in c.free_symbols if not s.is_Dummy}
+    def conditions_beside(self, other: Formula) -> list[frozenset[sp.Expr]]:
+        """In each run, those that do not lead to another formula, in its own names."""
+        runs = [run - frozenset.intersection(*other.conditions) for run in self.conditions]
+        symbols = {s for run in runs for c in run for s in c.free_symbols if not s.is_Dummy}
         names = {s: sp.Symbol(_last(s.name), real=True) for s in symbols} | {**self.names}
-        return [c.xreplace(names) for c in own]
+        return [frozenset(c.xreplace(names) for c in run) for run in runs]
 
 
 def _fault(line: int, reason: str, name: str = "", *, is_end: bool = False) -> Formula:
@@ -231,8 +232,8 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
     for formula in found:
         key = (formula.lines, formula.forms or formula.name)
         if same := formulas.get(key):  # in runs with other branches
-            common = same.conditions & formula.conditions
-            formulas[key], formula = (replace(f, conditions=common) for f in (same, formula))
+            either = same.conditions | formula.conditions
+            formulas[key], formula = (replace(f, conditions=either) for f in (same, formula))
         if key not in formulas or not formula.is_final:
             formulas[key] = formula
     return sorted(formulas.values(), key=lambda each: each.line)
@@ -858,14 +859,14 @@ class _Run:
         formula = replace(formula, unread=places, is_final=is_final, is_flat=is_flat, names=names)
         formula = replace(formula, computed={names.get(s, s): value for s, value in own.items()})
         conditions = frozenset(map(sum, self.conditions.items()))
-        self.formulas.append(replace(formula, conditions=conditions))
+        self.formulas.append(replace(formula, conditions=frozenset({conditions})))
 
     def cases(self) -> Iterator[Formula]:
         """The formulas; one whose names get other values is no case of its function."""
         for each in self.formulas:
-            places = [*zip(each.name.split(", "), each.lines, strict=False)]
-            is_changed = any(self.values.get(n, (None, line))[1] != line for n, line in places)
-            yield replace(each, conditions=frozenset()) if is_changed and places[1:] else each
+            own = [*zip(each.name.split(", "), each.lines, strict=False)]
+            is_changed = any(self.values.get(n, (None, line))[1] != line for n, line in own)
+            yield replace(each, conditions=Formula.conditions) if is_changed and own[1:] else each
 
     def square(self, vector: sp.Symbol, names: Mapping[sp.Expr, sp.Expr]) -> sp.Expr:
         """|v|² of a vector, or of a quaternion if a formula has its fourth component."""

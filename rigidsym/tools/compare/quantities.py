@@ -34,7 +34,7 @@ from rigidsym.mechanics.body import BodyValues
 from rigidsym.mechanics.conversions.function import half_turn, outer_product, product as product_of
 from rigidsym.models.rotation import rotation_of
 from rigidsym.motion import Motion, derive
-from rigidsym.tools.compare.syntax import SHAPES, limits, patterns
+from rigidsym.tools.compare.syntax import SHAPES, WAYS, limits, patterns
 
 Array = NDArray[Any]
 Values = dict[sp.Expr, Any]  # of expressions, at all points
@@ -111,7 +111,6 @@ _ORDERS = _ways(  # of the angles; the opposite ones are those of axes of space
     order_132=lambda m, *_: m.extract([0, 2, 1], [0]),
     order_213=lambda m, *_: m.extract([1, 0, 2], [0]),
 )
-SENSES = tuple(f"opposite_{angles}" for angles in ("1", "2", "3", "12", "13", "23"))
 _WAYS: dict[str, tuple[Ways, ...]] = {
     "rotation_matrix": (_ways(transposed=lambda m, *_: m.T),),
     QUATERNION: (
@@ -143,7 +142,7 @@ _WAYS: dict[str, tuple[Ways, ...]] = {
     ANGLES: (
         _ways(
             # −α, −β, −γ are those of the inverse rotation backwards, except about two axes.
-            **{sense: _times(*(-1 if k in sense else 1 for k in "123")) for sense in SENSES},
+            **{s: _times(*(-1 if k in s else 1 for k in "123")) for s in WAYS if "opposite_" in s},
             second_solution=lambda m, *_: sp.Matrix(
                 [m[0] + sp.pi, -m[1] if m.has(sp.acos) else sp.pi - m[1], m[2] + sp.pi]
             ),
@@ -178,10 +177,11 @@ class KnownQuantity:
     @cached_property
     def values(self) -> Array:
         """Of what is compared; (points, rows, columns)."""
-        return self.on_circle(evaluated(self.matrix, self.points))
+        return self.numbers(self.matrix, self.points)
 
-    def on_circle(self, numbers: Array) -> Array:
-        """Angles as points of the unit circle; other numbers as they are."""
+    def numbers(self, matrix: sp.MatrixBase, values: Values) -> Array:
+        """Of a matrix; angles as points of the unit circle."""
+        numbers = evaluated(matrix, values)
         with np.errstate(all="ignore"):
             return np.exp(1j * numbers) if self.quantity == ANGLES else numbers
 
