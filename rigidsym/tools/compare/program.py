@@ -766,7 +766,10 @@ class _Run:
         first, *others = tree.parts if tree.kind == "comma" else [tree]
         if first.kind == "binary" and first.word == "<<":
             left, *right = *first.parts, *others
-            self.store(left, _unflattened(rows([*map(self.read, right)])))
+            value = _unflattened(rows(parts := [*map(self.read, right)]))
+            are_columns = {getattr(each, "shape", ()) for each in parts} == {(3, 1)}
+            is_row = re.search(rf"Row\w*\s[^;]*\b{right[0].text}\b", self.scope.tree.text)
+            self.store(left, value.T if are_columns and not is_row else value)
         else:
             self.run_block(Tree(tree.node, own=[t for t in tree.parts if t.kind != "binary"]))
 
@@ -1002,6 +1005,8 @@ class _Run:
         else:
             is_open = sign in ("*", "@") and self.is_open(tree.parts[0], sign, left, right)
             self.refuse_if(is_open, tree, "may be a product of matrices or of quaternions")
+            if isinstance(right, sp.Symbol) and not self.path(tree.parts[0]):
+                self.add(_ARGUMENT, left, tree.line)  # the matrix of rates, times them
             left, right = (_unflattened(each) for each in (left, right))
             is_product = sign == "@" or self.program.product == "*"
             if is_product and getattr(left, "shape", ()) == (4, 4):  # of a product, times q
@@ -1067,7 +1072,11 @@ class _Run:
         return value
 
     def of_tensor(self, left: Any, right: Any) -> Any:
-        """I⁻¹ (... + w × I w), or C(w) I w; None for another product."""
+        """n nᵀ, nᵀ n, I⁻¹ (... + w × I w), or C(w) I w; None for another product."""
+        for vector, other, meaning in ((left, right, "outer"), (right, left, "dot")):
+            is_vector = isinstance(vector, sp.Symbol) and _last(vector.name)[0].islower()
+            if is_vector and str(other) == f"{vector.name}.T":
+                return self.of_vectors(meaning, [vector, vector])
         if self.is_moment(right) and _is_scalar(left):
             inverse = sp.Symbol(f"{1 / left}_inv", real=True) if 1 / left in self.tensors else left
             if inverse.is_Symbol and "inv" in inverse.name:
@@ -1357,6 +1366,8 @@ class _Run:
             case "same" if nodes:
                 self.refuse_if(re.search("order=|[\"']F[\"']", tree.text), tree)  # by columns
                 value = self.read(nodes[0])
+                if value in self.squares and name.lower().startswith("normal"):
+                    return value / sp.sqrt(self.squares[value])
                 is_square = re.search(r"\b([34]), *\1\b", tree.text[-12:]) is not None
                 is_by_columns = self.first and name == "reshape" and 1 in as_matrix(value).shape
                 value = _unflattened(value) if is_square or is_by_columns else value

@@ -399,6 +399,8 @@ def _block(matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
         in_radians = own if has_angles else matrix.xreplace(scale)
         is_less = in_radians.count(sp.pi) < matrix.count(sp.pi) + has_angles  # 90 becomes π/2
         matrix = in_radians if is_less else matrix
+    by_frequency = (s for s in matrix.free_symbols if patterns.frequency.fullmatch(s.name))
+    matrix = matrix.xreplace(dict.fromkeys(by_frequency, 1 / sp.Symbol("dt", real=True)))
     step = next((s for s in matrix.free_symbols if patterns.step.fullmatch(s.name)), None)
     # Of q + (...)*dt, but not of g - w - (...)*dt. Derivatives of long expressions are expensive.
     if step is not None and not any(f.has(step) for f in matrix.atoms(sp.Function, sp.Pow)):
