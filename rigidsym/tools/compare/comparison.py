@@ -720,7 +720,12 @@ def _entry(reading: Reading, place: tuple[int, int]) -> tuple[str, sp.Expr]:
             if reading.agrees(sp.Matrix([[after]]), wanted):
                 return kind, after
     # No single change is enough: the entry of the goal is written in the names of the formula.
-    return "entry", goal.matrix[place].xreplace({m: s for s, m in reading.names.items()})
+    own = dict[sp.Expr, sp.Expr]()
+    for symbol, meant in reading.names.items():
+        angle = next(iter(meant.atoms(AppliedUndef))) if known.oddness(meant) else meant
+        sign = meant.coeff(angle)  # of an angle in the other sense, or from another axis
+        own[angle] = sign * (symbol - (meant - sign * angle))
+    return "entry", goal.matrix[place].xreplace(own)
 
 
 _SWAPPED = {sp.sin: sp.cos, sp.cos: sp.sin}

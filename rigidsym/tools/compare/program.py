@@ -27,12 +27,11 @@ from rigidsym.text.bounds import FUNCTIONS
 from rigidsym.tools.compare import language, syntax
 from rigidsym.tools.compare.language import as_matrix, called, combined, function_word, rows
 from rigidsym.tools.compare.latex import python_of
-from rigidsym.tools.compare.quantities import are_angles, grouped, stem_of
+from rigidsym.tools.compare.quantities import INVERSE, are_angles, grouped, stem_of
 from rigidsym.tools.compare.syntax import CALLS, TYPES, Tree, limits, patterns, walk
 
 _AXES: dict[str, Any] = {"x": 0, "y": 1, "z": 2, "X": 0, "Y": 1, "Z": 2}
 _AXES |= {f"k{k}{axis}": axis.lower() for k in ("", "_") for axis in "WXYZ"}  # Order::kW
-_INVERSE = (sp.atan2, sp.asin, sp.acos, sp.atan)
 _SIZES = (3, 4, 9, 16)  # of vectors and matrices that are built of numbers
 _FLAT = {9: (3, 3), 12: (4, 3), 16: (4, 4)}
 _WORDS = {*language.OF_NUMBERS, *language.OF_MATRICES, *CALLS}  # functions, if nothing else
@@ -482,7 +481,7 @@ class _Run:
             raise self.unreadable(left, "may be a column")
         own = self.part(self.values, path)
         meant = (own, *map(self.definitions.get, own.free_symbols)) if _is_scalar(own) else ()
-        if any(v is not None and v.has(*_INVERSE) for v in meant):  # an angle, in another unit then
+        if any(v is not None and v.has(*INVERSE) for v in meant):  # an angle, in another unit then
             self.emit(self.part(self.values, path[:-1]), [], path[:-1], is_final=False)
         # A matrix may be complete only after R = R*S.
         is_own = right is not None and re.search(rf"\b{path[0]}\b", right.text) is not None
@@ -808,7 +807,7 @@ class _Run:
             if None in values:
                 continue
             # At a pole, an angle is a number: this is no formula, but another case of one.
-            all_angles = all(value.has(*_INVERSE) or value.is_number for value in values)
+            all_angles = all(v.has(*INVERSE, sp.pi) or v.is_number for v in values)
             is_angle = patterns.angles_name.fullmatch(names[0])
             if kind > -2 or all_angles or (is_angle and all(map(self.is_step, values))):
                 stem = _dotted(path) or re.sub(r"\d+$", "", names[0])
@@ -991,7 +990,7 @@ class _Run:
         if sign == "\\" and self.first:  # I \ v
             left, sign = self.of_vectors("inv", [left]), "*"
         is_turn = sign == "%" and _is_scalar(right) and (right / sp.pi).is_number
-        if is_turn and self.expanded(left).has(*_INVERSE):  # the same angle
+        if is_turn and self.expanded(left).has(*INVERSE):  # the same angle
             return left
         is_rounded = sign == "/" and self.program.suffix not in TYPES["real"] and _is_scalar(right)
         if is_rounded and not (left / right).is_Integer and all(map(self.is_whole, tree.parts)):
@@ -1019,6 +1018,8 @@ class _Run:
         if (4, 1) in shapes:
             names = [_last(side.name) for side in sides if isinstance(side, sp.Symbol)]
             return any(map(patterns.quaternion.fullmatch, names))
+        if isinstance(left := sides[0], sp.Symbol) and shapes[1] in ((3, 3), (4, 4)):
+            return sign == "@" or _last(left.name)[0].isupper()  # T = T @ turn, in a loop
         if () in shapes or first.kind != "binary" or first.word not in ("*", "@"):
             return False
         outer, middle = map(self.tried, first.parts)

@@ -66,6 +66,7 @@ QUATERNION = "quaternion"  # of turns, of an axis and an angle, or of a matrix
 OF_MATRIX = "a rotation matrix"  # in place of the name of a rotation
 OF_VECTORS = ("axis_angle", "rotation_vector", OF_MATRIX)
 ANGLES = "euler_angles"  # from a rotation matrix or a quaternion
+INVERSE = (sp.atan2, sp.asin, sp.acos, sp.atan)
 OF_DIRECTIONS = ("rotation_matrix", QUATERNION, ANGLES)  # not changed by the length of a vector
 
 
@@ -399,8 +400,7 @@ def _laws() -> tuple[Family, ...]:
 
 def are_angles(formula: sp.MatrixBase) -> bool:
     """Whether each of three entries is an angle by an inverse function."""
-    inverse = (sp.atan2, sp.asin, sp.acos, sp.atan)
-    return formula.shape == (3, 1) and all(entry.has(*inverse) for entry in formula)
+    return formula.shape == (3, 1) and all(entry.has(*INVERSE) for entry in formula)
 
 
 @cache

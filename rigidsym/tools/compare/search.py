@@ -264,17 +264,21 @@ def _with_branches(
             said = next(iter(others.values()))
             verdicts[id(finding)] = replace(regular, contradicts=tuple(others), branch=said)
         inside = "".join(_lines(text)[max(0, own.function[1] - 1) : own.function[2] or None])
-        remarks[id(finding)] = "" if patterns.guard.search(inside) else domain(regular.formula)
+        # also by a condition on other numbers than the angles, which may be another branch
+        common = frozenset.intersection(*own.conditions)
+        is_guarded = any(not condition.has(*quantities.INVERSE) for condition in common)
+        is_guarded |= patterns.guard.search(inside) is not None
+        remarks[id(finding)] = "" if is_guarded else domain(regular.formula)
     for each in (formula for formula in program if formula.is_final):
         beside = [r for r in right if r[1].function == each.function]
         beside = [
             r for r in beside if r[1].name == each.name or r[1].is_returned & each.is_returned
         ]
-        branches = [(id(f), branch(regular, own, each)) for f, own, regular in beside]
-        judged = sorted(((k, c) for k, c in branches if c), key=lambda c: c[1].is_wrong)
-        for key, case in judged[:1]:
-            said = f"the branch in line {each.line} {case.branch}"
-            remarks[key] = "; ".join(dict.fromkeys(filter(None, (remarks[key], said))))
+        branches = [(f, case) for f, own, regular in beside if (case := branch(regular, own, each))]
+        for finding, case in sorted(branches, key=lambda judged: judged[1].is_wrong)[:1]:
+            line = min({*each.lines} - {*finding.formula.lines} or each.lines)
+            said = f"{remarks[id(finding)]}; the branch in line {line} {case.branch}".split("; ")
+            remarks[id(finding)] = "; ".join(dict.fromkeys(filter(None, said)))
             if case.is_wrong:  # a branch of variables is also one of what they are copied to
                 wrong[each.function, case.formula] = FormulaInFile(found[0].path, each, case)
     functions = {function for function, _ in wrong}
@@ -394,7 +398,7 @@ def _block(matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
     if matrix.has(sp.pi):
         inside = {s for f in matrix.atoms(*_TRIGONOMETRIC) for s in f.free_symbols if f.has(sp.pi)}
         scale = {s: s * 180 / sp.pi for s in inside or matrix.free_symbols}
-        has_angles = matrix.shape == (3, 1) and matrix.has(sp.atan2, sp.asin, sp.acos, sp.atan)
+        has_angles = matrix.shape == (3, 1) and matrix.has(*quantities.INVERSE)
         own = (matrix * sp.pi / 180).applyfunc(partial(sp.expand_mul, deep=False))
         in_radians = own if has_angles else matrix.xreplace(scale)
         is_less = in_radians.count(sp.pi) < matrix.count(sp.pi) + has_angles  # 90 becomes π/2
