@@ -277,8 +277,8 @@ def _with_branches(
         branches = [(f, case) for f, own, regular in beside if (case := branch(regular, own, each))]
         for finding, case in sorted(branches, key=lambda judged: judged[1].is_wrong)[:1]:
             line = min({*each.lines} - {*finding.formula.lines} or each.lines)
-            said = f"{remarks[id(finding)]}; the branch in line {line} {case.branch}".split("; ")
-            remarks[id(finding)] = "; ".join(dict.fromkeys(filter(None, said)))
+            parts = f"{remarks[id(finding)]}; the branch in line {line} {case.branch}".split("; ")
+            remarks[id(finding)] = "; ".join(dict.fromkeys(filter(None, parts)))
             if case.is_wrong:  # a branch of variables is also one of what they are copied to
                 wrong[each.function, case.formula] = FormulaInFile(found[0].path, each, case)
     functions = {function for function, _ in wrong}
