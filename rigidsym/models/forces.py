@@ -97,8 +97,8 @@ def no_rotation(model: RotationModel) -> dict[str, float]:
 METHODS = ("lagrange", "euler")
 _LONG, _ALIKE = 4, 0.8  # letters of a name, and the share that two names have in common
 _OF_MOTION = (  # names of quantities, which are no constants
-    r"(?i)(angular_(velocity|acceleration|momentum)|(omega|alpha)(?=_[sb]))(_space|_body)?(_?[123])?"
-    r"|(kinetic|potential|rotational|translational)_energy|rotation_matrix(_?[123]{2})?"
+    r"(?i)(angular_(velocity|acceleration|momentum)|(omega|alpha)(?=_[sb]))(_space|_body)?(_?\d)?"
+    r"|((kinetic|potential|rotational|translational)_)?energy|rotation_matrix(_?[123]{2})?"
     r"|generalised_momenta|lagrangian|hamiltonian|(quaternion|torque_body)(_?[0123])?"
 )
 _MOMENT = "principal moment of inertia"

@@ -305,6 +305,14 @@ def test_the_symmetric_body_as_a_textbook_prints_it():
     assert derived("unit_quaternion", "spherical").rotational_energy == 2 * A * squares
 
 
+@pytest.mark.parametrize(
+    "name", ["energy", "kinetic_energy", "angular_velocity_body_4", "Thetadot"]
+)
+def test_a_name_that_is_that_of_a_quantity_or_nearly_a_rate_is_no_constant(name):
+    with pytest.raises(ModelError, match="is a quantity, not a constant|did you mean theta_dot"):
+        top(forces={"phi": f"-k*{name}"})
+
+
 def test_names_that_stand_for_two_things_are_refused():
     body = rs.principal_moments(A, B, sp.Symbol("X"))
     with pytest.raises(ModelError, match="X is a name both"):
