@@ -309,7 +309,7 @@ def test_the_symmetric_body_as_a_textbook_prints_it():
     "name", ["energy", "kinetic_energy", "angular_velocity_body_4", "Thetadot"]
 )
 def test_a_name_that_is_that_of_a_quantity_or_nearly_a_rate_is_no_constant(name):
-    with pytest.raises(ModelError, match="is a quantity, not a constant|did you mean theta_dot"):
+    with pytest.raises(ModelError, match=r"is a quantity, not a constant|did you mean theta_dot"):
         top(forces={"phi": f"-k*{name}"})
 
 
