@@ -848,7 +848,7 @@ def test_programs_of_the_table_are_read(tmp_path, name):
     assert all(map(operator.contains, found, PROGRAMS[name]["said"])), found
 
 
-def test_a_fault_is_at_the_line_where_its_matrix_begins_and_counts_once(tmp_path):
+def test_a_fault_is_at_the_line_of_its_entry_and_counts_once(tmp_path):
     file = tmp_path / "a.py"
     file.write_text("""import numpy as np
 def f(a, b):
@@ -863,7 +863,7 @@ def f(a, b):
     (found,) = found_in(tmp_path, "a.py", file.read_text())
     assert found.formula.line == 4
     annotation = run(str(file), "--format", "github").stdout
-    assert annotation.startswith(f"::error file={file},line=4::R: close to")
+    assert annotation.startswith(f"::error file={file},line=7::R: close to")
 
 
 OF_TURNS = {  # a wrong turn about y, and a product with it

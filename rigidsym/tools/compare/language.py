@@ -41,25 +41,17 @@ def _sized(value: sp.Expr) -> Sized:
     return Sized.atom(value, bits=longest_number(value) or 1)
 
 
-def _unit(size: sp.Expr) -> sp.Matrix:
-    if not (size.is_Integer and 0 < size <= limits.largest):
-        raise ExpressionError(f"one(n) takes a whole number up to {limits.largest}")
-    return sp.eye(int(size))
-
-
-OF_MATRICES: dict[str, Callable[..., Any]] = {
-    "C": hat,
-    "T": lambda matrix: matrix.T,
-    "one": _unit,
-    "col": lambda *entries: sp.Matrix(entries),
-    "stack": lambda *parts: sp.Matrix.vstack(*map(as_matrix, parts)),
-    "dot": lambda a, b: a.dot(b) if 1 in a.shape else a * b,
-    "cross": lambda a, b: a.cross(b),
-    "outer": lambda a, b: a * b.T,
-    "diag": lambda *parts: sp.diag(*chain.from_iterable(map(as_matrix, parts))),
-    "trace": lambda matrix: matrix.trace(),
-    "inv": lambda matrix: combined("**", matrix, sp.S.NegativeOne),
-}
+OF_MATRICES: dict[str, Callable[..., Any]]
+OF_MATRICES = {"C": hat, "T": lambda m: m.T, "trace": lambda m: m.trace()}
+OF_MATRICES |= {"diag": lambda *parts: sp.diag(*chain.from_iterable(map(as_matrix, parts)))}
+OF_MATRICES |= {"cross": lambda a, b: a.cross(b), "outer": lambda a, b: a * b.T}
+OF_MATRICES |= {"dot": lambda a, b: a.dot(b) if 1 in a.shape else a * b}
+OF_MATRICES |= {"one": lambda size: sp.eye(min(size, limits.largest + 1))}
+OF_MATRICES |= {"col": lambda *entries: sp.Matrix(entries)}
+OF_MATRICES |= {"stack": lambda *parts: sp.Matrix.vstack(*map(as_matrix, parts))}
+OF_MATRICES |= {"hypot": lambda *sides: called("sqrt", [sum(called("sq", [s]) for s in sides)])}
+OF_MATRICES |= {"copysign": lambda a, b: combined("*", called("abs", [a]), called("sign", [b]))}
+OF_MATRICES |= {"inv": lambda matrix: combined("**", matrix, sp.S.NegativeOne)}
 _IN_DEGREES = {f"{name}d": name for name in FUNCTIONS if re.fullmatch("a?(sin|cos|tan2?)", name)}
 OF_NUMBERS = {*FUNCTIONS, *_IN_DEGREES, *SPELLINGS.values(), "deg2rad", "rad2deg"}
 
@@ -132,8 +124,8 @@ def combined(operator: str, left: Any, right: Any) -> Any:
 @_of_fitting_sizes
 def called(name: str, values: list[Any]) -> Any:
     """A function of expressions and matrices."""
-    if len(values) == 1 and not isinstance(values[0], sp.MatrixBase):
-        name = _SHORT.get(name, name)
+    is_matrix = any(isinstance(value, sp.MatrixBase) for value in values)
+    name = _SHORT.get(name, name) if len(values) == 1 and not is_matrix else name
     if own := _IN_DEGREES.get(name):
         steps = (own, "rad2deg") if own.startswith("a") else ("deg2rad", own)
         return called(steps[1], [called(steps[0], values)])
@@ -141,11 +133,6 @@ def called(name: str, values: list[Any]) -> Any:
         return combined("*", sp.pi / 180 if name == "deg2rad" else 180 / sp.pi, *values)
     if name in _POWERS:
         return combined("**", values[0], _POWERS[name] or values[1])
-    if name == "hypot":
-        return called("sqrt", [reduce(partial(combined, "+"), (called("sq", [v]) for v in values))])
-    if name == "copysign":
-        return combined("*", called("abs", values[:1]), called("sign", values[1:]))
-    is_matrix = any(isinstance(value, sp.MatrixBase) for value in values)
     if name == "sign" and not is_matrix and values[0] != 0:
         return values[0] / magnitude(values[0])
     if name in OF_MATRICES:
@@ -165,8 +152,7 @@ def rows(parts: list[Any]) -> sp.ImmutableMatrix:
     """A column of scalars, or rows; a list inside the list is a row."""
     if not any(isinstance(part, sp.MatrixBase) for part in parts):
         return _bounded(sp.Matrix(parts))
-    matrices = [as_matrix(part) for part in parts]
-    matrices = [row.T if row.cols == 1 else row for row in matrices]
+    matrices = [m.T if m.cols == 1 else m for m in map(as_matrix, parts)]
     return _bounded(sp.Matrix.vstack(*matrices))
 
 

@@ -17,8 +17,7 @@ from rigidsym.text.names import GREEK_LETTERS, spelled
 from rigidsym.tools.compare.language import function_word
 from rigidsym.tools.compare.syntax import patterns
 
-_FIRST = 0xE000
-_MARKS = "\ue000-\uf8ff"
+_FIRST, _MARKS = 0xE000, "\ue000-\uf8ff"
 _TOKEN = re.compile(r'\\[A-Za-z]+|"\w+"|\d+(?:\.\d+)?|\S')
 _LETTER = re.compile(rf'\\[A-Za-z]+|"\w+"|[A-Za-z{GREEK_LETTERS}]')
 _WORD = r'"(\w+)"'
@@ -127,8 +126,8 @@ def _product(text: str, parts: list[str]) -> str:
             if power == "(-1)" and tokens[place + 1] == "^":
                 function, power = f"a{function}", ""
             argument = taken(is_digit=function == "sqrt")
-            is_factor = function != "sqrt" and stack and stack[-1] not in _SIGNS
-            if argument.isdigit() and is_factor:  # \sin 2\theta
+            # \sin 2\theta
+            if argument.isdigit() and function != "sqrt" and stack and stack[-1] not in _SIGNS:
                 argument += f"*{taken()}"
             factor = f"{function}({argument})"
         elif re.fullmatch(rf'"\w+"|[\d.]+|[{_MARKS}]', token):

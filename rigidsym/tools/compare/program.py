@@ -17,7 +17,7 @@ from contextlib import suppress
 from copy import copy, deepcopy
 from dataclasses import dataclass, field, replace
 from functools import lru_cache, reduce
-from itertools import chain, islice, product, takewhile
+from itertools import chain, groupby, islice, product, takewhile
 from typing import Any
 
 import sympy as sp
@@ -36,8 +36,7 @@ _SIZES = (3, 4, 9, 16)  # of vectors and matrices that are built of numbers
 _FLAT = {9: (3, 3), 12: (4, 3), 16: (4, 4)}
 _WORDS = {*language.OF_NUMBERS, *language.OF_MATRICES, *CALLS}  # functions, if nothing else
 _RETURNED, _ARGUMENT = UNNAMED = ("returned", "argument")  # in place of a name
-_ALL = slice(None)
-_OBJECTS = {"self", "this"}
+_ALL, _OBJECTS = slice(None), {"self", "this"}
 
 _COMPLETE = {frozenset(order.split()): order.split() for order in patterns.orders}
 
@@ -94,14 +93,17 @@ class Formula:
 
     lines: tuple[int, ...]  # of the assignments of its components, row by row, or of all
     name: str
+    entries: tuple[int, ...] = ()  # lines of its entries in a list or call over several lines
     forms: tuple[sp.ImmutableMatrix, ...] = ()  # in terms of the inputs, and of long values
     reason: str = ""
     is_flat: bool = False  # nine or sixteen numbers in a row, by rows or by columns
     unread: tuple[tuple[str, int], ...] = ()  # names in it whose values are not read, and lines
     function: tuple[str, int, int] = ("", 0, 0)  # around it, with its first and last line
     is_returned: bool = False  # whether its function returns it
+    is_bounded: bool = False  # whether it has a bound of an arc sine or cosine
     is_final: bool = True  # not if what is not understood changes it: it may not be complete
     is_end: bool = False  # the reason holds for the rest of the file
+    scalar: str = ""  # whether its constructor takes the scalar of a quaternion first or last
     # of the branches that lead to it, in each run; not negative if true
     conditions: frozenset[frozenset[sp.Expr]] = frozenset({frozenset()})
     names: Mapping[sp.Expr, sp.Expr] = field(default_factory=dict)  # of inputs in the program
@@ -129,27 +131,30 @@ class _Scope:
     """A function, or a whole file, and the branch that a run takes at each of its choices.
 
     A run prefers the last branch that no run has taken, since guards mostly come first; then one
-    that contains an open choice, and then the last.
+    that contains an open choice, and then the last. One of two values, `a ? b : c`, waits until the
+    blocks of all `if` have been run with the last.
     """
 
     tree: Tree
     taken: set[tuple[int, int]] = field(default_factory=set)
     now: dict[int, int] = field(default_factory=dict)
-    places: dict[int, int] = field(default_factory=dict)  # of choices with other branches
+    open: dict[int, Tree] = field(default_factory=dict)  # choices with other branches
     is_new: bool = True  # whether the last run took a new branch
+    waits: bool = True  # whether values wait
 
     def choice(self, tree: Tree, blocks: Sequence[Tree], possible: Sequence[int]) -> int:
         """The number of a possible branch."""
         own = tree.node.id
         if own not in self.now:
             free = [k for k in range(len(blocks)) if (own, k) not in self.taken]
-            new = [k for k in possible if k in free]
-            open_ = (k for k in possible if any(map(blocks[k].covers, self.places.values())))
+            is_late = tree.kind == "choose" and any(t.kind != "choose" for t in self.open.values())
+            new = [k for k in possible if k in free and not (self.waits and is_late)]
+            open_ = (k for k in possible if any(map(blocks[k].covers, self.open.values())))
             self.now[own] = new[-1] if new else next(open_, possible[-1])
             self.is_new |= bool(new)
             self.taken.add((own, self.now[own]))
-            self.places.pop(own, None)
-            self.places |= {own: tree.node.start_byte} if len(free) > len(new[:1]) else {}
+            self.open.pop(own, None)
+            self.open |= {own: tree} if len(free) > len(new[:1]) else {}
         return self.now[own]
 
 
@@ -159,6 +164,7 @@ class _Program:
 
     suffix: str
     functions: Mapping[str, Sequence[Tree]] = field(default_factory=dict)  # by name
+    orders: Mapping[str, list[str]] = field(default_factory=dict)  # of arguments
     constants: Mapping[str, int] = field(default_factory=dict)  # q_i = 0 of the whole file
     imported: Mapping[str, str] = field(default_factory=dict)  # from numpy import sin as s
     product: str = "*"  # what * is for matrices: "%" entry by entry, "" if nobody knows
@@ -187,31 +193,30 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
         return [_fault(1, "the file is too long", is_end=True)]
     functions = [*walk(root, "function")]
     outside = reduce(lambda rest, each: rest.replace(each.text, ""), functions, text)
-    by_name: dict[str, list[Tree]] = {}
-    for each in functions:
-        by_name.setdefault(each.word, []).append(each)
-    program = _Program(
-        suffix,
-        by_name,
-        {match[1]: int(match[2]) for match in patterns.index_name.finditer(text)},
-        {match[2]: match[1] for match in patterns.imported_name.finditer(text)},
-        _product(text, suffix),
-        bool(patterns.glm.search(text)),
-        set(patterns.array.findall(text)),
-        integers=set() if suffix in TYPES["real"] else syntax.integers(outside),
-    )
+    by_word = groupby(sorted(functions, key=lambda t: t.word), lambda t: t.word)
+    by_name = {word: [*trees] for word, trees in by_word}
+    words = (t.class_name if t.word in TYPES["new"] else t.word for t in functions)
+    orders = {w: t.parameters for w, t in zip(words, functions, strict=True) if t.parameters[3:]}
+    constants = {match[1]: int(match[2]) for match in patterns.index_name.finditer(text)}
+    imported = {match[2]: match[1] for match in patterns.imported_name.finditer(text)}
+    kinds = _product(text, suffix), bool(patterns.glm.search(text)), patterns.array.findall(text)
+    integers = set() if suffix in TYPES["real"] else syntax.integers(outside)
+    program = _Program(suffix, by_name, orders, constants, imported, *kinds, integers=integers)
     # A long file of short functions is read to its end; a long function may let a value grow.
     program.steps["read"] = -min(8 * text.count("\n"), 200 * len(functions))
-    scopes = [_Scope(tree) for tree in (Tree(root), *_worth_reading(functions, suffix))]
+    # functions that may hold a formula, in themselves or in a function that they call
+    holders = {tree.word for tree in functions if _has_material(tree.text, suffix)}
+    worth = (t for t in functions if holders & {t.word, *re.findall(r"\w+(?=\s*\()", t.text)})
+    scopes = [_Scope(tree) for tree in (Tree(root), *worth)]
     # by most errors, such as an unknown macro, no formula is lost
     lost = (t for t in syntax.damaged(root) if {*t.text} & {*"(["} and _has_material(t.text, ""))
     found = [_fault(each.line, "there is a syntax error") for each in islice(lost, 1)]
     # All scopes are run once before any is run again: a long file is not read to its end.
     for count in range(limits.most_runs):
         for scope in scopes:
-            if count and not (scope.places and scope.is_new):
+            if count and not (scope.open and (scope.is_new or scope.waits)):
                 continue
-            scope.now, scope.is_new = {}, False
+            scope.now, scope.waits, scope.is_new = {}, scope.waits & scope.is_new, False
             run = _Run(program, scope)
             try:
                 run.run_scope()
@@ -230,11 +235,9 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
     formulas: dict[Any, Formula] = {}
     for formula in found:
         key = (formula.lines, formula.forms or formula.name)
-        if same := formulas.get(key):  # in runs with other branches
-            either = same.conditions | formula.conditions
-            formulas[key], formula = (replace(f, conditions=either) for f in (same, formula))
-        if key not in formulas or not formula.is_final:
-            formulas[key] = formula
+        same = formulas.get(key, formula)  # in runs with other branches
+        either = same.conditions | formula.conditions
+        formulas[key] = replace(same if formula.is_final else formula, conditions=either)
     return sorted(formulas.values(), key=lambda each: each.line)
 
 
@@ -243,12 +246,6 @@ def _has_material(text: str, suffix: str) -> bool:
     fewest = 1 if suffix in (".py", ".m") else limits.fewest_factors  # which may be matrices
     factors = islice(patterns.factors.finditer(text), fewest)
     return bool(patterns.material.search(text)) or len([*factors]) == fewest
-
-
-def _worth_reading(functions: Sequence[Tree], suffix: str) -> list[Tree]:
-    """Functions that may hold a formula, in themselves or in a function that they call."""
-    names = {tree.word for tree in functions if _has_material(tree.text, suffix)}
-    return [t for t in functions if names & {t.word, *re.findall(r"\w+(?=\s*\()", t.text)}]
 
 
 @lru_cache(maxsize=256)  # functions are run several times
@@ -276,12 +273,10 @@ def formula_matrix(text: str) -> sp.ImmutableMatrix:
     """
     if len(text) > (most := limits.most_characters):
         raise ExpressionError(f"a formula of {len(text)} characters; expected at most {most}")
-    if re.search(r"\\[A-Za-z]", text):
-        text = python_of(text)
+    text = python_of(text) if re.search(r"\\[A-Za-z]", text) else text
     is_numpy = bool(re.search(r"\b(?:np|numpy|jnp)\.(?:array|asarray)\b", text))
     for suffix in (".cpp",) if "{" in text else (".py", ".m", ".cpp"):
-        value = _assigned_value(text, suffix)
-        if value is not None:
+        if value := _assigned_value(text, suffix):
             program = _Program(suffix, product="%" if is_numpy else "*", is_formula=True)
             matrix = as_matrix(_Run(program, _Scope(value)).read(value))
             matrix = matrix.xreplace(_short_names(matrix.free_symbols))
@@ -308,22 +303,22 @@ class _Run:
     def __init__(self, program: _Program, scope: _Scope, inlined: int = 0) -> None:
         self.program, self.scope, self.inlined = program, scope, inlined
         self.first = int(program.suffix == ".m")  # the first index
-        self.values = _Record()
+        # values of names; names that are changed anywhere; names that may be the same object
+        self.values, self.untracked, self.links = _Record(), set[Path](), list[tuple[Path, Path]]()
         self.inputs: set[str] = set()  # names that were read before anything was assigned
         self.definitions: dict[sp.Symbol, sp.Expr | None] = {}  # what symbols stand for, if read
-        self.components: set[sp.Symbol] = set()  # of values that are not read, which are inputs
+        # components of values that are not read, which are inputs; names without values that
+        # are matrices
+        self.components, self.tensors = set[sp.Symbol](), set[sp.Symbol]()
         self.divided: dict[sp.Symbol, tuple[Any, set[Any]]] = {}  # x/|v| of x, and x, y, z
-        self.unread: dict[str, int] = {}  # lines of names without values
         self.squares: dict[sp.Symbol, sp.Symbol] = {}  # |v|² of names without values
-        self.tensors: set[sp.Symbol] = set()  # names without values that are matrices
         own = set() if program.suffix in TYPES["real"] else syntax.integers(scope.tree.text)
         self.integers = own | ({*program.integers} - {*scope.tree.parameters})
-        self.untracked: set[Path] = set()
-        self.links: list[tuple[Path, Path]] = []  # names that may be the same object
+        # lines of names without values; what is known of a formula, by its matrix
+        self.unread, self.facts = dict[str, int](), dict[Any, dict[str, Any]]()
         self.tests: dict[str, Tree] = {}  # a comparison by the name that it is given
-        self.formulas: list[Formula] = []
-        self.emitted: set[Any] = set()
-        self.results: list[Any] = []  # None for one that is not read
+        # of the results, None for one that is not read
+        self.formulas, self.emitted, self.results = list[Formula](), set[Any](), list[Any]()
         self.end, self.depth = "", 0  # "return" or "break" after one
         # of the branches that were taken: x - 1 by x, the least of numbers
         self.conditions: dict[sp.Expr, sp.Expr] = {}
@@ -382,15 +377,11 @@ class _Run:
         for each in tree.parts:
             for name in syntax.declared(each.node) - outside.keys() if is_scope else ():
                 outside[name] = self.values.get(name)
-            if is_value and each is tree.parts[-1]:
-                value = self.tried(each)
-            else:
-                self.run(each)
+            value = (self.tried if is_value and each is tree.parts[-1] else self.run)(each)
         if outside:
             self.emit(self.values, outside)
-        for name in outside:
-            self.values.pop(name, None)
-        self.values |= {name: before for name, before in outside.items() if before}
+            others = {name: each for name, each in self.values.items() if name not in outside}
+            self.values = _Record(others | {n: before for n, before in outside.items() if before})
         return value
 
     def run_assign(self, tree: Tree) -> None:
@@ -414,6 +405,8 @@ class _Run:
                     value = source if self.program.suffix in TYPES["sharing"] else deepcopy(source)
                 if values[0].kind == "list" and patterns.column_matrix.search(tree.declared_type):
                     value = self.columns(tree, value)
+                elif values[0].kind == "list":
+                    value = self.in_order(tree.declared_type, value)
                 self.store(left, value, right=values[0])
             finally:
                 self.link(tree)
@@ -428,8 +421,9 @@ class _Run:
         names = self.written(left), self.written(right)
         own = self.part(self.values, self.path(left) or names[0])  # B[0, 1] = v[2] is a number
         may_share = is_view if self.program.suffix == ".py" else self.program.suffix == ".cs"
-        is_alias = tree.is_alias or (may_share and isinstance(own, _Record))
         is_object = right.kind in ("name", "member", "index", "unary") and names[0] != names[1]
+        mark = "|^[&*]" if "declarator" in tree.node.type else ""  # auto& b = a, b = &a
+        is_alias = re.search(rf"=\s*&{mark}", tree.text) or (may_share and isinstance(own, _Record))
         if is_object and all(names) and is_alias:
             self.links += [names, names[::-1]]
 
@@ -447,8 +441,9 @@ class _Run:
     def unpack(self, left: Tree, right: Tree) -> None:
         """w, x, y, z = q; c, s, t = cos(v); {x, y} = q."""
         keys: Sequence[Any] = left.keys if left.kind == "record" else range(len(left.parts))
-        parts: list[Any] = [None] * len(keys)
-        value: Any = None
+        parts, value = list[Any]([None] * len(keys)), None
+        names = [each.text for each in left.parts if each.text.strip("_~")]
+        self.refuse_if(len(names) > len({*names}), left)  # which one was meant?
         if right.kind == left.kind == "list" and len(right.parts) == len(keys):
             parts = [*map(self.tried, right.parts)]  # vectors too, as in a, v = q[0], q[1:]
         elif isinstance(value := self.tried(right), sp.MatrixBase) and len(value) == len(keys):
@@ -588,13 +583,24 @@ class _Run:
         has_step = any(patterns.step.fullmatch(s.name) for s in change.free_symbols)
         return has_step and change.free_symbols.isdisjoint(self.definitions)
 
-    def become_unread(self, paths: Iterable[Path], line: int) -> None:
-        """Names, and others for the same objects, get new symbols in place of their values."""
+    def become_unread(self, paths: Iterable[Path], tree: Tree) -> None:
+        """Names, and others for the same objects, get new symbols in place of their values.
+
+        The formula of a matrix tells of entries that change in a statement.
+        """
+        parts = [t.parts[0] for t in tree.changes if t.kind == "assign" and t.parts]
+        parts += [tree.owner] if tree.kind == "call" and tree.owner else []
+        # but no translation M[:3, 3]
+        parts = [t for t in parts if t.kind in ("index", "call") and 3 not in self.path(t)[2:]]
         objects = [each for path in sorted(paths) for each in (path, *self.linked(path))]
         for each in objects:  # while all names have their values
+            count = len(self.formulas)
             self.emit_at(each, is_final=False)
+            own = [(" ".join(t.text.split()), t.line) for t in parts if self.written(t) == each][:1]
+            new = [replace(f, unread=(*f.unread, *own)) for f in self.formulas[count:]]
+            self.formulas[count:] = new
         for each in objects:
-            self.lose(each, line)
+            self.lose(each, tree.line)
 
     def lose(self, path: Path, line: int) -> None:
         value = self.part(self.values, path)
@@ -604,7 +610,7 @@ class _Run:
 
     def forget(self, tree: Tree) -> None:
         """All names that are written to in a statement become unread."""
-        self.become_unread(self.written_in(tree.changes), tree.line)
+        self.become_unread(self.written_in(tree.changes), tree)
 
     run_error = forget
 
@@ -630,7 +636,7 @@ class _Run:
 
     def run_if(self, tree: Tree) -> None:
         """if, #if, switch, and handlers of exceptions: each run takes one branch, or none."""
-        self.program.steps["read"] += len(self.values) // limits.names_a_step
+        self.program.steps["read"] += 1 + len(self.values) // limits.names_a_step
         blocks = [each for each in tree.parts if not self.is_bound(each)]
         choice = self.branch(tree, blocks) if len(blocks) > 1 else 0
         block = blocks[choice]
@@ -658,16 +664,18 @@ class _Run:
         trees = [condition] if condition else [each.condition for each in blocks]
         if self.inlined or len(self.conditions) > limits.most_conditions:
             self.conditions, trees = {sp.Dummy(): sp.S.Zero}, []  # too many to be worth the time
-        known = [(self.condition(each), k) for k, each in enumerate(trees) if each]
+        parts = [(k, *self.condition(t).as_coeff_Add()) for k, t in enumerate(trees) if t]
+        known = [(k, (n, x, -x), (-n, -x, x)) for k, n, x in parts]
         ways, least, no = [*range(len(blocks))], self.conditions, limits.near_equal
-        own = [[c if n == k else -c for c, n in known if n <= k] for k in ways]
-        # also the branches of a switch have names
-        named = [own[k] or [sp.Symbol(f"{tree.node.start_byte} {k}")] for k in ways]
-        needed = [[c.as_coeff_Add() for c in each] for each in named]
+        needed = [[so if n == k else other for n, so, other in known if n <= k] for k in ways]
         # a branch is impossible if a sum of two conditions is negative
-        possible = [k for k in ways if all(n + least.get(-x, sp.oo) > no for n, x in needed[k])]
+        possible = [
+            k for k in ways if all(n + least[y] > no for n, _, y in needed[k] if y in least)
+        ]
         choice = self.scope.choice(tree, blocks, possible or ways)
-        least |= {x: min(n, least.get(x, n)) for n, x in needed[choice]}
+        # also the branches of a switch have names
+        own = needed[choice] or [(sp.S.Zero, sp.Symbol(f"{tree.node.start_byte} {choice}"), None)]
+        least |= {x: min(n, least.get(x, n)) for n, x, _ in own}
         return choice
 
     def condition(self, tree: Tree) -> sp.Expr:
@@ -687,16 +695,15 @@ class _Run:
         if not sign:
             return sp.Symbol(str(tree.node.start_byte))
         above = self.expanded(own) - number
-        equal = limits.near_equal - language.magnitude(above)
-        return {">": above, "<": -above, "=": equal, "!": -equal}[sign]
+        above = limits.near_equal - language.magnitude(above) if sign in "=!" else above
+        return above if sign in ">=" else -above
 
     def run_loop(self, tree: Tree) -> None:
         """A loop may run many times or never: what changes in it is not read before and after."""
         self.forget(tree)
         targets = tree.parts[0].targets if tree.parts else ()
-        self.become_unread([(t.word,) for t in targets if t.kind == "name"], tree.line)  # for x in
-        for each in tree.parts:
-            self.run(each)
+        self.become_unread([(t.word,) for t in targets if t.kind == "name"], tree)  # for x in
+        self.run_block(tree)
         self.end = ""
         self.forget(tree)
 
@@ -724,17 +731,20 @@ class _Run:
         target = tree.owner or (nodes[-1] if nodes and meaning else Tree(tree.node, "this"))
         is_static, value = "::" in tree.parts[0].text, None  # of a type, not of an object
         is_member = tree.owner is not None and name in [*"WXYZ"] and len(nodes) == 1
-        if re.search("sin_?cos", name, re.IGNORECASE) and len(nodes) == 3:
-            self.sine_and_cosine(nodes)
+        if re.search("sin_?cos", name, re.IGNORECASE) and len(nodes) == 3:  # sincos(a, &s, &c)
+            results = [each for each in nodes if each.is_reference]
+            results = results if len(results) == 2 else nodes[1:]
+            angle = [self.tried(each) for each in nodes if each not in results]
+            for left, word in zip(results, ("sin", "cos"), strict=True):
+                self.store(left, called(word, angle))
             return
         if meaning == "set_unit":
             value = sp.ImmutableMatrix(sp.eye(4))
         elif is_member or (name.startswith("set") and self.path(tree)):  # v.X(a), v.setX(a)
             target, value = tree.parts[0] if is_member else tree, self.read(nodes[-1])
         elif re.search("scale$", name, re.IGNORECASE) and len(nodes) == 3:  # m33Scale(k, A, B)
-            factor, matrix = map(self.tried, nodes[:2])
-            if _is_scalar(factor) and isinstance(matrix, sp.MatrixBase):
-                target, value = nodes[2], factor * matrix
+            target, value = nodes[2], combined("*", *map(self.read, nodes[:2]))
+            self.refuse_if(_is_scalar(value), tree)
         elif not (meaning or is_static) and re.match("set|make|init", name, re.IGNORECASE):
             value = self.built(nodes)[1]
         if value is not None:
@@ -742,15 +752,7 @@ class _Run:
         elif is_static or patterns.may_be_matrix.search(tree.text):
             self.tried(tree)
         if value is None and not (is_static or patterns.harmless.search(f"{tree.base}.{name}")):
-            self.become_unread(self.reached(tree), tree.line)
-
-    def sine_and_cosine(self, nodes: Sequence[Tree]) -> None:
-        """sincos(a, &s, &c), sincos(a, out s, out c), or SinCos(&s, &c, a)."""
-        results = [each for each in nodes if each.is_reference]
-        results = results if len(results) == 2 else [*nodes[1:]]
-        angle = [self.tried(each) for each in nodes if each not in results]
-        for left, word in zip(results, ("sin", "cos"), strict=True):
-            self.store(left, called(word, angle))
+            self.become_unread(self.reached(tree), tree)
 
     def reached(self, tree: Tree) -> set[Path]:
         """Paths that a call may change: its object, matrices, and &name."""
@@ -768,7 +770,7 @@ class _Run:
             value = _unflattened(rows(parts := [*map(self.read, right)]))
             are_columns = {getattr(each, "shape", ()) for each in parts} == {(3, 1)}
             is_row = re.search(rf"Row\w*\s[^;]*\b{right[0].text}\b", self.scope.tree.text)
-            self.store(left, value.T if are_columns and not is_row else value)
+            self.store(left, value.T if are_columns and not is_row else self.place(value, right))
         else:
             self.run_block(Tree(tree.node, own=[t for t in tree.parts if t.kind != "binary"]))
 
@@ -833,9 +835,10 @@ class _Run:
                     is_known = not any(entry.is_Symbol for entry in value[:k])  # to be one number
                     place = f"{name}[{k}:{k + 3}]" if is_known else f"part of {name}"
                     self.add(place, part, min(lines), is_final=is_final)
-        is_flat = value.shape != _unflattened(value).shape
-        value = _unbounded(_unflattened(value))
-        whole = _unbounded(self.expanded(value))
+        key, value = value, _unflattened(value)
+        whole = self.expanded(value)
+        is_flat, is_bounded = value.shape != key.shape, whole.has(_Bounded)
+        value, whole = map(_unbounded, (value, whole))
         # Of a vector that is not divided as a whole, components are what they are.
         used = whole.free_symbols
         if partly := {s: v for s, (v, own) in self.divided.items() if s in used and own & used}:
@@ -859,6 +862,7 @@ class _Run:
         own = {s: self.expanded(known[s]).xreplace(names) for s in symbols & known.keys()}
         formula = Formula(lines=lines, name=_last(name), forms=tuple(dict.fromkeys(forms)))
         formula = replace(formula, unread=places, is_final=is_final, is_flat=is_flat, names=names)
+        formula = replace(formula, is_bounded=is_bounded, **self.facts.get(key, {}))
         formula = replace(formula, computed={names.get(s, s): value for s, value in own.items()})
         conditions = frozenset(map(sum, self.conditions.items()))
         self.formulas.append(replace(formula, conditions=frozenset({conditions})))
@@ -907,6 +911,11 @@ class _Run:
             self.reason = str(error)
             return None
 
+    def place(self, value: sp.MatrixBase, entries: Sequence[Tree]) -> sp.MatrixBase:
+        """A matrix, whose entries have their lines."""
+        self.facts[value] = {"entries": tuple(each.line for each in entries)}
+        return value
+
     def read_block(self, tree: Tree) -> Any:
         """A number; in Rust, the last of several statements."""
         digits = patterns.numbers.fullmatch(tree.text) if not tree.parts else None
@@ -934,8 +943,14 @@ class _Run:
 
     def read_list(self, tree: Tree) -> Any:
         self.refuse_if(not 0 < len(tree.parts) <= limits.longest_list, tree)
-        values = [self.read(each) for each in tree.parts]
-        return values[0] if tree.is_one_of("lone") and len(values) == 1 else rows(values)
+        values = [value for each in tree.parts for value in self.several(each)]
+        is_lone = tree.is_one_of("lone") and len(values) == 1
+        return values[0] if is_lone else self.place(rows(values), tree.entries)
+
+    def several(self, tree: Tree) -> Any:
+        """The value, or those of *v in [0, *v]."""
+        is_vector = tree.kind == "splat"
+        return as_matrix(self.vector(self.read(tree.parts[0]))) if is_vector else [self.read(tree)]
 
     def read_record(self, tree: Tree) -> Any:
         """{w: a, x: b, y: c, z: d} of JavaScript, and Quaternion { x: a, ... } of Rust."""
@@ -945,14 +960,15 @@ class _Run:
         return rows([self.read(each) for each in tree.parts])
 
     def read_matrix(self, tree: Tree) -> Any:
-        return called("stack", self.beside_scalar([self.read(row) for row in tree.parts]))
+        rows_ = self.beside_scalar([self.read(row) for row in tree.parts])
+        return self.place(called("stack", rows_), tree.entries)
 
     def beside_scalar(self, parts: list[Any]) -> list[Any]:
         """(cos a/2, v sin a/2), where v is a name: beside the cosine of a, v may be a number."""
         entries = [as_matrix(part)[0] for part in parts if len(as_matrix(part)) == 1]
         for k, w in enumerate(entries if len(entries) == len(parts) == 2 else ()):
             is_half = isinstance(w, sp.cos) and w.args[0].as_coeff_Mul()[0] != 1
-            if is_half and not entries[1 - k].is_Function:
+            if (is_half or w == 0) and not entries[1 - k].is_Function:
                 parts[1 - k] = as_matrix(self.vector(entries[1 - k]))
         return parts
 
@@ -1044,8 +1060,7 @@ class _Run:
 
         A name without a value is a matrix if it is added to one.
         """
-        if _is_scalar(value) and self.is_moment(other):
-            value = self.moment(value)
+        value = self.moment(value) if _is_scalar(value) and self.is_moment(other) else value
         shape = getattr(other, "shape", ())
         if shape == (3, 3) and isinstance(value, sp.Symbol):
             return self.tensor(value)
@@ -1320,8 +1335,7 @@ class _Run:
         for view, own in syntax.VIEWS.items():
             name = re.sub(view, own, name)
         part = sp.Symbol(name, real=True)
-        if whole.is_Dummy:
-            part = sp.Dummy(name, whole.dummy_index, real=True)
+        part = sp.Dummy(name, whole.dummy_index, real=True) if whole.is_Dummy else part
         if whole in self.definitions:
             self.definitions.setdefault(part, None)
             self.unread.setdefault(name, self.unread.get(whole.name, 0))
@@ -1339,7 +1353,7 @@ class _Run:
             alias = _last(str(self.values.at(word) or self.program.imported.get(word, "")))
             word = alias if function_word(alias) in FUNCTIONS else word
         name = function_word(word)
-        is_own = base in ("", "self", "this", "Self") and tree.called in self.program.functions
+        is_own = base in {"", "Self", *_OBJECTS} and tree.called == word in self.program.functions
         if is_own:  # also if a library has a function of this name
             with suppress(ExpressionError):  # of a constructor
                 return self.inline(tree)
@@ -1348,8 +1362,7 @@ class _Run:
         nodes, is_method = arguments, not patterns.module.match(base)
         is_short = name in language.OF_NUMBERS and len(nodes) <= (name in TYPES["of_two"])
         is_first = is_short or (is_method and meaning in TYPES["of_objects"]) or base == "?"
-        if tree.owner is not None and is_first:
-            nodes = [tree.owner, *nodes]
+        nodes = [tree.owner, *nodes] if tree.owner is not None and is_first else nodes
         if name in language.OF_NUMBERS and nodes and not is_own:
             values = [self.read(each) for each in nodes]
             # SymPy takes a long argument apart, which costs as much as several expressions.
@@ -1375,8 +1388,9 @@ class _Run:
                 return value.T if is_by_columns and as_matrix(value).cols > 1 else value
             case "zeros" | "unit":
                 return self.filled(tree)
-            case "clamp" | "least" if len(nodes) > 1:
-                return self.bounded(tree, meaning, [self.read(each) for each in nodes])
+            case "clamp" | "least" if len(nodes) > 1 or tree.options:
+                bounds = [sp.Float(x) for x in re.findall(r"=(-?\d\.?\d*)", tree.options)]
+                return self.bounded(tree, meaning, [*map(self.read, nodes), *bounds])
             case "cosine" if self.read(nodes[0]) == called("sin", [a := self.read(nodes[-1])]):
                 return called("cos", [a])  # cosFromSin(sin(a), a)
             case "fused" | "fma" if [len(nodes), name != "mul_add"] == [3, len(arguments) == 3]:
@@ -1395,9 +1409,10 @@ class _Run:
         if meaning == "stack" or patterns.by_columns.search(name) or is_new:
             return self.stacked(tree, is_new)
         values, whole = self.built(arguments)
+        whole = self.in_order(base if word == "new" else word, whole)
         if patterns.built.search(f"{base}.{tree.called}"):
             if whole is not None:
-                is_glm = self.program.is_glm and len(values) > 4 and name == "new"
+                is_glm = self.program.is_glm and len(values) > 4 and name in ("new", "mat")
                 return self.columns(tree, whole) if is_glm else whole
             if len(values) == 2:  # float4(v, w)
                 return self.stacked(tree)
@@ -1415,8 +1430,19 @@ class _Run:
         values = [*map(self.tried, nodes[:count])]
         with suppress(ExpressionError):  # of matrices that do not fit
             if len(values) in _SIZES and None not in values:
-                return values, rows(values)
+                return values, self.place(rows(values), nodes[:count])
         return values, None
+
+    def in_order(self, name: str, value: Any) -> Any:
+        """The arguments of a constructor of this file, with the scalar first or last."""
+        name = self.scope.tree.class_name if name in ("cls", "Self") else name
+        order = re.sub("self|[q_]", "", "".join(self.program.orders.get(name, "")).lower())
+        is_one = sorted(order) == [*"wxyz"] and patterns.quaternion_type.search(name)
+        if is_one and getattr(value, "shape", ()) == (4, 1):
+            letters, place = ("wxyz", "first") if order[0] == "w" else ("xyzw", "last")
+            value = rows([value[order.index(letter)] for letter in letters])
+            self.facts.setdefault(value, {})["scalar"] = place
+        return value
 
     def bounded(self, tree: Tree, meaning: str, values: Sequence[Any]) -> Any:
         """x of clamp(x, -1, 1), of min(1, x) or of max(-1, x), for arc sines and cosines."""
@@ -1439,8 +1465,7 @@ class _Run:
             return combined("**", _unflattened(values[0]), sp.S.NegativeOne)
         if meaning == "T":
             return self.transposed(values[0])
-        if meaning == "trace" and isinstance(values[0], sp.Symbol):
-            values = [self.tensor(values[0])]
+        values = [self.tensor(values[0])] if meaning == "trace" and values[0].is_Symbol else values
         if meaning == "cross" and len(values) > 1:
             values = [self.moment(values[0], values[1]), self.moment(values[1], values[0])]
         if meaning in ("cross", "dot", "C", "outer"):
@@ -1455,8 +1480,7 @@ class _Run:
     def filled(self, tree: Tree) -> Any:
         """zeros(3, 3), Matrix3d::Identity()."""
         numbers = [int(n) for each in tree.parts[1:] for n in re.findall(r"\d+", each.text)]
-        sizes = numbers[-2:] or [3]
-        is_zero = CALLS[tree.called] == "zeros"
+        sizes, is_zero = numbers[-2:] or [3], CALLS[tree.called] == "zeros"
         is_column = len(sizes) == 1 and len(tree.parts) > 1 and is_zero and not self.first
         is_vector = is_column or re.search("vec|quat", tree.base, re.IGNORECASE)
         self.refuse_if(is_vector or not {*sizes} <= {3, 4}, tree)
@@ -1468,8 +1492,7 @@ class _Run:
             axis, nodes = f"axis={nodes[1].text}", nodes[:1]
         self.refuse_if(axis and not re.fullmatch(r"(axis|dim)=(0|1|-1|-2)", axis), tree)
         by_columns |= bool(patterns.by_columns.search(tree.called)) ^ axis.endswith(("=1", "=-1"))
-        if len(nodes) == 1 and nodes[0].kind in ("list", "matrix"):
-            nodes = nodes[0].parts
+        nodes = nodes[0].parts if len(nodes) == 1 and nodes[0].kind in ("list", "matrix") else nodes
         parts = self.beside_scalar([as_matrix(self.read(each)) for each in nodes])
         is_open = all(len(each) == 1 for each in parts) and any(e[0].is_Symbol for e in parts)
         self.refuse_if(tree.kind == "index" and is_open, tree, "may be of numbers or of vectors")
@@ -1552,8 +1575,7 @@ def _roles(name: str) -> list[tuple[int, str, str]]:
 
 def _below(path: Path, name: str) -> Path:
     """The path of a member; R[0].x is an entry of a matrix, and q.xyz.x is q.x."""
-    if path and str(path[-1]).lower() == "xyz" and name in _AXES:
-        path = path[:-1]
+    path = path[:-1] if path and str(path[-1]).lower() == "xyz" and name in _AXES else path
     if element := re.fullmatch("M([1-4])([1-4])", name):  # of a matrix of C#
         return (*path, int(element[1]) - 1, int(element[2]) - 1)
     return (*path, _AXES.get(name, name) if path and isinstance(path[-1], int) else name)

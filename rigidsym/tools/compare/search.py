@@ -14,7 +14,7 @@ import sympy as sp
 
 from rigidsym.errors import ExpressionError, RequestError
 from rigidsym.system.resources import environment
-from rigidsym.tools.compare import quantities
+from rigidsym.tools.compare import comparison as comparisons, quantities
 from rigidsym.tools.compare.comparison import Comparison, branch, domain, halved, identified, mended
 from rigidsym.tools.compare.program import UNNAMED, Formula, program_formulas
 from rigidsym.tools.compare.quantities import KnownQuantity, are_angles, are_body_rates
@@ -50,9 +50,10 @@ class FormulaInFile:
         """Where the first wrong entry is assigned, or else where the formula begins."""
         faults: list[Any] = [*self.comparison.repairs, self.comparison] if self.comparison else []
         places = [each.place for each in faults if each.place]
-        own, columns = self.formula.lines, self.formula.forms[0].cols if places else 0
-        if not places or len(own) != len(self.formula.forms[0]):
+        own = self.formula.entries or self.formula.lines
+        if not places or len(own) not in (len(self.formula.forms[0]), 16):
             return self.formula.line
+        columns = 4 if len(own) == 16 else self.formula.forms[0].cols
         return min(own[(row - 1) * columns + column - 1] for row, column in places)
 
     def __str__(self) -> str:
@@ -66,14 +67,14 @@ class FormulaInFile:
 
     def repeats(self, other: FormulaInFile) -> bool:
         """Whether this vector, or its components, have been found just before."""
-        if not (self.comparison and other.comparison):
+        one, two = self.comparison, other.comparison
+        if not (one and two) or one.is_wrong > two.is_wrong:
             return False
-        own, others = self.comparison.formula, other.comparison.formula
         if sorted(self.formula.lines) == sorted(other.formula.lines):
-            return bool(own == others)
+            return bool(one.formula == two.formula)
         is_near = self.formula.line - other.formula.line <= limits.near_lines
-        is_part = is_near and ", " in self.formula.name + other.formula.name
-        return is_part and self.formula.function == other.formula.function and {*own} == {*others}
+        ends = [(each.formula.function, {*c.formula}) for each, c in ((self, one), (other, two))]
+        return is_near and ends[0] == ends[1] and ", " in self.formula.name + other.formula.name
 
     def record(self) -> dict[str, Any]:
         """For JSON."""
@@ -94,13 +95,9 @@ def source_files(paths: Sequence[Path]) -> Iterator[Path]:
     for path in paths:
         if not path.is_dir() and not (path.is_file() and path.suffix in GRAMMARS):
             raise RequestError(f"{path}: expected a folder, or a file {', '.join(GRAMMARS)}")
-    files = [
-        file
-        for path in paths
-        for file in (sorted(path.rglob("*")) if path.is_dir() else [path])
-        if not any(part.startswith(".") for part in file.relative_to(path).parts)
-        if file.suffix in GRAMMARS and file.is_file() and not _is_binary(file)
-    ]
+    pairs = ((p, f) for p in paths for f in (sorted(p.rglob("*")) if p.is_dir() else [p]))
+    shown = (f for p, f in pairs if not any(n.startswith(".") for n in f.relative_to(p).parts))
+    files = [f for f in shown if f.suffix in GRAMMARS and f.is_file() and not _is_binary(f)]
     if not files:
         where = ", ".join(map(str, paths))
         raise RequestError(f"{where}: no source files; looked for {', '.join(GRAMMARS)}")
@@ -167,8 +164,6 @@ def _wrong_part(finding: FormulaInFile, wrong: Sequence[FormulaInFile], text: st
 def _remark(finding: FormulaInFile, others: Sequence[FormulaInFile], text: str) -> str:
     """How the name of a function or its comment differ from what its formulas are."""
     (name, first, last), goal = finding.formula.function, finding.goal
-    if _is_misplaced(finding, text):
-        return REMARKS["scalar_first"]
     if goal is None or not name:
         return ""
     if goal.quantity == "quaternion_product" and [*map(len, goal.inputs.values())] != [4, 4]:
@@ -181,12 +176,6 @@ def _remark(finding: FormulaInFile, others: Sequence[FormulaInFile], text: str) 
     is_certain = len(claims) == 1 and {*map(_order, others)} - {""} == {own}
     said = f"the {words} of {name} says {', '.join(claims.values())}"
     return f"{said}, the formula is {goal.rotation}" * (is_certain and own not in claims)
-
-
-def _is_misplaced(finding: FormulaInFile, text: str) -> bool:
-    """Whether a constructor that takes the scalar of a quaternion first gets it last."""
-    is_last = finding.goal is not None and "scalar_last" in finding.goal.ways
-    return is_last and bool(patterns.scalar_first.search(_lines(text)[finding.formula.line - 1]))
 
 
 @lru_cache(maxsize=1)
@@ -267,14 +256,12 @@ def _with_branches(
         # also by a condition on other numbers than the angles, which may be another branch
         common = frozenset.intersection(*own.conditions)
         is_guarded = any(not condition.has(*quantities.INVERSE) for condition in common)
-        is_guarded |= patterns.guard.search(inside) is not None
+        is_guarded |= own.is_bounded or patterns.guard.search(inside) is not None
         remarks[id(finding)] = "" if is_guarded else domain(regular.formula)
     for each in (formula for formula in program if formula.is_final):
         beside = [r for r in right if r[1].function == each.function]
-        beside = [
-            r for r in beside if r[1].name == each.name or r[1].is_returned & each.is_returned
-        ]
-        branches = [(f, case) for f, own, regular in beside if (case := branch(regular, own, each))]
+        named = [r for r in beside if each.name == r[1].name or r[1].is_returned & each.is_returned]
+        branches = [(f, case) for f, own, regular in named if (case := branch(regular, own, each))]
         for finding, case in sorted(branches, key=lambda judged: judged[1].is_wrong)[:1]:
             line = min({*each.lines} - {*finding.formula.lines} or each.lines)
             parts = f"{remarks[id(finding)]}; the branch in line {line} {case.branch}".split("; ")
@@ -312,7 +299,7 @@ def _findings(
             readable = [regular] if regular and _is_shared(regular.comparison, group) else []
         for finding in [*readable, *filter(None, findings)][:1]:
             # a fault counts once
-            if not (latest and finding.repeats(latest)) or _is_misplaced(finding, text):
+            if not (latest and finding.repeats(latest)):
                 yield finding
             latest = finding if finding.comparison else latest
         new = {form for each in group for form in each.forms if _may_be_known(form)} - before
@@ -356,6 +343,11 @@ def _compared(
         is_twice = goal is not None and "twice_the_angles" in goal.ways and goal.motion.model.turns
         if is_twice and form.free_symbols <= {*formula.names.values()}:  # no sines from elsewhere
             comparison = mended(form, [halved(form, *quantities.symbols_in(form)[0])]) or comparison
+        is_last = goal is not None and "scalar_last" in goal.ways
+        if goal and len(form) == 4 and formula.scalar == ("first" if is_last else "last"):
+            exchanged = sp.ImmutableMatrix([*form[1 + 2 * is_last :], *form[: 1 + 2 * is_last]])
+            repair = comparisons.Repair("exchange", REMARKS[formula.scalar], exchanged)
+            comparison = replace(comparison, repairs=(repair,))
         if goal is not None and formula.is_flat and goal.ways == ("transposed",):
             comparison = replace(comparison, found=replace(goal, ways=("by_columns",)))
         if goal is not None or comparison.is_reflection:
@@ -373,7 +365,8 @@ def formulas(text: str, suffix: str) -> Iterator[Formula]:
         is_returned = formula.name == UNNAMED[1] and patterns.constructed.match(line)
         if forms or formula.reason:
             name = UNNAMED[0] if is_returned else formula.name
-            yield replace(formula, forms=forms, name=name)
+            scalar = formula.scalar or "first" * bool(patterns.scalar_first.search(line))
+            yield replace(formula, forms=forms, name=name, scalar=scalar)
 
 
 def disappointment(comparison: Comparison, expected: str, *, is_active: bool) -> str:

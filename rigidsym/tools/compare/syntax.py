@@ -213,8 +213,8 @@ class Tree:
     @property
     def constant(self) -> bool | None:
         """The value of a condition, if it is constant."""
-        values = {"0": False, "false": False, "1": True, "true": True}
-        return values.get(self.text.strip("() ").lower())
+        word = self.text.strip("() ").lower()
+        return word in ("1", "true") if word in ("0", "1", "false", "true") else None
 
     @property
     def keys(self) -> list[str]:
@@ -258,6 +258,11 @@ class Tree:
         return node
 
     @property
+    def class_name(self) -> str:
+        """The name of the class around a function."""
+        return _text(_part(self.around, "name type"))
+
+    @property
     def is_integer(self) -> bool:
         """Whether a call has whole numbers: static_cast<int>(a), a.astype(int), dtype=int."""
         if self.kind != "call":
@@ -267,10 +272,10 @@ class Tree:
         return bool(patterns.integer.fullmatch(text) or patterns.integer_entries.search(end))
 
     @property
-    def is_alias(self) -> bool:
-        """Whether an assignment gives an object another name: auto& b = a, b = &a."""
-        of_name = "|^[&*]" if "declarator" in self.node.type else ""
-        return re.search(rf"=\s*&{of_name}", self.text) is not None
+    def entries(self) -> list[Tree]:
+        """The entries of a list, and of the lists in it."""
+        parts = self.parts if self.kind in ("list", "matrix", "row") else ()
+        return [entry for part in parts for entry in part.entries] or [self]
 
     @property
     def targets(self) -> list[Tree]:
@@ -289,9 +294,10 @@ class Tree:
     def is_one_of(self, types: str) -> bool:
         return self.node.type in TYPES[types]
 
-    def covers(self, byte: int) -> bool:
-        """Whether a block contains this place of the text."""
-        return any(p.node.start_byte <= byte < p.node.end_byte for p in self.parts or [self])
+    def covers(self, other: Tree) -> bool:
+        """Whether a block contains another tree."""
+        byte, own = other.node.start_byte, [each.node for each in self.parts or [self]]
+        return any(each.start_byte <= byte < each.end_byte for each in own)
 
 
 def _names(node: Node) -> list[str]:
@@ -341,10 +347,9 @@ def walk(node: Node, *kinds: str) -> Iterator[Tree]:
 
 def damaged(root: Node) -> Iterator[Tree]:
     """The expressions and assignments that are not read because of syntax errors in them."""
-    around = ("block", "function", "if", "switch", "loop")
     for node in below(root.named_children) if root.has_error else ():
         if node.is_error:
-            while node.parent and _KINDS.get(node.parent.type, "block") not in around:
+            while node.parent and _KINDS.get(node.parent.type, "block") not in TYPES["blocks"]:
                 node = node.parent
             yield Tree(node)
 
