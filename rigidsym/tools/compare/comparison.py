@@ -319,6 +319,10 @@ def identified(
     In a program, a transpose, a sign or a factor of the whole formula may be meant. Of several
     nearest rotations, one about the `expected` axes, such as "z y x", is preferred.
     """
+    for form, changed in _shifted(formula) if is_in_program and known.are_angles(formula) else ():
+        plain = identified(changed, only_equal=True)
+        if plain.found and len(plain.found.ways) < 2:
+            return replace(plain, form=form)
     trials = []
     for family in known.families(formula) if asked is None else zip(asked.in_orders()):
         trial = _Trial(formula, family, is_asked=asked is not None)
@@ -333,9 +337,12 @@ def identified(
     if not only_equal:
         comparison = comparison or _decided(formula, trials, asked)
         comparison = comparison or _close(formula, trials, asked, expected)
-    for w, part, changed in _parts(formula) if is_in_program and comparison is None else ():
-        if (whole := identified(part, only_equal=True)).found:
-            return replace(whole, left_out=f"terms without {w}")
+    parts = [*_parts(formula)] if is_in_program and comparison is None else []
+    wholes = [(w, identified(part, only_equal=True)) for w, part, _ in parts]
+    # of w - b, both the rates and their bias b would do
+    for w, whole in sorted((p for p in wholes if p[1].found), key=lambda p: len(p[1].arrangement)):
+        return replace(whole, left_out=f"terms without {w}")
+    for w, _, changed in parts:
         # The gyroscopic torque may have the wrong sign.
         products = "products of" if formula.cols == 3 else "terms with"
         words = f"the {products} {w} should have the opposite sign"
@@ -444,14 +451,19 @@ def _changes(formula: sp.ImmutableMatrix) -> Iterator[Repair]:
             yield Repair(kind, words, changed)
 
 
-def _ways(formula: sp.ImmutableMatrix) -> Iterator[tuple[str, sp.ImmutableMatrix]]:
-    """(words, formula): other ways of writing a formula, which a program may mean."""
-    if formula.shape == (3, 3):  # by columns, or for rows of rates
-        yield "transposed", formula.T
+def _shifted(formula: sp.ImmutableMatrix) -> Iterator[tuple[str, sp.ImmutableMatrix]]:
+    """(words, formula): the formula without numbers that are added to its entries."""
     numbers = [e.as_independent(*e.free_symbols, as_Add=True)[0] for e in formula]
     if formula.shape == (3, 1) and any(numbers):  # the declination, or gravity
         entries = " and ".join(str(k) for k, number in enumerate(numbers, 1) if number)
         yield f"without the number added in entry {entries}", formula - sp.Matrix(numbers)
+
+
+def _ways(formula: sp.ImmutableMatrix) -> Iterator[tuple[str, sp.ImmutableMatrix]]:
+    """(words, formula): other ways of writing a formula, which a program may mean."""
+    if formula.shape == (3, 3):  # by columns, or for rows of rates
+        yield "transposed", formula.T
+    yield from _shifted(formula)
     values = known.sample(formula)
     for symbol in values:
         functions = formula.atoms(sp.sin, sp.cos, sp.tan)

@@ -469,6 +469,7 @@ class _Run:
         value = value[0] if isinstance(value, sp.MatrixBase) and len(value) == 1 else value
         is_rounded = self.holds_integers(path) and not getattr(value, "is_Integer", False)
         self.refuse_if(is_rounded, left, "is rounded")
+        value = self.vector(value) if path[-1] in ("vec", "imag") else value
         if _is_scalar(value):
             path = tuple(key for key in path if key != _ALL)  # of a batch
             value = self.renamed(path, value)
@@ -490,6 +491,7 @@ class _Run:
         place = next((n for n, key in enumerate(path) if isinstance(key, slice)), None)
         if place is not None:
             value = value.whole()[0] if isinstance(value, _Record) else value
+            value = self.vector(value) if path[place] != _ALL else value
             whole, start = as_matrix(sp.nan if value is None else value), path[place].start or 0
             parts = _lines(whole)
             if len(whole) == 1 or path[place].stop not in (None, start + len(parts)):
@@ -767,10 +769,15 @@ class _Run:
         first, *others = tree.parts if tree.kind == "comma" else [tree]
         if first.kind == "binary" and first.word == "<<":
             left, *right = *first.parts, *others
-            value = _unflattened(rows(parts := [*map(self.read, right)]))
-            are_columns = {getattr(each, "shape", ()) for each in parts} == {(3, 1)}
+            parts = self.beside_scalar([*map(self.read, right)])
+            sizes = {as_matrix(each).shape for each in parts}
             is_row = re.search(rf"Row\w*\s[^;]*\b{right[0].text}\b", self.scope.tree.text)
-            self.store(left, value.T if are_columns and not is_row else self.place(value, right))
+            if sizes == {(1, 1), (3, 1)}:
+                value = called("stack", parts)
+            else:
+                value = _unflattened(rows(parts)).T if sizes == {(3, 1)} and not is_row else None
+                value = self.place(_unflattened(rows(parts)), right) if value is None else value
+            self.store(left, value)
         else:
             self.run_block(Tree(tree.node, own=[t for t in tree.parts if t.kind != "binary"]))
 
@@ -860,7 +867,8 @@ class _Run:
         forms = [language.spelled_out(m.xreplace(names), computed) for m in (whole, value)]
         places = tuple((_last(n), self.unread.get(n) or min(lines)) for n in sorted(unread))
         own = {s: self.expanded(known[s]).xreplace(names) for s in symbols & known.keys()}
-        formula = Formula(lines=lines, name=_last(name), forms=tuple(dict.fromkeys(forms)))
+        called_ = ", ".join(map(_last, name.split(", ")))
+        formula = Formula(lines=lines, name=called_, forms=tuple(dict.fromkeys(forms)))
         formula = replace(formula, unread=places, is_final=is_final, is_flat=is_flat, names=names)
         formula = replace(formula, is_bounded=is_bounded, **self.facts.get(key, {}))
         formula = replace(formula, computed={names.get(s, s): value for s, value in own.items()})
@@ -1089,10 +1097,13 @@ class _Run:
 
     def of_tensor(self, left: Any, right: Any) -> Any:
         """n nᵀ, nᵀ n, I⁻¹ (... + w × I w), or C(w) I w; None for another product."""
-        for vector, other, meaning in ((left, right, "outer"), (right, left, "dot")):
-            is_vector = isinstance(vector, sp.Symbol) and _last(vector.name)[0].islower()
-            if is_vector and str(other) == f"{vector.name}.T":
-                return self.of_vectors(meaning, [vector, vector])
+        for side, other, meaning in ((left, right, "outer"), (right, left, "dot")):
+            names = side.free_symbols if _is_scalar(side) else ()
+            for name in (
+                s for s in names if str(other) == f"{s.name}.T" and s not in (side / s).args
+            ):
+                if _last(name.name)[0].islower():
+                    return side / name * self.of_vectors(meaning, [name, name])
         if self.is_moment(right) and _is_scalar(left):
             inverse = sp.Symbol(f"{1 / left}_inv", real=True) if 1 / left in self.tensors else left
             if inverse.is_Symbol and "inv" in inverse.name:

@@ -296,7 +296,9 @@ def families(formula: sp.MatrixBase) -> Iterator[Family]:
 def _of_quantity(
     quantity: str, shape: tuple[int, int], has_turns: bool, count: int
 ) -> tuple[Family, ...]:
-    of_rates = _OF_QUATERNION_RATES if 4 in shape else (_SCALED,) * (not has_turns)
+    # Half an angular velocity would be the vector part of any product of quaternions.
+    scaled = {name: way for name, way in _SCALED.items() if name != "half" or shape != (3, 1)}
+    of_rates = _OF_QUATERNION_RATES if 4 in shape else (scaled,) * (not has_turns)
     of_rates += (_ORDERS,) * quantity.startswith("rates_from") * (shape == (3, 1))
     ways = _WAYS.get(quantity, of_rates)
     same_inputs: dict[Any, list[list[KnownQuantity]]] = {}

@@ -345,9 +345,10 @@ def _compared(
             comparison = mended(form, [halved(form, *quantities.symbols_in(form)[0])]) or comparison
         is_last = goal is not None and "scalar_last" in goal.ways
         if goal and len(form) == 4 and formula.scalar == ("first" if is_last else "last"):
-            exchanged = sp.ImmutableMatrix([*form[1 + 2 * is_last :], *form[: 1 + 2 * is_last]])
+            own = comparison.repairs[-1].formula if comparison.repairs else form
+            exchanged = sp.ImmutableMatrix([*own[1 + 2 * is_last :], *own[: 1 + 2 * is_last]])
             repair = comparisons.Repair("exchange", REMARKS[formula.scalar], exchanged)
-            comparison = replace(comparison, repairs=(repair,))
+            comparison = replace(comparison, repairs=(*comparison.repairs, repair))
         if goal is not None and formula.is_flat and goal.ways == ("transposed",):
             comparison = replace(comparison, found=replace(goal, ways=("by_columns",)))
         if goal is not None or comparison.is_reflection:
