@@ -10,8 +10,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import cached_property
-from itertools import chain, permutations
+from functools import cache, cached_property
+from itertools import chain, permutations, product
 from posixpath import commonprefix
 from typing import Any
 
@@ -24,9 +24,9 @@ from rigidsym.algebra.generators import in_names
 from rigidsym.errors import AlgebraError, DerivationError, ExpressionError, ModelError
 from rigidsym.motion import Motion
 from rigidsym.system.resources import environment
-from rigidsym.tools.compare import quantities as known
+from rigidsym.tools.compare import quantities as known, syntax
 from rigidsym.tools.compare.language import spelled_out
-from rigidsym.tools.compare.program import Formula, formula_matrix, is_length
+from rigidsym.tools.compare.program import Formula, formula_matrix, is_length, program_formulas
 from rigidsym.tools.compare.quantities import ANGLES, QUATERNION, Array, KnownQuantity, Names
 from rigidsym.tools.compare.syntax import CHANGES, REMARKS, SHAPES, WAYS, WHOLE, limits, patterns
 
@@ -231,9 +231,7 @@ def compare(
     not a formula, and for a function: `rigidsym compare FILE` reads it in its file.
     """
     if callable(formula):
-        raise ExpressionError(
-            "expected a formula, not a function; `rigidsym compare FILE` reads functions in a file"
-        )
+        raise ExpressionError("expected a formula; `rigidsym compare FILE` reads functions")
     matrix = as_matrix(formula)
     matrix = matrix.T if matrix.rows == 1 else matrix
     if rotation is None and quantity is None:
@@ -332,11 +330,11 @@ def identified(
     for form, changed in _ways(formula) if is_in_program else ():
         if (whole := identified(changed, only_equal=True)).found:
             return replace(whole, form=form)
-    changes = () if is_in_program or only_equal else _changes(formula)
-    comparison = mended(formula, changes, asked)
+    comparison = mended(formula, () if is_in_program or only_equal else _changes(formula), asked)
     if not only_equal:
         comparison = comparison or _decided(formula, trials, asked)
         comparison = comparison or _close(formula, trials, asked, expected)
+        comparison = comparison or _in_terms(formula, trials)
     parts = [*_parts(formula)] if is_in_program and comparison is None else []
     wholes = [(w, identified(part, only_equal=True)) for w, part, _ in parts]
     # of w - b, both the rates and their bias b would do
@@ -382,6 +380,39 @@ def _close(
     return None
 
 
+@cache
+def _sums(goal: KnownQuantity) -> list[tuple[list[sp.Matrix], Array, Array]]:
+    """Terms of a quantity in vector notation, their values at all points, and their factors."""
+    q, sums = {sp.Symbol(name, real=True): s for name, s in goal.names.items()}, []
+    for text in syntax.SUMS.get(str(goal), ()):
+        terms = [f.forms[0].xreplace(q) for f in program_formulas(text, ".py") if "t_" in f.name]
+        values = np.stack([known.evaluated(term, goal.points).ravel() for term in terms], axis=1)
+        factors = np.linalg.lstsq(values, goal.values.ravel(), rcond=None)[0].round(9)
+        sums.append((terms, values, factors))
+    return sums
+
+
+def _in_terms(formula: sp.ImmutableMatrix, trials: Sequence[_Trial]) -> Comparison | None:
+    """The comparison with a sum in which terms have a wrong factor, as s u × v for 2 s u × v.
+
+    Such a mistake in vectors is one in all components.
+    """
+    for trial in (each for each in trials if np.isfinite(each.numbers).all()):
+        sums = [(k, *each) for k, goal in enumerate(trial.family) for each in _sums(goal)]
+        for (n, names), (k, terms, values, wanted) in product(enumerate(trial.names), sums):
+            own = np.linalg.lstsq(values, numbers := trial.numbers[n].ravel(), rcond=None)[0]
+            place, count = (is_wrong := abs(own - wanted) > 1e-9).argmax(), np.count_nonzero(wanted)
+            ratios = np.divide(own, wanted, out=0 * own, where=wanted != 0)[is_wrong].round(9)
+            is_part = 0 < ratios.size < count and ratios[0] and {*ratios} == {ratios[0]}
+            if is_part and known.near(values @ own, numbers).all():
+                goal, back = trial.family[k], {meant: name for name, meant in names.items()}
+                term = next(filter(None, terms[place].xreplace(back)))
+                words = f"{term} should have the factor {wanted[place]:g}, not {own[place]:.4g}"
+                repair = Repair("factor", f"{words}, in all entries", goal.matrix.xreplace(back))
+                return _proved(Reading(formula, goal, names, trial.agreement[n, k]), None, [repair])
+    return None
+
+
 def _repaired(nearest: Sequence[Reading]) -> Comparison | None:
     """The comparison with the nearest quantity, beside others that are as near.
 
@@ -395,11 +426,12 @@ def _repaired(nearest: Sequence[Reading]) -> Comparison | None:
         repairs = entry_repairs(reading)
         is_small = all(repair.kind != "entry" for repair in repairs)
         is_odd = any(known.oddness(meant) > 1 for meant in reading.names.values())
+        is_odd |= reading.goal.quantity == "cross_product_matrix"  # of any senses
         # If all other entries are right, and these are many, one may be wrong in any way.
         names = np.array(reading.formula.applyfunc(lambda entry: len(entry.free_symbols)), bool)
         least = limits.most_wrong if reading.formula.cols == 1 else 2 * limits.most_wrong
         is_rich = names[~right].all() and (names & right).sum() >= least
-        # Angles from other axes are so many conventions that one of them is near by chance.
+        # Angles from other axes, or senses, are so many conventions that one is near by chance.
         most = limits.most_repairs - is_odd if is_small else is_rich
         if repairs and len(repairs) <= most:
             candidates.append((is_small, repairs, reading))
@@ -446,9 +478,8 @@ def _changes(formula: sp.ImmutableMatrix) -> Iterator[Repair]:
     Angles are not changed as a whole: their conventions include transposes, orders and senses.
     """
     for words, (kind, factor) in WHOLE.items() if not known.are_angles(formula) else ():
-        if kind != "transpose" or formula.rows == formula.cols:
-            changed = formula.T if kind == "transpose" else sp.Rational(factor) * formula
-            yield Repair(kind, words, changed)
+        changed = formula.T if kind == "transpose" else sp.Rational(factor) * formula
+        yield Repair(kind, words, changed)
 
 
 def _shifted(formula: sp.ImmutableMatrix) -> Iterator[tuple[str, sp.ImmutableMatrix]]:
@@ -603,8 +634,7 @@ def _at_poles(case: Comparison, goal: KnownQuantity, runs: Any, certain: Any) ->
     sign = np.where(abs(sum(exact[x] * turned[x] for x in goal.inputs["q"])) > 0.999, 1, -1)
     beside, far = at(first, pole - 1e-7 * side, last), at(first, pole - side * distance, last)
     is_beside = _truth(runs, beside) & ~_truth(runs, far).any()
-    is_there = is_far if (is_far := _truth(certain, far)).any() else is_beside
-    here = far if is_far.any() else beside
+    here, is_there = (far, wide) if (wide := _truth(certain, far)).any() else (beside, is_beside)
     own, right = (goal.numbers(m, here)[..., 0] for m in (case.formula, goal.matrix))
     same = goal.numbers(goal.matrix, at(first + 1, pole - 1e-7 * side, last - sign))[..., 0]
     # 1 and ±1, and 0 of the middle angle
@@ -615,18 +645,16 @@ def _at_poles(case: Comparison, goal: KnownQuantity, runs: Any, certain: Any) ->
     sizes = known.evaluated(sp.Matrix([sp.Mul(*each) for each in squares]), here)[..., 0]
     is_any = ~(sizes > 1e-9) | np.isnan(own)
     free = int((abs(changes[0]) - is_any[is_there].any(axis=0) / 2).argmax())
-    shift = (own / right)[:, [free]] ** changes[:, [free]]
-    wanted = right * shift**changes
+    wanted = right * ((own / right)[:, [free]] ** changes[:, [free]]) ** changes
     # the middle angle, whatever the others
     is_odd = (changes == 0) & ~is_any & (abs(own - right) > 1e-3)
     is_sure, is_off = is_any.sum(axis=1) < 2, is_any | (abs(own - wanted) > 1e-3)
     is_wrong = is_there & (is_odd.any(axis=1) | is_sure & is_off.any(axis=1))
-    if not is_wrong.any() and (is_sure & is_beside).any():
+    if not is_wrong.any():
         # the conditions are false where an arc sine in all of them has no value
         remarks = ["is right at a pole (gimbal lock)", *{domain(c) for run in runs for c in run}]
-        return replace(case, branch="; ".join(remarks) if all(remarks) else remarks[0])
-    if not is_wrong.any():
-        return None
+        remark = replace(case, branch="; ".join(remarks) if all(remarks) else remarks[0])
+        return remark if (is_sure & is_beside).any() else None
     k = is_wrong.argmax()
     place = (int(is_off[k].argmax()) + 1, 1)
     angles = np.round(np.angle([right[k], own[k], wanted[k]]), 4) + 0.0
@@ -652,8 +680,8 @@ def _small_angles(case: Comparison, goal: KnownQuantity, runs: Any, _: Any) -> C
     own, true = (np.fft.fft(values, axis=1) * scale).round(9)
     if not is_there[0] or is_there[-1] or own[count // 2 :].any():
         return None
-    if goal.quantity == QUATERNION and (own[0] * true[0]).real.sum() < 0:
-        own = -own  # the same rotation
+    # -q is the same rotation
+    own = -own if goal.quantity == QUATERNION and (own[0] * true[0]).real.sum() < 0 else own
     is_other = ~np.isclose(own, true, rtol=1e-3)[: count // 2]
     # A series may end early, in each of its parts, but not before its first term.
     is_wrong = is_other & (own[: count // 2] != 0)

@@ -34,7 +34,7 @@ from rigidsym.mechanics.body import BodyValues
 from rigidsym.mechanics.conversions.function import half_turn, outer_product, product as product_of
 from rigidsym.models.rotation import rotation_of
 from rigidsym.motion import Motion, derive
-from rigidsym.tools.compare.syntax import SHAPES, WAYS, limits, patterns
+from rigidsym.tools.compare.syntax import FACTORS, SHAPES, WAYS_OF, limits, patterns
 
 Array = NDArray[Any]
 Values = dict[sp.Expr, Any]  # of expressions, at all points
@@ -56,11 +56,8 @@ _THREE = tuple(a + b + c for s in ("XYZ", "xyz") for a, b, c in product(s, repea
 # Rotations whose angles nobody has named. Roll, pitch and yaw often have our names in another
 # order. In proper Euler angles, such as ZXZ, exchanged names are a mistake.
 _AXES_ONLY = re.compile(r"(?!.*(.).*\1)([XYZ]{3}|[xyz]{3}|[123]{3})")
-_SEQUENCES = {
-    1: tuple(f"{a}(angle)" for a in "xyz"),
-    2: tuple(f"{a}(first) {b}(second)" for a, b in permutations("xyz", 2)),
-    3: _THREE,
-}
+_SEQUENCES = {2: tuple(f"{a}(first) {b}(second)" for a, b in permutations("xyz", 2)), 3: _THREE}
+_SEQUENCES[1] = tuple(f"{a}(angle)" for a in "xyz")
 _OF_RATES = (*SHAPES[3, 3][1:], *SHAPES[3, 1])
 QUATERNION = "quaternion"  # of turns, of an axis and an angle, or of a matrix
 OF_MATRIX = "a rotation matrix"  # in place of the name of a rotation
@@ -73,7 +70,6 @@ OF_DIRECTIONS = ("rotation_matrix", QUATERNION, ANGLES)  # not changed by the le
 # Ways of writing a quantity: changes of its matrix, in the vectors of its inputs
 
 Way = Callable[..., sp.Matrix]
-Ways = dict[str, Way]  # by name; the words for them are in `nodes.toml`
 _NONE = sp.zeros(3, 1)
 _ENTRIES = sp.Matrix(3, 3, sp.symbols("R_1:4_1:4", real=True))
 _CONJUGATE = sp.diag(1, -1, -1, -1)
@@ -83,7 +79,7 @@ def _opposite(matrix: sp.Matrix, inputs: Sequence[sp.Expr]) -> sp.Matrix:
     return matrix.xreplace({symbol: -symbol for symbol in inputs})
 
 
-def _times(*factors: sp.Expr | int) -> Way:
+def _times(*factors: sp.Expr) -> Way:
     """The way with entries times one factor, or each row times its own."""
     return lambda m, *_: sp.diag(*factors) * m if len(factors) > 1 else factors[0] * m
 
@@ -98,59 +94,35 @@ def _of_conjugate(matrix: sp.Matrix, q: Sequence[sp.Expr], *_: Sequence[sp.Expr]
     return _CONJUGATE * matrix if matrix.rows == 4 else matrix * _CONJUGATE
 
 
-def _ways(**ways: Way) -> Ways:
-    """By name; plainly is the first."""
-    return {"": lambda matrix, *_: matrix} | ways
+def _surplus(q: Sequence[sp.Expr], v: Sequence[sp.Expr]) -> sp.Matrix:
+    return (sum(x**2 for x in q) - 1) * sp.Matrix(v)
 
 
-_LAST = _ways(scalar_last=_scalar_last)
-_NEGATIVE = _ways(negative=_times(-1))
-_FACTORS = {"twice": 2, "half": sp.S.Half, "four_times": 4, "a_quarter": sp.S.Half / 2}
-_SCALED = _ways(**{name: _times(factor) for name, factor in _FACTORS.items()})
-_OF_QUATERNION_RATES = (_ways(of_the_conjugate=_of_conjugate), _LAST, _SCALED)
-_ORDERS = _ways(  # of the angles; the opposite ones are those of axes of space
-    order_132=lambda m, *_: m.extract([0, 2, 1], [0]),
-    order_213=lambda m, *_: m.extract([1, 0, 2], [0]),
-)
-_WAYS: dict[str, tuple[Ways, ...]] = {
-    "rotation_matrix": (_ways(transposed=lambda m, *_: m.T),),
-    QUATERNION: (
-        _ways(conjugated=_times(1, -1, -1, -1)),
-        _LAST,
-        _NEGATIVE,
-        _ways(twice_the_angles=lambda m, q: m.xreplace({a: 2 * a for a in q[3:] or q})),
+# by name; `nodes.toml` has the words for them, and says which ways of which quantities there are
+_WAYS: dict[str, Way] = {
+    "": lambda m, *_: m,
+    "transposed": lambda m, *_: m.T,
+    "transposed_operator": lambda m, *_: m.T,
+    "other_side": lambda m, *_: _CONJUGATE * m.T * _CONJUGATE,
+    "scalar_last": _scalar_last,
+    "of_the_conjugate": _of_conjugate,
+    "twice_the_angles": lambda m, q: m.xreplace({a: 2 * a for a in q[3:] or q}),
+    "first_conjugated": lambda m, a, _: _opposite(m, a[-3:]),
+    "second_conjugated": lambda m, _, b: _opposite(m, b[-3:]),
+    "over_the_square": lambda m, _, b: m / sum(x**2 for x in b),
+    "by_the_inverse": lambda m, q, _: _opposite(m, q[1:]),
+    "times_square": lambda m, *vectors: m + _surplus(*vectors),
+    "of_unit_quaternion": lambda m, *vectors: m + 2 * _surplus(*vectors),
+    "of_any_length": lambda m, q, v: (m + _surplus(q, v)) / sum(x**2 for x in q),
+    "to_the_centre": lambda m, *vectors: _opposite(m, vectors[0]),
+    "of_transpose": lambda m, q: _opposite(m, q[1:]),
+    "order_132": lambda m, *_: m.extract([0, 2, 1], [0]),
+    "order_213": lambda m, *_: m.extract([1, 0, 2], [0]),
+    "second_solution": lambda m, *_: sp.Matrix(
+        [m[0] + sp.pi, -m[1] if m.has(sp.acos) else sp.pi - m[1], m[2] + sp.pi]
     ),
-    "quaternion_product": (
-        _ways(first_conjugated=lambda m, a, _: _opposite(m, a[-3:])),
-        _ways(second_conjugated=lambda m, _, b: _opposite(m, b[-3:])),
-        _ways(over_the_square=lambda m, _, b: m / sum(x**2 for x in b)),
-        _NEGATIVE,  # the same rotation
-        _LAST,
-    ),
-    "quaternion_rate_operator": (
-        _ways(transposed_operator=lambda m, *_: m.T),
-        _ways(other_side=lambda m, _: _CONJUGATE * m.T * _CONJUGATE),
-    ),
-    "rotated_vector": (
-        _ways(by_the_inverse=lambda m, q, _: _opposite(m, q[1:])),
-        {
-            name: lambda m, q, v, k=k: m + k * (sum(x**2 for x in q) - 1) * sp.Matrix(v)
-            for k, name in enumerate(("", "times_square", "of_unit_quaternion"), -1)
-        }
-        | {"of_any_length": lambda m, q, _: m / sum(x**2 for x in q)},
-    ),
-    "parallel_axis_theorem": (_ways(to_the_centre=lambda m, *v: _opposite(m, v[0])),),
-    ANGLES: (
-        _ways(
-            # −α, −β, −γ are those of the inverse rotation backwards, except about two axes.
-            **{s: _times(*(-1 if k in s else 1 for k in "123")) for s in WAYS if "opposite_" in s},
-            second_solution=lambda m, *_: sp.Matrix(
-                [m[0] + sp.pi, -m[1] if m.has(sp.acos) else sp.pi - m[1], m[2] + sp.pi]
-            ),
-        ),
-        _ways(of_transpose=lambda m, q: _opposite(m, q[1:])),
-        _ORDERS,
-    ),
+    **{way: _times(*map(sp.Rational, factors.split())) for way, factors in FACTORS.items()},
+    **{f"mirrored_{k + 1}": lambda m, v, k=k: _opposite(m, [v[k]]) for k in range(3)},
 }
 
 
@@ -213,12 +185,13 @@ class KnownQuantity:
     def __str__(self) -> str:
         return f"{self.quantity} of {self.rotation}" if self.rotation else self.quantity
 
-    def written(self, *ways: Ways) -> list[KnownQuantity]:
-        """The quantity in each combination of ways, as it is first."""
+    def written(self, ways: Sequence[str]) -> list[KnownQuantity]:
+        """The quantity in each combination of ways, one of each group, as it is first."""
         inputs, goals = tuple(self.inputs.values()), []
-        for names in product(*ways):
-            changes = (table[name] for table, name in zip(ways, names, strict=True))
-            matrix = reduce(lambda m, way: way(m, *inputs), changes, sp.Matrix(self.matrix))
+        for names in product(*(["", *group.split()] for group in ways)):
+            matrix = sp.Matrix(self.matrix)
+            for name in names:
+                matrix = _WAYS[name](matrix, *inputs)
             own = (*self.ways, *filter(None, names))
             goals.append(replace(self, ways=own, matrix=sp.ImmutableMatrix(matrix)))
         return goals
@@ -232,7 +205,8 @@ class KnownQuantity:
         if not has_order or self.has_own_names:
             return [self]
         step = 1 if self.quantity.startswith("rate_matrix") else -1
-        return self.written(_ways(rates_321=lambda m, *_: m[::step, ::-step]))
+        matrix = self.matrix[::step, ::-step]
+        return [self, replace(self, ways=(*self.ways, "rates_321"), matrix=matrix)]
 
 
 Family = tuple[KnownQuantity, ...]  # of the same inputs and shape, compared in one step
@@ -297,16 +271,16 @@ def _of_quantity(
     quantity: str, shape: tuple[int, int], has_turns: bool, count: int
 ) -> tuple[Family, ...]:
     # Half an angular velocity would be the vector part of any product of quaternions.
-    scaled = {name: way for name, way in _SCALED.items() if name != "half" or shape != (3, 1)}
-    of_rates = _OF_QUATERNION_RATES if 4 in shape else (scaled,) * (not has_turns)
-    of_rates += (_ORDERS,) * quantity.startswith("rates_from") * (shape == (3, 1))
-    ways = _WAYS.get(quantity, of_rates)
+    scaled = WAYS_OF["vector_rates" if shape == (3, 1) else "rates"] * (not has_turns)
+    of_rates = WAYS_OF["quaternion_rates"] if 4 in shape else scaled
+    is_rates = quantity.startswith("rates_from") and shape == (3, 1)
+    ways = WAYS_OF.get(quantity, of_rates + WAYS_OF[ANGLES][-1:] * is_rates)
     same_inputs: dict[Any, list[list[KnownQuantity]]] = {}
     for rotation in _rotations(quantity, shape, has_turns, count):
         goal = target(rotation, quantity)
         if goal.matrix.shape == shape:
             key = (*goal.inputs.items(), goal.motion.model.constraints)
-            same_inputs.setdefault(key, []).append(goal.written(*ways))
+            same_inputs.setdefault(key, []).append(goal.written(ways))
     return tuple(map(_family, same_inputs.values()))
 
 
@@ -363,17 +337,16 @@ def _steiner(mass: sp.Matrix, d: sp.Matrix, i: sp.Matrix) -> sp.Matrix:
     return _tensor(i) + BodyValues.steiner(mass[0], d)
 
 
-_PRODUCT, _STEINER = "quaternion_product", "parallel_axis_theorem"
-_ACCELERATION, _TORQUE = "euler_equations_acceleration", "euler_equations_torque"
-_WITH_INVERSE = f"{_ACCELERATION} with_inverse"
+_STEINER, _WITH_INVERSE = "parallel_axis_theorem", "euler_equations_acceleration with_inverse"
 _LAWS: tuple[tuple[str, tuple[int, ...], Way], ...] = (  # entries of each vector, and the value
-    *((_PRODUCT, sizes, _product) for sizes in ((4, 4), (4, 3), (3, 4))),
+    *(("quaternion_product", sizes, _product) for sizes in ((4, 4), (4, 3), (3, 4))),
     ("quaternion_rate_operator", (3,), _rate_operator),
-    ("rotated_vector", (4, 3), lambda q, v: rotation_of([*q]) * v),
-    *((_ACCELERATION, sizes, _acceleration) for sizes in ((3, 3, 3), (3, 3))),
+    ("rotated_vector", (4, 3), lambda q, v: rotation_of([*q]) * v - _surplus(q, v)),
+    ("cross_product_matrix", (3,), lambda v: v.hat()),
+    *(("euler_equations_acceleration", sizes, _acceleration) for sizes in ((3, 3, 3), (3, 3))),
     (_WITH_INVERSE, (3, 9, 3, 9), lambda w, i, t, k: _tensor(k) * (t - _torque(w, i))),
     (_WITH_INVERSE, (3, 9, 9), lambda w, i, k: -_tensor(k) * _torque(w, i)),
-    *((_TORQUE, (3, size, 3), _torque) for size in (3, 9)),
+    *(("euler_equations_torque", (3, size, 3), _torque) for size in (3, 9)),
     *((_STEINER, (1, 3, size), _steiner) for size in (6, 9)),
     (_STEINER, (1, 3, 3), lambda m, d, i: _steiner(m, d, i).diagonal().T),
     (_STEINER, (1, 3, 3), lambda m, d, i: i + _steiner(m, d, 0 * i).vec()[[1, 2, 5], 0]),
@@ -393,7 +366,7 @@ def _laws() -> tuple[Family, ...]:
         matrix = value(*map(sp.Matrix, vectors.values())).as_immutable()
         ways = (condition,) * bool(condition)
         law = replace(any_law, quantity=name, ways=ways, matrix=matrix, inputs=vectors)
-        laws.append(tuple(law.written(*(() if condition else _WAYS.get(name, ())))))
+        laws.append(tuple(law.written(() if condition else WAYS_OF.get(name, ()))))
     return tuple(laws)
 
 
@@ -410,7 +383,7 @@ def _of_angles() -> Family:
     rotation = target("unit_quaternion", "rotation_matrix")
     angles = replace(rotation, quantity=ANGLES)
     goals = (replace(angles, rotation=a, matrix=_angles(a, rotation.matrix)) for a in _THREE)
-    return _family([goal.written(*_WAYS[ANGLES]) for goal in goals])
+    return _family([goal.written(WAYS_OF[ANGLES]) for goal in goals])
 
 
 @cache
@@ -422,9 +395,11 @@ def _of_matrix() -> Family:
     goal = replace(rotation, quantity=QUATERNION, rotation=OF_MATRIX)
     goals = [replace(goal, matrix=sp.ImmutableMatrix(column)) for column in columns]
     # of the conjugate q* and of -q*, the component with the root is positive
-    others, signs = _WAYS[QUATERNION][1:-1], [1, -1, -1, -1]
-    ways = [_ways(by_columns=_times(sign, -sign, -sign, -sign)) for sign in signs]
-    return _family([g.written(way, *others) for g, way in zip(goals, ways, strict=True)])
+    cases, ways = [], WAYS_OF[QUATERNION][1:-1]
+    for goal, sign in zip(goals, [1, -1, -1, -1], strict=True):
+        other = replace(goal, ways=("by_columns",), matrix=sign * _CONJUGATE * goal.matrix)
+        cases.append([*goal.written(ways), *other.written(ways)])
+    return _family(cases)
 
 
 def _angles(axes: str, r: sp.MatrixBase) -> sp.ImmutableMatrix:
@@ -497,8 +472,7 @@ def meanings(formula: sp.MatrixBase, goal: KnownQuantity, *, is_asked: bool) -> 
     # Angles may count in the other sense, which for one turn is the transpose, and from another
     # axis.
     quarters = range(4) if len(turns) < 3 and goal.quantity != QUATERNION else (0,)
-    signs = (1, -1) if len(turns) > 1 else (1,)
-    senses = product(product(signs, quarters), repeat=len(symbols))
+    senses = product(product((1, -1)[: len(turns)], quarters), repeat=len(symbols))
     return [
         {s: sign * each[s] + k * sp.pi / 2 for s, (sign, k) in zip(each, sense, strict=True)}
         for sense in senses
@@ -512,8 +486,7 @@ def symbols_in(formula: sp.MatrixBase) -> tuple[list[sp.Symbol], set[sp.Symbol]]
     inside = {a for f in formula.atoms(sp.sin, sp.cos, sp.tan) for a in f.free_symbols}
 
     parts = {s: re.split(r"(\d+)", s.name) for s in formula.free_symbols}
-    ordered = sorted(parts, key=lambda s: [int(p) if p.isdecimal() else p for p in parts[s]])
-    return ordered, inside
+    return sorted(parts, key=lambda s: [int(p) if p.isdecimal() else p for p in parts[s]]), inside
 
 
 @lru_cache(maxsize=4096)
@@ -681,8 +654,7 @@ def evaluated(matrix: sp.MatrixBase, values: Values) -> Array:
 
 def named(names: Names, points: Values) -> Values:
     """Values of the names in a formula by what they mean, beside those of the inputs."""
-    own = {s: evaluated(sp.Matrix([meant]), points)[:, 0, 0] for s, meant in names.items()}
-    return points | own
+    return points | {s: evaluated(sp.Matrix([x]), points)[:, 0, 0] for s, x in names.items()}
 
 
 def sample(formula: sp.MatrixBase) -> Values:

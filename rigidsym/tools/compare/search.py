@@ -351,7 +351,9 @@ def _compared(
             comparison = replace(comparison, repairs=(*comparison.repairs, repair))
         if goal is not None and formula.is_flat and goal.ways == ("transposed",):
             comparison = replace(comparison, found=replace(goal, ways=("by_columns",)))
-        if goal is not None or comparison.is_reflection:
+        # right matrices of cross products are too many to be worth a line
+        is_plain = comparison.is_equal and str(goal) == "cross_product_matrix"
+        if (goal is not None and not is_plain) or comparison.is_reflection:
             return FormulaInFile(path, formula, comparison, is_case)
     if formula.unread and any(map(_may_be_known, formula.forms)):
         formula = replace(formula, reason=f"{_in_lines(formula.unread)} cannot be read")
