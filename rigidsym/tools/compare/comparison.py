@@ -30,6 +30,7 @@ from rigidsym.tools.compare.program import Formula, formula_matrix, is_length, p
 from rigidsym.tools.compare.quantities import ANGLES, QUATERNION, Array, KnownQuantity, Names
 from rigidsym.tools.compare.syntax import CHANGES, REMARKS, SHAPES, WAYS, WHOLE, limits, patterns
 
+_read = cache(program_formulas)
 _ANGLES = ["phi", "theta", "psi"]  # if nobody has chosen their names
 
 
@@ -385,9 +386,9 @@ def _sums(goal: KnownQuantity) -> list[tuple[list[sp.Matrix], Array, Array]]:
     """Terms of a quantity in vector notation, their values at all points, and their factors."""
     q, sums = {sp.Symbol(name, real=True): s for name, s in goal.names.items()}, []
     for text in syntax.SUMS.get(str(goal), ()):
-        terms = [f.forms[0].xreplace(q) for f in program_formulas(text, ".py") if "t_" in f.name]
+        terms = [f.forms[0].xreplace(q) for f in _read(text, ".py") if f.name.startswith("t_")]
         values = np.stack([known.evaluated(term, goal.points).ravel() for term in terms], axis=1)
-        factors = np.linalg.lstsq(values, goal.values.ravel(), rcond=None)[0].round(9)
+        factors = np.linalg.lstsq(values, goal.values.ravel(), rcond=None)[0].round(9) + 0.0
         sums.append((terms, values, factors))
     return sums
 
@@ -395,19 +396,21 @@ def _sums(goal: KnownQuantity) -> list[tuple[list[sp.Matrix], Array, Array]]:
 def _in_terms(formula: sp.ImmutableMatrix, trials: Sequence[_Trial]) -> Comparison | None:
     """The comparison with a sum in which terms have a wrong factor, as s u × v for 2 s u × v.
 
-    Such a mistake in vectors is one in all components.
+    Such a mistake in vectors is one in all components. One term may also be in place of another.
     """
+    said = "{} should have the factor {:g}, not {:g}"
     for trial in (each for each in trials if np.isfinite(each.numbers).all()):
         sums = [(k, *each) for k, goal in enumerate(trial.family) for each in _sums(goal)]
         for (n, names), (k, terms, values, wanted) in product(enumerate(trial.names), sums):
-            own = np.linalg.lstsq(values, numbers := trial.numbers[n].ravel(), rcond=None)[0]
-            place, count = (is_wrong := abs(own - wanted) > 1e-9).argmax(), np.count_nonzero(wanted)
-            ratios = np.divide(own, wanted, out=0 * own, where=wanted != 0)[is_wrong].round(9)
-            is_part = 0 < ratios.size < count and ratios[0] and {*ratios} == {ratios[0]}
-            if is_part and known.near(values @ own, numbers).all():
+            fit = np.linalg.lstsq(values, numbers := trial.numbers[n].ravel(), rcond=None)[0]
+            wrong = np.flatnonzero((own := fit.round(9) + 0.0) != wanted)
+            ratios = {own[i] / wanted[i] if wanted[i] else 0.0 for i in wrong}
+            is_part = len(ratios) == 1 and 0 not in ratios and len(wrong) < np.count_nonzero(wanted)
+            is_other = len(wrong) == 2 and ratios == {0} and {*own[wrong]} == {*wanted[wrong]}
+            if (is_part or is_other) and known.near(values @ fit, numbers).all():
                 goal, back = trial.family[k], {meant: name for name, meant in names.items()}
-                term = next(filter(None, terms[place].xreplace(back)))
-                words = f"{term} should have the factor {wanted[place]:g}, not {own[place]:.4g}"
+                entries = [next(filter(None, terms[i].xreplace(back))) for i in wrong]
+                words = ", and ".join(map(said.format, entries, wanted[wrong], own[wrong]))
                 repair = Repair("factor", f"{words}, in all entries", goal.matrix.xreplace(back))
                 return _proved(Reading(formula, goal, names, trial.agreement[n, k]), None, [repair])
     return None
