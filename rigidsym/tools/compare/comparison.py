@@ -590,7 +590,7 @@ def _decided(
 def branch(regular: Comparison, own: Formula, each: Formula) -> Comparison | None:
     """A formula beside the right one of another branch; None if it is not compared."""
     goal, runs, names = regular.found, each.conditions_beside(own), {*(regular.names or {})}
-    if goal is None or [f.shape for f in each.forms[:1]] != [goal.matrix.shape]:
+    if goal is None or regular.form or [f.shape for f in each.forms[:1]] != [goal.matrix.shape]:
         return None
     is_small, case = goal.rotation in known.OF_VECTORS[:2], replace(regular, formula=each.forms[0])
     # Runs without conditions that are not read, such as a flag. If there are others, at least the
@@ -619,8 +619,8 @@ def _truth(runs: Sequence[frozenset[sp.Expr]], values: known.Values) -> NDArray[
 def _at_poles(case: Comparison, goal: KnownQuantity, runs: Any, certain: Any) -> Comparison | None:
     """Whether the angles of a branch belong to the rotations for which it is taken.
 
-    Far from a pole, they are those of the formula beside it. At a pole, one of two angles may have
-    any value. Two points beside it, almost at the same rotation, tell how the other follows.
+    Far from a pole, a fixed angle, such as 0 or ±π/2, is wrong. At a pole, one of two angles may
+    have any value. Two points beside it, almost at the same rotation, tell how the other follows.
     """
     turn, names = known.target(goal.rotation, QUATERNION), case.names or {}
 
@@ -646,12 +646,13 @@ def _at_poles(case: Comparison, goal: KnownQuantity, runs: Any, certain: Any) ->
     # the formula beside the poles, they are not compared; one that is so makes the sum wrong.
     squares = [[a.args[0] ** 2 + a.args[1] ** 2 for a in e.atoms(sp.atan2)] for e in case.formula]
     sizes = known.evaluated(sp.Matrix([sp.Mul(*each) for each in squares]), here)[..., 0]
-    is_any = ~(sizes > 1e-9) | np.isnan(own)
+    is_fixed = np.array([here is beside or len({*angle.round(6)}) < 3 for angle in own.T])
+    is_any = (~(sizes > 1e-9) | np.isnan(own)) & is_fixed
     free = int((abs(changes[0]) - is_any[is_there].any(axis=0) / 2).argmax())
     wanted = right * ((own / right)[:, [free]] ** changes[:, [free]]) ** changes
     # the middle angle, whatever the others
-    is_odd = (changes == 0) & ~is_any & (abs(own - right) > 1e-3)
-    is_sure, is_off = is_any.sum(axis=1) < 2, is_any | (abs(own - wanted) > 1e-3)
+    is_odd = (changes == 0) & ~is_any & (abs(own - right) > 1e-3) & is_fixed
+    is_sure, is_off = is_any.sum(axis=1) < 2, is_any | (abs(own - wanted) > 1e-3) & is_fixed
     is_wrong = is_there & (is_odd.any(axis=1) | is_sure & is_off.any(axis=1))
     if not is_wrong.any():
         # the conditions are false where an arc sine in all of them has no value
