@@ -405,7 +405,9 @@ def _in_terms(formula: sp.ImmutableMatrix, trials: Sequence[_Trial]) -> Comparis
             fit = np.linalg.lstsq(values, numbers := trial.numbers[n].ravel(), rcond=None)[0]
             wrong = np.flatnonzero((own := fit.round(9) + 0.0) != wanted)
             ratios = {own[i] / wanted[i] if wanted[i] else 0.0 for i in wrong}
-            is_part = len(ratios) == 1 and 0 not in ratios and len(wrong) < np.count_nonzero(wanted)
+            # -R v of the inverse has the opposite sign in several terms
+            is_sure = 0 not in ratios and (len(wrong) == 1 or min(ratios, default=0) > 0)
+            is_part = is_sure and len(ratios) == 1 and len(wrong) < np.count_nonzero(wanted)
             is_other = len(wrong) == 2 and ratios == {0} and {*own[wrong]} == {*wanted[wrong]}
             if (is_part or is_other) and known.near(values @ fit, numbers).all():
                 goal, back = trial.family[k], {meant: name for name, meant in names.items()}
