@@ -605,6 +605,19 @@ def branch(regular: Comparison, own: Formula, each: Formula) -> Comparison | Non
     return None
 
 
+def holds(case: Comparison, own: Formula) -> bool:
+    """Whether a formula is right wherever its conditions hold, as an arc tangent for x > 0."""
+    runs, goal = own.conditions_beside(Formula(lines=(0,), name="")), case.found
+    if goal is None or not all(runs):
+        return False
+    values = known.named(case.names or {}, dict(goal.points))
+    right = known.near(goal.numbers(case.formula, values), goal.values)
+    with suppress(ExpressionError):  # a name without a value
+        is_there = _truth(runs, values)
+        return bool(is_there.any() and right[is_there].all())
+    return False
+
+
 def domain(value: Any) -> str:
     """A remark on arc sines and cosines of what no program has bounded."""
     arcs = (f for f in value.atoms(sp.asin, sp.acos) if f.args[0].func.__name__ != "clamp")

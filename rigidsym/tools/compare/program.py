@@ -1581,7 +1581,8 @@ def _roles(name: str) -> list[tuple[int, str, str]]:
     change = "Δ" * name.startswith("Δ")
     word = re.sub(r"^[Δδ]?_*|_?(val|rad|angle)?_*$", "", name.lower())
     kinds = [kind for kind, angles in enumerate(_COMPLETE) if word in angles]
-    return roles + [(-2 - kind, change, word) for kind in kinds if len(word) > 1 or word in "xyz"]
+    kinds = kinds if len(word) > 1 or word in "xyz" or name in [*"ABC"] else []
+    return roles + [(-2 - kind, change, word) for kind in kinds]
 
 
 def _below(path: Path, name: str) -> Path:
