@@ -78,6 +78,9 @@ class FormulaInFile:
         one, two = self.comparison, other.comparison
         if not (one and two) or one.is_wrong > two.is_wrong:
             return False
+        places = [(f.function, f.name, f.forms[0].shape) for f in (self.formula, other.formula)]
+        if places[0] == places[1] and are_angles(one.formula):  # one may be wrapped to a turn
+            return not (one.formula - two.formula).free_symbols
         if sorted(self.formula.lines) == sorted(other.formula.lines):
             return bool(one.formula == two.formula)
         is_near = self.formula.line - other.formula.line <= limits.near_lines
