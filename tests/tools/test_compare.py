@@ -208,6 +208,7 @@ UNAIDED = {
     "-q.x*v.x - q.y*v.y - q.z*v.z]": "quaternion_product",
     # gazebosim/gz-math, Inertial.hh
     "[J0 - m*d0*d1, J1 - m*d0*d2, J2 - m*d1*d2]": "parallel_axis_theorem",
+    "[[0, -p, -q, -r], [p, 0, r, -q], [q, -r, 0, p], [r, q, -p, 0]]": "quaternion_rate_operator",
 }
 
 

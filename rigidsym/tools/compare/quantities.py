@@ -34,7 +34,7 @@ from rigidsym.mechanics.body import BodyValues
 from rigidsym.mechanics.conversions.function import half_turn, outer_product, product as product_of
 from rigidsym.models.rotation import rotation_of
 from rigidsym.motion import Motion, derive
-from rigidsym.tools.compare.syntax import FACTORS, SHAPES, WAYS_OF, limits, patterns
+from rigidsym.tools.compare.syntax import RULES, SHAPES, WAYS_OF, limits, patterns
 
 Array = NDArray[Any]
 Values = dict[sp.Expr, Any]  # of expressions, at all points
@@ -53,9 +53,6 @@ _quadrants = _random.integers(-6, 7, TABLE.shape)
 _quadrants[..., :NEAR_POINTS] = _quadrants[-1] = 0
 TABLE += _quadrants * np.pi / 2
 _THREE = tuple(a + b + c for s in ("XYZ", "xyz") for a, b, c in product(s, repeat=3) if a != b != c)
-# Rotations whose angles nobody has named. Roll, pitch and yaw often have our names in another
-# order. In proper Euler angles, such as ZXZ, exchanged names are a mistake.
-_AXES_ONLY = re.compile(r"(?!.*(.).*\1)([XYZ]{3}|[xyz]{3}|[123]{3})")
 _SEQUENCES = {2: tuple(f"{a}(first) {b}(second)" for a, b in permutations("xyz", 2)), 3: _THREE}
 _SEQUENCES[1] = tuple(f"{a}(angle)" for a in "xyz")
 _OF_RATES = (*SHAPES[3, 3][1:], *SHAPES[3, 1])
@@ -75,22 +72,24 @@ _ENTRIES = sp.Matrix(3, 3, sp.symbols("R_1:4_1:4", real=True))
 _CONJUGATE = sp.diag(1, -1, -1, -1)
 
 
-def _opposite(matrix: sp.Matrix, inputs: Sequence[sp.Expr]) -> sp.Matrix:
-    return matrix.xreplace({symbol: -symbol for symbol in inputs})
+def _opposite(vector: int, first: int, end: int) -> Way:
+    """The way with the other sign of some entries of an input."""
+    return lambda m, *inputs: m.xreplace({s: -s for s in inputs[vector][first:end]})
 
 
-def _times(*factors: sp.Expr) -> Way:
+def _times(*factors: Any) -> Way:
     """The way with entries times one factor, or each row times its own."""
-    return lambda m, *_: sp.diag(*factors) * m if len(factors) > 1 else factors[0] * m
+    return lambda m, *_: sp.diag(*map(sp.Rational, factors * (m.rows // len(factors)))) * m
 
 
-def _scalar_last(matrix: sp.Matrix, *_: Sequence[sp.Expr]) -> sp.Matrix:
-    return matrix.extract(*([1, 2, 3, 0] if n == 4 else [*range(n)] for n in matrix.shape))
+def _in_order(*order: int) -> Way:
+    """The way with rows, and as many columns, in another order."""
+    return lambda m, *_: m.extract(*(order if n == len(order) else range(n) for n in m.shape))
 
 
 def _of_conjugate(matrix: sp.Matrix, q: Sequence[sp.Expr], *_: Sequence[sp.Expr]) -> sp.Matrix:
     """Of q*, whose rates are (q̇)*."""
-    matrix = _opposite(matrix, q[1:])
+    matrix = _opposite(0, 1, 4)(matrix, q)
     return _CONJUGATE * matrix if matrix.rows == 4 else matrix * _CONJUGATE
 
 
@@ -104,25 +103,18 @@ _WAYS: dict[str, Way] = {
     "transposed": lambda m, *_: m.T,
     "transposed_operator": lambda m, *_: m.T,
     "other_side": lambda m, *_: _CONJUGATE * m.T * _CONJUGATE,
-    "scalar_last": _scalar_last,
     "of_the_conjugate": _of_conjugate,
     "twice_the_angles": lambda m, q: m.xreplace({a: 2 * a for a in q[3:] or q}),
-    "first_conjugated": lambda m, a, _: _opposite(m, a[-3:]),
-    "second_conjugated": lambda m, _, b: _opposite(m, b[-3:]),
     "over_the_square": lambda m, _, b: m / sum(x**2 for x in b),
-    "by_the_inverse": lambda m, q, _: _opposite(m, q[1:]),
     "times_square": lambda m, *vectors: m + _surplus(*vectors),
     "of_unit_quaternion": lambda m, *vectors: m + 2 * _surplus(*vectors),
     "of_any_length": lambda m, q, v: (m + _surplus(q, v)) / sum(x**2 for x in q),
-    "to_the_centre": lambda m, *vectors: _opposite(m, vectors[0]),
-    "of_transpose": lambda m, q: _opposite(m, q[1:]),
-    "order_132": lambda m, *_: m.extract([0, 2, 1], [0]),
-    "order_213": lambda m, *_: m.extract([1, 0, 2], [0]),
     "second_solution": lambda m, *_: sp.Matrix(
         [m[0] + sp.pi, -m[1] if m.has(sp.acos) else sp.pi - m[1], m[2] + sp.pi]
     ),
-    **{way: _times(*map(sp.Rational, factors.split())) for way, factors in FACTORS.items()},
-    **{f"mirrored_{k + 1}": lambda m, v, k=k: _opposite(m, [v[k]]) for k in range(3)},
+    **{way: _times(*factors) for way, factors in RULES["factors"].items()},
+    **{way: _opposite(*place) for way, place in RULES["opposites"].items()},
+    **{way: _in_order(*order) for way, order in RULES["orders"].items()},
 }
 
 
@@ -250,7 +242,10 @@ def target(rotation: str, quantity: str) -> KnownQuantity:
     of_rates = rotation in _THREE and quantity in _OF_RATES
     motion = _kinematics(rotation, _OF_RATES if of_rates else (derived,))
     goal = of_motion(motion, quantity, rotation)
-    return replace(goal, has_own_names=not _AXES_ONLY.fullmatch(rotation))
+    # ZYX names no angles, and those of roll, pitch and yaw often have our names in another order.
+    # In proper Euler angles, such as ZXZ, exchanged names are a mistake.
+    is_of_three_axes = len(rotation) == len({*rotation}) == 3
+    return replace(goal, has_own_names=not is_of_three_axes)
 
 
 def families(formula: sp.MatrixBase) -> Iterator[Family]:
@@ -366,7 +361,7 @@ def _laws() -> tuple[Family, ...]:
         matrix = value(*map(sp.Matrix, vectors.values())).as_immutable()
         ways = (condition,) * bool(condition)
         law = replace(any_law, quantity=name, ways=ways, matrix=matrix, inputs=vectors)
-        laws.append(tuple(law.written(() if condition else WAYS_OF.get(name, ()))))
+        laws.append(tuple(law.written(WAYS_OF.get(name, ()))))
     return tuple(laws)
 
 

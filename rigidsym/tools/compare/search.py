@@ -15,18 +15,10 @@ import sympy as sp
 from rigidsym.errors import ExpressionError, RequestError
 from rigidsym.system.resources import environment
 from rigidsym.tools.compare import comparison as comparisons, quantities
-from rigidsym.tools.compare.comparison import (
-    Comparison,
-    branch,
-    domain,
-    halved,
-    holds,
-    identified,
-    mended,
-)
+from rigidsym.tools.compare.comparison import Comparison
 from rigidsym.tools.compare.program import UNNAMED, Formula, program_formulas
 from rigidsym.tools.compare.quantities import KnownQuantity, are_angles, are_body_rates
-from rigidsym.tools.compare.syntax import GRAMMARS, REMARKS, limits, patterns
+from rigidsym.tools.compare.syntax import GRAMMARS, REMARKS, SHAPES, limits, patterns
 
 _TRIGONOMETRIC = (sp.sin, sp.cos, sp.tan)
 # of SymPy or the file system, or by a defect of ours: other files are still read
@@ -34,7 +26,7 @@ _FAILURES: tuple[type[Exception], ...] = (ArithmeticError, AssertionError, Attri
 _FAILURES += (LookupError, MemoryError, OSError, RuntimeError, TypeError, ValueError)
 
 # programs repeat themselves
-_identified = lru_cache(maxsize=1024)(partial(identified, is_in_program=True))
+_identified = lru_cache(maxsize=1024)(partial(comparisons.identified, is_in_program=True))
 
 
 @dataclass(frozen=True, slots=True)
@@ -268,12 +260,13 @@ def _with_branches(
         common = frozenset.intersection(*own.conditions)
         is_guarded = any(not condition.has(*quantities.INVERSE) for condition in common)
         is_guarded |= own.is_bounded or patterns.guard.search(inside) is not None
-        remarks[id(finding)] = "" if is_guarded else domain(regular.formula)
+        remarks[id(finding)] = "" if is_guarded else comparisons.domain(regular.formula)
     for each in (formula for formula in program if formula.is_final):
         beside = [r for r in right if r[1].function == each.function]
         named = [r for r in beside if each.name == r[1].name or r[1].is_returned & each.is_returned]
-        branches = [(f, case) for f, own, regular in named if (case := branch(regular, own, each))]
-        for finding, case in sorted(branches, key=lambda judged: judged[1].is_wrong)[:1]:
+        judged = ((f, comparisons.branch(regular, own, each)) for f, own, regular in named)
+        branches = ((f, case) for f, case in judged if case)
+        for finding, case in sorted(branches, key=lambda branch: branch[1].is_wrong)[:1]:
             line = min({*each.lines} - {*finding.formula.lines} or each.lines)
             parts = f"{remarks[id(finding)]}; the branch in line {line} {case.branch}".split("; ")
             remarks[id(finding)] = "; ".join(dict.fromkeys(filter(None, parts)))
@@ -351,11 +344,12 @@ def _compared(
         goal = comparison.found
         if any(formula.computed.get(name, x) != x for name, x in comparison.supposed.items()):
             continue
-        if comparison.repairs and holds(comparison, formula):
+        if comparison.repairs and comparisons.holds(comparison, formula):
             comparison, is_case = replace(comparison, repairs=(), others=(), is_proved=False), True
         is_twice = goal is not None and "twice_the_angles" in goal.ways and goal.motion.model.turns
         if is_twice and form.free_symbols <= {*formula.names.values()}:  # no sines from elsewhere
-            comparison = mended(form, [halved(form, *quantities.symbols_in(form)[0])]) or comparison
+            change = comparisons.halved(form, *quantities.symbols_in(form)[0])
+            comparison = comparisons.mended(form, [change]) or comparison
         is_last = goal is not None and "scalar_last" in goal.ways
         if goal and len(form) == 4 and formula.scalar == ("first" if is_last else "last"):
             own = comparison.repairs[-1].formula if comparison.repairs else form
@@ -428,15 +422,14 @@ def _block(matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
 
 def _may_be_known(matrix: sp.ImmutableMatrix) -> bool:
     """Whether it is worth comparing: sines and cosines, or products of four or more names."""
-    if not 0 < len(matrix.free_symbols) <= limits.most_symbols * (1 + (matrix.cols == 1)):
+    names, is_vector = len(matrix.free_symbols), matrix.cols == 1
+    if matrix.shape not in SHAPES or not 0 < names <= limits.most_symbols * (1 + is_vector):
         return False
     if are_angles(matrix) or are_body_rates(matrix):
         return True
-    if matrix.shape not in ((3, 3), (3, 1), (4, 1), (4, 3), (3, 4), (4, 4)):
-        return False
     varied = sum(not entry.is_number for entry in matrix)
     if matrix.has(*_TRIGONOMETRIC):
-        return varied >= (2 if matrix.cols == 1 else 4)
-    if matrix.shape == (3, 1):  # an angular velocity, or rates, without sines
-        return varied == 3 and len(matrix.free_symbols) >= 6
-    return len(matrix.free_symbols) >= 3 and varied >= (4 if matrix.cols == 1 else 6)
+        return varied >= (2 if is_vector else 4)
+    # of three entries without sines, an angular velocity or rates
+    fewest = 6 if matrix.shape == (3, 1) else 3
+    return names >= fewest and varied >= (matrix.rows if is_vector else 6)

@@ -30,8 +30,8 @@ GRAMMARS, _KINDS, CALLS, SPELLINGS, NUMBERS = (  # of files, types of nodes, wor
     for title in ("grammars", "kinds", "words", "functions", "constants")
 )
 TYPES = {name: frozenset(types.split()) for name, types in _TABLES["types"].items()}
-_TITLES = ("changes", "factors", "remarks", "sums", "views", "ways", "ways_of", "whole")
-CHANGES, FACTORS, REMARKS, SUMS, VIEWS, WAYS, WAYS_OF, WHOLE = (_TABLES[title] for title in _TITLES)
+_TITLES = ("changes", "remarks", "rules", "sums", "views", "ways", "ways_of", "whole")
+CHANGES, REMARKS, RULES, SUMS, VIEWS, WAYS, WAYS_OF, WHOLE = (_TABLES[title] for title in _TITLES)
 SHAPES = {(int(s[0]), int(s[2])): names.split() for s, names in _TABLES["shapes"].items()}
 patterns = SimpleNamespace(orders=[order for n in _TABLES["orders"].values() for order in n])
 limits = SimpleNamespace(**_TABLES["limits"])
