@@ -128,7 +128,7 @@ def test_the_house_keeps_within_its_budgets():
     }
     sizes = {
         "files": len(PATHS),
-        "lines of code": 24_301,
+        "lines of code": sum(map(lines_of_code, TEXTS.values())),
         "lines of tests": lines["tests"],
         "lines of benchmarks": lines["benchmarks"],
     }
