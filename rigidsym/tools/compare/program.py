@@ -62,9 +62,14 @@ class _Record(dict[Any, tuple[Any, int]]):
     That of None stands for all others, if they are inputs.
     """
 
-    def at(self, key: Any) -> Any:
-        """The part at a key, or None."""
-        return self.get(key, (None, 0))[0]
+    def at(self, *path: Any) -> Any:
+        """The part at a path, or None."""
+        value: Any = self
+        for key in path:
+            if isinstance(key, slice) or not isinstance(value, _Record):
+                return None
+            value = value.get(key, (None, 0))[0]
+        return value
 
     def whole(self, *, is_row: bool = False) -> tuple[Any, list[int]]:
         """The vector, or the matrix of rows, if all is there, and the lines of its entries.
@@ -214,8 +219,6 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
     # All scopes are run once before any is run again: a long file is not read to its end.
     for count in range(limits.most_runs):
         for scope in scopes:
-            if count and not (scope.open and (scope.is_new or scope.waits)):
-                continue
             scope.now, scope.waits, scope.is_new = {}, scope.waits & scope.is_new, False
             run = _Run(program, scope)
             try:
@@ -232,6 +235,7 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
             reason = "it has too many branches" if count else "the file is too long"
             found.append(_fault(line, reason, is_end=not count))
             break
+        scopes = [each for each in scopes if each.open and (each.is_new or each.waits)]
     formulas: dict[Any, Formula] = {}
     for formula in found:
         key = (formula.lines, formula.forms or formula.name)
@@ -258,12 +262,12 @@ def _late(scope: Tree, is_python: bool) -> list[Tree]:
 
 def _product(text: str, suffix: str) -> str:
     """What * is for matrices: as in `_Program`."""
-    if suffix in TYPES["swizzling"]:
-        return "" if re.search(r"\bfloat[34]x[34]\b", text) else "*"
-    by_entries, of_matrices = patterns.numpy.search(text), patterns.matrices.search(text)
-    if suffix != ".py" or (of_matrices and not by_entries):
-        return "*"
-    return "%" if by_entries and not of_matrices else ""
+    if suffix == ".py":
+        libraries = {"%": patterns.numpy, "*": patterns.matrices}
+        signs = [sign for sign, words in libraries.items() if words.search(text)]
+        return signs[0] if len(signs) == 1 else ""
+    is_unknown = suffix in TYPES["swizzling"] and re.search(r"\bfloat[34]x[34]\b", text)
+    return "" if is_unknown else "*"
 
 
 def formula_matrix(text: str) -> sp.ImmutableMatrix:
@@ -351,7 +355,7 @@ class _Run:
             self.end = ""  # also before the results of MATLAB
             self.run(each)
         if not self.end:
-            self.emit(self.values)
+            self.emit()
 
     def run(self, tree: Tree) -> None:
         """One statement, or all statements in a block."""
@@ -379,9 +383,9 @@ class _Run:
                 outside[name] = self.values.get(name)
             value = (self.tried if is_value and each is tree.parts[-1] else self.run)(each)
         if outside:
-            self.emit(self.values, outside)
-            others = {name: each for name, each in self.values.items() if name not in outside}
-            self.values = _Record(others | {n: before for n, before in outside.items() if before})
+            self.emit(keys=outside)
+            parts = {**self.values, **outside}
+            self.values = _Record({name: part for name, part in parts.items() if part})
         return value
 
     def run_assign(self, tree: Tree) -> None:
@@ -400,7 +404,7 @@ class _Run:
             self.integers |= {left.text} if values[0].is_integer else set()
             try:
                 value = self.read(values[0])
-                source = self.part(self.values, self.path(values[0]) or ("",))
+                source = self.values.at(*(self.path(values[0]) or ("",)))
                 if isinstance(source, _Record):  # another name for the same matrix, or a copy
                     value = source if self.program.suffix in TYPES["sharing"] else deepcopy(source)
                 if values[0].kind == "list" and patterns.column_matrix.search(tree.declared_type):
@@ -419,7 +423,7 @@ class _Run:
         if right.kind == "call":
             right = right.parts[-1] if patterns.module.match(right.base) else right.owner or right
         names = self.written(left), self.written(right)
-        own = self.part(self.values, self.path(left) or names[0])  # B[0, 1] = v[2] is a number
+        own = self.values.at(*(self.path(left) or names[0]))  # B[0, 1] = v[2] is a number
         may_share = is_view if self.program.suffix == ".py" else self.program.suffix == ".cs"
         is_object = right.kind in ("name", "member", "index", "unary") and names[0] != names[1]
         mark = "|^[&*]" if "declarator" in tree.node.type else ""  # auto& b = a, b = &a
@@ -475,10 +479,10 @@ class _Run:
             value = self.renamed(path, value)
         if self.by_columns(path) and len(path) > 1 and isinstance(value, sp.MatrixBase):
             raise self.unreadable(left, "may be a column")
-        own = self.part(self.values, path)
+        own = self.values.at(*path)
         meant = (own, *map(self.definitions.get, own.free_symbols)) if _is_scalar(own) else ()
         if any(v is not None and v.has(*INVERSE) for v in meant):  # an angle, in another unit then
-            self.emit(self.part(self.values, path[:-1]), [], path[:-1], is_final=False)
+            self.emit(path[:-1], [], is_final=False)
         # A matrix may be complete only after R = R*S.
         is_own = right is not None and re.search(rf"\b{path[0]}\b", right.text) is not None
         self.emit_at(path, is_final=not is_own)
@@ -512,7 +516,7 @@ class _Run:
 
     def renamed(self, path: Path, value: sp.Expr) -> sp.Expr:
         """A value, or a symbol: for a long one, in another unit, or divided by a length."""
-        own = self.part(self.values, path)
+        own = self.values.at(*path)
         is_first = own is None and path[0] not in self.inputs
         own = sp.Symbol(_dotted(path), real=True) if own is None else own
         if value.is_Mul and _is_scalar(own) and (own in value.args or own.is_Mul):
@@ -556,9 +560,7 @@ class _Run:
         """An expression or a matrix with long values for their symbols."""
         for _ in range(limits.long_in_long):
             parts = {s: v for s in value.free_symbols if (v := self.definitions.get(s)) is not None}
-            if not parts or _size(value) > limits.most_parts:
-                break
-            value = value.xreplace(parts)
+            value = value.xreplace(parts) if _size(value) <= limits.most_parts else value
         return value
 
     def update(self, tree: Tree, sign: str) -> None:
@@ -599,13 +601,13 @@ class _Run:
             count = len(self.formulas)
             self.emit_at(each, is_final=False)
             own = [(" ".join(t.text.split()), t.line) for t in parts if self.written(t) == each][:1]
-            new = [replace(f, unread=(*f.unread, *own)) for f in self.formulas[count:]]
-            self.formulas[count:] = new
+            new = self.formulas[count:]
+            self.formulas[count:] = [replace(f, unread=(*f.unread, *own)) for f in new]
         for each in objects:
             self.lose(each, tree.line)
 
     def lose(self, path: Path, line: int) -> None:
-        value = self.part(self.values, path)
+        value = self.values.at(*path)
         names = self.values.items() if isinstance(value, _Record) else ()  # few, of many names
         for each in [(name,) for name, (part, _) in names if part is value] or [path]:
             self.put(each, self.symbol_for(each, None, line), line)
@@ -646,7 +648,7 @@ class _Run:
             self.run(each)  # until a break
         self.end = "" if tree.kind == "switch" and self.end == "break" else self.end
         if block.parts:
-            self.emit(self.values, [])
+            self.emit(keys=[])
 
     run_switch = run_if
 
@@ -724,7 +726,7 @@ class _Run:
         self.run_raise(tree)
 
     def run_raise(self, _: Tree) -> None:
-        self.emit(self.values)
+        self.emit()
         self.end = "return"
 
     def run_call(self, tree: Tree) -> None:
@@ -761,8 +763,7 @@ class _Run:
         by_value = self.first or (self.program.suffix == ".rs" and "&mut" not in tree.text)
         trees = [tree.owner, *tree.parts[1 : 1 if by_value else None]]
         paths = {self.written(each): each.is_reference for each in trees if each is not None}
-        matrices = {p for p in paths if p and isinstance(self.part(self.values, p), _Record)}
-        return matrices | {p for p, is_reference in paths.items() if is_reference}
+        return {p for p in paths if paths[p] or (p and isinstance(self.values.at(*p), _Record))}
 
     def run_comma(self, tree: Tree) -> None:
         """a = b, c = d; or R << a, b, c."""
@@ -771,12 +772,13 @@ class _Run:
             left, *right = *first.parts, *others
             parts = self.beside_scalar([*map(self.read, right)])
             sizes = {as_matrix(each).shape for each in parts}
-            is_row = re.search(rf"Row\w*\s[^;]*\b{right[0].text}\b", self.scope.tree.text)
+            word = re.escape(right[0].text)
+            is_row = re.search(rf"Row\w*\s[^;]*\b{word}\b", self.scope.tree.text)
             if sizes == {(1, 1), (3, 1)}:
                 value = called("stack", parts)
             else:
-                value = _unflattened(rows(parts)).T if sizes == {(3, 1)} and not is_row else None
-                value = self.place(_unflattened(rows(parts)), right) if value is None else value
+                value = _unflattened(rows(parts))
+                value = value.T if sizes == {(3, 1)} and not is_row else self.place(value, right)
             self.store(left, value)
         else:
             self.run_block(Tree(tree.node, own=[t for t in tree.parts if t.kind != "binary"]))
@@ -788,12 +790,11 @@ class _Run:
     def emit_at(self, path: Path, *, is_final: bool) -> None:
         """A matrix has its values, before another is assigned."""
         if len(path) == 1 and isinstance(self.values.at(path[0]), _Record):
-            self.emit(self.values, path, is_final=is_final)
+            self.emit(keys=path, is_final=is_final)
 
-    def emit(
-        self, record: _Record, keys: Any = None, path: Path = (), *, is_final: bool = True
-    ) -> None:
+    def emit(self, path: Path = (), keys: Any = None, *, is_final: bool = True) -> None:
         """All matrices and vectors among the parts of a record have their values."""
+        record: _Record = self.values.at(*path)
         for key in [*record] if keys is None else keys:
             part, own = record.at(key), (*path, key)
             if not isinstance(part, _Record):
@@ -802,7 +803,7 @@ class _Run:
             if matrix is not None and len(matrix) > 2:
                 self.add(_dotted(own), matrix, *lines, is_final=is_final)
             else:
-                self.emit(part, path=own, is_final=is_final)
+                self.emit(own, is_final=is_final)
             scalar, line = record.get("w", (None, 0))
             is_vector = matrix is not None and matrix.shape == (3, 1) and not are_angles(matrix)
             if is_vector and _is_scalar(scalar):
@@ -863,15 +864,15 @@ class _Run:
         unread = {s.name for s in inputs if self.definitions.get(s, s) is None}
         names = _short_names(symbols - squares)
         names |= {s: self.square(v, names) for v, s in self.squares.items()}
-        computed = [names.get(s, s) for s in self.definitions]
-        forms = [language.spelled_out(m.xreplace(names), computed) for m in (whole, value)]
+        values = [names.get(s, s) for s in self.definitions]
+        forms = [language.spelled_out(m.xreplace(names), values) for m in (whole, value)]
         places = tuple((_last(n), self.unread.get(n) or min(lines)) for n in sorted(unread))
-        own = {s: self.expanded(known[s]).xreplace(names) for s in symbols & known.keys()}
+        computed = {names[s]: self.expanded(known[s]).xreplace(names) for s in symbols & {*known}}
         called_ = ", ".join(map(_last, name.split(", ")))
         formula = Formula(lines=lines, name=called_, forms=tuple(dict.fromkeys(forms)))
         formula = replace(formula, unread=places, is_final=is_final, is_flat=is_flat, names=names)
-        formula = replace(formula, is_bounded=is_bounded, **self.facts.get(key, {}))
-        formula = replace(formula, computed={names.get(s, s): value for s, value in own.items()})
+        formula = replace(formula, computed=computed, is_bounded=is_bounded)
+        formula = replace(formula, **self.facts.get(key, {}))
         conditions = frozenset(map(sum, self.conditions.items()))
         self.formulas.append(replace(formula, conditions=frozenset({conditions})))
 
@@ -1098,11 +1099,9 @@ class _Run:
     def of_tensor(self, left: Any, right: Any) -> Any:
         """n nᵀ, nᵀ n, I⁻¹ (... + w × I w), or C(w) I w; None for another product."""
         for side, other, meaning in ((left, right, "outer"), (right, left, "dot")):
-            names = side.free_symbols if _is_scalar(side) else ()
-            for name in (
-                s for s in names if str(other) == f"{s.name}.T" and s not in (side / s).args
-            ):
-                if _last(name.name)[0].islower():
+            for name in side.free_symbols if _is_scalar(side) else ():
+                is_one = str(other) == f"{name}.T" and name not in (side / name).args
+                if is_one and _last(name.name)[0].islower():
                     return side / name * self.of_vectors(meaning, [name, name])
         if self.is_moment(right) and _is_scalar(left):
             inverse = sp.Symbol(f"{1 / left}_inv", real=True) if 1 / left in self.tensors else left
@@ -1141,6 +1140,7 @@ class _Run:
     def read_choose(self, tree: Tree, parts: Sequence[Tree] = ()) -> Any:
         """One of two values."""
         condition, *trees = parts or tree.parts
+        self.refuse_if(len(trees) != 2, tree)  # a ?: b
         if condition.constant is not None:
             return self.read(trees[not condition.constant])
         value = self.bounded_value(condition, trees)
@@ -1152,8 +1152,8 @@ class _Run:
         one, two = map(self.tried, trees) if sign else (None, None)
         bound = {">": 1, "<": -1}.get(sign, math.nan)  # the value if the condition is true
         for limit, other, side in ((one, two, 1), (two, one, -1)):
-            is_limit = limit == side * bound and abs(number - limit) < 0.01
-            if is_limit and _inner(own) == _inner(other):
+            is_near = limit == side * bound and abs(number - limit) < 0.01
+            if is_near and _inner(own) == _inner(other):
                 return _Bounded(_inner(own))
         return None
 
@@ -1219,7 +1219,7 @@ class _Run:
             return (*owner, *(self.index(nodes[0]), _ALL)[:: 1 if name == "row" else -1])
         is_known = word in _WORDS and (len(nodes) != 2 or len(word) > 1)  # T(2), but not t(1, 2)
         is_own = word in self.program.functions and not self.first
-        if is_own or (is_known and self.part(self.values, (*owner, name)) is None):
+        if is_own or (is_known and self.values.at(*owner, name) is None):
             return ()
         return self.indexed((*owner, name), nodes) if len(nodes) <= 2 + self.first else ()
 
@@ -1255,14 +1255,6 @@ class _Run:
         value = self.definitions.get(value, value)
         return int(value) if isinstance(value, sp.Integer) else None
 
-    def part(self, value: Any, path: Path) -> Any:
-        """What is stored at a path, or None."""
-        for key in path:
-            if isinstance(key, slice) or not isinstance(value, _Record):
-                return None
-            value = value.at(key)
-        return value
-
     def named(self, tree: Tree) -> Any:
         """A name, an entry, a component, or several: q.xyz."""
         path = self.path(tree)
@@ -1278,7 +1270,7 @@ class _Run:
         if start is None:
             self.inputs.add(path[0])
             start = sp.Symbol(path[0], real=True)
-        whole = self.part(self.values, path[:-1]) if path[-1] in [*"wxyz"] else None
+        whole = self.values.at(*path[:-1]) if path[-1] in [*"wxyz"] else None
         is_list = isinstance(whole, _Record) and whole.keys() == {0, 1, 2, 3}
         if is_list and self.program.suffix not in TYPES["swizzling"]:  # in which order nobody knows
             return sp.Symbol(_dotted(path), real=True)
@@ -1319,10 +1311,8 @@ class _Run:
             numbers = range(len(lines))[key] if lines else of_name
             parts = [self.entry(tree, value, (k, *others)) for k in numbers]
             return parts[0] if len(parts) == 1 else rows(parts)
-        if lines:
-            part = lines[key] if key in range(len(lines)) else None
-        else:
-            part = self.component(value, key + self.first if isinstance(key, int) else key)
+        number = key + self.first if isinstance(key, int) else key
+        part = dict(enumerate(lines)).get(key) if lines else self.component(value, number)
         self.refuse_if(part is None, tree, "has no value")
         return self.entry(tree, part, tuple(others))
 
@@ -1407,8 +1397,7 @@ class _Run:
             case "fused" | "fma" if [len(nodes), name != "mul_add"] == [3, len(arguments) == 3]:
                 return combined("+", combined("*", *map(self.read, nodes[:2])), self.read(nodes[2]))
             case "solve" if len(nodes) == 2:
-                left, right = map(self.read, nodes)
-                left = self.of_vectors("inv", [left])
+                left, right = self.of_vectors("inv", [self.read(nodes[0])]), self.read(nodes[1])
                 product = self.of_tensor(left, right)
                 return combined("*", left, right) if product is None else product
             case "where" if len(nodes) == 3:
@@ -1490,12 +1479,12 @@ class _Run:
 
     def filled(self, tree: Tree) -> Any:
         """zeros(3, 3), Matrix3d::Identity()."""
-        numbers = [int(n) for each in tree.parts[1:] for n in re.findall(r"\d+", each.text)]
-        sizes, is_zero = numbers[-2:] or [3], CALLS[tree.called] == "zeros"
+        numbers = [n for each in tree.parts[1:] for n in re.findall(r"\d+", each.text)]
+        sizes, is_zero = numbers[-2:] or [*"3"], CALLS[tree.called] == "zeros"
         is_column = len(sizes) == 1 and len(tree.parts) > 1 and is_zero and not self.first
         is_vector = is_column or re.search("vec|quat", tree.base, re.IGNORECASE)
-        self.refuse_if(is_vector or not {*sizes} <= {3, 4}, tree)
-        return sp.ImmutableMatrix((sp.zeros if is_zero else sp.eye)(sizes[0], sizes[-1]))
+        self.refuse_if(is_vector or not {*sizes} <= {*"34"}, tree)
+        return sp.ImmutableMatrix((sp.zeros if is_zero else sp.eye)(int(sizes[0]), int(sizes[-1])))
 
     def stacked(self, tree: Tree, by_columns: bool = False) -> Any:
         axis, nodes = tree.options, tree.parts[1:]
@@ -1521,21 +1510,19 @@ class _Run:
 
     def inline(self, tree: Tree) -> Any:
         """The value of a function of the same file."""
-        name, nodes = tree.called, tree.parts[1:]
+        name, nodes, suffix = tree.called, tree.parts[1:], self.program.suffix
         every = self.program.functions[name]
-        counted = [t for t in every if len({*t.parameters} - _OBJECTS) == len(nodes)]
-        own = [each for each in counted if each.node != self.scope.tree.node]
-        is_one = len(own) == 1
-        if len(every) > 1:  # the count of arguments tells which is called, in some languages
-            is_one &= self.program.suffix not in TYPES["real"] | {".rs"}
-            is_one &= len({each.around for each in every}) == 1
+        others = [(t, [n for n in t.parameters if n not in _OBJECTS]) for t in every]
+        own = [(t, n) for t, n in others if len(n) == len(nodes) and t.node != self.scope.tree.node]
+        # the count of arguments tells which is called, in some languages
+        is_one = len(every) == 1 or suffix not in TYPES["real"] | {".rs"}
+        is_one &= len({each.around for each in every}) == len(own) == 1
         self.refuse_if(not is_one or self.inlined >= limits.inlined, tree)
-        around = own[0].around
-        is_known = around.start_byte <= tree.node.start_byte < around.end_byte
+        [(function, names)] = own
+        is_known = function.around.start_byte <= tree.node.start_byte < function.around.end_byte
         self.refuse_if(not tree.base and (not is_known or name in self.inputs), tree)  # another's
-        scope = replace(self.scope, tree=own[0])
+        scope = replace(self.scope, tree=function)
         inner = _Run(self.program, scope, self.inlined + 1)
-        names = [name for name in own[0].parameters if name not in _OBJECTS]
         for each, node in zip(names, nodes, strict=True):
             inner.put((each,), self.read(node), 0)
         inner.run_scope()
