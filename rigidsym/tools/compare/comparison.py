@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
 from itertools import chain, permutations, product
 from posixpath import commonprefix
@@ -18,7 +18,6 @@ from typing import Any
 import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
-from sympy.core.function import AppliedUndef
 
 from rigidsym.algebra.generators import in_names
 from rigidsym.errors import AlgebraError, DerivationError, ExpressionError, ModelError
@@ -75,10 +74,8 @@ class Reading:
             own = {s for s, meant in self.names.items() if condition.has(meant)}
             sums = self.formula.atoms(sp.Add)
             if any(is_length(each) and each.free_symbols == own for each in sums):
-                values = {s: self.values[s] for s in self.names}
-                twice = values | {s: 2 * values[s] for s in own}
-                one, other = (self.goal.numbers(self.formula, each) for each in (values, twice))
-                return bool(known.near(other, one).all())
+                twice = {s: self.values[s] * (1 + (s in own)) for s in self.names}
+                return self.agrees(self.formula, self.goal.numbers(self.formula, twice))
         return True
 
     def agrees(self, changed: sp.MatrixBase, wanted: Array) -> bool:
@@ -90,7 +87,8 @@ class _Trial:
 
     def __init__(self, formula: sp.ImmutableMatrix, family: Any, *, is_asked: bool) -> None:
         goal = family[0]
-        self.formula, self.family, self.wanted = formula, family, known.values_of(family)
+        self.formula, self.family = formula, family
+        self.wanted = np.stack([each.values for each in family])  # (goals, points, rows, columns)
         self.names = known.meanings(formula, goal, is_asked=is_asked)
         # (meanings, points, rows, columns)
         self.numbers = np.empty((0, known.POINTS, *formula.shape))
@@ -127,7 +125,7 @@ class Comparison:
     formula: sp.ImmutableMatrix
     asked: KnownQuantity | None  # what it should be
     found: KnownQuantity | None = None  # what it is after the repairs
-    names: Names | None = None
+    names: Names = field(default_factory=dict)
     repairs: tuple[Repair, ...] = ()
     is_proved: bool = False  # that the repaired formula is what was found
     counterexample: str = ""  # where the formula is wrong, if it is right for some angles only
@@ -143,7 +141,7 @@ class Comparison:
     @property
     def arrangement(self) -> str:
         """How what was found is written: "transposed", "scalar last", "twice"."""
-        odd = [(str(name), known.oddness(meant)) for name, meant in (self.names or {}).items()]
+        odd = [(str(name), known.oddness(meant)) for name, meant in self.names.items()]
         opposite = " and ".join(sorted(name for name, kind in odd if kind % 2))
         turned = " and ".join(sorted(name for name, kind in odd if kind > 1))
         words = (
@@ -158,9 +156,8 @@ class Comparison:
     @property
     def supposed(self) -> dict[sp.Symbol, sp.Expr]:
         """Names that are lengths if the formula is right, and these lengths in its own names."""
-        names = self.names or {}
-        lengths = {name: x for name, x in names.items() if is_length(x) or is_length(2 / x)}
-        own = {x: name for name, x in names.items() if name not in lengths}
+        lengths = {name: x for name, x in self.names.items() if is_length(x) or is_length(2 / x)}
+        own = {x: name for name, x in self.names.items() if name not in lengths}
         return {name: x.xreplace(own) for name, x in lengths.items()}
 
     @property
@@ -193,11 +190,13 @@ class Comparison:
     def text(self) -> str:
         """The findings in sentences."""
         asked, found, called = self.asked, self.found, self._called()
-        calls = []  # the names of coordinates: ours, the user's, and the axis of the turn
-        if found and found.rotation:
-            for own, axis in found.coordinates.items():
-                name = called.get(own) or known.stem_of(called.get(f"{own}_dot", ""))
-                calls += [(own, name, axis)] if name else []
+        coordinates = found.coordinates if found else {}
+        names = {
+            own: called.get(own) or known.stem_of(called.get(f"{own}_dot", ""))
+            for own in coordinates
+        }
+        # the names of coordinates: ours, the user's, and the axis of the turn
+        calls = [(own, names[own], axis) for own, axis in coordinates.items() if names[own]]
         product = found.inputs.values() if found and found.quantity == "quaternion_product" else ()
         factors = [[called.get(str(s), "") for s in vector] for vector in product]
         fixed = asked.coordinates.items() if asked and asked.has_own_names else ()
@@ -212,10 +211,7 @@ class Comparison:
 
     def _called(self) -> dict[str, str]:
         """Names of the user by those of the quantity that was found."""
-        symbols: dict[sp.Basic, str] = {}
-        for name, meant in (self.names or {}).items():
-            angles = meant.atoms(AppliedUndef) if known.oddness(meant) else {meant}
-            symbols |= dict.fromkeys(angles, str(name))
+        symbols = {known.input_in(meant): str(name) for name, meant in self.names.items()}
         own = self.found.names if self.found else {}
         return {name: symbols[symbol] for name, symbol in own.items() if symbol in symbols}
 
@@ -591,7 +587,7 @@ def _decided(
 
 def branch(regular: Comparison, own: Formula, each: Formula) -> Comparison | None:
     """A formula beside the right one of another branch; None if it is not compared."""
-    goal, runs, names = regular.found, each.conditions_beside(own), {*(regular.names or {})}
+    goal, runs, names = regular.found, each.conditions_beside(own), {*regular.names}
     if goal is None or regular.form or [f.shape for f in each.forms[:1]] != [goal.matrix.shape]:
         return None
     is_small, case = goal.rotation in known.OF_VECTORS[:2], replace(regular, formula=each.forms[0])
@@ -610,7 +606,7 @@ def holds(case: Comparison, own: Formula) -> bool:
     runs, goal = own.conditions_beside(Formula(lines=(0,), name="")), case.found
     if goal is None or not all(runs):
         return False
-    values = known.named(case.names or {}, dict(goal.points))
+    values = known.named(case.names, dict(goal.points))
     right = known.near(goal.numbers(case.formula, values), goal.values)
     with suppress(ExpressionError):  # a name without a value
         is_there = _truth(runs, values)
@@ -637,12 +633,12 @@ def _at_poles(case: Comparison, goal: KnownQuantity, runs: Any, certain: Any) ->
     Far from a pole, a fixed angle, such as 0 or ±π/2, is wrong. At a pole, one of two angles may
     have any value. Two points beside it, almost at the same rotation, tell how the other follows.
     """
-    turn, names = known.target(goal.rotation, QUATERNION), case.names or {}
+    turn = known.target(goal.rotation, QUATERNION)
 
     def at(*angles: Array) -> known.Values:
         q = known.evaluated(turn.matrix, dict(zip(turn.inputs["q"], angles, strict=True)))[..., 0].T
         q[1:] *= -1 if "of_transpose" in goal.ways else 1
-        return known.named(names, dict(zip(goal.inputs["q"], q, strict=True)))
+        return known.named(case.names, dict(zip(goal.inputs["q"], q, strict=True)))
 
     first, last = known.TABLE[0, :2]
     side = np.repeat([1, -1], known.POINTS // 2)
@@ -671,8 +667,9 @@ def _at_poles(case: Comparison, goal: KnownQuantity, runs: Any, certain: Any) ->
     is_wrong = is_there & (is_odd.any(axis=1) | is_sure & is_off.any(axis=1))
     if not is_wrong.any():
         # the conditions are false where an arc sine in all of them has no value
-        remarks = ["is right at a pole (gimbal lock)", *{domain(c) for run in runs for c in run}]
-        remark = replace(case, branch="; ".join(remarks) if all(remarks) else remarks[0])
+        arcs = sorted({domain(c) for run in runs for c in run})
+        words = "; ".join(["is right at a pole (gimbal lock)", *arcs * all(arcs)])
+        remark = replace(case, branch=words)
         return remark if (is_sure & is_beside).any() else None
     k = is_wrong.argmax()
     place = (int(is_off[k].argmax()) + 1, 1)
@@ -690,7 +687,7 @@ def _small_angles(case: Comparison, goal: KnownQuantity, runs: Any, _: Any) -> C
 
     def at(size: Array) -> known.Values:
         line = [n / 7 * size ** (not q[3:]) for n in (2, 3, 6)]
-        return known.named(case.names or {}, dict(zip(q, [*line, size], strict=False)))
+        return known.named(case.names, dict(zip(q, [*line, size], strict=False)))
 
     is_there = _truth(runs, at(np.repeat([1e-12, 1.0], count // 2)))
     circle = at(np.exp(2j * np.pi * np.arange(count) / count) / 2)
@@ -781,7 +778,7 @@ def _entry(reading: Reading, place: tuple[int, int]) -> tuple[str, sp.Expr]:
     # No single change is enough: the entry of the goal is written in the names of the formula.
     own = dict[sp.Expr, sp.Expr]()
     for symbol, meant in reading.names.items():
-        angle = next(iter(meant.atoms(AppliedUndef))) if known.oddness(meant) else meant
+        angle = known.input_in(meant)
         sign = meant.coeff(angle)  # of an angle in the other sense, or from another axis
         own[angle] = sign * (symbol - (meant - sign * angle))
     return "entry", goal.matrix[place].xreplace(own)

@@ -174,11 +174,9 @@ def spelled_out(
             letters_of.setdefault(match[2], {})[match[1][0]] = symbol
     values: dict[sp.Symbol, sp.Expr] = {}
     for stem, letters in letters_of.items():
-        is_pair = {"s", "c"} <= letters.keys()
-        if not is_pair:
-            letters.pop("v", None)  # a versine has a sine and a cosine beside it
-        if is_pair or (len(stem) > 1 and patterns.angle.fullmatch(stem)):
-            name = stem if stem[:1].isalpha() else f"angle{stem}" if stem else only
-            angle = sp.Symbol(name, real=True)
-            values |= {symbol: _FULL[letter](angle) for letter, symbol in letters.items()}
+        is_pair, is_angle = {"s", "c"} <= letters.keys(), patterns.angle.fullmatch(stem)
+        name = stem if stem[:1].isalpha() else f"angle{stem}" if stem else only
+        for letter, symbol in letters.items():  # a versine has a sine and a cosine beside it
+            if is_pair or (is_angle and len(stem) > 1 and letter != "v"):
+                values[symbol] = _FULL[letter](sp.Symbol(name, real=True))
     return sp.ImmutableMatrix(matrix.xreplace(values))

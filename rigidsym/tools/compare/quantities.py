@@ -204,12 +204,6 @@ class KnownQuantity:
 Family = tuple[KnownQuantity, ...]  # of the same inputs and shape, compared in one step
 
 
-@cache
-def values_of(family: Family) -> Array:
-    """(goals, points, rows, columns)."""
-    return np.stack([goal.values for goal in family])
-
-
 def of_motion(motion: Motion, quantity: str, rotation: str) -> KnownQuantity:
     """A quantity of a derivation."""
     if quantity == QUATERNION:
@@ -492,6 +486,11 @@ def oddness(meant: sp.Expr) -> int:
     return 0 if is_input else 2 * bool(meant.is_Add) + (meant.coeff(angle) == -1)
 
 
+def input_in(meant: sp.Expr) -> sp.Expr:
+    """The input of which a name has the value, the opposite value, or one from another axis."""
+    return next(iter(meant.atoms(AppliedUndef))) if oddness(meant) else meant
+
+
 def _of_turns(
     inside: set[sp.Symbol], goal: KnownQuantity, symbols: Sequence[sp.Symbol]
 ) -> Iterator[Names]:
@@ -508,7 +507,7 @@ def _of_turns(
     if bool(rates) != ("q_dot" in goal.inputs) or not (rates or len(others) == len(of_others)):
         return
     coordinates = sorted({*angles, *rates.values()})
-    for order in permutations(q, len(coordinates)) if len(coordinates) <= len(q) else ():
+    for order in permutations(q, len(coordinates)):
         of_name = dict(zip(coordinates, order, strict=True))
         meant = {s: of_name[s.name] for s in symbols if s in inside}
         meant |= {s: of_name[name].diff() for s, name in rates.items()}
@@ -568,14 +567,12 @@ def grouped(names: tuple[tuple[sp.Symbol, str], ...]) -> list[list[tuple[sp.Symb
             group.sort(key=lambda each: (each[0] not in ("w", "r"), each[0].rjust(3)))
         vectors = [tuple(symbol for _, symbol in group) for group in groups.values()]
         groupings.append(vectors)
-        for scalar, vector in permutations(vectors, 2):
-            if (len(scalar), len(vector)) == (1, 3):  # w beside this.x
-                others = [v for v in vectors if v not in (scalar, vector)]
-                groupings.append([*others, scalar + vector])
-        for state in vectors:  # angular velocity and quaternion in one array
-            if len(state) == 7:
-                others = [v for v in vectors if v != state]
-                groupings += [[*others, state[:k], state[k:]] for k in (3, 4)]
+        # w beside this.x, and angular velocity and quaternion in one array
+        pairs = (pair for pair in permutations(vectors, 2) if [*map(len, pair)] == [1, 3])
+        changes = [((scalar, vector), (scalar + vector,)) for scalar, vector in pairs]
+        states = (((v,), (v[:k], v[k:])) for v in vectors if len(v) == 7 for k in (3, 4))
+        for old, new in chain(changes, states):
+            groupings.append([*(v for v in vectors if v not in old), *new])
     return [groups for k, groups in enumerate(groupings) if groups not in groupings[:k]]
 
 

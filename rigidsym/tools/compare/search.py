@@ -146,12 +146,11 @@ def _wrong_part(finding: FormulaInFile, wrong: Sequence[FormulaInFile], text: st
 
     Or a wrong vector whose components are names in a formula.
     """
-    own, depth, statement = finding.formula, 0, ""
+    own, statement = finding.formula, ""
     names = {symbol.name for form in own.forms for symbol in form.free_symbols}
     for line in _lines(text)[own.line - 1 :] if finding in wrong else ():
         statement += line
-        depth += sum((letter in "([{") - (letter in ")]}") for letter in line)
-        if depth <= 0:
+        if sum(map(statement.count, "([{")) <= sum(map(statement.count, ")]}")):
             break
     for formula in (each.formula for each in wrong):
         name, end = formula.name, r"\b"
@@ -247,8 +246,7 @@ def _with_branches(
     case of Shepperd's method is wrong if it contradicts two others or more.
     """
     right = [(f, f.formula, f.comparison) for f in found if f.comparison and f.comparison.is_equal]
-    remarks, wrong = dict[int, str](), dict[Any, FormulaInFile]()
-    verdicts = {id(finding): finding.comparison for finding in found}
+    remarks, verdicts, wrong = dict[int, str](), dict[int, Comparison](), dict[Any, FormulaInFile]()
     for finding, own, regular in right:
         cases = [r for r in right if (r[1].function, r[1].name) == (own.function, own.name)]
         others = {f.line: said for f, _, c in cases if (said := _contradiction(regular, c))}
