@@ -3,8 +3,8 @@
 It runs each function with symbols in place of numbers. A value is an expression, a matrix, or a
 record: the parts of a name by member or index, as far as they are assigned. A name or part without
 a value is the symbol of its path; so is a value that is long, that cannot be read, or that a
-condition or a loop may change. A formula is therefore right for every value of what is not read,
-and says which that is. Programs are parsed, never run.
+condition or a loop may change. A formula is therefore right for all values of the names that are
+not read, and lists them. Programs are parsed, never run.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ _Bounded = sp.Function("clamp", real=True)  # x of clamp(x, -1, 1): no other num
 
 
 def _unbounded(matrix: Any) -> Any:
-    """The matrix without bounds of what has an arc sine or cosine."""
+    """The matrix without the bounds in its arc sines and cosines."""
     return matrix.xreplace({f: f.func(_inner(f.args[0])) for f in matrix.atoms(sp.asin, sp.acos)})
 
 
@@ -59,7 +59,7 @@ def _inner(value: Any) -> Any:
 class _Record(dict[Any, tuple[Any, int]]):
     """Parts of a value by member or index, each with the line where it was assigned.
 
-    That of None stands for all others, if they are inputs.
+    The part at None is a symbol for all other parts, if they are inputs.
     """
 
     def at(self, *path: Any) -> Any:
@@ -120,7 +120,7 @@ class Formula:
         return min(self.lines)
 
     def conditions_beside(self, other: Formula) -> list[frozenset[sp.Expr]]:
-        """In each run, those that do not lead to another formula, in its own names."""
+        """The conditions of each run that another formula does not share, in the names of this."""
         runs = [run - frozenset.intersection(*other.conditions) for run in self.conditions]
         symbols = {s for run in runs for c in run for s in c.free_symbols if not s.is_Dummy}
         names = {s: sp.Symbol(_last(s.name), real=True) for s in symbols} | {**self.names}
@@ -165,7 +165,7 @@ class _Scope:
 
 @dataclass(frozen=True)
 class _Program:
-    """All functions know this of their file."""
+    """A file, as its functions see it."""
 
     suffix: str
     functions: Mapping[str, Sequence[Tree]] = field(default_factory=dict)  # by name
@@ -226,7 +226,7 @@ def program_formulas(text: str, suffix: str) -> list[Formula]:
             except RecursionError:  # SymPy, in a sum that a program nests in itself
                 run.formulas.append(_fault(scope.tree.line, "expressions are nested too deeply"))
             tree, last = scope.tree, int(scope.tree.node.end_point[0]) + 1
-            span = (tree.word, tree.line, last) if tree.kind == "function" else ("", 0, 0)
+            span = (tree.word, tree.line, last) if tree.kind == "function" else Formula.function
             named = {f.forms[:1] for f in run.formulas if f.name not in UNNAMED} - {()}
             returned = {f.forms[:1] for f in run.formulas if f.name == _RETURNED}
             own = [f for f in run.cases() if f.name not in UNNAMED or f.forms[:1] not in named]
@@ -254,7 +254,7 @@ def _has_material(text: str, suffix: str) -> bool:
 
 @lru_cache(maxsize=256)  # functions are run several times
 def _late(scope: Tree, is_python: bool) -> list[Tree]:
-    """Changes of names at a time that the order of the text does not tell."""
+    """Changes of names that do not happen in the order of the text."""
     inner = [scope] if is_python else walk(scope.node, "function")
     late = chain.from_iterable(walk(each.node, "assign", "call", "outer") for each in inner)
     return [t for t in late if t.is_one_of("late" if is_python else "declaration") == is_python]
@@ -359,8 +359,7 @@ class _Run:
 
     def run(self, tree: Tree) -> None:
         """One statement, or all statements in a block."""
-        if self.is_full(tree.line):
-            self.end = "return"  # later values are unknown
+        self.end = "return" if self.is_full(tree.line) else self.end  # later values are unknown
         if self.end or tree.kind == "function":
             return
         self.depth += 1
@@ -533,7 +532,7 @@ class _Run:
             is_old = not any(s.is_Dummy for s in ratio.free_symbols)
             is_root = (1 / ratio).is_Pow and is_length(1 / ratio)
             names = tuple((s, s.name) for s in ratio.free_symbols if is_old and is_root)
-            firsts = {own, self.part_of(own, self.first) if own.is_Symbol else own}
+            firsts = {own, self.part_of(own, 0) if own.is_Symbol else own}
             groups = (each[0] for each in grouped(names) if len(each) == 1)
             for vector in (each for each in groups if len(each) > 2 and firsts & {*each}):
                 self.components.add(symbol := self.symbol_for(path, None))
@@ -788,12 +787,12 @@ class _Run:
     # Formulas
 
     def emit_at(self, path: Path, *, is_final: bool) -> None:
-        """A matrix has its values, before another is assigned."""
+        """Collect a matrix before it is assigned again."""
         if len(path) == 1 and isinstance(self.values.at(path[0]), _Record):
             self.emit(keys=path, is_final=is_final)
 
     def emit(self, path: Path = (), keys: Any = None, *, is_final: bool = True) -> None:
-        """All matrices and vectors among the parts of a record have their values."""
+        """Collect the matrices and vectors among the parts of a record."""
         record: _Record = self.values.at(*path)
         for key in [*record] if keys is None else keys:
             part, own = record.at(key), (*path, key)
@@ -877,7 +876,7 @@ class _Run:
         self.formulas.append(replace(formula, conditions=frozenset({conditions})))
 
     def cases(self) -> Iterator[Formula]:
-        """The formulas; one whose names get other values is no case of its function."""
+        """The formulas; one whose names are assigned again has no conditions."""
         for each in self.formulas:
             own = [*zip(each.name.split(", "), each.lines, strict=False)]
             is_changed = any(self.values.get(n, (None, line))[1] != line for n, line in own)
@@ -1117,14 +1116,14 @@ class _Run:
 
     def tensor(self, name: sp.Symbol) -> Any:
         """The nine entries of a matrix without a value."""
-        return rows([self.vector(self.component(name, k + self.first)) for k in range(3)])
+        return rows([self.vector(self.component(name, k)) for k in range(3)])
 
     def vector(self, value: Any, count: int = 3, others: Iterable[Any] = ()) -> Any:
         """Components for a name without a value, the likelier if `others` are components of it."""
         if not _is_scalar(value):
             return value
         stems = {symbol.name.rpartition(".")[0] for symbol in others}
-        parts = [self.component(value, key + self.first, stems) for key in range(count)]
+        parts = [self.component(value, key, stems) for key in range(count)]
         return value if None in parts else rows(parts)
 
     def operation(self, tree: Tree, sign: str, *sides: Any) -> str:
@@ -1311,8 +1310,7 @@ class _Run:
             numbers = range(len(lines))[key] if lines else of_name
             parts = [self.entry(tree, value, (k, *others)) for k in numbers]
             return parts[0] if len(parts) == 1 else rows(parts)
-        number = key + self.first if isinstance(key, int) else key
-        part = dict(enumerate(lines)).get(key) if lines else self.component(value, number)
+        part = dict(enumerate(lines)).get(key) if lines else self.component(value, key)
         self.refuse_if(part is None, tree, "has no value")
         return self.entry(tree, part, tuple(others))
 
@@ -1332,7 +1330,7 @@ class _Run:
 
         It is not read if the name is not.
         """
-        name = f"{whole.name}.{key}"
+        name = f"{whole.name}.{key + self.first if isinstance(key, int) else key}"
         for view, own in syntax.VIEWS.items():
             name = re.sub(view, own, name)
         part = sp.Symbol(name, real=True)
@@ -1480,9 +1478,10 @@ class _Run:
     def filled(self, tree: Tree) -> Any:
         """zeros(3, 3), Matrix3d::Identity()."""
         numbers = [n for each in tree.parts[1:] for n in re.findall(r"\d+", each.text)]
-        sizes, is_zero = numbers[-2:] or [*"3"], CALLS[tree.called] == "zeros"
+        word, is_zero = tree.parts[0].text, CALLS[tree.called] == "zeros"  # Eigen::Matrix4d::Zero
+        sizes = numbers[-2:] or re.findall(r"(?<!\d)[34](?!\d)", word)[:1] or ["3"]
         is_column = len(sizes) == 1 and len(tree.parts) > 1 and is_zero and not self.first
-        is_vector = is_column or re.search("vec|quat", tree.base, re.IGNORECASE)
+        is_vector = is_column or re.search("vec|quat", word, re.IGNORECASE)
         self.refuse_if(is_vector or not {*sizes} <= {*"34"}, tree)
         return sp.ImmutableMatrix((sp.zeros if is_zero else sp.eye)(int(sizes[0]), int(sizes[-1])))
 
@@ -1597,9 +1596,9 @@ def _short_names(symbols: Collection[sp.Symbol]) -> dict[sp.Expr, sp.Expr]:
     shared = {of for of in ("self.", "this.") for n in {*"wxyz"} & plain if of + n in plain}
     count = Counter(_last(name) for name in plain if "." in name)
     for symbol in sorted(symbols, key=lambda s: (s.is_Dummy, s.name.count("."), s.sort_key())):
-        name, long = _last(symbol.name), symbol.name.replace(".", "_")
+        name = _last(symbol.name)
         is_long = name in names or count[name] > 1 or symbol.name[:-1] in shared  # also this.w
-        name = long if is_long else name
+        name = symbol.name.replace(".", "_") if is_long else name
         while name in names:
             name += "_new"
         names[name] = symbol
