@@ -115,7 +115,7 @@ def test_kernels_and_notes_know_nothing_of_one_another_nor_the_representation_of
 
 BUDGETS = {  # what was reached; who makes the house smaller lowers them
     "files": 182,
-    "lines of code": 24_276,
+    "lines of code": 24_265,
     "lines of tests": 15_850,
     "lines of benchmarks": 2_500,
 }

@@ -110,10 +110,8 @@ class _Trial:
     def readings(self, where: Any) -> Iterator[Reading]:
         """The readings for which this is true, (meanings, goals), the plainest first."""
         odd = [sum(map(known.oddness, each.values())) for each in self.names]
-        places = [(int(meaning), int(goal)) for meaning, goal in np.argwhere(where)]
-        for meaning, goal in sorted(places, key=lambda place: (odd[place[0]], *place[::-1])):
-            agreement = self.agreement[meaning, goal]
-            reading = Reading(self.formula, self.family[goal], self.names[meaning], agreement)
+        for k, n in sorted(np.argwhere(where).tolist(), key=lambda k_n: (odd[k_n[0]], *k_n[::-1])):
+            reading = Reading(self.formula, self.family[n], self.names[k], self.agreement[k, n])
             if reading.keeps_scale:
                 yield reading
 

@@ -41,13 +41,12 @@ def _sized(value: sp.Expr) -> Sized:
     return Sized.atom(value, bits=longest_number(value) or 1)
 
 
-OF_MATRICES: dict[str, Callable[..., Any]]
-OF_MATRICES = {"C": hat, "T": lambda m: m.T, "trace": lambda m: m.trace()}
+OF_MATRICES: dict[str, Callable[..., Any]] = {"C": hat, "T": lambda m: m.T}
 OF_MATRICES |= {"diag": lambda *parts: sp.diag(*chain.from_iterable(map(as_matrix, parts)))}
 OF_MATRICES |= {"cross": lambda a, b: a.cross(b), "outer": lambda a, b: a * b.T}
 OF_MATRICES |= {"dot": lambda a, b: a.dot(b) if 1 in a.shape else a * b}
 OF_MATRICES |= {"one": lambda size: sp.eye(min(size, limits.largest + 1))}
-OF_MATRICES |= {"col": lambda *entries: sp.Matrix(entries)}
+OF_MATRICES |= {"col": lambda *entries: sp.Matrix(entries), "trace": lambda m: m.trace()}
 OF_MATRICES |= {"stack": lambda *parts: sp.Matrix.vstack(*map(as_matrix, parts))}
 OF_MATRICES |= {"hypot": lambda *sides: called("sqrt", [sum(called("sq", [s]) for s in sides)])}
 OF_MATRICES |= {"copysign": lambda a, b: combined("*", called("abs", [a]), called("sign", [b]))}

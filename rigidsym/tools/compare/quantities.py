@@ -155,8 +155,7 @@ class KnownQuantity:
         """The inputs by plain name."""
         used = (a for a in self.motion.arguments if self.rotation and a.name in self.inputs)
         names = {name: s for a in used for name, s in zip(a.names, a.symbols, strict=True)}
-        plain = (s for symbols in self.inputs.values() for s in symbols if s.is_Symbol)
-        return names | {s.name: s for s in plain}
+        return names | {s.name: s for vector in self.inputs.values() for s in vector if s.is_Symbol}
 
     @property
     def coordinates(self) -> dict[str, str | None]:
@@ -283,15 +282,13 @@ def _rotations(
 ) -> tuple[str, ...]:
     """The rotations whose quantity has as many names, and sines and cosines if this has."""
     is_matrix = quantity == "rotation_matrix"
-    axes = OF_VECTORS[: 2 * (count > 2)]
-    if quantity == QUATERNION:
-        return (*_SEQUENCES.get(count, ()), *axes) if has_turns else ()
-    if 4 in shape:
+    if 4 in shape and quantity != QUATERNION:
         return ("unit_quaternion",)
     if not has_turns:
         others = ("quaternion", "unit_quaternion")[1 - is_matrix :]
-        return ("gibbs_vector", "modified_rodrigues", *others)
-    return (*(_SEQUENCES.get(count, ()) if is_matrix else _THREE), *axes)
+        return ("gibbs_vector", "modified_rodrigues", *others) * (quantity != QUATERNION)
+    orders = _SEQUENCES.get(count, ()) if is_matrix or quantity == QUATERNION else _THREE
+    return (*orders, *OF_VECTORS[: 2 * (count > 2)])
 
 
 # Laws in vectors
@@ -349,12 +346,11 @@ def _laws() -> tuple[Family, ...]:
     any_law = replace(target("quaternion", "rotation_matrix"), rotation="")
     laws = []
     for title, sizes, value in _LAWS:
-        name, _, condition = title.partition(" ")
+        name, *conditions = title.split()
         letters = zip("abcd", sizes, strict=False)
         vectors = {c: sp.symbols(f"{c}_:{size}", real=True) for c, size in letters}
         matrix = value(*map(sp.Matrix, vectors.values())).as_immutable()
-        ways = (condition,) * bool(condition)
-        law = replace(any_law, quantity=name, ways=ways, matrix=matrix, inputs=vectors)
+        law = replace(any_law, quantity=name, matrix=matrix, inputs=vectors, ways=(*conditions,))
         laws.append(tuple(law.written(WAYS_OF.get(name, ()))))
     return tuple(laws)
 
@@ -379,14 +375,12 @@ def _of_angles() -> Family:
 def _of_matrix() -> Family:
     """q from R, by Shepperd's method: a column of 4 q qᵀ over twice its length."""
     rotation = target("unit_quaternion", "rotation_matrix")
-    squares = outer_product(_ENTRIES)
-    columns = (squares[:, k] / (2 * sp.sqrt(squares[k, k])) for k in range(4))
-    goal = replace(rotation, quantity=QUATERNION, rotation=OF_MATRIX)
-    goals = [replace(goal, matrix=sp.ImmutableMatrix(column)) for column in columns]
-    # of the conjugate q* and of -q*, the component with the root is positive
-    cases, ways = [], WAYS_OF[QUATERNION][1:-1]
-    for goal, sign in zip(goals, [1, -1, -1, -1], strict=True):
-        other = replace(goal, ways=("by_columns",), matrix=sign * _CONJUGATE * goal.matrix)
+    squares, cases, ways = outer_product(_ENTRIES), [], WAYS_OF[QUATERNION][1:-1]
+    for k, sign in enumerate([1, -1, -1, -1]):
+        column = sp.ImmutableMatrix(squares[:, k] / (2 * sp.sqrt(squares[k, k])))
+        goal = replace(rotation, quantity=QUATERNION, rotation=OF_MATRIX, matrix=column)
+        # of the conjugate q* and of -q*, the component with the root is positive
+        other = replace(goal, ways=("by_columns",), matrix=sign * _CONJUGATE * column)
         cases.append([*goal.written(ways), *other.written(ways)])
     return _family(cases)
 
@@ -473,7 +467,6 @@ def meanings(formula: sp.MatrixBase, goal: KnownQuantity, *, is_asked: bool) -> 
 def symbols_in(formula: sp.MatrixBase) -> tuple[list[sp.Symbol], set[sp.Symbol]]:
     """The names of a formula in order, q2 before q10, and those inside sines and cosines."""
     inside = {a for f in formula.atoms(sp.sin, sp.cos, sp.tan) for a in f.free_symbols}
-
     parts = {s: re.split(r"(\d+)", s.name) for s in formula.free_symbols}
     return sorted(parts, key=lambda s: [int(p) if p.isdecimal() else p for p in parts[s]]), inside
 

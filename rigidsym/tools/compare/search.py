@@ -15,7 +15,7 @@ import sympy as sp
 from rigidsym.errors import ExpressionError, RequestError
 from rigidsym.system.resources import environment
 from rigidsym.tools.compare import comparison as comparisons, quantities
-from rigidsym.tools.compare.comparison import Comparison
+from rigidsym.tools.compare.comparison import Comparison, branch, halved, mended
 from rigidsym.tools.compare.program import UNNAMED, Formula, program_formulas
 from rigidsym.tools.compare.quantities import KnownQuantity, are_angles, are_body_rates
 from rigidsym.tools.compare.syntax import GRAMMARS, REMARKS, SHAPES, limits, patterns
@@ -262,9 +262,8 @@ def _with_branches(
     for each in (formula for formula in program if formula.is_final):
         beside = [r for r in right if r[1].function == each.function]
         named = [r for r in beside if each.name == r[1].name or r[1].is_returned & each.is_returned]
-        judged = ((f, comparisons.branch(regular, own, each)) for f, own, regular in named)
-        branches = ((f, case) for f, case in judged if case)
-        for finding, case in sorted(branches, key=lambda branch: branch[1].is_wrong)[:1]:
+        branches = [(f, case) for f, own, regular in named if (case := branch(regular, own, each))]
+        for finding, case in sorted(branches, key=lambda judged: judged[1].is_wrong)[:1]:
             line = min({*each.lines} - {*finding.formula.lines} or each.lines)
             parts = f"{remarks[id(finding)]}; the branch in line {line} {case.branch}".split("; ")
             remarks[id(finding)] = "; ".join(dict.fromkeys(filter(None, parts)))
@@ -346,8 +345,7 @@ def _compared(
             comparison, is_case = replace(comparison, repairs=(), others=(), is_proved=False), True
         is_twice = goal is not None and "twice_the_angles" in goal.ways and goal.motion.model.turns
         if is_twice and form.free_symbols <= {*formula.names.values()}:  # no sines from elsewhere
-            change = comparisons.halved(form, *quantities.symbols_in(form)[0])
-            comparison = comparisons.mended(form, [change]) or comparison
+            comparison = mended(form, [halved(form, *quantities.symbols_in(form)[0])]) or comparison
         is_last = goal is not None and "scalar_last" in goal.ways
         if goal and len(form) == 4 and formula.scalar == ("first" if is_last else "last"):
             own = comparison.repairs[-1].formula if comparison.repairs else form
