@@ -196,7 +196,7 @@ class Comparison:
         # the names of coordinates: ours, the user's, and the axis of the turn
         calls = [(own, names[own], axis) for own, axis in coordinates.items() if names[own]]
         product = found.inputs.values() if found and found.quantity == "quaternion_product" else ()
-        factors = [[called.get(str(s), "") for s in vector] for vector in product]
+        factors = [[called.get(s.name, "") for s in vector] for vector in product]
         fixed = asked.coordinates.items() if asked and asked.has_own_names else ()
         # w of q_w needs no words
         calls = calls if any(not n.endswith(own) or (a and own != n) for own, n, a in calls) else []

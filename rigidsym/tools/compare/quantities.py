@@ -68,7 +68,8 @@ OF_DIRECTIONS = ("rotation_matrix", QUATERNION, ANGLES)  # not changed by the le
 
 Way = Callable[..., sp.Matrix]
 _NONE = sp.zeros(3, 1)
-_ENTRIES = sp.Matrix(3, 3, sp.symbols("R_1:4_1:4", real=True))
+# Dummies, since a program may have the names R_1_1 or a_0 for something else
+_ENTRIES = sp.Matrix(3, 3, sp.symbols("R_1:4_1:4", real=True, cls=sp.Dummy))
 _CONJUGATE = sp.diag(1, -1, -1, -1)
 
 
@@ -348,7 +349,7 @@ def _laws() -> tuple[Family, ...]:
     for title, sizes, value in _LAWS:
         name, *conditions = title.split()
         letters = zip("abcd", sizes, strict=False)
-        vectors = {c: sp.symbols(f"{c}_:{size}", real=True) for c, size in letters}
+        vectors = {c: sp.symbols(f"{c}_:{size}", real=True, cls=sp.Dummy) for c, size in letters}
         matrix = value(*map(sp.Matrix, vectors.values())).as_immutable()
         law = replace(any_law, quantity=name, matrix=matrix, inputs=vectors, ways=(*conditions,))
         laws.append(tuple(law.written(WAYS_OF.get(name, ()))))
