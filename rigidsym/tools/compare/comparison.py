@@ -537,13 +537,15 @@ def _parts(formula: sp.ImmutableMatrix) -> Iterator[tuple[str, Any, sp.Immutable
 
 def _nearest(trials: Sequence[_Trial], least: float, expected: Sequence[str] = ()) -> list[Reading]:
     """The readings of which this share of all entries is right, the best first."""
-    readings: list[Reading] = []
+    readings, unusual = list[Reading](), list[Reading]()
     for trial in trials:
         # With one angle, a mirror is as near as the rotation.
         least_odd = 1 - 2 / len(trial.formula) if len(trial.formula.free_symbols) > 1 else 2
         odd = [any(known.oddness(x) > 1 for x in each.values()) for each in trial.names]
         share = trial.agreement.all(axis=2).mean(axis=(-2, -1))
-        share[[*map(known.has_other_scalar, trial.names)]] = -1  # only if equal
+        has_other = np.array([*map(known.has_other_scalar, trial.names)], bool)[:, None]
+        unusual += trial.readings(has_other & (share >= least_odd))  # if no other is near
+        share = np.where(has_other, -1, share)
         readings += trial.readings(share >= np.where(odd, least_odd, least)[:, None])
         if trial.formula.shape == (3, 1):  # two of three entries exchanged: one is right
             for order in ([1, 0, 2], [2, 1, 0], [0, 2, 1]):
@@ -555,7 +557,7 @@ def _nearest(trials: Sequence[_Trial], least: float, expected: Sequence[str] = (
         is_other = each.goal.axes not in (expected or ["z y x"])
         return -each.is_right.mean(), odd, len(each.goal.ways), is_other
 
-    return sorted(readings, key=rank)
+    return sorted(readings or unusual, key=rank)
 
 
 def _decided(

@@ -770,15 +770,12 @@ class _Run:
         if first.kind == "binary" and first.word == "<<":
             left, *right = *first.parts, *others
             parts = self.beside_scalar([*map(self.read, right)])
-            sizes = {as_matrix(each).shape for each in parts}
+            sizes = {getattr(each, "shape", (1, 1)) for each in parts}
             word = re.escape(right[0].text)
             is_row = re.search(rf"Row\w*\s[^;]*\b{word}\b", self.scope.tree.text)
-            if sizes == {(1, 1), (3, 1)}:
-                value = called("stack", parts)
-            else:
-                value = _unflattened(rows(parts))
-                value = value.T if sizes == {(3, 1)} and not is_row else self.place(value, right)
-            self.store(left, value)
+            whole = called("stack", parts) if len(sizes) == 2 else _unflattened(rows(parts))
+            is_column = sizes == {(3, 1)} and not is_row
+            self.store(left, whole.T if is_column else self.place(whole, right))
         else:
             self.run_block(Tree(tree.node, own=[t for t in tree.parts if t.kind != "binary"]))
 
@@ -973,8 +970,9 @@ class _Run:
 
     def beside_scalar(self, parts: list[Any]) -> list[Any]:
         """(cos a/2, v sin a/2), where v is a name: beside the cosine of a, v may be a number."""
-        entries = [as_matrix(part)[0] for part in parts if len(as_matrix(part)) == 1]
-        for k, w in enumerate(entries if len(entries) == len(parts) == 2 else ()):
+        pair = parts if len(parts) == 2 else ()
+        entries = [as_matrix(part)[0] for part in pair if len(as_matrix(part)) == 1]
+        for k, w in enumerate(entries if len(entries) == 2 else ()):
             is_half = isinstance(w, sp.cos) and w.args[0].as_coeff_Mul()[0] != 1
             if (is_half or w == 0) and not entries[1 - k].is_Function:
                 parts[1 - k] = as_matrix(self.vector(entries[1 - k]))
