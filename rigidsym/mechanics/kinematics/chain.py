@@ -141,7 +141,7 @@ class Composition(Values):
 
 
 def _beside(left: RingMatrix, right: RingMatrix) -> RingMatrix:
-    return RingMatrix(left.ring, tuple((a + b for a, b in zip(left.rows, right.rows, strict=True))))
+    return RingMatrix(left.ring, tuple(a + b for a, b in zip(left.rows, right.rows, strict=True)))
 
 
 @cache

@@ -30,6 +30,8 @@ from rigidsym.tools.compare.quantities import ANGLES, QUATERNION, Array, KnownQu
 from rigidsym.tools.compare.syntax import CHANGES, REMARKS, SHAPES, WAYS, WHOLE, limits, patterns
 
 _read = cache(program_formulas)
+# (goals, points, rows, columns)
+_values_of = cache(lambda goals: np.stack([goal.values for goal in goals]))
 _ANGLES = ["phi", "theta", "psi"]  # if nobody has chosen their names
 
 
@@ -87,8 +89,7 @@ class _Trial:
 
     def __init__(self, formula: sp.ImmutableMatrix, family: Any, *, is_asked: bool) -> None:
         goal = family[0]
-        self.formula, self.family = formula, family
-        self.wanted = np.stack([each.values for each in family])  # (goals, points, rows, columns)
+        self.formula, self.family, self.wanted = formula, family, _values_of(family)
         self.names = known.meanings(formula, goal, is_asked=is_asked)
         # (meanings, points, rows, columns)
         self.numbers = np.empty((0, known.POINTS, *formula.shape))

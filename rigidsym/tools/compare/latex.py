@@ -134,7 +134,7 @@ def _product(text: str, parts: list[str]) -> str:
             factor = "λ" if token == '"lambda"' else token.strip('"')  # a keyword of Python
         else:
             raise ExpressionError(f"unexpected {token!r} in LaTeX")
-        # in \sin(a)^2, the power is that of the sine
+        # \sin(a)^2 is the square of the sine
         is_argument = token[-1] >= chr(_FIRST) and function_word(before[1:]) in FUNCTIONS
         if power and not is_argument:
             factor = f"({factor}).T" if power.strip("()") == "T" else f"{factor}**({power})"

@@ -559,7 +559,7 @@ class _Run:
         """An expression or a matrix with long values for their symbols."""
         for _ in range(limits.long_in_long):
             parts = {s: v for s in value.free_symbols if (v := self.definitions.get(s)) is not None}
-            value = value.xreplace(parts) if _size(value) <= limits.most_parts else value
+            value = value.xreplace(parts) if parts and _size(value) <= limits.most_parts else value
         return value
 
     def update(self, tree: Tree, sign: str) -> None:
@@ -864,8 +864,8 @@ class _Run:
         forms = [language.spelled_out(m.xreplace(names), values) for m in (whole, value)]
         places = tuple((_last(n), self.unread.get(n) or min(lines)) for n in sorted(unread))
         computed = {names[s]: self.expanded(known[s]).xreplace(names) for s in symbols & {*known}}
-        called_ = ", ".join(map(_last, name.split(", ")))
-        formula = Formula(lines=lines, name=called_, forms=tuple(dict.fromkeys(forms)))
+        title = ", ".join(map(_last, name.split(", ")))
+        formula = Formula(lines=lines, name=title, forms=tuple(dict.fromkeys(forms)))
         formula = replace(formula, unread=places, is_final=is_final, is_flat=is_flat, names=names)
         formula = replace(formula, computed=computed, is_bounded=is_bounded)
         formula = replace(formula, **self.facts.get(key, {}))

@@ -398,8 +398,8 @@ def _block(matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
         inside = {s for f in matrix.atoms(*_TRIGONOMETRIC) for s in f.free_symbols if f.has(sp.pi)}
         scale = {s: s * 180 / sp.pi for s in inside or matrix.free_symbols}
         has_angles = matrix.shape == (3, 1) and matrix.has(*quantities.INVERSE)
-        own = (matrix * sp.pi / 180).applyfunc(partial(sp.expand_mul, deep=False))
-        in_radians = own if has_angles else matrix.xreplace(scale)
+        own = matrix * sp.pi / 180 if has_angles else matrix.xreplace(scale)
+        in_radians = own.applyfunc(partial(sp.expand_mul, deep=False)) if has_angles else own
         is_less = in_radians.count(sp.pi) < matrix.count(sp.pi) + has_angles  # 90 becomes π/2
         matrix = in_radians if is_less else matrix
     by_frequency = (s for s in matrix.free_symbols if patterns.frequency.fullmatch(s.name))
